@@ -1,0 +1,1 @@
+"""The editor's panels, one module each."""

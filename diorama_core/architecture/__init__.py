@@ -1,0 +1,1 @@
+"""Floor, walls and ceiling as bounded planes."""

@@ -1,0 +1,199 @@
+"""What flows between the stages: frozen values that can be looked at, saved, corrected and resumed from.
+
+Stages do not import each other; they meet in these types. Frames and units: `diorama_core.scene.frames`.
+Image arrays have the photo's height and width (h w); `Photo` is already rotated upright.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Bool, Float, Float32, Int32, UInt8
+
+from diorama_core.scene.types import Architecture, Camera, Candidate, Intrinsics, Support
+from diorama_core.scene.values import ArrayValue
+
+Box = tuple[float, float, float, float]
+"""x1, y1, x2, y2 in photo pixels, clipped to the photo, with x1 < x2 and y1 < y2."""
+
+
+@dataclass(frozen=True, eq=False)
+class Photo(ArrayValue):
+    """The picture, upright, eight bits, three channels; possibly reduced from a very large original."""
+
+    rgb: UInt8[np.ndarray, "h w 3"]
+    name: str
+    """File name of the original, for people."""
+    original_size: tuple[int, int]
+    """Width and height of the upright original; boxes and intrinsics given by users refer to it."""
+    exif_focal_px: float | None = None
+    """Focal length in pixels of `rgb`, where the file states it."""
+
+    @property
+    def width(self) -> int:
+        """Pixels across."""
+        return int(self.rgb.shape[1])
+
+    @property
+    def height(self) -> int:
+        """Pixels down."""
+        return int(self.rgb.shape[0])
+
+
+@dataclass(frozen=True)
+class LabelledBox:
+    """A thing that a person or a detector pointed at."""
+
+    box: Box
+    category: str
+    """Canonical category, or "object" when unknown."""
+    label: str
+    """The word as given, for people."""
+    score: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Inputs(ArrayValue):
+    """Everything the user gave, checked and in photo pixels."""
+
+    photo: Photo
+    boxes: tuple[LabelledBox, ...] = ()
+    instances: Int32[np.ndarray, "h w"] | None = None
+    """Instance map: 0 is background; id k belongs to the object whose `mask_id` is k."""
+    instance_boxes: tuple[tuple[int, LabelledBox], ...] = ()
+    """For each instance id the box and class it was matched with."""
+    depth_m: Float32[np.ndarray, "h w"] | None = None
+    """Measured depth (z in camera), 0 where missing."""
+    intrinsics: Intrinsics | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class CameraHypothesis(ArrayValue):
+    """One reading of how the camera is held."""
+
+    intrinsics: Intrinsics
+    R_world_camera: Float[np.ndarray, "3 3"]
+    """World: +Z up, x and y along the room's axes, +Y the axis nearest to the viewing direction."""
+    score: float
+    """0 to 1; comparable within one photo."""
+
+
+@dataclass(frozen=True, eq=False)
+class CameraEstimate(ArrayValue):
+    """Intrinsics and orientation; the height above the floor is metric only with depth."""
+
+    hypotheses: tuple[CameraHypothesis, ...]
+    """Best first, at least one."""
+    confidence: float
+    source: str
+    """Where intrinsics and gravity come from, in words shown to the user."""
+    height_m: float | None = None
+    """Camera height above the floor, when depth measured it."""
+
+    @property
+    def best(self) -> CameraHypothesis:
+        """The most likely reading."""
+        return self.hypotheses[0]
+
+
+@dataclass(frozen=True, eq=False)
+class DetectedObject(ArrayValue):
+    """One object in the picture: class, box and mask."""
+
+    id: str
+    """Stable within the photo, also the scene object's id."""
+    category: str
+    label: str
+    box: Box
+    mask: Bool[np.ndarray, "h w"]
+    mask_id: int
+    mask_confidence: float
+    """Agreement of segmentations, 0 to 1; 1 for a mask given by the user."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cuboid(ArrayValue):
+    """The oriented box of one object in metres, before any shape is chosen."""
+
+    object_id: str
+    R_world_object: Float[np.ndarray, "3 3"]
+    """Object frame: +X front (its sign may still be undecided), +Z up."""
+    centre: Float[np.ndarray, "3"]
+    size_m: Float[np.ndarray, "3"]
+    confidence: float
+    front_known: bool = False
+    """Whether +X is known to be the front; otherwise yaw is meant modulo a quarter turn."""
+
+    @property
+    def corners_world(self) -> Float[np.ndarray, "8 3"]:
+        """Corners in the world, ordered as `scene.types.box_corners`."""
+        from diorama_core.scene.types import box_corners
+
+        return box_corners(self.size_m) @ self.R_world_object.T + self.centre
+
+
+@dataclass(frozen=True, eq=False)
+class ObjectGeometry(ArrayValue):
+    """The metric camera, every object's cuboid, and what stands on what."""
+
+    camera: Camera
+    cuboids: tuple[Cuboid, ...]
+    supports: tuple[Support, ...]
+    """Parents are object ids, "floor", or "wall" where the architecture will say which wall."""
+    source: str
+    confidence: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class DepthMap(ArrayValue):
+    """Depth and normals of every pixel."""
+
+    depth_m: Float32[np.ndarray, "h w"]
+    """z in camera, 0 where unknown."""
+    normals_world: Float32[np.ndarray, "h w 3"]
+    """Unit, toward the camera; zero where unknown."""
+    source: Literal["measured", "network", "rendered from cuboids and room"]
+
+
+@dataclass(frozen=True)
+class ArchitectureEstimate:
+    """The room, with what is known about how well it is known."""
+
+    architecture: Architecture
+    supports: tuple[Support, ...]
+    """The support edges with "floor" and "wall" resolved to plane ids."""
+    confidence: float
+    source: str
+
+
+@dataclass(frozen=True)
+class RankedShapes:
+    """Retrieved shapes of one object, best first: (shape id, score)."""
+
+    object_id: str
+    ranked: tuple[tuple[str, float], ...]
+    note: str = ""
+    """Shown to the user when the class was unknown and a near one was taken."""
+
+
+@dataclass(frozen=True)
+class PosedCandidates:
+    """The ranked shapes of one object, each posed; `confidence` speaks of the best."""
+
+    object_id: str
+    candidates: tuple[Candidate, ...]
+    confidence: float
+
+
+@dataclass(frozen=True)
+class LayoutReport:
+    """What an optimiser did: costs before and after, structure, collisions, distance moved."""
+
+    recipe: str
+    before: dict[str, float]
+    after: dict[str, float]
+    seconds: float
+    reasons: tuple[str, ...] = field(default=())
+    """Named reasons where a wish could not be met (an object larger than its support, a cycle)."""

@@ -1,0 +1,1 @@
+"""Maths without opinions: transforms, boxes, planes, surfaces, collision."""

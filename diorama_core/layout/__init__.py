@@ -1,0 +1,1 @@
+"""Poses that respect support, contact and space."""

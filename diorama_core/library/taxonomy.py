@@ -1,0 +1,209 @@
+"""What things in rooms are called, how big they usually are, and where they are usually found.
+
+One table serves naming (synonyms, plurals, British and American), metrology (size priors), retrieval (category
+groups) and support reasoning (what stands on the floor, hangs on a wall or lies on something else).
+"""
+
+from __future__ import annotations
+
+import difflib
+import re
+from dataclasses import dataclass
+from functools import cache
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Float
+
+Mount = Literal["floor", "surface", "wall", "ceiling"]
+"""Where a thing of a category is usually found: standing on the floor, on another object, or hung."""
+
+
+@dataclass(frozen=True)
+class SizePrior:
+    """Log-normal sizes of a category: medians in metres and standard deviations of their logarithms."""
+
+    height_m: float
+    width_m: float
+    """Left to right, seen from the front (object y)."""
+    depth_m: float
+    """Front to back (object x)."""
+    sigma_height: float
+    sigma_width: float
+    sigma_depth: float
+
+    @property
+    def log_median_xyz(self) -> Float[np.ndarray, "3"]:
+        """Logarithms of the medians in object order: x (depth), y (width), z (height)."""
+        return np.log([self.depth_m, self.width_m, self.height_m])
+
+    @property
+    def log_sigma_xyz(self) -> Float[np.ndarray, "3"]:
+        """Standard deviations of the logarithms in object order."""
+        return np.array([self.sigma_depth, self.sigma_width, self.sigma_height])
+
+
+@dataclass(frozen=True)
+class Category:
+    """One canonical category."""
+
+    name: str
+    priors: tuple[SizePrior, ...]
+    """One per mode (a bed with and without a headboard), most common first."""
+    mount: Mount = "floor"
+    synonyms: tuple[str, ...] = ()
+    seat_height_m: float | None = None
+    """Height of the surface that things lie on, where it is below the top (seats, mattresses)."""
+    supports_things: bool = False
+    """Whether people put things on it, so that its shapes must come empty."""
+    quarter_turns_free: bool = False
+    """Whether it often stands at odd angles to the room (chairs, plants)."""
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """The category a word was understood as."""
+
+    category: Category
+    exact: bool
+    """False when the word was unknown and the nearest name was taken."""
+    note: str = ""
+    """What to tell the user when it was not exact."""
+
+
+def _c(
+    name: str,
+    hwd: tuple[float, float, float],
+    sigma: tuple[float, float, float],
+    mount: Mount = "floor",
+    synonyms: str = "",
+    **more: object,
+) -> Category:
+    """A table row; `hwd` and `sigma` are height, width, depth, as furniture is usually measured."""
+    extra = more.pop("modes", ())
+    priors = (SizePrior(*hwd, *sigma), *(SizePrior(*m) for m in extra))  # type: ignore[attr-defined]
+    words = tuple(s.strip() for s in synonyms.split(",") if s.strip())
+    return Category(name, priors, mount, words, **more)  # type: ignore[arg-type]
+
+
+UNKNOWN = _c("object", (0.6, 0.6, 0.6), (0.7, 0.7, 0.6), synonyms="void, thing, item, other, misc, unknown, otherprop")
+
+CATEGORIES: tuple[Category, ...] = (
+    _c("chair", (0.86, 0.52, 0.56), (0.15, 0.15, 0.15), synonyms="dining chair, kitchen chair, side chair, wooden chair, folding chair", seat_height_m=0.46, supports_things=True, quarter_turns_free=True),
+    _c("office chair", (1.0, 0.62, 0.62), (0.13, 0.12, 0.12), synonyms="desk chair, swivel chair, task chair, computer chair, gaming chair", seat_height_m=0.48, quarter_turns_free=True),
+    _c("armchair", (0.88, 0.82, 0.85), (0.13, 0.15, 0.12), synonyms="easy chair, lounge chair, club chair, recliner, wing chair, rocking chair, sofa chair", seat_height_m=0.45, supports_things=True, quarter_turns_free=True),
+    _c("stool", (0.6, 0.38, 0.38), (0.25, 0.15, 0.15), synonyms="bar stool, step stool, barstool", supports_things=True, quarter_turns_free=True),
+    _c("bench", (0.46, 1.2, 0.4), (0.2, 0.3, 0.2), synonyms="settle, piano bench", supports_things=True),
+    _c("sofa", (0.84, 1.95, 0.95), (0.12, 0.25, 0.12), synonyms="couch, settee, loveseat, love seat, sectional, chesterfield, futon, daybed, divan", seat_height_m=0.45, supports_things=True),
+    _c("ottoman", (0.43, 0.65, 0.55), (0.15, 0.2, 0.2), synonyms="pouf, pouffe, footstool, footrest, hassock", supports_things=True, quarter_turns_free=True),
+    _c("table", (0.72, 1.4, 0.85), (0.18, 0.35, 0.25), synonyms="dining table, kitchen table, conference table, round table, trestle table", supports_things=True),
+    _c("coffee table", (0.45, 1.1, 0.65), (0.15, 0.2, 0.2), synonyms="cocktail table, low table, centre table, center table", supports_things=True),
+    _c("side table", (0.55, 0.5, 0.45), (0.15, 0.2, 0.2), synonyms="end table, accent table, lamp table, occasional table, pedestal table", supports_things=True),
+    _c("desk", (0.75, 1.4, 0.70), (0.08, 0.22, 0.15), synonyms="writing desk, computer desk, office desk, workstation, bureau", supports_things=True),
+    _c("bed", (0.62, 1.6, 2.1), (0.2, 0.2, 0.07), synonyms="double bed, single bed, queen bed, king bed, bunk bed, cot, crib, mattress", seat_height_m=0.55, supports_things=True, modes=((1.05, 1.6, 2.1, 0.2, 0.2, 0.07),)),
+    _c("night stand", (0.6, 0.5, 0.43), (0.15, 0.2, 0.15), synonyms="nightstand, bedside table, bedside cabinet, night table", supports_things=True),
+    _c("dresser", (1.0, 1.0, 0.48), (0.28, 0.35, 0.13), synonyms="chest of drawers, drawers, drawer, commode, tallboy, bureau dresser", supports_things=True),
+    _c("cabinet", (1.0, 0.9, 0.45), (0.4, 0.35, 0.2), synonyms="cupboard, filing cabinet, file cabinet, sideboard cabinet, kitchen cabinet, storage cabinet, locker, vanity, credenza", supports_things=True),
+    _c("sideboard", (0.8, 1.5, 0.45), (0.15, 0.2, 0.13), synonyms="buffet, console cabinet", supports_things=True),
+    _c("console table", (0.78, 1.1, 0.36), (0.1, 0.22, 0.18), synonyms="hall table, sofa table, entry table", supports_things=True),
+    _c("tv stand", (0.5, 1.4, 0.42), (0.2, 0.22, 0.15), synonyms="tv unit, television stand, media console, entertainment center, tv cabinet, media unit", supports_things=True),
+    _c("bookshelf", (1.7, 0.9, 0.32), (0.3, 0.3, 0.2), synonyms="bookcase, book shelf, shelving, shelving unit, shelf unit", supports_things=True),
+    _c("wardrobe", (2.0, 1.2, 0.6), (0.1, 0.3, 0.12), synonyms="closet, armoire, almirah"),
+    _c("refrigerator", (1.5, 0.7, 0.68), (0.3, 0.15, 0.12), synonyms="fridge, freezer, fridge freezer, icebox", supports_things=True),
+    _c("stove", (0.9, 0.62, 0.62), (0.08, 0.12, 0.1), synonyms="oven, cooker, range, cooktop", supports_things=True),
+    _c("washing machine", (0.86, 0.6, 0.6), (0.06, 0.06, 0.1), synonyms="washer, dryer, tumble dryer, dishwasher, laundry machine", supports_things=True),
+    _c("kitchen counter", (0.9, 1.8, 0.62), (0.06, 0.4, 0.12), synonyms="counter, worktop, countertop, kitchen island, kitchen unit, bar", supports_things=True),
+    _c("sink", (0.85, 0.6, 0.5), (0.25, 0.2, 0.2), synonyms="basin, washbasin, wash basin, washstand"),
+    _c("toilet", (0.75, 0.4, 0.68), (0.12, 0.12, 0.1), synonyms="wc, lavatory, loo"),
+    _c("bathtub", (0.58, 0.75, 1.65), (0.12, 0.1, 0.1), synonyms="bath, tub, bath tub"),
+    _c("floor lamp", (1.55, 0.4, 0.4), (0.12, 0.25, 0.25), synonyms="standing lamp, torchiere, floor light", quarter_turns_free=True),
+    _c("lamp", (0.58, 0.34, 0.34), (0.22, 0.2, 0.2), "surface", synonyms="table lamp, desk lamp, bedside lamp, reading lamp"),
+    _c("ceiling lamp", (0.4, 0.45, 0.45), (0.4, 0.35, 0.35), "ceiling", synonyms="pendant, pendant lamp, chandelier, ceiling light, pendant light"),
+    _c("television", (0.65, 1.0, 0.25), (0.3, 0.3, 0.6), "surface", synonyms="tv, telly, tv set, flatscreen, tv monitor"),
+    _c("monitor", (0.45, 0.55, 0.2), (0.2, 0.2, 0.3), "surface", synonyms="computer monitor, screen, display, computer screen"),
+    _c("laptop", (0.24, 0.34, 0.25), (0.15, 0.12, 0.2), "surface", synonyms="notebook computer, macbook"),
+    _c("computer", (0.42, 0.2, 0.45), (0.2, 0.25, 0.2), "surface", synonyms="pc, desktop computer, computer tower, printer, tower"),
+    _c("keyboard", (0.03, 0.43, 0.15), (0.3, 0.15, 0.2), "surface", synonyms="computer keyboard"),
+    _c("microwave", (0.3, 0.5, 0.38), (0.12, 0.12, 0.15), "surface", synonyms="microwave oven, toaster oven, toaster, oven toaster"),
+    _c("pillow", (0.38, 0.48, 0.2), (0.2, 0.2, 0.3), "surface", synonyms="cushion, throw pillow, bolster"),
+    _c("books", (0.15, 0.4, 0.3), (0.5, 0.4, 0.4), "surface", synonyms="book, book stack, stack of books, magazine, papers, paper, pile of books"),
+    _c("plant", (0.9, 0.5, 0.5), (0.5, 0.4, 0.4), "floor", synonyms="potted plant, houseplant, pot plant, flower, flowers, tree, pottedplant, succulent", quarter_turns_free=True),
+    _c("vase", (0.3, 0.18, 0.18), (0.3, 0.3, 0.3), "surface", synonyms="jar, urn, jug, pitcher, flower vase"),
+    _c("bowl", (0.1, 0.24, 0.24), (0.3, 0.25, 0.25), "surface", synonyms="dish, fruit bowl, plate, tray"),
+    _c("cup", (0.1, 0.1, 0.09), (0.2, 0.2, 0.2), "surface", synonyms="mug, glass, coffee cup, wine glass, teacup"),
+    _c("bottle", (0.27, 0.08, 0.08), (0.2, 0.2, 0.2), "surface", synonyms="wine bottle, flask"),
+    _c("clock", (0.3, 0.3, 0.06), (0.3, 0.3, 0.4), "wall", synonyms="wall clock, alarm clock"),
+    _c("box", (0.3, 0.4, 0.33), (0.4, 0.4, 0.4), "floor", synonyms="cardboard box, carton, crate, container, storage box, suitcase, bag, case, luggage", supports_things=True),
+    _c("basket", (0.35, 0.4, 0.4), (0.3, 0.3, 0.3), "floor", synonyms="laundry basket, hamper, wicker basket"),
+    _c("trash can", (0.45, 0.32, 0.32), (0.3, 0.2, 0.2), "floor", synonyms="bin, garbage bin, dustbin, waste bin, wastebasket, rubbish bin, garbage can, trashcan, garbagebin"),
+    _c("picture", (0.65, 0.75, 0.03), (0.4, 0.45, 0.3), "wall", synonyms="painting, poster, photo frame, picture frame, artwork, print, photograph, frame, whiteboard, blackboard, board"),
+    _c("mirror", (0.9, 0.8, 0.04), (0.4, 0.4, 0.3), "wall", synonyms="wall mirror, looking glass"),
+    _c("shelves", (0.4, 1.0, 0.25), (0.5, 0.35, 0.2), "wall", synonyms="shelf, wall shelf, floating shelf, rack", supports_things=True),
+    _c("curtain", (2.2, 1.2, 0.12), (0.2, 0.4, 0.3), "wall", synonyms="curtains, drapes, blinds, blind, shower curtain"),
+    _c("window", (1.2, 1.1, 0.08), (0.25, 0.35, 0.3), "wall", synonyms="windows, window frame"),
+    _c("door", (2.03, 0.85, 0.06), (0.04, 0.1, 0.3), "wall", synonyms="doorway, doors, door frame"),
+    _c("radiator", (0.6, 1.0, 0.12), (0.15, 0.3, 0.2), "wall", synonyms="heater, air conditioner"),
+    _c("rug", (0.015, 1.6, 2.2), (0.3, 0.3, 0.3), "floor", synonyms="carpet, mat, floor mat, floormat, bath mat", supports_things=True),
+    _c("piano", (1.15, 1.45, 0.62), (0.15, 0.1, 0.15), synonyms="upright piano, keyboard piano"),
+    _c("toy", (0.25, 0.25, 0.2), (0.4, 0.4, 0.4), "surface", synonyms="teddy bear, teddy, doll, stuffed animal, ball"),
+    UNKNOWN,
+)  # fmt: skip
+
+ARCHITECTURE_WORDS = frozenset({"wall", "floor", "ceiling", "walls"})
+"""Words that name the room itself, never an object."""
+
+
+def _key(word: str) -> str:
+    return re.sub(r"[^a-z0-9]+", " ", word.lower()).strip()
+
+
+def _singulars(key: str) -> tuple[str, ...]:
+    """The key and its likely singulars."""
+    forms = [key]
+    if key.endswith("ies"):
+        forms.append(key[:-3] + "y")
+    if key.endswith("ves"):
+        forms += [key[:-3] + "f", key[:-3] + "fe"]
+    if key.endswith("es"):
+        forms.append(key[:-2])
+    if key.endswith("s"):
+        forms.append(key[:-1])
+    return tuple(forms)
+
+
+@cache
+def _words() -> dict[str, Category]:
+    table = {_key(c.name): c for c in CATEGORIES}
+    for category in CATEGORIES:
+        for word in category.synonyms:
+            table.setdefault(_key(word), category)
+    return table
+
+
+def category(name: str) -> Category:
+    """The category with this canonical name; raises `KeyError` when there is none."""
+    found = _words().get(_key(name))
+    if found is None or found.name != name:
+        raise KeyError(name)
+    return found
+
+
+@cache
+def resolve(word: str) -> Resolution:
+    """Understand a word that a person or a detector used.
+
+    Exact names, synonyms and plurals first; then the last words of a phrase ("wooden armchair"); then the nearest
+    spelling, with a note; at last the category "object".
+    """
+    table = _words()
+    key = _key(word)
+    parts = key.split()
+    for start in range(len(parts)):
+        for form in _singulars(" ".join(parts[start:])):
+            if form in table:
+                return Resolution(table[form], exact=True)
+    near = difflib.get_close_matches(key, list(table), n=1, cutoff=0.75)
+    if near:
+        found = table[near[0]]
+        return Resolution(found, exact=False, note=f"'{word}' is not a known class; read as '{found.name}'")
+    return Resolution(UNKNOWN, exact=False, note=f"'{word}' is not a known class; treated as an unnamed object")

@@ -1,0 +1,1 @@
+"""Camera, objects, depth and supports from the picture."""

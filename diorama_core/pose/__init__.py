@@ -1,0 +1,1 @@
+"""Nine-degree-of-freedom poses of shapes."""

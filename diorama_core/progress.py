@@ -1,0 +1,74 @@
+"""Progress and cancellation of long work, independent of who shows it."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from diorama_core.errors import Cancelled
+
+
+@dataclass(frozen=True)
+class ProgressEvent:
+    """One step of a long job, as shown to a person."""
+
+    fraction: float
+    """Share of the whole job that is done, 0 to 1."""
+    message: str
+    """What is happening now, in plain words."""
+
+
+class CancelToken:
+    """A flag that one thread sets and a working thread checks."""
+
+    def __init__(self) -> None:
+        self._event = threading.Event()
+
+    def cancel(self) -> None:
+        """Ask the job to stop at its next check."""
+        self._event.set()
+
+    @property
+    def cancelled(self) -> bool:
+        """Whether the job was asked to stop."""
+        return self._event.is_set()
+
+
+def _ignore(event: ProgressEvent) -> None:
+    pass
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Where long work reports and where it learns that it should stop.
+
+    `Progress()` reports nowhere and is never cancelled, so every function can take one by default.
+    """
+
+    on_event: Callable[[ProgressEvent], None] = _ignore
+    token: CancelToken = field(default_factory=CancelToken)
+    start: float = 0.0
+    """Where this part of the job begins on the whole job's scale."""
+    span: float = 1.0
+    """How much of the whole job this part is."""
+
+    def report(self, fraction: float, message: str) -> None:
+        """Report that `fraction` (0 to 1) of this part is done; raises `Cancelled` when asked to stop."""
+        self.check()
+        done = self.start + self.span * min(max(fraction, 0.0), 1.0)
+        self.on_event(ProgressEvent(fraction=done, message=message))
+
+    def check(self) -> None:
+        """Raise `Cancelled` when the job was asked to stop."""
+        if self.token.cancelled:
+            raise Cancelled("stopped on request; nothing was changed")
+
+    def part(self, start: float, end: float) -> Progress:
+        """The progress of a sub-task that covers `start` to `end` of this one."""
+        return Progress(
+            on_event=self.on_event,
+            token=self.token,
+            start=self.start + self.span * start,
+            span=self.span * (end - start),
+        )

@@ -1,0 +1,1 @@
+"""Which shapes of the library could each object be."""

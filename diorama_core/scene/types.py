@@ -1,0 +1,343 @@
+"""The scene: one immutable value that the whole product reads and edits.
+
+Meshes and pictures live outside, by id, so that a scene is small, snapshots are cheap and undo is a list of
+scenes. Frames and units: `diorama_core.scene.frames`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.scene.frames import UP_WORLD
+from diorama_core.scene.values import ArrayValue, frozen_array
+
+PlaneRole = Literal["floor", "ceiling", "wall"]
+Relation = Literal["placed on", "mounted on"]
+FaceName = Literal["bottom", "top", "front", "back", "left", "right"]
+
+
+@dataclass(frozen=True)
+class Intrinsics:
+    """A pinhole camera's inner geometry, in pixels of a `width` x `height` image."""
+
+    width: int
+    height: int
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+
+    def __post_init__(self) -> None:
+        numbers = (self.width, self.height, self.fx, self.fy)
+        if not all(np.isfinite(n) and n > 0 for n in numbers) or not np.isfinite([self.cx, self.cy]).all():
+            raise ValueError("image size and focal lengths must be positive, the centre finite")
+
+    @classmethod
+    def from_fov(cls, width: int, height: int, horizontal_fov_rad: float) -> Intrinsics:
+        """Square pixels, centred principal point, and the given horizontal field of view."""
+        focal = 0.5 * width / float(np.tan(0.5 * horizontal_fov_rad))
+        return cls(width, height, focal, focal, width / 2, height / 2)
+
+    @property
+    def matrix(self) -> Float[np.ndarray, "3 3"]:
+        """K, with `pixel = K @ p_camera / z`."""
+        return np.array([[self.fx, 0.0, self.cx], [0.0, self.fy, self.cy], [0.0, 0.0, 1.0]])
+
+    @property
+    def horizontal_fov_rad(self) -> float:
+        """Full horizontal field of view."""
+        return float(np.arctan2(self.cx, self.fx) + np.arctan2(self.width - self.cx, self.fx))
+
+    @property
+    def vertical_fov_rad(self) -> float:
+        """Full vertical field of view."""
+        return float(np.arctan2(self.cy, self.fy) + np.arctan2(self.height - self.cy, self.fy))
+
+    def scaled(self, width: int, height: int) -> Intrinsics:
+        """The same camera for the picture resized to `width` x `height`."""
+        sx, sy = width / self.width, height / self.height
+        return Intrinsics(width, height, self.fx * sx, self.fy * sy, self.cx * sx, self.cy * sy)
+
+
+@dataclass(frozen=True, eq=False)
+class Camera(ArrayValue):
+    """A posed pinhole camera."""
+
+    intrinsics: Intrinsics
+    T_world_camera: Float[np.ndarray, "4 4"]
+    """Rigid: `p_world = T_world_camera @ p_camera`, camera axes x right, y down, z forward."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "T_world_camera", frozen_array(self.T_world_camera, (4, 4)))
+
+    @cached_property
+    def T_camera_world(self) -> Float[np.ndarray, "4 4"]:
+        """Inverse of `T_world_camera`."""
+        R, t = self.T_world_camera[:3, :3], self.T_world_camera[:3, 3]
+        T = np.eye(4)
+        T[:3, :3], T[:3, 3] = R.T, -R.T @ t
+        return T
+
+    @property
+    def position(self) -> Float[np.ndarray, "3"]:
+        """Optical centre in the world."""
+        return self.T_world_camera[:3, 3]
+
+    def to_camera(self, points_world: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
+        """World points in camera coordinates."""
+        T = self.T_camera_world
+        return np.asarray(points_world) @ T[:3, :3].T + T[:3, 3]
+
+    def project(self, points_world: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 2"]:
+        """World points in pixels; meaningless (but finite) for points behind the camera."""
+        p = self.to_camera(points_world)
+        z = np.where(np.abs(p[..., 2]) < 1e-9, 1e-9, p[..., 2])
+        k = self.intrinsics
+        return np.stack([k.fx * p[..., 0] / z + k.cx, k.fy * p[..., 1] / z + k.cy], axis=-1)
+
+    def rays(self, pixels: Float[np.ndarray, "*n 2"]) -> Float[np.ndarray, "*n 3"]:
+        """World directions through pixels, scaled so that one unit is one metre of depth (z)."""
+        k, uv = self.intrinsics, np.asarray(pixels, dtype=np.float64)
+        camera = np.stack([(uv[..., 0] - k.cx) / k.fx, (uv[..., 1] - k.cy) / k.fy, np.ones(uv.shape[:-1])], axis=-1)
+        return camera @ self.T_world_camera[:3, :3].T
+
+
+@dataclass(frozen=True, eq=False)
+class Pose(ArrayValue):
+    """Nine degrees of freedom: `p_world = R @ (scale * p_object) + position`."""
+
+    R_world_object: Float[np.ndarray, "3 3"]
+    position: Float[np.ndarray, "3"]
+    """Centre of the object's bounding box in the world, metres."""
+    scale: Float[np.ndarray, "3"]
+    """Per-axis scale of the shape along its own axes; positive."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "R_world_object", frozen_array(self.R_world_object, (3, 3)))
+        object.__setattr__(self, "position", frozen_array(self.position, (3,)))
+        object.__setattr__(self, "scale", frozen_array(self.scale, (3,)))
+        R = self.R_world_object
+        if np.abs(R @ R.T - np.eye(3)).max() > 1e-5 or np.linalg.det(R) < 0:
+            raise ValueError("the rotation must be orthonormal and right-handed")
+        if (self.scale <= 0).any():
+            raise ValueError("scale must be positive")
+
+    @classmethod
+    def upright(cls, position: object, yaw_rad: float = 0.0, scale: object = (1.0, 1.0, 1.0)) -> Pose:
+        """A pose turned by `yaw_rad` about world up, so that the front points to (cos yaw, sin yaw, 0)."""
+        return cls(yaw_rotation(yaw_rad), position, scale)  # type: ignore[arg-type]
+
+    @property
+    def T_world_object(self) -> Float[np.ndarray, "4 4"]:
+        """The rigid part, without scale."""
+        T = np.eye(4)
+        T[:3, :3], T[:3, 3] = self.R_world_object, self.position
+        return T
+
+    @property
+    def matrix(self) -> Float[np.ndarray, "4 4"]:
+        """Rigid part and scale: maps shape vertices to the world."""
+        T = self.T_world_object
+        T[:3, :3] = T[:3, :3] * self.scale
+        return T
+
+    @property
+    def yaw_rad(self) -> float:
+        """Heading of the front axis about world up."""
+        front = self.R_world_object[:, 0]
+        return float(np.arctan2(front[1], front[0]))
+
+    def apply(self, points_object: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
+        """Shape points in the world."""
+        return (np.asarray(points_object) * self.scale) @ self.R_world_object.T + self.position
+
+    def moved(self, offset_world: object) -> Pose:
+        """The pose shifted by a world offset."""
+        return replace(self, position=self.position + np.asarray(offset_world, dtype=np.float64))
+
+
+def yaw_rotation(yaw_rad: float) -> Float[np.ndarray, "3 3"]:
+    """Rotation about world up."""
+    c, s = np.cos(yaw_rad), np.sin(yaw_rad)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+@dataclass(frozen=True, eq=False)
+class Plane(ArrayValue):
+    """One bounded flat piece of the room: a polygon with a thickness behind it."""
+
+    id: str
+    role: PlaneRole
+    polygon: Float[np.ndarray, "n 3"]
+    """Corners in the world, coplanar, counter-clockwise seen from inside the room."""
+    thickness: float = 0.05
+    """Metres, extruded away from the room."""
+    colour: tuple[float, float, float] = (0.86, 0.85, 0.83)
+    """Linear-free sRGB, 0 to 1: the plain material."""
+    texture: str | None = None
+    """Name of the plane's rectified picture among the project's files, if it has one."""
+    confidence: float = 1.0
+    """How far the evidence supports it, 0 (a guess) to 1 (measured)."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "polygon", frozen_array(self.polygon, (-1, 3)))
+        if len(self.polygon) < 3:
+            raise ValueError(f"plane {self.id} needs at least three corners")
+
+    @cached_property
+    def normal(self) -> Float[np.ndarray, "3"]:
+        """Unit normal, toward the room (Newell's method, robust to collinear corners)."""
+        a, b = self.polygon, np.roll(self.polygon, -1, axis=0)
+        n = np.cross(a, b).sum(axis=0)
+        length = np.linalg.norm(n)
+        return n / length if length > 1e-12 else UP_WORLD.copy()
+
+    @property
+    def centre(self) -> Float[np.ndarray, "3"]:
+        """Mean of the corners."""
+        return self.polygon.mean(axis=0)
+
+    @property
+    def offset(self) -> float:
+        """d of the plane equation `normal . p = d`."""
+        return float(self.normal @ self.centre)
+
+
+@dataclass(frozen=True)
+class Architecture:
+    """The room: floor, walls, ceiling."""
+
+    planes: tuple[Plane, ...] = ()
+
+    def by_role(self, role: PlaneRole) -> tuple[Plane, ...]:
+        """Planes of one role."""
+        return tuple(p for p in self.planes if p.role == role)
+
+    @property
+    def floor(self) -> Plane | None:
+        """The floor, if any."""
+        return next(iter(self.by_role("floor")), None)
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One retrieved alternative for an object, already posed, so that a swap needs no inference."""
+
+    shape_id: str
+    shape_size_m: tuple[float, float, float]
+    """Extents of the shape at scale 1 along its own axes."""
+    score: float
+    """Higher is better; comparable only within one object."""
+    pose: Pose
+
+
+@dataclass(frozen=True)
+class SceneObject:
+    """One thing in the room."""
+
+    id: str
+    label: str
+    """What people call it; free text, shown escaped."""
+    category: str
+    """Canonical category of the library (`diorama_core.library.taxonomy`)."""
+    shape_id: str
+    shape_size_m: tuple[float, float, float]
+    """Extents of the shape at scale 1 along its own axes (x front-back, y left-right, z height)."""
+    pose: Pose
+    candidates: tuple[Candidate, ...] = ()
+    """Ranked alternatives, best first; the current shape is among them when it was retrieved."""
+    mask_id: int | None = None
+    """Instance id in the photo's instance map."""
+    box_px: tuple[float, float, float, float] | None = None
+    """x1, y1, x2, y2 in the photo."""
+    confidence: float = 1.0
+    """How far the evidence supports the pose, 0 to 1."""
+    locked: bool = False
+    hidden: bool = False
+    colour: tuple[float, float, float] | None = None
+    """Override of the material's colour, sRGB 0 to 1."""
+
+    @property
+    def size_m(self) -> Float[np.ndarray, "3"]:
+        """Extents along the object's own axes in metres, scale included."""
+        return np.asarray(self.shape_size_m) * self.pose.scale
+
+    @property
+    def corners_world(self) -> Float[np.ndarray, "8 3"]:
+        """Corners of the oriented bounding box in the world."""
+        return self.pose.apply(box_corners(self.shape_size_m))
+
+
+def box_corners(size_m: object) -> Float[np.ndarray, "8 3"]:
+    """Corners of a centred box; index bits 0, 1, 2 are the signs of x, y, z."""
+    signs = np.array([[(i >> axis) & 1 for axis in range(3)] for i in range(8)]) * 2.0 - 1.0
+    return 0.5 * signs * np.asarray(size_m, dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class Support:
+    """One edge of the support graph: what holds a child up."""
+
+    child: str
+    """Object id."""
+    parent: str
+    """Object id or plane id."""
+    relation: Relation = "placed on"
+    parent_surface: int | None = None
+    """Index into the parent shape's support surfaces; None lets the optimiser choose; unused for planes."""
+    child_face: FaceName | None = None
+    """The face in contact; None lets the optimiser choose (bottom favoured)."""
+    adheres_to: tuple[str, ...] = ()
+    """Ids of walls the object also stands against."""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Everything that is in the room, where it is and what holds it up."""
+
+    camera: Camera | None = None
+    architecture: Architecture = Architecture()
+    objects: tuple[SceneObject, ...] = ()
+    supports: tuple[Support, ...] = ()
+    metrics: tuple[tuple[str, float], ...] = ()
+    """The optimiser's last report, as (name, value) pairs."""
+
+    @cached_property
+    def _by_id(self) -> dict[str, SceneObject]:
+        return {o.id: o for o in self.objects}
+
+    @cached_property
+    def _support_of(self) -> dict[str, Support]:
+        return {s.child: s for s in self.supports}
+
+    def object(self, object_id: str) -> SceneObject:
+        """The object with this id; raises `KeyError` when there is none."""
+        return self._by_id[object_id]
+
+    def has_object(self, object_id: str) -> bool:
+        """Whether an object with this id exists."""
+        return object_id in self._by_id
+
+    def plane(self, plane_id: str) -> Plane:
+        """The plane with this id; raises `KeyError` when there is none."""
+        for plane in self.architecture.planes:
+            if plane.id == plane_id:
+                return plane
+        raise KeyError(plane_id)
+
+    def has_plane(self, plane_id: str) -> bool:
+        """Whether a plane with this id exists."""
+        return any(p.id == plane_id for p in self.architecture.planes)
+
+    def support_of(self, object_id: str) -> Support | None:
+        """The edge that holds the object up, if any."""
+        return self._support_of.get(object_id)
+
+    def children_of(self, parent_id: str) -> tuple[str, ...]:
+        """Ids of the objects directly held up by an object or plane."""
+        return tuple(s.child for s in self.supports if s.parent == parent_id)
