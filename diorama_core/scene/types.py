@@ -307,6 +307,12 @@ class Scene:
     metrics: tuple[tuple[str, float], ...] = ()
     """The optimiser's last report, as (name, value) pairs."""
 
+    def __post_init__(self) -> None:
+        # One order for equal graphs, so that equality and the file do not depend on the order of edits.
+        rank = {o.id: i for i, o in enumerate(self.objects)}
+        ordered = sorted(self.supports, key=lambda s: (rank.get(s.child, len(rank)), s.child))
+        object.__setattr__(self, "supports", tuple(ordered))
+
     @cached_property
     def _by_id(self) -> dict[str, SceneObject]:
         return {o.id: o for o in self.objects}

@@ -1,0 +1,57 @@
+"""From the stages' artefacts to a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, ObjectGeometry, PosedCandidates
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.scene.support import check_scene
+from diorama_core.scene.types import Scene, SceneObject
+
+
+def assemble(
+    objects: tuple[DetectedObject, ...],
+    geometry: ObjectGeometry,
+    architecture: ArchitectureEstimate,
+    posed: tuple[PosedCandidates, ...],
+    library: ShapeLibrary,
+) -> Scene:
+    """The scene before layout optimisation: every object in its best candidate's pose.
+
+    Objects for which nothing could be retrieved are left out, and what they would hold up stands on their supporter.
+    """
+    candidates: Mapping[str, PosedCandidates] = {p.object_id: p for p in posed if p.candidates}
+    items = tuple(_scene_object(o, candidates[o.id], library) for o in objects if o.id in candidates)
+    kept = {item.id for item in items} | {p.id for p in architecture.architecture.planes}
+    parent_of = {edge.child: edge.parent for edge in architecture.supports}
+    supports = []
+    for edge in architecture.supports:
+        parent: str | None = edge.parent
+        while parent is not None and parent not in kept:
+            parent = parent_of.get(parent)
+        if edge.child in kept and parent is not None:
+            supports.append(replace(edge, parent=parent))
+    scene = Scene(
+        camera=geometry.camera, architecture=architecture.architecture, objects=items, supports=tuple(supports)
+    )
+    check_scene(scene)
+    return scene
+
+
+def _scene_object(item: DetectedObject, posed: PosedCandidates, library: ShapeLibrary) -> SceneObject:
+    best = posed.candidates[0]
+    category = item.category if item.category != "object" else library.shape(best.shape_id).category
+    return SceneObject(
+        id=item.id,
+        label=item.label,
+        category=category,
+        shape_id=best.shape_id,
+        shape_size_m=best.shape_size_m,
+        pose=best.pose,
+        candidates=posed.candidates,
+        mask_id=item.mask_id,
+        box_px=item.box,
+        confidence=posed.confidence,
+    )

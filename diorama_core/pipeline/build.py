@@ -1,0 +1,185 @@
+"""The one place where stages are constructed and run in order: Inputs -> Scene."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import UInt8
+
+from diorama_core.architecture.from_depth import PlanarRoom
+from diorama_core.architecture.room_box import RoomBox
+from diorama_core.architecture.texture import plane_textures
+from diorama_core.artefacts import (
+    ArchitectureEstimate,
+    CameraEstimate,
+    DepthMap,
+    DetectedObject,
+    Inputs,
+    LayoutReport,
+    ObjectGeometry,
+)
+from diorama_core.layout.recipes import recipe as layout_recipe
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.perception.camera.estimate import EmbeddedCamera
+from diorama_core.perception.depth import MeasuredDepth, RenderedDepth
+from diorama_core.perception.masks import EmbeddedMasks
+from diorama_core.perception.measured import MeasuredGeometry
+from diorama_core.perception.metrology import SingleViewMetrology
+from diorama_core.pipeline.assemble import assemble
+from diorama_core.pipeline.protocols import (
+    ArchitectureStage,
+    CameraStage,
+    DepthStage,
+    GeometryStage,
+    LayoutStage,
+    ObjectStage,
+    PoseStage,
+    Preview,
+    RetrievalStage,
+)
+from diorama_core.pipeline.runner import Runner, StageRun
+from diorama_core.pose import RenderAndCompare
+from diorama_core.progress import Progress
+from diorama_core.retrieval import EmbeddedRetrieval
+from diorama_core.scene.edits import set_metrics
+from diorama_core.scene.types import Scene
+
+DEFAULT_RECIPE = "feasible"
+
+
+@dataclass(frozen=True)
+class Stages:
+    """The implementations that one run uses."""
+
+    camera: CameraStage
+    objects: ObjectStage
+    geometry: GeometryStage
+    architecture: ArchitectureStage
+    depth: DepthStage
+    retrieval: RetrievalStage
+    pose: PoseStage
+    layout: LayoutStage
+
+
+@dataclass(frozen=True)
+class Built:
+    """A scene and everything it was derived from."""
+
+    scene: Scene
+    camera: CameraEstimate
+    objects: tuple[DetectedObject, ...]
+    geometry: ObjectGeometry
+    architecture: ArchitectureEstimate
+    depth: DepthMap
+    observed: Scene
+    """The scene before the layout optimiser."""
+    layout: LayoutReport | None
+    """None when there was nothing to arrange."""
+    textures: Mapping[str, UInt8[np.ndarray, "h w 3"]]
+    """The planes' pictures by name."""
+    runs: tuple[StageRun, ...]
+    """Which stage used what, and how long it took."""
+    notes: tuple[str, ...] = ()
+    """What the user should know, in plain words."""
+
+
+def embedded_stages(inputs: Inputs, library: ShapeLibrary, *, recipe: str = DEFAULT_RECIPE) -> Stages:
+    """The stages that need no download, chosen by what the user gave: measured depth or a photo alone."""
+    measured = inputs.depth_m is not None
+    return Stages(
+        camera=EmbeddedCamera(),
+        objects=EmbeddedMasks(),
+        geometry=MeasuredGeometry() if measured else SingleViewMetrology(),
+        architecture=PlanarRoom() if measured else RoomBox(),
+        depth=MeasuredDepth() if measured else RenderedDepth(),
+        retrieval=EmbeddedRetrieval(library),
+        pose=RenderAndCompare(library),
+        layout=layout_recipe(recipe, library),
+    )
+
+
+def build_scene(
+    inputs: Inputs,
+    library: ShapeLibrary,
+    *,
+    stages: Stages | None = None,
+    cache: Path | None = None,
+    progress: Progress | None = None,
+    preview: Preview | None = None,
+) -> Built:
+    """Run every stage.
+
+    Args:
+        inputs: what the user gave.
+        library: where shapes come from.
+        stages: implementations; the embedded ones by default.
+        cache: folder for stage results; an interrupted run resumes from it.
+        progress: reports and cancellation.
+        preview: receives the layout optimiser's intermediate scenes.
+
+    Raises:
+        Cancelled: on request; finished stages stay in the cache.
+        DioramaError: with the reason, when a stage cannot do its work.
+    """
+    s = stages or embedded_stages(inputs, library)
+    progress = progress or Progress()
+    runner = Runner(cache)
+
+    camera = runner.run("camera", s.camera, s.camera.estimate, (inputs,), progress.part(0.0, 0.08))
+    objects = runner.run("objects", s.objects, s.objects.segment, (inputs,), progress.part(0.08, 0.25))
+    geometry = runner.run(
+        "geometry", s.geometry, s.geometry.measure, (inputs, camera, objects), progress.part(0.25, 0.4)
+    )
+    room = runner.run(
+        "architecture", s.architecture, s.architecture.reconstruct, (inputs, objects, geometry), progress.part(0.4, 0.5)
+    )
+    depth = runner.run("depth", s.depth, s.depth.depth, (inputs, objects, geometry, room), progress.part(0.5, 0.55))
+    shapes = runner.run(
+        "retrieval", s.retrieval, s.retrieval.retrieve, (inputs, objects, geometry), progress.part(0.55, 0.65)
+    )
+    posed = runner.run(
+        "pose", s.pose, s.pose.pose, (inputs, objects, geometry, depth, shapes), progress.part(0.65, 0.85)
+    )
+    textures = plane_textures(inputs, objects, geometry.camera, room.architecture)
+    observed = _textured(assemble(objects, geometry, room, posed, library), textures)
+
+    scene, report = observed, None
+    if observed.objects:
+        step = progress.part(0.85, 1.0)
+        step.report(0.0, "layout…")
+        scene, report = s.layout.optimise(observed, step, preview)
+        runner.runs.append(StageRun("layout", repr(s.layout), report.seconds, cached=False))
+        scene = set_metrics(scene, report.after)
+    progress.report(1.0, "done")
+    return Built(
+        scene=scene,
+        camera=camera,
+        objects=objects,
+        geometry=geometry,
+        architecture=room,
+        depth=depth,
+        observed=observed,
+        layout=report,
+        textures=textures,
+        runs=tuple(runner.runs),
+        notes=_notes(camera, geometry, room, tuple(r.note for r in shapes), report),
+    )
+
+
+def _textured(scene: Scene, textures: Mapping[str, object]) -> Scene:
+    planes = tuple(replace(p, texture=p.id) if p.id in textures else p for p in scene.architecture.planes)
+    return replace(scene, architecture=replace(scene.architecture, planes=planes))
+
+
+def _notes(
+    camera: CameraEstimate,
+    geometry: ObjectGeometry,
+    room: ArchitectureEstimate,
+    retrieval: tuple[str, ...],
+    report: LayoutReport | None,
+) -> tuple[str, ...]:
+    sources = (f"camera: {camera.source}", f"objects: {geometry.source}", f"room: {room.source}")
+    return (*sources, *(n for n in retrieval if n), *(report.reasons if report else ()))

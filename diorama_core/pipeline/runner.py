@@ -1,0 +1,114 @@
+"""Runs stages: each result is cached under the hash of its inputs, settings and weights.
+
+A run that was cancelled or killed leaves the finished stages' files, so the next run resumes after them.
+Correcting one artefact re-runs only what is downstream, because only those keys change.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import logging
+import os
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, TypeVar
+
+from diorama_core.errors import ProjectError
+from diorama_core.pipeline import codec
+from diorama_core.progress import Progress
+
+T = TypeVar("T")
+log = logging.getLogger(__name__)
+
+CODE_VERSION = "1"
+"""Raised when a change of code must invalidate every saved result."""
+KEPT_PER_STAGE = 4
+"""Results kept per stage on disk, so that going back to an earlier correction is instant."""
+
+
+@dataclass(frozen=True)
+class StageRun:
+    """What happened to one stage in one run."""
+
+    stage: str
+    used: str
+    """The implementation, with its settings."""
+    seconds: float
+    cached: bool
+
+
+@dataclass
+class Runner:
+    """Runs one photo's stages in order, remembering what each took."""
+
+    folder: Path | None = None
+    """Where results are kept; None keeps nothing."""
+    runs: list[StageRun] = field(default_factory=list)
+    _fingerprints: dict[int, tuple[Any, str]] = field(default_factory=dict)
+
+    def run(
+        self, name: str, stage: object, call: Callable[..., T], artefacts: tuple[Any, ...], progress: Progress
+    ) -> T:
+        """`call(*artefacts, progress)`, or its saved result.
+
+        Args:
+            name: stage name, also the file's stem.
+            stage: its `repr` names settings and weights and is part of the key.
+            call: the bound stage method.
+            artefacts: everything the result depends on.
+            progress: this stage's part of the job; checked for cancellation before it starts.
+        """
+        started = time.perf_counter()
+        progress.report(0.0, f"{name}…")
+        path = (
+            None
+            if self.folder is None
+            else self.folder / f"{name.replace(' ', '_')}-{self._key(name, stage, artefacts)}.zip"
+        )
+        result = _read(path)
+        cached = result is not None
+        if result is None:
+            result = call(*artefacts, progress)
+            progress.check()
+            _write(path, result)
+        progress.report(1.0, f"{name}: done")
+        self.runs.append(StageRun(name, repr(stage), time.perf_counter() - started, cached))
+        return result
+
+    def _key(self, name: str, stage: object, artefacts: tuple[Any, ...]) -> str:
+        parts = [CODE_VERSION, name, repr(stage), *(self._fingerprint(a) for a in artefacts)]
+        return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:24]
+
+    def _fingerprint(self, artefact: Any) -> str:
+        known = self._fingerprints.get(id(artefact))
+        if known is None or known[0] is not artefact:
+            known = (artefact, codec.fingerprint(artefact))
+            self._fingerprints[id(artefact)] = known
+        return known[1]
+
+
+def _read(path: Path | None) -> Any:
+    if path is None or not path.exists():
+        return None
+    try:
+        result = codec.load(path.read_bytes())
+    except ProjectError as error:
+        log.warning("%s: %s", path.name, error)
+        return None
+    os.utime(path)
+    return result
+
+
+def _write(path: Path | None, result: Any) -> None:
+    if path is None:
+        return
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_suffix(f".{os.getpid()}.part")
+    part.write_bytes(codec.dump(result))
+    os.replace(part, path)
+    stem = path.name.rsplit("-", 1)[0]
+    siblings = sorted(path.parent.glob(f"{stem}-*.zip"), key=lambda p: p.stat().st_mtime, reverse=True)
+    for old in siblings[KEPT_PER_STAGE:]:
+        old.unlink(missing_ok=True)

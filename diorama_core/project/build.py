@@ -1,0 +1,36 @@
+"""A photo's way into a project: run the pipeline there and keep everything it found."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from diorama_core.artefacts import Inputs
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.pipeline.build import Built, Stages, build_scene
+from diorama_core.pipeline.protocols import Preview
+from diorama_core.progress import Progress
+from diorama_core.project.storage import Project
+
+
+def build_project(
+    project: Project,
+    inputs: Inputs,
+    library: ShapeLibrary,
+    *,
+    stages: Stages | None = None,
+    warnings: Sequence[str] = (),
+    progress: Progress | None = None,
+    preview: Preview | None = None,
+) -> Built:
+    """Build the scene of `inputs` in the project's folder and save inputs, scene, textures and what was used.
+
+    The inputs are saved first and stage results as they come, so an interrupted build resumes. The scene is
+    replaced only when the build succeeded.
+    """
+    project.save_inputs(inputs, warnings)
+    built = build_scene(inputs, library, stages=stages, cache=project.stages_folder, progress=progress, preview=preview)
+    project.save_textures(built.textures)
+    project.save_scene(built.scene)
+    project.save_stage_runs(built.runs)
+    project.update_info(notes=[*warnings, *built.notes])
+    return built

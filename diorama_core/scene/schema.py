@@ -1,0 +1,320 @@
+"""The documented scene file: `scene.json`, version 1.
+
+A JSON object with `format`, `version`, `axes`, `units`, `camera`, `architecture`, `objects` and `metrics`; every
+field is described in `docs/scene-file.md`. Numbers round-trip exactly. Reading validates everything and reports the
+first fault with its place; files of an older version are migrated step by step, newer ones are refused.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
+
+from diorama_core.errors import SceneError
+from diorama_core.scene.support import check_scene
+from diorama_core.scene.types import (
+    Architecture,
+    Camera,
+    Candidate,
+    FaceName,
+    Intrinsics,
+    Plane,
+    PlaneRole,
+    Pose,
+    Relation,
+    Scene,
+    SceneObject,
+    Support,
+)
+
+FORMAT = "diorama-scene"
+VERSION = 1
+AXES = {
+    "handedness": "right",
+    "world_up": "+Z",
+    "object_front": "+X",
+    "object_up": "+Z",
+    "camera": "x right, y down, z forward",
+}
+
+Migration = Callable[[dict[str, Any]], dict[str, Any]]
+MIGRATIONS: Mapping[int, Migration] = {}
+"""Entry n turns a version n document into version n + 1."""
+
+Vec3 = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
+Row4 = tuple[FiniteFloat, FiniteFloat, FiniteFloat, FiniteFloat]
+Matrix4 = tuple[Row4, Row4, Row4, Row4]
+
+
+class _Model(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class _CameraFile(_Model):
+    width: Annotated[int, Field(gt=0)]
+    height: Annotated[int, Field(gt=0)]
+    fx: FiniteFloat
+    fy: FiniteFloat
+    cx: FiniteFloat
+    cy: FiniteFloat
+    T_world_camera: Matrix4
+
+
+class _PlaneFile(_Model):
+    id: str
+    role: PlaneRole
+    polygon: Annotated[list[Vec3], Field(min_length=3)]
+    thickness_m: FiniteFloat
+    colour: Vec3
+    texture: str | None
+    confidence: FiniteFloat
+
+
+class _ArchitectureFile(_Model):
+    planes: list[_PlaneFile]
+
+
+class _CandidateFile(_Model):
+    shape: str
+    shape_size_m: Vec3
+    score: FiniteFloat
+    T_world_object: Matrix4
+    scale: Vec3
+
+
+class _SupportFile(_Model):
+    parent: str
+    relation: Relation
+    parent_surface: int | None
+    child_face: FaceName | None
+    adheres_to: list[str]
+
+
+class _ObjectFile(_Model):
+    id: str
+    label: str
+    category: str
+    shape: str
+    shape_size_m: Vec3
+    T_world_object: Matrix4
+    scale: Vec3
+    size_m: Vec3
+    support: _SupportFile | None
+    candidates: list[_CandidateFile]
+    mask_id: int | None
+    box_px: Row4 | None
+    confidence: FiniteFloat
+    locked: bool
+    hidden: bool
+    colour: Vec3 | None
+
+
+class _SceneFile(_Model):
+    format: Literal["diorama-scene"]
+    version: int
+    axes: dict[str, str]
+    units: Literal["metres"]
+    camera: _CameraFile | None
+    architecture: _ArchitectureFile
+    objects: list[_ObjectFile]
+    metrics: dict[str, FiniteFloat]
+
+
+def scene_to_json(scene: Scene) -> str:
+    """The scene file's text."""
+    document = {
+        "format": FORMAT,
+        "version": VERSION,
+        "axes": AXES,
+        "units": "metres",
+        "camera": _camera_to_file(scene.camera),
+        "architecture": {"planes": [_plane_to_file(p) for p in scene.architecture.planes]},
+        "objects": [_object_to_file(o, scene.support_of(o.id)) for o in scene.objects],
+        "metrics": dict(scene.metrics),
+    }
+    return json.dumps(document, indent=1, allow_nan=False)
+
+
+def scene_from_json(text: str, *, migrations: Mapping[int, Migration] = MIGRATIONS) -> Scene:
+    """Read a scene file's text.
+
+    Raises:
+        SceneError: not JSON, not a scene file, of a newer version, or inconsistent; says where.
+    """
+    try:
+        document = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise SceneError(
+            f"the scene file is not valid JSON (line {error.lineno}: {error.msg}); restore a backup"
+        ) from error
+    document = _migrated(document, migrations)
+    try:
+        parsed = _SceneFile.model_validate(document)
+        scene = _scene_from_file(parsed)
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(part) for part in first["loc"])
+        raise SceneError(f"the scene file is wrong at {where}: {first['msg'].lower()}") from error
+    except ValueError as error:
+        raise SceneError(f"the scene file is wrong: {error}") from error
+    check_scene(scene)
+    return scene
+
+
+def _migrated(document: Any, migrations: Mapping[int, Migration]) -> dict[str, Any]:
+    if not isinstance(document, dict) or document.get("format") != FORMAT:
+        raise SceneError(f"this is not a scene file: its 'format' is not '{FORMAT}'")
+    version = document.get("version")
+    if not isinstance(version, int) or isinstance(version, bool):
+        raise SceneError("the scene file has no version number; it cannot be read safely")
+    if version > VERSION:
+        raise SceneError(f"the scene file has version {version}, this program reads up to {VERSION}; update Diorama")
+    while version < VERSION:
+        if version not in migrations:
+            raise SceneError(f"the scene file has version {version}, which can no longer be read")
+        document = migrations[version](document)
+        version += 1
+        document["version"] = version
+    return document
+
+
+def _rows(matrix: np.ndarray) -> list[list[float]]:
+    return [[float(v) for v in row] for row in matrix]
+
+
+def _numbers(vector: Any) -> list[float]:
+    return [float(v) for v in vector]
+
+
+def _camera_to_file(camera: Camera | None) -> dict[str, Any] | None:
+    if camera is None:
+        return None
+    k = camera.intrinsics
+    inner = {"width": k.width, "height": k.height, "fx": k.fx, "fy": k.fy, "cx": k.cx, "cy": k.cy}
+    return {**inner, "T_world_camera": _rows(camera.T_world_camera)}
+
+
+def _plane_to_file(plane: Plane) -> dict[str, Any]:
+    return {
+        "id": plane.id,
+        "role": plane.role,
+        "polygon": _rows(plane.polygon),
+        "thickness_m": plane.thickness,
+        "colour": _numbers(plane.colour),
+        "texture": plane.texture,
+        "confidence": plane.confidence,
+    }
+
+
+def _pose_to_file(pose: Pose) -> dict[str, Any]:
+    return {"T_world_object": _rows(pose.T_world_object), "scale": _numbers(pose.scale)}
+
+
+def _object_to_file(item: SceneObject, support: Support | None) -> dict[str, Any]:
+    return {
+        "id": item.id,
+        "label": item.label,
+        "category": item.category,
+        "shape": item.shape_id,
+        "shape_size_m": _numbers(item.shape_size_m),
+        **_pose_to_file(item.pose),
+        "size_m": _numbers(item.size_m),
+        "support": None if support is None else _support_to_file(support),
+        "candidates": [_candidate_to_file(c) for c in item.candidates],
+        "mask_id": item.mask_id,
+        "box_px": None if item.box_px is None else _numbers(item.box_px),
+        "confidence": item.confidence,
+        "locked": item.locked,
+        "hidden": item.hidden,
+        "colour": None if item.colour is None else _numbers(item.colour),
+    }
+
+
+def _support_to_file(edge: Support) -> dict[str, Any]:
+    return {
+        "parent": edge.parent,
+        "relation": edge.relation,
+        "parent_surface": edge.parent_surface,
+        "child_face": edge.child_face,
+        "adheres_to": list(edge.adheres_to),
+    }
+
+
+def _candidate_to_file(candidate: Candidate) -> dict[str, Any]:
+    return {
+        "shape": candidate.shape_id,
+        "shape_size_m": _numbers(candidate.shape_size_m),
+        "score": candidate.score,
+        **_pose_to_file(candidate.pose),
+    }
+
+
+def _scene_from_file(file: _SceneFile) -> Scene:
+    return Scene(
+        camera=_camera_from_file(file.camera),
+        architecture=Architecture(tuple(_plane_from_file(p) for p in file.architecture.planes)),
+        objects=tuple(_object_from_file(o) for o in file.objects),
+        supports=tuple(_support_from_file(o.id, o.support) for o in file.objects if o.support is not None),
+        metrics=tuple(file.metrics.items()),
+    )
+
+
+def _camera_from_file(file: _CameraFile | None) -> Camera | None:
+    if file is None:
+        return None
+    k = Intrinsics(file.width, file.height, file.fx, file.fy, file.cx, file.cy)
+    return Camera(k, np.array(file.T_world_camera))
+
+
+def _plane_from_file(file: _PlaneFile) -> Plane:
+    return Plane(
+        id=file.id,
+        role=file.role,
+        polygon=np.array(file.polygon),
+        thickness=file.thickness_m,
+        colour=file.colour,
+        texture=file.texture,
+        confidence=file.confidence,
+    )
+
+
+def _pose_from_file(T_world_object: Matrix4, scale: Vec3) -> Pose:
+    T = np.array(T_world_object)
+    return Pose(T[:3, :3], T[:3, 3], np.array(scale))
+
+
+def _candidate_from_file(file: _CandidateFile) -> Candidate:
+    return Candidate(file.shape, file.shape_size_m, file.score, _pose_from_file(file.T_world_object, file.scale))
+
+
+def _object_from_file(file: _ObjectFile) -> SceneObject:
+    return SceneObject(
+        id=file.id,
+        label=file.label,
+        category=file.category,
+        shape_id=file.shape,
+        shape_size_m=file.shape_size_m,
+        pose=_pose_from_file(file.T_world_object, file.scale),
+        candidates=tuple(_candidate_from_file(c) for c in file.candidates),
+        mask_id=file.mask_id,
+        box_px=file.box_px,
+        confidence=file.confidence,
+        locked=file.locked,
+        hidden=file.hidden,
+        colour=file.colour,
+    )
+
+
+def _support_from_file(child: str, file: _SupportFile) -> Support:
+    return Support(
+        child=child,
+        parent=file.parent,
+        relation=file.relation,
+        parent_surface=file.parent_surface,
+        child_face=file.child_face,
+        adheres_to=tuple(file.adheres_to),
+    )
