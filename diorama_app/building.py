@@ -1,0 +1,77 @@
+"""What the build command and the editor share around the pipeline."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from diorama_core.errors import LibraryError
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.pipeline.build import Built
+from diorama_core.pipeline.protocols import LayoutStage
+from diorama_core.progress import Progress
+from diorama_core.project.files import write_atomically
+from diorama_core.project.storage import Project
+from diorama_core.scene import edits
+from diorama_core.scene.schema import scene_to_json
+from diorama_core.scene.types import Scene
+
+
+def library_named(name: str) -> ShapeLibrary:
+    """The shape library of that name; raises `LibraryError` when there is none."""
+    from diorama_core.library.catalogue import built_in_library
+
+    if name != "built-in":
+        raise LibraryError(f"there is no library {name!r}; available: built-in")
+    return built_in_library()
+
+
+def arrangement(scene: Scene, rank: int) -> Scene:
+    """The scene with every object in its `rank`-th alternative (its last where it has fewer), on the same spots."""
+    for item in scene.objects:
+        others = [c for c in item.candidates if c.shape_id != item.shape_id]
+        if others and rank > 0 and not item.locked:
+            scene = edits.swap(scene, item.id, others[min(rank, len(others)) - 1], keep_pose=True)
+    return scene
+
+
+def write_arrangements(
+    project: Project, scene: Scene, layout: LayoutStage, count: int, progress: Progress
+) -> tuple[str, ...]:
+    """Write `count` scenes: `scene.json` and `arrangements/scene_2.json`...; returns their paths in the project."""
+    names = ["scene.json"]
+    for rank in range(1, count):
+        arranged, report = layout.optimise(arrangement(scene, rank), replace(progress, start=0.0, span=1.0))
+        name = f"arrangements/scene_{rank + 1}.json"
+        write_atomically(project.folder / name, scene_to_json(edits.set_metrics(arranged, report.after)).encode())
+        names.append(name)
+    return tuple(names)
+
+
+def build_report(project: Project, built: Built, scenes: tuple[str, ...]) -> dict[str, Any]:
+    """What `diorama build --json` prints."""
+    scene = built.scene
+    planes = scene.architecture.planes
+    walls = len(scene.architecture.by_role("wall"))
+    seconds = sum(run.seconds for run in built.runs)
+    return {
+        "project": str(project.folder),
+        "scenes": list(scenes),
+        "summary": f"{len(scene.objects)} objects, {walls} walls, {seconds:.1f} s",
+        "objects": [
+            {
+                "id": o.id,
+                "label": o.label,
+                "category": o.category,
+                "shape": o.shape_id,
+                "size_m": [round(float(v), 4) for v in o.size_m],
+                "confidence": round(o.confidence, 3),
+            }
+            for o in scene.objects
+        ],
+        "planes": [{"id": p.id, "role": p.role} for p in planes],
+        "camera": {"confidence": built.camera.confidence, "source": built.camera.source},
+        "stages": [{"stage": r.stage, "seconds": round(r.seconds, 3), "cached": r.cached} for r in built.runs],
+        "notes": list(built.notes),
+        "metrics": dict(scene.metrics),
+    }
