@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cv2
 import numpy as np
-from jaxtyping import Float, UInt8
+from jaxtyping import Bool, Float, UInt8
 
 DETECTION_SIDE_PX = 800
 """Longest side at which segments are looked for; finer detail only adds texture."""
@@ -43,9 +43,9 @@ def line_segments_px(
     return segments[keep][order].reshape(-1, 4)
 
 
-def _on_border(segments: Float[np.ndarray, "n 2 2"], width: int, height: int) -> np.ndarray:
+def _on_border(segments: Float[np.ndarray, "n 2 2"], width: int, height: int) -> Bool[np.ndarray, "n"]:
     """Segments whose both ends lie within half a percent of the same side of the picture."""
     margin = 0.005 * max(width, height) + 1.0
-    low = (segments < margin).all(axis=1)
-    high = (segments > np.array([width, height]) - margin).all(axis=1)
-    return (low | high).any(axis=1)
+    low = np.all(segments < margin, axis=1)
+    high = np.all(segments > np.array([width, height]) - margin, axis=1)
+    return low[:, 0] | low[:, 1] | high[:, 0] | high[:, 1]

@@ -1,0 +1,105 @@
+"""The search for the room box that the evidence supports best: coordinate ascent from a few starts."""
+
+from __future__ import annotations
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.architecture.evidence import PRIOR_MEDIAN_M, RoomEvidence
+
+REFINEMENTS = (0.08, 0.03, 0.012)
+SWEEPS = 3
+MAX_LINES = 40
+"""Segments, longest first, that suggest candidates."""
+MARGIN_M = 0.05
+
+_DISTANCES_M = np.geomspace(0.5, 9.0, 24)
+_CEILINGS_M = np.linspace(2.1, 3.4, 14)
+
+
+def find_box(evidence: RoomEvidence) -> tuple[Float[np.ndarray, "4"], float]:
+    """The best box (x0, x1, y1, ceiling) and its score; deterministic."""
+    found = [_ascend(evidence, start) for start in _starts(evidence)]
+    return max(found, key=lambda pair: pair[1])
+
+
+def _starts(evidence: RoomEvidence) -> list[Float[np.ndarray, "4"]]:
+    """Rooms of usual size, small, deep and wide, each grown around the objects; and one tight around them."""
+    x, y, z = evidence.camera.position
+    half, deep, high = 0.5 * PRIOR_MEDIAN_M[0], PRIOR_MEDIAN_M[1], max(PRIOR_MEDIAN_M[2], z + 0.4)
+    shapes = [(half, half, deep), (1.3, 1.3, 2.4), (half, half, 6.0), (3.5, 1.5, 4.0), (1.5, 3.5, 4.0)]
+    boxes = [np.array([x - left, x + right, y + far, high]) for left, right, far in shapes]
+    tight = np.array([x - 0.5, x + 0.5, y + 1.0, high])
+    return [around_objects(evidence, box) for box in [*boxes, tight]]
+
+
+def around_objects(evidence: RoomEvidence, box: Float[np.ndarray, "4"]) -> Float[np.ndarray, "4"]:
+    """The box with its walls and ceiling pushed out until every standing object is inside."""
+    if len(evidence.object_low) == 0:
+        return box
+    low, high = evidence.object_low.min(axis=0) - MARGIN_M, evidence.object_high.max(axis=0) + MARGIN_M
+    return np.array([min(box[0], low[0]), max(box[1], high[0]), max(box[2], high[1]), max(box[3], high[2])])
+
+
+def _ascend(evidence: RoomEvidence, box: Float[np.ndarray, "4"]) -> tuple[Float[np.ndarray, "4"], float]:
+    best, score = box.copy(), float(evidence.score(box[None])[0])
+    for _ in range(SWEEPS):
+        before = score
+        for coordinate in (2, 0, 1, 3):
+            best, score = _improved(evidence, best, score, coordinate, _candidates(evidence, best, coordinate))
+        if score <= before + 1e-9:
+            break
+    for step in REFINEMENTS:
+        for _ in range(2):
+            for coordinate in (2, 0, 1, 3):
+                near = best[coordinate] * (1.0 + step * np.array([-1.0, -0.5, 0.5, 1.0]))
+                best, score = _improved(evidence, best, score, coordinate, near)
+    return best, score
+
+
+def _improved(
+    evidence: RoomEvidence, box: Float[np.ndarray, "4"], score: float, coordinate: int, values: Float[np.ndarray, "m"]
+) -> tuple[Float[np.ndarray, "4"], float]:
+    trial = np.repeat(box[None], len(values), axis=0)
+    trial[:, coordinate] = values
+    scores = evidence.score(trial)
+    best = int(scores.argmax())
+    return (trial[best], float(scores[best])) if scores[best] > score else (box, score)
+
+
+def _candidates(evidence: RoomEvidence, box: Float[np.ndarray, "4"], coordinate: int) -> Float[np.ndarray, "m"]:
+    """Values to try: evenly spread ones, and those at which a line of the picture becomes a boundary of the box."""
+    x, y, z = evidence.camera.position
+    if coordinate == 3:
+        spread = np.maximum(_CEILINGS_M, z + 0.15)
+    else:
+        spread = (x - _DISTANCES_M, x + _DISTANCES_M, y + _DISTANCES_M)[coordinate]
+    lines = _line_values(evidence, box, coordinate)
+    low, high = (1.9, 5.0) if coordinate == 3 else (0.4, 14.0)
+    reach = lines if coordinate == 3 else np.abs(lines - (y if coordinate == 2 else x))
+    return np.concatenate([spread, lines[(reach > low) & (reach < high)]])
+
+
+def _line_values(evidence: RoomEvidence, box: Float[np.ndarray, "4"], coordinate: int) -> Float[np.ndarray, "m"]:
+    """Where boundaries would have to be to pass through the picture's lines, given the other three numbers."""
+    origin = evidence.camera.position
+    d, axes = evidence.segment_rays[:MAX_LINES], evidence.segment_axes[:MAX_LINES]
+    x0, x1, y1, top = box
+
+    def crossing(rays: np.ndarray, known: int, value: float, wanted: int) -> np.ndarray:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            t = (value - origin[known]) / rays[:, known]
+        found = origin[wanted] + t * rays[:, wanted]
+        return found[np.isfinite(found) & (t > 0)]
+
+    sides = d[axes == 1]
+    fronts, uprights = d[axes == 0], d[axes == 2]
+    if coordinate == 2:
+        parts = [crossing(fronts, 2, 0.0, 1), crossing(fronts, 2, top, 1)]
+        parts += [crossing(uprights, 0, x0, 1), crossing(uprights, 0, x1, 1)]
+    elif coordinate == 3:
+        parts = [crossing(fronts, 1, y1, 2), crossing(sides, 0, x0, 2), crossing(sides, 0, x1, 2)]
+    else:
+        found = np.concatenate([crossing(sides, 2, 0.0, 0), crossing(sides, 2, top, 0), crossing(uprights, 1, y1, 0)])
+        parts = [found[found < origin[0]] if coordinate == 0 else found[found > origin[0]]]
+    return np.concatenate(parts)

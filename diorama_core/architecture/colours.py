@@ -1,0 +1,66 @@
+"""Plain colours of the room's planes, taken from the photo where each plane is seen."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Int, UInt8
+
+from diorama_core.artefacts import DetectedObject
+from diorama_core.geometry.casting import camera_rays, cast_planes
+from diorama_core.scene.types import Camera, Plane, PlaneRole
+
+GRID_PX = 240
+MIN_PIXELS = 40
+_PLAIN: dict[PlaneRole, tuple[float, float, float]] = {
+    "floor": (0.62, 0.56, 0.50),
+    "wall": (0.86, 0.85, 0.83),
+    "ceiling": (0.93, 0.93, 0.92),
+}
+
+
+def visible_planes(planes: tuple[Plane, ...], camera: Camera, step: int) -> Int[np.ndarray, "hs ws"]:
+    """Index of the plane seen by every `step`-th pixel of the empty room; -1 where none is."""
+    origin, rays = camera_rays(camera, step)
+    return cast_planes(origin, rays, planes)[1]
+
+
+def object_pixels(shape: tuple[int, int], objects: tuple[DetectedObject, ...]) -> Bool[np.ndarray, "h w"]:
+    """Where objects are, with a margin for their shadows and for masks that are a little small."""
+    union = np.zeros(shape, np.uint8)
+    for found in objects:
+        union |= found.mask.astype(np.uint8)
+    radius = max(2, round(0.008 * max(shape)))
+    return cv2.dilate(union, np.ones((2 * radius + 1, 2 * radius + 1), np.uint8)).astype(bool)
+
+
+def coloured(
+    planes: tuple[Plane, ...], rgb: UInt8[np.ndarray, "h w 3"], camera: Camera, objects: tuple[DetectedObject, ...]
+) -> tuple[Plane, ...]:
+    """The planes with the colour that most of their visible pixels have.
+
+    A plane that is hardly seen takes the colour of another of its role, else a plain one.
+    """
+    step = max(1, max(rgb.shape[:2]) // GRID_PX)
+    seen = visible_planes(planes, camera, step)
+    grid = (slice(step // 2, None, step), slice(step // 2, None, step))
+    free = ~object_pixels((rgb.shape[0], rgb.shape[1]), objects)[grid]
+    small = rgb[grid]
+    found = [_typical_colour(small[(seen == i) & free]) for i in range(len(planes))]
+    by_role = {p.role: c for p, c in reversed(list(zip(planes, found, strict=True))) if c is not None}
+    return tuple(
+        replace(p, colour=c or by_role.get(p.role, _PLAIN[p.role])) for p, c in zip(planes, found, strict=True)
+    )
+
+
+def _typical_colour(pixels: UInt8[np.ndarray, "n 3"]) -> tuple[float, float, float] | None:
+    """Median colour of the half of the pixels nearest to the overall median: robust to things left in view."""
+    if len(pixels) < MIN_PIXELS:
+        return None
+    values = pixels.astype(np.float64)
+    distance = np.abs(values - np.median(values, axis=0)).sum(axis=1)
+    core = values[distance <= np.median(distance)]
+    red, green, blue = np.median(core, axis=0) / 255.0
+    return float(red), float(green), float(blue)
