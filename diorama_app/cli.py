@@ -126,7 +126,7 @@ def _add_build(commands: Any) -> None:
     p.add_argument("--arrangements", type=int, default=1, metavar="N", help="scenes with other shapes to write beside")
     p.add_argument("--library", default="built-in", metavar="NAME", help="shape library (default: %(default)s)")
     p.add_argument("--recipe", choices=RECIPES, default=RECIPES[0], help="layout optimiser (default: %(default)s)")
-    p.add_argument("--seed", type=int, default=0, help="seed of everything random (default: %(default)s)")
+    p.add_argument("--seed", type=int, default=0, help="seed of random stages (the embedded ones draw nothing)")
     p.add_argument("--json", action="store_true", help="print the result as JSON")
 
 
@@ -139,7 +139,7 @@ def _build(a: argparse.Namespace) -> None:
 
     if a.profile == "foundation":
         raise UnavailableError(
-            "the foundation profile needs downloaded networks, which this version cannot load yet; use --profile embedded"
+            "the foundation profile needs networks that this version cannot load yet; use --profile embedded"
         )
     if a.arrangements < 1:
         raise InputError(f"--arrangements {a.arrangements}: ask for at least one")

@@ -1,0 +1,69 @@
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+
+from diorama_core.artefacts import DetectedObject, Inputs, LabelledBox, Photo
+from diorama_core.errors import ProjectError
+from diorama_core.pipeline import codec
+from diorama_core.scene.types import Scene
+from tests.scene.strategies import scenes
+
+
+def example_inputs(seed: int = 0) -> Inputs:
+    rng = np.random.default_rng(seed)
+    photo = Photo(rng.integers(0, 255, (20, 30, 3), dtype=np.uint8), "room.jpg", (30, 20), 25.5)
+    depth = rng.random((20, 30), dtype=np.float32)
+    return Inputs(photo, (LabelledBox((1, 2, 3.5, 4), "chair", "chairs"),), depth_m=depth)
+
+
+@settings(max_examples=30, deadline=None)
+@given(scenes(max_objects=3))
+def test_artefacts_survive_the_file_exactly(scene: Scene) -> None:
+    value = (scene, example_inputs(), ())
+    assert codec.load(codec.dump(value)) == value
+
+
+def test_masks_keep_their_type() -> None:
+    mask = np.zeros((4, 5), dtype=bool)
+    mask[1, 2] = True
+    item = DetectedObject("chair_1", "chair", "chair", (0, 0, 3, 3), mask, 1, 0.5)
+    again = codec.load(codec.dump((item,)))[0]
+    assert again == item
+    assert again.mask.dtype == bool
+    assert not again.mask.flags.writeable
+
+
+def test_fingerprints_tell_contents_apart() -> None:
+    assert codec.fingerprint(example_inputs(0)) == codec.fingerprint(example_inputs(0))
+    assert codec.fingerprint(example_inputs(0)) != codec.fingerprint(example_inputs(1))
+
+
+@pytest.mark.parametrize("data", [b"", b"not a zip", codec.dump(example_inputs())[:100]])
+def test_damaged_bytes_are_refused(data: bytes) -> None:
+    with pytest.raises(ProjectError, match="damaged"):
+        codec.load(data)
+
+
+def test_only_known_classes_are_constructed() -> None:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        archive.writestr("tree.json", json.dumps({"class": "Popen", "fields": {"args": "true"}}))
+    with pytest.raises(ProjectError, match="damaged"):
+        codec.load(buffer.getvalue())
+
+
+def test_pickled_arrays_are_refused() -> None:
+    raw = io.BytesIO()
+    np.save(raw, np.array([{"a": 1}], dtype=object), allow_pickle=True)
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        archive.writestr("tree.json", json.dumps({"array": 0}))
+        archive.writestr("0.npy", raw.getvalue())
+    with pytest.raises(ProjectError, match="damaged"):
+        codec.load(buffer.getvalue())

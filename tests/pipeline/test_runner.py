@@ -1,0 +1,92 @@
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+
+from diorama_core.artefacts import LabelledBox
+from diorama_core.errors import Cancelled
+from diorama_core.pipeline.runner import KEPT_PER_STAGE, Runner
+from diorama_core.progress import CancelToken, Progress, ProgressEvent
+
+BOX = LabelledBox((0, 0, 4, 4), "chair", "chair")
+OTHER = LabelledBox((0, 0, 5, 5), "chair", "chair")
+
+
+@dataclass(frozen=True)
+class Widen:
+    """A stage that makes a box wider and counts how often it really ran."""
+
+    by: float = 1.0
+    calls: list = field(default_factory=list, repr=False, compare=False)
+
+    def widen(self, box: LabelledBox, progress: Progress) -> LabelledBox:
+        self.calls.append(box)
+        x1, y1, x2, y2 = box.box
+        return LabelledBox((x1, y1, x2 + self.by, y2), box.category, box.label)
+
+
+def run(folder: Path, stage: Widen, box: LabelledBox, progress: Progress | None = None) -> tuple[LabelledBox, bool]:
+    runner = Runner(folder)
+    result = runner.run("widen", stage, stage.widen, (box,), progress or Progress())
+    return result, runner.runs[0].cached
+
+
+def test_a_second_run_reads_the_first_ones_result(tmp_path: Path) -> None:
+    stage = Widen()
+    first, second = run(tmp_path, stage, BOX), run(tmp_path, stage, BOX)
+    assert first == (LabelledBox((0, 0, 5.0, 4), "chair", "chair"), False)
+    assert second == (first[0], True)
+    assert len(stage.calls) == 1
+
+
+def test_other_inputs_or_settings_run_again(tmp_path: Path) -> None:
+    run(tmp_path, Widen(), BOX)
+    assert run(tmp_path, Widen(), OTHER)[1] is False
+    assert run(tmp_path, Widen(by=2.0), BOX)[1] is False
+    assert run(tmp_path, Widen(), BOX)[1] is True
+
+
+def test_a_damaged_result_is_computed_again(tmp_path: Path) -> None:
+    run(tmp_path, Widen(), BOX)
+    file = next(tmp_path.glob("*.zip"))
+    file.write_bytes(file.read_bytes()[:40])
+    assert run(tmp_path, Widen(), BOX)[1] is False
+    assert run(tmp_path, Widen(), BOX)[1] is True
+
+
+def test_a_half_written_result_is_never_used(tmp_path: Path) -> None:
+    run(tmp_path, Widen(), BOX)
+    file = next(tmp_path.glob("*.zip"))
+    file.rename(file.with_suffix(".123.part"))
+    assert run(tmp_path, Widen(), BOX)[1] is False
+
+
+def test_a_cancelled_run_resumes_after_its_finished_stages(tmp_path: Path) -> None:
+    token = CancelToken()
+    stage = Widen()
+    runner = Runner(tmp_path)
+    progress = Progress(token=token)
+    done = runner.run("first", stage, stage.widen, (BOX,), progress)
+    token.cancel()
+    with pytest.raises(Cancelled):
+        runner.run("second", stage, stage.widen, (done,), progress)
+    again = Runner(tmp_path)
+    result = again.run("first", stage, stage.widen, (BOX,), Progress())
+    again.run("second", stage, stage.widen, (result,), Progress())
+    assert [r.cached for r in again.runs] == [True, False]
+    assert len(stage.calls) == 2
+
+
+def test_old_results_are_cleaned_up(tmp_path: Path) -> None:
+    for i in range(3 * KEPT_PER_STAGE):
+        run(tmp_path, Widen(by=float(i)), BOX)
+    assert len(list(tmp_path.glob("widen-*.zip"))) == KEPT_PER_STAGE
+
+
+def test_progress_of_parts_is_on_the_whole_jobs_scale() -> None:
+    events: list[ProgressEvent] = []
+    part = Progress(events.append).part(0.5, 1.0).part(0.0, 0.5)
+    part.report(1.0, "half of the second half")
+    assert events[0].fraction == pytest.approx(0.75)

@@ -1,0 +1,96 @@
+"""Hypothesis strategies for scenes and edits of them."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import strategies as st
+
+from diorama_core.scene.types import (
+    Architecture,
+    Camera,
+    Candidate,
+    Intrinsics,
+    Plane,
+    Pose,
+    Scene,
+    SceneObject,
+    Support,
+)
+
+numbers = st.floats(-5, 5, allow_nan=False)
+scales = st.floats(0.2, 3.0)
+sizes = st.tuples(*[st.floats(0.05, 2.0)] * 3)
+colours = st.tuples(*[st.floats(0, 1)] * 3)
+words = st.text(min_size=1, max_size=12).filter(lambda s: s.strip() != "")
+
+
+@st.composite
+def rotations(draw: st.DrawFn) -> np.ndarray:
+    q = np.array(draw(st.tuples(*[st.floats(-1, 1)] * 4)))
+    q = q / np.linalg.norm(q) if np.linalg.norm(q) > 1e-3 else np.array([1.0, 0, 0, 0])
+    w, x, y, z = q
+    R = np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+    u, _, vt = np.linalg.svd(R)
+    return u @ vt
+
+
+@st.composite
+def poses(draw: st.DrawFn) -> Pose:
+    return Pose(draw(rotations()), draw(st.tuples(numbers, numbers, numbers)), draw(st.tuples(scales, scales, scales)))
+
+
+@st.composite
+def candidates(draw: st.DrawFn) -> Candidate:
+    return Candidate(draw(words), draw(sizes), draw(st.floats(0, 1)), draw(poses()))
+
+
+@st.composite
+def objects(draw: st.DrawFn, object_id: str) -> SceneObject:
+    return SceneObject(
+        id=object_id,
+        label=draw(words),
+        category=draw(st.sampled_from(["chair", "table", "lamp"])),
+        shape_id=draw(words),
+        shape_size_m=draw(sizes),
+        pose=draw(poses()),
+        candidates=tuple(draw(st.lists(candidates(), max_size=2))),
+        mask_id=draw(st.none() | st.integers(1, 99)),
+        box_px=draw(st.none() | st.just((1.0, 2.5, 30.25, 44.0))),
+        confidence=draw(st.floats(0, 1)),
+        hidden=draw(st.booleans()),
+        colour=draw(st.none() | colours),
+    )
+
+
+FLOOR = Plane("floor", "floor", np.array([[-2.0, 0, 0], [2, 0, 0], [2, 4, 0], [-2, 4, 0]]))
+WALL = Plane("wall_1", "wall", np.array([[-2.0, 4, 0], [2, 4, 0], [2, 4, 2.5], [-2, 4, 2.5]]))
+CAMERA = Camera(
+    Intrinsics(640, 480, 520.5, 521.25, 320.0, 240.0),
+    np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 1.4], [0, 0, 0, 1]]),
+)
+
+
+@st.composite
+def scenes(draw: st.DrawFn, max_objects: int = 5) -> Scene:
+    """A valid scene: every object stands on the floor, on an earlier object, or is loose."""
+    items = tuple(draw(objects(f"item_{i}")) for i in range(draw(st.integers(0, max_objects))))
+    supports = []
+    for i, item in enumerate(items):
+        parents = ["floor", *(earlier.id for earlier in items[:i])]
+        parent = draw(st.none() | st.sampled_from(parents))
+        if parent is not None:
+            walls = draw(st.sampled_from([(), ("wall_1",)]))
+            supports.append(Support(item.id, parent, "placed on", draw(st.none() | st.integers(0, 3)), "bottom", walls))
+    return Scene(
+        camera=draw(st.sampled_from([None, CAMERA])),
+        architecture=Architecture((FLOOR, WALL)),
+        objects=items,
+        supports=tuple(supports),
+        metrics=draw(st.sampled_from([(), (("penetration_m", 0.125),)])),
+    )
