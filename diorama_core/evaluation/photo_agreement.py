@@ -1,0 +1,99 @@
+"""How well a scene agrees with the picture it was made from: projected boxes against observed ones, and sizes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.artefacts import DetectedObject, ObjectGeometry
+from diorama_core.geometry.projection import NEAR_M, box_iou, visible_bounds
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.scene.types import Camera, Scene
+
+PLAUSIBLE_M: dict[str, tuple[str, float, float]] = {
+    "chair": ("height", 0.7, 1.2),
+    "office chair": ("height", 0.7, 1.2),
+    "table": ("height", 0.35, 1.1),
+    "coffee table": ("height", 0.35, 1.1),
+    "sofa": ("width", 1.2, 3.0),
+}
+"""Ranges that a person would call normal, by category."""
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """One object's agreement with its observed box, as intersection over union."""
+
+    object_id: str
+    category: str
+    cuboid_iou: float
+    """Projected metric cuboid against the given box."""
+    shape_iou: float
+    """Projected posed shape, before the layout optimiser, against the given box; 0 when it has no shape."""
+    final_iou: float
+    """The same after the layout optimiser."""
+    size_m: tuple[float, float, float]
+    plausible: bool
+    """Whether its size lies in the category's range; True for categories without one."""
+
+
+def agreement(
+    objects: tuple[DetectedObject, ...],
+    geometry: ObjectGeometry,
+    observed: Scene,
+    final: Scene,
+    library: ShapeLibrary,
+) -> tuple[Agreement, ...]:
+    """Compare every detected object's cuboid and posed shape with its box; missing ones count as 0."""
+    cuboids = {c.object_id: c for c in geometry.cuboids}
+    rows = []
+    for item in objects:
+        cuboid = cuboids.get(item.id)
+        corners = None if cuboid is None else cuboid.corners_world
+        size = tuple(float(v) for v in final.object(item.id).size_m) if final.has_object(item.id) else (0.0, 0.0, 0.0)
+        rows.append(
+            Agreement(
+                object_id=item.id,
+                category=item.category,
+                cuboid_iou=0.0 if corners is None else _cuboid_iou(geometry.camera, corners, item.box),
+                shape_iou=shape_iou(observed, item.id, item.box, library),
+                final_iou=shape_iou(final, item.id, item.box, library),
+                size_m=size,
+                plausible=_plausible(item.category, size),
+            )
+        )
+    return tuple(rows)
+
+
+def shape_iou(scene: Scene, object_id: str, box: tuple[float, float, float, float], library: ShapeLibrary) -> float:
+    """Intersection over union of the box with the bounds of the posed shape's visible vertices; 0 without a shape."""
+    if scene.camera is None or not scene.has_object(object_id):
+        return 0.0
+    item = scene.object(object_id)
+    bounds = projected_bounds(scene.camera, item.pose.apply(np.asarray(library.mesh(item.shape_id).vertices)))
+    return 0.0 if bounds is None else float(box_iou(bounds, np.array(box)))
+
+
+def projected_bounds(camera: Camera, points_world: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "4"] | None:
+    """Bounds in the picture of points in front of the camera, clipped to the picture; None when none is."""
+    points = points_world[camera.to_camera(points_world)[:, 2] > NEAR_M]
+    if not len(points):
+        return None
+    k = camera.intrinsics
+    pixels = np.clip(camera.project(points), 0.0, [k.width, k.height])
+    return np.concatenate([pixels.min(axis=0), pixels.max(axis=0)])
+
+
+def _cuboid_iou(camera: Camera, corners_world: Float[np.ndarray, "8 3"], box: object) -> float:
+    bounds, visible = visible_bounds(camera.to_camera(corners_world)[None], camera.intrinsics)
+    return float(box_iou(bounds[0], np.array(box))) if visible[0] else 0.0
+
+
+def _plausible(category: str, size_m: tuple[float, ...]) -> bool:
+    if category not in PLAUSIBLE_M:
+        return True
+    side, low, high = PLAUSIBLE_M[category]
+    value = size_m[2] if side == "height" else size_m[1]
+    return low <= value <= high
