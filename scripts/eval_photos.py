@@ -101,7 +101,8 @@ def line(row: dict) -> str:
         return f"{row['id']:<18} FAILED"
     ious = " ".join(f"{k.split('_')[0]} {mean(row, k):.3f}" for k in ("cuboid_iou", "shape_iou", "final_iou"))
     stages = " ".join(f"{k} {v:.1f}" for k, v in row["stages"].items())
-    return f"{row['id']:<18} {row['built']:>2}/{row['given']:<2} walls {row['walls']} {ious}  {row['seconds']:.1f} s ({stages})"
+    counts = f"{row['id']:<18} {row['built']:>2}/{row['given']:<2} walls {row['walls']}"
+    return f"{counts} {ious}  {row['seconds']:.1f} s ({stages})"
 
 
 def summary(rows: list[dict]) -> str:
