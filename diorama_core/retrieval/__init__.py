@@ -1,1 +1,5 @@
-"""Which shapes of the library could each object be."""
+"""Which shapes could stand for each object, best first."""
+
+from diorama_core.retrieval.embedded import EmbeddedRetrieval
+
+__all__ = ["EmbeddedRetrieval"]

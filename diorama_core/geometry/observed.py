@@ -1,0 +1,159 @@
+"""What a photo says about one object, at the resolution at which rendered shapes are compared with it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
+from diorama_core.geometry.window import Window, soft_iou
+from diorama_core.scene.types import Camera
+
+Box = tuple[float, float, float, float]
+
+
+class Outlined(Protocol):
+    """Anything with a box and a mask in the photo (`artefacts.DetectedObject`)."""
+
+    @property
+    def box(self) -> Box:
+        """x1, y1, x2, y2 in photo pixels."""
+        ...
+
+    @property
+    def mask(self) -> Bool[np.ndarray, "h w"]:
+        """Visible pixels."""
+        ...
+
+    @property
+    def mask_confidence(self) -> float:
+        """0 to 1."""
+        ...
+
+
+_BORDER_PX = 2.5
+_FULLY_TRUSTED_AREA_PX = 600.0
+
+
+@dataclass(frozen=True, eq=False)
+class Observed:
+    """One object's mask and box in a window of the photo, and how far each may be believed."""
+
+    window: Window
+    box: Box
+    covered: Float[np.ndarray, "n"]
+    """Share of each cell that the object's mask covers."""
+    weight: Float[np.ndarray, "n"]
+    """How much a cell says: 0 outside the photo and where nearer objects hide what is behind them."""
+    origin_world: Float[np.ndarray, "3"]
+    directions_world: Float[np.ndarray, "n 3"]
+    """One ray per cell, of unit depth."""
+    mask_trust: float
+    """0 (no usable mask) to 1 (a mask given by the user, large enough to have a shape)."""
+    border_share: float
+    """Share of the box's outline that lies on the photo's border, where the object is cut."""
+    hidden_share: float
+    """Share of the box that nearer objects' masks cover."""
+
+    def silhouettes(self, caster: ShapeCaster, poses: PoseBatch) -> Bool[np.ndarray, "p n"]:
+        """The cells whose centres the posed shape covers."""
+        return caster.cast(self.origin_world, self.directions_world, poses).covered
+
+    def agreement(self, silhouettes: Bool[np.ndarray, "p n"]) -> Float[np.ndarray, "p"]:
+        """Intersection over union with the mask where there is evidence, 0 to 1."""
+        return soft_iou(self.covered, silhouettes.astype(np.float64), self.weight)
+
+
+def observe(
+    camera: Camera,
+    box: Box,
+    mask: Bool[np.ndarray, "h w"],
+    mask_confidence: float,
+    nearer_masks: Sequence[Bool[np.ndarray, "h w"]],
+    cells: int,
+    margin: float = 0.2,
+) -> Observed:
+    """Look at one object.
+
+    Args:
+        camera: The photo's camera.
+        box: The object's box in photo pixels.
+        mask: The object's visible pixels; may be empty.
+        mask_confidence: 0 to 1.
+        nearer_masks: Masks of objects in front of this one: their pixels say nothing about it.
+        cells: Resolution of the window, both ways.
+        margin: How far the window reaches beyond the box, as a share of the box.
+    """
+    window = Window.around(box, margin, cells)
+    height, width = mask.shape
+    covered = window.coverage(mask)
+    hidden = np.zeros_like(covered)
+    for nearer in nearer_masks:
+        hidden = np.maximum(hidden, window.coverage(nearer))
+    hidden = hidden * (1.0 - covered)
+    x, y = window.centres_px.T
+    in_box = (x >= box[0]) & (x < box[2]) & (y >= box[1]) & (y < box[3])
+    area = float(mask.sum())
+    return Observed(
+        window=window,
+        box=box,
+        covered=covered if area > 0 else in_box.astype(np.float64),
+        weight=window.inside(width, height) * (1.0 - hidden),
+        origin_world=np.asarray(camera.position),
+        directions_world=camera.rays(window.centres_px),
+        mask_trust=float(np.clip(mask_confidence, 0.0, 1.0)) * min(area / _FULLY_TRUSTED_AREA_PX, 1.0),
+        border_share=_border_share(box, width, height),
+        hidden_share=float(hidden[in_box].mean()) if in_box.any() else 0.0,
+    )
+
+
+def observe_among(
+    camera: Camera,
+    things: Sequence[Outlined],
+    centres_world: Float[np.ndarray, "m 3"],
+    parents: Sequence[int | None],
+    index: int,
+    cells: int,
+) -> Observed:
+    """Look at thing `index`, given which of the others may hide it.
+
+    Args:
+        camera: The photo's camera.
+        things: Everything seen in the photo.
+        centres_world: Where each is.
+        parents: For each, which of the others it lies on, if any.
+        index: The one to look at.
+        cells: Resolution of the window, both ways.
+    """
+    depths = camera.to_camera(centres_world)[:, 2]
+    masks = [things[i].mask for i in indices_in_front(depths, parents, index)]
+    thing = things[index]
+    return observe(camera, thing.box, thing.mask, thing.mask_confidence, masks, cells)
+
+
+def cut_sides(box: Box, width: int, height: int) -> Bool[np.ndarray, "4"]:
+    """Which of the box's sides x1, y1, x2, y2 lie on the photo's border."""
+    x1, y1, x2, y2 = box
+    return np.array([x1 <= _BORDER_PX, y1 <= _BORDER_PX, x2 >= width - _BORDER_PX, y2 >= height - _BORDER_PX])
+
+
+def _border_share(box: Box, width: int, height: int) -> float:
+    lengths = np.array([box[3] - box[1], box[2] - box[0], box[3] - box[1], box[2] - box[0]], dtype=np.float64)
+    return float(lengths[cut_sides(box, width, height)].sum() / max(lengths.sum(), 1e-9))
+
+
+def indices_in_front(depths_m: Float[np.ndarray, "m"], parents: Sequence[int | None], index: int) -> tuple[int, ...]:
+    """Which objects may hide object `index`: those nearer to the camera and those that lie on it.
+
+    What it lies on itself is never in front: its surface is seen beside the object, not before it.
+    """
+    nearer = []
+    for other, depth in enumerate(depths_m):
+        lies_on_it = parents[other] == index
+        if other != index and parents[index] != other and (lies_on_it or depth < depths_m[index]):
+            nearer.append(other)
+    return tuple(nearer)

@@ -1,0 +1,199 @@
+"""Fast views of one shape under many poses: rays are moved into the shape's frame, never the mesh into the world.
+
+A pose is a point of a batch: rotation `R` (p 3 3), `position` (p 3) and per-axis `scale` (p 3), with
+`p_world = R @ (scale * p_object) + position` as in `scene.types.Pose`. A ray `o + t d` keeps its parameter t under
+that map, so with directions of unit depth (`Camera.rays`) the hit parameter is z in the camera, in metres.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+import open3d as o3d
+import trimesh
+from jaxtyping import Float, Int
+from scipy.spatial import ConvexHull, QhullError
+
+from diorama_core.scene.types import Camera, box_corners
+
+_OPEN3D: Any = o3d  # its stubs do not know that arrays are taken for tensors
+
+T = TypeVar("T")
+
+_MIN_EXTENT_M = 1e-4
+_NEAR_M = 0.05
+_HULL_DIRECTIONS = 96
+
+
+@dataclass(frozen=True, eq=False)
+class PoseBatch:
+    """Many poses of one shape."""
+
+    R: Float[np.ndarray, "p 3 3"]
+    position: Float[np.ndarray, "p 3"]
+    scale: Float[np.ndarray, "p 3"]
+
+    def __len__(self) -> int:
+        return len(self.R)
+
+    def __getitem__(self, chosen: slice | np.ndarray) -> PoseBatch:
+        return PoseBatch(self.R[chosen], self.position[chosen], self.scale[chosen])
+
+    def apply(self, points_object: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "p n 3"]:
+        """Shape points in the world under every pose."""
+        scaled = points_object[None] * self.scale[:, None]
+        return np.einsum("pij,pnj->pni", self.R, scaled) + self.position[:, None]
+
+
+@dataclass(frozen=True, eq=False)
+class Hits:
+    """What the rays of one window meet, for every pose; infinite depth where they meet nothing."""
+
+    depth_m: Float[np.ndarray, "p r"]
+    normals_world: Float[np.ndarray, "p r 3"]
+    """Unit, turned toward the camera; zero where nothing is met."""
+
+    @cached_property
+    def covered(self) -> np.ndarray:
+        """Whether the shape is met (p r)."""
+        return np.isfinite(self.depth_m)
+
+
+class ShapeCaster:
+    """A mesh prepared for rays, with the corners and edges of its (slightly simplified) convex hull."""
+
+    def __init__(self, mesh: trimesh.Trimesh) -> None:
+        vertices = np.asarray(mesh.vertices, dtype=np.float64)
+        extent = np.ptp(vertices, axis=0) if len(vertices) else np.ones(3)
+        self.size_m: Float[np.ndarray, "3"] = np.maximum(extent, _MIN_EXTENT_M)
+        self.hull_points, self.hull_edges = _hull(vertices, self.size_m)
+        self._scene: Any = _OPEN3D.t.geometry.RaycastingScene(nthreads=1)
+        corners = vertices if len(mesh.faces) else np.zeros((3, 3))
+        triangles = mesh.faces if len(mesh.faces) else [[0, 1, 2]]
+        self._scene.add_triangles(np.asarray(corners, dtype=np.float32), np.asarray(triangles, dtype=np.uint32))
+        self._cast(np.array([[9.0, 9.0, 9.0, 1.0, 0.0, 0.0]], np.float32))  # builds the tree here, not under threads
+
+    def _cast(self, rays: Float[np.ndarray, "n 6"]) -> tuple[np.ndarray, np.ndarray]:
+        answer = self._scene.cast_rays(_OPEN3D.core.Tensor(rays), nthreads=1)
+        return answer["t_hit"].numpy(), answer["primitive_normals"].numpy()
+
+    def cast(
+        self, origin_world: Float[np.ndarray, "3"], directions_world: Float[np.ndarray, "r 3"], poses: PoseBatch
+    ) -> Hits:
+        """First hits of every ray with the shape under every pose."""
+        count, rays_each = len(poses), len(directions_world)
+        origins = np.einsum("pji,pj->pi", poses.R, origin_world - poses.position) / poses.scale
+        directions = np.einsum("pji,rj->pri", poses.R, directions_world) / poses.scale[:, None]
+        rays = np.empty((count, rays_each, 6), np.float32)
+        rays[..., :3], rays[..., 3:] = origins[:, None], directions
+        depth, normals = self._cast(rays.reshape(-1, 6))
+        depth = depth.reshape(count, rays_each).astype(np.float64)
+        depth[~(depth > _NEAR_M)] = np.inf
+        world = np.einsum("pij,prj->pri", poses.R, normals.reshape(count, rays_each, 3) / poses.scale[:, None])
+        return Hits(depth, _toward(world, directions_world, np.isfinite(depth)))
+
+    def bounds_px(self, camera: Camera, poses: PoseBatch) -> Float[np.ndarray, "p 4"]:
+        """Boxes x1, y1, x2, y2 of the posed shape in the photo, clipped to it; NaN where it is out of sight."""
+        points = camera.to_camera(poses.apply(self.hull_points))
+        return clipped_bounds(camera, points, self.hull_edges)
+
+
+def _toward(normals: np.ndarray, directions: np.ndarray, hit: np.ndarray) -> np.ndarray:
+    """Unit normals with their sign against the ray; zero where nothing was hit."""
+    length = np.linalg.norm(normals, axis=-1, keepdims=True)
+    unit = np.where(length > 1e-12, normals / np.maximum(length, 1e-12), 0.0)
+    away = np.einsum("pri,ri->pr", unit, directions) > 0
+    return np.where(hit[..., None], np.where(away[..., None], -unit, unit), 0.0)
+
+
+def _directions() -> Float[np.ndarray, "d 3"]:
+    """Evenly spread directions (a Fibonacci sphere), after the six axes."""
+    index = np.arange(_HULL_DIRECTIONS) + 0.5
+    z = 1 - 2 * index / _HULL_DIRECTIONS
+    angle = np.pi * (1 + 5**0.5) * index
+    ring = np.sqrt(1 - z**2)
+    sphere = np.stack([ring * np.cos(angle), ring * np.sin(angle), z], axis=1)
+    return np.concatenate([np.eye(3), -np.eye(3), sphere])
+
+
+def _hull(vertices: np.ndarray, size_m: np.ndarray) -> tuple[Float[np.ndarray, "h 3"], Int[np.ndarray, "e 2"]]:
+    """Corners and edges of the hull of the extreme vertices; the bounding box for flat or broken shapes."""
+    if len(vertices) >= 4:
+        extreme = np.unique(np.argmax((vertices / size_m) @ _directions().T, axis=0))
+        try:
+            hull = ConvexHull(vertices[extreme] / size_m)
+        except (QhullError, ValueError):
+            hull = None
+        if hull is not None:
+            sides = hull.simplices[:, [0, 1, 1, 2, 0, 2]].reshape(-1, 2)
+            return vertices[extreme], np.unique(np.sort(sides, axis=1), axis=0)
+    middle = (vertices.max(axis=0) + vertices.min(axis=0)) / 2 if len(vertices) else np.zeros(3)
+    return box_corners(size_m) + middle, BOX_EDGES
+
+
+BOX_EDGES: Int[np.ndarray, "12 2"] = np.array(
+    [(a, a | bit) for a in range(8) for bit in (1, 2, 4) if not a & bit], dtype=np.int64
+)
+"""Edges of `scene.types.box_corners`."""
+
+
+def clipped_bounds(
+    camera: Camera, points_camera: Float[np.ndarray, "p n 3"], edges: Int[np.ndarray, "e 2"]
+) -> Float[np.ndarray, "p 4"]:
+    """Boxes of the edges' visible parts: clipped to the near plane and to the photo; NaN where nothing is visible."""
+    k = camera.intrinsics
+    x, y, z = points_camera[..., 0], points_camera[..., 1], points_camera[..., 2]
+    planes = np.stack(
+        [
+            z - _NEAR_M,
+            k.fx * x + k.cx * z,
+            (k.width - k.cx) * z - k.fx * x,
+            k.fy * y + k.cy * z,
+            (k.height - k.cy) * z - k.fy * y,
+        ],
+        axis=-1,
+    )
+    a, b = planes[:, edges[:, 0]], planes[:, edges[:, 1]]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        cut = a / (a - b)
+    enter = np.where((a < 0) & (b >= 0), cut, 0.0).max(axis=-1)
+    leave = np.where((b < 0) & (a >= 0), cut, 1.0).min(axis=-1)
+    visible = (enter <= leave) & ~((a < 0) & (b < 0)).any(axis=-1)
+    start, end = points_camera[:, edges[:, 0]], points_camera[:, edges[:, 1]]
+    ends = np.stack([start + (end - start) * enter[..., None], start + (end - start) * leave[..., None]], axis=2)
+    depth = np.maximum(ends[..., 2], _NEAR_M / 2)
+    uv = np.stack([k.fx * ends[..., 0] / depth + k.cx, k.fy * ends[..., 1] / depth + k.cy], axis=-1)
+    low = np.where(visible[..., None, None], uv, np.inf).min(axis=(1, 2))
+    high = np.where(visible[..., None, None], uv, -np.inf).max(axis=(1, 2))
+    bounds = np.concatenate([low, high], axis=-1)
+    bounds[~np.isfinite(bounds).all(axis=-1)] = np.nan
+    return bounds
+
+
+class KeyedCache(Generic[T]):
+    """Derived values by content key, least recently used dropped first; safe to share between threads."""
+
+    def __init__(self, limit: int = 512) -> None:
+        self._limit = limit
+        self._lock = threading.Lock()
+        self._values: OrderedDict[str, T] = OrderedDict()
+
+    def get(self, key: str, make: Callable[[], T]) -> T:
+        """The value of this key, made the first time."""
+        with self._lock:
+            if key not in self._values:
+                self._values[key] = make()
+                while len(self._values) > self._limit:
+                    self._values.popitem(last=False)
+            self._values.move_to_end(key)
+            return self._values[key]
+
+
+SHARED_CASTERS: KeyedCache[ShapeCaster] = KeyedCache()
+"""One memory for all stages: retrieval and pose look at the same shapes."""

@@ -1,0 +1,97 @@
+"""Main colours of a masked crop and of a shape's materials, and how well they go together.
+
+Colours are CIE Lab (L 0..100). Lightness counts less than hue: a photo's light is unknown.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import cv2
+import numpy as np
+import trimesh
+from jaxtyping import Bool, Float, UInt8
+
+from diorama_core.scene.values import ArrayValue
+
+_LIGHTNESS_WEIGHT = 0.5
+_BIN = 24.0
+_MOST_PIXELS = 4000
+_MAIN_COLOURS = 3
+_TOLERANCE = 35.0
+
+
+@dataclass(frozen=True, eq=False)
+class Palette(ArrayValue):
+    """A few colours and the share of the surface that each covers (shares add up to 1, or nothing is known)."""
+
+    lab: Float[np.ndarray, "k 3"]
+    share: Float[np.ndarray, "k"]
+
+
+NOTHING_KNOWN = Palette(np.zeros((0, 3)), np.zeros(0))
+
+
+def _to_lab(rgb: UInt8[np.ndarray, "n 3"]) -> Float[np.ndarray, "n 3"]:
+    return cv2.cvtColor((rgb[None].astype(np.float32) / 255.0), cv2.COLOR_RGB2Lab)[0].astype(np.float64)
+
+
+def _main_colours(lab: Float[np.ndarray, "n 3"], weight: Float[np.ndarray, "n"]) -> Palette:
+    """Means of the fullest bins of a coarse colour grid."""
+    bins = np.floor(lab / _BIN).astype(int)
+    _, label = np.unique(bins, axis=0, return_inverse=True)
+    label = label.ravel()
+    mass = np.bincount(label, weight)
+    fullest = np.argsort(-mass, kind="stable")[:_MAIN_COLOURS]
+    sums = np.stack([np.bincount(label, weight * lab[:, c]) for c in range(3)], axis=1)
+    return Palette(sums[fullest] / mass[fullest, None], mass[fullest] / mass[fullest].sum())
+
+
+def palette_of_crop(rgb: UInt8[np.ndarray, "h w 3"], mask: Bool[np.ndarray, "h w"]) -> Palette:
+    """The main colours under a mask; nothing known for an empty one."""
+    rows = np.flatnonzero(mask.any(axis=1))
+    if not len(rows):
+        return NOTHING_KNOWN
+    rows_of_mask = slice(rows[0], rows[-1] + 1)
+    pixels = rgb[rows_of_mask][mask[rows_of_mask]]
+    pixels = pixels[:: max(len(pixels) // _MOST_PIXELS, 1)]
+    return _main_colours(_to_lab(pixels), np.ones(len(pixels)))
+
+
+def palette_of_parts(parts: trimesh.Scene) -> Palette:
+    """The main colours of a shape's materials, by surface area."""
+    colours, areas = [], []
+    for mesh in parts.geometry.values():
+        colour = _material_rgb(getattr(mesh, "visual", None))
+        if colour is not None and mesh.area > 0:
+            colours.append(colour)
+            areas.append(float(mesh.area))
+    if not colours:
+        return NOTHING_KNOWN
+    return _main_colours(_to_lab(np.array(colours, dtype=np.uint8)), np.array(areas))
+
+
+def _material_rgb(visual: Any) -> UInt8[np.ndarray, "3"] | None:
+    """One colour for one part: its material's, or the mean of its vertex or face colours."""
+    if visual is None or not visual.defined:
+        return None
+    if visual.kind in ("face", "vertex"):
+        return np.asarray(visual.main_color, dtype=np.uint8)[:3]
+    material: Any = visual.material
+    texture = getattr(material, "baseColorTexture", None)
+    factor = np.asarray(material.main_color, dtype=np.float64)[:3]
+    if texture is not None:
+        factor = factor / 255.0 * np.asarray(texture.convert("RGB").resize((1, 1)), dtype=np.float64).reshape(3)
+    return np.clip(factor, 0, 255).astype(np.uint8)
+
+
+def palette_agreement(seen: Palette, shape: Palette) -> float:
+    """0 to 1: how near each seen colour has one among the shape's; 0.5 where either is unknown."""
+    if not len(seen.share) or not len(shape.share):
+        return 0.5
+    scale = np.array([_LIGHTNESS_WEIGHT, 1.0, 1.0])
+    distance = np.linalg.norm((seen.lab[:, None] - shape.lab[None]) * scale, axis=-1)
+    toward_shape = (seen.share * distance.min(axis=1)).sum()
+    toward_seen = (shape.share * distance.min(axis=0)).sum()
+    return float(np.exp(-(toward_shape + toward_seen) / 2 / _TOLERANCE))
