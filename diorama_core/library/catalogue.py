@@ -1,0 +1,228 @@
+"""The built-in library: known at once, built when first asked for, kept in memory and on disk."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import logging
+import os
+import tempfile
+import threading
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Generic, TypeVar
+
+import numpy as np
+import platformdirs
+import trimesh
+
+from diorama_core.errors import LibraryError
+from diorama_core.library import furniture
+from diorama_core.library.furniture.model import Design, built, mesh_of, scene_of
+from diorama_core.library.record import Shape, SupportSurface
+from diorama_core.library.surfaces import support_surfaces
+
+log = logging.getLogger(__name__)
+
+BULK_DENSITY: dict[str, float] = {
+    "chair": 28, "office chair": 35, "armchair": 40, "stool": 45, "bench": 60, "sofa": 40, "ottoman": 70, "table": 45,
+    "coffee table": 55, "side table": 60, "desk": 45, "bed": 32, "night stand": 140, "dresser": 140, "cabinet": 120,
+    "sideboard": 110, "console table": 60, "tv stand": 110, "bookshelf": 90, "wardrobe": 75, "refrigerator": 100,
+    "stove": 150, "washing machine": 220, "kitchen counter": 120, "sink": 90, "toilet": 150, "bathtub": 100,
+    "floor lamp": 22, "lamp": 30, "ceiling lamp": 30, "television": 90, "monitor": 100, "laptop": 100,
+    "computer": 220, "keyboard": 350, "microwave": 250, "pillow": 25, "books": 500, "plant": 25, "vase": 250,
+    "bowl": 180, "cup": 350, "bottle": 600, "clock": 200, "box": 60, "basket": 40, "trash can": 45, "picture": 250,
+    "mirror": 350, "shelves": 110, "curtain": 12, "window": 250, "door": 350, "radiator": 330, "rug": 200, "piano": 190,
+    "toy": 60, "object": 100,
+}  # fmt: skip
+"""Kilograms per cubic metre of bounding box: a rough guess for physics, from weighing catalogues' furniture."""
+
+Value = TypeVar("Value")
+
+
+def default_cache_dir() -> Path:
+    """Where derived files live: `DIORAMA_CACHE` when set, else the user's cache folder."""
+    return Path(os.environ.get("DIORAMA_CACHE") or platformdirs.user_cache_dir("diorama"))
+
+
+def built_in_library(cache_dir: Path | None = None) -> BuiltInLibrary:
+    """The library that comes with Diorama, caching under `cache_dir` (default: `default_cache_dir()`)."""
+    return BuiltInLibrary(furniture.designs(), (cache_dir or default_cache_dir()) / "shapes")
+
+
+class BuiltInLibrary:
+    """Shapes from parametric designs. Implements `ShapeLibrary`; safe to share between threads.
+
+    `shapes` and `in_category` answer at once, without support surfaces; `shape` adds them, measuring on first use.
+    """
+
+    def __init__(self, designs: tuple[Design, ...], cache_dir: Path) -> None:
+        self._designs = {d.id: d for d in designs}
+        if len(self._designs) != len(designs):
+            raise LibraryError("two built-in designs share an id; give each its own")
+        self._records = {d.id: _record(d) for d in designs}
+        self._files = _FileCache(cache_dir)
+        self._scenes: _Kept[trimesh.Scene] = _Kept(64)
+        self._meshes: _Kept[trimesh.Trimesh] = _Kept(256)
+        self._glbs: _Kept[bytes] = _Kept(256)
+        self._surfaces: _Kept[tuple[SupportSurface, ...]] = _Kept(4096)
+
+    def shapes(self) -> tuple[Shape, ...]:
+        """All records in a stable order, without support surfaces."""
+        return tuple(self._records.values())
+
+    def in_category(self, category: str) -> tuple[Shape, ...]:
+        """Records of one canonical category, without support surfaces."""
+        return tuple(r for r in self._records.values() if r.category == category)
+
+    def shape(self, shape_id: str) -> Shape:
+        """One record with its support surfaces; raises `LibraryError` when unknown."""
+        record = self._known(shape_id)
+        return replace(record, surfaces=self._surfaces.get(shape_id, lambda: self._measured(record)))
+
+    def mesh(self, shape_id: str) -> trimesh.Trimesh:
+        """Geometry only, one mesh in the canonical frame. Shared: do not change it."""
+        self._known(shape_id)
+        return self._meshes.get(shape_id, lambda: mesh_of(built(self._designs[shape_id])))
+
+    def parts(self, shape_id: str) -> trimesh.Scene:
+        """Geometry with materials, in the canonical frame. Shared: do not change it."""
+        self._known(shape_id)
+        return self._scenes.get(shape_id, lambda: scene_of(built(self._designs[shape_id])))
+
+    def glb(self, shape_id: str) -> bytes:
+        """`parts` as GLB, +Z up, metres; the same bytes every time."""
+        record = self._known(shape_id)
+        return self._glbs.get(
+            shape_id, lambda: self._files.get(f"{record.content_hash}.glb", lambda: _glb(self.parts(shape_id)))
+        )
+
+    def _known(self, shape_id: str) -> Shape:
+        record = self._records.get(shape_id)
+        if record is None:
+            raise LibraryError(f"no shape is called '{shape_id}' in the built-in library; list them to see the names")
+        return record
+
+    def _measured(self, record: Shape) -> tuple[SupportSurface, ...]:
+        def measure() -> bytes:
+            return _surfaces_to_json(support_surfaces(self.mesh(record.id)))
+
+        return _surfaces_from_json(self._files.get(f"{record.content_hash}.surfaces.json", measure))
+
+
+class _Kept(Generic[Value]):
+    """The most recently used values by name; each is made once, by one thread."""
+
+    def __init__(self, size: int) -> None:
+        self._size = size
+        self._values: OrderedDict[str, Value] = OrderedDict()
+        self._making: dict[str, threading.Lock] = {}
+        self._lock = threading.Lock()
+
+    def get(self, name: str, make: Callable[[], Value]) -> Value:
+        """The value kept under `name`, made now if there is none."""
+        with self._lock:
+            if name in self._values:
+                self._values.move_to_end(name)
+                return self._values[name]
+            making = self._making.setdefault(name, threading.Lock())
+        with making:
+            with self._lock:
+                if name in self._values:
+                    return self._values[name]
+            value = make()
+            with self._lock:
+                self._values[name] = value
+                while len(self._values) > self._size:
+                    self._values.popitem(last=False)
+                self._making.pop(name, None)
+            return value
+
+
+class _FileCache:
+    """Files that can be made again at any time; a folder that cannot be written only costs time."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+
+    def get(self, name: str, make: Callable[[], bytes]) -> bytes:
+        """The file's bytes, made and written when absent."""
+        path = self._folder / name
+        try:
+            return path.read_bytes()
+        except OSError:
+            data = make()
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            with tempfile.NamedTemporaryFile(dir=self._folder, delete=False) as part:
+                part.write(data)
+            os.replace(part.name, path)  # so that no reader ever sees half a file
+        except OSError as error:
+            log.warning("cannot cache shapes in %s (%s); they are built again each time", self._folder, error)
+        return data
+
+
+def _record(design: Design) -> Shape:
+    return Shape(
+        id=design.id,
+        category=design.category,
+        caption=design.caption,
+        size_m=design.size_m,
+        style=design.style,
+        symmetry=design.symmetry,
+        mass_kg=_mass_guess(design),
+        content_hash=_content_hash(design),
+    )
+
+
+def _mass_guess(design: Design) -> float:
+    if design.mass_kg is not None:
+        return design.mass_kg
+    x, y, z = design.size_m
+    return round(max(BULK_DENSITY.get(design.category, 100.0) * x * y * z, 0.05), 2)
+
+
+def _content_hash(design: Design) -> str:
+    key = f"{_code_hash()} {design.id} {design.size_m}"
+    return hashlib.sha256(key.encode()).hexdigest()[:24]
+
+
+@cache
+def _code_hash() -> str:
+    """Hash of the code that builds and measures shapes: geometry and materials follow from it and the design."""
+    here = Path(__file__).parent
+    sources = sorted((here / "furniture").glob("*.py")) + [here / "surfaces.py"]
+    return hashlib.sha256(b"\0".join(s.read_bytes() for s in sources)).hexdigest()
+
+
+def _glb(scene: trimesh.Scene) -> bytes:
+    data = scene.export(file_type="glb", include_normals=True)
+    if not isinstance(data, bytes):
+        raise LibraryError("a shape could not be written as GLB")
+    return data
+
+
+def _surfaces_to_json(surfaces: tuple[SupportSurface, ...]) -> bytes:
+    rows = [
+        {
+            "polygon": np.round(s.polygon, 5).tolist(),
+            "clearance_m": s.clearance_m if np.isfinite(s.clearance_m) else None,
+            "interior": s.interior,
+        }
+        for s in surfaces
+    ]
+    return json.dumps(rows).encode()
+
+
+def _surfaces_from_json(data: bytes) -> tuple[SupportSurface, ...]:
+    return tuple(
+        SupportSurface(
+            np.array(row["polygon"]),
+            np.inf if row["clearance_m"] is None else float(row["clearance_m"]),
+            bool(row["interior"]),
+        )
+        for row in json.loads(data)
+    )

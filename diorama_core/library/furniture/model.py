@@ -1,0 +1,131 @@
+"""From solids and materials to a finished model, and the design that knows how to build it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import trimesh
+
+from diorama_core.library.furniture.materials import Material, pbr
+from diorama_core.library.furniture.solids import Solid, unit
+from diorama_core.library.record import SymmetryFold
+
+Size = tuple[float, float, float]
+"""Extents along x (front-back), y (left-right), z (height), metres."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """One solid of one material."""
+
+    material: Material
+    solid: Solid
+
+    def moved(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Part:
+        """Shifted by (x, y, z)."""
+        return replace(self, solid=self.solid.moved(x, y, z))
+
+    def turned(self, axis: str, angle_deg: float) -> Part:
+        """Turned about a coordinate axis through the origin."""
+        return replace(self, solid=self.solid.turned(axis, angle_deg))
+
+
+Parts = list[Part]
+Builder = Callable[[Size], Parts]
+
+
+@dataclass(frozen=True)
+class Design:
+    """What a shape is and how to build it. Building is deterministic and depends on nothing else."""
+
+    id: str
+    category: str
+    caption: str
+    size_m: Size
+    style: str
+    build: Builder
+    """Parts standing on z = 0, front toward +X, about as large as the size given; the finish makes it exact."""
+    symmetry: SymmetryFold = 1
+    mass_kg: float | None = None
+    """None lets the catalogue guess from the category and the size."""
+
+
+def of(material: Material, *solids: Solid) -> Parts:
+    """Parts of one material."""
+    return [Part(material, s) for s in solids]
+
+
+def shifted(parts: Iterable[Part], x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Parts:
+    """Parts moved together."""
+    return [p.moved(x, y, z) for p in parts]
+
+
+def turned(parts: Iterable[Part], axis: str, angle_deg: float) -> Parts:
+    """Parts turned together about a coordinate axis through the origin."""
+    return [p.turned(axis, angle_deg) for p in parts]
+
+
+def both_sides(*solids: Solid) -> tuple[Solid, ...]:
+    """Solids and their mirror images in the plane y = 0."""
+    return (*solids, *(s.mirrored() for s in solids))
+
+
+def four(solid: Solid) -> tuple[Solid, ...]:
+    """A solid at the front left, mirrored to all four corners."""
+    front = (solid, solid.mirrored())
+    return (*front, *(s.mirrored(0) for s in front))
+
+
+def joined(solids: Sequence[Solid]) -> Solid:
+    """Several solids as one mesh."""
+    offsets = np.cumsum([0, *(len(s.vertices) for s in solids)])
+    return Solid(
+        np.concatenate([s.vertices for s in solids]),
+        np.concatenate([s.faces + o for s, o in zip(solids, offsets, strict=False)]),
+        np.concatenate([s.normals for s in solids]),
+        np.concatenate([s.uv for s in solids]),
+    )
+
+
+def built(design: Design) -> list[tuple[Material, Solid]]:
+    """The design's solids, one per material, centred, stretched to exactly the declared size."""
+    parts = design.build(design.size_m)
+    points = np.concatenate([p.solid.vertices for p in parts])
+    low, high = points.min(axis=0), points.max(axis=0)
+    centre, factors = (low + high) / 2, np.asarray(design.size_m) / (high - low)
+    grouped: dict[Material, list[Solid]] = {}
+    for part in parts:
+        grouped.setdefault(part.material, []).append(part.solid)
+    out = []
+    for material, solids in grouped.items():
+        solid = joined(solids)
+        out.append(
+            (
+                material,
+                replace(solid, vertices=(solid.vertices - centre) * factors, normals=unit(solid.normals / factors)),
+            )
+        )
+    return out
+
+
+def scene_of(solids: Iterable[tuple[Material, Solid]]) -> trimesh.Scene:
+    """Solids as a trimesh scene with one textured mesh per material."""
+    scene = trimesh.Scene()
+    for number, (material, solid) in enumerate(solids):
+        visual = trimesh.visual.TextureVisuals(uv=solid.uv / material.tile_m, material=pbr(material))
+        mesh = trimesh.Trimesh(solid.vertices, solid.faces, vertex_normals=solid.normals, visual=visual, process=False)
+        name = f"{number:02d} {material.name}"
+        scene.add_geometry(mesh, node_name=name, geom_name=name)
+    return scene
+
+
+def mesh_of(solids: Iterable[tuple[Material, Solid]]) -> trimesh.Trimesh:
+    """Geometry only, equal positions welded."""
+    solid = joined([s for _, s in solids])
+    keys = np.round(solid.vertices * 1e5).astype(np.int64)
+    _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    faces = inverse.reshape(-1)[solid.faces]
+    keep = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
+    return trimesh.Trimesh(solid.vertices[first], faces[keep], process=False)

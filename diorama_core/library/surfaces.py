@@ -1,0 +1,169 @@
+"""Where things can stand on a shape: its flat upward faces, with the free height above them.
+
+Planar regions are grown over a lattice of vertical rays instead of over triangles, so that a top made of planks or of
+solids that run into each other is still one surface, and a face buried inside another solid is none. Clearance and the
+interior flag come from the same rays (after the reference's recipe: `>= 0.05 m2` for large furniture, blocked regions
+dropped, 10th percentile of the free height).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import open3d as o3d
+import trimesh
+from jaxtyping import Float, Int
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import ConvexHull
+
+from diorama_core.library.record import SupportSurface
+
+MINIMUM_UP = 0.9
+"""Cosine of the steepest slope that still carries things."""
+STEP_M = 0.008
+"""Neighbouring samples of one surface differ in height by no more than this (a seam, a plank's edge)."""
+REACH_CELLS = 3
+"""Gaps narrower than this (between slats and planks) do not part a surface."""
+MINIMUM_FILL = 0.55
+"""A region that fills less of its convex outline than this is a rim or a frame, not a surface."""
+
+
+@dataclass(frozen=True)
+class _Spots:
+    """Upward hits of the rays that have free space above them."""
+
+    origin: Float[np.ndarray, "2"]
+    """Corner of cell (0, 0)."""
+    cell_m: float
+    cell: Int[np.ndarray, "s 2"]
+    z: Float[np.ndarray, "s"]
+    clearance: Float[np.ndarray, "s"]
+
+
+def support_surfaces(mesh: trimesh.Trimesh, lattice: int = 72) -> tuple[SupportSurface, ...]:
+    """Support surfaces of a shape in its canonical frame, highest first.
+
+    Args:
+        mesh: Closed solids, possibly overlapping, metres, +Z up.
+        lattice: Rays along the longer horizontal side.
+
+    """
+    low, high = mesh.bounds
+    extent = high - low
+    cell_m = float(max(extent[0], extent[1])) / lattice
+    spots = _spots(mesh, cell_m)
+    if len(spots.z) == 0:
+        return ()
+    blocked_below = float(np.clip(0.1 * extent[2], 0.02, 0.08))
+    minimum_area = float(np.clip(0.12 * extent[0] * extent[1], 0.003, 0.05))
+    found = []
+    for region in _regions(spots):
+        clearance = spots.clearance[region]
+        if np.median(clearance) < blocked_below or len(region) * cell_m**2 < minimum_area:
+            continue
+        outline = _outline(spots, region)
+        if len(region) * cell_m**2 < MINIMUM_FILL * _area(outline):
+            continue
+        found.append(_surface(spots, region, outline))
+    return tuple(sorted(found, key=lambda s: (-round(s.height_m, 3), *np.round(s.polygon.mean(axis=0)[:2], 3))))
+
+
+def _spots(mesh: trimesh.Trimesh, cell: float) -> _Spots:
+    """Shoot rays down through the shape and keep the upward faces that lie in free space."""
+    low, high = mesh.bounds
+    extent = high - low
+    counts = np.maximum(np.floor(extent[:2] / cell + 1e-6).astype(int), 1)
+    i, j = (a.ravel() for a in np.meshgrid(np.arange(counts[0]), np.arange(counts[1]), indexing="ij"))
+    origin = low[:2] + (extent[:2] - counts * cell) / 2
+    nudge = 0.013 * cell  # off the mesh's own symmetry lines, where rays would graze edges
+    x = origin[0] + (i + 0.5) * cell + nudge
+    y = origin[1] + (j + 0.5) * cell + 1.7 * nudge
+    ray, z, up = _hits(mesh, x, y, float(high[2]) + 1.0)
+    depth, above = _depth_and_gap(ray, z, up)
+    free = (up >= MINIMUM_UP) & (depth == 0)
+    return _Spots(origin, cell, np.stack([i[ray], j[ray]], axis=1)[free], z[free], above[free])
+
+
+def _hits(
+    mesh: trimesh.Trimesh, x: Float[np.ndarray, "r"], y: Float[np.ndarray, "r"], top: float
+) -> tuple[Int[np.ndarray, "h"], Float[np.ndarray, "h"], Float[np.ndarray, "h"]]:
+    """Every hit of downward rays: ray number, height, and the face normal's z; sorted by ray, then downward."""
+    scene = o3d.t.geometry.RaycastingScene(nthreads=1)
+    scene.add_triangles(mesh.vertices.astype(np.float32), mesh.faces.astype(np.uint32))
+    rays = np.zeros((len(x), 6), dtype=np.float32)
+    rays[:, 0], rays[:, 1], rays[:, 2], rays[:, 5] = x, y, top, -1.0
+    hits = scene.list_intersections(o3d.core.Tensor(rays))
+    ray, t = hits["ray_ids"].numpy().astype(int), hits["t_hit"].numpy().astype(float)
+    up = mesh.face_normals[hits["primitive_ids"].numpy()][:, 2]
+    order = np.lexsort((t, ray))
+    return ray[order], top - t[order], up[order]
+
+
+def _depth_and_gap(
+    ray: Int[np.ndarray, "h"], z: Float[np.ndarray, "h"], up: Float[np.ndarray, "h"]
+) -> tuple[Int[np.ndarray, "h"], Float[np.ndarray, "h"]]:
+    """How many solids lie round each hit from above (0: free air), and the free height above it."""
+    entering = np.where(up > 0, 1, -1)
+    running = np.cumsum(entering)
+    first = np.concatenate([[True], ray[1:] != ray[:-1]]) if len(ray) else np.zeros(0, dtype=bool)
+    base = (running - entering)[first][np.cumsum(first) - 1] if len(ray) else running
+    depth = running - entering - base
+    above = np.full(len(z), np.inf)
+    if len(z) > 1:
+        above[1:] = np.where(first[1:], np.inf, z[:-1] - z[1:])
+    return np.maximum(depth, 0), above
+
+
+def _regions(spots: _Spots) -> list[Int[np.ndarray, "k"]]:
+    """Spots grown together over neighbouring cells of nearly equal height, then flat patches of one level joined."""
+    n = len(spots.z)
+    near = range(-REACH_CELLS, REACH_CELLS + 1)
+    links = [_links(spots, di, dj) for di in near for dj in near if (di, dj) > (0, 0)]
+    a, b = (np.concatenate(side) for side in zip(*links, strict=True))
+    graph = coo_matrix((np.ones(len(a)), (a, b)), shape=(n, n))
+    count, label = connected_components(graph, directed=False)
+    return [_flat_core(spots, np.flatnonzero(label == k)) for k in range(count)]
+
+
+def _links(spots: _Spots, di: int, dj: int) -> tuple[Int[np.ndarray, "l"], Int[np.ndarray, "l"]]:
+    """Pairs of spots `di`, `dj` cells apart and within a step of each other in height."""
+    bins = np.round(spots.z / STEP_M).astype(np.int64)
+    key = (spots.cell[:, 0] * 100_000 + spots.cell[:, 1]) * 100_000 + bins
+    order = np.argsort(key, kind="stable")
+    pairs_a, pairs_b = [], []
+    for dz in (-1, 0, 1):
+        wanted = ((spots.cell[:, 0] + di) * 100_000 + spots.cell[:, 1] + dj) * 100_000 + bins + dz
+        at = np.minimum(np.searchsorted(key[order], wanted), len(key) - 1)
+        hit = key[order][at] == wanted
+        pairs_a.append(np.flatnonzero(hit))
+        pairs_b.append(order[at[hit]])
+    return np.concatenate(pairs_a), np.concatenate(pairs_b)
+
+
+def _flat_core(spots: _Spots, region: Int[np.ndarray, "k"]) -> Int[np.ndarray, "k"]:
+    """The part of a region near its main level: the slopes of a cushion's rim fall away."""
+    z = spots.z[region]
+    level = np.percentile(z, 70)
+    return region[np.abs(z - level) < 0.03]
+
+
+def _outline(spots: _Spots, region: Int[np.ndarray, "k"]) -> Float[np.ndarray, "n 2"]:
+    """Convex outline of the cells of a region, counter-clockwise."""
+    cells = spots.cell[region]
+    corners = np.concatenate([cells + np.array(c) for c in ((0, 0), (0, 1), (1, 0), (1, 1))])
+    return corners[ConvexHull(corners).vertices] * spots.cell_m + spots.origin
+
+
+def _area(outline: Float[np.ndarray, "n 2"]) -> float:
+    x, y = outline.T
+    return 0.5 * abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1)))
+
+
+def _surface(spots: _Spots, region: Int[np.ndarray, "k"], outline: Float[np.ndarray, "n 2"]) -> SupportSurface:
+    """Outline, level and free height of one region."""
+    clearance = spots.clearance[region]
+    polygon = np.column_stack([outline, np.full(len(outline), float(np.median(spots.z[region])))])
+    lowest = float(np.percentile(clearance, 10, method="lower"))
+    return SupportSurface(polygon, lowest, bool(np.isfinite(clearance).mean() > 0.5))
