@@ -1,0 +1,1 @@
+"""How the camera is held: intrinsics, gravity and the room's axes."""

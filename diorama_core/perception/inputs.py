@@ -1,0 +1,112 @@
+"""Everything a person hands in, checked once: photo, depth, intrinsics, boxes, masks.
+
+Files and uploads meet here and nowhere else. Whatever cannot be used ends in one `InputError` line that says what was
+wrong, where, and what to do; what can be used with a remark comes back with a warning to show.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from diorama_core.artefacts import Inputs, LabelledBox, Photo
+from diorama_core.errors import InputError
+from diorama_core.perception.input_depth import DepthEncoding, read_depth
+from diorama_core.perception.input_objects import read_boxes, read_masks
+from diorama_core.perception.input_photo import read_photo, read_source
+from diorama_core.scene.types import Intrinsics
+
+FOV_RANGE_DEG = (15.0, 150.0)
+"""Horizontal fields of view that a photo of a room can have."""
+
+
+@dataclass(frozen=True)
+class ReadInputs:
+    """Checked inputs and what to tell the user about them."""
+
+    inputs: Inputs
+    warnings: tuple[str, ...] = ()
+
+
+def read_inputs(
+    image: Path | bytes,
+    *,
+    name: str | None = None,
+    depth: Path | bytes | None = None,
+    depth_scale: float = 1000.0,
+    depth_encoding: DepthEncoding = "linear",
+    intrinsics: tuple[float, float, float, float] | None = None,
+    fov_deg: float | None = None,
+    boxes: Path | bytes | None = None,
+    masks: Path | bytes | None = None,
+    max_side: int = 1600,
+) -> ReadInputs:
+    """Read and check what the user gave.
+
+    Args:
+        image: The photo, a path or the bytes of an upload.
+        name: What to call the photo; by default its file name.
+        depth: Measured depth: 16-bit PNG in units of 1 / `depth_scale` metres, or `.npy` float metres.
+        depth_scale: Units per metre of an integer depth.
+        depth_encoding: "sunrgbd" where a PNG's bits are rotated as in SUN RGB-D.
+        intrinsics: fx, fy, cx, cy in pixels of the upright original photo.
+        fov_deg: Horizontal field of view of the upright photo in degrees, instead of `intrinsics`.
+        boxes: JSON list of `{"bbox": [x1, y1, x2, y2], "class": "chair"}` in pixels of the upright original photo.
+        masks: PNG with one colour or one id per instance, black or 0 for background.
+        max_side: Larger photos are reduced so that the longer side has this many pixels.
+
+    Returns:
+        The inputs in photo pixels, and warnings in words for the user.
+
+    Raises:
+        InputError: one line saying what cannot be used, where, and what to do.
+    """
+    photo, notes = read_photo(read_source(image, "photo", name), max_side)
+    size = (photo.width, photo.height)
+    warnings = list(notes)
+    camera = _read_intrinsics(photo, intrinsics, fov_deg)
+    depth_m, instances = None, None
+    labelled: tuple[LabelledBox, ...] = ()
+    matched: tuple[tuple[int, LabelledBox], ...] = ()
+    if depth is not None:
+        depth_m, notes = read_depth(read_source(depth, "depth"), depth_scale, depth_encoding, size)
+        warnings += notes
+    if boxes is not None:
+        labelled, notes = read_boxes(read_source(boxes, "boxes"), photo.original_size, size)
+        warnings += notes
+    if masks is not None:
+        instances, matched, notes = read_masks(read_source(masks, "masks"), labelled, size)
+        warnings += notes
+    return ReadInputs(Inputs(photo, labelled, instances, matched, depth_m, camera), tuple(warnings))
+
+
+def _read_intrinsics(
+    photo: Photo, given: tuple[float, float, float, float] | None, fov_deg: float | None
+) -> Intrinsics | None:
+    """The user's intrinsics, carried over to the photo's pixels."""
+    width, height = photo.original_size
+    if given is not None and fov_deg is not None:
+        raise InputError("--intrinsics and --fov say the same thing; give one of them")
+    if fov_deg is not None:
+        low, high = FOV_RANGE_DEG
+        if not low <= fov_deg <= high:
+            raise InputError(f"--fov {fov_deg:g}: give a horizontal field of view of {low:g} to {high:g} degrees")
+        return Intrinsics.from_fov(width, height, float(np.deg2rad(fov_deg))).scaled(photo.width, photo.height)
+    if given is None:
+        return None
+    shown = ",".join(f"{v:g}" for v in given)
+    if len(given) != 4 or not np.isfinite(given).all() or given[0] <= 0 or given[1] <= 0:
+        raise InputError(f"--intrinsics {shown}: give fx,fy,cx,cy in pixels, both focal lengths positive")
+    fx, fy, cx, cy = (float(v) for v in given)
+    if not (0 < cx < width and 0 < cy < height):
+        raise InputError(
+            f"--intrinsics {shown}: the centre lies outside the photo ({width} x {height}); give pixels of this photo"
+        )
+    camera = Intrinsics(width, height, fx, fy, cx, cy)
+    if not FOV_RANGE_DEG[0] <= np.rad2deg(camera.horizontal_fov_rad) <= FOV_RANGE_DEG[1]:
+        raise InputError(
+            f"--intrinsics {shown}: the focal length does not fit {width} pixels of width; give pixels of this photo"
+        )
+    return camera.scaled(photo.width, photo.height)

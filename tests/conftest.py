@@ -1,0 +1,103 @@
+"""What tests share: the folder of real photos, where it exists, and a cache that never touches the user's own."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from diorama_core.artefacts import Inputs
+from diorama_core.perception.inputs import ReadInputs, read_inputs
+
+SHARED = Path(__file__).resolve().parents[2] / "shared"
+
+
+@dataclass(frozen=True)
+class PhotoEntry:
+    """One real photo with whatever came with it."""
+
+    id: str
+    path: Path
+    kind: str
+    intrinsics: tuple[float, float, float, float] | None
+    depth: Path | None
+    depth_encoding: str
+    boxes: Path | None
+    masks: Path | None
+
+    @cached_property
+    def read(self) -> ReadInputs:
+        """The checked inputs with everything given, and warnings."""
+        return read_inputs(
+            self.path,
+            intrinsics=self.intrinsics,
+            depth=self.depth,
+            depth_encoding=self.depth_encoding,  # type: ignore[arg-type]
+            boxes=self.boxes,
+            masks=self.masks,
+        )
+
+    @property
+    def inputs(self) -> Inputs:
+        """The checked inputs with everything given."""
+        return self.read.inputs
+
+
+def photo_entries(folder: Path) -> list[PhotoEntry]:
+    """Every photo that the folder's `photos.json` lists."""
+
+    def beside(record: dict[str, Any], key: str) -> Path | None:
+        return folder / record[key] if record.get(key) else None
+
+    return [
+        PhotoEntry(
+            id=r["id"],
+            path=folder / r["file"],
+            kind=r["kind"],
+            intrinsics=tuple(r["K"]) if r.get("K") else None,
+            depth=beside(r, "depth_file"),
+            depth_encoding="sunrgbd" if "<<13" in r.get("depth_to_metres", "") else "linear",
+            boxes=beside(r, "detections_file"),
+            masks=beside(r, "instance_mask_file"),
+        )
+        for r in json.loads((folder / "photos.json").read_text())
+    ]
+
+
+@pytest.fixture(scope="session")
+def shared() -> Path:
+    """The folder of shared material beside the repository; tests that need it are skipped without it."""
+    if not SHARED.is_dir():
+        pytest.skip("needs the folder 'shared' beside the repository (real photos), which is absent")
+    return SHARED
+
+
+@pytest.fixture(scope="session")
+def photos(shared: Path) -> list[PhotoEntry]:
+    """All shared photos; the pictures are read on first use."""
+    return photo_entries(shared / "photos")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Caches of this run go to a temporary folder."""
+    before = os.environ.get("DIORAMA_CACHE")
+    os.environ["DIORAMA_CACHE"] = str(tmp_path_factory.mktemp("cache"))
+    yield
+    if before is None:
+        del os.environ["DIORAMA_CACHE"]
+    else:
+        os.environ["DIORAMA_CACHE"] = before
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    """A generator with a fixed seed."""
+    return np.random.default_rng(0)
