@@ -1,0 +1,130 @@
+"""Where cuboids land in a picture, for many cuboids at once.
+
+Edges are clipped to the view frustum, so that a cuboid that is cut by the picture's border, or that reaches behind
+the camera, has exactly the bounds that a person would draw around its visible part.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from diorama_core.scene.types import Intrinsics, box_corners
+
+NEAR_M = 0.05
+"""Depth of the near plane."""
+_INSIDE_TOLERANCE = 1e-9
+
+
+def cuboid_corners(
+    centres: Float[np.ndarray, "n 3"], yaws_rad: Float[np.ndarray, "n"], sizes_m: Float[np.ndarray, "n 3"]
+) -> Float[np.ndarray, "n 8 3"]:
+    """Corners of upright cuboids in the world, ordered as `scene.types.box_corners`."""
+    local = box_corners((1.0, 1.0, 1.0)) * sizes_m[:, None, :]
+    c, s = np.cos(yaws_rad)[:, None], np.sin(yaws_rad)[:, None]
+    x, y = local[..., 0], local[..., 1]
+    return np.stack([c * x - s * y, s * x + c * y, local[..., 2]], axis=-1) + centres[:, None, :]
+
+
+def visible_bounds(
+    corners_camera: Float[np.ndarray, "n 8 3"], intrinsics: Intrinsics
+) -> tuple[Float[np.ndarray, "n 4"], Bool[np.ndarray, "n"]]:
+    """Bounds in pixels (x1, y1, x2, y2) of the part of each cuboid that lies inside the picture.
+
+    Returns:
+        The bounds, and whether anything is visible. Where nothing is, the bounds are the point of the picture nearest
+        to the cuboid's centre.
+    """
+    slack = _frustum_slack(corners_camera, intrinsics)
+    inside = (slack >= 0).all(axis=(1, 2))
+    bounds = np.empty((len(corners_camera), 4))
+    visible = np.ones(len(corners_camera), dtype=bool)
+    if inside.any():
+        bounds[inside] = _point_bounds(_project(corners_camera[inside], intrinsics))
+    cut = ~inside
+    if cut.any():
+        bounds[cut], visible[cut] = _clipped_bounds(corners_camera[cut], slack[cut], intrinsics)
+    return bounds, visible
+
+
+def box_iou(a: Float[np.ndarray, "*n 4"], b: Float[np.ndarray, "*n 4"]) -> Float[np.ndarray, "*n"]:
+    """Intersection over union of boxes x1, y1, x2, y2, element by element (broadcasting)."""
+    a, b = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
+    overlap = np.clip(np.minimum(a[..., 2:], b[..., 2:]) - np.maximum(a[..., :2], b[..., :2]), 0, None).prod(axis=-1)
+    union = (a[..., 2:] - a[..., :2]).prod(axis=-1) + (b[..., 2:] - b[..., :2]).prod(axis=-1) - overlap
+    return overlap / np.maximum(union, 1e-12)
+
+
+def _project(points: Float[np.ndarray, "*n 3"], k: Intrinsics) -> Float[np.ndarray, "*n 2"]:
+    z = np.maximum(points[..., 2], 1e-9)
+    return np.stack([k.fx * points[..., 0] / z + k.cx, k.fy * points[..., 1] / z + k.cy], axis=-1)
+
+
+def _point_bounds(pixels: Float[np.ndarray, "n p 2"]) -> Float[np.ndarray, "n 4"]:
+    return np.concatenate([pixels.min(axis=1), pixels.max(axis=1)], axis=-1)
+
+
+def _frustum_slack(points: Float[np.ndarray, "n p 3"], k: Intrinsics) -> Float[np.ndarray, "n p 5"]:
+    """How far points are on the inner side of the near plane and the picture's four side planes."""
+    x, y, z = points[..., 0], points[..., 1], points[..., 2]
+    return np.stack(
+        [
+            z - NEAR_M,
+            k.fx * x + k.cx * z,
+            (k.width - k.cx) * z - k.fx * x,
+            k.fy * y + k.cy * z,
+            (k.height - k.cy) * z - k.fy * y,
+        ],
+        axis=-1,
+    )
+
+
+def _clipped_bounds(
+    corners: Float[np.ndarray, "n 8 3"], slack: Float[np.ndarray, "n 8 5"], k: Intrinsics
+) -> tuple[Float[np.ndarray, "n 4"], Bool[np.ndarray, "n"]]:
+    """Bounds of the clipped edges and of the picture's corners that the cuboid covers."""
+    edges = _edges()
+    a, b = slack[:, edges[:, 0]], slack[:, edges[:, 1]]
+    span = a - b
+    crossing = a / np.where(np.abs(span) < 1e-12, 1e-12, span)
+    enter = np.where(a < 0, np.where(b < 0, 2.0, crossing), 0.0).max(axis=-1)
+    leave = np.where(b < 0, np.where(a < 0, -1.0, crossing), 1.0).min(axis=-1)
+    kept = (enter <= leave)[..., None]
+    start, way = corners[:, edges[:, 0]], corners[:, edges[:, 1]] - corners[:, edges[:, 0]]
+    ends = np.concatenate([start + enter[..., None] * way, start + leave[..., None] * way], axis=1)
+    kept = np.concatenate([kept, kept], axis=1)
+    pixels = _project(ends, k)
+    picture = np.array([[0.0, 0.0], [k.width, 0.0], [0.0, k.height], [k.width, k.height]])
+    covered = _covers_rays(corners, (picture - [k.cx, k.cy]) / [k.fx, k.fy])
+    pixels = np.concatenate([pixels, np.broadcast_to(picture, (len(corners), 4, 2))], axis=1)
+    kept = np.concatenate([kept, covered[..., None]], axis=1)
+    low = np.where(kept, pixels, np.inf).min(axis=1)
+    high = np.where(kept, pixels, -np.inf).max(axis=1)
+    visible = kept.any(axis=(1, 2))
+    nearest = np.clip(_project(corners.mean(axis=1), k), 0.0, [k.width, k.height])
+    bounds = np.where(visible[:, None], np.concatenate([low, high], -1), np.concatenate([nearest, nearest], -1))
+    return np.clip(bounds, 0.0, [k.width, k.height, k.width, k.height]), visible
+
+
+def _covers_rays(corners: Float[np.ndarray, "n 8 3"], rays_xy: Float[np.ndarray, "r 2"]) -> Bool[np.ndarray, "n r"]:
+    """Whether rays from the camera through (x, y, 1) meet the cuboids in front of the camera (slab test)."""
+    axes = np.stack([corners[:, 1], corners[:, 2], corners[:, 4]], axis=1) - corners[:, :1]
+    lengths = np.maximum(np.linalg.norm(axes, axis=-1), 1e-9)
+    axes = axes / lengths[..., None]
+    origin = -np.einsum("nac,nc->na", axes, corners[:, 0])
+    directions = np.concatenate([rays_xy, np.ones((len(rays_xy), 1))], axis=1)
+    along = np.einsum("nac,rc->nra", axes, directions)
+    along = np.where(np.abs(along) < 1e-12, 1e-12, along)
+    first = -origin[:, None] / along
+    second = (lengths - origin)[:, None] / along
+    enter = np.minimum(first, second).max(axis=-1)
+    leave = np.maximum(first, second).min(axis=-1)
+    return (enter <= leave + _INSIDE_TOLERANCE) & (leave > NEAR_M)
+
+
+@cache
+def _edges() -> Int[np.ndarray, "12 2"]:
+    """Pairs of corner indices that differ in one axis."""
+    return np.array([(i, i | (1 << axis)) for i in range(8) for axis in range(3) if not i & (1 << axis)])
