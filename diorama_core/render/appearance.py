@@ -1,0 +1,216 @@
+"""How shapes and planes look: surfaces with smooth normals, texture coordinates and one material each.
+
+The renderer and the exporters share this reading of a shape's `parts`, so that a picture and an exported file agree.
+Colours are linear, as glTF states them; pictures (textures) are sRGB, as they come.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import trimesh
+from jaxtyping import Float, Float32, Int32, UInt8
+from trimesh.visual.color import ColorVisuals
+from trimesh.visual.material import PBRMaterial
+
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.render.raycast import face_normals, unit
+
+Colour = tuple[float, float, float]
+CREASE_RAD = np.radians(38.0)
+"""Faces that meet at less than this are shaded as one smooth surface."""
+
+
+@dataclass(frozen=True, eq=False)
+class Material:
+    """A physically based material (metallic and roughness), colours linear 0 to 1."""
+
+    name: str = "material"
+    colour: Colour = (0.8, 0.8, 0.8)
+    alpha: float = 1.0
+    metallic: float = 0.0
+    roughness: float = 0.8
+    emissive: Colour = (0.0, 0.0, 0.0)
+    texture: UInt8[np.ndarray, "h w c"] | None = None
+    """sRGB picture multiplied onto the colour; first row on top; may carry alpha."""
+    maps: dict[str, UInt8[np.ndarray, "h w 3"]] = field(default_factory=dict)
+    """Further glTF maps, kept for export: normalTexture, metallicRoughnessTexture, occlusionTexture, ..."""
+    double_sided: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """Triangles of one material."""
+
+    vertices: Float32[np.ndarray, "n 3"]
+    normals: Float32[np.ndarray, "n 3"]
+    faces: Int32[np.ndarray, "m 3"]
+    material: Material
+    uv: Float32[np.ndarray, "n 2"] | None = None
+    """Texture coordinates, v upward (0 is the picture's last row)."""
+    colours: Float32[np.ndarray, "n 3"] | None = None
+    """Linear colours multiplied onto the material's."""
+    name: str = "surface"
+
+    @property
+    def area_m2(self) -> float:
+        """Total area of the triangles."""
+        a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
+        return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
+
+
+def shape_surfaces(library: ShapeLibrary, shape_id: str, colour_srgb: Colour | None = None) -> tuple[Surface, ...]:
+    """A shape's surfaces in its canonical frame, in a stable order.
+
+    Args:
+        library: Where the shape is.
+        shape_id: Which shape; `LibraryError` when unknown.
+        colour_srgb: Override of the main material's colour; see `recoloured`.
+    """
+    surfaces = tuple(s for s in _read_parts(library.parts(shape_id)) if len(s.faces))
+    return surfaces if colour_srgb is None else recoloured(surfaces, colour_srgb)
+
+
+def recoloured(surfaces: tuple[Surface, ...], colour_srgb: Colour) -> tuple[Surface, ...]:
+    """The surfaces with the material that covers most area painted in one plain colour.
+
+    Legs, handles and screens keep theirs: a blue sofa still stands on wooden feet.
+    """
+    area: dict[int, float] = {}
+    for surface in surfaces:
+        area[id(surface.material)] = area.get(id(surface.material), 0.0) + surface.area_m2
+    main = max(area, key=area.__getitem__, default=None)
+    red, green, blue = (float(c) for c in srgb_to_linear(np.asarray(colour_srgb)))
+    return tuple(
+        replace(s, material=replace(s.material, colour=(red, green, blue), texture=None), colours=None)
+        if id(s.material) == main
+        else s
+        for s in surfaces
+    )
+
+
+def srgb_to_linear(colour: Float[np.ndarray, "*n"]) -> Float[np.ndarray, "*n"]:
+    """Display values 0 to 1 to linear light (IEC 61966-2-1)."""
+    return np.where(colour <= 0.04045, colour / 12.92, ((np.maximum(colour, 0) + 0.055) / 1.055) ** 2.4)
+
+
+def linear_to_srgb(light: Float[np.ndarray, "*n"]) -> Float[np.ndarray, "*n"]:
+    """Linear light 0 to 1 to display values (IEC 61966-2-1)."""
+    return np.where(light <= 0.0031308, light * 12.92, 1.055 * np.maximum(light, 1e-9) ** (1 / 2.4) - 0.055)
+
+
+def _read_parts(parts: trimesh.Scene) -> list[Surface]:
+    materials: dict[int, Material] = {}
+    surfaces = []
+    for node in sorted(parts.graph.nodes_geometry):
+        matrix, name = parts.graph[node]
+        mesh = parts.geometry[name]
+        if isinstance(mesh, trimesh.Trimesh):
+            surfaces.append(_surface(mesh, np.asarray(matrix), str(name), materials))
+    return surfaces
+
+
+def _surface(
+    mesh: trimesh.Trimesh, matrix: Float[np.ndarray, "4 4"], name: str, materials: dict[int, Material]
+) -> Surface:
+    """One mesh with its transform applied, split into vertices that have one normal each."""
+    points = (np.asarray(mesh.vertices) @ matrix[:3, :3].T + matrix[:3, 3]).astype(np.float32)
+    faces = np.asarray(mesh.faces, dtype=np.int32)
+    if np.linalg.det(matrix[:3, :3]) < 0:
+        faces = faces[:, ::-1]
+    material, uv, colours = _look(mesh, materials)
+    corner_normals = smooth_corner_normals(points, faces)
+    corners = faces.reshape(-1)
+    columns = [points[corners], corner_normals]
+    columns += [uv[corners]] if uv is not None else []
+    columns += [colours[_colour_rows(mesh, colours, faces)]] if colours is not None else []
+    rows, index = np.unique(np.round(np.concatenate(columns, axis=1), 5) + 0.0, axis=0, return_inverse=True)
+    rows = rows.astype(np.float32)
+    return Surface(
+        vertices=rows[:, :3],
+        normals=unit(rows[:, 3:6]).astype(np.float32),
+        faces=index.reshape(-1, 3).astype(np.int32),
+        material=material,
+        uv=rows[:, 6:8] if uv is not None else None,
+        colours=rows[:, -3:] if colours is not None else None,
+        name=name,
+    )
+
+
+def _colour_rows(mesh: trimesh.Trimesh, colours: Float32[np.ndarray, "k 3"], faces: np.ndarray) -> np.ndarray:
+    """For every corner the row of its colour: per vertex, or per face."""
+    per_vertex = len(colours) == len(mesh.vertices) and mesh.visual.kind != "face"
+    return faces.reshape(-1) if per_vertex else np.repeat(np.arange(len(faces)), 3)
+
+
+Look = tuple[Material, Float32[np.ndarray, "n 2"] | None, Float32[np.ndarray, "k 3"] | None]
+
+
+def _look(mesh: trimesh.Trimesh, materials: dict[int, Material]) -> Look:
+    """Material, texture coordinates and vertex or face colours of a mesh."""
+    visual = mesh.visual
+    if isinstance(visual, ColorVisuals):
+        if visual.kind is None:
+            return materials.setdefault(0, Material()), None, None
+        rgba = np.asarray(visual.face_colors if visual.kind == "face" else visual.vertex_colors) / 255.0
+        return Material(colour=(1.0, 1.0, 1.0), alpha=float(rgba[:, 3].min())), None, rgba[:, :3].astype(np.float32)
+    source = visual.material
+    if id(source) not in materials:
+        materials[id(source)] = _material(source if isinstance(source, PBRMaterial) else source.to_pbr())
+    uv = None if visual.uv is None else np.asarray(visual.uv, dtype=np.float32)
+    return materials[id(source)], uv, None
+
+
+def _material(source: PBRMaterial) -> Material:
+    rgba = [1.0] * 4 if source.baseColorFactor is None else [float(c) / 255.0 for c in source.baseColorFactor]
+    emissive = (0.0, 0.0, 0.0) if source.emissiveFactor is None else tuple(float(c) for c in source.emissiveFactor)
+    kept = ("normalTexture", "metallicRoughnessTexture", "occlusionTexture", "emissiveTexture")
+    maps = {key: np.asarray(getattr(source, key).convert("RGB")) for key in kept if getattr(source, key) is not None}
+    return Material(
+        name=source.name or "material",
+        colour=(rgba[0], rgba[1], rgba[2]),
+        alpha=1.0 if source.alphaMode in (None, "OPAQUE") else rgba[3],
+        metallic=1.0 if source.metallicFactor is None else float(source.metallicFactor),
+        roughness=1.0 if source.roughnessFactor is None else float(source.roughnessFactor),
+        emissive=(emissive[0], emissive[1], emissive[2]),
+        texture=_picture(source.baseColorTexture),
+        maps=maps,
+        double_sided=bool(source.doubleSided),
+    )
+
+
+def _picture(image: object) -> UInt8[np.ndarray, "h w c"] | None:
+    if image is None:
+        return None
+    mode = "RGBA" if getattr(image, "mode", "RGB") in ("RGBA", "LA", "P") else "RGB"
+    return np.asarray(image.convert(mode))  # type: ignore[attr-defined]
+
+
+def smooth_corner_normals(
+    vertices: Float32[np.ndarray, "n 3"], faces: Int32[np.ndarray, "m 3"], crease_rad: float = CREASE_RAD
+) -> Float32[np.ndarray, "m*3 3"]:
+    """A normal for every corner of every face: the area-weighted mean of the neighbours within the crease angle."""
+    a, b, c = (vertices[faces[:, k]].astype(np.float64) for k in range(3))
+    weighted = np.cross(b - a, c - a)
+    normals = face_normals(vertices, faces).astype(np.float64)
+    _, place = np.unique(np.round(vertices, 5), axis=0, return_inverse=True)
+    owner = place.reshape(-1)[faces.reshape(-1)]
+    first, second = _pairs_of_equal(owner)
+    near = np.einsum("ij,ij->i", normals[first // 3], normals[second // 3]) > np.cos(crease_rad)
+    first, second = first[near], second[near]
+    sums = np.stack([np.bincount(first, weighted[second // 3, k], minlength=len(owner)) for k in range(3)], axis=1)
+    lost = np.linalg.norm(sums, axis=1) < 1e-15
+    sums[lost] = np.repeat(normals, 3, axis=0)[lost]
+    return unit(sums).astype(np.float32)
+
+
+def _pairs_of_equal(labels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """All ordered pairs of indices with equal labels, each index with itself included."""
+    order = np.argsort(labels, kind="stable")
+    counts = np.bincount(labels)
+    starts = np.cumsum(counts) - counts
+    size = counts[labels]
+    first = np.repeat(np.arange(len(labels)), size)
+    within = np.arange(len(first)) - np.repeat(np.cumsum(size) - size, size)
+    return first, order[np.repeat(starts[labels], size) + within]

@@ -1,0 +1,64 @@
+"""Filters over pictures: gathering interleaved light without crossing edges, and tones for the screen."""
+
+from __future__ import annotations
+
+import numpy as np
+from jaxtyping import Bool, Float, Float32, UInt8
+
+from diorama_core.render.appearance import linear_to_srgb
+from diorama_core.render.lighting import TILE
+
+
+def spread(
+    light: Float32[np.ndarray, "h w c"],
+    points: Float32[np.ndarray, "h w 3"],
+    normals: Float32[np.ndarray, "h w 3"],
+    found: Bool[np.ndarray, "h w"],
+    tolerance_m: Float[np.ndarray, "h w"],
+) -> Float32[np.ndarray, "h w c"]:
+    """Mean of light over each pixel's 5 x 5 neighbours that lie on the same smooth surface.
+
+    The outer rows and columns count half, so that exactly the samples of one 4 x 4 block are gathered, centred.
+
+    Args:
+        light: Interleaved light, as `lighting.irradiance` gives it.
+        points: Where each pixel's place is in the world.
+        normals: Its normal.
+        found: Whether the pixel sees anything.
+        tolerance_m: How far a neighbour may leave the pixel's tangent plane.
+    """
+    half = TILE // 2
+    total, weight = np.zeros_like(light), np.zeros(found.shape, np.float32)
+    for dy in range(-half, half + 1):
+        for dx in range(-half, half + 1):
+            share = (0.5 if abs(dy) == half else 1.0) * (0.5 if abs(dx) == half else 1.0)
+            here, there = _shifted(found.shape, dy, dx)
+            offset = points[there] - points[here]
+            plane = np.abs(np.einsum("ijk,ijk->ij", offset, normals[here]))
+            turn = np.einsum("ijk,ijk->ij", normals[here], normals[there])
+            same = found[there] & (plane < tolerance_m[here]) & (turn > 0.85)
+            w = np.where(same, np.float32(share), np.float32(0))
+            weight[here] += w
+            total[here] += w[..., None] * light[there]
+    return total / np.maximum(weight, 1e-6)[..., None]
+
+
+def _shifted(shape: tuple[int, ...], dy: int, dx: int) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
+    """Slices of the pixels that have a neighbour at an offset, and of those neighbours."""
+    (h, w) = shape
+    rows, columns = slice(max(0, -dy), min(h, h - dy)), slice(max(0, -dx), min(w, w - dx))
+    near_rows, near_columns = slice(rows.start + dy, rows.stop + dy), slice(columns.start + dx, columns.stop + dx)
+    return (rows, columns), (near_rows, near_columns)
+
+
+def tone_mapped(radiance: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
+    """Linear light to display values 0 to 1: straight to 0.7, then a soft shoulder that keeps bright colours."""
+    knee = 0.7
+    over = np.maximum(radiance - knee, 0)
+    compressed = np.minimum(radiance, knee) + (1 - knee) * over / (over + (1 - knee))
+    return linear_to_srgb(compressed)
+
+
+def as_bytes(values: Float[np.ndarray, "*n"]) -> UInt8[np.ndarray, "*n"]:
+    """Display values 0 to 1 as bytes."""
+    return np.clip(np.rint(values * 255.0), 0, 255).astype(np.uint8)

@@ -1,0 +1,195 @@
+"""Ray-casting on the processor: rays of a view, and what each ray meets first.
+
+Triangles of everything that is seen go into one acceleration structure, so that a hit's triangle index alone tells
+the object, its material and its texture coordinates. Rays are scaled so that the hit distance is the depth.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import open3d as o3d
+import trimesh
+from jaxtyping import Bool, Float, Float32, Int32
+
+from diorama_core.scene.types import Camera
+
+RayArray = Float32[np.ndarray, "*n 6"]
+"""Origin and direction of each ray in the world; the direction's length is the unit of the hit distance."""
+
+
+@dataclass(frozen=True, eq=False)
+class Buffers:
+    """What a view sees, per pixel."""
+
+    depth_m: Float32[np.ndarray, "h w"]
+    """Depth along the viewing axis (z in camera), 0 where nothing is hit."""
+    normals_world: Float32[np.ndarray, "h w 3"]
+    """Unit normals of the faces hit, toward the viewer; 0 where nothing is hit."""
+    instance: Int32[np.ndarray, "h w"]
+    """Index of the mesh hit; -1 where nothing is."""
+
+    @cached_property
+    def silhouette(self) -> Bool[np.ndarray, "h w"]:
+        """Where anything is hit."""
+        return self.instance >= 0
+
+
+@dataclass(frozen=True, eq=False)
+class Hits:
+    """The first meeting of each ray with the triangles; fields have the shape of the rays given."""
+
+    distance: Float32[np.ndarray, "*n"]
+    """In units of the ray's direction; `inf` for a miss."""
+    triangle: Int32[np.ndarray, "*n"]
+    """-1 for a miss."""
+    barycentric: Float32[np.ndarray, "*n 2"]
+    """Weights of the triangle's second and third corner."""
+
+    @property
+    def found(self) -> Bool[np.ndarray, "*n"]:
+        """Whether the ray met anything."""
+        return self.triangle >= 0
+
+
+@dataclass(frozen=True)
+class OrthographicView:
+    """A parallel projection: camera axes as of a pinhole, rays parallel to +z of the camera."""
+
+    T_world_camera: Float[np.ndarray, "4 4"]
+    width: int
+    height: int
+    metres_per_pixel: float
+
+    def rays(self, pixels: Float[np.ndarray, "*n 2"]) -> RayArray:
+        """Rays through image positions, one unit of distance being one metre of depth."""
+        uv = (np.asarray(pixels, dtype=np.float64) - 0.5 * np.array([self.width, self.height])) * self.metres_per_pixel
+        R, t = self.T_world_camera[:3, :3], self.T_world_camera[:3, 3]
+        origins = uv @ R[:, :2].T + t
+        return np.concatenate([origins, np.broadcast_to(R[:, 2], origins.shape)], axis=-1).astype(np.float32)
+
+
+@dataclass(frozen=True)
+class PinholeView:
+    """A camera as a source of rays."""
+
+    camera: Camera
+
+    @property
+    def width(self) -> int:
+        """Pixels across."""
+        return self.camera.intrinsics.width
+
+    @property
+    def height(self) -> int:
+        """Pixels down."""
+        return self.camera.intrinsics.height
+
+    def rays(self, pixels: Float[np.ndarray, "*n 2"]) -> RayArray:
+        """Rays through image positions, one unit of distance being one metre of depth."""
+        directions = self.camera.rays(pixels)
+        origins = np.broadcast_to(self.camera.position, directions.shape)
+        return np.concatenate([origins, directions], axis=-1).astype(np.float32)
+
+
+View = PinholeView | OrthographicView
+"""Anything that turns image positions into rays."""
+
+
+def pixel_centres(width: int, height: int) -> Float[np.ndarray, "h w 2"]:
+    """Image positions (x, y) of all pixel centres."""
+    x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
+    return np.stack([x, y], axis=-1)
+
+
+class Caster:
+    """Triangles in the world, ready to be hit. Build once, cast often."""
+
+    def __init__(self, vertices: Float[np.ndarray, "n 3"], triangles: Int32[np.ndarray, "m 3"]) -> None:
+        self._scene = o3d.t.geometry.RaycastingScene()
+        if len(triangles):
+            self._scene.add_triangles(
+                o3d.core.Tensor.from_numpy(np.ascontiguousarray(vertices, dtype=np.float32)),
+                o3d.core.Tensor.from_numpy(np.ascontiguousarray(triangles, dtype=np.uint32)),
+            )
+
+    def first_hits(self, rays: RayArray) -> Hits:
+        """What every ray meets first."""
+        answer = self._scene.cast_rays(_tensor(rays))
+        return Hits(
+            answer["t_hit"].numpy(),
+            answer["primitive_ids"].numpy().view(np.int32),
+            answer["primitive_uvs"].numpy(),
+        )
+
+    def occluded(self, rays: RayArray, far: float = np.inf) -> Bool[np.ndarray, "*n"]:
+        """Whether anything lies within `far` units along each ray."""
+        return self._scene.test_occlusions(_tensor(rays), tfar=float(far)).numpy()
+
+
+def _tensor(rays: RayArray) -> o3d.core.Tensor:
+    return o3d.core.Tensor.from_numpy(np.ascontiguousarray(rays, dtype=np.float32))
+
+
+class MeshCaster:
+    """Posed meshes to be seen from many cameras: depth, normals and instance ids without any shading.
+
+    Args:
+        meshes: Each mesh with the 4x4 matrix (scale allowed) that maps its vertices to the world.
+    """
+
+    def __init__(self, meshes: Sequence[tuple[trimesh.Trimesh, Float[np.ndarray, "4 4"]]]) -> None:
+        vertices, triangles, owners, start = [np.zeros((0, 3))], [np.zeros((0, 3), int)], [np.zeros(0, int)], 0
+        for index, (mesh, matrix) in enumerate(meshes):
+            vertices.append(np.asarray(mesh.vertices) @ matrix[:3, :3].T + matrix[:3, 3])
+            triangles.append(np.asarray(mesh.faces) + start)
+            owners.append(np.full(len(mesh.faces), index))
+            start += len(mesh.vertices)
+        points, faces = np.concatenate(vertices).astype(np.float32), np.concatenate(triangles).astype(np.int32)
+        self._caster = Caster(points, faces)
+        self._owner = np.concatenate(owners).astype(np.int32)
+        self._normals = face_normals(points, faces)
+
+    def buffers(self, view: Camera | View) -> Buffers:
+        """Depth, normals and instance ids from one camera."""
+        view = PinholeView(view) if isinstance(view, Camera) else view
+        rays = view.rays(pixel_centres(view.width, view.height))
+        hits = self._caster.first_hits(rays)
+        found = hits.found
+        depth = np.where(found, hits.distance, 0).astype(np.float32)
+        instance = np.full(found.shape, -1, dtype=np.int32)
+        instance[found] = self._owner[hits.triangle[found]]
+        normals = np.zeros((*found.shape, 3), dtype=np.float32)
+        normals[found] = facing(self._normals[hits.triangle[found]], rays[found][:, 3:])
+        return Buffers(depth, normals, instance)
+
+
+def render_buffers(meshes: Sequence[tuple[trimesh.Trimesh, Float[np.ndarray, "4 4"]]], camera: Camera) -> Buffers:
+    """Depth, normals and instance ids of posed meshes seen by a camera.
+
+    Args:
+        meshes: Each mesh with the 4x4 matrix (scale allowed) that maps its vertices to the world; the instance id
+            is the index in this sequence.
+        camera: The pinhole camera; the buffers have its image size.
+    """
+    return MeshCaster(meshes).buffers(camera)
+
+
+def face_normals(vertices: Float32[np.ndarray, "n 3"], faces: Int32[np.ndarray, "m 3"]) -> Float32[np.ndarray, "m 3"]:
+    """Unit normals by the right-hand rule; 0 for degenerate triangles."""
+    a, b, c = (vertices[faces[:, k]] for k in range(3))
+    return unit(np.cross(b - a, c - a)).astype(np.float32)
+
+
+def unit(vectors: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
+    """Vectors of length one; null vectors stay null."""
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12)
+
+
+def facing(normals: Float[np.ndarray, "*n 3"], directions: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
+    """Normals turned against the viewing directions."""
+    along = np.sum(normals * directions, axis=-1, keepdims=True)
+    return np.where(along > 0, -normals, normals)

@@ -1,0 +1,145 @@
+"""Views of single shapes: studio pictures and thumbnails with a contact shadow on nothing."""
+
+from __future__ import annotations
+
+import io
+import threading
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from jaxtyping import Float32, UInt8
+from PIL import Image
+
+from diorama_core.library.record import Shape, ShapeLibrary
+from diorama_core.library.taxonomy import category
+from diorama_core.render.appearance import shape_surfaces
+from diorama_core.render.filters import as_bytes, tone_mapped
+from diorama_core.render.lighting import Effort, Lighting, irradiance, studio
+from diorama_core.render.picture import framing_camera
+from diorama_core.render.raycast import PinholeView, pixel_centres
+from diorama_core.render.shading import Shot, shoot
+from diorama_core.render.world import Placed, Places, World
+from diorama_core.scene.types import Camera, box_corners
+
+
+@dataclass(frozen=True)
+class StudioView:
+    """Where the viewer stands: turned from the shape's front, and raised above its middle."""
+
+    yaw_rad: float
+    """Positive walks to the shape's own left (the viewer then sees its left side)."""
+    elevation_rad: float
+
+
+STUDIO_EFFORT = Effort(window_rays=2, sky_rays=3)
+THREE_QUARTER = StudioView(np.radians(32.0), np.radians(22.0))
+FRONTAL = StudioView(np.radians(20.0), np.radians(6.0))
+FROM_ABOVE = StudioView(np.radians(30.0), np.radians(48.0))
+
+
+def usual_view(shape: Shape) -> StudioView:
+    """The view in which a shape is best recognised: flat things from above, hung things from the front."""
+    depth, width, height = shape.size_m
+    if height < 0.12 * max(depth, width):
+        return FROM_ABOVE
+    hung = category(shape.category).mount == "wall"
+    return FRONTAL if hung and depth < 0.4 * max(width, height) else THREE_QUARTER
+
+
+def studio_camera(shape: Shape, view: StudioView, width: int, height: int) -> Camera:
+    """A camera that has the whole shape in its picture."""
+    horizontal = np.array([np.cos(view.yaw_rad), np.sin(view.yaw_rad), 0.0]) * np.cos(view.elevation_rad)
+    back = horizontal + np.array([0.0, 0.0, np.sin(view.elevation_rad)])
+    return framing_camera(box_corners(shape.size_m), -back, width, height, fov_rad=np.radians(24.0), margin=0.06)
+
+
+def render_shape(
+    library: ShapeLibrary,
+    shape_id: str,
+    size: tuple[int, int] = (320, 320),
+    view: StudioView | None = None,
+    effort: Effort = STUDIO_EFFORT,
+) -> UInt8[np.ndarray, "h w 4"]:
+    """A shape in soft studio light on a transparent background, with the shadow it would cast where it stands.
+
+    Args:
+        library: Where the shape is.
+        shape_id: Which shape; `LibraryError` when unknown.
+        size: Width and height in pixels.
+        view: Where the viewer stands; None takes the shape's usual view.
+        effort: Rays per pixel.
+
+    Returns:
+        Colours and opacity, not premultiplied, sRGB.
+    """
+    shape = library.shape(shape_id)
+    view = view or usual_view(shape)
+    camera = PinholeView(studio_camera(shape, view, *size))
+    surfaces = shape_surfaces(library, shape_id)
+    alone = World([Placed(surfaces, np.eye(4), 0)])
+    half = 0.5 * np.asarray(shape.size_m)
+    light = studio(np.stack([-half, half]), -camera.camera.T_world_camera[:3, 2])
+    shot = shoot(alone, alone, camera, light, effort)
+    hung = category(shape.category).mount == "wall"
+    shadow = np.zeros(shot.coverage.shape, np.float32) if hung else _shadow(shape, alone, light, camera, effort)
+    return _over(shot, shadow)
+
+
+def thumbnail(library: ShapeLibrary, shape_id: str, size: int = 160) -> bytes:
+    """A square PNG of a shape on a transparent background; made once per content, size and process."""
+    shape = library.shape(shape_id)
+    key = (shape.content_hash or shape.id, size)
+    with _CACHE_LOCK:
+        cached = _CACHE.get(key)
+    if cached is None:
+        buffer = io.BytesIO()
+        Image.fromarray(render_shape(library, shape_id, (size, size))).save(buffer, "PNG", optimize=True)
+        cached = buffer.getvalue()
+        with _CACHE_LOCK:
+            _CACHE[key] = cached
+    return cached
+
+
+_CACHE: dict[tuple[str, int], bytes] = {}
+_CACHE_LOCK = threading.Lock()
+
+
+def _shadow(
+    shape: Shape, alone: World, light: Lighting, camera: PinholeView, effort: Effort
+) -> Float32[np.ndarray, "h w"]:
+    """How much darker the ground under the shape is than bare ground, 0 to 1; found at half size and smoothed."""
+    width, height = max(camera.width // 2, 1), max(camera.height // 2, 1)
+    rays = PinholeView(_resized(camera.camera, width, height)).rays(pixel_centres(width, height))
+    ground = -0.5 * shape.size_m[2]
+    fall = np.minimum(rays[..., 5], -1e-6)
+    points = rays[..., :3] + rays[..., 3:] * ((ground - rays[..., 2]) / fall)[..., None]
+    near = (rays[..., 5] < -1e-6) & (np.linalg.norm(points[..., :2], axis=-1) < 4 * max(shape.size_m))
+    places = _ground_places(points[near])
+    pixels = np.argwhere(near)
+    shaded = sum(irradiance(alone, alone, places, pixels, light, effort))
+    bare = sum(irradiance(World([]), World([]), places, pixels, light, effort))
+    shadow = np.zeros((height, width), np.float32)
+    shadow[near] = np.clip(1.0 - shaded.mean(axis=1) / bare.mean(axis=1), 0, 1)
+    smooth = cv2.GaussianBlur(shadow, (0, 0), max(1.0, width / 80))
+    return np.clip(0.8 * (cv2.resize(smooth, (camera.width, camera.height)) - 0.03), 0, 0.8)
+
+
+def _ground_places(points: Float32[np.ndarray, "n 3"]) -> Places:
+    up = np.tile(np.array([0, 0, 1], np.float32), (len(points), 1))
+    ones, zeros = np.ones(len(points), np.float32), np.zeros(len(points), np.float32)
+    grey = np.full((len(points), 3), 0.8, np.float32)
+    return Places(points, up, up, grey, ones, zeros, ones, 0 * grey, np.zeros(len(points), np.int32))
+
+
+def _resized(camera: Camera, width: int, height: int) -> Camera:
+    return Camera(camera.intrinsics.scaled(width, height), camera.T_world_camera)
+
+
+def _over(shot: Shot, shadow: Float32[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h w 4"]:
+    """The shape over its shadow, as colour and opacity."""
+    covered = shot.coverage[..., None]
+    colour = tone_mapped(shot.radiance / np.maximum(covered, 1e-3))
+    opacity = covered + shadow[..., None] * (1 - covered)
+    straight = colour * covered / np.maximum(opacity, 1e-3)
+    return np.concatenate([as_bytes(straight), as_bytes(opacity)], axis=-1)

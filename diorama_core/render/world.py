@@ -1,0 +1,203 @@
+"""A scene flattened into triangles with materials: what a ray meets, and what that place looks like."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Float32, Int32, UInt8
+
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.render.appearance import Material, Surface, shape_surfaces, srgb_to_linear
+from diorama_core.render.raycast import Caster, Hits, RayArray, face_normals, facing, unit
+from diorama_core.render.slabs import plane_surfaces
+from diorama_core.scene.types import Scene
+
+
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """Surfaces put into the world as one instance."""
+
+    surfaces: tuple[Surface, ...]
+    matrix: Float[np.ndarray, "4 4"]
+    instance: int
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """What is seen along each of n rays that met something."""
+
+    points: Float32[np.ndarray, "n 3"]
+    normals: Float32[np.ndarray, "n 3"]
+    """Smooth shading normals, toward the viewer."""
+    flat_normals: Float32[np.ndarray, "n 3"]
+    """Of the triangle, toward the viewer."""
+    albedo: Float32[np.ndarray, "n 3"]
+    """Linear base colour."""
+    alpha: Float32[np.ndarray, "n"]
+    metallic: Float32[np.ndarray, "n"]
+    roughness: Float32[np.ndarray, "n"]
+    emissive: Float32[np.ndarray, "n 3"]
+    instance: Int32[np.ndarray, "n"]
+
+
+class World:
+    """Everything that is visible, in one structure of triangles."""
+
+    def __init__(self, placed: Iterable[Placed]) -> None:
+        chunks = [_chunk(surface, p.matrix) for p in placed for surface in p.surfaces]
+        owners = [p.instance for p in placed for _ in p.surfaces]
+        surfaces = [surface for p in placed for surface in p.surfaces]
+        starts = np.cumsum([0, *(len(c.vertices) for c in chunks)])[:-1]
+        self.vertices = _joined([c.vertices for c in chunks], 3)
+        self._normals = _joined([c.normals for c in chunks], 3)
+        self._uv = _joined([c.uv for c in chunks], 2)
+        self._colours = _joined([c.colours for c in chunks], 3)
+        self._faces = np.concatenate(
+            [np.zeros((0, 3), np.int32), *(s.faces + start for s, start in zip(surfaces, starts, strict=True))]
+        ).astype(np.int32)
+        counts = [len(s.faces) for s in surfaces]
+        self._surface_of_face = np.repeat(np.arange(len(surfaces), dtype=np.int32), counts)
+        self._instance_of_face = np.repeat(np.array(owners, dtype=np.int32), counts)
+        self._materials = _MaterialTable([s.material for s in surfaces])
+        self._face_normals = face_normals(self.vertices, self._faces)
+        self.caster = Caster(self.vertices, self._faces)
+
+    @property
+    def bounds(self) -> Float[np.ndarray, "2 3"]:
+        """Lowest and highest corner of everything; a unit box when there is nothing."""
+        if not len(self.vertices):
+            return np.array([[-0.5, -0.5, 0.0], [0.5, 0.5, 1.0]])
+        return np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)]).astype(np.float64)
+
+    def places(self, rays: RayArray, hits: Hits) -> Places:
+        """What the rays see; every ray must have met something."""
+        triangle, direction = hits.triangle, rays[:, 3:]
+        w = np.concatenate([1 - hits.barycentric.sum(axis=1, keepdims=True), hits.barycentric], axis=1)
+        corners = self._faces[triangle]
+        flat = facing(self._face_normals[triangle], direction)
+        smooth = unit(_mixed(self._normals, corners, w))
+        smooth = np.where(np.sum(smooth * flat, axis=1, keepdims=True) < 0, -smooth, smooth)
+        surface = self._surface_of_face[triangle]
+        albedo, alpha = self._materials.colour(surface, _mixed(self._uv, corners, w))
+        table = self._materials
+        return Places(
+            points=rays[:, :3] + direction * hits.distance[:, None],
+            normals=smooth.astype(np.float32),
+            flat_normals=flat.astype(np.float32),
+            albedo=(albedo * _mixed(self._colours, corners, w)).astype(np.float32),
+            alpha=alpha,
+            metallic=table.metallic[surface],
+            roughness=table.roughness[surface],
+            emissive=table.emissive[surface],
+            instance=self._instance_of_face[triangle],
+        )
+
+    def rough_look(self, hits: Hits) -> tuple[Float32[np.ndarray, "n 3"], Float32[np.ndarray, "n 3"]]:
+        """Face normals (as modelled) and mean colours of what was hit: enough for light that bounces."""
+        return self._face_normals[hits.triangle], self._materials.mean_colour[self._surface_of_face[hits.triangle]]
+
+
+def scene_world(
+    scene: Scene,
+    library: ShapeLibrary,
+    *,
+    textures: Mapping[str, UInt8[np.ndarray, "h w c"]] | None = None,
+    without: frozenset[str] = frozenset(),
+) -> World:
+    """The scene's visible objects (instance = index in `scene.objects`) and planes (following indices).
+
+    Args:
+        scene: What to show; hidden objects are left out.
+        library: Where its shapes are.
+        textures: Pictures of the planes by `Plane.texture`.
+        without: Ids of objects and planes to leave out.
+    """
+    placed: list[Placed] = []
+    for index, item in enumerate(scene.objects):
+        if not item.hidden and item.id not in without:
+            placed.append(Placed(shape_surfaces(library, item.shape_id, item.colour), item.pose.matrix, index))
+    for index, plane in enumerate(scene.architecture.planes, start=len(scene.objects)):
+        if plane.id not in without:
+            picture = (textures or {}).get(plane.texture) if plane.texture else None
+            placed.append(Placed(plane_surfaces(plane, picture), np.eye(4), index))
+    return World(placed)
+
+
+@dataclass(frozen=True, eq=False)
+class _Chunk:
+    vertices: Float32[np.ndarray, "n 3"]
+    normals: Float32[np.ndarray, "n 3"]
+    uv: Float32[np.ndarray, "n 2"]
+    colours: Float32[np.ndarray, "n 3"]
+
+
+def _chunk(surface: Surface, matrix: Float[np.ndarray, "4 4"]) -> _Chunk:
+    count = len(surface.vertices)
+    linear = matrix[:3, :3]
+    return _Chunk(
+        (surface.vertices @ linear.T + matrix[:3, 3]).astype(np.float32),
+        unit(surface.normals @ np.linalg.inv(linear)).astype(np.float32),
+        np.zeros((count, 2), np.float32) if surface.uv is None else surface.uv,
+        np.ones((count, 3), np.float32) if surface.colours is None else surface.colours,
+    )
+
+
+def _joined(arrays: list[np.ndarray], columns: int) -> np.ndarray:
+    return np.concatenate([np.zeros((0, columns), np.float32), *arrays])
+
+
+def _mixed(values: np.ndarray, corners: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Vertex values interpolated in their triangles."""
+    return sum(values[corners[:, k]] * weights[:, k : k + 1] for k in range(3))
+
+
+class _MaterialTable:
+    """Materials as arrays, one row per surface."""
+
+    def __init__(self, materials: list[Material]) -> None:
+        self.metallic = np.array([m.metallic for m in materials], dtype=np.float32)
+        self.roughness = np.array([m.roughness for m in materials], dtype=np.float32)
+        self.emissive = np.array([m.emissive for m in materials], dtype=np.float32).reshape(-1, 3)
+        self._colour = np.array([m.colour for m in materials], dtype=np.float32).reshape(-1, 3)
+        self._alpha = np.array([m.alpha for m in materials], dtype=np.float32)
+        self._textures = {i: _linear(m.texture) for i, m in enumerate(materials) if m.texture is not None}
+        self.mean_colour = self._colour.copy()
+        for index, picture in self._textures.items():
+            self.mean_colour[index] *= picture[..., :3].mean(axis=(0, 1))
+
+    def colour(
+        self, surface: Int32[np.ndarray, "n"], uv: Float32[np.ndarray, "n 2"]
+    ) -> tuple[Float32[np.ndarray, "n 3"], Float32[np.ndarray, "n"]]:
+        """Linear base colour and opacity at texture coordinates (repeating, bilinear)."""
+        colour, alpha = self._colour[surface], self._alpha[surface]
+        for index, picture in self._textures.items():
+            chosen = np.flatnonzero(surface == index)
+            if len(chosen):
+                texel = _bilinear(picture, uv[chosen])
+                colour[chosen] *= texel[:, :3]
+                if self._alpha[index] < 1 and texel.shape[1] == 4:
+                    alpha[chosen] *= texel[:, 3]
+        return colour, alpha
+
+
+_LINEAR_OF_BYTE = srgb_to_linear(np.arange(256) / 255.0).astype(np.float32)
+
+
+def _linear(picture: UInt8[np.ndarray, "h w c"]) -> Float32[np.ndarray, "h w c"]:
+    linear = _LINEAR_OF_BYTE[picture]
+    if picture.shape[2] == 4:
+        linear[..., 3] = picture[..., 3] / 255.0
+    return linear
+
+
+def _bilinear(picture: Float32[np.ndarray, "h w c"], uv: Float32[np.ndarray, "n 2"]) -> Float32[np.ndarray, "n c"]:
+    height, width = picture.shape[:2]
+    x, y = uv[:, 0] * width - 0.5, (1 - uv[:, 1]) * height - 0.5
+    x0, y0 = np.floor(x).astype(np.int64), np.floor(y).astype(np.int64)
+    fx, fy = (x - x0)[:, None].astype(np.float32), (y - y0)[:, None].astype(np.float32)
+    left, right, top, bottom = x0 % width, (x0 + 1) % width, y0 % height, (y0 + 1) % height
+    above = picture[top, left] * (1 - fx) + picture[top, right] * fx
+    below = picture[bottom, left] * (1 - fx) + picture[bottom, right] * fx
+    return above * (1 - fy) + below * fy
