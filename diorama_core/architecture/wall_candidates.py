@@ -1,0 +1,198 @@
+"""Vertical planes in measured points that may be walls, and whether what is seen allows it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+BIN_RAD = np.deg2rad(5.0)
+GROWTH_RAD = np.deg2rad(10.0)
+"""Normals within this of a direction belong to it (PlainRecon's growth)."""
+SNAP_RAD = np.deg2rad(6.0)
+"""Directions within this of a room axis are taken to be it."""
+OFFSET_BIN_M = 0.05
+MIN_AREA_M2 = 0.15
+MIN_POINTS = 120
+MIN_RISE_M = 0.4
+"""A wall's points span at least this height."""
+MAX_SEEN_THROUGH = 0.35
+"""A wall of which a larger share is seen through is furniture: windows and doorways stay below."""
+
+
+@dataclass(frozen=True)
+class MeasuredSurface:
+    """Measured points of the empty part of the picture, in the world, flattened."""
+
+    camera_position: Float[np.ndarray, "3"]
+    points: Float[np.ndarray, "n 3"]
+    normals: Float[np.ndarray, "n 3"]
+    """Toward the camera; zero where unknown."""
+    depth_m: Float[np.ndarray, "n"]
+    area_m2: Float[np.ndarray, "n"]
+    """Surface that each pixel sees."""
+    is_object: Bool[np.ndarray, "n"]
+
+
+@dataclass(frozen=True)
+class WallCandidate:
+    """A vertical plane `normal . p = offset`, normal (2D) toward the room, with what supports it."""
+
+    normal: Float[np.ndarray, "2"]
+    offset: float
+    inliers: Bool[np.ndarray, "n"]
+    seen_through: float
+    """Share of the wall's visible face through which something farther is measured."""
+    area_m2: float
+
+    @property
+    def along(self) -> Float[np.ndarray, "2"]:
+        """Unit direction to the right as seen from the room."""
+        return np.array([-self.normal[1], self.normal[0]])
+
+
+def tolerance_m(depth_m: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
+    """How far a point may be from its plane: sensors' errors grow with distance."""
+    return 0.04 + 0.015 * depth_m
+
+
+def find_walls(surface: MeasuredSurface, top_m: float) -> list[WallCandidate]:
+    """Candidates that visibility allows, largest area first."""
+    upright = (np.abs(surface.normals[:, 2]) < 0.35) & (surface.normals != 0).any(axis=1) & ~surface.is_object
+    if upright.sum() < MIN_POINTS:
+        return []
+    found: list[WallCandidate] = []
+    for normal in _directions(surface, upright):
+        found += _parallel_walls(surface, upright, normal, top_m)
+    kept = sorted(found, key=lambda w: -w.area_m2)
+    return [w for i, w in enumerate(kept) if not any(_same(w, other) for other in kept[:i])]
+
+
+def _same(a: WallCandidate, b: WallCandidate) -> bool:
+    shared = (a.inliers & b.inliers).sum()
+    return bool(shared > 0.5 * min(a.inliers.sum(), b.inliers.sum()))
+
+
+def _directions(surface: MeasuredSurface, upright: Bool[np.ndarray, "n"]) -> list[Float[np.ndarray, "2"]]:
+    """Horizontal normals that much surface shares: peaks of the circular histogram, snapped to the room's axes."""
+    heading = np.arctan2(surface.normals[upright, 1], surface.normals[upright, 0])
+    weight = surface.area_m2[upright]
+    bins = round(2 * np.pi / BIN_RAD)
+    index = np.floor((heading + np.pi) / BIN_RAD).astype(int) % bins
+    histogram = np.bincount(index, weights=weight, minlength=bins)
+    smooth = histogram + 0.6 * (np.roll(histogram, 1) + np.roll(histogram, -1))
+    found: list[float] = []
+    for peak in np.argsort(-smooth, kind="stable"):
+        if smooth[peak] < max(MIN_AREA_M2, 0.01 * weight.sum()):
+            break
+        centre = -np.pi + (peak + 0.5) * BIN_RAD
+        if any(abs(_turn(centre - other)) < 2.5 * GROWTH_RAD for other in found):
+            continue
+        near = np.abs(_turn(heading - centre)) < GROWTH_RAD
+        found.append(centre + float(np.average(_turn(heading[near] - centre), weights=weight[near])))
+    return [np.array([np.cos(a), np.sin(a)]) for a in map(_snapped, found)]
+
+
+def _turn(angle_rad: np.ndarray | float) -> np.ndarray:
+    return (np.asarray(angle_rad) + np.pi) % (2 * np.pi) - np.pi
+
+
+def _snapped(heading: float) -> float:
+    axis = round(heading / (np.pi / 2)) * (np.pi / 2)
+    return axis if abs(_turn(heading - axis)) < SNAP_RAD else heading
+
+
+def _parallel_walls(
+    surface: MeasuredSurface, upright: Bool[np.ndarray, "n"], normal: Float[np.ndarray, "2"], top_m: float
+) -> list[WallCandidate]:
+    """All walls facing one way: peaks of the histogram of offsets, each refined and checked."""
+    member = upright & (surface.normals[:, :2] @ normal > np.cos(1.8 * GROWTH_RAD))
+    offsets = surface.points[:, :2] @ normal
+    if member.sum() < MIN_POINTS:
+        return []
+    low = float(offsets[member].min()) - OFFSET_BIN_M
+    index = ((offsets[member] - low) / OFFSET_BIN_M).astype(int)
+    histogram = np.bincount(index, weights=surface.area_m2[member])
+    smooth = np.convolve(histogram, np.ones(3), mode="same")
+    walls: list[WallCandidate] = []
+    free = member.copy()
+    for peak in np.argsort(-smooth, kind="stable"):
+        if smooth[peak] < MIN_AREA_M2:
+            break
+        centre = low + (peak + 0.5) * OFFSET_BIN_M
+        near = free & (np.abs(offsets - centre) < 2.5 * OFFSET_BIN_M + tolerance_m(surface.depth_m))
+        wall = _refined(surface, near, normal, top_m)
+        free &= ~near
+        if wall is not None:
+            walls.append(wall)
+    return walls
+
+
+def _refined(
+    surface: MeasuredSurface, near: Bool[np.ndarray, "n"], normal: Float[np.ndarray, "2"], top_m: float
+) -> WallCandidate | None:
+    """The wall through a slice of points; none when they are few, low, or see-through."""
+    if near.sum() < MIN_POINTS:
+        return None
+    points = surface.points[near]
+    if _spread(points[:, 2]) < MIN_RISE_M:
+        return None
+    fitted, offset = _fit_line(points[:, :2], surface.area_m2[near], normal)
+    inliers = np.abs(surface.points[:, :2] @ fitted - offset) < tolerance_m(surface.depth_m)
+    inliers &= (surface.normals[:, :2] @ fitted > np.cos(2.0 * GROWTH_RAD)) & ~surface.is_object
+    if inliers.sum() < MIN_POINTS or offset > surface.camera_position[:2] @ fitted - 0.1:
+        return None
+    through = _seen_through(surface, fitted, offset, inliers, top_m)
+    if through > MAX_SEEN_THROUGH:
+        return None
+    return WallCandidate(fitted, offset, inliers, through, float(surface.area_m2[inliers].sum()))
+
+
+def _spread(values: Float[np.ndarray, "n"]) -> float:
+    low, high = np.quantile(values, [0.03, 0.97])
+    return float(high - low)
+
+
+def _fit_line(
+    points: Float[np.ndarray, "n 2"], weights: Float[np.ndarray, "n"], normal: Float[np.ndarray, "2"]
+) -> tuple[Float[np.ndarray, "2"], float]:
+    """Robust line through points seen from above; one that lies along a room axis keeps that direction."""
+    offsets = points @ normal
+    offset = float(np.median(offsets))
+    if np.abs(normal).max() > np.cos(1e-6):
+        core = np.abs(offsets - offset) < 2.0 * max(float(np.median(np.abs(offsets - offset))), 0.005)
+        return normal, float(np.average(offsets[core], weights=weights[core]))
+    for _ in range(3):
+        residual = np.abs(points @ normal - offset)
+        core = residual < max(2.5 * float(np.median(residual)), 0.005)
+        centre = points[core].mean(axis=0)
+        turned = np.linalg.eigh(np.cov((points[core] - centre).T))[1][:, 0]
+        normal = turned if turned @ normal > 0 else -turned
+        offset = float(centre @ normal)
+    return normal, offset
+
+
+def _seen_through(
+    surface: MeasuredSurface,
+    normal: Float[np.ndarray, "2"],
+    offset: float,
+    inliers: Bool[np.ndarray, "n"],
+    top_m: float,
+) -> float:
+    """Share of the would-be wall, floor to ceiling over its points' width, that has farther things behind it."""
+    along = np.array([-normal[1], normal[0]])
+    low, high = np.quantile(surface.points[inliers, :2] @ along, [0.02, 0.98])
+    origin = surface.camera_position
+    ray = surface.points - origin
+    slope = ray[:, :2] @ normal
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = (offset - origin[:2] @ normal) / slope
+    crossing = origin + share[:, None] * ray
+    reach = crossing[:, :2] @ along
+    within = (slope < 0) & (reach > low) & (reach < high) & (crossing[:, 2] > 0.05) & (crossing[:, 2] < top_m - 0.05)
+    beyond = within & ((1.0 - share) * np.linalg.norm(ray[:, :2], axis=1) > 0.10 + 2.0 * tolerance_m(surface.depth_m))
+    on = within & inliers
+    # Weighted by the wall's own area, not by that of what lies far behind it.
+    size = surface.area_m2 * np.clip(share, 0.0, 1.0) ** 2
+    return float(size[beyond].sum() / max(size[beyond].sum() + size[on].sum(), 1e-9))

@@ -1,0 +1,107 @@
+"""Depth and normals of every pixel: rendered from the cuboids and the room, or measured with its holes filled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Float32
+
+from diorama_core.artefacts import (
+    ArchitectureEstimate,
+    Cuboid,
+    DepthMap,
+    DetectedObject,
+    Inputs,
+    ObjectGeometry,
+)
+from diorama_core.geometry.casting import camera_rays, cast_box, cast_planes
+from diorama_core.geometry.depth_grid import smooth_normals_camera
+from diorama_core.progress import Progress
+from diorama_core.scene.types import Architecture, Camera
+
+
+@dataclass(frozen=True)
+class RenderedDepth:
+    """Depth from the geometry that was reasoned out: within a mask its object's cuboid, elsewhere the room."""
+
+    def depth(
+        self,
+        inputs: Inputs,
+        objects: tuple[DetectedObject, ...],
+        geometry: ObjectGeometry,
+        architecture: ArchitectureEstimate,
+        progress: Progress,
+    ) -> DepthMap:
+        """Depth and normals of every pixel; zero where neither the room nor an object is."""
+        progress.report(0.0, "Rendering depth from room and objects")
+        depth, normals = render_geometry(geometry, objects, architecture.architecture)
+        progress.report(1.0, "Depth is rendered")
+        return DepthMap(depth, normals, "rendered from cuboids and room")
+
+
+@dataclass(frozen=True)
+class MeasuredDepth:
+    """The measured map; its holes are filled from the room and the cuboids."""
+
+    def depth(
+        self,
+        inputs: Inputs,
+        objects: tuple[DetectedObject, ...],
+        geometry: ObjectGeometry,
+        architecture: ArchitectureEstimate,
+        progress: Progress,
+    ) -> DepthMap:
+        """Measured depth where there is some, rendered elsewhere; normals from the grid where they can be told.
+
+        Raises:
+            ValueError: when the inputs hold no measured depth.
+        """
+        if inputs.depth_m is None:
+            raise ValueError("MeasuredDepth needs measured depth; use RenderedDepth for a photo alone")
+        progress.report(0.0, "Filling holes of the measured depth")
+        rendered, rendered_normals = render_geometry(geometry, objects, architecture.architecture)
+        measured = inputs.depth_m
+        camera = geometry.camera
+        seen = smooth_normals_camera(measured, camera.intrinsics) @ camera.T_world_camera[:3, :3].T
+        known = np.any(seen != 0, axis=-1)
+        depth = np.where(measured > 0, measured, rendered).astype(np.float32)
+        normals = np.where(known[..., None], seen, rendered_normals).astype(np.float32)
+        progress.report(1.0, "Depth is complete")
+        return DepthMap(depth, normals, "measured")
+
+
+def render_geometry(
+    geometry: ObjectGeometry, objects: tuple[DetectedObject, ...], architecture: Architecture
+) -> tuple[Float32[np.ndarray, "h w"], Float32[np.ndarray, "h w 3"]]:
+    """Depth and world normals of every pixel from planes and, within the objects' masks, cuboids."""
+    origin, rays = camera_rays(geometry.camera)
+    planes = architecture.planes
+    depth, which = cast_planes(origin, rays, planes)
+    plane_normals = np.array([p.normal for p in planes] + [np.zeros(3)])[which]
+    facing = np.sign((plane_normals * rays).sum(axis=-1, keepdims=True))
+    normals = np.where(facing > 0, -plane_normals, plane_normals)
+    depth = np.where(np.isfinite(depth), depth, 0.0)
+    nearest = np.full(depth.shape, np.inf)
+    cuboids = {c.object_id: c for c in geometry.cuboids}
+    for found in objects:
+        if found.id not in cuboids or not found.mask.any():
+            continue
+        rows, columns = np.nonzero(found.mask)
+        t, n = _cuboid_surface(origin, rays[rows, columns], cuboids[found.id], geometry.camera)
+        closer = t < nearest[rows, columns]
+        rows, columns = rows[closer], columns[closer]
+        nearest[rows, columns] = depth[rows, columns] = t[closer]
+        normals[rows, columns] = n[closer]
+    return depth.astype(np.float32), normals.astype(np.float32)
+
+
+def _cuboid_surface(
+    origin: Float[np.ndarray, "3"], rays: Float[np.ndarray, "n 3"], cuboid: Cuboid, camera: Camera
+) -> tuple[Float[np.ndarray, "n"], Float[np.ndarray, "n 3"]]:
+    """Depth and normal of a mask's pixels on the cuboid; rays that pass it by get its centre's depth, facing back."""
+    t, normals = cast_box(origin, rays, cuboid.R_world_object, cuboid.centre, cuboid.size_m)
+    missed = ~np.isfinite(t)
+    back = -rays / np.linalg.norm(rays, axis=-1, keepdims=True)
+    centre_depth = max(float(camera.to_camera(cuboid.centre)[2]), 0.05)
+    return np.where(missed, centre_depth, t), np.where(missed[:, None], back, normals)
