@@ -109,13 +109,13 @@ def pool_for(library: ShapeLibrary, category: str, size_m: Float[np.ndarray, "3"
     """
     if category == UNKNOWN.name:
         return Pool(_plausible(library, size_m, holds_things))
-    own = _usable(library.in_category(category), holds_things)
+    own = _usable(library, library.in_category(category), holds_things)
     members = [Pooled(shape, 1.0) for shape in own]
     factor = _RELATED_FACTOR
     for near in RELATED.get(category, ()):
         if len(members) >= _ENOUGH:
             break
-        members += [Pooled(shape, factor) for shape in _usable(library.in_category(near), holds_things)]
+        members += [Pooled(shape, factor) for shape in _usable(library, library.in_category(near), holds_things)]
         factor *= _RELATED_FACTOR
     if own:
         return Pool(tuple(members))
@@ -123,15 +123,19 @@ def pool_for(library: ShapeLibrary, category: str, size_m: Float[np.ndarray, "3"
     return Pool(tuple(members) or _plausible(library, size_m, holds_things), note)
 
 
-def _usable(shapes: tuple[Shape, ...], holds_things: bool) -> tuple[Shape, ...]:
+def _usable(library: ShapeLibrary, shapes: tuple[Shape, ...], holds_things: bool) -> tuple[Shape, ...]:
+    """The shapes that may hold things up, where that is asked; all of them where none may.
+
+    Built-in shapes are empty by design; of others the measured support surfaces tell.
+    """
     if not holds_things:
         return shapes
-    return tuple(s for s in shapes if s.surfaces) or shapes
+    return tuple(s for s in shapes if s.source == "built in" or library.shape(s.id).surfaces) or shapes
 
 
 def _plausible(library: ShapeLibrary, size_m: Float[np.ndarray, "3"], holds_things: bool) -> tuple[Pooled, ...]:
     """Shapes of any kind nearest in size to something unnamed; plain boxes first."""
-    shapes = _usable(library.shapes(), holds_things)
+    shapes = _usable(library, library.shapes(), holds_things)
     wanted = np.log(np.maximum(size_m, 1e-3))
     cost = [size_cost(np.log(np.maximum(shape.size_m, 1e-3)), wanted) for shape in shapes]
     order = np.argsort(np.array(cost) - 2.0 * np.array([s.category == "box" for s in shapes]), kind="stable")

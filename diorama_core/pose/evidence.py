@@ -1,0 +1,92 @@
+"""How well posed shapes agree with the picture."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.geometry.observed import Observed
+from diorama_core.geometry.silhouette import Hits, PoseBatch, ShapeCaster
+from diorama_core.geometry.window import box_iou
+from diorama_core.pose.facing import Facing
+from diorama_core.pose.limits import SizeLimits
+from diorama_core.scene.types import Camera
+
+_SILHOUETTE_WEIGHT = 0.7
+_BOX_WEIGHT = 0.5
+_DEPTH_WEIGHT = 0.7
+_NORMALS_SHARE = 0.4
+_NOISE_FLOOR = 0.03
+"""Error below which two poses are not told apart: the resolution of the silhouettes."""
+_FACING_STRENGTH = 0.5
+_STRETCH_SIGMA = 0.3
+_OFF_AXIS_SIGMA_RAD = float(np.deg2rad(35.0))
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredSurface:
+    """Measured depth and normals under the cells of an object's window, where they belong to the object."""
+
+    depth_m: Float[np.ndarray, "n"]
+    normals_world: Float[np.ndarray, "n 3"]
+    weight: Float[np.ndarray, "n"]
+    """0 where nothing was measured or the cell is not the object's."""
+
+    def agreement(self, hits: Hits) -> Float[np.ndarray, "p"]:
+        """0 to 1: nearness of depth and of normals over the object's measured cells."""
+        tolerance = 0.04 + 0.02 * self.depth_m
+        met = np.where(hits.covered, hits.depth_m, 0.0)
+        near = np.where(hits.covered, np.exp(-(((met - self.depth_m) / tolerance) ** 2)), 0.0)
+        aligned = np.clip(np.einsum("pni,ni->pn", hits.normals_world, self.normals_world), 0.0, 1.0)
+        score = (1 - _NORMALS_SHARE) * near + _NORMALS_SHARE * aligned
+        return (score * self.weight).sum(axis=1) / max(float(self.weight.sum()), 1e-9)
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """Everything that speaks for or against a pose of one object."""
+
+    camera: Camera
+    seen: Observed
+    facing: Facing
+    surface: MeasuredSurface | None
+    """None where depth was not measured."""
+
+    def errors(self, caster: ShapeCaster, poses: PoseBatch) -> Float[np.ndarray, "p"]:
+        """0 (agrees entirely) to 1: weighted disagreement of silhouette, box, depth and normals."""
+        hits = caster.cast(self.seen.origin_world, self.seen.directions_world, poses)
+        weights = [_SILHOUETTE_WEIGHT * self.seen.mask_trust, _BOX_WEIGHT]
+        terms = [self.seen.agreement(hits.covered), box_iou(caster.bounds_px(self.camera, poses), self.seen.box)]
+        if self.surface is not None:
+            weights.append(_DEPTH_WEIGHT)
+            terms.append(self.surface.agreement(hits))
+        agreement = sum(w * t for w, t in zip(weights, terms, strict=True)) / sum(weights)
+        return np.clip(1.0 - np.nan_to_num(agreement), 0.0, 1.0)
+
+    def log_scores(
+        self,
+        errors: Float[np.ndarray, "p"],
+        poses: PoseBatch,
+        off_axis_rad: Float[np.ndarray, "p"],
+        limits: SizeLimits,
+    ) -> Float[np.ndarray, "p"]:
+        """Scores by which poses of this object are compared; higher is better.
+
+        The logarithm lets a nearly perfect silhouette overrule what things usually do, and lets habit decide
+        between silhouettes that fit equally badly.
+        """
+        cost = _FACING_STRENGTH * self.facing.cost(poses.R)
+        cost = cost + 0.5 * (limits.stretch(poses.scale) / _STRETCH_SIGMA) ** 2
+        cost = cost + 0.5 * (off_axis_rad / _OFF_AXIS_SIGMA_RAD) ** 2
+        return -np.log(errors + _NOISE_FLOOR) - cost
+
+    def confidence(self, error: float, cuboid_confidence: float) -> float:
+        """0 to 1: lower for cut, hidden, tiny or badly masked objects and for poses that fit badly."""
+        x1, y1, x2, y2 = self.seen.box
+        large_enough = min(max((x2 - x1) * (y2 - y1), 0.0) ** 0.5 / 24.0, 1.0)
+        visible = (1.0 - 0.6 * self.seen.border_share) * (1.0 - 0.7 * self.seen.hidden_share)
+        believed = (0.3 + 0.7 * self.seen.mask_trust) * (0.5 + 0.5 * float(np.clip(cuboid_confidence, 0.0, 1.0)))
+        value = (1.0 - error) * large_enough * visible * believed
+        return float(np.clip(np.nan_to_num(value), 0.0, 1.0))

@@ -1,0 +1,162 @@
+"""Which way things face, where the picture leaves it open: costs of a heading, 0 for the expected one.
+
+Sofas, beds and cabinets turn their backs to a wall and their fronts to the room; chairs face the table they are
+drawn up to; screens face whoever looks at them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.artefacts import Cuboid, DepthMap, DetectedObject
+from diorama_core.scene.types import Camera
+
+_TABLES = frozenset({"table", "desk", "coffee table", "side table", "kitchen counter", "piano", "console table"})
+_AT_TABLES = frozenset({"chair", "office chair", "stool", "bench", "armchair", "sofa"})
+_TOWARD_VIEWER = frozenset({"monitor", "television", "laptop", "picture", "mirror", "clock", "keyboard", "microwave"})
+_NO_FRONT = frozenset({"plant", "vase", "bowl", "cup", "bottle", "basket", "trash can", "rug", "coffee table", "table"})
+_DRAWN_UP_M = 0.9
+_DRAWN_UP_COFFEE_M = 1.6
+_WALL_REACH_M = 0.7
+_WALL_LATERAL_M = 3.0
+_WALL_SAMPLES = 3000
+
+
+@dataclass(frozen=True, eq=False)
+class WallSamples:
+    """Points of upright surfaces that belong to no object, with their headings, seen from above."""
+
+    points_xy: Float[np.ndarray, "n 2"]
+    normals_xy: Float[np.ndarray, "n 2"]
+
+
+@dataclass(frozen=True, eq=False)
+class Facing:
+    """Wished headings of one object."""
+
+    wishes: tuple[tuple[float, Float[np.ndarray, "2"]], ...]
+    """(weight, unit direction seen from above) of every reason to face somewhere."""
+
+    def cost(self, R_world_object: Float[np.ndarray, "p 3 3"]) -> Float[np.ndarray, "p"]:
+        """Sum of weight x (1 - cosine) / 2 over the wishes, for the front of every rotation."""
+        front = R_world_object[:, :2, 0]
+        front = front / np.maximum(np.linalg.norm(front, axis=1, keepdims=True), 1e-9)
+        return sum((w * (1 - front @ d) / 2 for w, d in self.wishes), np.zeros(len(front)))
+
+
+def wall_samples(depth: DepthMap, camera: Camera, objects: Sequence[DetectedObject]) -> WallSamples:
+    """Pixels outside all boxes whose surface is upright: the walls, as far as they are seen."""
+    normals = depth.normals_world
+    free = np.isfinite(depth.depth_m) & (depth.depth_m > 0) & (np.abs(normals[..., 2]) < 0.25)
+    for thing in objects:
+        x1, y1, x2, y2 = (round(v) for v in thing.box)
+        free[max(y1, 0) : y2, max(x1, 0) : x2] = False
+    rows, columns = np.nonzero(free)
+    step = max(len(rows) // _WALL_SAMPLES, 1)
+    rows, columns = rows[::step], columns[::step]
+    rays = camera.rays(np.stack([columns + 0.5, rows + 0.5], axis=1))
+    points = camera.position + rays * depth.depth_m[rows, columns, None].astype(np.float64)
+    flat = normals[rows, columns, :2].astype(np.float64)
+    length = np.linalg.norm(flat, axis=1)
+    good = np.isfinite(points).all(axis=1) & (length > 0.5)
+    return WallSamples(points[good, :2], flat[good] / length[good, None])
+
+
+def facing_of(
+    thing: DetectedObject,
+    cuboid: Cuboid,
+    cuboids: Sequence[Cuboid],
+    categories: dict[str, str],
+    camera: Camera,
+    walls: WallSamples,
+    on_wall: bool,
+) -> Facing:
+    """Reasons to face somewhere for one object.
+
+    Args:
+        thing: The object.
+        cuboid: Its box in the world.
+        cuboids: All boxes, its own included.
+        categories: Category of every object id.
+        camera: The photo's camera.
+        walls: Where walls are seen.
+        on_wall: Whether it hangs on a wall.
+    """
+    toward_camera = _unit(camera.position[:2] - cuboid.centre[:2])
+    if cuboid.front_known:
+        return Facing(((3.0, _unit(cuboid.R_world_object[:2, 0])),))
+    if thing.category in _NO_FRONT:
+        return Facing(())
+    if on_wall or thing.category in _TOWARD_VIEWER:
+        return Facing(((2.0, toward_camera),))
+    table = _nearest_table(thing.category, cuboid, cuboids, categories)
+    if table is not None:
+        return Facing(((1.2, _axis_toward(cuboid, table.centre[:2] - cuboid.centre[:2])), (0.1, toward_camera)))
+    wishes = [(0.5 if thing.category in _AT_TABLES - {"sofa"} else 0.8, toward_camera)]
+    wishes += [(weight, direction) for weight, direction in _away_from_walls(cuboid, walls) if weight > 0.05]
+    middle = np.mean([c.centre[:2] for c in cuboids], axis=0) - cuboid.centre[:2]
+    if len(cuboids) >= 3 and np.linalg.norm(middle) > 0.3:
+        wishes.append((0.3, _unit(middle)))
+    return Facing(tuple(wishes))
+
+
+def _unit(v: np.ndarray) -> Float[np.ndarray, "2"]:
+    length = float(np.linalg.norm(v))
+    return v / length if length > 1e-9 else np.array([0.0, -1.0])
+
+
+def _axes_xy(cuboid: Cuboid) -> tuple[tuple[Float[np.ndarray, "2"], float], ...]:
+    """The four horizontal directions of the cuboid's faces and how far each face is from the centre."""
+    x, y = _unit(cuboid.R_world_object[:2, 0]), _unit(cuboid.R_world_object[:2, 1])
+    half_x, half_y = cuboid.size_m[0] / 2, cuboid.size_m[1] / 2
+    return ((x, half_x), (-x, half_x), (y, half_y), (-y, half_y))
+
+
+def _axis_toward(cuboid: Cuboid, direction: np.ndarray) -> Float[np.ndarray, "2"]:
+    """Halfway between the direction and the cuboid's own axis nearest to it: people sit square to a table."""
+    unit = _unit(direction)
+    nearest = max(_axes_xy(cuboid), key=lambda axis: float(axis[0] @ unit))[0]
+    return _unit(unit + nearest)
+
+
+def _gap_m(a: Cuboid, b: Cuboid) -> float:
+    """Horizontal distance between two cuboids' upright bounding boxes."""
+    low = np.maximum(a.corners_world[:, :2].min(axis=0), b.corners_world[:, :2].min(axis=0))
+    high = np.minimum(a.corners_world[:, :2].max(axis=0), b.corners_world[:, :2].max(axis=0))
+    return float(np.linalg.norm(np.clip(low - high, 0.0, None)))
+
+
+def _nearest_table(
+    category: str, cuboid: Cuboid, cuboids: Sequence[Cuboid], categories: dict[str, str]
+) -> Cuboid | None:
+    """The table that a seat is drawn up to, if one is near enough."""
+    if category not in _AT_TABLES:
+        return None
+    lounge = category in ("sofa", "armchair")
+    wanted = frozenset({"coffee table"}) if lounge else _TABLES
+    reach = _DRAWN_UP_COFFEE_M if lounge else _DRAWN_UP_M
+    near = [
+        (_gap_m(cuboid, other), float(np.linalg.norm(other.centre - cuboid.centre)), other)
+        for other in cuboids
+        if other.object_id != cuboid.object_id and categories.get(other.object_id) in wanted
+    ]
+    near = [found for found in near if found[0] < reach]
+    return min(near, key=lambda found: (found[0], found[1]))[2] if near else None
+
+
+def _away_from_walls(cuboid: Cuboid, walls: WallSamples) -> list[tuple[float, Float[np.ndarray, "2"]]]:
+    """For each face direction, how strongly a wall behind the opposite face asks to face that way (0 to 1)."""
+    wishes = []
+    for direction, half in _axes_xy(cuboid):
+        back = cuboid.centre[:2] - direction * half
+        offset = walls.points_xy - back
+        gap = -(offset @ direction)
+        side = np.abs(offset @ np.array([-direction[1], direction[0]]))
+        near = (walls.normals_xy @ direction > 0.9) & (gap > -0.3) & (gap < _WALL_REACH_M) & (side < _WALL_LATERAL_M)
+        strength = np.exp(-np.abs(np.median(gap[near])) / 0.4) if near.sum() >= 10 else 0.0
+        wishes.append((float(strength), direction))
+    return wishes

@@ -1,0 +1,78 @@
+"""The poses worth trying for one shape in one cuboid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.artefacts import Cuboid
+from diorama_core.geometry.silhouette import PoseBatch
+from diorama_core.library.record import SymmetryFold
+from diorama_core.library.taxonomy import category
+from diorama_core.pose.limits import SizeLimits
+from diorama_core.scene.types import yaw_rotation
+
+_FINE_STEP_RAD = np.deg2rad(15.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Anchor:
+    """What stays where it is when a shape's size changes."""
+
+    axis_world: Float[np.ndarray, "3"]
+    """Unit direction from the anchored face into the object: up for things that stand, into the room on walls."""
+    point_world: Float[np.ndarray, "3"]
+    """A point of the anchored face."""
+
+    def placed(self, centres: np.ndarray, R: np.ndarray, sizes_m: np.ndarray) -> Float[np.ndarray, "p 3"]:
+        """The centres moved along the axis so that boxes of these sizes touch the anchored face."""
+        half = 0.5 * (np.abs(np.einsum("pij,i->pj", R, self.axis_world)) * sizes_m).sum(axis=1)
+        height = (centres - self.point_world) @ self.axis_world
+        return centres + (half - height)[:, None] * self.axis_world
+
+
+def anchor_of(cuboid: Cuboid, on_wall: bool, toward_camera_xy: Float[np.ndarray, "2"]) -> Anchor:
+    """The face of the cuboid that touches what holds it: the bottom, or its back for things on a wall."""
+    axis = np.array([0.0, 0.0, 1.0])
+    if on_wall:
+        sides = [sign * cuboid.R_world_object[:, k] for k in (0, 1) for sign in (1.0, -1.0)]
+        thin = int(np.argmin(cuboid.size_m[:2]))
+        normal = max(sides[2 * thin : 2 * thin + 2], key=lambda n: float(n[:2] @ toward_camera_xy))
+        axis = np.array([normal[0], normal[1], 0.0]) / max(float(np.linalg.norm(normal[:2])), 1e-9)
+    corners = cuboid.corners_world
+    return Anchor(axis, corners[int(np.argmin(corners @ axis))])
+
+
+@dataclass(frozen=True, eq=False)
+class Hypotheses:
+    """Poses of one shape, with how far each turns away from the cuboid's own axes."""
+
+    poses: PoseBatch
+    off_axis_rad: Float[np.ndarray, "p"]
+
+
+def hypotheses_for(
+    cuboid: Cuboid, category_name: str, symmetry: SymmetryFold, limits: SizeLimits, anchor: Anchor
+) -> Hypotheses:
+    """Turns of the shape about its up axis that its symmetry tells apart, each scaled toward the cuboid.
+
+    Quarter turns of the cuboid for all; finer ones for categories that often stand at odd angles.
+    """
+    quarters = np.arange(4) * (np.pi / 2)
+    fine = np.arange(-2, 4) * _FINE_STEP_RAD if category(category_name).quarter_turns_free else np.zeros(1)
+    turns, off_axis = (grid.ravel() for grid in np.meshgrid(quarters, fine, indexing="ij"))
+    total = turns + off_axis
+    if symmetry == 36:
+        total, turns, off_axis = total[:1] * 0, turns[:1] * 0, off_axis[:1] * 0
+    else:
+        distinct = np.mod(total + 1e-6, 2 * np.pi) < 2 * np.pi / symmetry
+        total, turns, off_axis = total[distinct], turns[distinct], off_axis[distinct]
+    odd = np.round(turns / (np.pi / 2)).astype(int) % 2 == 1
+    wanted = np.where(odd[:, None], cuboid.size_m[[1, 0, 2]], cuboid.size_m)
+    R = np.array([cuboid.R_world_object @ yaw_rotation(angle) for angle in total])
+    scale = limits.scale_for(wanted)
+    sizes = scale * limits.shape_size_m
+    position = anchor.placed(np.tile(cuboid.centre, (len(total), 1)), R, sizes)
+    return Hypotheses(PoseBatch(R, position, scale), np.abs(off_axis))

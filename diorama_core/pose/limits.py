@@ -1,0 +1,93 @@
+"""How far a shape may be stretched to fill an observed cuboid, so that no chair becomes a pancake."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.library.taxonomy import UNKNOWN, SizePrior, category
+
+_SIGMAS = 2.3
+_STRETCH_SHAPED = float(np.log(1.28))
+_STRETCH_BOXY = float(np.log(1.75))
+_THIN_M = 0.08
+_DEGENERATE_M = 1e-3
+
+BOXY = frozenset(
+    {
+        *("bench", "table", "desk", "coffee table", "side table", "console table", "kitchen counter", "bed", "sofa"),
+        *("ottoman", "night stand", "dresser", "cabinet", "sideboard", "tv stand", "bookshelf", "wardrobe", "shelves"),
+        *("refrigerator", "stove", "washing machine", "microwave", "sink", "bathtub", "piano", "radiator"),
+        *("television", "monitor", "computer", "keyboard", "books", "box", "rug", "object"),
+        *("picture", "mirror", "curtain", "window", "door"),
+    }
+)
+"""Categories that come in all proportions; the others keep theirs more strictly."""
+
+_HARD_LIMITS_M: dict[str, tuple[int, float, float]] = {
+    "chair": (2, 0.7, 1.2),
+    "office chair": (2, 0.7, 1.3),
+    "armchair": (2, 0.65, 1.2),
+    "table": (2, 0.35, 1.1),
+    "coffee table": (2, 0.3, 0.6),
+    "desk": (2, 0.6, 1.1),
+    "sofa": (1, 1.2, 3.0),
+}
+"""(axis, least, most) beyond which nobody builds a thing of this kind, in metres."""
+
+
+@dataclass(frozen=True, eq=False)
+class SizeLimits:
+    """What sizes a shape may be given."""
+
+    shape_size_m: Float[np.ndarray, "3"]
+    """At scale 1, never degenerate."""
+    least_m: Float[np.ndarray, "3"]
+    most_m: Float[np.ndarray, "3"]
+    stretch_log: float
+    """How far the logarithm of one axis' scale may be from the mean of the three."""
+
+    @classmethod
+    def of(cls, shape_size_m: tuple[float, float, float], category_name: str, observed_m: np.ndarray) -> SizeLimits:
+        """Limits for a shape standing for a thing of a category, by the size prior nearest to what was observed."""
+        least, most = _category_range(category_name, observed_m)
+        stretch = _STRETCH_BOXY if category_name in BOXY else _STRETCH_SHAPED
+        return cls(np.asarray(shape_size_m, dtype=np.float64), least, most, stretch)
+
+    def scale_for(self, wanted_m: Float[np.ndarray, "*p 3"]) -> Float[np.ndarray, "*p 3"]:
+        """Per-axis scales nearest to giving the shape the wanted size, within the limits."""
+        free = self.shape_size_m > _DEGENERATE_M
+        wanted = np.clip(np.nan_to_num(wanted_m, nan=1.0), self.least_m, self.most_m)
+        log_scale = np.log(wanted / np.maximum(self.shape_size_m, _DEGENERATE_M))
+        shaped = free & (self.shape_size_m > _THIN_M)
+        if not shaped.any():
+            shaped = free if free.any() else np.ones(3, dtype=bool)
+        centre = log_scale[..., shaped].mean(axis=-1, keepdims=True)
+        limited = centre + np.clip(log_scale - centre, -self.stretch_log, self.stretch_log)
+        thin = free & ~shaped
+        return np.exp(np.where(thin, log_scale, np.where(shaped, limited, centre)))
+
+    def stretch(self, scale: Float[np.ndarray, "*p 3"]) -> Float[np.ndarray, "*p"]:
+        """How unevenly the scales stretch the shape: root mean square of log deviations, thin axes left out."""
+        shaped = self.shape_size_m > _THIN_M
+        if not shaped.any():
+            return np.zeros(np.shape(scale)[:-1])
+        return np.log(scale[..., shaped]).std(axis=-1)
+
+
+def _category_range(category_name: str, observed_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    if category_name == UNKNOWN.name:
+        return np.full(3, 0.02), np.full(3, 4.0)
+    prior = _nearest_prior(category(category_name).priors, np.log(np.clip(observed_m, 1e-3, 10.0)))
+    least = np.exp(prior.log_median_xyz - _SIGMAS * prior.log_sigma_xyz)
+    most = np.exp(prior.log_median_xyz + _SIGMAS * prior.log_sigma_xyz)
+    if category_name in _HARD_LIMITS_M:
+        axis, low, high = _HARD_LIMITS_M[category_name]
+        least[axis], most[axis] = max(least[axis], low), min(most[axis], high)
+    return least, most
+
+
+def _nearest_prior(priors: tuple[SizePrior, ...], log_size: np.ndarray) -> SizePrior:
+    return min(priors, key=lambda p: float((((log_size - p.log_median_xyz) / p.log_sigma_xyz) ** 2).sum()))

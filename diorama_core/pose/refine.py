@@ -1,0 +1,141 @@
+"""Small corrections of a posed shape so that its outline meets the observed box.
+
+A shape does not touch every side of its cuboid's projection, so a shape that fills the cuboid is often a little too
+small in the picture. Position along the supporting face, size and yaw are corrected by damped least squares.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from diorama_core.geometry.observed import Observed
+from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
+from diorama_core.pose.hypotheses import Anchor
+from diorama_core.pose.limits import SizeLimits
+from diorama_core.scene.types import Camera, yaw_rotation
+
+_PARAMETERS = 6
+_STEP = 1e-3
+_BEYOND_SIGMA = 4.0
+_HIDDEN_SIDE = 0.2
+
+
+@dataclass(frozen=True, eq=False)
+class BoxFit:
+    """The least-squares problem of one object: four sides of its box against small changes of a pose."""
+
+    camera: Camera
+    seen: Observed
+    anchor: Anchor
+    limits: SizeLimits
+    yaw_sigma_rad: float
+    iterations: int = 5
+
+    def refined(self, caster: ShapeCaster, start: PoseBatch) -> PoseBatch:
+        """The poses corrected toward the box; unchanged where no correction helps."""
+        tangents = self._tangents()
+        sides = _hidden_sides(self.seen)
+        x = np.zeros((len(start), _PARAMETERS))
+        sigma = self._sigma(start)
+        cost, residual = self._residuals(caster, start, x, sigma, tangents, sides)
+        damping = np.full(len(start), 0.05)
+        for _ in range(self.iterations):
+            jacobian = self._jacobian(caster, start, x, residual, sigma, tangents, sides)
+            step = _damped_step(jacobian, residual, damping)
+            trial = np.clip(x + step, -3.0, 3.0)
+            trial_cost, trial_residual = self._residuals(caster, start, trial, sigma, tangents, sides)
+            better = trial_cost < cost
+            x[better], cost[better], residual[better] = trial[better], trial_cost[better], trial_residual[better]
+            damping = np.where(better, damping * 0.3, damping * 8.0)
+        return self._moved(start, x, sigma, tangents)
+
+    def _tangents(self) -> Float[np.ndarray, "2 3"]:
+        """Along the anchored face: away from the camera, and across."""
+        axis = self.anchor.axis_world
+        away = self.anchor.point_world - self.camera.position
+        first = away - (away @ axis) * axis
+        if np.linalg.norm(first) < 1e-6:
+            first = np.cross(axis, [1.0, 0.0, 0.0]) if abs(axis[0]) < 0.9 else np.cross(axis, [0.0, 1.0, 0.0])
+        if abs(axis[2]) < 0.5:
+            first = np.array([0.0, 0.0, 1.0])
+        first = first / np.linalg.norm(first)
+        return np.stack([first, np.cross(axis, first)])
+
+    def _sigma(self, start: PoseBatch) -> Float[np.ndarray, "p 6"]:
+        """How far each parameter may be expected to move: two offsets in metres, three log scales, yaw."""
+        distance = np.linalg.norm(start.position - self.camera.position, axis=1)
+        sigma = np.empty((len(start), _PARAMETERS))
+        sigma[:, 0], sigma[:, 1] = 0.05 * distance, 0.03 * distance
+        sigma[:, 2:5], sigma[:, 5] = 0.12, self.yaw_sigma_rad
+        return sigma
+
+    def _moved(self, start: PoseBatch, x: np.ndarray, sigma: np.ndarray, tangents: np.ndarray) -> PoseBatch:
+        """The starting poses after steps of x sigmas."""
+        change = x * sigma
+        R = np.einsum("pij,pjk->pik", start.R, np.array([yaw_rotation(angle) for angle in change[:, 5]]))
+        scale = self.limits.scale_for(start.scale * np.exp(change[:, 2:5]) * self.limits.shape_size_m)
+        centres = start.position + change[:, :2] @ tangents
+        return PoseBatch(R, self.anchor.placed(centres, R, scale * self.limits.shape_size_m), scale)
+
+    def _residuals(
+        self,
+        caster: ShapeCaster,
+        start: PoseBatch,
+        x: np.ndarray,
+        sigma: np.ndarray,
+        tangents: np.ndarray,
+        hidden: Bool[np.ndarray, "4"],
+    ) -> tuple[Float[np.ndarray, "p"], Float[np.ndarray, "p 10"]]:
+        bounds = caster.bounds_px(self.camera, self._moved(start, x, sigma, tangents))
+        box = np.asarray(self.seen.box, dtype=np.float64)
+        extent = np.maximum(np.tile(box[2:] - box[:2], 2), 1.0)
+        outward = (bounds - box) * np.array([-1.0, -1.0, 1.0, 1.0]) / (0.015 * extent + 1.5)
+        outward = np.nan_to_num(outward, nan=20.0)
+        outward = np.where(hidden & (outward > 0), _HIDDEN_SIDE * outward, outward)
+        robust = np.sign(outward) * _softened(np.abs(outward))
+        residual = np.concatenate([robust, x], axis=1)
+        return (residual**2).sum(axis=1), residual
+
+    def _jacobian(
+        self,
+        caster: ShapeCaster,
+        start: PoseBatch,
+        x: np.ndarray,
+        residual: np.ndarray,
+        sigma: np.ndarray,
+        tangents: np.ndarray,
+        hidden: np.ndarray,
+    ) -> Float[np.ndarray, "p 10 6"]:
+        """Forward differences; all poses and parameters in one projection."""
+        count = len(start)
+        repeat = np.repeat(np.arange(count), _PARAMETERS)
+        shifted = x[repeat] + _STEP * np.tile(np.eye(_PARAMETERS), (count, 1))
+        _, moved = self._residuals(caster, start[repeat], shifted, sigma[repeat], tangents, hidden)
+        slopes = (moved.reshape(count, _PARAMETERS, -1) - residual[:, None]) / _STEP
+        return slopes.transpose(0, 2, 1)
+
+
+def _softened(magnitude: np.ndarray) -> np.ndarray:
+    """Grows like a square root beyond a few sigmas (Huber's loss as a residual)."""
+    beyond = np.maximum(2 * _BEYOND_SIGMA * magnitude - _BEYOND_SIGMA**2, 0.0)
+    return np.where(magnitude <= _BEYOND_SIGMA, magnitude, np.sqrt(beyond))
+
+
+def _damped_step(jacobian: np.ndarray, residual: np.ndarray, damping: np.ndarray) -> Float[np.ndarray, "p 6"]:
+    normal = np.einsum("pri,prj->pij", jacobian, jacobian)
+    normal = normal + damping[:, None, None] * np.eye(_PARAMETERS) * (1.0 + np.einsum("pii->pi", normal))[:, None]
+    gradient = np.einsum("pri,pr->pi", jacobian, residual)
+    return -np.linalg.solve(normal, gradient[..., None])[..., 0]
+
+
+def _hidden_sides(seen: Observed) -> Bool[np.ndarray, "4"]:
+    """Sides of the box beside which nearer things may hide more of the object."""
+    x, y = seen.window.centres_px.T
+    x1, y1, x2, y2 = seen.box
+    dx, dy = 0.12 * (x2 - x1), 0.12 * (y2 - y1)
+    inside = (x >= x1) & (x < x2) & (y >= y1) & (y < y2)
+    strips = (x < x1 + dx, y < y1 + dy, x >= x2 - dx, y >= y2 - dy)
+    return np.array([bool((inside & s).any() and seen.weight[inside & s].mean() < 0.6) for s in strips])
