@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import seating
+from diorama_core.library.furniture import beds, seating, tables, upholstery
 from diorama_core.library.furniture.model import Design
 
-FAMILIES = (seating,)
+FAMILIES = (seating, upholstery, tables, beds)
 
 
 def designs() -> tuple[Design, ...]:
