@@ -1,0 +1,180 @@
+"""Gravity, room axes and the camera's height from measured depth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float, Float32
+
+from diorama_core.geometry.depth_grid import points_camera, reduced, smooth_normals_camera
+from diorama_core.geometry.planes import fit_plane
+from diorama_core.perception.camera.frames import world_frame
+from diorama_core.scene.types import Intrinsics
+
+WORKING_SIDE_PX = 240
+"""Depth is read at no more than so many pixels a side; planes need no more."""
+UP_CONE_RAD = float(np.deg2rad(35.0))
+"""How far gravity may lie from the expected direction."""
+ALIGNED_RAD = float(np.deg2rad(12.0))
+LEVEL_RAD = float(np.deg2rad(8.0))
+MIN_LEVEL_M2 = 0.12
+"""Least area of level surface at one height that counts as a floor."""
+FLOOR_HEIGHT_M = (0.35, 3.5)
+"""Camera heights over a floor; nearer level surfaces are tables."""
+BELOW_SHARE = 0.02
+"""More than this share of all points clearly below a surface means that it is not the floor."""
+_MAX_TRIALS = 400
+_BIN_M = 0.02
+
+
+@dataclass(frozen=True)
+class DepthFrame:
+    """What measured depth says about how the camera is held."""
+
+    R_world_camera: Float[np.ndarray, "3 3"]
+    height_m: float | None
+    """Over the floor; None where no floor is visible."""
+    level_share: float
+    """Share of the measured points that lie on level surfaces: the evidence for gravity."""
+    wall_share: float
+    """Share of the measured points that face one of the room's horizontal directions."""
+
+
+@dataclass(frozen=True)
+class _Samples:
+    """Measured points with normals, and the area that each stands for."""
+
+    points: Float[np.ndarray, "n 3"]
+    normals: Float[np.ndarray, "n 3"]
+    areas: Float[np.ndarray, "n"]
+
+
+def frame_from_depth(
+    depth_m: Float32[np.ndarray, "h w"], intrinsics: Intrinsics, R_expected: Float[np.ndarray, "3 3"]
+) -> DepthFrame | None:
+    """Gravity from level surfaces, room axes from walls, height from the floor.
+
+    Args:
+        depth_m: Measured depth, 0 where missing.
+        intrinsics: Of the depth map's grid.
+        R_expected: `R_world_camera` expected from lines or habit; gravity is looked for around it, and its axes serve
+            where no wall is measured.
+
+    Returns:
+        The frame, or None where no level surface can be seen.
+    """
+    samples = _samples(depth_m, intrinsics)
+    up = _level_direction(samples, R_expected[2])
+    if up is None:
+        return None
+    floor = _floor(samples, up)
+    if floor is not None:
+        up, height = floor
+    level = samples.normals @ up > np.cos(LEVEL_RAD)
+    axis, wall_share = _wall_direction(samples, up, R_expected[1])
+    return DepthFrame(
+        R_world_camera=world_frame(up, axis),
+        height_m=None if floor is None else height,
+        level_share=float(level.mean()),
+        wall_share=wall_share,
+    )
+
+
+def _samples(depth_m: Float32[np.ndarray, "h w"], intrinsics: Intrinsics) -> _Samples:
+    small, k = reduced(depth_m, intrinsics, WORKING_SIDE_PX)
+    points = points_camera(small, k)
+    normals = smooth_normals_camera(small, k)
+    known = (normals != 0).any(axis=-1)
+    p, n = points[known], normals[known]
+    rays = p / np.maximum(np.linalg.norm(p, axis=1, keepdims=True), 1e-9)
+    slant = np.maximum(np.abs((rays * n).sum(axis=1)), 0.1)
+    return _Samples(p, n, p[:, 2] ** 2 / (k.fx * k.fy) / slant)
+
+
+def _level_direction(samples: _Samples, up_expected: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"] | None:
+    """The direction that most measured area faces, near the expected up; all candidates are weighed at once."""
+    near = samples.normals @ up_expected > np.cos(UP_CONE_RAD)
+    normals, areas = samples.normals[near], _tempered(samples.areas[near])
+    if len(normals) < 30:
+        return None
+    candidates = normals[np.linspace(0, len(normals) - 1, min(_MAX_TRIALS, len(normals))).astype(int)]
+    agreement = np.exp((normals @ candidates.T - 1.0) / np.deg2rad(5.0) ** 2)
+    # Walls cross level surfaces at right angles: a direction that walls lie along is more likely up.
+    across = samples.normals[~near]
+    support = areas @ agreement + 0.3 * (np.abs(across @ candidates.T) < np.sin(np.deg2rad(4.0))).sum(axis=0)
+    prior = 1.0 - 0.5 * (1.0 - candidates @ up_expected) / (1.0 - np.cos(UP_CONE_RAD))
+    up = candidates[int((support * prior).argmax())]
+    for limit in (ALIGNED_RAD, LEVEL_RAD, LEVEL_RAD, LEVEL_RAD):
+        members = normals @ up > np.cos(limit)
+        if members.sum() < 10:
+            return None
+        mean = (normals[members] * areas[members, None]).sum(axis=0)
+        up = mean / np.linalg.norm(mean)
+    return up
+
+
+def _tempered(areas: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
+    """Relative weights between pixels and areas: far points are few, but noisy."""
+    return np.sqrt(areas / areas.mean()) if len(areas) else areas
+
+
+def _floor(samples: _Samples, up: Float[np.ndarray, "3"]) -> tuple[Float[np.ndarray, "3"], float] | None:
+    """The lowest level surface of some extent with next to nothing below it: refined up, and camera height."""
+    level = samples.normals @ up > np.cos(ALIGNED_RAD)
+    drops = -(samples.points[level] @ up)
+    if len(drops) == 0:
+        return None
+    edges = np.arange(FLOOR_HEIGHT_M[0], FLOOR_HEIGHT_M[1], _BIN_M)
+    histogram = np.histogram(drops, bins=edges, weights=samples.areas[level])[0]
+    broad = np.convolve(histogram, np.ones(5), mode="same")
+    enough = np.flatnonzero(broad > max(MIN_LEVEL_M2, 0.05 * broad.max()))
+    all_drops = -(samples.points @ up)
+    for start in enough[::-1]:
+        low = max(0, start - 5)
+        height = float(edges[low + int(broad[low : start + 1].argmax())]) + 0.5 * _BIN_M
+        if (all_drops > height + 0.06 + 0.03 * height).mean() < BELOW_SHARE:
+            return _fitted_floor(samples, level, up, height)
+    return None
+
+
+def _fitted_floor(
+    samples: _Samples, level: Bool[np.ndarray, "n"], up: Float[np.ndarray, "3"], height: float
+) -> tuple[Float[np.ndarray, "3"], float]:
+    """Least squares through the floor's points, the tolerance growing with distance as the sensor's noise does."""
+    points = samples.points[level]
+    start = up
+    for share in (0.06, 0.04, 0.03, 0.03):
+        near = np.abs(points @ up + height) < 0.01 + share * height * np.maximum(points[:, 2] / 3.0, 0.5)
+        if near.sum() < 30:
+            break
+        normal, offset = fit_plane(points[near])
+        if normal @ start < 0:
+            normal, offset = -normal, -offset
+        if normal @ start < np.cos(ALIGNED_RAD):  # a sliver of floor does not fix a plane
+            break
+        up, height = normal, -offset
+    return up, height
+
+
+def _wall_direction(
+    samples: _Samples, up: Float[np.ndarray, "3"], expected: Float[np.ndarray, "3"]
+) -> tuple[Float[np.ndarray, "3"], float]:
+    """The horizontal direction that most upright surface faces, quarter turns free, and the share that agrees."""
+    along = expected - (expected @ up) * up
+    along /= max(float(np.linalg.norm(along)), 1e-9)
+    across = np.cross(up, along)
+    upright = np.abs(samples.normals @ up) < np.sin(ALIGNED_RAD)
+    if upright.sum() < 30:
+        return along, 0.0
+    normals, weights = samples.normals[upright], _tempered(samples.areas[upright])
+    headings = np.arctan2(normals @ across, normals @ along)
+    trials = np.deg2rad(np.arange(-45.0, 45.0, 0.5))
+    turn = (headings[:, None] - trials + np.pi / 4) % (np.pi / 2) - np.pi / 4
+    best = float(trials[int((weights @ np.exp(-0.5 * (turn / np.deg2rad(4.0)) ** 2)).argmax())])
+    for _ in range(3):
+        off = (headings - best + np.pi / 4) % (np.pi / 2) - np.pi / 4
+        w = weights * np.exp(-0.5 * (off / np.deg2rad(4.0)) ** 2)
+        best += float((w * off).sum() / max(w.sum(), 1e-9))
+    agree = np.abs((headings - best + np.pi / 4) % (np.pi / 2) - np.pi / 4) < LEVEL_RAD
+    return np.cos(best) * along + np.sin(best) * across, float(agree.sum() / len(samples.normals))

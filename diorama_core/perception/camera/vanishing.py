@@ -1,0 +1,253 @@
+"""Gravity, room axes and focal length from straight lines: a deterministic search over Manhattan frames.
+
+Every frame is three vanishing points, up and two horizontals. A segment speaks for a vanishing point by the sine, in
+the picture, between the segment and the line from its middle to that point (after Rother 2002; the search over frames
+in place of RANSAC after Bazin et al. 2012). The response on a fixed set of directions is computed once; all frames of a
+coarse grid read it; the best are scored again with each segment counted once, and refined.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from jaxtyping import Float, Float32, Int
+from scipy.spatial import cKDTree
+
+from diorama_core.perception.camera.frames import (
+    facing_direction,
+    frame_difference_rad,
+    pitch_and_roll,
+    up_in_camera,
+    world_frame,
+)
+from diorama_core.scene.types import Intrinsics
+
+SIGMA_RAD = float(np.deg2rad(1.5))
+PRIOR_WEIGHT = 0.03
+PITCH_PRIOR_RAD = (float(np.deg2rad(12.0)), float(np.deg2rad(20.0)))
+ROLL_SIGMA_RAD = float(np.deg2rad(5.0))
+FOCAL_PRIOR = (0.78, 0.25)
+"""Focal length over the longer side: median, and standard deviation of the logarithm."""
+FOCAL_GRID = np.geomspace(0.5, 1.6, 13)
+FEW_SEGMENTS = 8.0
+"""So many segments are half of full evidence against the prior."""
+_DIRECTIONS = 4000
+_RESCORED = 400
+_REFINED_KNOWN = 6
+_REFINED_UNKNOWN = 8
+_SEPARATION_RAD = float(np.deg2rad(5.0))
+
+
+@dataclass(frozen=True)
+class FrameFit:
+    """One reading of the picture's lines."""
+
+    R_world_camera: Float[np.ndarray, "3 3"]
+    focal: float
+    """Over the picture's longer side."""
+    support: float
+    """Share of the segments' weight that agrees with the frame, 0 to 1."""
+    score: float
+    """Support with the prior added; frames of one picture are compared by it."""
+
+
+@dataclass(frozen=True)
+class Lines:
+    """Segments about the principal point, in units of the picture's longer side."""
+
+    middles: Float32[np.ndarray, "n 2"]
+    directions: Float32[np.ndarray, "n 2"]
+    weights: Float32[np.ndarray, "n"]
+    """Sum to at most 1; less where there are few segments."""
+
+    @classmethod
+    def of(cls, segments_px: Float[np.ndarray, "n 4"], intrinsics: Intrinsics) -> Lines:
+        """Segments in pixels seen by a camera; only its centre and the proportion of its focal lengths are used."""
+        side = max(intrinsics.width, intrinsics.height)
+        scale = np.array([1.0, intrinsics.fx / intrinsics.fy]) / side
+        ends = (segments_px.reshape(-1, 2, 2) - [intrinsics.cx, intrinsics.cy]) * scale
+        along = ends[:, 1] - ends[:, 0]
+        lengths = np.linalg.norm(along, axis=1)
+        ends, along, lengths = ends[lengths > 1e-6], along[lengths > 1e-6], lengths[lengths > 1e-6]
+        if len(lengths) == 0:
+            return cls(*(np.zeros(shape, np.float32) for shape in ((0, 2), (0, 2), (0,))))
+        weights = np.minimum(lengths, np.percentile(lengths, 95))
+        weights *= len(lengths) / (len(lengths) + FEW_SEGMENTS) / weights.sum()
+        as32 = (ends.mean(axis=1), along / lengths[:, None], weights)
+        return cls(*(a.astype(np.float32) for a in as32))
+
+
+def search_frames(lines: Lines, focal: float | None, count: int = 6) -> tuple[FrameFit, ...]:
+    """The best room frames of a picture's lines, best first, at least one.
+
+    Args:
+        lines: The segments.
+        focal: Focal length over the longer side; None to look for it as well.
+        count: At most so many are returned.
+    """
+    focals = FOCAL_GRID if focal is None else np.array([focal])
+    starts: list[tuple[float, np.ndarray, float]] = []
+    for f in focals:
+        starts += [(s + _focal_log_prior(f, focal), R, float(f)) for s, R in _coarse_frames(lines, float(f))]
+    starts.sort(key=lambda s: -s[0])
+    chosen = _separated(starts, _REFINED_KNOWN if focal is not None else _REFINED_UNKNOWN)
+    fits = sorted((_refined(lines, R, f, focal) for _, R, f in chosen), key=lambda fit: -fit.score)
+    return tuple(fits[:count])
+
+
+def signed_sines(lines: Lines, axes_camera: Float[np.ndarray, "*k 3"], focal: float) -> Float[np.ndarray, "*k n"]:
+    """Sine in the picture between each segment and the line from its middle to each direction's vanishing point."""
+    axes = np.asarray(axes_camera, dtype=np.float32)[..., None, :]
+    to_x = focal * axes[..., 0] - lines.middles[:, 0] * axes[..., 2]
+    to_y = focal * axes[..., 1] - lines.middles[:, 1] * axes[..., 2]
+    across = lines.directions[:, 0] * to_y - lines.directions[:, 1] * to_x
+    return across / np.sqrt(to_x * to_x + to_y * to_y + 1e-12)
+
+
+def assignment(lines: Lines, fit: FrameFit) -> Int[np.ndarray, "n"]:
+    """For each segment the world axis (0 X, 1 Y, 2 up) that it runs along, -1 where none is near."""
+    sines = np.abs(signed_sines(lines, fit.R_world_camera, fit.focal))
+    return np.where(sines.min(axis=0) < 2.5 * SIGMA_RAD, sines.argmin(axis=0), -1)
+
+
+def _agreement(sines: Float[np.ndarray, "*n"], sigma: float = SIGMA_RAD) -> Float[np.ndarray, "*n"]:
+    return np.exp(-0.5 * np.square(sines / sigma))
+
+
+def _coarse_frames(lines: Lines, focal: float) -> list[tuple[float, Float[np.ndarray, "3 3"]]]:
+    """The best frames of the grid at one focal length, each segment counted once."""
+    grid = _grid()
+    sines = signed_sines(lines, grid.directions, focal)
+    response = _agreement(sines, 1.3 * SIGMA_RAD) @ lines.weights
+    rough = response[grid.indices].sum(axis=1) + PRIOR_WEIGHT * grid.log_prior
+    top = np.argpartition(-rough, _RESCORED)[:_RESCORED]
+    top = top[np.lexsort((top, -rough[top]))]
+    agreement = _agreement(signed_sines(lines, grid.frames[top], focal), 1.3 * SIGMA_RAD)
+    scores = agreement.max(axis=1) @ lines.weights + PRIOR_WEIGHT * grid.log_prior[top]
+    order = np.argsort(-scores, kind="stable")
+    ranked = [(float(scores[i]), grid.frames[top[i]], focal) for i in order]
+    return [(score, R) for score, R, _ in _separated(ranked, _REFINED_KNOWN)]
+
+
+def _separated(
+    ranked: list[tuple[float, Float[np.ndarray, "3 3"], float]], count: int
+) -> list[tuple[float, Float[np.ndarray, "3 3"], float]]:
+    """The best that differ from all better ones by more than five degrees (or ten percent of focal length)."""
+    kept: list[tuple[float, np.ndarray, float]] = []
+    for item in ranked:
+        near = (
+            abs(np.log(item[2] / k[2])) < 0.1 and frame_difference_rad(item[1], k[1]) < _SEPARATION_RAD for k in kept
+        )
+        if not any(near):
+            kept.append(item)
+        if len(kept) == count:
+            break
+    return kept
+
+
+def _refined(lines: Lines, R_start: Float[np.ndarray, "3 3"], focal_start: float, known: float | None) -> FrameFit:
+    """Reweighted Gauss-Newton on rotation (and focal length), the tolerance narrowing to its final value."""
+    R, focal = R_start, focal_start
+    free = 3 if known is not None else 4
+    for sigma in np.array([2.0, 1.7, 1.4, 1.2, 1.0, 1.0, 1.0, 1.0]) * SIGMA_RAD:
+        step = _gauss_newton_step(lines, R, focal, float(sigma), free, known)
+        R = R @ _rotation(step[:3])
+        if known is None:
+            focal = float(np.clip(focal * np.exp(np.clip(step[3], -0.2, 0.2)), 0.35, 2.5))
+    R = world_frame(R[2], R[1])
+    best = _agreement(signed_sines(lines, R, focal)).max(axis=0)
+    support = float(best @ lines.weights)
+    prior = PRIOR_WEIGHT * _frame_log_prior(R[2])
+    return FrameFit(R, focal, support, support + float(prior) + _focal_log_prior(focal, known))
+
+
+def _gauss_newton_step(
+    lines: Lines, R: Float[np.ndarray, "3 3"], focal: float, sigma: float, free: int, known: float | None
+) -> Float[np.ndarray, "free"]:
+    """One step of least squares on the segments' sines and the priors, in units of their deviations."""
+    sines = signed_sines(lines, R, focal).astype(np.float64)
+    nearest = np.abs(sines).argmin(axis=0)
+    pick = (nearest, np.arange(len(nearest)))
+    weights = lines.weights * _agreement(sines[pick], sigma)
+
+    def residuals(step: np.ndarray) -> np.ndarray:
+        moved = R @ _rotation(step[:3])
+        f = focal * np.exp(step[3]) if free == 4 else focal
+        lines_part = np.sqrt(weights) * signed_sines(lines, moved, f)[pick].astype(np.float64) / sigma
+        pitch, roll = pitch_and_roll(moved[2])
+        prior = [(pitch - PITCH_PRIOR_RAD[0]) / PITCH_PRIOR_RAD[1], roll / ROLL_SIGMA_RAD]
+        if known is None:
+            prior.append(np.log(f / FOCAL_PRIOR[0]) / FOCAL_PRIOR[1])
+        return np.concatenate([lines_part, np.sqrt(PRIOR_WEIGHT) * np.array(prior)])
+
+    h = 2e-3
+    unit = np.eye(free) * h
+    J = np.stack([(residuals(e) - residuals(-e)) / (2 * h) for e in unit], axis=1)
+    r = residuals(np.zeros(free))
+    step = -np.linalg.solve(J.T @ J + 1e-6 * np.eye(free), J.T @ r)
+    return step * min(1.0, 0.1 / max(float(np.linalg.norm(step[:3])), 1e-9))
+
+
+def _rotation(vector: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
+    """Rodrigues' formula."""
+    angle = float(np.linalg.norm(vector))
+    x, y, z = vector / max(angle, 1e-12)
+    k = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + np.sin(angle) * k + (1 - np.cos(angle)) * (k @ k)
+
+
+def _frame_log_prior(up_camera: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n"]:
+    pitch, roll = pitch_and_roll(up_camera)
+    centre, spread = PITCH_PRIOR_RAD
+    return -0.5 * (np.square((pitch - centre) / spread) + np.square(roll / ROLL_SIGMA_RAD))
+
+
+def _focal_log_prior(focal: float, known: float | None) -> float:
+    if known is not None:
+        return 0.0
+    return PRIOR_WEIGHT * -0.5 * float(np.square(np.log(focal / FOCAL_PRIOR[0]) / FOCAL_PRIOR[1]))
+
+
+@dataclass(frozen=True)
+class _Grid:
+    """The fixed set of directions, and all coarse frames with the directions nearest to their axes."""
+
+    directions: Float32[np.ndarray, "m 3"]
+    frames: Float[np.ndarray, "g 3 3"]
+    indices: Int[np.ndarray, "g 3"]
+    log_prior: Float[np.ndarray, "g"]
+
+
+@cache
+def _grid() -> _Grid:
+    """Pitch -30 to 62, roll -16 to 16, heading 0 to 88 degrees, by 2 degrees; computed once per process."""
+    degrees = np.meshgrid(np.arange(-30, 63, 2), np.arange(-16, 17, 2), np.arange(0, 89, 2), indexing="ij")
+    pitch, roll, heading = (np.deg2rad(d.ravel().astype(np.float64)) for d in degrees)
+    up = up_in_camera(pitch, roll)
+    forward = np.array([0.0, 0.0, 1.0]) - (up @ [0.0, 0.0, 1.0])[:, None] * up
+    forward /= np.linalg.norm(forward, axis=1, keepdims=True)
+    right = np.cross(forward, up)
+    heading = heading - np.pi / 4
+    c, s = np.cos(heading)[:, None], np.sin(heading)[:, None]
+    along = c * forward + s * right
+    frames = np.stack([np.cross(along, up), along, up], axis=1)
+    directions = _hemisphere(_DIRECTIONS)
+    tree = cKDTree(np.concatenate([directions, -directions]))
+    indices = tree.query(frames.reshape(-1, 3))[1].reshape(-1, 3) % len(directions)
+    return _Grid(directions.astype(np.float32), frames, indices, _frame_log_prior(up))
+
+
+def _hemisphere(count: int) -> Float[np.ndarray, "count 3"]:
+    """Evenly spread unit directions with z >= 0 (Fibonacci spiral)."""
+    z = (np.arange(count) + 0.5) / count
+    turn = np.arange(count) * np.pi * (3.0 - np.sqrt(5.0))
+    r = np.sqrt(1 - z * z)
+    return np.stack([r * np.cos(turn), r * np.sin(turn), z], axis=1)
+
+
+def prior_frame() -> Float[np.ndarray, "3 3"]:
+    """How a room is usually photographed: level, looking down a little, the room's axis straight ahead."""
+    up = up_in_camera(PITCH_PRIOR_RAD[0], 0.0)
+    return world_frame(up, facing_direction(up))
