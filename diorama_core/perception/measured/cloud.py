@@ -1,0 +1,75 @@
+"""The measured points of one object: eroded mask, the right depth layer, no strays."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float
+from scipy import ndimage
+
+from diorama_core.artefacts import DetectedObject
+
+VOXEL_M = 0.04
+MAX_CELLS = 128
+"""Points farther than this many cells from the first, along an axis, are lumped together."""
+MIN_POINTS = 30
+LAYER_GAP_M = 0.12
+"""Steps in depth larger than this (plus 4 % of the depth) separate an object from what is behind or before it."""
+
+
+def eroded(mask: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+    """The mask less its rim, where depth mixes with the background; as it was when nothing would remain."""
+    inner = cv2.erode(mask.astype(np.uint8), np.ones((3, 3), np.uint8), borderValue=1).astype(bool)
+    return inner if inner.sum() >= MIN_POINTS else mask
+
+
+def object_points(
+    found: DetectedObject, points_world: Float[np.ndarray, "h w 3"], depth_m: Float[np.ndarray, "h w"]
+) -> Float[np.ndarray, "n 3"]:
+    """World points of an object, at least `MIN_POINTS` or none at all.
+
+    Args:
+        found: Its mask; a mask from a box alone may hold background.
+        points_world: Of every pixel.
+        depth_m: Of every pixel, 0 where missing.
+    """
+    rows, columns = np.nonzero(eroded(found.mask) & (depth_m > 0))
+    if len(rows) < MIN_POINTS:
+        return np.zeros((0, 3))
+    layer = main_layer(depth_m[rows, columns], _centrality(found, rows, columns))
+    return largest_piece(points_world[rows[layer], columns[layer]])
+
+
+def _centrality(found: DetectedObject, rows: np.ndarray, columns: np.ndarray) -> Float[np.ndarray, "n"]:
+    """Weights that trust a mask's middle more than its border; even for a mask known to be right."""
+    x1, y1, x2, y2 = found.box
+    across = np.abs((columns + 0.5 - 0.5 * (x1 + x2)) / max(x2 - x1, 1.0))
+    down = np.abs((rows + 0.5 - 0.5 * (y1 + y2)) / max(y2 - y1, 1.0))
+    return 1.0 - (1.0 - found.mask_confidence) * np.clip(2.0 * np.maximum(across, down), 0.0, 1.0)
+
+
+def main_layer(depth_m: Float[np.ndarray, "n"], weights: Float[np.ndarray, "n"]) -> Bool[np.ndarray, "n"]:
+    """The pixels of the heaviest layer of depth; layers are parted by gaps."""
+    order = np.argsort(depth_m, kind="stable")
+    ranked = depth_m[order]
+    parts = np.concatenate([[0], np.cumsum(np.diff(ranked) > LAYER_GAP_M + 0.04 * ranked[:-1])])
+    heaviest = np.bincount(parts, weights=weights[order]).argmax()
+    keep = np.zeros(len(depth_m), dtype=bool)
+    keep[order] = parts == heaviest
+    return keep
+
+
+def largest_piece(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 3"]:
+    """Points of the connected pieces that hold at least a fifth of the largest one's; none when all are few."""
+    if len(points) < MIN_POINTS:
+        return np.zeros((0, 3))
+    low = points.min(axis=0)
+    cells = ((points - low) / VOXEL_M).astype(int)
+    cells = np.minimum(cells, MAX_CELLS - 1)
+    grid = np.zeros(cells.max(axis=0) + 1, dtype=bool)
+    grid[tuple(cells.T)] = True
+    joined = ndimage.binary_dilation(grid, np.ones((3, 3, 3), bool))
+    labels = ndimage.label(joined)[0][tuple(cells.T)]
+    sizes = np.bincount(labels)
+    kept = points[sizes[labels] >= 0.2 * sizes.max()]
+    return kept if len(kept) >= MIN_POINTS else np.zeros((0, 3))

@@ -1,0 +1,140 @@
+"""Metric camera, cuboids and support edges from measured depth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float
+
+from diorama_core.artefacts import CameraEstimate, DetectedObject, Inputs, ObjectGeometry
+from diorama_core.geometry.depth_grid import points_camera, reduced, smooth_normals_camera
+from diorama_core.library.taxonomy import Category, resolve
+from diorama_core.perception.measured.boxes import Extent, completed, observed_extent, to_cuboid
+from diorama_core.perception.measured.cloud import MIN_POINTS, object_points
+from diorama_core.perception.measured.standing import grounded, supporters
+from diorama_core.progress import Progress
+from diorama_core.scene.types import Camera
+
+ASSUMED_HEIGHT_M = 1.4
+"""How high a camera is held when no floor is seen."""
+GUESS_CONFIDENCE = 0.2
+RING_PX = 0.02
+"""Width of the ring of background around a mask, as a share of the picture."""
+FULL_POINTS = 1500
+"""From this many points on, a cloud is as good as it gets."""
+
+
+@dataclass(frozen=True)
+class MeasuredGeometry:
+    """Objects from depth: clouds of the masked pixels, upright boxes around them, completed by usual sizes."""
+
+    def measure(
+        self, inputs: Inputs, camera: CameraEstimate, objects: tuple[DetectedObject, ...], progress: Progress
+    ) -> ObjectGeometry:
+        """The posed camera, a cuboid for every object, and what stands on what.
+
+        Raises:
+            ValueError: when the inputs hold no measured depth.
+        """
+        if inputs.depth_m is None:
+            raise ValueError("MeasuredGeometry needs measured depth; use SingleViewMetrology for a photo alone")
+        progress.report(0.0, "Reading the measured depth")
+        posed, told = posed_camera(camera, inputs.depth_m)
+        depth = inputs.depth_m
+        world = points_camera(depth, posed.intrinsics) @ posed.T_world_camera[:3, :3].T + posed.position
+        extents: dict[str, Extent] = {}
+        sureness: dict[str, float] = {}
+        categories = {o.id: resolve(o.category).category for o in objects}
+        for index, found in enumerate(objects):
+            progress.report(0.1 + 0.8 * index / len(objects), f"Measuring the {found.label}")
+            extents[found.id], sureness[found.id] = measured_extent(found, categories[found.id], world, depth, posed)
+        edges = supporters(extents, categories)
+        standing = grounded(extents, categories, edges)
+        cuboids = tuple(
+            to_cuboid(key, extent, categories[key], posed.position, sureness[key]) for key, extent in standing.items()
+        )
+        progress.report(1.0, "Objects are measured")
+        return ObjectGeometry(posed, cuboids, edges, told, camera.confidence)
+
+
+def posed_camera(camera: CameraEstimate, depth_m: Float[np.ndarray, "h w"]) -> tuple[Camera, str]:
+    """The camera over the world's origin, and where its height comes from, in words."""
+    best = camera.best
+    height, told = camera.height_m, "measured depth; camera height from the floor"
+    if height is None:
+        height = floor_distance(depth_m, camera)
+    if height is None:
+        height, told = ASSUMED_HEIGHT_M, f"measured depth; no floor seen, camera assumed {ASSUMED_HEIGHT_M} m above it"
+    T = np.eye(4)
+    T[:3, :3], T[2, 3] = best.R_world_camera, height
+    return Camera(best.intrinsics, T), told
+
+
+def floor_distance(depth_m: Float[np.ndarray, "h w"], camera: CameraEstimate) -> float | None:
+    """How far the lowest large level surface lies below the camera; none when there is no such surface."""
+    small, k = reduced(np.asarray(depth_m, dtype=np.float32), camera.best.intrinsics, 320)
+    R = camera.best.R_world_camera
+    points, normals = points_camera(small, k) @ R.T, smooth_normals_camera(small, k) @ R.T
+    level = (normals[..., 2] > 0.9) & (small > 0) & (points[..., 2] < -0.3)
+    drops = -points[level][:, 2]
+    if len(drops) < 0.01 * small.size:
+        return None
+    histogram = np.convolve(np.bincount((drops / 0.03).astype(int)), np.ones(3), mode="same")
+    strong = np.flatnonzero(histogram > 0.25 * histogram.max())
+    centre = (strong.max() + 0.5) * 0.03
+    return float(np.median(drops[np.abs(drops - centre) < 0.06]))
+
+
+def measured_extent(
+    found: DetectedObject,
+    category: Category,
+    points_world: Float[np.ndarray, "h w 3"],
+    depth_m: Float[np.ndarray, "h w"],
+    camera: Camera,
+) -> tuple[Extent, float]:
+    """The box of one object and how far it can be trusted."""
+    points = object_points(found, points_world, depth_m)
+    flat = category.priors[0].height_m < 0.1
+    above = points[points[:, 2] > 0.03] if not flat else points
+    points = above if len(above) >= MIN_POINTS else points
+    if len(points) < MIN_POINTS:
+        return _usual_extent(found, category, depth_m, camera), GUESS_CONFIDENCE
+    seen = observed_extent(points, category)
+    width = found.mask.shape[1]
+    cut_off = np.array([found.box[0] < 2, found.box[2] > width - 2, found.box[1] < 2])
+    behind = _ring_points(found.mask, points_world, depth_m, float(np.median(camera.to_camera(points)[:, 2])))
+    whole = completed(seen, category, camera.position, cut_off, behind)
+    share_seen = float(np.prod(seen.size[:2]) / np.prod(whole.size[:2]))
+    confidence = (0.4 + 0.5 * min(1.0, len(points) / FULL_POINTS)) * (0.6 + 0.4 * share_seen)
+    return whole, confidence
+
+
+def _ring_points(
+    mask: Bool[np.ndarray, "h w"],
+    points_world: Float[np.ndarray, "h w 3"],
+    depth_m: Float[np.ndarray, "h w"],
+    object_depth_m: float,
+) -> Float[np.ndarray, "m 3"]:
+    """Points seen just around a mask that lie behind the object."""
+    radius = max(3, round(RING_PX * max(mask.shape)))
+    kernel = np.ones((2 * radius + 1, 2 * radius + 1), np.uint8)
+    ring = cv2.dilate(mask.astype(np.uint8), kernel).astype(bool) & ~mask
+    return points_world[ring & (depth_m > object_depth_m)]
+
+
+def _usual_extent(
+    found: DetectedObject, category: Category, depth_m: Float[np.ndarray, "h w"], camera: Camera
+) -> Extent:
+    """A box of usual size where the depth has a hole: at the depth around the mask, else as far as its height tells."""
+    x1, y1, x2, y2 = found.box
+    prior = category.priors[0]
+    rows, columns = slice(int(y1), int(np.ceil(y2))), slice(int(x1), int(np.ceil(x2)))
+    near = depth_m[rows, columns]
+    near = near[near > 0]
+    by_height = camera.intrinsics.fy * prior.height_m / max(y2 - y1, 1.0)
+    distance = float(np.median(near)) if len(near) else by_height
+    centre = camera.position + distance * camera.rays(np.array([0.5 * (x1 + x2), 0.5 * (y1 + y2)]))
+    half = 0.5 * np.array([prior.depth_m, prior.width_m, prior.height_m])
+    return Extent(0.0, centre - half, centre + half)

@@ -1,0 +1,93 @@
+"""What stands on what, from where the boxes are."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from diorama_core.library.taxonomy import Category
+from diorama_core.perception.measured.boxes import Extent
+from diorama_core.scene.types import Support, yaw_rotation
+
+ON_FLOOR_M = 0.15
+"""A bottom lower than this rests on the floor: lower parts are often hidden."""
+CONTACT_M = 0.2
+"""A bottom within this of a supporter's top rests on it."""
+RUG_M = 0.05
+
+
+def supporters(extents: dict[str, Extent], categories: dict[str, Category]) -> tuple[Support, ...]:
+    """One edge per object: to the floor, to an object below, to the wall or the ceiling; never a cycle."""
+    return tuple(_edge(key, extents, categories) for key in extents)
+
+
+def _edge(key: str, extents: dict[str, Extent], categories: dict[str, Category]) -> Support:
+    extent, category = extents[key], categories[key]
+    bottom = float(extent.low[2])
+    if category.mount == "ceiling":
+        return Support(key, "ceiling", "mounted on")
+    if category.mount == "wall" and bottom > RUG_M:
+        return Support(key, "wall", "mounted on")
+    below = _below(key, extents, categories)
+    if below is not None and (category.mount == "surface" or bottom > ON_FLOOR_M):
+        return Support(key, below)
+    if category.mount == "wall":
+        return Support(key, "wall", "mounted on")
+    return Support(key, "floor")
+
+
+def _below(key: str, extents: dict[str, Extent], categories: dict[str, Category]) -> str | None:
+    """The object whose top, or seat, is nearest under this one's bottom and under its middle."""
+    extent = extents[key]
+    bottom = float(extent.low[2])
+    best: tuple[float, str] | None = None
+    for other, candidate in extents.items():
+        if other == key or not categories[other].supports_things or not _over(extent, candidate):
+            continue
+        if candidate.low[2] >= bottom or _volume(candidate) <= _volume(extent):
+            continue
+        gap = min(abs(bottom - height) for height in resting_heights(candidate, categories[other]))
+        if gap < CONTACT_M + 0.25 * float(extent.size[2]) and (best is None or gap < best[0]):
+            best = (gap, other)
+    return best[1] if best else None
+
+
+def _volume(extent: Extent) -> float:
+    return float(np.prod(extent.size))
+
+
+def _over(child: Extent, parent: Extent) -> bool:
+    """Whether the child's middle is above the parent's footprint, within a small margin."""
+    middle = child.centre_world @ yaw_rotation(parent.yaw_rad)
+    return bool(((middle[:2] > parent.low[:2] - 0.08) & (middle[:2] < parent.high[:2] + 0.08)).all())
+
+
+def resting_heights(extent: Extent, category: Category) -> list[float]:
+    """Heights at which things lie on an object: its top, and its seat."""
+    heights = [float(extent.high[2])]
+    if category.seat_height_m is not None and category.seat_height_m < extent.high[2]:
+        heights.append(category.seat_height_m)
+    return heights
+
+
+def grounded(
+    extents: dict[str, Extent], categories: dict[str, Category], edges: tuple[Support, ...]
+) -> dict[str, Extent]:
+    """The boxes reaching down to what holds them: the floor, or the supporter's top or seat."""
+    out = dict(extents)
+    for edge in edges:
+        extent = extents[edge.child]
+        if edge.parent == "floor":
+            out[edge.child] = _with_bottom(extent, 0.0)
+        elif edge.parent in extents:
+            heights = resting_heights(extents[edge.parent], categories[edge.parent])
+            out[edge.child] = _with_bottom(extent, min(heights, key=lambda h: abs(h - float(extent.low[2]))))
+    return out
+
+
+def _with_bottom(extent: Extent, bottom_m: float) -> Extent:
+    low, high = extent.low.copy(), extent.high.copy()
+    low[2] = bottom_m
+    high[2] = max(high[2], bottom_m + 0.02)
+    return replace(extent, low=low, high=high)
