@@ -1,0 +1,293 @@
+"""One browser: its camera, its drawing board, its notices. Holds nothing that a reload must not lose."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+import viser
+from jaxtyping import Float, UInt8
+
+from diorama_app.viewport import quaternion, reduced
+from diorama_core.artefacts import Box, LabelledBox
+from diorama_core.scene.types import Camera, Scene
+
+BOARD_CENTRE = np.array([0.0, 0.0, 400.0])
+"""The photo stands here, far above the room, while boxes are drawn on it."""
+BOARD_HEIGHT_M = 1.0
+BOARD_DISTANCE_M = 1.25
+DEFAULT_FOV_RAD = np.radians(50.0)
+BOX_COLOURS = ((47, 111, 214), (214, 84, 47), (38, 150, 96), (160, 80, 200), (200, 150, 20), (20, 150, 170))
+
+NoticeKind = Literal["info", "good", "bad"]
+OnBox = Callable[[Box], None]
+
+
+@dataclass(frozen=True)
+class Board:
+    """The photo on the drawing board: where its pixels are in the world."""
+
+    width_px: int
+    height_px: int
+
+    @property
+    def width_m(self) -> float:
+        """Width of the picture on the board."""
+        return BOARD_HEIGHT_M * self.width_px / self.height_px
+
+    def to_world(self, pixels: Float[np.ndarray, "*n 2"], lift_m: float = 0.0) -> Float[np.ndarray, "*n 3"]:
+        """Photo pixels on the board, `lift_m` in front of it."""
+        u = np.asarray(pixels, dtype=np.float64) / (self.width_px, self.height_px) - 0.5
+        y = np.full(u.shape[:-1], -lift_m)
+        return BOARD_CENTRE + np.stack([u[..., 0] * self.width_m, y, -u[..., 1] * BOARD_HEIGHT_M], axis=-1)
+
+    def to_pixels(
+        self, origin: Float[np.ndarray, "3"], directions: Float[np.ndarray, "*n 3"]
+    ) -> Float[np.ndarray, "*n 2"]:
+        """Where rays from `origin` meet the board, in photo pixels (outside the photo too)."""
+        along = np.where(np.abs(directions[..., 1]) < 1e-9, 1e-9, directions[..., 1])
+        points = origin + directions * ((BOARD_CENTRE[1] - origin[1]) / along)[..., None] - BOARD_CENTRE
+        u = np.stack([points[..., 0] / self.width_m, -points[..., 2] / BOARD_HEIGHT_M], axis=-1) + 0.5
+        return u * (self.width_px, self.height_px)
+
+
+def screen_rays(
+    screen: Float[np.ndarray, "*n 2"], R_world_camera: Float[np.ndarray, "3 3"], fov_rad: float, aspect: float
+) -> Float[np.ndarray, "*n 3"]:
+    """World directions through points of the screen (0 to 1, from the top left) of a camera with this vertical view."""
+    half = np.tan(fov_rad / 2)
+    s = 2.0 * np.asarray(screen, dtype=np.float64) - 1.0
+    camera = np.stack([s[..., 0] * half * aspect, s[..., 1] * half, np.ones(s.shape[:-1])], axis=-1)
+    return camera @ np.asarray(R_world_camera).T
+
+
+def fitting_fov(width: float, height: float, fx: float, fy: float, cx: float, cy: float, aspect: float) -> float:
+    """The vertical field of view (rad) whose frustum around the optical axis contains the whole photo."""
+    half_up = max(cy, height - cy) / fy
+    half_across = max(cx, width - cx) / fx
+    return float(2 * np.arctan(max(half_up, half_across / max(aspect, 1e-6))))
+
+
+class ClientView:
+    """What differs between browsers. Used from the desk's thread only."""
+
+    def __init__(self, client: viser.ClientHandle) -> None:
+        self._client = client
+        self.board: Board | None = None
+        self._board_nodes: list[viser.SceneNodeHandle] = []
+        self._box_nodes: list[viser.SceneNodeHandle] = []
+        self._overlay: viser.ImageHandle | None = None
+        self._backdrop: viser.ImageHandle | None = None
+
+    @property
+    def aspect(self) -> float:
+        """Width over height of this browser's 3D view."""
+        return float(self._client.camera.aspect)
+
+    def notice(self, message: str, kind: NoticeKind = "info", seconds: float = 6.0) -> None:
+        """A short notice at the edge of the view."""
+        title = {"info": "Diorama", "good": "Done", "bad": "That did not work"}[kind]
+        colour = {"info": (47, 111, 214), "good": (38, 150, 96), "bad": (210, 62, 50)}[kind]
+        self._client.add_notification(title, message, color=colour, auto_close_seconds=seconds)
+
+    def download(self, name: str, content: bytes) -> None:
+        """Hand a file to the person."""
+        self._client.send_file_download(name, content, save_immediately=True)
+
+    def look(
+        self, position: Float[np.ndarray, "3"], target: Float[np.ndarray, "3"], fov_rad: float = float(DEFAULT_FOV_RAD)
+    ) -> None:
+        """Look from a place at a point, upright."""
+        camera = self._client.camera
+        with self._client.atomic():
+            camera.fov = fov_rad
+            camera.up_direction = (0.0, 0.0, 1.0)
+            camera.position = position
+            camera.look_at = target
+        self._client.flush()
+
+    def look_through(self, camera: Camera, target_distance_m: float) -> None:
+        """Look through the photo's camera, with the whole photo in view."""
+        k, R = camera.intrinsics, camera.T_world_camera[:3, :3]
+        handle = self._client.camera
+        with self._client.atomic():
+            handle.fov = fitting_fov(k.width, k.height, k.fx, k.fy, k.cx, k.cy, self.aspect)
+            handle.up_direction = (0.0, 0.0, 1.0)
+            handle.position = camera.position
+            handle.look_at = camera.position + R[:, 2] * target_distance_m
+            handle.wxyz = quaternion(R)
+        self._client.flush()
+
+    def approach(self, target: Float[np.ndarray, "3"], distance_m: float) -> None:
+        """Look at a point from `distance_m`, keeping the direction of view."""
+        camera = self._client.camera
+        back = np.asarray(camera.position) - np.asarray(camera.look_at)
+        length = float(np.linalg.norm(back))
+        back = back / length if length > 1e-6 else np.array([-0.5, -0.7, 0.5])
+        self.look(target + back * distance_m, target, float(camera.fov))
+
+    @property
+    def looked_at(self) -> Float[np.ndarray, "3"]:
+        """The point in the middle of the view."""
+        return np.asarray(self._client.camera.look_at, dtype=np.float64)
+
+    # -- the photo in the room ---------------------------------------------------------------------------------
+
+    def show_backdrop(self, camera: Camera | None, photo: UInt8[np.ndarray, "h w 3"] | None, depth_m: float) -> None:
+        """The photo as a backdrop at `depth_m` along its camera; none without a photo."""
+        if self._backdrop is not None:
+            self._backdrop.remove()
+            self._backdrop = None
+        if camera is not None and photo is not None:
+            self._backdrop = self._add_picture("/photo_backdrop", camera, reduced(photo, 1280), depth_m)
+
+    def show_overlay(self, camera: Camera | None, photo: UInt8[np.ndarray, "h w 3"] | None, opacity: float) -> None:
+        """The photo, half transparent, in front of the model; none at opacity 0."""
+        if self._overlay is not None:
+            self._overlay.remove()
+            self._overlay = None
+        if camera is not None and photo is not None and opacity > 0.0:
+            small = reduced(photo, 800)
+            alpha = np.full((*small.shape[:2], 1), round(255 * opacity), dtype=np.uint8)
+            self._overlay = self._add_picture("/photo_overlay", camera, np.concatenate([small, alpha], axis=2), 0.12)
+
+    def _add_picture(
+        self, name: str, camera: Camera, picture: UInt8[np.ndarray, "h w c"], depth_m: float
+    ) -> viser.ImageHandle:
+        k = camera.intrinsics
+        centre_camera = np.array([(k.width / 2 - k.cx) / k.fx, (k.height / 2 - k.cy) / k.fy, 1.0]) * depth_m
+        R = camera.T_world_camera[:3, :3]
+        return self._client.scene.add_image(
+            name,
+            picture,
+            render_width=k.width / k.fx * depth_m,
+            render_height=k.height / k.fy * depth_m,
+            position=camera.position + R @ centre_camera,
+            wxyz=quaternion(R),
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+
+    # -- the drawing board -------------------------------------------------------------------------------------
+
+    @property
+    def drawing(self) -> bool:
+        """Whether this browser is at the drawing board."""
+        return self.board is not None
+
+    def open_board(self, photo: UInt8[np.ndarray, "h w 3"], on_box: OnBox) -> None:
+        """Show the photo flat and call `on_box` with every rectangle drawn on it (photo pixels)."""
+        self.close_board()
+        height, width = photo.shape[:2]
+        board = self.board = Board(width, height)
+        scene = self._client.scene
+        self._board_nodes = [
+            scene.add_image(
+                "/board/photo",
+                reduced(photo, 1600),
+                render_width=board.width_m,
+                render_height=BOARD_HEIGHT_M,
+                position=BOARD_CENTRE,
+                wxyz=quaternion(np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]])),
+                cast_shadow=False,
+                receive_shadow=False,
+            )
+        ]
+
+        @scene.on_rect_select()
+        async def _(event: viser.SceneRectSelectEvent) -> None:
+            box = self._box_of(event)
+            if box is not None:
+                on_box(box)
+
+        self._face_board(board)
+
+    def close_board(self) -> None:
+        """Put the photo away."""
+        if self.board is None:
+            return
+        self.board = None
+        self._client.scene.remove_rect_select_callback()
+        for node in (*self._box_nodes, *self._board_nodes):
+            node.remove()
+        self._board_nodes, self._box_nodes = [], []
+
+    def show_boxes(self, boxes: Sequence[LabelledBox], highlighted: int | None) -> None:
+        """Draw the boxes over the photo on the board."""
+        if self.board is None:
+            return
+        for node in self._box_nodes:
+            node.remove()
+        self._box_nodes = []
+        with self._client.atomic():
+            for index, box in enumerate(boxes):
+                self._draw_box(self.board, index, box, bold=index == highlighted)
+
+    def _draw_box(self, board: Board, index: int, box: LabelledBox, *, bold: bool) -> None:
+        x1, y1, x2, y2 = box.box
+        corners = board.to_world(np.array([[x1, y1], [x2, y1], [x2, y2], [x1, y2]]), lift_m=0.002)
+        scene = self._client.scene
+        self._box_nodes += [
+            scene.add_line_segments(
+                f"/board/box/{index}",
+                points=np.stack([corners, np.roll(corners, -1, axis=0)], axis=1),
+                colors=BOX_COLOURS[index % len(BOX_COLOURS)],
+                thickness=4.5 if bold else 2.5,
+                thickness_units="screen",
+            ),
+            scene.add_label(f"/board/name/{index}", box.label[:30], position=corners[0], anchor="bottom-left"),
+        ]
+
+    def _face_board(self, board: Board) -> None:
+        half_up = BOARD_HEIGHT_M / 2 * 1.04
+        half_across = board.width_m / 2 * 1.04
+        fov = 2 * np.arctan(max(half_up, half_across / max(self.aspect, 1e-6)) / BOARD_DISTANCE_M)
+        self.look(BOARD_CENTRE - (0.0, BOARD_DISTANCE_M, 0.0), BOARD_CENTRE, float(fov))
+
+    def _box_of(self, event: Any) -> Box | None:
+        board, camera = self.board, self._client.camera
+        if board is None:
+            return None
+        from diorama_app.viewport import rotation
+
+        low, high = event.screen_min, event.screen_max
+        screen = np.array([[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]])
+        rays = screen_rays(screen, rotation(camera.wxyz), camera.fov, camera.aspect)
+        pixels = board.to_pixels(np.asarray(camera.position), rays)
+        size = np.array([board.width_px, board.height_px])
+        (x1, y1), (x2, y2) = np.clip(pixels.min(axis=0), 0, size), np.clip(pixels.max(axis=0), 0, size)
+        return None if x2 - x1 < 3 or y2 - y1 < 3 else (float(x1), float(y1), float(x2), float(y2))
+
+
+def room_view(scene: Scene) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+    """A place above and behind the photo's camera, and the point to look at, that show the whole room."""
+    low, high = bounds(scene)
+    centre = (low + high) / 2
+    radius = max(float(np.linalg.norm(high - low)) / 2, 0.8)
+    toward = np.array([-0.45, -1.0, 0.62])
+    if scene.camera is not None:
+        back = scene.camera.position - centre
+        flat = np.array([back[0], back[1], 0.0])
+        if np.linalg.norm(flat) > 0.3:
+            flat /= np.linalg.norm(flat)
+            toward = flat + 0.35 * np.array([-flat[1], flat[0], 0.0]) + np.array([0.0, 0.0, 0.62])
+    return centre + toward / np.linalg.norm(toward) * radius * 2.15, centre - np.array([0.0, 0.0, 0.12 * radius])
+
+
+def top_view(scene: Scene) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+    """Straight above the room."""
+    low, high = bounds(scene)
+    centre = (low + high) / 2
+    span = max(float((high - low)[:2].max()), 1.5)
+    return centre + np.array([0.0, -1e-3, 1.25 * span + (high - low)[2] / 2]), centre
+
+
+def bounds(scene: Scene) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+    """Corners of the box around everything in the room; two metres on the floor when there is nothing."""
+    points = [o.corners_world for o in scene.objects] + [p.polygon for p in scene.architecture.planes]
+    if not points:
+        return np.array([-1.0, -1.0, 0.0]), np.array([1.0, 1.0, 1.0])
+    cloud = np.concatenate(points)
+    return cloud.min(axis=0), cloud.max(axis=0)

@@ -1,0 +1,86 @@
+"""The editor: a room, its panels, its gestures and its commands, put together in one place."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import viser
+
+from diorama_app.actions import Views, build_commands
+from diorama_app.gestures import Gestures
+from diorama_app.panels.outliner import Outliner
+from diorama_app.panels.toolbar import Toolbar
+from diorama_app.room import Room
+from diorama_app.viser_adapter import MAX_UPLOAD_BYTES
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.project.storage import Project
+
+LEFT_WIDTH_PX = 256
+RIGHT_WIDTH_PX = 340
+
+
+class Editor:
+    """Everything behind one page."""
+
+    def __init__(
+        self, server: viser.ViserServer, library: ShapeLibrary, projects_dir: Path, *, low_graphics: bool
+    ) -> None:
+        self.server = server
+        self.room = Room(server, library, projects_dir)
+        self.room.viewport.light(low_graphics=low_graphics)
+        self.gestures = Gestures(self.room)
+        self.views = Views(self.room)
+        self.commands = build_commands(self.room, self.gestures, self.views)
+        self.commands.register(server.gui, lambda command, client: self.room.post(client, lambda: command.run(client)))
+        self._lay_out()
+        server.on_client_connect(self._joined)
+        server.on_client_disconnect(self._left)
+
+    def open_first(self, project: Project | None) -> None:
+        """Show a project, or the empty room."""
+        done: list[BaseException] = []
+
+        def open_it() -> None:
+            try:
+                if project is not None:
+                    self.room.open_project(project)
+                else:
+                    self.room.refresh()
+            except BaseException as error:
+                done.append(error)
+
+        self.room.desk.post(open_it)
+        self.room.desk.wait(60.0)
+        if done:
+            raise done[0]
+
+    def refuse_upload(self, client_id: int, name: str, size: int) -> None:
+        """Tell a person that a file was too large. May be called from any thread."""
+        message = (
+            f"{name} has {size / 1e6:.0f} MB; files up to {MAX_UPLOAD_BYTES / 1e6:.0f} MB can be uploaded. "
+            "Make the picture smaller."
+        )
+        self.room.desk.post(lambda: self.room.notice(client_id, message, "bad"))
+
+    def close(self) -> None:
+        """Save and end everything that runs."""
+        self.room.close()
+
+    def _lay_out(self) -> None:
+        gui = self.server.gui
+        gui.configure_theme(
+            control_layout="floating", show_logo=False, show_share_button=False, brand_color=(47, 111, 214)
+        )
+        gui.set_panel_label("Diorama")
+        gui.main_panel.dock_left()
+        gui.main_panel.set_width(LEFT_WIDTH_PX)
+        room = self.room
+        toolbar = Toolbar(gui, room, self.commands, self.gestures)
+        outliner = Outliner(gui, room)
+        room.panels = [self.gestures, toolbar, outliner]
+
+    async def _joined(self, client: viser.ClientHandle) -> None:
+        self.room.desk.post(lambda: self.room.joined(client))
+
+    async def _left(self, client: viser.ClientHandle) -> None:
+        self.room.desk.post(lambda: self.room.left(client))

@@ -1,0 +1,120 @@
+"""The editor's server: start it, stop it."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+import webbrowser
+from dataclasses import dataclass
+from pathlib import Path
+
+import viser
+
+from diorama_app.editor import Editor
+from diorama_app.room import Room
+from diorama_app.viser_adapter import ANY_HOST, Visitors, create_server, stop_server
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.project.storage import Project
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Running:
+    """A server that runs."""
+
+    server: viser.ViserServer
+    editor: Editor
+    url: str
+    """Where to open it, token included."""
+
+    @property
+    def room(self) -> Room:
+        """The open room."""
+        return self.editor.room
+
+    @property
+    def port(self) -> int:
+        """The port it listens on."""
+        return int(self.server.get_port())
+
+    def stop(self) -> None:
+        """Save, end jobs, close the port."""
+        self.editor.close()
+        stop_server(self.server)
+
+
+def start(
+    *,
+    project: Path | None = None,
+    projects_dir: Path,
+    host: str = "127.0.0.1",
+    port: int = 0,
+    low_graphics: bool = False,
+    token: str | None = None,
+    library: ShapeLibrary | None = None,
+) -> Running:
+    """Start the editor in the background.
+
+    Args:
+        project: folder to open; the bundled example when None.
+        projects_dir: where new projects are made and recent ones are found.
+        host: address to listen on; loopback unless asked otherwise.
+        port: 0 lets the system choose.
+        low_graphics: no shadows, no environment map.
+        token: when set, visitors must bring it.
+        library: where shapes come from; the built-in one when None.
+
+    Raises:
+        InputError: the port is taken.
+        ProjectError, SceneError: the project cannot be opened.
+    """
+    if library is None:
+        from diorama_core.library.catalogue import built_in_library
+
+        library = built_in_library()
+    opened = None if project is None else Project.open(project)
+    rejected: list[Editor] = []
+
+    def too_large(client_id: int, name: str, size: int) -> None:
+        for editor in rejected:
+            editor.refuse_upload(client_id, name, size)
+
+    server = create_server(host=host, port=port, label="Diorama", visitors=Visitors(host, token), too_large=too_large)
+    try:
+        editor = Editor(server, library, projects_dir, low_graphics=low_graphics)
+        rejected.append(editor)
+        editor.open_first(opened)
+    except BaseException:
+        stop_server(server)
+        raise
+    shown_host = "127.0.0.1" if host in ANY_HOST else host
+    address = f"http://{f'[{shown_host}]' if ':' in shown_host else shown_host}:{server.get_port()}/"
+    return Running(server, editor, address if token is None else f"{address}?token={token}")
+
+
+def serve(
+    *,
+    project: Path | None,
+    projects_dir: Path,
+    host: str,
+    port: int,
+    open_browser: bool,
+    low_graphics: bool,
+    token: str | None,
+) -> None:
+    """Run the editor until Ctrl+C."""
+    running = start(
+        project=project, projects_dir=projects_dir, host=host, port=port, low_graphics=low_graphics, token=token
+    )
+    log.info("Diorama is at %s (Ctrl+C stops it)", running.url)
+    if open_browser:
+        threading.Thread(target=webbrowser.open, args=(running.url,), daemon=True).start()
+    try:
+        while True:
+            time.sleep(3600)
+    except KeyboardInterrupt:
+        log.info("stopping")
+    finally:
+        running.stop()

@@ -1,0 +1,74 @@
+"""What the browser is sent to draw: shapes and planes as GLB bytes, made once and kept."""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+
+import manifold3d
+import numpy as np
+import trimesh
+from jaxtyping import Int32, UInt8
+from PIL import Image
+from trimesh.visual.material import PBRMaterial
+
+from diorama_core.geometry.planes import plane_axes, plane_uv
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.scene.types import Plane
+
+Colour = tuple[float, float, float]
+KEPT = 256
+"""How many shapes' bytes are kept in memory."""
+
+
+class ShapeBytes:
+    """GLB bytes of library shapes, in their own colours or another; +Z up, metres. Safe between threads."""
+
+    def __init__(self, library: ShapeLibrary) -> None:
+        self._library = library
+        self._kept: OrderedDict[tuple[str, Colour | None], bytes] = OrderedDict()
+        self._lock = threading.Lock()
+
+    def glb(self, shape_id: str, colour: Colour | None = None) -> bytes:
+        """The shape's GLB; with `colour` (sRGB 0 to 1) in place of its own colours."""
+        key = (shape_id, colour)
+        with self._lock:
+            if key in self._kept:
+                self._kept.move_to_end(key)
+                return self._kept[key]
+        data = self._library.glb(shape_id) if colour is None else _recoloured(self._library.parts(shape_id), colour)
+        with self._lock:
+            self._kept[key] = data
+            while len(self._kept) > KEPT:
+                self._kept.popitem(last=False)
+        return data
+
+
+def _recoloured(parts: trimesh.Scene, colour: Colour) -> bytes:
+    scene = parts.copy()
+    factor = [*(round(255 * c) for c in colour), 255]
+    for mesh in scene.geometry.values():
+        material = PBRMaterial(baseColorFactor=factor, metallicFactor=0.0, roughnessFactor=0.7)
+        mesh.visual = trimesh.visual.TextureVisuals(material=material)
+    return bytes(scene.export(file_type="glb"))
+
+
+def plane_triangles(plane: Plane) -> Int32[np.ndarray, "m 3"]:
+    """A plane's polygon (concave ones too) cut into triangles that face the room."""
+    axes = np.stack(plane_axes(plane), axis=1)
+    return np.asarray(manifold3d.triangulate([plane.polygon @ axes]), dtype=np.int32)
+
+
+def plane_glb(plane: Plane, texture: UInt8[np.ndarray, "h w 3"]) -> bytes:
+    """A plane with its rectified picture, visible from inside the room only."""
+    material = PBRMaterial(
+        baseColorTexture=Image.fromarray(texture), metallicFactor=0.0, roughnessFactor=0.9, doubleSided=False
+    )
+    mesh = trimesh.Trimesh(
+        vertices=plane.polygon,
+        faces=plane_triangles(plane),
+        vertex_normals=np.tile(plane.normal, (len(plane.polygon), 1)),
+        visual=trimesh.visual.TextureVisuals(uv=plane_uv(plane), material=material),
+        process=False,
+    )
+    return bytes(trimesh.Scene(mesh).export(file_type="glb", include_normals=True))

@@ -1,0 +1,257 @@
+"""The scene on the page: differences between what is shown and what should be become viser nodes.
+
+Every object is a frame `/objects/<n>` in its pose, with the mesh, outline and name tag as children. Nodes belong to
+the server, so that all browsers see the same and a reload shows it again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import viser
+import viser.transforms as vtf
+from jaxtyping import Float, UInt8
+
+from diorama_app.shapes import ShapeBytes, plane_glb, plane_triangles
+from diorama_core.scene.types import Camera, Plane, Pose, Scene, SceneObject, box_corners
+
+SELECTED_COLOUR = (255, 122, 26)
+LOCKED_COLOUR = (120, 130, 150)
+FRUSTUM_SCALE = 0.32
+OUTLINE_MARGIN_M = 0.012
+BOX_EDGES = [(a, a | bit) for bit in (1, 2, 4) for a in range(8) if not a & bit]
+
+Appearance = tuple[str, tuple[float, float, float] | None]
+Pick = Callable[[str, Any], None]
+Later = Callable[[Callable[[], None]], None]
+
+
+@dataclass
+class _Shown:
+    """One object as it is on the page."""
+
+    frame: viser.FrameHandle
+    item: SceneObject
+    mesh: viser.GlbHandle | None = None
+    version: int = 0
+    appearance: Appearance | None = None
+    marks: list[viser.SceneNodeHandle] = field(default_factory=list)
+    marked: tuple[Any, ...] = ()
+
+
+class Viewport:
+    """What all browsers see. Used from the desk's thread only."""
+
+    def __init__(self, server: viser.ViserServer, shapes: ShapeBytes, *, pick: Pick, later: Later) -> None:
+        """Set up an empty view.
+
+        Args:
+            server: the page.
+            shapes: where GLB bytes come from.
+            pick: told (object id, click event) from viser's event loop when an object is clicked.
+            later: runs a task on the desk a moment later (an old mesh goes when the new one is loaded).
+        """
+        self._server = server
+        self._shapes = shapes
+        self._pick = pick
+        self._later = later
+        self._objects: dict[str, _Shown] = {}
+        self._planes: dict[str, tuple[Plane, viser.SceneNodeHandle]] = {}
+        self._frustum: viser.CameraFrustumHandle | None = None
+        self._frustum_key: Any = None
+        self._names = 0
+
+    def light(self, *, low_graphics: bool) -> None:
+        """Soft light from all sides; shadows and an environment where the browser can afford them."""
+        scene = self._server.scene
+        scene.configure_default_lights(enabled=True, cast_shadow=not low_graphics)
+        if low_graphics:
+            scene.configure_environment_map(None)
+            scene.add_light_hemisphere(
+                "/lights/sky", sky_color=(255, 252, 246), ground_color=(176, 170, 162), intensity=2.2
+            )
+        else:
+            scene.configure_environment_map("apartment", environment_intensity=0.55)
+            scene.add_light_hemisphere(
+                "/lights/sky", sky_color=(255, 252, 246), ground_color=(170, 164, 156), intensity=0.9
+            )
+
+    def show(
+        self, scene: Scene, selection: tuple[str, ...], textures: Mapping[str, UInt8[np.ndarray, "h w 3"]]
+    ) -> None:
+        """Make the page show this scene with this selection, changing only what differs."""
+        with self._server.atomic():
+            self._show_planes(scene, textures)
+            for gone in [i for i in self._objects if not scene.has_object(i)]:
+                self._objects.pop(gone).frame.remove()
+            for item in scene.objects:
+                self._show_object(item, selected=item.id in selection, last=selection[-1:] == (item.id,))
+
+    def preview(self, poses: Mapping[str, Pose]) -> None:
+        """Put objects into poses that are not part of the document (a drag, a running optimiser)."""
+        with self._server.atomic():
+            for object_id, pose in poses.items():
+                shown = self._objects.get(object_id)
+                if shown is not None:
+                    self._set_pose(shown, pose)
+
+    def show_photo_camera(self, camera: Camera | None, photo: UInt8[np.ndarray, "h w 3"] | None) -> None:
+        """The photo in a small pyramid where it was taken; none where there is no camera."""
+        key = (camera, None if photo is None else (photo.shape, photo.tobytes()[:512]))
+        if key == self._frustum_key:
+            return
+        self._frustum_key = key
+        if self._frustum is not None:
+            self._frustum.remove()
+            self._frustum = None
+        if camera is None:
+            return
+        k = camera.intrinsics
+        self._frustum = self._server.scene.add_camera_frustum(
+            "/photo_camera",
+            fov=k.vertical_fov_rad,
+            aspect=k.width / k.height,
+            scale=FRUSTUM_SCALE,
+            thickness=1.5,
+            thickness_units="screen",
+            color=(70, 78, 92),
+            image=None if photo is None else reduced(photo, 512),
+            wxyz=quaternion(camera.T_world_camera[:3, :3]),
+            position=camera.position,
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+
+    def node_name(self, object_id: str) -> str | None:
+        """The frame that carries an object, for tests and for gizmos."""
+        shown = self._objects.get(object_id)
+        return None if shown is None else shown.frame.name
+
+    def _show_planes(self, scene: Scene, textures: Mapping[str, UInt8[np.ndarray, "h w 3"]]) -> None:
+        wanted = {p.id: p for p in scene.architecture.planes}
+        for plane_id, (plane, handle) in list(self._planes.items()):
+            if wanted.get(plane_id) != plane:
+                handle.remove()
+                del self._planes[plane_id]
+        for plane_id, plane in wanted.items():
+            if plane_id not in self._planes:
+                picture = textures.get(plane.texture) if plane.texture is not None else None
+                self._planes[plane_id] = (plane, self._add_plane(plane, picture))
+
+    def _add_plane(self, plane: Plane, texture: UInt8[np.ndarray, "h w 3"] | None) -> viser.SceneNodeHandle:
+        name = self._fresh_name("/room")
+        if texture is not None:
+            return self._server.scene.add_glb(
+                name, plane_glb(plane, reduced(texture, 1024)), cast_shadow=False, receive_shadow=0.25
+            )
+        return self._server.scene.add_mesh_simple(
+            name,
+            vertices=plane.polygon,
+            faces=plane_triangles(plane),
+            color=plane.colour,
+            flat_shading=True,
+            side="front",
+            cast_shadow=False,
+            receive_shadow=0.25,
+        )
+
+    def _show_object(self, item: SceneObject, *, selected: bool, last: bool) -> None:
+        shown = self._objects.get(item.id)
+        if shown is None:
+            frame = self._server.scene.add_frame(self._fresh_name("/objects"), show_axes=False)
+            shown = self._objects[item.id] = _Shown(frame, item)
+        shown.item = item
+        if shown.appearance != (item.shape_id, item.colour):
+            self._replace_mesh(shown, item)
+        self._set_pose(shown, item.pose)
+        shown.frame.visible = not item.hidden
+        self._mark(shown, item, selected=selected, last=last)
+
+    def _replace_mesh(self, shown: _Shown, item: SceneObject) -> None:
+        # A node whose bytes change vanishes until the browser has parsed them, so the old one stays for a moment.
+        data = self._shapes.glb(item.shape_id, item.colour)
+        old = shown.mesh
+        shown.version += 1
+        mesh = self._server.scene.add_glb(
+            f"{shown.frame.name}/v{shown.version}", data, scale=tuple(float(s) for s in item.pose.scale)
+        )
+        shown.mesh = mesh
+        shown.appearance = (item.shape_id, item.colour)
+        object_id = item.id
+
+        async def clicked(event: viser.SceneNodePointerEvent[Any]) -> None:
+            self._pick(object_id, event)
+
+        mesh.on_click(clicked)
+        for modifier in ("shift", "cmd/ctrl"):
+            mesh.on_click(modifier=modifier)(clicked)
+        if old is not None:
+            self._later(lambda: _remove_quietly(old))
+
+    def _set_pose(self, shown: _Shown, pose: Pose) -> None:
+        shown.frame.wxyz = quaternion(pose.R_world_object)
+        shown.frame.position = pose.position
+        scale = tuple(float(s) for s in pose.scale)
+        if shown.mesh is not None and shown.mesh.scale != scale:
+            shown.mesh.scale = scale
+
+    def _mark(self, shown: _Shown, item: SceneObject, *, selected: bool, last: bool) -> None:
+        wanted = (item.label, item.locked, last, tuple(item.size_m.round(5))) if selected else ()
+        if wanted == shown.marked:
+            return
+        for mark in shown.marks:
+            _remove_quietly(mark)
+        shown.marks = self._outline(shown, item, last=last) if selected else []
+        shown.marked = wanted
+
+    def _outline(self, shown: _Shown, item: SceneObject, *, last: bool) -> list[viser.SceneNodeHandle]:
+        corners = box_corners(item.size_m + 2 * OUTLINE_MARGIN_M)
+        colour = LOCKED_COLOUR if item.locked else SELECTED_COLOUR
+        lines = self._server.scene.add_line_segments(
+            self._fresh_name(shown.frame.name + "/outline"),
+            points=np.array([[corners[a], corners[b]] for a, b in BOX_EDGES]),
+            colors=colour,
+            thickness=3.0 if last else 2.0,
+            thickness_units="screen",
+        )
+        tag = self._server.scene.add_label(
+            self._fresh_name(shown.frame.name + "/tag"),
+            text=item.label[:40] + (" (locked)" if item.locked else ""),
+            position=(0.0, 0.0, float(item.size_m[2]) / 2 + 0.06),
+            anchor="bottom-center",
+            font_screen_scale=1.0,
+        )
+        return [lines, tag]
+
+    def _fresh_name(self, stem: str) -> str:
+        self._names += 1
+        return f"{stem}/{self._names}"
+
+
+def quaternion(R: Float[np.ndarray, "3 3"]) -> Float[np.ndarray, "4"]:
+    """(w, x, y, z) of a rotation."""
+    return np.asarray(vtf.SO3.from_matrix(np.array(R)).wxyz, dtype=np.float64)
+
+
+def rotation(wxyz: Float[np.ndarray, "4"]) -> Float[np.ndarray, "3 3"]:
+    """The rotation of a quaternion."""
+    return np.asarray(vtf.SO3(np.asarray(wxyz, dtype=np.float64)).normalize().as_matrix(), dtype=np.float64)
+
+
+def reduced(picture: UInt8[np.ndarray, "h w 3"], longest: int) -> UInt8[np.ndarray, "h2 w2 3"]:
+    """The picture with its longer side at most `longest` pixels."""
+    from PIL import Image
+
+    image = Image.fromarray(picture)
+    image.thumbnail((longest, longest), Image.Resampling.LANCZOS)
+    return np.asarray(image)
+
+
+def _remove_quietly(handle: Any) -> None:
+    try:
+        handle.remove()
+    except Exception:  # its parent went first, and took it along
+        return
