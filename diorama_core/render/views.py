@@ -117,12 +117,18 @@ def _shadow(
     near = (rays[..., 5] < -1e-6) & (np.linalg.norm(points[..., :2], axis=-1) < 4 * max(shape.size_m))
     places = _ground_places(points[near])
     pixels = np.argwhere(near)
-    shaded = sum(irradiance(alone, alone, places, pixels, light, effort))
-    bare = sum(irradiance(World([]), World([]), places, pixels, light, effort))
+    shaded = np.add(*irradiance(alone, alone, places, pixels, light, effort))
+    bare = np.add(*irradiance(World([]), World([]), places, pixels, light, effort))
     shadow = np.zeros((height, width), np.float32)
     shadow[near] = np.clip(1.0 - shaded.mean(axis=1) / bare.mean(axis=1), 0, 1)
-    smooth = cv2.GaussianBlur(shadow, (0, 0), max(1.0, width / 80))
+    smooth = cv2.GaussianBlur(shadow, (0, 0), max(1.0, width / 80)) * _vignette(width, height)
     return np.clip(0.8 * (cv2.resize(smooth, (camera.width, camera.height)) - 0.03), 0, 0.8)
+
+
+def _vignette(width: int, height: int) -> Float32[np.ndarray, "h w"]:
+    """1 inside, falling to 0 at the picture's border, so that no shadow is cut off."""
+    x, y = (np.minimum(np.linspace(0, 1, n), np.linspace(1, 0, n)) for n in (width, height))
+    return (np.clip(x / 0.12, 0, 1)[None, :] * np.clip(y / 0.12, 0, 1)[:, None]).astype(np.float32)
 
 
 def _ground_places(points: Float32[np.ndarray, "n 3"]) -> Places:

@@ -6,10 +6,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float, Float32, Int32, UInt8
+from jaxtyping import Float, Float32, Int, Int32, UInt8
 
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.render.appearance import Material, Surface, shape_surfaces, srgb_to_linear
+from diorama_core.render.appearance import Surface, shape_surfaces, srgb_to_linear
 from diorama_core.render.raycast import Caster, Hits, RayArray, face_normals, facing, unit
 from diorama_core.render.slabs import plane_surfaces
 from diorama_core.scene.types import Scene
@@ -60,7 +60,7 @@ class World:
         counts = [len(s.faces) for s in surfaces]
         self._surface_of_face = np.repeat(np.arange(len(surfaces), dtype=np.int32), counts)
         self._instance_of_face = np.repeat(np.array(owners, dtype=np.int32), counts)
-        self._materials = _MaterialTable([s.material for s in surfaces])
+        self._materials = _MaterialTable(surfaces)
         self._face_normals = face_normals(self.vertices, self._faces)
         self.caster = Caster(self.vertices, self._faces)
 
@@ -156,13 +156,15 @@ def _mixed(values: np.ndarray, corners: np.ndarray, weights: np.ndarray) -> np.n
 class _MaterialTable:
     """Materials as arrays, one row per surface."""
 
-    def __init__(self, materials: list[Material]) -> None:
+    def __init__(self, surfaces: list[Surface]) -> None:
+        materials = [s.material for s in surfaces]
         self.metallic = np.array([m.metallic for m in materials], dtype=np.float32)
         self.roughness = np.array([m.roughness for m in materials], dtype=np.float32)
         self.emissive = np.array([m.emissive for m in materials], dtype=np.float32).reshape(-1, 3)
         self._colour = np.array([m.colour for m in materials], dtype=np.float32).reshape(-1, 3)
         self._alpha = np.array([m.alpha for m in materials], dtype=np.float32)
         self._textures = {i: _linear(m.texture) for i, m in enumerate(materials) if m.texture is not None}
+        self._repeats = {i for i in self._textures if _leaves_unit_square(surfaces[i].uv)}
         self.mean_colour = self._colour.copy()
         for index, picture in self._textures.items():
             self.mean_colour[index] *= picture[..., :3].mean(axis=(0, 1))
@@ -175,7 +177,7 @@ class _MaterialTable:
         for index, picture in self._textures.items():
             chosen = np.flatnonzero(surface == index)
             if len(chosen):
-                texel = _bilinear(picture, uv[chosen])
+                texel = _bilinear(picture, uv[chosen], repeat=index in self._repeats)
                 colour[chosen] *= texel[:, :3]
                 if self._alpha[index] < 1 and texel.shape[1] == 4:
                     alpha[chosen] *= texel[:, 3]
@@ -192,12 +194,24 @@ def _linear(picture: UInt8[np.ndarray, "h w c"]) -> Float32[np.ndarray, "h w c"]
     return linear
 
 
-def _bilinear(picture: Float32[np.ndarray, "h w c"], uv: Float32[np.ndarray, "n 2"]) -> Float32[np.ndarray, "n c"]:
+def _leaves_unit_square(uv: Float32[np.ndarray, "n 2"] | None) -> bool:
+    """Whether a picture is tiled over its surface; otherwise its opposite borders must not bleed into each other."""
+    return uv is not None and bool((np.abs(uv - 0.5) > 0.501).any())
+
+
+def _bilinear(
+    picture: Float32[np.ndarray, "h w c"], uv: Float32[np.ndarray, "n 2"], *, repeat: bool
+) -> Float32[np.ndarray, "n c"]:
     height, width = picture.shape[:2]
     x, y = uv[:, 0] * width - 0.5, (1 - uv[:, 1]) * height - 0.5
     x0, y0 = np.floor(x).astype(np.int64), np.floor(y).astype(np.int64)
     fx, fy = (x - x0)[:, None].astype(np.float32), (y - y0)[:, None].astype(np.float32)
-    left, right, top, bottom = x0 % width, (x0 + 1) % width, y0 % height, (y0 + 1) % height
+    left, right = _within(x0, width, repeat), _within(x0 + 1, width, repeat)
+    top, bottom = _within(y0, height, repeat), _within(y0 + 1, height, repeat)
     above = picture[top, left] * (1 - fx) + picture[top, right] * fx
     below = picture[bottom, left] * (1 - fx) + picture[bottom, right] * fx
     return above * (1 - fy) + below * fy
+
+
+def _within(index: Int[np.ndarray, "n"], count: int, repeat: bool) -> Int[np.ndarray, "n"]:
+    return index % count if repeat else np.clip(index, 0, count - 1)

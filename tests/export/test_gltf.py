@@ -1,0 +1,181 @@
+"""The GLB file against an independent loader and a strict reader."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import trimesh
+from scipy.spatial.transform import Rotation
+
+from diorama_core.errors import ExportError, LibraryError
+from diorama_core.export import writer
+from diorama_core.export.gltf import glb_bytes, write_glb
+from diorama_core.scene.types import Architecture, Intrinsics, Scene
+from tests.export import gltf_reader
+from tests.primitives import PrimitiveLibrary, box_room, furnished_room, place
+
+LIBRARY = PrimitiveLibrary()
+
+
+def load(data: bytes) -> trimesh.Scene:
+    loaded = trimesh.load_scene(io.BytesIO(data), file_type="glb")
+    assert isinstance(loaded, trimesh.Scene)
+    return loaded
+
+
+def node(document: dict, name: str) -> dict:
+    return next(n for n in document["nodes"] if n["name"] == name)
+
+
+def test_the_file_is_sound() -> None:
+    document = gltf_reader.check(glb_bytes(furnished_room(LIBRARY), LIBRARY))
+    assert "extensionsRequired" not in document
+
+
+def test_extents_in_metres_with_y_up() -> None:
+    """The room of 4 x 5 x 2.6 m plus the slabs' thickness; depth (world y) runs along glTF's -z."""
+    bounds = load(glb_bytes(furnished_room(LIBRARY), LIBRARY)).bounds
+    np.testing.assert_allclose(bounds, [[-2.05, -0.05, -5.05], [2.05, 2.65, 0.05]], atol=1e-5)
+
+
+def test_every_object_stands_where_the_scene_says() -> None:
+    scene = furnished_room(LIBRARY)
+    loaded = load(glb_bytes(scene, LIBRARY))
+    for item in scene.objects:
+        points = item.pose.apply(LIBRARY.mesh(item.shape_id).vertices)
+        upright = np.stack([points[:, 0], points[:, 2], -points[:, 1]], axis=1)
+        matrix = loaded.graph.get(f"{item.label} ({item.id})")[0]
+        mine = trimesh.transform_points(LIBRARY.mesh(item.shape_id).vertices, matrix)
+        np.testing.assert_allclose(mine, upright, atol=1e-5)
+
+
+def test_nodes_carry_what_the_scene_knows() -> None:
+    document = gltf_reader.check(glb_bytes(furnished_room(LIBRARY), LIBRARY))
+    extras = node(document, "ball (b)")["extras"]
+    assert extras["category"] == "toy"
+    assert extras["shape"] == "ball"
+    assert extras["support"] == {"parent": "t", "relation": "placed on", "against": []}
+    assert {"floor", "ceiling", "wall back", "wall left"} <= {n["name"] for n in document["nodes"]}
+
+
+def test_identical_shapes_share_a_mesh_and_colours_do_not_leak() -> None:
+    scene = furnished_room(LIBRARY)
+    third = replace(scene.object("c1"), id="c3", pose=scene.object("c1").pose.moved((0.0, 1.0, 0.0)))
+    document = gltf_reader.check(glb_bytes(replace(scene, objects=(*scene.objects, third)), LIBRARY))
+    plain, painted = node(document, "chair (c1)")["mesh"], node(document, "chair (c2)")["mesh"]
+    assert node(document, "chair (c3)")["mesh"] == plain
+    assert painted != plain
+
+    def colours(mesh: int) -> list[list[float]]:
+        used = [p["material"] for p in document["meshes"][mesh]["primitives"]]
+        return [document["materials"][m]["pbrMetallicRoughness"]["baseColorFactor"][:3] for m in used]
+
+    override = [pytest.approx(0.6038, abs=1e-3), pytest.approx(0.2140, abs=1e-3), pytest.approx(0.0100, abs=1e-3)]
+    assert override in colours(painted), "the seat, the larger part, takes the linear value of the override"
+    assert len([c for c in colours(painted) if c in colours(plain)]) == 1, "the back keeps its own colour"
+
+
+def test_hidden_objects_are_left_out() -> None:
+    scene = furnished_room(LIBRARY)
+    hidden = replace(scene, objects=tuple(replace(o, hidden=o.id == "t") for o in scene.objects))
+    names = {n["name"] for n in gltf_reader.check(glb_bytes(hidden, LIBRARY))["nodes"]}
+    assert "table (t)" not in names
+    assert "ball (b)" in names
+
+
+def test_textures_survive_upright() -> None:
+    """The print's picture has a blue bar on top; so must the reloaded one, seen through its coordinates."""
+    loaded = load(glb_bytes(furnished_room(LIBRARY), LIBRARY))
+    meshes = [m for m in loaded.geometry.values() if getattr(m.visual, "material", None) is not None]
+    textured = [m for m in meshes if m.visual.material.baseColorTexture is not None]
+    assert len(textured) == 1
+    mesh = textured[0]
+    top = mesh.vertices[:, 2].argmax()
+    pixels = np.asarray(mesh.visual.material.baseColorTexture.convert("RGB"))
+    row = int(np.clip((1 - mesh.visual.uv[top, 1]) * 63, 0, 63))
+    assert pixels[row, 32, 2] > 200
+
+
+def test_plane_texture_covers_the_face_only() -> None:
+    picture = np.zeros((40, 80, 3), np.uint8)
+    architecture = box_room()
+    planes = tuple(replace(p, texture="wall.png") if p.id == "back" else p for p in architecture.planes)
+    data = glb_bytes(Scene(None, Architecture(planes)), LIBRARY, textures={"wall.png": picture})
+    document = gltf_reader.check(data)
+    primitives = document["meshes"][node(document, "wall back")["mesh"]]["primitives"]
+    assert ["TEXCOORD_0" in p["attributes"] for p in primitives] == [True, False]
+    assert len(document["images"]) == 1
+
+
+def test_camera_looks_where_the_photo_was_taken() -> None:
+    scene = furnished_room(LIBRARY)
+    assert scene.camera is not None
+    document = gltf_reader.check(glb_bytes(scene, LIBRARY))
+    lens = document["cameras"][0]["perspective"]
+    assert lens["yfov"] == pytest.approx(scene.camera.intrinsics.vertical_fov_rad)
+    assert lens["aspectRatio"] == pytest.approx(4 / 3)
+    placed = node(document, "photo camera")
+    R_world_camera = Rotation.from_quat(placed["rotation"]).as_matrix()
+    np.testing.assert_allclose(-R_world_camera[:, 2], scene.camera.T_world_camera[:3, 2], atol=1e-6)
+    np.testing.assert_allclose(-R_world_camera[:, 1], scene.camera.T_world_camera[:3, 1], atol=1e-6)
+    np.testing.assert_allclose(placed["translation"], scene.camera.position, atol=1e-6)
+    assert document["nodes"].index(placed) in node(document, "diorama")["children"]
+
+
+def test_pixels_need_not_be_square() -> None:
+    scene = furnished_room(LIBRARY)
+    assert scene.camera is not None
+    squeezed = replace(scene.camera, intrinsics=Intrinsics(320, 240, 200.0, 100.0, 160.0, 120.0))
+    document = gltf_reader.check(glb_bytes(replace(scene, camera=squeezed), LIBRARY))
+    lens = document["cameras"][0]["perspective"]
+    assert np.tan(lens["yfov"] / 2) == pytest.approx(1.2)
+    assert lens["aspectRatio"] * np.tan(lens["yfov"] / 2) == pytest.approx(0.8)
+
+
+def test_an_empty_scene_is_a_valid_file() -> None:
+    document = gltf_reader.check(glb_bytes(Scene(), LIBRARY))
+    assert [n["name"] for n in document["nodes"]] == ["diorama"]
+
+
+def test_names_are_unique_and_any_text_is_allowed() -> None:
+    objects = tuple(place(LIBRARY, f"o{i}", "ball", (i, 0, 0.1), label='"Ball" <ü> \\ 球') for i in range(3))
+    document = gltf_reader.check(glb_bytes(Scene(objects=objects), LIBRARY))
+    assert node(document, '"Ball" <ü> \\ 球 (o1)')
+
+
+def test_same_scene_same_bytes() -> None:
+    scene = furnished_room(LIBRARY)
+    assert glb_bytes(scene, LIBRARY) == glb_bytes(scene, LIBRARY)
+
+
+def test_missing_shape_is_named() -> None:
+    lost = replace(furnished_room(LIBRARY).objects[0], shape_id="gone")
+    with pytest.raises(LibraryError, match="gone"):
+        glb_bytes(Scene(objects=(lost,)), LIBRARY)
+
+
+def test_write_replaces_whole_files(tmp_path) -> None:
+    target = tmp_path / "room.glb"
+    target.write_bytes(b"old")
+    write_glb(furnished_room(LIBRARY), LIBRARY, target)
+    gltf_reader.check(target.read_bytes())
+    assert [p.name for p in tmp_path.iterdir()] == ["room.glb"]
+
+
+def test_a_folder_that_cannot_be_written_is_one_clear_line(tmp_path) -> None:
+    blocked = tmp_path / "file"
+    blocked.write_text("in the way")
+    for target in (tmp_path / "missing" / "room.glb", blocked / "room.glb"):
+        with pytest.raises(ExportError, match="cannot write") as caught:
+            write_glb(Scene(), LIBRARY, target)
+        assert "\n" not in str(caught.value)
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["file"]
+
+
+def test_formats_are_a_table() -> None:
+    assert writer("glb") is write_glb
+    with pytest.raises(ExportError, match="glb"):
+        writer("docx")

@@ -1,0 +1,189 @@
+"""Pictures of scenes: the right things in the right places, in the right colours."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diorama_core.errors import InputError, SceneError
+from diorama_core.render.lighting import Effort
+from diorama_core.render.picture import BACKGROUND_SRGB, picture, scene_view
+from diorama_core.render.raycast import PinholeView
+from diorama_core.scene.types import Architecture, Plane, Scene
+from tests.primitives import PrimitiveLibrary, box_room, eye_camera, furnished_room, place
+
+LIBRARY = PrimitiveLibrary()
+QUICK = Effort(1, 1)
+SMALL = (160, 120)
+BACKGROUND = np.rint(np.array(BACKGROUND_SRGB) * 255)
+
+
+def pixel_of(scene: Scene, object_id: str, size: tuple[int, int] = SMALL) -> tuple[int, int]:
+    """Row and column where the object's centre is in the photo view."""
+    view = scene_view(scene, "photo", size)
+    assert isinstance(view, PinholeView)
+    column, row = view.camera.project(scene.object(object_id).pose.position)
+    return int(row), int(column)
+
+
+def redness(colour: np.ndarray) -> float:
+    return float(colour[0]) - float(max(colour[1], colour[2]))
+
+
+def test_photo_view_puts_things_where_the_camera_sees_them() -> None:
+    scene = furnished_room(LIBRARY)
+    image = picture(scene, LIBRARY, size=SMALL, effort=QUICK)
+    assert image.shape == (120, 160, 3)
+    assert image.dtype == np.uint8
+    assert redness(image[pixel_of(scene, "b")]) > 80, "the red ball"
+    without = picture(replace(scene, objects=scene.objects[:3]), LIBRARY, size=SMALL, effort=QUICK)
+    assert redness(without[pixel_of(scene, "b")]) < 80
+
+
+def test_hidden_objects_are_not_drawn() -> None:
+    scene = furnished_room(LIBRARY)
+    hidden = replace(scene, objects=tuple(replace(o, hidden=o.id == "b") for o in scene.objects))
+    assert redness(picture(hidden, LIBRARY, size=SMALL, effort=QUICK)[pixel_of(scene, "b")]) < 80
+
+
+def test_colour_override_shows() -> None:
+    scene = furnished_room(LIBRARY)
+    green = replace(
+        scene, objects=tuple(replace(o, colour=(0.1, 0.8, 0.1)) if o.id == "b" else o for o in scene.objects)
+    )
+    colour = picture(green, LIBRARY, size=SMALL, effort=QUICK)[pixel_of(scene, "b")].astype(int)
+    assert colour[1] > colour[0] + 60
+
+
+def test_the_print_is_upright_and_not_mirrored() -> None:
+    """Seen from inside the room: blue bar above, red left of green."""
+    scene = furnished_room(LIBRARY)
+    view = scene_view(scene, "photo", (480, 360))
+    assert isinstance(view, PinholeView)
+    image = picture(scene, LIBRARY, size=(480, 360), effort=QUICK).astype(int)
+    pose = scene.object("p").pose
+
+    def seen(across: float, up: float) -> np.ndarray:
+        column, row = view.camera.project(pose.apply(np.array([0.01, across, up])))
+        return image[int(row), int(column)]
+
+    assert seen(-0.2, 0.0).argmax() == 0, "its own right, which the viewer sees on the left, is red"
+    assert seen(0.2, 0.0).argmax() == 1
+    assert seen(0.0, 0.26).argmax() == 2
+
+
+def test_plane_textures_are_laid_the_right_way() -> None:
+    """Quarters of a wall's picture, seen from inside the room."""
+    quarters = np.zeros((64, 64, 3), np.uint8)
+    quarters[:32, :32], quarters[:32, 32:] = (200, 0, 0), (0, 200, 0)
+    quarters[32:, :32], quarters[32:, 32:] = (0, 0, 200), (200, 200, 0)
+    room = box_room()
+    planes = tuple(replace(p, texture="w.png") if p.id == "back" else p for p in room.planes)
+    scene = Scene(eye_camera(), Architecture(planes))
+    view = scene_view(scene, "photo", SMALL)
+    assert isinstance(view, PinholeView)
+    image = picture(scene, LIBRARY, size=SMALL, textures={"w.png": quarters}, effort=QUICK).astype(int)
+
+    def seen(x: float, z: float) -> np.ndarray:
+        column, row = view.camera.project(np.array([x, 5.0, z]))
+        return image[int(row), int(column)]
+
+    assert seen(-1, 1.9).argmax() == 0
+    assert seen(1, 1.9).argmax() == 1
+    assert seen(-1, 0.6).argmax() == 2
+    assert seen(1, 0.6)[2] < 60
+
+
+def test_top_view_is_open_and_to_scale() -> None:
+    scene = furnished_room(LIBRARY)
+    view = scene_view(scene, "top", (200, 200))
+    image = picture(scene, LIBRARY, view="top", size=(200, 200), effort=QUICK)
+    plain = picture(replace(scene, objects=()), LIBRARY, view="top", size=(200, 200), effort=QUICK)
+    changed = np.abs(image.astype(int) - plain.astype(int)).max(axis=-1) > 40
+    assert changed.sum() > 100, "furniture is seen through the missing ceiling"
+    middle_column = 100 + 0.2 / view.metres_per_pixel  # the table's x; north is up
+    assert changed[:, int(middle_column)].any()
+
+
+@pytest.mark.parametrize("view", ["front", "orbit:0", "orbit:45", "orbit:-120.5"])
+def test_rooms_stay_open_toward_the_viewer(view: str) -> None:
+    image = picture(furnished_room(LIBRARY), LIBRARY, view=view, size=SMALL, effort=QUICK)
+    red = [redness(c) for c in image.reshape(-1, 3)]
+    assert max(red) > 80, "the ball on the table is seen past the walls"
+    assert (image[0, 0] == BACKGROUND).all()
+
+
+def test_things_on_a_wall_seen_from_behind_go_with_it() -> None:
+    scene = furnished_room(LIBRARY)
+    image = picture(scene, LIBRARY, view="orbit:180", size=SMALL, effort=QUICK)
+    bare = picture(
+        replace(scene, objects=scene.objects[:4], supports=scene.supports[:4]),
+        LIBRARY,
+        view="orbit:180",
+        size=SMALL,
+        effort=QUICK,
+    )
+    corners = scene.object("p").corners_world
+    view = scene_view(scene, "orbit:180", SMALL)
+    assert isinstance(view, PinholeView)
+    column, row = view.camera.project(corners.mean(axis=0))
+    assert np.abs(image[int(row), int(column)].astype(int) - bare[int(row), int(column)]).max() < 12
+
+
+def test_everything_fits_an_orbit_picture() -> None:
+    scene = furnished_room(LIBRARY)
+    corners = np.concatenate([p.polygon for p in scene.architecture.planes])
+    for angle in (0, 33, 90, 200):
+        view = scene_view(scene, f"orbit:{angle}", (300, 200))
+        assert isinstance(view, PinholeView)
+        pixels = view.camera.project(corners)
+        assert (view.camera.to_camera(corners)[:, 2] > 0).all()
+        assert (pixels >= 0).all()
+        assert (pixels <= [300, 200]).all()
+        spread = pixels.max(axis=0) - pixels.min(axis=0)
+        assert (spread / [300, 200]).max() > 0.8, "and fills it"
+
+
+def test_another_aspect_is_never_stretched() -> None:
+    scene = furnished_room(LIBRARY)
+    for size in ((320, 240), (500, 200), (200, 500)):
+        view = scene_view(scene, "photo", size)
+        assert isinstance(view, PinholeView)
+        assert view.camera.intrinsics.fx == pytest.approx(view.camera.intrinsics.fy)
+        assert (view.width, view.height) == size
+
+
+def test_an_object_darkens_the_floor_beneath_it() -> None:
+    floor = Plane("floor", "floor", np.array([[-3, 0, 0], [3, 0, 0], [3, 6, 0], [-3, 6, 0]]))
+    scene = Scene(eye_camera(), Architecture((floor,)), (place(LIBRARY, "t", "table", (0, 3, 0.36)),))
+    lit = picture(replace(scene, objects=()), LIBRARY, size=SMALL).astype(int)
+    shaded = picture(scene, LIBRARY, size=SMALL).astype(int)
+    view = scene_view(scene, "photo", SMALL)
+    assert isinstance(view, PinholeView)
+    column, row = view.camera.project(np.array([0.0, 2.9, 0.0]))
+    difference = (lit - shaded)[int(row) + 6 : int(row) + 9, int(column) - 5 : int(column) + 5]
+    assert difference.mean() > 10
+
+
+def test_refusals() -> None:
+    scene = furnished_room(LIBRARY)
+    with pytest.raises(InputError, match="sideways"):
+        picture(scene, LIBRARY, view="sideways")
+    with pytest.raises(InputError, match="0x10"):
+        picture(scene, LIBRARY, size=(0, 10))
+    with pytest.raises(SceneError, match="no camera"):
+        picture(replace(scene, camera=None), LIBRARY)
+
+
+def test_empty_scene_is_plain_background() -> None:
+    image = picture(Scene(eye_camera()), LIBRARY, size=SMALL, effort=QUICK)
+    assert (image == BACKGROUND).all()
+    assert picture(Scene(), LIBRARY, view="orbit:10", size=SMALL).shape == (120, 160, 3)
+
+
+def test_same_scene_same_bytes() -> None:
+    scene = furnished_room(LIBRARY)
+    first = picture(scene, LIBRARY, size=SMALL)
+    assert first.tobytes() == picture(scene, LIBRARY, size=SMALL).tobytes()
