@@ -102,7 +102,7 @@ def _clipped_bounds(
     kept = np.concatenate([kept, covered[..., None]], axis=1)
     low = np.where(kept, pixels, np.inf).min(axis=1)
     high = np.where(kept, pixels, -np.inf).max(axis=1)
-    visible = kept.any(axis=(1, 2))
+    visible = np.asarray(kept.any(axis=(1, 2)))
     nearest = np.clip(_project(corners.mean(axis=1), k), 0.0, [k.width, k.height])
     bounds = np.where(visible[:, None], np.concatenate([low, high], -1), np.concatenate([nearest, nearest], -1))
     return np.clip(bounds, 0.0, [k.width, k.height, k.width, k.height]), visible

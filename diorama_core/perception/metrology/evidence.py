@@ -1,0 +1,74 @@
+"""What the picture says about every object: its box, how sure each edge is, and what hides it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from diorama_core.artefacts import DetectedObject
+from diorama_core.library.taxonomy import Category, category
+
+_SHARE_SIGMA = 0.03
+_PIXEL_SIGMA = 3.0
+"""Of a picture 640 pixels wide."""
+_LEAST_BOX_PX = 2.0
+_COVERED = 0.5
+"""Share of an edge that something in front must cover to hide it."""
+_CLEARLY_LOWER = 0.03
+"""How much lower, as a share of the picture, a thing's box must end to be in front."""
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """All objects of a picture, as arrays over objects."""
+
+    categories: tuple[Category, ...]
+    box_px: Float[np.ndarray, "n 4"]
+    edge_sigma_px: Float[np.ndarray, "n 4"]
+    covered_by: Bool[np.ndarray, "n n 4"]
+    """Whether edge e of object i is covered by object j's box, j being in front."""
+    truncated: Bool[np.ndarray, "n 4"]
+    """Whether an edge lies on the picture's border."""
+
+    def __len__(self) -> int:
+        return len(self.categories)
+
+    def hidden(self, index: int, besides: tuple[int, ...] = ()) -> Bool[np.ndarray, "4"]:
+        """Edges of an object that others hide, not counting some (its supporter)."""
+        others = [j for j in range(len(self)) if j != index and j not in besides]
+        return self.covered_by[index][others].any(axis=0) if others else np.zeros(4, dtype=bool)
+
+
+def gather(objects: tuple[DetectedObject, ...], width: int, height: int) -> Evidence:
+    """The evidence of the objects of a picture of `width` x `height` pixels."""
+    boxes = np.array([_proper(o.box, width, height) for o in objects]).reshape(-1, 4)
+    extent = np.tile(boxes[:, 2:] - boxes[:, :2], 2)
+    sigma = _SHARE_SIGMA * extent + _PIXEL_SIGMA * max(width, height) / 640
+    border = np.array([0.0, 0.0, width, height])
+    truncated = np.abs(boxes - border) <= 0.006 * max(width, height)
+    categories = tuple(category(o.category) for o in objects)
+    return Evidence(categories, boxes, sigma, _covered(boxes, height), truncated)
+
+
+def _proper(box: tuple[float, float, float, float], width: int, height: int) -> tuple[float, float, float, float]:
+    """The box inside the picture, at least two pixels large."""
+    x1, y1 = min(max(box[0], 0.0), width - _LEAST_BOX_PX), min(max(box[1], 0.0), height - _LEAST_BOX_PX)
+    return x1, y1, min(max(box[2], x1 + _LEAST_BOX_PX), width), min(max(box[3], y1 + _LEAST_BOX_PX), height)
+
+
+def _covered(boxes: Float[np.ndarray, "n 4"], height: int) -> Bool[np.ndarray, "n n 4"]:
+    """For objects i, j and edges: j's box covers at least half of i's edge and ends clearly lower."""
+    n = len(boxes)
+    low, high = boxes[:, None, :2], boxes[:, None, 2:]
+    shared = np.minimum(high, boxes[None, :, 2:]) - np.maximum(low, boxes[None, :, :2])
+    share = np.clip(shared, 0, None) / (high - low)
+    covered = np.zeros((n, n, 4), dtype=bool)
+    for edge in range(4):
+        across = edge % 2
+        at = boxes[:, None, edge]
+        strictly_inside = (boxes[None, :, across] < at) & (at < boxes[None, :, across + 2])
+        covered[:, :, edge] = strictly_inside & (share[..., 1 - across] >= _COVERED)
+    in_front = boxes[None, :, 3] > boxes[:, None, 3] + _CLEARLY_LOWER * height
+    return covered & in_front[..., None] & ~np.eye(n, dtype=bool)[..., None]

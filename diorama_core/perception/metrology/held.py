@@ -1,0 +1,184 @@
+"""Things that are not on the floor: on other things, on walls, below the ceiling."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.library.taxonomy import UNKNOWN
+from diorama_core.perception.metrology.evidence import Evidence
+from diorama_core.perception.metrology.priors import (
+    SizeMode,
+    hanging_modes,
+    hung_modes,
+    supported_modes,
+)
+from diorama_core.perception.metrology.problem import Cuboids, Problems
+from diorama_core.perception.metrology.rows import row
+
+CEILING_M = 2.6
+CEILING_SIGMA_M = 0.25
+_TOP_SIGMA_M = 0.02
+_SEAT_SIGMA_M = 0.08
+_FOOTPRINT_SIGMA_M = 0.06
+_INNER_LEVEL_COST = 1.5
+_ABOVE_PARENT = 0.5
+"""Share of a thing's width that must lie within its supporter's box."""
+_SEATS_WITHOUT_SUPPORT_FLAG_COST = 2.0
+_SHELVED = frozenset({"bookshelf", "shelves", "tv stand", "cabinet", "desk"})
+_USUAL_MIDDLE_M = {
+    "picture": 1.5,
+    "mirror": 1.45,
+    "clock": 1.8,
+    "window": 1.5,
+    "curtain": 1.2,
+    "shelves": 1.5,
+    "radiator": 0.4,
+}
+_MIDDLE_M, _MIDDLE_SIGMA_M = 1.4, 0.4
+
+
+@dataclass(frozen=True)
+class Extent:
+    """How far the things on the floor reach, seen from below the camera: the room is at least as large."""
+
+    left_m: float
+    right_m: float
+    back_m: float
+    left_sigma: float
+    right_sigma: float
+    back_sigma: float
+    """Of the logarithms: small where something stands far out, large where nothing is known."""
+
+    @property
+    def footprint(self) -> Float[np.ndarray, "5"]:
+        """Centre, heading and half sizes of the floor, as `Problems.footprint`."""
+        middle_x, half_x = (self.right_m - self.left_m) / 2, (self.right_m + self.left_m) / 2
+        return np.array([middle_x, self.back_m / 2, 0.0, half_x, self.back_m / 2])
+
+
+def extent_of(corners_world: Float[np.ndarray, "n 8 3"]) -> Extent:
+    """The extent of cuboids; of an ordinary room where there are none."""
+    if not len(corners_world):
+        return Extent(2.0, 2.0, 3.5, 0.4, 0.4, 0.4)
+    left = max(-float(corners_world[..., 0].min()), 1.0)
+    right = max(float(corners_world[..., 0].max()), 1.0)
+    back = max(float(corners_world[..., 1].max()), 1.5)
+    return Extent(left + 0.05, right + 0.05, back + 0.05, 0.25, 0.25, 0.12)
+
+
+def supporters_of(evidence: Evidence, index: int, candidates: list[int]) -> list[int]:
+    """Candidates whose boxes an object may rest in: most of its width lies within, and its bottom not below."""
+    box = evidence.box_px[index]
+    found = []
+    for other in candidates:
+        theirs = evidence.box_px[other]
+        shared = min(box[2], theirs[2]) - max(box[0], theirs[0])
+        reach = 0.15 * (theirs[3] - theirs[1])
+        within = theirs[1] - reach < box[3] <= theirs[3] + 0.1 * reach
+        if other != index and shared >= _ABOVE_PARENT * (box[2] - box[0]) and within:
+            found.append(other)
+    return found
+
+
+def place_on(
+    evidence: Evidence, index: int, parent: int, parent_cuboid: Cuboids, height_m: float, cost: float
+) -> list[Problems]:
+    """Rows for an object on another's top, seat or shelves; `parent_cuboid` is a batch of one."""
+    depth, width, tall = parent_cuboid.size_m[0]
+    bottom = float(parent_cuboid.base_m[0])
+    footprint = [*parent_cuboid.centre[0, :2], parent_cuboid.yaw_rad[0], depth / 2, width / 2]
+    rows = []
+    for base, sigma, level_cost in _levels(evidence, parent, float(tall)):
+        for mode in supported_modes(evidence.categories[index].name):
+            for turn in (0.0,) if mode.square else (0.0, np.pi / 2):
+                rows.append(
+                    row(
+                        evidence,
+                        index,
+                        mode,
+                        camera_height_m=height_m,
+                        yaw_rad=float(parent_cuboid.yaw_rad[0]) + turn,
+                        besides=(parent,),
+                        base_m=bottom + base,
+                        base_sigma_m=sigma,
+                        footprint=np.array(footprint),
+                        footprint_sigma_m=_FOOTPRINT_SIGMA_M,
+                        extra=mode.cost + level_cost + cost,
+                    )
+                )
+    return rows
+
+
+def _levels(evidence: Evidence, parent: int, tall: float) -> list[tuple[float, float, float]]:
+    """Heights above the supporter's base at which things lie on it: (height, sigma, cost)."""
+    category = evidence.categories[parent]
+    top = (tall, _TOP_SIGMA_M, 0.0)
+    if category.seat_height_m is not None:
+        seat = min(category.seat_height_m, 0.95 * tall)
+        cost = 0.0 if category.supports_things else _SEATS_WITHOUT_SUPPORT_FLAG_COST
+        return [(seat, _SEAT_SIGMA_M, cost), (seat + 0.15, _SEAT_SIGMA_M, cost + _INNER_LEVEL_COST)]
+    if category.name in _SHELVED:
+        inner = [(share * tall, 0.06 * tall, _INNER_LEVEL_COST) for share in (0.15, 0.4, 0.65)]
+        return [top, *inner]
+    if category is UNKNOWN:
+        return [top, (0.55 * tall, 0.05, _INNER_LEVEL_COST)]
+    return [top]
+
+
+def place_on_wall(evidence: Evidence, index: int, height_m: float, room: Extent, cost: float) -> list[Problems]:
+    """Rows for an object on the wall ahead, on the left and on the right."""
+    category = evidence.categories[index]
+    door = category.name == "door"
+    walls = (
+        (-np.pi / 2, room.back_m, room.back_sigma, 0.0),
+        (0.0, room.left_m, room.left_sigma, 0.5),
+        (np.pi, room.right_m, room.right_sigma, 0.5),
+    )
+    return [
+        row(
+            evidence,
+            index,
+            mode,
+            camera_height_m=height_m,
+            yaw_rad=yaw,
+            base_m=0.0 if door else _usual_base(category.name, mode),
+            base_sigma_m=0.0 if door else _MIDDLE_SIGMA_M,
+            wall_m=wall,
+            wall_sigma=sigma,
+            footprint=room.footprint,
+            footprint_sigma_m=0.4,
+            extra=mode.cost + side_cost + cost,
+        )
+        for mode in hung_modes(category.name)
+        for yaw, wall, sigma, side_cost in walls
+    ]
+
+
+def _usual_base(name: str, mode: SizeMode) -> float:
+    middle = _USUAL_MIDDLE_M.get(name, _MIDDLE_M)
+    return max(0.05, middle - float(np.exp(mode.log_size[2])) / 2)
+
+
+def place_below_ceiling(evidence: Evidence, index: int, height_m: float, room: Extent, cost: float) -> list[Problems]:
+    """Rows for an object hanging from the ceiling, over the things on the floor."""
+    return [
+        row(
+            evidence,
+            index,
+            mode,
+            camera_height_m=height_m,
+            yaw_rad=yaw,
+            base_m=CEILING_M - float(np.exp(mode.log_size[2])),
+            base_sigma_m=0.4,
+            top_m=CEILING_M,
+            top_sigma_m=CEILING_SIGMA_M,
+            footprint=room.footprint,
+            footprint_sigma_m=0.4,
+            extra=mode.cost + cost,
+        )
+        for mode in hanging_modes(evidence.categories[index].name)
+        for yaw in ((0.0,) if mode.square else (0.0, np.pi / 2))
+    ]

@@ -1,0 +1,188 @@
+"""The small problem each object poses: which upright cuboid of plausible size projects to the observed box?
+
+All hypotheses about all objects (camera heights, headings, supporters, starts) are rows of one batch, so that they
+are solved together. A row's unknowns are
+
+| index | unknown                                        |
+|-------|------------------------------------------------|
+| 0     | sideways tangent of the centre, x / y in the world |
+| 1     | logarithm of the centre's distance ahead, y    |
+| 2..4  | logarithms of depth (x), width (y), height (z) |
+| 5     | height of the base above its expected value, in units of its sigma |
+
+"Ahead" is measured along the camera's heading on the floor, so that a centre is always in front of the camera.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from diorama_core.geometry.projection import cuboid_corners, visible_bounds
+from diorama_core.scene.types import Intrinsics
+
+UNKNOWNS = 6
+ROBUST_BEYOND = 2.0
+"""Residuals beyond this many sigmas count linearly."""
+OCCLUDED_WEIGHT = 0.12
+"""Weight of an edge on the side that something in front hides."""
+INVISIBLE_PENALTY = 12.0
+"""Sigmas per edge for a cuboid that is not in the picture at all."""
+UNTOLD = 1e6
+"""A sigma that means that nothing is known."""
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """How the camera is held: intrinsics and orientation, with its heading on the floor."""
+
+    intrinsics: Intrinsics
+    R_world_camera: Float[np.ndarray, "3 3"]
+
+    @property
+    def heading(self) -> Float[np.ndarray, "2"]:
+        """Unit direction on the floor that the camera faces."""
+        ahead = self.R_world_camera[:2, 2]
+        length = np.linalg.norm(ahead)
+        return ahead / length if length > 1e-6 else np.array([0.0, 1.0])
+
+
+@dataclass(frozen=True, eq=False)
+class Problems:
+    """A batch of rows; every array's first axis is the row."""
+
+    item: Float[np.ndarray, "n"]
+    """Index of the object the row is about."""
+    camera_height_m: Float[np.ndarray, "n"]
+    yaw_rad: Float[np.ndarray, "n"]
+    box_px: Float[np.ndarray, "n 4"]
+    edge_sigma_px: Float[np.ndarray, "n 4"]
+    hidden_beyond: Bool[np.ndarray, "n 4"]
+    """Edges behind which the object may go on, hidden by something in front."""
+    log_size: Float[np.ndarray, "n 3"]
+    """Prior of the logarithms of depth, width, height."""
+    log_size_sigma: Float[np.ndarray, "n 3"]
+    base_m: Float[np.ndarray, "n"]
+    """Expected height of the base."""
+    base_sigma_m: Float[np.ndarray, "n"]
+    """0 where the base is certain."""
+    top_m: Float[np.ndarray, "n"]
+    top_sigma_m: Float[np.ndarray, "n"]
+    footprint: Float[np.ndarray, "n 5"]
+    """Where the base must stay: centre x, y, yaw, half depth, half width; in the world."""
+    footprint_sigma_m: Float[np.ndarray, "n"]
+    wall_m: Float[np.ndarray, "n"]
+    """Coordinate of the object's back along its front axis (negative: a wall faces the camera)."""
+    wall_sigma: Float[np.ndarray, "n"]
+    """Of the logarithm of that coordinate's ratio."""
+    extra: Float[np.ndarray, "n"]
+    """Constant cost of the row's assumptions."""
+
+    def __len__(self) -> int:
+        return len(self.item)
+
+    def rows(self, chosen: np.ndarray) -> Problems:
+        """The chosen rows, by index or by mask."""
+        return Problems(**{f.name: getattr(self, f.name)[chosen] for f in fields(self)})
+
+    def changed(self, **columns: object) -> Problems:
+        """A copy with some columns replaced (broadcast to the rows)."""
+        whole = {k: np.broadcast_to(np.asarray(v), getattr(self, k).shape) for k, v in columns.items()}
+        return replace(self, **whole)
+
+
+def stacked(parts: list[Problems]) -> Problems:
+    """One batch of several."""
+    return Problems(**{f.name: np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Problems)})
+
+
+@dataclass(frozen=True, eq=False)
+class Cuboids:
+    """The cuboids that a batch of unknowns stands for."""
+
+    centre: Float[np.ndarray, "n 3"]
+    yaw_rad: Float[np.ndarray, "n"]
+    size_m: Float[np.ndarray, "n 3"]
+
+    @property
+    def base_m(self) -> Float[np.ndarray, "n"]:
+        """Heights of the undersides."""
+        return self.centre[:, 2] - self.size_m[:, 2] / 2
+
+    @property
+    def top_m(self) -> Float[np.ndarray, "n"]:
+        """Heights of the upper sides."""
+        return self.centre[:, 2] + self.size_m[:, 2] / 2
+
+
+def cuboids(unknowns: Float[np.ndarray, "n 6"], problems: Problems, view: View) -> Cuboids:
+    """Centres, headings and sizes in the world."""
+    forward = np.exp(unknowns[:, 1])
+    ahead, right = view.heading, np.array([view.heading[1], -view.heading[0]])
+    plan = forward[:, None] * (ahead + unknowns[:, :1] * right)
+    size = np.exp(unknowns[:, 2:5])
+    base = problems.base_m + unknowns[:, 5] * problems.base_sigma_m
+    return Cuboids(np.column_stack([plan, base + size[:, 2] / 2]), problems.yaw_rad, size)
+
+
+def projected(
+    boxes: Cuboids, camera_height_m: Float[np.ndarray, "n"], view: View
+) -> tuple[Float[np.ndarray, "n 4"], Bool[np.ndarray, "n"]]:
+    """Bounds of the cuboids' visible parts in the picture, and whether there are any."""
+    corners = cuboid_corners(boxes.centre, boxes.yaw_rad, boxes.size_m)
+    corners[..., 2] -= camera_height_m[:, None]
+    return visible_bounds(corners @ view.R_world_camera, view.intrinsics)
+
+
+def residuals(unknowns: Float[np.ndarray, "n 6"], problems: Problems, view: View) -> Float[np.ndarray, "n r"]:
+    """Everything that speaks against a row's cuboid, in sigmas: their squares sum to its cost."""
+    boxes = cuboids(unknowns, problems, view)
+    return np.concatenate(
+        [
+            _edges(boxes, problems, view),
+            (unknowns[:, 2:5] - problems.log_size) / problems.log_size_sigma,
+            unknowns[:, 5:6],
+            ((boxes.top_m - problems.top_m) / problems.top_sigma_m)[:, None],
+            _outside_footprint(boxes, problems),
+            _off_wall(boxes, problems),
+        ],
+        axis=1,
+    )
+
+
+def _edges(boxes: Cuboids, problems: Problems, view: View) -> Float[np.ndarray, "n 4"]:
+    """How far the projected box is from the observed one, edge by edge; lenient where something hides the rest."""
+    bounds, visible = projected(boxes, problems.camera_height_m, view)
+    outward = (bounds - problems.box_px) * np.array([-1.0, -1.0, 1.0, 1.0])
+    off = outward / problems.edge_sigma_px
+    off = np.where(problems.hidden_beyond & (outward > 0), OCCLUDED_WEIGHT * off, off)
+    robust = np.where(
+        np.abs(off) > ROBUST_BEYOND,
+        np.sign(off) * np.sqrt(np.maximum(2 * ROBUST_BEYOND * np.abs(off) - ROBUST_BEYOND**2, 0.0)),
+        off,
+    )
+    return robust + np.where(visible, 0.0, INVISIBLE_PENALTY)[:, None]
+
+
+def _outside_footprint(boxes: Cuboids, problems: Problems) -> Float[np.ndarray, "n 2"]:
+    """How far the base reaches beyond its supporter, along the supporter's axes; its centre where it is larger."""
+    x, y, yaw, half_depth, half_width = problems.footprint.T
+    c, s = np.cos(yaw), np.sin(yaw)
+    dx, dy = boxes.centre[:, 0] - x, boxes.centre[:, 1] - y
+    offset = np.stack([c * dx + s * dy, -s * dx + c * dy], axis=-1)
+    turn = boxes.yaw_rad - yaw
+    along, across = np.abs(np.cos(turn)), np.abs(np.sin(turn))
+    depth, width = boxes.size_m[:, 0], boxes.size_m[:, 1]
+    reach = 0.5 * np.stack([along * depth + across * width, across * depth + along * width], axis=-1)
+    room = np.maximum(np.stack([half_depth, half_width], axis=-1) - reach, 0.02)
+    return np.maximum(np.abs(offset) - room, 0.0) / problems.footprint_sigma_m[:, None]
+
+
+def _off_wall(boxes: Cuboids, problems: Problems) -> Float[np.ndarray, "n 1"]:
+    """Whether the object's back lies in its wall."""
+    front = np.stack([np.cos(boxes.yaw_rad), np.sin(boxes.yaw_rad)], axis=-1)
+    back = (boxes.centre[:, :2] * front).sum(axis=1) - boxes.size_m[:, 0] / 2
+    ratio = np.maximum(-back, 0.05) / problems.wall_m
+    return (np.log(ratio) / problems.wall_sigma)[:, None]

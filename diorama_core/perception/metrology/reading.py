@@ -1,0 +1,47 @@
+"""Reading a placement: which way the object faces and how sure its cuboid is."""
+
+from __future__ import annotations
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.library.taxonomy import UNKNOWN, Category
+from diorama_core.perception.metrology.evidence import Evidence
+from diorama_core.perception.metrology.placement import WALL, Placement
+
+_SQUARE = 0.15
+"""Difference of the logarithms of width and depth below which the prior cannot tell them apart."""
+_COST_SCALE = 18.0
+_HIDDEN_FACTOR = 0.85
+"""Per edge that is hidden or cut by the picture's border."""
+
+
+def heading_and_size(placement: Placement, category: Category) -> tuple[float, Float[np.ndarray, "3"]]:
+    """Heading of the front and extents (depth, width, height).
+
+    The front faces the camera as far as the axes allow; where width and depth look alike in the category, it may be
+    any of the four sides.
+    """
+    box = placement.cuboid
+    yaw, size = float(box.yaw_rad[0]), box.size_m[0]
+    if placement.supporter == WALL:
+        return yaw, size
+    prior = category.priors[0].log_median_xyz
+    free = category is UNKNOWN or abs(prior[0] - prior[1]) < _SQUARE
+    turns = (0.0, np.pi / 2, np.pi, -np.pi / 2) if free else (0.0, np.pi)
+    to_camera = -box.centre[0, :2]
+    facing = [np.cos(yaw + turn) * to_camera[0] + np.sin(yaw + turn) * to_camera[1] for turn in turns]
+    best = int(np.argmax(facing))
+    if turns[best] in (np.pi / 2, -np.pi / 2):
+        size = size[[1, 0, 2]]
+    turned = yaw + turns[best]
+    return float(np.arctan2(np.sin(turned), np.cos(turned))), size
+
+
+def confidence_of(placement: Placement, evidence: Evidence, height_log_sigma: float) -> float:
+    """Between 0 and 1: low for implausible sizes, bad fits, hidden or cut boxes, and an unsure camera height."""
+    index = placement.index
+    besides = (placement.supporter,) if placement.supporter >= 0 else ()
+    unseen = int((evidence.hidden(index, besides) | evidence.truncated[index]).sum())
+    fit = np.exp(-placement.cost / _COST_SCALE)
+    return float(np.clip(fit * _HIDDEN_FACTOR**unseen * np.exp(-height_log_sigma), 0.02, 1.0))

@@ -1,0 +1,78 @@
+"""Levenberg-Marquardt over a batch of small problems, each with its own damping."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.perception.metrology.problem import UNKNOWNS, Problems, View, residuals
+
+_STEP = 1e-4
+_LONGEST_STEP = 0.7
+"""Largest change of any unknown in one iteration."""
+_LEAST_GAIN = 1e-3
+"""A row whose cost falls by less than this in an accepted step has settled."""
+_LOW = np.array([-8.0, np.log(0.15), np.log(0.005), np.log(0.01), np.log(0.005), -8.0])
+_HIGH = np.array([8.0, np.log(25.0), np.log(8.0), np.log(8.0), np.log(5.0), 8.0])
+
+
+@dataclass(frozen=True, eq=False)
+class Solutions:
+    """Where the rows ended."""
+
+    problems: Problems
+    unknowns: Float[np.ndarray, "n 6"]
+    cost: Float[np.ndarray, "n"]
+    """Sum of squared residuals plus the constant cost of the row's assumptions."""
+
+    def rows(self, chosen: np.ndarray) -> Solutions:
+        """The chosen rows."""
+        return Solutions(self.problems.rows(chosen), self.unknowns[chosen], self.cost[chosen])
+
+
+def solve(problems: Problems, start: Float[np.ndarray, "n 6"], view: View, iterations: int = 14) -> Solutions:
+    """Minimise every row's cost from its start; rows that have settled are left alone."""
+    unknowns = np.clip(start, _LOW, _HIGH)
+    cost = _cost(residuals(unknowns, problems, view))
+    damping = np.full(len(problems), 1e-2)
+    active = np.arange(len(problems))
+    for _ in range(iterations):
+        if not len(active):
+            break
+        part, here = problems.rows(active), unknowns[active]
+        step = _step(part, here, damping[active], view)
+        there = np.clip(here + step, _LOW, _HIGH)
+        reached = _cost(residuals(there, part, view))
+        gain = cost[active] - reached
+        better = gain > 0
+        unknowns[active] = np.where(better[:, None], there, here)
+        cost[active] = np.where(better, reached, cost[active])
+        damping[active] = np.where(better, damping[active] * 0.3, damping[active] * 6.0)
+        active = active[(~better & (damping[active] < 1e5)) | (gain > _LEAST_GAIN)]
+    return Solutions(problems, unknowns, cost + problems.extra)
+
+
+def _cost(r: Float[np.ndarray, "n r"]) -> Float[np.ndarray, "n"]:
+    return (r**2).sum(axis=1)
+
+
+def _step(
+    problems: Problems, unknowns: Float[np.ndarray, "n 6"], damping: Float[np.ndarray, "n"], view: View
+) -> Float[np.ndarray, "n 6"]:
+    """The damped Gauss-Newton step, with derivatives by central differences."""
+    count = len(problems)
+    moves = _STEP * np.concatenate([np.eye(UNKNOWNS), -np.eye(UNKNOWNS)])
+    probes = (unknowns[None] + moves[:, None]).reshape(-1, UNKNOWNS)
+    repeated = problems.rows(np.tile(np.arange(count), 2 * UNKNOWNS))
+    values = residuals(probes, repeated, view).reshape(2, UNKNOWNS, count, -1)
+    jacobian = ((values[0] - values[1]) / (2 * _STEP)).transpose(1, 2, 0)
+    r = residuals(unknowns, problems, view)
+    normal = np.einsum("nri,nrj->nij", jacobian, jacobian)
+    gradient = np.einsum("nri,nr->ni", jacobian, r)
+    diagonal = np.einsum("nii->ni", normal)
+    normal = normal + np.eye(UNKNOWNS) * (damping[:, None] * (diagonal + 1e-2))[:, None]
+    step = -np.linalg.solve(normal, gradient[..., None])[..., 0]
+    longest = np.abs(step).max(axis=1, keepdims=True)
+    return step * np.minimum(1.0, _LONGEST_STEP / np.maximum(longest, 1e-12))

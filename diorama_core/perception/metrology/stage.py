@@ -1,0 +1,101 @@
+"""The geometry stage for a photo alone: metric camera, cuboids and support edges from boxes and known sizes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from diorama_core.artefacts import CameraEstimate, CameraHypothesis, Cuboid, DetectedObject, Inputs, ObjectGeometry
+from diorama_core.perception.metrology.evidence import Evidence, gather
+from diorama_core.perception.metrology.floor import HeightScan, scan_heights
+from diorama_core.perception.metrology.placement import CEILING, FLOOR, WALL, Placement, place_all
+from diorama_core.perception.metrology.problem import View
+from diorama_core.perception.metrology.reading import confidence_of, heading_and_size
+from diorama_core.progress import Progress
+from diorama_core.scene.types import Camera, Relation, Support, yaw_rotation
+
+_COST_WEIGHT = 0.003
+"""How much a squared sigma of the objects counts against a camera hypothesis's score."""
+_PARENT_NAMES = {FLOOR: "floor", WALL: "wall", CEILING: "ceiling"}
+
+
+@dataclass(frozen=True)
+class SingleViewMetrology:
+    """Metric scale and objects from one photo and boxes."""
+
+    most_hypotheses: int = 3
+    """Readings of the camera among which the objects decide."""
+
+    def measure(
+        self, inputs: Inputs, camera: CameraEstimate, objects: tuple[DetectedObject, ...], progress: Progress
+    ) -> ObjectGeometry:
+        """The camera's height and every object's cuboid, support and confidence.
+
+        Returns:
+            One cuboid and one support edge per object, in the order given.
+        """
+        evidence = gather(objects, inputs.photo.width, inputs.photo.height)
+        progress.report(0.0, "Measuring the camera's height")
+        hypothesis, scan = self._choose(camera.hypotheses, evidence, progress)
+        view = View(hypothesis.intrinsics, hypothesis.R_world_camera)
+        progress.report(0.6, "Placing objects")
+        placements = place_all(evidence, view, scan.height_m)
+        progress.report(1.0, "Objects measured")
+        return ObjectGeometry(
+            camera=_camera(hypothesis, scan.height_m),
+            cuboids=tuple(_cuboid(o, p, evidence, scan) for o, p in zip(objects, placements, strict=True)),
+            supports=tuple(_support(p, objects) for p in placements),
+            source=_source(len(objects)),
+            confidence=_overall(camera, scan, len(objects)),
+        )
+
+    def _choose(
+        self, hypotheses: tuple[CameraHypothesis, ...], evidence: Evidence, progress: Progress
+    ) -> tuple[CameraHypothesis, HeightScan]:
+        """The hypothesis under which vanishing points and objects are explained best."""
+        scanned = []
+        tried = hypotheses[: self.most_hypotheses]
+        for done, hypothesis in enumerate(tried):
+            progress.report(0.6 * done / len(tried), "Measuring the camera's height")
+            view = View(hypothesis.intrinsics, hypothesis.R_world_camera)
+            scanned.append((hypothesis, scan_heights(evidence, view)))
+        return max(scanned, key=lambda pair: pair[0].score - _COST_WEIGHT * pair[1].cost)
+
+
+def _camera(hypothesis: CameraHypothesis, height_m: float) -> Camera:
+    T = np.eye(4)
+    T[:3, :3] = hypothesis.R_world_camera
+    T[2, 3] = height_m
+    return Camera(hypothesis.intrinsics, T)
+
+
+def _cuboid(thing: DetectedObject, placement: Placement, evidence: Evidence, scan: HeightScan) -> Cuboid:
+    yaw, size = heading_and_size(placement, evidence.categories[placement.index])
+    return Cuboid(
+        object_id=thing.id,
+        R_world_object=yaw_rotation(yaw),
+        centre=placement.cuboid.centre[0],
+        size_m=size,
+        confidence=confidence_of(placement, evidence, scan.log_sigma),
+    )
+
+
+def _support(placement: Placement, objects: tuple[DetectedObject, ...]) -> Support:
+    child = objects[placement.index].id
+    parent = _PARENT_NAMES.get(placement.supporter)
+    relation: Relation = "mounted on" if placement.supporter in (WALL, CEILING) else "placed on"
+    return Support(child, parent if parent is not None else objects[placement.supporter].id, relation)
+
+
+def _source(count: int) -> str:
+    if not count:
+        return "no objects: the camera is taken to be at the usual height"
+    return "scale from the usual sizes of the named things and the camera's usual height"
+
+
+def _overall(camera: CameraEstimate, scan: HeightScan, count: int) -> float:
+    """Low where the curve over heights is wide."""
+    if not count:
+        return 0.15
+    return float(np.clip(camera.confidence, 0, 1) * np.exp(-scan.log_sigma / 0.25))
