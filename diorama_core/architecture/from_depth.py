@@ -11,7 +11,7 @@ from scipy.spatial import ConvexHull, QhullError
 from diorama_core.architecture.colours import coloured, object_pixels
 from diorama_core.architecture.supports import resolve_supports
 from diorama_core.architecture.wall_candidates import MeasuredSurface, find_walls, tolerance_m
-from diorama_core.architecture.wall_sequence import WallPiece, heading, outline
+from diorama_core.architecture.wall_sequence import BEHIND_CAMERA_M, WallPiece, heading, outline
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry
 from diorama_core.geometry.depth_grid import points_camera, reduced, smooth_normals_camera
 from diorama_core.progress import Progress
@@ -22,7 +22,6 @@ USUAL_CEILING_M = 2.6
 GUESS_CONFIDENCE = 0.15
 MIN_FLAT_SHARE = 0.004
 """Floor or ceiling count as seen when this share of the measured points lies on them."""
-BEHIND_CAMERA_M = 0.4
 MAX_FLOOR_REACH_M = 8.0
 
 

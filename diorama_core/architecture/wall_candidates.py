@@ -13,6 +13,8 @@ GROWTH_RAD = np.deg2rad(10.0)
 SNAP_RAD = np.deg2rad(6.0)
 """Directions within this of a room axis are taken to be it."""
 OFFSET_BIN_M = 0.05
+GAP_M = 0.4
+"""A wider gap along a wall, in plan, parts it in two that are judged on their own."""
 MIN_AREA_M2 = 0.15
 MIN_POINTS = 120
 MIN_RISE_M = 0.4
@@ -122,31 +124,61 @@ def _parallel_walls(
             break
         centre = low + (peak + 0.5) * OFFSET_BIN_M
         near = free & (np.abs(offsets - centre) < 2.5 * OFFSET_BIN_M + tolerance_m(surface.depth_m))
-        wall = _refined(surface, near, normal, top_m)
+        walls += _refined(surface, near, normal, top_m)
         free &= ~near
-        if wall is not None:
-            walls.append(wall)
     return walls
 
 
 def _refined(
     surface: MeasuredSurface, near: Bool[np.ndarray, "n"], normal: Float[np.ndarray, "2"], top_m: float
-) -> WallCandidate | None:
-    """The wall through a slice of points; none when they are few, low, or see-through."""
+) -> list[WallCandidate]:
+    """The wall through a slice of points; where that cannot be one, the walls among its parts between gaps."""
     if near.sum() < MIN_POINTS:
-        return None
-    points = surface.points[near]
-    if _spread(points[:, 2]) < MIN_RISE_M:
-        return None
-    fitted, offset = _fit_line(points[:, :2], surface.area_m2[near], normal)
+        return []
+    fitted, offset = _fit_line(surface.points[near, :2], surface.area_m2[near], normal)
     inliers = np.abs(surface.points[:, :2] @ fitted - offset) < tolerance_m(surface.depth_m)
     inliers &= (surface.normals[:, :2] @ fitted > np.cos(2.0 * GROWTH_RAD)) & ~surface.is_object
-    if inliers.sum() < MIN_POINTS or offset > surface.camera_position[:2] @ fitted - 0.1:
+    if offset > surface.camera_position[:2] @ fitted - 0.1:
+        return []
+    whole = _judged(surface, fitted, offset, inliers, top_m)
+    if whole is not None:
+        return [whole]
+    along = np.array([-fitted[1], fitted[0]])
+    parts = _parted(surface.points[:, :2] @ along, inliers)
+    judged = (_judged(surface, fitted, offset, part, top_m) for part in parts if len(parts) > 1)
+    return [wall for wall in judged if wall is not None]
+
+
+def _judged(
+    surface: MeasuredSurface,
+    normal: Float[np.ndarray, "2"],
+    offset: float,
+    inliers: Bool[np.ndarray, "n"],
+    top_m: float,
+) -> WallCandidate | None:
+    """A wall, unless it is small, low, or farther things are seen through it."""
+    if inliers.sum() < MIN_POINTS or _spread(surface.points[inliers, 2]) < MIN_RISE_M:
         return None
-    through = _seen_through(surface, fitted, offset, inliers, top_m)
-    if through > MAX_SEEN_THROUGH:
+    area = float(surface.area_m2[inliers].sum())
+    through = _seen_through(surface, normal, offset, inliers, top_m)
+    if area < MIN_AREA_M2 or through > MAX_SEEN_THROUGH:
         return None
-    return WallCandidate(fitted, offset, inliers, through, float(surface.area_m2[inliers].sum()))
+    return WallCandidate(normal, offset, inliers, through, area)
+
+
+def _parted(reach_m: Float[np.ndarray, "n"], member: Bool[np.ndarray, "n"]) -> list[Bool[np.ndarray, "n"]]:
+    """Members split wherever none lies within `GAP_M` along the wall."""
+    chosen = np.flatnonzero(member)
+    if len(chosen) == 0:
+        return []
+    order = chosen[np.argsort(reach_m[chosen], kind="stable")]
+    breaks = np.flatnonzero(np.diff(reach_m[order]) > GAP_M) + 1
+    parts = []
+    for indices in np.split(order, breaks):
+        part = np.zeros(len(member), dtype=bool)
+        part[indices] = True
+        parts.append(part)
+    return parts
 
 
 def _spread(values: Float[np.ndarray, "n"]) -> float:

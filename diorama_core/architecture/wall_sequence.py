@@ -17,7 +17,12 @@ HEADING_BINS = 180
 MIN_RUN_SHARE = 0.025
 """A wall that leads in fewer headings than this share of the view is dropped."""
 CORNER_SLACK_RAD = np.deg2rad(5.0)
+COLLINEAR_M = 0.1
+GAP_RAD = np.deg2rad(7.0)
+"""Wider unknown stretches of the view are closed behind everything measured there."""
 MAX_HIDDEN_M = 3.0
+BEHIND_CAMERA_M = 0.4
+"""Side walls end this far behind the camera."""
 BEYOND_VIEW_M = 0.3
 MAX_RANGE_M = 12.0
 
@@ -62,6 +67,7 @@ def outline(surface: MeasuredSurface, walls: list[WallCandidate], view: tuple[fl
     runs = _runs(surface, walls, view)
     if not runs:
         return ()
+    runs = _closed(runs, surface, view)
     pieces: list[WallPiece] = []
     start = _beyond_view(runs[0], view[0], origin, left=True)
     for run, following in pairwise(runs):
@@ -113,11 +119,39 @@ def _merged(runs: list[_Run]) -> list[_Run]:
     """Neighbouring runs of the same wall become one, whatever was unknown between them."""
     out: list[_Run] = []
     for run in runs:
-        if out and out[-1].wall is run.wall:
-            out[-1] = _Run(run.wall, out[-1].first, run.last)
+        if out and _collinear(out[-1].wall, run.wall):
+            larger = max(out[-1].wall, run.wall, key=lambda w: w.area_m2)
+            out[-1] = _Run(larger, out[-1].first, run.last)
         else:
             out.append(run)
     return out
+
+
+def _collinear(a: WallCandidate, b: WallCandidate) -> bool:
+    return bool(a.normal @ b.normal > np.cos(np.deg2rad(3.0)) and abs(a.offset - b.offset) < COLLINEAR_M)
+
+
+def _closed(runs: list[_Run], surface: MeasuredSurface, view: tuple[float, float]) -> list[_Run]:
+    """The runs with assumed walls put where no wall leads: behind what is measured there."""
+    origin = surface.camera_position[:2]
+    headings = heading(surface.points[:, :2], origin)
+    ends = [view[0], *(h for run in runs for h in (run.first, run.last)), view[1]]
+    out: list[_Run] = []
+    for number in range(len(runs) + 1):
+        first, last = ends[2 * number], ends[2 * number + 1]
+        seen = (headings >= first) & (headings <= last) & (surface.points[:, 2] > 0.1)
+        if last - first > GAP_RAD and seen.sum() >= 50:
+            out.append(_Run(_assumed(surface.points[seen, :2], 0.5 * (first + last)), first, last))
+        out += runs[number : number + 1]
+    return out
+
+
+def _assumed(points: Float[np.ndarray, "n 2"], toward: float) -> WallCandidate:
+    """A wall square to the room axis nearest to a heading, behind nearly all of the points."""
+    quarter = round(toward / (np.pi / 2)) * (np.pi / 2)
+    normal = -np.round([np.sin(quarter), np.cos(quarter)])
+    offset = float(np.quantile(points @ normal, 0.02))
+    return WallCandidate(normal, offset, np.zeros(0, dtype=bool), 0.8, 0.0)
 
 
 def meeting_point(a: WallCandidate, b: WallCandidate) -> Float[np.ndarray, "2"] | None:
@@ -141,7 +175,7 @@ def point_at(wall: WallCandidate, toward: float, origin: Float[np.ndarray, "2"])
 def _joint(
     a: _Run, b: _Run, origin: Float[np.ndarray, "2"]
 ) -> tuple[Float[np.ndarray, "2"], list[WallPiece], Float[np.ndarray, "2"]]:
-    """How run a hands over to run b: a shared corner, or a hidden piece between the nearer and the farther wall."""
+    """How run a hands over to run b: a shared corner, or hidden pieces between the nearer and the farther wall."""
     corner = meeting_point(a.wall, b.wall)
     if corner is not None and np.linalg.norm(corner - origin) < MAX_RANGE_M:
         at = float(heading(corner, origin))
@@ -153,32 +187,64 @@ def _joint(
     if end is None or start is None:
         fallback = corner if corner is not None else _nearest_on(a.wall, origin)
         return fallback, [], fallback
-    nearer_is_a = np.linalg.norm(end - origin) < np.linalg.norm(start - origin)
-    if nearer_is_a:
-        start = _behind(a.wall, end, b.wall, start)
-    else:
-        end = _behind(b.wall, start, a.wall, end)
-    return end, [WallPiece(end, start, None)], start
+    if np.linalg.norm(end - origin) < np.linalg.norm(start - origin):
+        hidden = _hidden_path(a.wall, end, b.wall, start, origin, behind_right=False)
+        return end, _pieces(hidden), hidden[-1]
+    hidden = _hidden_path(b.wall, start, a.wall, end, origin, behind_right=True)
+    return hidden[-1], _pieces(hidden[::-1]), start
+
+
+def _pieces(path: list[Float[np.ndarray, "2"]]) -> list[WallPiece]:
+    return [WallPiece(p, q, None) for p, q in pairwise(path)]
 
 
 def _nearest_on(wall: WallCandidate, origin: Float[np.ndarray, "2"]) -> Float[np.ndarray, "2"]:
     return origin + (wall.offset - float(origin @ wall.normal)) * wall.normal
 
 
-def _behind(
-    near: WallCandidate, edge: Float[np.ndarray, "2"], far: WallCandidate, seen: Float[np.ndarray, "2"]
-) -> Float[np.ndarray, "2"]:
-    """Where the farther wall begins when the nearer one turns square away from the room at its edge."""
+def _hidden_path(
+    near: WallCandidate,
+    edge: Float[np.ndarray, "2"],
+    far: WallCandidate,
+    seen: Float[np.ndarray, "2"],
+    origin: Float[np.ndarray, "2"],
+    *,
+    behind_right: bool,
+) -> list[Float[np.ndarray, "2"]]:
+    """From the nearer wall's edge to the farther wall, out of sight: square corners where they stay hidden.
+
+    Args:
+        near: The nearer wall and
+        edge: where it ends;
+        far: the farther wall and
+        seen: where it comes into view.
+        origin: The camera.
+        behind_right: Whether the nearer wall hides what is to the right of its edge.
+    """
+    sight = float(heading(edge, origin))
     slope = float(-near.normal @ far.normal)
-    if abs(slope) < 0.17:
-        return seen
-    distance = (far.offset - float(edge @ far.normal)) / slope
-    return edge - distance * near.normal if 0 < distance < MAX_HIDDEN_M else seen
+    if abs(slope) > 0.17:
+        distance = (far.offset - float(edge @ far.normal)) / slope
+        square = edge - distance * near.normal
+        if 0 < distance < MAX_HIDDEN_M and _is_hidden(square, origin, sight, behind_right):
+            return [edge, square]
+    inward = float((seen - edge) @ -near.normal)
+    corner = edge - inward * near.normal
+    if inward > 0 and _is_hidden(corner, origin, sight, behind_right):
+        return [edge, corner, seen]
+    return [edge, seen]
+
+
+def _is_hidden(point: Float[np.ndarray, "2"], origin: Float[np.ndarray, "2"], sight: float, right: bool) -> bool:
+    turn = float(heading(point, origin)) - sight
+    return turn > -0.01 if right else turn < 0.01
 
 
 def _beyond_view(run: _Run, side: float, origin: Float[np.ndarray, "2"], *, left: bool) -> Float[np.ndarray, "2"]:
-    """Where the first or last wall ends: a little outside the picture, or where it was last seen."""
+    """Where the first or last wall ends: behind the camera, a little outside the picture, or where it was last seen."""
     outward = -run.wall.along if left else run.wall.along
+    if outward[1] < -0.7:
+        return _at_y(run.wall, origin[1] - BEHIND_CAMERA_M)
     seen = run.first if left else run.last
     at_side = point_at(run.wall, side, origin)
     if at_side is None or np.linalg.norm(at_side - origin) > 2.5 * _range(run, origin):
@@ -186,6 +252,11 @@ def _beyond_view(run: _Run, side: float, origin: Float[np.ndarray, "2"], *, left
     if at_side is None:
         at_side = _nearest_on(run.wall, origin)
     return at_side + BEYOND_VIEW_M * outward
+
+
+def _at_y(wall: WallCandidate, y: float) -> Float[np.ndarray, "2"]:
+    """Where a wall that runs about along y reaches a given y."""
+    return np.array([(wall.offset - wall.normal[1] * y) / wall.normal[0], y])
 
 
 def _range(run: _Run, origin: Float[np.ndarray, "2"]) -> float:
