@@ -17,7 +17,7 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 import open3d as o3d
 import trimesh
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.scene.types import Camera, box_corners
@@ -28,7 +28,7 @@ T = TypeVar("T")
 
 _MIN_EXTENT_M = 1e-4
 _NEAR_M = 0.05
-_HULL_DIRECTIONS = 96
+_HULL_DIRECTIONS = 48
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +47,8 @@ class PoseBatch:
 
     def apply(self, points_object: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "p n 3"]:
         """Shape points in the world under every pose."""
-        scaled = points_object[None] * self.scale[:, None]
-        return np.einsum("pij,pnj->pni", self.R, scaled) + self.position[:, None]
+        to_world = self.R * self.scale[:, None, :]
+        return points_object @ to_world.transpose(0, 2, 1) + self.position[:, None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,13 +56,24 @@ class Hits:
     """What the rays of one window meet, for every pose; infinite depth where they meet nothing."""
 
     depth_m: Float[np.ndarray, "p r"]
-    normals_world: Float[np.ndarray, "p r 3"]
-    """Unit, turned toward the camera; zero where nothing is met."""
+    normals_object: Float[np.ndarray, "p r 3"]
+    """Of the faces met, in the shape's own frame at scale 1."""
+    directions_world: Float[np.ndarray, "r 3"]
+    poses: PoseBatch
 
     @cached_property
-    def covered(self) -> np.ndarray:
-        """Whether the shape is met (p r)."""
+    def covered(self) -> Bool[np.ndarray, "p r"]:
+        """Whether the shape is met."""
         return np.isfinite(self.depth_m)
+
+    @cached_property
+    def normals_world(self) -> Float[np.ndarray, "p r 3"]:
+        """Unit, turned toward the camera; zero where nothing is met."""
+        to_world = self.poses.R / self.poses.scale[:, None, :]
+        normals = self.normals_object @ to_world.transpose(0, 2, 1)
+        normals = normals / np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-12)
+        away = (normals * self.directions_world).sum(axis=-1) > 0
+        return np.where(self.covered[..., None], np.where(away[..., None], -normals, normals), 0.0)
 
 
 class ShapeCaster:
@@ -88,28 +99,19 @@ class ShapeCaster:
     ) -> Hits:
         """First hits of every ray with the shape under every pose."""
         count, rays_each = len(poses), len(directions_world)
-        origins = np.einsum("pji,pj->pi", poses.R, origin_world - poses.position) / poses.scale
-        directions = np.einsum("pji,rj->pri", poses.R, directions_world) / poses.scale[:, None]
+        to_object = poses.R.transpose(0, 2, 1) / poses.scale[:, :, None]
         rays = np.empty((count, rays_each, 6), np.float32)
-        rays[..., :3], rays[..., 3:] = origins[:, None], directions
+        rays[..., :3] = (to_object @ (origin_world - poses.position)[..., None])[:, None, :, 0]
+        rays[..., 3:] = directions_world @ to_object.transpose(0, 2, 1)
         depth, normals = self._cast(rays.reshape(-1, 6))
         depth = depth.reshape(count, rays_each).astype(np.float64)
         depth[~(depth > _NEAR_M)] = np.inf
-        world = np.einsum("pij,prj->pri", poses.R, normals.reshape(count, rays_each, 3) / poses.scale[:, None])
-        return Hits(depth, _toward(world, directions_world, np.isfinite(depth)))
+        return Hits(depth, normals.reshape(count, rays_each, 3), directions_world, poses)
 
     def bounds_px(self, camera: Camera, poses: PoseBatch) -> Float[np.ndarray, "p 4"]:
         """Boxes x1, y1, x2, y2 of the posed shape in the photo, clipped to it; NaN where it is out of sight."""
         points = camera.to_camera(poses.apply(self.hull_points))
         return clipped_bounds(camera, points, self.hull_edges)
-
-
-def _toward(normals: np.ndarray, directions: np.ndarray, hit: np.ndarray) -> np.ndarray:
-    """Unit normals with their sign against the ray; zero where nothing was hit."""
-    length = np.linalg.norm(normals, axis=-1, keepdims=True)
-    unit = np.where(length > 1e-12, normals / np.maximum(length, 1e-12), 0.0)
-    away = np.einsum("pri,ri->pr", unit, directions) > 0
-    return np.where(hit[..., None], np.where(away[..., None], -unit, unit), 0.0)
 
 
 def _directions() -> Float[np.ndarray, "d 3"]:

@@ -79,12 +79,3 @@ def soft_iou(
     both = (np.minimum(seen, rendered) * weight).sum(axis=-1)
     either = (np.maximum(seen, rendered) * weight).sum(axis=-1)
     return np.where(either > 1e-9, both / np.maximum(either, 1e-9), 0.0)
-
-
-def box_iou(boxes: Float[np.ndarray, "p 4"], box: tuple[float, float, float, float]) -> Float[np.ndarray, "p"]:
-    """Intersection over union of each box with one box; zero for boxes that are NaN."""
-    other = np.asarray(box, dtype=np.float64)
-    low, high = np.maximum(boxes[:, :2], other[:2]), np.minimum(boxes[:, 2:], other[2:])
-    both = np.clip(high - low, 0.0, None).prod(axis=1)
-    either = (boxes[:, 2:] - boxes[:, :2]).prod(axis=1) + (other[2:] - other[:2]).prod() - both
-    return np.nan_to_num(both / np.maximum(either, 1e-9))

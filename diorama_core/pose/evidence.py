@@ -8,8 +8,8 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.geometry.observed import Observed
+from diorama_core.geometry.projection import box_iou
 from diorama_core.geometry.silhouette import Hits, PoseBatch, ShapeCaster
-from diorama_core.geometry.window import box_iou
 from diorama_core.pose.facing import Facing
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.scene.types import Camera
@@ -58,7 +58,8 @@ class Evidence:
         """0 (agrees entirely) to 1: weighted disagreement of silhouette, box, depth and normals."""
         hits = caster.cast(self.seen.origin_world, self.seen.directions_world, poses)
         weights = [_SILHOUETTE_WEIGHT * self.seen.mask_trust, _BOX_WEIGHT]
-        terms = [self.seen.agreement(hits.covered), box_iou(caster.bounds_px(self.camera, poses), self.seen.box)]
+        boxes = box_iou(caster.bounds_px(self.camera, poses), np.asarray(self.seen.box))
+        terms = [self.seen.agreement(hits.covered), np.nan_to_num(boxes)]
         if self.surface is not None:
             weights.append(_DEPTH_WEIGHT)
             terms.append(self.surface.agreement(hits))

@@ -28,7 +28,7 @@ BOXY = frozenset(
 
 _HARD_LIMITS_M: dict[str, tuple[int, float, float]] = {
     "chair": (2, 0.7, 1.2),
-    "office chair": (2, 0.7, 1.3),
+    "office chair": (2, 0.7, 1.2),
     "armchair": (2, 0.65, 1.2),
     "table": (2, 0.35, 1.1),
     "coffee table": (2, 0.3, 0.6),

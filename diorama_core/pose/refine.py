@@ -32,7 +32,7 @@ class BoxFit:
     anchor: Anchor
     limits: SizeLimits
     yaw_sigma_rad: float
-    iterations: int = 5
+    iterations: int = 4
 
     def refined(self, caster: ShapeCaster, start: PoseBatch) -> PoseBatch:
         """The poses corrected toward the box; unchanged where no correction helps."""

@@ -64,7 +64,7 @@ class RenderAndCompare:
     """Resolution at which all hypotheses are compared."""
     fine_cells: int = 56
     """Resolution at which the best ones are."""
-    refined: int = 3
+    refined: int = 2
     """How many hypotheses of each shape are refined."""
 
     def __repr__(self) -> str:

@@ -75,7 +75,7 @@ class EmbeddedRetrieval:
     def _score(self, shape: Shape, cuboid: Cuboid, seen: Observed, palette: Palette) -> float:
         """0 to 1: the best of the shape's quarter turns in the cuboid."""
         targets, poses = quarter_turns(shape, cuboid)
-        cost = np.array([size_cost(np.log(shape.size_m), np.log(t)) for t in targets])
+        cost = np.array([size_cost(shape.size_m, t) for t in targets])
         outline = seen.agreement(seen.silhouettes(self._caster(shape), poses))
         outline_weight = self.silhouette_weight * (0.25 + 0.75 * seen.mask_trust)
         fit = self.size_weight * np.exp(-cost / 2) + outline_weight * outline

@@ -6,6 +6,7 @@ Things that hold other things up draw from their own pool: shapes with a surface
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +19,7 @@ _ENOUGH = 4
 _RELATED_FACTOR = 0.6
 _PLAIN_FACTOR = 0.75
 _UNKNOWN_POOL = 24
+_LEAST_M = 0.01
 
 RELATED: dict[str, tuple[str, ...]] = {
     "chair": ("office chair", "armchair", "stool"),
@@ -136,16 +138,15 @@ def _usable(library: ShapeLibrary, shapes: tuple[Shape, ...], holds_things: bool
 def _plausible(library: ShapeLibrary, size_m: Float[np.ndarray, "3"], holds_things: bool) -> tuple[Pooled, ...]:
     """Shapes of any kind nearest in size to something unnamed; plain boxes first."""
     shapes = _usable(library, library.shapes(), holds_things)
-    wanted = np.log(np.maximum(size_m, 1e-3))
-    cost = [size_cost(np.log(np.maximum(shape.size_m, 1e-3)), wanted) for shape in shapes]
+    cost = [size_cost(shape.size_m, size_m) for shape in shapes]
     order = np.argsort(np.array(cost) - 2.0 * np.array([s.category == "box" for s in shapes]), kind="stable")
     return tuple(
         Pooled(shapes[i], 1.0 if shapes[i].category == "box" else _PLAIN_FACTOR) for i in order[:_UNKNOWN_POOL]
     )
 
 
-def size_cost(log_size: Float[np.ndarray, "3"], log_wanted: Float[np.ndarray, "3"]) -> float:
+def size_cost(size_m: Sequence[float] | np.ndarray, wanted_m: Sequence[float] | np.ndarray) -> float:
     """How unlike two boxes are: mostly their proportions, gently their size (a shape may be scaled as a whole)."""
-    ratio = log_wanted - log_size
+    ratio = np.log(np.maximum(wanted_m, _LEAST_M)) - np.log(np.maximum(size_m, _LEAST_M))
     overall = float(ratio.mean())
     return float(0.5 * (((ratio - overall) / 0.3) ** 2).sum() + 0.5 * (overall / 0.5) ** 2)

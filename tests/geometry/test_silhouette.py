@@ -1,0 +1,93 @@
+"""Views of shapes by rays in the shape's frame."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from diorama_core.geometry.silhouette import BOX_EDGES, KeyedCache, PoseBatch, ShapeCaster, clipped_bounds
+from diorama_core.geometry.window import Window, soft_iou
+from diorama_core.render.raycast import render_buffers
+from diorama_core.scene.types import Camera, Intrinsics, Pose, box_corners
+
+CAMERA = Camera(Intrinsics.from_fov(64, 48, 1.0), np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 1.2], [0, 0, 0, 1]]))
+MESH = trimesh.util.concatenate(
+    [trimesh.creation.box((0.8, 0.6, 1.0)), trimesh.creation.icosphere(2, 0.4).apply_translation((0, 0, 0.3))]
+)
+
+
+def batch(pose: Pose) -> PoseBatch:
+    return PoseBatch(pose.R_world_object[None], pose.position[None], pose.scale[None])
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.floats(-3, 3), st.floats(-0.5, 0.5), st.floats(2.0, 4.0), st.floats(0.6, 1.6), st.floats(0.6, 1.6))
+def test_rays_in_the_shape_s_frame_see_what_a_renderer_sees(yaw, x, y, sx, sz) -> None:
+    pose = Pose.upright((x, y, 1.0), yaw, (sx, 1.0, sz))
+    rows, columns = np.mgrid[0:48, 0:64]
+    directions = CAMERA.rays(np.stack([columns.ravel() + 0.5, rows.ravel() + 0.5], axis=1))
+    hits = ShapeCaster(MESH).cast(CAMERA.position, directions, batch(pose))
+    truth = render_buffers([(MESH, pose.matrix)], CAMERA)
+    both = hits.covered[0] & truth.silhouette.ravel()
+    assert (hits.covered[0] != truth.silhouette.ravel()).mean() < 0.003
+    assert np.abs(hits.depth_m[0] - truth.depth_m.ravel())[both].max() < 1e-2
+    agreement = (hits.normals_world[0] * truth.normals_world.reshape(-1, 3)).sum(axis=1)[both]
+    assert np.mean(agreement > 0.99) > 0.97
+
+
+def test_bounds_of_the_hull_are_those_of_the_vertices() -> None:
+    pose = Pose.upright((0.2, 3.0, 1.0), 0.4, (1.0, 1.3, 0.9))
+    bounds = ShapeCaster(MESH).bounds_px(CAMERA, batch(pose))[0]
+    pixels = CAMERA.project(pose.apply(np.asarray(MESH.vertices)))
+    assert bounds == pytest.approx(np.concatenate([pixels.min(axis=0), pixels.max(axis=0)]), abs=0.7)
+
+
+def test_bounds_are_clipped_to_the_photo_and_missing_out_of_sight() -> None:
+    wide, behind = box_corners((9.0, 1.0, 1.0)) + np.eye(3)[2] * 2, box_corners((1.0, 1.0, 1.0)) - np.eye(3)[2] * 5
+    bounds = clipped_bounds(CAMERA, np.stack([wide, behind]), BOX_EDGES)
+    assert (bounds[0, 0], bounds[0, 2]) == pytest.approx((0.0, 64.0))
+    assert np.isnan(bounds[1]).all()
+
+
+@pytest.mark.parametrize(
+    "mesh",
+    [
+        trimesh.Trimesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]),
+        trimesh.Trimesh([[0, 0, 0]] * 3, [[0, 1, 2]], process=False),
+        trimesh.Trimesh(),
+    ],
+)
+def test_flat_and_empty_meshes_are_survived(mesh) -> None:
+    caster = ShapeCaster(mesh)
+    pose = batch(Pose.upright((0, 3, 1)))
+    assert not np.isnan(caster.cast(CAMERA.position, CAMERA.rays(np.array([[32.0, 24.0]])), pose).depth_m).any()
+    assert caster.bounds_px(CAMERA, pose).shape == (1, 4)
+
+
+@given(st.integers(0, 20), st.integers(0, 20), st.integers(3, 30), st.integers(3, 30))
+def test_coverage_conserves_the_mask_s_area(top, left, height, width) -> None:
+    mask = np.zeros((60, 60), bool)
+    mask[top : top + height, left : left + width] = True
+    window = Window((-5.0, -3.0, 66.0, 62.0), 17)
+    assert window.coverage(mask).sum() * (71 * 65 / 17**2) == pytest.approx(mask.sum(), rel=1e-6)
+
+
+def test_overlap_is_one_for_the_same_and_zero_for_nothing() -> None:
+    seen, weight = np.array([1.0, 0.5, 0.0]), np.ones(3)
+    assert soft_iou(seen, seen[None], weight)[0] == 1.0
+    assert soft_iou(np.zeros(3), np.zeros((1, 3)), weight)[0] == 0.0
+
+
+def test_the_least_recently_used_is_dropped_first() -> None:
+    made: list[str] = []
+    cache: KeyedCache[str] = KeyedCache(2)
+
+    def get(key: str) -> str:
+        return cache.get(key, lambda: made.append(key) or key)
+
+    for key in ("a", "b", "a", "c", "a", "b"):
+        assert get(key) == key
+    assert made == ["a", "b", "c", "b"]

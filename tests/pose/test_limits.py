@@ -1,0 +1,38 @@
+"""Scales within the limits of what things look like."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from diorama_core.library.taxonomy import CATEGORIES
+from diorama_core.pose.limits import SizeLimits
+
+metres = st.floats(1e-4, 6.0)
+sizes = st.tuples(metres, metres, metres)
+
+
+@given(sizes, sizes, st.sampled_from([c.name for c in CATEGORIES]))
+def test_scales_are_finite_positive_and_evenly_stretched(shape, observed, name) -> None:
+    limits = SizeLimits.of(shape, name, np.array(observed))
+    scale = limits.scale_for(np.array(observed))
+    assert np.isfinite(scale).all()
+    assert (scale > 0).all()
+    thick = np.array(shape) > 0.08
+    if thick.any():
+        logs = np.log(scale[thick])
+        assert np.ptp(logs) <= 2 * limits.stretch_log + 1e-9
+
+
+@given(st.floats(0.3, 3.0), st.floats(0.3, 3.0), st.floats(0.3, 3.0))
+def test_a_wish_within_the_limits_is_met_exactly(x, y, z) -> None:
+    limits = SizeLimits.of((x, y, z), "object", np.array([x, y, z]))
+    wanted = np.array([x, y, z]) * np.array([1.1, 0.95, 1.05])
+    assert np.allclose(limits.scale_for(wanted) * [x, y, z], wanted)
+
+
+def test_many_wishes_at_once_are_the_same_as_one_by_one(rng) -> None:
+    limits = SizeLimits.of((0.5, 0.5, 0.9), "chair", np.array([0.5, 0.5, 0.9]))
+    wanted = rng.uniform(0.1, 2.0, (20, 3))
+    assert np.allclose(limits.scale_for(wanted), [limits.scale_for(w) for w in wanted])

@@ -1,0 +1,89 @@
+"""Ranked shapes for things in rendered rooms."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from diorama_core.progress import Progress
+from diorama_core.retrieval import EmbeddedRetrieval
+from tests.pose.rooms import LIBRARY, Room, camera_at, random_room, standing
+
+STAGE = EmbeddedRetrieval(LIBRARY)
+
+
+def ranked(room: Room, stage: EmbeddedRetrieval = STAGE):
+    return stage.retrieve(room.inputs, room.objects, room.geometry, Progress())
+
+
+def test_the_true_shape_is_found_among_its_kind() -> None:
+    for seed in range(6):
+        room = random_room(seed)
+        for found, index in zip(ranked(room), room.seen, strict=True):
+            assert found.ranked[0][0] == room.placed[index].shape_id
+
+
+def test_scores_are_finite_and_fall() -> None:
+    for found in ranked(random_room(3)):
+        scores = [score for _, score in found.ranked]
+        assert scores == sorted(scores, reverse=True)
+        assert all(0.0 < s <= 1.0 for s in scores)
+
+
+def test_no_more_than_asked_for_are_kept() -> None:
+    stage = EmbeddedRetrieval(LIBRARY, keep=2)
+    assert all(len(found.ranked) <= 2 for found in ranked(random_room(2), stage))
+
+
+def test_a_few_of_a_kind_are_joined_by_near_kinds_that_score_lower() -> None:
+    room = Room(camera_at(), (standing("chair", 0.0, 3.0, 20.0),), (0,))
+    found = ranked(room)[0]
+    assert found.ranked[0][0] == "chair"
+    assert found.note == ""
+
+
+def test_a_kind_without_shapes_takes_the_nearest_and_says_so() -> None:
+    room = Room(camera_at(), (standing("desk", 0.0, 3.0, -90.0),), (0,))
+    objects = tuple(replace(o, category="piano", label="piano") for o in room.objects)
+    found = STAGE.retrieve(room.inputs, objects, room.geometry, Progress())[0]
+    assert found.ranked[0][0] == "desk"
+    assert "piano" in found.note
+
+
+def test_an_unnamed_thing_is_taken_for_something_of_its_size_plain_boxes_first() -> None:
+    room = Room(camera_at(), (standing("carton", 0.0, 3.0, 10.0), standing("sofa", 2.0, 4.0, -90.0)), (0, 0))
+    objects = tuple(replace(o, category="object", label="thing") for o in room.objects)
+    found = STAGE.retrieve(room.inputs, objects, room.geometry, Progress())
+    assert found[0].ranked[0][0] == "carton"
+    assert len(found[1].ranked) > 1
+
+
+def test_alike_things_share_their_best_shape() -> None:
+    chairs = tuple(standing("chair", x, 3.0 + abs(x) / 3, yaw) for x, yaw in ((-1.2, 10), (0.0, 190), (1.2, 100)))
+    tops = {found.ranked[0][0] for found in ranked(Room(camera_at(), chairs, (0, 1, 2)))}
+    assert tops == {"chair"}
+
+
+def test_empty_and_one_pixel_masks_are_survived() -> None:
+    room = random_room(4)
+    for count in (0, 1):
+        mask = np.zeros(room.buffers.instance.shape, bool)
+        mask.ravel()[:count] = True
+        objects = tuple(replace(o, mask=mask) for o in room.objects)
+        found = STAGE.retrieve(room.inputs, objects, room.geometry, Progress())
+        assert all(np.isfinite([s for _, s in f.ranked]).all() and f.ranked for f in found)
+
+
+def test_the_same_input_gives_the_same_ranking() -> None:
+    room = random_room(5)
+    assert ranked(room) == ranked(room)
+
+
+def test_its_name_is_short_and_changes_with_the_library() -> None:
+    class Fewer(type(LIBRARY)):
+        def shapes(self):
+            return super().shapes()[1:]
+
+    assert len(repr(STAGE)) < 80
+    assert repr(STAGE) == repr(EmbeddedRetrieval(LIBRARY)) != repr(EmbeddedRetrieval(Fewer()))
