@@ -58,13 +58,17 @@ def support_surfaces(mesh: trimesh.Trimesh, lattice: int = 72) -> tuple[SupportS
         return ()
     blocked_below = float(np.clip(0.1 * extent[2], 0.02, 0.08))
     minimum_area = float(np.clip(0.12 * extent[0] * extent[1], 0.003, 0.05))
+    narrowest = 0.1 if max(extent[:2]) > 0.5 else 0.03
+    foot = float(low[2]) + (0.04 if extent[2] > 0.3 else 0.0)
     found = []
     for region in _regions(spots):
+        if np.median(spots.z[region]) < foot:  # a base plate, not a surface
+            continue
         clearance = spots.clearance[region]
         if np.median(clearance) < blocked_below or len(region) * cell_m**2 < minimum_area:
             continue
         outline = _outline(spots, region)
-        if len(region) * cell_m**2 < MINIMUM_FILL * _area(outline):
+        if len(region) * cell_m**2 < MINIMUM_FILL * _area(outline) or _breadth(outline) < narrowest:
             continue
         found.append(_surface(spots, region, outline))
     return tuple(sorted(found, key=lambda s: (-round(s.height_m, 3), *np.round(s.polygon.mean(axis=0)[:2], 3))))
@@ -159,6 +163,13 @@ def _outline(spots: _Spots, region: Int[np.ndarray, "k"]) -> Float[np.ndarray, "
 def _area(outline: Float[np.ndarray, "n 2"]) -> float:
     x, y = outline.T
     return 0.5 * abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1)))
+
+
+def _breadth(outline: Float[np.ndarray, "n 2"]) -> float:
+    """Smallest distance between parallel lines that hold a convex outline."""
+    edges = np.roll(outline, -1, axis=0) - outline
+    normals = np.stack([-edges[:, 1], edges[:, 0]], axis=1) / np.linalg.norm(edges, axis=1, keepdims=True)
+    return float(np.ptp(outline @ normals.T, axis=0).min())
 
 
 def _surface(spots: _Spots, region: Int[np.ndarray, "k"], outline: Float[np.ndarray, "n 2"]) -> SupportSurface:
