@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from jaxtyping import Float
 
 from diorama_core.artefacts import CameraEstimate, CameraHypothesis, Inputs, Photo
 from diorama_core.geometry.segments import line_segments_px
@@ -18,6 +19,11 @@ MIN_SEGMENTS = 6
 """Fewer say nothing about a room."""
 DISTINCT_RAD = float(np.deg2rad(3.0))
 """Readings nearer than this are the same reading."""
+FRAME_MARGIN = 0.025
+"""Share of the longer side within which a segment along the picture's side may be a frame's."""
+FRAME_SLANT = 0.02
+HOPELESS_GAP = 0.12
+"""A reading whose score is so much below the best one's is not worth a second look."""
 SURE_SUPPORT, UNSURE_SUPPORT = 0.6, 0.2
 """Shares of agreeing lines at which confidence is full and none."""
 
@@ -37,7 +43,7 @@ class EmbeddedCamera:
         photo = inputs.photo
         given, source = _stated_intrinsics(inputs)
         progress.report(0.1, "looking for straight lines")
-        segments = line_segments_px(photo.rgb)
+        segments = _of_the_room(line_segments_px(photo.rgb), photo)
         assumed = given or _habitual_intrinsics(photo, FOCAL_PRIOR[0])
         side = max(photo.width, photo.height)
         progress.report(0.3, "reading the room's directions")
@@ -54,6 +60,16 @@ class EmbeddedCamera:
             return estimate
         progress.report(0.7, "looking for the floor in the measured depth")
         return _with_depth(estimate, inputs, self.hypotheses)
+
+
+def _of_the_room(segments_px: Float[np.ndarray, "n 4"], photo: Photo) -> Float[np.ndarray, "n 4"]:
+    """Without the edges of a plain frame around the picture, which many cameras' rectification leaves behind."""
+    size = np.array([photo.width, photo.height])
+    margin = FRAME_MARGIN * size.max()
+    ends = segments_px.reshape(-1, 2, 2)
+    straight = np.abs(ends[:, 0] - ends[:, 1]) < FRAME_SLANT * np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)[:, None]
+    near = (ends < margin).all(axis=1) | (ends > size - margin).all(axis=1)
+    return segments_px[~(straight & near).any(axis=1)]
 
 
 def _stated_intrinsics(inputs: Inputs) -> tuple[Intrinsics | None, str]:
@@ -73,10 +89,12 @@ def _habitual_intrinsics(photo: Photo, focal: float) -> Intrinsics:
 
 
 def _distinct(fits: tuple[FrameFit, ...], count: int) -> tuple[FrameFit, ...]:
-    """The best readings that differ from all better ones."""
+    """The best readings that differ from all better ones, and are not hopeless beside the first."""
     kept: list[FrameFit] = []
     for fit in fits:
-        if all(frame_difference_rad(fit.R_world_camera, k.R_world_camera) > DISTINCT_RAD for k in kept):
+        if fit.score > fits[0].score - HOPELESS_GAP and all(
+            frame_difference_rad(fit.R_world_camera, k.R_world_camera) > DISTINCT_RAD for k in kept
+        ):
             kept.append(fit)
     return tuple(kept[:count])
 

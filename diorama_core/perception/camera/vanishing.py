@@ -35,8 +35,7 @@ FEW_SEGMENTS = 8.0
 """So many segments are half of full evidence against the prior."""
 _DIRECTIONS = 4000
 _RESCORED = 400
-_REFINED_KNOWN = 6
-_REFINED_UNKNOWN = 8
+_REFINED = 10
 _SEPARATION_RAD = float(np.deg2rad(5.0))
 
 
@@ -79,20 +78,20 @@ class Lines:
         return cls(*(a.astype(np.float32) for a in as32))
 
 
-def search_frames(lines: Lines, focal: float | None, count: int = 6) -> tuple[FrameFit, ...]:
+def search_frames(lines: Lines, focal: float | None, count: int = _REFINED) -> tuple[FrameFit, ...]:
     """The best room frames of a picture's lines, best first, at least one.
 
     Args:
         lines: The segments.
         focal: Focal length over the longer side; None to look for it as well.
-        count: At most so many are returned.
+        count: At most so many are returned; several may have converged to the same reading.
     """
     focals = FOCAL_GRID if focal is None else np.array([focal])
     starts: list[tuple[float, np.ndarray, float]] = []
     for f in focals:
         starts += [(s + _focal_log_prior(f, focal), R, float(f)) for s, R in _coarse_frames(lines, float(f))]
     starts.sort(key=lambda s: -s[0])
-    chosen = _separated(starts, _REFINED_KNOWN if focal is not None else _REFINED_UNKNOWN)
+    chosen = _separated(starts, _REFINED)
     fits = sorted((_refined(lines, R, f, focal) for _, R, f in chosen), key=lambda fit: -fit.score)
     return tuple(fits[:count])
 
@@ -128,7 +127,7 @@ def _coarse_frames(lines: Lines, focal: float) -> list[tuple[float, Float[np.nda
     scores = agreement.max(axis=1) @ lines.weights + PRIOR_WEIGHT * grid.log_prior[top]
     order = np.argsort(-scores, kind="stable")
     ranked = [(float(scores[i]), grid.frames[top[i]], focal) for i in order]
-    return [(score, R) for score, R, _ in _separated(ranked, _REFINED_KNOWN)]
+    return [(score, R) for score, R, _ in _separated(ranked, _REFINED)]
 
 
 def _separated(
