@@ -18,6 +18,8 @@ MIN_RUN_SHARE = 0.025
 """A wall that leads in fewer headings than this share of the view is dropped."""
 CORNER_SLACK_RAD = np.deg2rad(5.0)
 COLLINEAR_M = 0.1
+MINOR_SHARE, MINOR_COSINE, MINOR_M = 0.4, float(np.cos(np.deg2rad(25.0))), 0.35
+"""A run with less than this share of its neighbour's area, turned and set off from it by less than that, joins it."""
 GAP_RAD = np.deg2rad(7.0)
 """Wider unknown stretches of the view are closed behind everything measured there."""
 MAX_HIDDEN_M = 3.0
@@ -67,7 +69,7 @@ def outline(surface: MeasuredSurface, walls: list[WallCandidate], view: tuple[fl
     runs = _runs(surface, walls, view)
     if not runs:
         return ()
-    runs = _closed(runs, surface, view)
+    runs = _merged(_closed(_without_furniture(runs, origin), surface, view), origin)
     pieces: list[WallPiece] = []
     start = _beyond_view(runs[0], view[0], origin, left=True)
     for run, following in pairwise(runs):
@@ -94,7 +96,7 @@ def _runs(surface: MeasuredSurface, walls: list[WallCandidate], view: tuple[floa
     for first, last, label in _spans(labels):
         if label >= 0:
             runs.append(_Run(walls[label], view[0] + first * width, view[0] + last * width))
-    return _merged(runs)
+    return _merged(runs, origin)
 
 
 def _spans(labels: Int[np.ndarray, "m"]) -> list[tuple[int, int, int]]:
@@ -115,11 +117,11 @@ def _without_short_runs(labels: Int[np.ndarray, "m"], least: int) -> Int[np.ndar
     return out
 
 
-def _merged(runs: list[_Run]) -> list[_Run]:
-    """Neighbouring runs of the same wall become one, whatever was unknown between them."""
+def _merged(runs: list[_Run], origin: Float[np.ndarray, "2"]) -> list[_Run]:
+    """Neighbouring runs of what is about the same wall become one, whatever was unknown between them."""
     out: list[_Run] = []
     for run in runs:
-        if out and _collinear(out[-1].wall, run.wall):
+        if out and _about_same(out[-1], run, origin):
             larger = max(out[-1].wall, run.wall, key=lambda w: w.area_m2)
             out[-1] = _Run(larger, out[-1].first, run.last)
         else:
@@ -129,6 +131,37 @@ def _merged(runs: list[_Run]) -> list[_Run]:
 
 def _collinear(a: WallCandidate, b: WallCandidate) -> bool:
     return bool(a.normal @ b.normal > np.cos(np.deg2rad(3.0)) and abs(a.offset - b.offset) < COLLINEAR_M)
+
+
+def _about_same(a: _Run, b: _Run, origin: Float[np.ndarray, "2"]) -> bool:
+    """The same line; or one is minor (noise, or assumed) and lies close along the other."""
+    if _collinear(a.wall, b.wall):
+        return True
+    minor, major = sorted((a, b), key=lambda run: run.wall.area_m2)
+    if minor.wall.area_m2 > MINOR_SHARE * major.wall.area_m2 or minor.wall.normal @ major.wall.normal < MINOR_COSINE:
+        return False
+    ends = [point_at(minor.wall, h, origin) for h in (minor.first, minor.last)]
+    return all(e is not None and abs(float(e @ major.wall.normal) - major.wall.offset) < MINOR_M for e in ends)
+
+
+def _without_furniture(runs: list[_Run], origin: Float[np.ndarray, "2"]) -> list[_Run]:
+    """Drops what stands between two runs of one larger wall and in front of it."""
+    out = list(runs)
+    position = 0
+    while position < len(out):
+        same = [j for j in range(position + 1, len(out)) if _collinear(out[position].wall, out[j].wall)]
+        between = out[position + 1 : same[-1]] if same else []
+        wall = out[position].wall
+        if same and all(_stands_before(run, wall, origin) for run in between):
+            out[position : same[-1] + 1] = [_Run(wall, out[position].first, out[same[-1]].last)]
+        position += 1
+    return out
+
+
+def _stands_before(run: _Run, wall: WallCandidate, origin: Float[np.ndarray, "2"]) -> bool:
+    ends = [point_at(run.wall, h, origin) for h in (run.first, run.last)]
+    nearer = all(e is not None and float(e @ wall.normal) > wall.offset - COLLINEAR_M for e in ends)
+    return nearer and run.wall.area_m2 < wall.area_m2
 
 
 def _closed(runs: list[_Run], surface: MeasuredSurface, view: tuple[float, float]) -> list[_Run]:

@@ -1,0 +1,122 @@
+"""Each plane's own picture: the photo rectified onto it, completed where something hides it or it is out of view."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float, Float32, UInt8
+
+from diorama_core.architecture.colours import object_pixels
+from diorama_core.artefacts import DetectedObject, Inputs
+from diorama_core.geometry.casting import cast_planes
+from diorama_core.geometry.planes import plane_rectangle
+from diorama_core.scene.types import Architecture, Camera, Plane
+
+MAX_SIDE_PX = 512
+PIXELS_PER_M = 150.0
+MIN_SEEN_SHARE = 0.12
+"""A plane seen in less of its area keeps its plain colour."""
+MIN_SEEN_PX = 400
+MAX_GRAZING_COSINE = 0.06
+"""Where the plane is seen more edge-on than this the photo is smeared and not used."""
+FADE_M = 0.6
+"""Far from what is seen, the picture fades to the plane's plain colour over this length."""
+
+
+def plane_textures(
+    inputs: Inputs, objects: tuple[DetectedObject, ...], camera: Camera, architecture: Architecture
+) -> dict[str, UInt8[np.ndarray, "h w 3"]]:
+    """RGB pictures of the planes that are seen well enough, by plane id.
+
+    Texture coordinates are `geometry.planes.plane_uv`: row 0 is v = 1. At most `MAX_SIDE_PX` a side.
+
+    Args:
+        inputs: The photo.
+        objects: What hides the room; their masks are painted out.
+        camera: The photo's camera.
+        architecture: The room, with its plain colours.
+    """
+    hidden = object_pixels((inputs.photo.height, inputs.photo.width), objects)
+    found: dict[str, np.ndarray] = {}
+    for plane in architecture.planes:
+        points, pixel_m = _texel_points(plane)
+        colours, seen = _seen_colours(inputs.photo.rgb, hidden, camera, architecture.planes, plane, points)
+        if seen.mean() >= MIN_SEEN_SHARE and seen.sum() >= MIN_SEEN_PX:
+            found[plane.id] = completed(colours, seen, plane.colour, FADE_M / pixel_m)
+    return found
+
+
+def _texel_points(plane: Plane) -> tuple[Float[np.ndarray, "h w 3"], float]:
+    """World points of the texels' centres, top row first, and a texel's size in metres."""
+    origin, axes, extents = plane_rectangle(plane)
+    pixel_m = max(1.0 / PIXELS_PER_M, float(extents.max()) / MAX_SIDE_PX)
+    width, height = np.maximum(np.ceil(extents / pixel_m - 1e-6), 2).astype(int)
+    across = (np.arange(width) + 0.5) / width * extents[0]
+    up = (1.0 - (np.arange(height) + 0.5) / height) * extents[1]
+    grid = np.stack(np.meshgrid(across, up), axis=-1)
+    return origin + grid @ axes.T, pixel_m
+
+
+def _seen_colours(
+    rgb: UInt8[np.ndarray, "hp wp 3"],
+    hidden: Bool[np.ndarray, "hp wp"],
+    camera: Camera,
+    planes: tuple[Plane, ...],
+    plane: Plane,
+    points: Float[np.ndarray, "h w 3"],
+) -> tuple[Float32[np.ndarray, "h w 3"], Bool[np.ndarray, "h w"]]:
+    """The photo's colour at each texel, and whether that is the plane: in view, unhidden and not too aslant."""
+    pixels = camera.project(points).astype(np.float32)
+    depth = camera.to_camera(points)[..., 2]
+    k = camera.intrinsics
+    seen = (depth > 0.05) & (pixels > 1).all(axis=-1) & (pixels < [k.width - 1, k.height - 1]).all(axis=-1)
+    rays = points - camera.position
+    distance = np.linalg.norm(rays, axis=-1)
+    seen &= -(rays @ plane.normal) > MAX_GRAZING_COSINE * distance
+    if seen.any():
+        nearest = cast_planes(camera.position, rays[seen], tuple(p for p in planes if p.id != plane.id))[0]
+        seen[seen] = nearest > 0.995
+    columns, rows = np.moveaxis(np.where(seen[..., None], pixels, 0).astype(int), -1, 0)
+    seen &= ~hidden[rows, columns]
+    lookup = np.where(seen[..., None], pixels - 0.5, 0).astype(np.float32)
+    colours = cv2.remap(rgb, lookup, None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    return colours.astype(np.float32), seen
+
+
+def completed(
+    colours: Float32[np.ndarray, "h w 3"],
+    seen: Bool[np.ndarray, "h w"],
+    plain: tuple[float, float, float],
+    fade_px: float,
+) -> UInt8[np.ndarray, "h w 3"]:
+    """Fills what is not seen smoothly from what is, fading to the plain colour away from it.
+
+    Colours spread through an image pyramid (pull-push, Gortler et al. 1996), which leaves no streaks.
+    """
+    smooth = _pull_push(colours * seen[..., None], seen.astype(np.float32))
+    distance = cv2.distanceTransform((~seen).astype(np.uint8), cv2.DIST_L2, 5)
+    keep = np.exp(-distance / max(fade_px, 1.0))[..., None]
+    filled = keep * smooth + (1.0 - keep) * (np.array(plain, np.float32) * 255.0)
+    # The first texels inside a mask's border still carry its rim; a soft seam hides the step.
+    inner = cv2.erode(seen.astype(np.float32), np.ones((5, 5), np.uint8))
+    weight = cv2.GaussianBlur(inner, (0, 0), 2.0)[..., None] * seen[..., None]
+    return (weight * colours + (1.0 - weight) * filled).clip(0, 255).astype(np.uint8)
+
+
+def _pull_push(
+    weighted: Float32[np.ndarray, "h w 3"], weight: Float32[np.ndarray, "h w"]
+) -> Float32[np.ndarray, "h w 3"]:
+    """Average colours from ever coarser levels where finer ones know none."""
+    height, width = weight.shape
+    average = weighted / np.maximum(weight, 1e-6)[..., None]
+    if min(height, width) <= 2:
+        total = float(weight.sum())
+        mean = weighted.reshape(-1, 3).sum(axis=0) / max(total, 1e-6)
+        return np.where(weight[..., None] > 1e-3, average, mean).astype(np.float32)
+    size = ((width + 1) // 2, (height + 1) // 2)
+    coarse = _pull_push(
+        cv2.resize(weighted, size, interpolation=cv2.INTER_AREA), cv2.resize(weight, size, interpolation=cv2.INTER_AREA)
+    )
+    above = cv2.resize(coarse, (width, height), interpolation=cv2.INTER_LINEAR)
+    share = np.clip(weight, 0.0, 1.0)[..., None]
+    return (share * average + (1.0 - share) * above).astype(np.float32)
