@@ -273,7 +273,7 @@ def room_view(scene: Scene) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "
         if np.linalg.norm(flat) > 0.3:
             flat /= np.linalg.norm(flat)
             toward = flat + 0.35 * np.array([-flat[1], flat[0], 0.0]) + np.array([0.0, 0.0, 0.62])
-    return centre + toward / np.linalg.norm(toward) * radius * 2.15, centre - np.array([0.0, 0.0, 0.12 * radius])
+    return centre + toward / np.linalg.norm(toward) * radius * 2.3, centre - np.array([0.0, 0.0, 0.12 * radius])
 
 
 def top_view(scene: Scene) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:

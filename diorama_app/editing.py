@@ -11,6 +11,7 @@ from diorama_app.room import Room
 from diorama_core.errors import EditRefused
 from diorama_core.library.record import Shape
 from diorama_core.scene import edits
+from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Candidate, Pose, Scene, SceneObject, Support, yaw_rotation
 
 NUDGE_MERGE = "fields"
@@ -98,8 +99,10 @@ def set_size(room: Room, object_id: str, size_m: Float[np.ndarray, "3"]) -> None
     pose = Pose(item.pose.R_world_object, item.pose.position + rise, size / np.asarray(item.shape_size_m))
 
     def resize(scene: Scene) -> Scene:
-        # Followers rise with the new top, they do not scale.
-        return edits.move(scene, object_id, pose)
+        # What stands on it rises with the new top: a rigid move alone carries it only half of the way.
+        lift = pose.position - item.pose.position
+        moved = edits.move(scene, object_id, pose)
+        return edits.place(moved, {i: moved.object(i).pose.moved(lift) for i in descendants(scene, object_id)})
 
     room.edit(f"resize {item.label}", resize, merge_key=f"{NUDGE_MERGE} {object_id} size")
 

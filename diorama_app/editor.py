@@ -8,15 +8,23 @@ import viser
 
 from diorama_app.actions import Views, build_commands
 from diorama_app.gestures import Gestures
+from diorama_app.panels.alternatives import Alternatives
+from diorama_app.panels.job import JobStrip
+from diorama_app.panels.library import LibraryPanel
+from diorama_app.panels.optimiser import Optimiser
 from diorama_app.panels.outliner import Outliner
+from diorama_app.panels.photo import PhotoPanel
+from diorama_app.panels.projects import Projects
+from diorama_app.panels.properties import Properties
+from diorama_app.panels.supports import Supports
 from diorama_app.panels.toolbar import Toolbar
-from diorama_app.room import Room
+from diorama_app.room import Panel, Room
 from diorama_app.viser_adapter import MAX_UPLOAD_BYTES
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.project.storage import Project
 
-LEFT_WIDTH_PX = 256
-RIGHT_WIDTH_PX = 340
+LEFT_WIDTH_PX = 292
+RIGHT_WIDTH_PX = 312
 
 
 class Editor:
@@ -75,9 +83,28 @@ class Editor:
         gui.main_panel.dock_left()
         gui.main_panel.set_width(LEFT_WIDTH_PX)
         room = self.room
-        toolbar = Toolbar(gui, room, self.commands, self.gestures)
-        outliner = Outliner(gui, room)
-        room.panels = [self.gestures, toolbar, outliner]
+        panels: list[Panel] = [
+            self.gestures,
+            Toolbar(gui, room, self.commands, self.gestures),
+            JobStrip(gui, room),
+        ]
+        left = gui.add_tab_group()
+        with left.add_tab("Scene"):
+            panels.append(Outliner(gui, room))
+        with left.add_tab("Photo"):
+            panels.append(PhotoPanel(gui, room, self.views))
+        with left.add_tab("Arrange"):
+            panels.append(Optimiser(gui, room))
+        with left.add_tab("Project"):
+            panels.append(Projects(gui, room, self.commands))
+        right = gui.add_panel()
+        with right.add_tab("Object"):
+            panels += [Properties(gui, room, self.commands), Supports(gui, room), Alternatives(gui, room)]
+        with right.add_tab("Library"):
+            panels.append(LibraryPanel(gui, room))
+        right.dock_right()
+        right.set_width(RIGHT_WIDTH_PX)
+        room.panels = panels
 
     async def _joined(self, client: viser.ClientHandle) -> None:
         self.room.desk.post(lambda: self.room.joined(client))

@@ -56,7 +56,12 @@ STYLE = """
 .dio td { padding: 2px 0; vertical-align: top; } .dio td:last-child { text-align: right; }
 .dio kbd { font: inherit; font-size: 11px; border: 1px solid #d5dbe3; border-bottom-width: 2px; border-radius: 4px;
   padding: 0 5px; background: #fff; }
+.dio .job { display: flex; align-items: center; gap: 8px; }
+.dio .job .words { flex: 1 1 auto; min-width: 0; }
+.dio .meter { height: 6px; border-radius: 3px; background: #dde3ea; overflow: hidden; margin-top: 5px; }
+.dio .meter i { display: block; height: 100%; background: #2f6fd6; transition: width .2s; }
 .dio .photo { width: 100%; border-radius: 8px; display: block; }
+canvas { background: linear-gradient(#f3f5f8, #dfe4eb); }
 </style>
 """
 
@@ -90,7 +95,7 @@ class LiveHtml:
         if on_action is not None:
             field = gui.add_text("·", "")
             uuid = component_uuid(field)
-            hide = f'<style>.mantine-Box-root:has(> .mantine-Flex-root label[for="{uuid}"]){{display:none}}</style>'
+            hide = f'<style>div:has(> .mantine-Flex-root label[for="{uuid}"]){{display:none}}</style>'
             self._frame = f'{hide}<div class="dio" onclick="{_SEND % uuid}">%s</div>'
 
             @field.on_update

@@ -15,7 +15,7 @@ import numpy as np
 import viser
 from jaxtyping import UInt8
 
-from diorama_app.client_view import ClientView, NoticeKind, room_view
+from diorama_app.client_view import DEFAULT_FOV_RAD, ClientView, NoticeKind, room_view
 from diorama_app.desk import Desk
 from diorama_app.document import Document
 from diorama_app.drafts import Draft
@@ -153,6 +153,7 @@ class Room:
         position, target = room_view(self.scene)
         self.server.initial_camera.position = position
         self.server.initial_camera.look_at = target
+        self.server.initial_camera.fov = float(DEFAULT_FOV_RAD)
         for view in self.views.values():
             view.show_backdrop(None, None, 1.0)
             view.show_overlay(None, None, 0.0)

@@ -20,7 +20,7 @@ from diorama_core.scene.types import Camera, Plane, Pose, Scene, SceneObject, bo
 
 SELECTED_COLOUR = (255, 122, 26)
 LOCKED_COLOUR = (120, 130, 150)
-FRUSTUM_SCALE = 0.32
+FRUSTUM_SCALE = 0.2
 OUTLINE_MARGIN_M = 0.012
 BOX_EDGES = [(a, a | bit) for bit in (1, 2, 4) for a in range(8) if not a & bit]
 
@@ -71,12 +71,12 @@ class Viewport:
         if low_graphics:
             scene.configure_environment_map(None)
             scene.add_light_hemisphere(
-                "/lights/sky", sky_color=(255, 252, 246), ground_color=(176, 170, 162), intensity=2.2
+                "/lights/sky", sky_color=(255, 252, 246), ground_color=(176, 170, 162), intensity=1.1
             )
         else:
-            scene.configure_environment_map("apartment", environment_intensity=0.55)
+            scene.configure_environment_map("apartment", environment_intensity=0.35)
             scene.add_light_hemisphere(
-                "/lights/sky", sky_color=(255, 252, 246), ground_color=(170, 164, 156), intensity=0.9
+                "/lights/sky", sky_color=(255, 252, 246), ground_color=(170, 164, 156), intensity=0.45
             )
 
     def show(

@@ -1,0 +1,256 @@
+"""The photo: upload it with what goes with it, mark the furniture, build the scene."""
+
+from __future__ import annotations
+
+import base64
+import io
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import viser
+from jaxtyping import UInt8
+from PIL import Image
+
+from diorama_app import work
+from diorama_app.actions import Views
+from diorama_app.drafts import Draft, boxes_json
+from diorama_app.page import Action, LiveHtml, button, text
+from diorama_app.panels.fields import on_change, on_press, show_if, show_value
+from diorama_app.room import Room
+from diorama_app.viewport import reduced
+from diorama_core.artefacts import Box
+from diorama_core.errors import InputError
+from diorama_core.library.taxonomy import CATEGORIES
+from diorama_core.perception.inputs import read_inputs
+
+COMMON = ("chair", "table", "sofa", "armchair", "bed", "desk", "coffee table", "lamp", "cabinet", "bookshelf")
+UPLOADS = {"photo": "Photo", "depth": "Depth (PNG, NPY)", "boxes": "Boxes (JSON)", "masks": "Masks (PNG)"}
+
+
+class PhotoPanel:
+    """Uploads, the drawing board's controls, the list of boxes, and "Build scene"."""
+
+    def __init__(self, gui: viser.GuiApi, room: Room, views: Views) -> None:
+        self._room, self._views = room, views
+        self._picture_of: object = None
+        self._picture = ""
+        self._invitation = LiveHtml(gui)
+        self._upload(gui, "photo", "Upload a photo", "image/*")
+        self._more = gui.add_folder("More about this photo", expand_by_default=False)
+        with self._more:
+            self._upload(gui, "boxes", "Add boxes (JSON)", ".json,application/json")
+            self._upload(gui, "depth", "Add depth (PNG or NPY)", "*/*")
+            self._upload(gui, "masks", "Add masks (PNG)", "image/png")
+            self._camera = gui.add_text("Camera", "", hint="fx,fy,cx,cy in pixels of the photo; empty: estimated")
+            on_change(self._camera, self._camera_given)
+        self._draw = gui.add_button("Draw boxes", color="blue", hint="Mark every piece of furniture with a rectangle")
+        on_press(self._draw, lambda client: room.post(client, lambda: self._toggle_board(client)))
+        names = [*COMMON, *sorted({c.name for c in CATEGORIES} - {*COMMON, "object"})]
+        self._label = gui.add_dropdown("This is a", names, hint="What the next box (or the marked one) is")
+        self._other = gui.add_text("or type", "", hint="Any other word; used instead of the list")
+        on_change(self._label, lambda value, client: room.post(client, lambda: self._labelled(value, listed=True)))
+        on_change(
+            self._other,
+            lambda value, client: room.post(client, lambda: self._labelled(value, listed=False), key="word"),
+        )
+        self._list = LiveHtml(gui, self._act)
+        self._build = gui.add_button("Build scene", color="green", hint="Makes a scene of the photo and its boxes")
+        on_press(self._build, lambda client: room.post(client, lambda: work.build(room, client)))
+
+    @property
+    def label(self) -> str:
+        """What the next box is called."""
+        return self._other.value.strip() or self._label.value
+
+    def refresh(self) -> None:
+        """Draw the state of the draft."""
+        draft = self._room.draft
+        has_photo = draft.photo is not None
+        self._invitation.show(self._introduction(draft))
+        show_if(has_photo, self._more, self._draw, self._label, self._other, self._build)
+        self._list.show(_box_list(draft) if has_photo else "")
+        busy = self._room.jobs.status is not None or not draft.ready
+        if self._build.disabled != busy:
+            self._build.disabled = busy
+        drawing = any(view.drawing for view in self._room.views.values())
+        wanted = "Done drawing" if drawing else "Draw boxes"
+        if self._draw.label != wanted:
+            self._draw.label = wanted
+
+    # -- uploads ----------------------------------------------------------------------------------------------
+
+    def _upload(self, gui: viser.GuiApi, kind: str, label: str, mime_type: str) -> None:
+        handle = gui.add_upload_button(label, mime_type=mime_type)
+
+        @handle.on_upload
+        async def _(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
+            file = event.target.value
+            self._room.post(event.client_id, lambda: self._received(kind, file.name, file.content, event.client_id))
+
+    def _received(self, kind: str, name: str, content: bytes, client_id: int | None) -> None:
+        draft = self._room.draft
+        if kind == "photo":
+            files, boxes = {"photo": content}, ()
+        elif draft.photo is None:
+            raise InputError("upload the photo first, then what goes with it")
+        else:
+            files, boxes = {**draft.files, kind: content}, draft.boxes
+        made = self._read(files, Draft(name=name, boxes=boxes) if kind == "photo" else draft)
+        if kind == "boxes" and made.inputs is not None:
+            made = replace(made, boxes=made.inputs.boxes)
+        self._room.draft = made
+        for warning in made.warnings[:3]:
+            self._room.notice(client_id, warning)
+        if kind == "photo":
+            self._open_board(client_id)
+        else:
+            self._redraw_boards()
+            self._room.notice(client_id, f"{UPLOADS[kind]}: {name} is read.", "good")
+        self._room.refresh_panels()
+
+    def _read(self, files: dict[str, bytes], draft: Draft) -> Draft:
+        files = dict(files)
+        if "photo" not in files:
+            files["photo"] = _png(draft)
+        if "boxes" not in files and draft.boxes and draft.photo is not None:
+            files["boxes"] = boxes_json(draft.boxes, draft.photo)
+        read = read_inputs(
+            files["photo"],
+            name=draft.name,
+            depth=files.get("depth"),
+            boxes=files.get("boxes"),
+            masks=files.get("masks"),
+            intrinsics=_intrinsics(self._camera.value),
+        )
+        return replace(draft, inputs=read.inputs, warnings=read.warnings, files=files, from_project=False)
+
+    def _camera_given(self, value: str, client_id: int) -> None:
+        def read() -> None:
+            if self._room.draft.photo is not None and (not value.strip() or value.count(",") == 3):
+                self._room.draft = self._read(self._room.draft.files, self._room.draft)
+                self._room.refresh_panels()
+
+        self._room.post(client_id, read, key="camera")
+
+    # -- the drawing board ------------------------------------------------------------------------------------
+
+    def _toggle_board(self, client_id: int) -> None:
+        if self._views.one(client_id).drawing:
+            self._views.room_view(client_id)
+        else:
+            self._open_board(client_id)
+        self.refresh()
+
+    def _open_board(self, client_id: int | None) -> None:
+        photo = self._room.draft.photo
+        if photo is None:
+            raise InputError("there is no photo yet; upload one first")
+        room = self._room
+        self._views.one(client_id).open_board(photo.rgb, lambda box: room.post(client_id, lambda: self._drawn(box)))
+        self._redraw_boards()
+
+    def _drawn(self, box: Box) -> None:
+        self._change(self._room.draft.with_box(box, self.label))
+
+    def _labelled(self, word: str, *, listed: bool) -> None:
+        if listed and self._other.value:
+            show_value(self._other, "")
+        draft = self._room.draft
+        label = word.strip() or self._label.value
+        if draft.highlighted is not None and draft.highlighted < len(draft.boxes):
+            self._change(draft.relabelled(draft.highlighted, label))
+
+    def _change(self, draft: Draft) -> None:
+        self._room.draft = draft
+        self._redraw_boards()
+        self._room.refresh_panels()
+
+    def _redraw_boards(self) -> None:
+        draft = self._room.draft
+        for view in self._room.views.values():
+            view.show_boxes(draft.boxes, draft.highlighted)
+
+    def _act(self, action: Action) -> None:
+        def do() -> None:
+            draft, index = self._room.draft, int(action.arg)
+            if index >= len(draft.boxes):
+                return
+            if action.do == "drop":
+                self._change(draft.without_box(index))
+            elif action.do == "mark":
+                self._change(replace(draft, highlighted=None if draft.highlighted == index else index))
+
+        if action.arg.isdigit():
+            self._room.post(action.client_id, do)
+
+    # -- words ------------------------------------------------------------------------------------------------
+
+    def _introduction(self, draft: Draft) -> str:
+        if draft.photo is None:
+            return (
+                '<div class="card"><b>Start with a photo of a room.</b><br><span class="dim">Then mark the furniture '
+                "with boxes, and it becomes a scene you can edit.</span></div>"
+            )
+        if self._picture_of is not draft.photo:
+            self._picture_of, self._picture = draft.photo, _jpeg_uri(draft.photo.rgb)
+        state = f"{len(draft.boxes)} boxes" if draft.boxes else "<b>Draw a box around each piece of furniture.</b>"
+        extras = [n for n, there in _extras(draft).items() if there]
+        extra = f" · with {', '.join(extras)}" if extras else ""
+        return (
+            f'<img class="photo" alt="the photo" src="{self._picture}">'
+            f'<p style="margin-top:6px">{text(draft.photo.name)}<br><span class="dim">{state}{extra}</span></p>'
+        )
+
+
+def _extras(draft: Draft) -> dict[str, bool]:
+    inputs = draft.inputs
+    return {
+        "depth": inputs is not None and inputs.depth_m is not None,
+        "masks": inputs is not None and inputs.instances is not None,
+        "camera": inputs is not None and inputs.intrinsics is not None,
+    }
+
+
+def _box_list(draft: Draft) -> str:
+    if not draft.boxes:
+        return (
+            "<p class='dim'>Press <b>Draw boxes</b>, say what it is, and drag a rectangle around it in the photo.</p>"
+        )
+    rows = []
+    for index, box in enumerate(draft.boxes):
+        on = "on" if index == draft.highlighted else ""
+        unknown = ' <span class="dim">as an object</span>' if box.category == "object" else ""
+        rows.append(
+            f'<div class="row {on}" data-do="mark" data-arg="{index}"><span class="name">{text(box.label)}{unknown}</span>'
+            + button("✕", "drop", index, title="Delete this box")
+            + "</div>"
+        )
+    return f"<h4>Boxes</h4>{''.join(rows)}"
+
+
+def _intrinsics(given: str) -> tuple[float, float, float, float] | None:
+    if not given.strip():
+        return None
+    try:
+        fx, fy, cx, cy = (float(part) for part in given.split(","))
+    except ValueError as error:
+        raise InputError(f"the camera '{given[:40]}' is not four numbers; give fx,fy,cx,cy in pixels") from error
+    return fx, fy, cx, cy
+
+
+def _png(draft: Draft) -> bytes:
+    if draft.photo is None:
+        raise InputError("there is no photo yet; upload one first")
+    buffer = io.BytesIO()
+    Image.fromarray(draft.photo.rgb).save(buffer, "PNG")
+    return buffer.getvalue()
+
+
+def _jpeg_uri(rgb: UInt8[np.ndarray, "h w 3"]) -> str:
+    buffer = io.BytesIO()
+    Image.fromarray(reduced(rgb, 480)).save(buffer, "JPEG", quality=80)
+    return "data:image/jpeg;base64," + base64.b64encode(buffer.getvalue()).decode()
+
+
+Opened = Callable[[int | None], None]
