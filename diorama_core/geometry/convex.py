@@ -1,0 +1,319 @@
+"""Convex parts of shapes: what collides with what, exactly enough and fast.
+
+Furniture is assembled from boxes, prisms and turned pieces, so the hulls of a mesh's connected components already
+are a good convex decomposition. Each hull is then replaced by a simpler convex body that contains it (box, prism,
+discrete-orientation polytope) where that costs little volume, so that separating-axis tests stay short. Parts always
+contain the mesh: two shapes whose parts are apart do not touch.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+import trimesh
+from jaxtyping import Float, Int
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
+
+from diorama_core.scene.values import ArrayValue, frozen_array
+
+TIGHT = 0.88
+"""A simpler body is taken when the hull fills at least this share of it."""
+MERGE = 0.93
+"""Two parts become one when together they fill at least this share of their common hull."""
+MOST_PARTS = 20
+MOST_VERTICES = 24
+THINNEST_M = 1e-3
+_SAME_DIRECTION = 1.0 - 1e-5
+
+
+@dataclass(frozen=True, eq=False)
+class ConvexPart(ArrayValue):
+    """One convex body in a shape's canonical frame, with the directions its separating axes come from."""
+
+    vertices: Float[np.ndarray, "v 3"]
+    normals: Float[np.ndarray, "f 3"]
+    """Unit face normals up to sign."""
+    edges: Float[np.ndarray, "e 3"]
+    """Unit edge directions up to sign."""
+
+    def __post_init__(self) -> None:
+        for name in ("vertices", "normals", "edges"):
+            object.__setattr__(self, name, frozen_array(getattr(self, name), (-1, 3)))
+
+
+def box_part(lower: object, upper: object) -> ConvexPart:
+    """The axis-aligned box between two corners."""
+    low, high = np.asarray(lower, dtype=np.float64), np.asarray(upper, dtype=np.float64)
+    signs = np.array([[(i >> axis) & 1 for axis in range(3)] for i in range(8)])
+    return ConvexPart(np.where(signs == 1, high, low), np.eye(3), np.eye(3))
+
+
+def prism_part(polygon: Float[np.ndarray, "k 3"], extrusion: Float[np.ndarray, "3"]) -> ConvexPart:
+    """A convex planar polygon swept along `extrusion`."""
+    sides = np.roll(polygon, -1, axis=0) - polygon
+    sides = sides[np.linalg.norm(sides, axis=1) > 1e-9]
+    caps = np.cross(sides, extrusion)
+    normals = np.vstack([np.cross(sides[0], np.roll(sides, -1, axis=0)[0])[None], caps])
+    edges = np.vstack([sides, np.asarray(extrusion)[None]])
+    return ConvexPart(np.vstack([polygon, polygon + extrusion]), _directions(normals), _directions(edges))
+
+
+def hull_part(points: Float[np.ndarray, "n 3"]) -> ConvexPart:
+    """The exact convex hull of points; flat or empty sets become thin boxes."""
+    try:
+        hull = ConvexHull(points)
+    except (QhullError, ValueError):
+        low, high = points.min(axis=0), points.max(axis=0)
+        pad = np.maximum(0.5 * (THINNEST_M - (high - low)), 0.0)
+        return box_part(low - pad, high + pad)
+    return ConvexPart(points[hull.vertices], _directions(hull.equations[:, :3]), _hull_edges(hull))
+
+
+def convex_parts(mesh: trimesh.Trimesh) -> tuple[ConvexPart, ...]:
+    """Decompose a mesh into few convex bodies that contain it, largest first.
+
+    Connected components that are convex enough keep their hull; others are cut by planes where that removes most
+    empty volume. Neighbours that together are nearly convex are merged, contained parts dropped.
+    """
+    vertices, faces = np.asarray(mesh.vertices, dtype=np.float64), np.asarray(mesh.faces)
+    if len(faces) == 0:
+        raise ValueError("a shape without faces has no convex parts")
+    clouds: list[np.ndarray] = []
+    for component in _components(vertices, faces):
+        clouds.extend(_split(vertices[component], 0))
+    clouds = _merge([_hull_points(c) for c in clouds])
+    clouds = _drop_contained(sorted(clouds, key=_volume, reverse=True))
+    return tuple(simplest_part(c) for c in clouds)
+
+
+def simplest_part(points: Float[np.ndarray, "n 3"]) -> ConvexPart:
+    """The simplest body (fewest axes) that contains the points and is filled by their hull to at least `TIGHT`."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    volume = _volume(points)
+    if volume < 1e-12 or (high - low).min() < THINNEST_M or volume >= TIGHT * float(np.prod(high - low)):
+        return box_part(*_padded(low, high))
+    for axis in (2, 0, 1):
+        prism = _prism_about(points, axis)
+        if prism is not None and volume >= TIGHT * _volume(np.asarray(prism.vertices)):
+            return prism
+    to_box, extents = _oriented_box(points)
+    if volume >= TIGHT * float(np.prod(extents)):
+        return _turned_box(to_box, extents)
+    exact = hull_part(points)
+    return exact if len(exact.vertices) <= MOST_VERTICES else _polytope(points)
+
+
+def _padded(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    pad = np.maximum(0.5 * (THINNEST_M - (high - low)), 0.0)
+    return low - pad, high + pad
+
+
+def _directions(vectors: np.ndarray) -> Float[np.ndarray, "k 3"]:
+    """Unit vectors, parallel and opposite ones once; in a fixed order."""
+    lengths = np.linalg.norm(vectors, axis=1)
+    units = vectors[lengths > 1e-12] / lengths[lengths > 1e-12, None]
+    kept: list[np.ndarray] = []
+    for unit in units:
+        if all(abs(float(unit @ other)) < _SAME_DIRECTION for other in kept):
+            kept.append(unit)
+    return np.array(kept) if kept else np.eye(3)
+
+
+def _hull_edges(hull: ConvexHull) -> Float[np.ndarray, "e 3"]:
+    edges = []
+    for a, neighbours in enumerate(hull.neighbors):
+        for b in neighbours:
+            if b > a and hull.equations[a, :3] @ hull.equations[b, :3] < _SAME_DIRECTION:
+                shared = np.intersect1d(hull.simplices[a], hull.simplices[b])
+                if len(shared) == 2:
+                    edges.append(hull.points[shared[1]] - hull.points[shared[0]])
+    return _directions(np.array(edges).reshape(-1, 3))
+
+
+def _components(vertices: np.ndarray, faces: Int[np.ndarray, "f 3"]) -> list[np.ndarray]:
+    """Triangles (f 3) of each connected component; vertices at the same place count as one."""
+    _, merged = np.unique(np.round(vertices, 6), axis=0, return_inverse=True)
+    corner = merged.reshape(-1)[faces]
+    rows, columns = corner[:, [0, 1]].ravel(), corner[:, [1, 2]].ravel()
+    size = int(corner.max()) + 1
+    _, label = connected_components(coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(size, size)))
+    of_face = label[corner[:, 0]]
+    return [faces[of_face == k] for k in np.unique(of_face)]
+
+
+def _hull_points(points: np.ndarray) -> np.ndarray:
+    flat = points.reshape(-1, 3)
+    try:
+        return flat[ConvexHull(flat).vertices]
+    except (QhullError, ValueError):
+        return flat
+
+
+def _volume(points: np.ndarray) -> float:
+    try:
+        return float(ConvexHull(points.reshape(-1, 3)).volume)
+    except (QhullError, ValueError):
+        return 0.0
+
+
+def _solid_volume(triangles: Float[np.ndarray, "t 3 3"]) -> float:
+    """Signed volume enclosed by triangles; meaningful when they are closed and wound alike."""
+    return abs(float(np.einsum("ij,ij->i", triangles[:, 0], np.cross(triangles[:, 1], triangles[:, 2])).sum()) / 6.0)
+
+
+def _split(triangles: Float[np.ndarray, "t 3 3"], depth: int) -> list[np.ndarray]:
+    """Cut a surface by axis planes while that removes a good share of its hull's volume."""
+    whole = _volume(triangles)
+    if depth >= 4 or whole < 1e-7 or (depth == 0 and _solid_volume(triangles) >= TIGHT * whole):
+        return [triangles]
+    low, high = triangles.reshape(-1, 3).min(axis=0), triangles.reshape(-1, 3).max(axis=0)
+    best: tuple[float, list[np.ndarray]] = (0.9 * whole, [])
+    for axis, share in itertools.product(range(3), (0.1, 0.25, 0.4, 0.5, 0.6, 0.75, 0.9)):
+        halves = _cut(triangles, axis, float(low[axis] + share * (high[axis] - low[axis])))
+        total = sum(_volume(h) for h in halves)
+        if len(halves) == 2 and total < best[0]:
+            best = (total, halves)
+    return [piece for half in best[1] for piece in _split(half, depth + 1)] or [triangles]
+
+
+def _cut(triangles: np.ndarray, axis: int, at: float) -> list[np.ndarray]:
+    """Both sides of a surface cut by the plane x[axis] = at, as triangles (degenerate ones allowed)."""
+    sides = []
+    for sign in (1.0, -1.0):
+        pieces = []
+        for triangle in triangles[(sign * (triangles[:, :, axis] - at)).max(axis=1) > 0]:
+            polygon = _clip(triangle, axis, at, sign)
+            pieces.extend([polygon[0], polygon[k], polygon[k + 1]] for k in range(1, len(polygon) - 1))
+        if pieces:
+            sides.append(np.array(pieces))
+    return sides
+
+
+def _clip(polygon: np.ndarray, axis: int, at: float, sign: float) -> list[np.ndarray]:
+    kept = []
+    for a, b in zip(polygon, np.roll(polygon, -1, axis=0)):
+        da, db = sign * (a[axis] - at), sign * (b[axis] - at)
+        if da >= 0:
+            kept.append(a)
+        if da * db < 0:
+            kept.append(a + (b - a) * (da / (da - db)))
+    return kept
+
+
+def _merge(clouds: list[np.ndarray]) -> list[np.ndarray]:
+    """Join parts, best filled first, while the union stays nearly convex or there are too many parts."""
+    parts = {k: (c, _volume(c)) for k, c in enumerate(clouds)}
+    fills = {pair: _fill(parts[pair[0]], parts[pair[1]], len(parts)) for pair in itertools.combinations(parts, 2)}
+    while fills:
+        pair = max(fills, key=fills.__getitem__)
+        if fills[pair] < MERGE and len(parts) <= MOST_PARTS:
+            break
+        joined = _hull_points(np.vstack([parts[pair[0]][0], parts[pair[1]][0]]))
+        for k in pair:
+            del parts[k]
+        fills = {p: f for p, f in fills.items() if not set(p) & set(pair)}
+        new = max([*parts, *pair]) + 1
+        parts[new] = (joined, _volume(joined))
+        fills.update({(k, new): _fill(parts[k], parts[new], len(parts)) for k in parts if k != new})
+    return [cloud for cloud, _ in parts.values()]
+
+
+def _fill(a: tuple[np.ndarray, float], b: tuple[np.ndarray, float], count: int) -> float:
+    """Share of the common hull that two parts fill; 0 without computing it when their boxes already rule it out."""
+    both = np.vstack([a[0], b[0]])
+    box = float(np.prod(both.max(axis=0) - both.min(axis=0)))
+    if count <= MOST_PARTS and a[1] + b[1] < 0.3 * MERGE * box:
+        return 0.0
+    hull = _volume(both)
+    return min((a[1] + b[1]) / hull, 1.0) if hull > 1e-12 else 1.0
+
+
+def _drop_contained(clouds: list[np.ndarray]) -> list[np.ndarray]:
+    """Without the parts that lie inside a larger one (largest first)."""
+    kept: list[np.ndarray] = []
+    planes: list[np.ndarray] = []
+    for cloud in clouds:
+        if any((cloud @ p[:, :3].T + p[:, 3] <= 1e-5).all() for p in planes):
+            continue
+        kept.append(cloud)
+        try:
+            planes.append(ConvexHull(cloud).equations)
+        except (QhullError, ValueError):
+            continue
+    return kept
+
+
+def _prism_about(points: np.ndarray, axis: int) -> ConvexPart | None:
+    """A prism along one axis whose outline has at most eight sides and contains the points' outline."""
+    u, v = [(1, 2), (2, 0), (0, 1)][axis]
+    try:
+        outline = points[:, [u, v]][ConvexHull(points[:, [u, v]]).vertices]
+    except (QhullError, ValueError):
+        return None
+    outline = outer_polygon(outline, 8)
+    ring = np.zeros((len(outline), 3))
+    ring[:, u], ring[:, v] = outline[:, 0], outline[:, 1]
+    ring[:, axis] = points[:, axis].min()
+    sweep = np.zeros(3)
+    sweep[axis] = np.ptp(points[:, axis])
+    return prism_part(ring, sweep)
+
+
+def outer_polygon(polygon: Float[np.ndarray, "n 2"], most: int) -> Float[np.ndarray, "m 2"]:
+    """A convex polygon with at most `most` sides around a convex counter-clockwise one, adding little area."""
+    corners = [np.asarray(p, dtype=np.float64) for p in polygon]
+    while len(corners) > most:
+        options = [(_tip(corners, k), k) for k in range(len(corners))]
+        valid = [(area, k, tip) for (area, tip), k in options if tip is not None]
+        if not valid:
+            break
+        _, k, tip = min(valid, key=lambda option: option[0])
+        after = (k + 1) % len(corners)
+        corners[k] = tip
+        del corners[after]
+    return np.array(corners)
+
+
+def _tip(corners: list[np.ndarray], k: int) -> tuple[float, np.ndarray | None]:
+    """Where the neighbours of side k meet when it is removed, and the area that adds."""
+    n = len(corners)
+    before, a, b, after = corners[k - 1], corners[k], corners[(k + 1) % n], corners[(k + 2) % n]
+    da, db = a - before, b - after
+    cross = da[0] * db[1] - da[1] * db[0]
+    if abs(cross) < 1e-12:
+        return np.inf, None
+    gap = b - a
+    t = (gap[0] * db[1] - gap[1] * db[0]) / cross
+    s = (gap[0] * da[1] - gap[1] * da[0]) / cross
+    if t < 0 or s < 0:
+        return np.inf, None
+    tip = a + t * da
+    return 0.5 * abs(float(t * (da[0] * gap[1] - da[1] * gap[0]))), tip
+
+
+def _oriented_box(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    to_box, extents = trimesh.bounds.oriented_bounds(points)
+    return np.asarray(to_box), np.asarray(extents)
+
+
+def _turned_box(to_box: np.ndarray, extents: np.ndarray) -> ConvexPart:
+    local = box_part(-extents / 2, extents / 2)
+    R, t = np.linalg.inv(to_box)[:3, :3], np.linalg.inv(to_box)[:3, 3]
+    return ConvexPart(local.vertices @ R.T + t, R.T, R.T)
+
+
+def _polytope(points: np.ndarray) -> ConvexPart:
+    """The discrete-orientation polytope over the axes and their diagonals around the points."""
+    raw = [d for d in itertools.product((-1, 0, 1), repeat=3) if d > (0, 0, 0) and np.abs(d).sum() <= 2]
+    directions = np.array(raw, dtype=np.float64)
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    reach = points @ directions.T
+    halfspaces = np.vstack(
+        [np.column_stack([directions, -reach.max(axis=0)]), np.column_stack([-directions, reach.min(axis=0)])]
+    )
+    corners = HalfspaceIntersection(halfspaces, points.mean(axis=0)).intersections
+    return hull_part(np.unique(np.round(corners, 9), axis=0))

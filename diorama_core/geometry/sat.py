@@ -1,0 +1,119 @@
+"""Separating axes between many pairs of convex bodies at once, for bodies that only translate.
+
+With fixed rotations, two convex bodies are apart exactly when some direction n out of finitely many separates them, and
+what the separation along n becomes under translations is linear: gap + n . (move_a - move_b). So the axes are
+computed once, and every later question costs one small product.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from diorama_core.geometry.convex import ConvexPart
+
+_DEGENERATE = 1e-6
+"""Cross products shorter than this (of unit vectors) give no axis."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """Convex bodies in the world at their base positions, padded to common sizes."""
+
+    vertices: Float[np.ndarray, "b v 3"]
+    """Padded by repeating a vertex."""
+    normals: Float[np.ndarray, "b f 3"]
+    """Unit, zero where padded."""
+    edges: Float[np.ndarray, "b e 3"]
+    """Unit, zero where padded."""
+    simple: np.ndarray
+    """True for boxes: eight vertices, three normals, three edges."""
+    owner: Int[np.ndarray, " b"]
+    low: Float[np.ndarray, "b 3"]
+    high: Float[np.ndarray, "b 3"]
+
+
+@dataclass(frozen=True, eq=False)
+class PairAxes:
+    """Signed separating directions of body pairs (a, b)."""
+
+    a: Int[np.ndarray, " m"]
+    b: Int[np.ndarray, " m"]
+    normals: Float[np.ndarray, "m k 3"]
+    gaps: Float[np.ndarray, "m k"]
+    """Separation along each direction at the base positions; -inf where there is no axis."""
+
+    def separations(self, move: Float[np.ndarray, "m 3"]) -> Float[np.ndarray, "m k"]:
+        """Separations after body a moved by `move` relative to body b; positive somewhere means apart."""
+        return self.gaps + np.einsum("mkc,mc->mk", self.normals, move)
+
+
+def place_bodies(
+    parts: Sequence[Sequence[ConvexPart]],
+    R: Float[np.ndarray, "n 3 3"],
+    p: Float[np.ndarray, "n 3"],
+    scale: Float[np.ndarray, "n 3"],
+) -> Bodies:
+    """All parts of all objects, posed."""
+    flat = [part for own in parts for part in own]
+    owner = np.array([i for i, own in enumerate(parts) for _ in own], dtype=int)
+    vertices = _padded([part.vertices for part in flat], repeat=True)
+    normals, edges = _padded([part.normals for part in flat]), _padded([part.edges for part in flat])
+    to_world, S = R[owner], scale[owner][:, None, :]
+    world = np.matmul(vertices * S, to_world.transpose(0, 2, 1)) + p[owner][:, None, :]
+    return Bodies(
+        vertices=world,
+        normals=_unit(np.matmul(normals / S, to_world.transpose(0, 2, 1))),
+        edges=_unit(np.matmul(edges * S, to_world.transpose(0, 2, 1))),
+        simple=np.array([len(q.vertices) == 8 and len(q.normals) == 3 and len(q.edges) == 3 for q in flat], dtype=bool),
+        owner=owner,
+        low=world.min(axis=1),
+        high=world.max(axis=1),
+    )
+
+
+def pair_axes(bodies: Bodies, a: Int[np.ndarray, " m"], b: Int[np.ndarray, " m"]) -> list[PairAxes]:
+    """The separating directions of body pairs, in blocks of similar size (boxes apart from the rest)."""
+    both = bodies.simple[a] & bodies.simple[b]
+    blocks = []
+    for chosen, cut in ((both, (8, 3, 3)), (~both, (None, None, None))):
+        if chosen.any():
+            ia, ib = a[chosen], b[chosen]
+            for start in range(0, len(ia), 512):
+                blocks.append(_block(bodies, ia[start : start + 512], ib[start : start + 512], cut))
+    return blocks
+
+
+def _block(bodies: Bodies, a: np.ndarray, b: np.ndarray, cut: tuple[int | None, ...]) -> PairAxes:
+    v, f, e = cut
+    Va, Vb = bodies.vertices[a, :v], bodies.vertices[b, :v]
+    ea, eb = bodies.edges[a, :e], bodies.edges[b, :e]
+    crosses = np.cross(ea[:, :, None, :], eb[:, None, :, :]).reshape(len(a), -1, 3)
+    axes = np.concatenate([bodies.normals[a, :f], bodies.normals[b, :f], crosses], axis=1)
+    lengths = np.sqrt((axes * axes).sum(axis=2))
+    used = lengths > _DEGENERATE
+    kept = used.any(axis=0)
+    axes, lengths, used = axes[:, kept], lengths[:, kept], used[:, kept]
+    axes = axes / np.where(used, lengths, 1.0)[..., None]
+    on_a, on_b = np.matmul(axes, Va.transpose(0, 2, 1)), np.matmul(axes, Vb.transpose(0, 2, 1))
+    ahead = np.where(used, on_a.min(axis=2) - on_b.max(axis=2), -np.inf)
+    behind = np.where(used, on_b.min(axis=2) - on_a.max(axis=2), -np.inf)
+    return PairAxes(a, b, np.concatenate([axes, -axes], axis=1), np.concatenate([ahead, behind], axis=1))
+
+
+def _padded(arrays: Sequence[np.ndarray], *, repeat: bool = False) -> Float[np.ndarray, "b k 3"]:
+    longest = max((len(x) for x in arrays), default=1)
+    out = np.zeros((len(arrays), longest, 3))
+    for k, x in enumerate(arrays):
+        out[k, : len(x)] = x
+        if repeat:
+            out[k, len(x) :] = x[0]
+    return out
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    lengths = np.sqrt((vectors * vectors).sum(axis=-1, keepdims=True))
+    return vectors / np.where(lengths > 1e-12, lengths, 1.0)

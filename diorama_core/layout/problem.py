@@ -1,0 +1,190 @@
+"""What the layout optimisers solve: a scene and its shapes, reduced to arrays.
+
+Objects are sorted by id, so that no result depends on the order in which a scene lists them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from diorama_core.geometry.convex import ConvexPart
+from diorama_core.layout.parts import parts_of_shape
+from diorama_core.layout.supports import (
+    Surface,
+    choose_contact,
+    choose_surface,
+    complete_edges,
+    is_wall_like,
+    wall_faces,
+)
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.scene.support import descendants
+from diorama_core.scene.types import Plane, Pose, Scene, Support
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """Everything an optimiser needs, indexed by object (sorted by id)."""
+
+    ids: tuple[str, ...]
+    labels: tuple[str, ...]
+    R: Float[np.ndarray, "n 3 3"]
+    """Observed rotations, world from object."""
+    p: Float[np.ndarray, "n 3"]
+    """Observed centres in the world, metres."""
+    scale: Float[np.ndarray, "n 3"]
+    """Observed scales."""
+    shape_size: Float[np.ndarray, "n 3"]
+    """Extents at scale 1, metres."""
+    parent: Int[np.ndarray, " n"]
+    """Index of the supporting object, or -1."""
+    on_plane: tuple[str | None, ...]
+    """Id of the supporting plane, where one supports."""
+    surface: tuple[Surface | None, ...]
+    """Where each object rests; None when nothing holds it."""
+    contact: Float[np.ndarray, "n 3"]
+    """Outward normal of the touching face, in the object frame."""
+    free: Bool[np.ndarray, " n"]
+    """False for constants: locked, or outside the selection."""
+    adheres: tuple[tuple[int, int, Float[np.ndarray, "3"]], ...]
+    """(object, wall, outward normal of the object's face against that wall, in the object frame)."""
+    walls: tuple[Plane, ...]
+    relations: Int[np.ndarray, "m 2"]
+    """Pairs that are near each other and should stay so."""
+    kin: Bool[np.ndarray, "n n"]
+    """Pairs that never collide: an object and its direct or indirect supporters, a rug and what is on it."""
+    parts: tuple[tuple[ConvexPart, ...], ...]
+    reasons: tuple[str, ...] = ()
+
+    @property
+    def count(self) -> int:
+        """Number of objects."""
+        return len(self.ids)
+
+    @property
+    def top_down(self) -> tuple[int, ...]:
+        """Object indices, supporters before what they support."""
+        depth = [len(self.chain(i)) for i in range(self.count)]
+        return tuple(sorted(range(self.count), key=lambda i: (depth[i], i)))
+
+    def chain(self, index: int) -> list[int]:
+        """The object and its supporting objects, nearest first."""
+        found = [index]
+        while self.parent[found[-1]] >= 0:
+            found.append(int(self.parent[found[-1]]))
+        return found
+
+    def poses(
+        self, R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]
+    ) -> dict[str, Pose]:
+        """Poses of the objects that were free to move."""
+        return {self.ids[i]: Pose(R[i], p[i], scale[i]) for i in range(self.count) if self.free[i]}
+
+
+def build_problem(
+    scene: Scene, library: ShapeLibrary, *, only: frozenset[str] | None = None, adherence_m: float = 0.1
+) -> Problem:
+    """Reduce a scene to arrays.
+
+    Args:
+        scene: with any support graph: missing edges are completed from geometry, cycles are cut, with a reason.
+        library: where shapes come from.
+        only: ids free to move, with what they hold up; all when None.
+        adherence_m: faces parallel to a wall and nearer than this are taken to stand against it.
+    """
+    objects = sorted(scene.objects, key=lambda o: o.id)
+    shapes = [library.shape(o.shape_id) for o in objects]
+    edges, reasons = complete_edges(scene, objects, shapes)
+    index = {o.id: k for k, o in enumerate(objects)}
+    free = _free(scene, objects, only)
+    parent = np.full(len(objects), -1)
+    for k, edge in enumerate(edges):
+        if edge is not None and edge.parent in index:
+            parent[k] = index[edge.parent]
+    surfaces: list[Surface | None] = []
+    contacts = np.zeros((len(objects), 3))
+    for k, (item, edge) in enumerate(zip(objects, edges)):
+        held_by = shapes[parent[k]] if parent[k] >= 0 else None
+        surfaces.append(choose_surface(scene, item, edge, held_by) if edge is not None else None)
+        contacts[k] = choose_contact(scene, item, edge, surfaces[-1])
+    walls = tuple(sorted(scene.architecture.by_role("wall"), key=lambda w: w.id))
+    on_plane = tuple(e.parent if e is not None and e.parent not in index else None for e in edges)
+    p = np.array([o.pose.position for o in objects]).reshape(-1, 3)
+    sizes = np.array([o.size_m for o in objects]).reshape(-1, 3)
+    return Problem(
+        ids=tuple(o.id for o in objects),
+        labels=tuple(o.label for o in objects),
+        R=np.array([o.pose.R_world_object for o in objects]).reshape(-1, 3, 3),
+        p=p,
+        scale=np.array([o.pose.scale for o in objects]).reshape(-1, 3),
+        shape_size=np.array([o.shape_size_m for o in objects]).reshape(-1, 3),
+        parent=parent,
+        on_plane=on_plane,
+        surface=tuple(surfaces),
+        contact=contacts,
+        free=free,
+        adheres=_adherences(objects, edges, surfaces, walls, adherence_m),
+        walls=walls,
+        relations=_relations(parent, on_plane, p, sizes),
+        kin=_kin(parent, [o.category for o in objects], sizes),
+        parts=tuple(parts_of_shape(library, s) for s in shapes),
+        reasons=reasons,
+    )
+
+
+def _free(scene: Scene, objects: Sequence, only: frozenset[str] | None) -> Bool[np.ndarray, " n"]:
+    chosen = None if only is None else set(only).union(*(descendants(scene, i) for i in only if scene.has_object(i)))
+    return np.array([not o.locked and (chosen is None or o.id in chosen) for o in objects], dtype=bool)
+
+
+def _adherences(
+    objects: Sequence,
+    edges: Sequence[Support | None],
+    surfaces: Sequence[Surface | None],
+    walls: tuple[Plane, ...],
+    within_m: float,
+) -> tuple[tuple[int, int, np.ndarray], ...]:
+    found = []
+    for k, (item, edge) in enumerate(zip(objects, edges)):
+        if edge is None or surfaces[k] is None or is_wall_like(surfaces[k]):
+            continue
+        stated = set(edge.adheres_to)
+        found += [
+            (k, w, face)
+            for w, face, gap, facing in wall_faces(item, walls)
+            if walls[w].id in stated or (gap < within_m and facing > 0.97 and surfaces[k].of_plane)  # type: ignore[union-attr]
+        ]
+    return tuple(found)
+
+
+def _relations(
+    parent: np.ndarray, on_plane: Sequence[str | None], p: np.ndarray, sizes: np.ndarray
+) -> Int[np.ndarray, "m 2"]:
+    """Support edges between objects, and each object with its nearest three siblings closer than a metre."""
+    pairs = {(int(k), int(parent[k])) for k in range(len(parent)) if parent[k] >= 0}
+    holder = [str(parent[k]) if parent[k] >= 0 else f"plane {on_plane[k]}" for k in range(len(parent))]
+    radius = 0.5 * np.linalg.norm(sizes, axis=1)
+    for k in range(len(parent)):
+        siblings = [j for j in range(len(parent)) if j != k and holder[j] == holder[k]]
+        gap = {j: float(np.linalg.norm(p[j] - p[k]) - radius[j] - radius[k]) for j in siblings}
+        near = sorted((j for j in siblings if gap[j] < 1.0), key=gap.__getitem__)[:3]
+        pairs |= {(max(k, j), min(k, j)) for j in near}
+    return np.array(sorted(pairs), dtype=int).reshape(-1, 2)
+
+
+def _kin(parent: np.ndarray, categories: Sequence[str], sizes: np.ndarray) -> Bool[np.ndarray, "n n"]:
+    n = len(parent)
+    kin = np.eye(n, dtype=bool)
+    for k in range(n):
+        above = int(parent[k])
+        while above >= 0:
+            kin[k, above] = kin[above, k] = True
+            above = int(parent[above])
+    rugs = np.array([c == "rug" and s[2] < 0.06 for c, s in zip(categories, sizes)], dtype=bool).reshape(-1)
+    kin[rugs, :] = True
+    kin[:, rugs] = True
+    return kin

@@ -1,0 +1,36 @@
+"""The layout recipes by name, behind one protocol."""
+
+from __future__ import annotations
+
+from diorama_core.errors import InputError
+from diorama_core.layout.feasible import FeasibleRecipe
+from diorama_core.layout.published import AllInOneRecipe, PaperRecipe
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.pipeline.protocols import LayoutStage
+
+NAMES = ("feasible", "paper", "all-in-one")
+"""The default first."""
+
+
+def recipe(name: str, library: ShapeLibrary, only: frozenset[str] | None = None) -> LayoutStage:
+    """The recipe of this name.
+
+    Args:
+        name: "feasible" (exact and fast, the default), "paper" (the published four stages) or "all-in-one" (every
+            term at once, the paper's ablation).
+        library: where shapes come from.
+        only: ids free to move; everything else is constant.
+
+    Raises:
+        InputError: when there is no such recipe.
+    """
+    if name == "feasible":
+        return FeasibleRecipe(library, only)
+    if name == "paper":
+        return PaperRecipe(library, only)
+    if name == "all-in-one":
+        return AllInOneRecipe(library, only)
+    raise InputError(f"there is no layout recipe {name!r}; choose one of {', '.join(NAMES)}")
+
+
+__all__ = ["NAMES", "AllInOneRecipe", "FeasibleRecipe", "PaperRecipe", "recipe"]

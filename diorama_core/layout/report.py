@@ -1,0 +1,95 @@
+"""How good a layout is: costs, structure, overlap and how far things moved."""
+
+from __future__ import annotations
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.geometry.sat import pair_axes, place_bodies
+from diorama_core.layout.problem import Problem
+from diorama_core.layout.supports import half_planes
+
+ALIGNED_RAD = float(np.deg2rad(1.0))
+PLACED_M = 1e-3
+INSIDE_M = 1e-3
+"""Corners may leave their surface by this much and still count as inside."""
+
+
+def measure(
+    problem: Problem,
+    R: Float[np.ndarray, "n 3 3"],
+    p: Float[np.ndarray, "n 3"],
+    scale: Float[np.ndarray, "n 3"],
+) -> dict[str, float]:
+    """The report's figures for one layout of the problem's objects.
+
+    `orientation`, `placement`, `structure`, `in_support`: shares of supported objects within 1 degree and 0.1 cm of
+    their support, and inside its bounds and clearance. `part_overlap_m`: deepest overlap of convex parts (0 when
+    apart); `part_overlap_mean_m` and `overlapping_pairs` say how widespread. `moved_m`: mean distance from the
+    observed positions.
+    """
+    aligned, placed, inside = _structure(problem, R, p, scale)
+    depths = part_overlaps(problem, R, p, scale)
+    moved = np.linalg.norm(p - problem.p, axis=1)
+    return {
+        "orientation": _share(aligned),
+        "placement": _share(placed),
+        "structure": _share(aligned & placed),
+        "in_support": _share(inside),
+        "part_overlap_m": max(depths.values(), default=0.0),
+        "part_overlap_mean_m": sum(depths.values()) / max(problem.count, 1),
+        "overlapping_pairs": float(len(depths)),
+        "moved_m": float(moved.mean()) if len(moved) else 0.0,
+        "moved_most_m": float(moved.max()) if len(moved) else 0.0,
+    }
+
+
+def _share(good: np.ndarray) -> float:
+    return float(good.mean()) if len(good) else 1.0
+
+
+def _structure(
+    problem: Problem, R: np.ndarray, p: np.ndarray, scale: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Whether each supported object is aligned, placed and inside its support."""
+    aligned, placed, inside = [], [], []
+    for i, surface in enumerate(problem.surface):
+        if surface is None:
+            continue
+        j = int(problem.parent[i])
+        world = surface if j < 0 else surface.at(R[j], p[j], scale[j])
+        size, contact = problem.shape_size[i] * scale[i], problem.contact[i]
+        outward = R[i] @ contact
+        centre = p[i] + R[i] @ (contact * size / 2)
+        aligned.append(float(outward @ world.normal) <= -np.cos(ALIGNED_RAD))
+        placed.append(abs(float(world.normal @ (centre - world.polygon[0]))) <= PLACED_M)
+        m, h = half_planes(world)
+        reach = np.abs((m @ R[i]) * (size * (1.0 - np.abs(contact)) / 2)).sum(axis=1)
+        top = float(world.normal @ (p[i] - world.polygon[0])) + 0.5 * float(np.abs((world.normal @ R[i]) * size).sum())
+        inside.append(bool((m @ centre + reach <= h + INSIDE_M).all()) and top <= world.clearance_m + INSIDE_M)
+    return np.array(aligned, dtype=bool), np.array(placed, dtype=bool), np.array(inside, dtype=bool)
+
+
+def part_overlaps(
+    problem: Problem,
+    R: Float[np.ndarray, "n 3 3"],
+    p: Float[np.ndarray, "n 3"],
+    scale: Float[np.ndarray, "n 3"],
+) -> dict[tuple[int, int], float]:
+    """Depth in metres by which convex parts of two objects overlap, for the pairs that do; supporters left out."""
+    bodies = place_bodies(problem.parts, R, p, scale)
+    if not problem.count:
+        return {}
+    starts = np.searchsorted(bodies.owner, np.arange(problem.count))
+    low, high = np.minimum.reduceat(bodies.low, starts), np.maximum.reduceat(bodies.high, starts)
+    near = ((low[:, None] < high[None]) & (low[None] < high[:, None])).all(axis=2) & ~problem.kin
+    near_parts = np.triu(near, 1)[bodies.owner[:, None], bodies.owner[None]]
+    near_parts &= ((bodies.low[:, None] < bodies.high[None]) & (bodies.low[None] < bodies.high[:, None])).all(axis=2)
+    a, b = np.nonzero(near_parts)
+    depths: dict[tuple[int, int], float] = {}
+    for block in pair_axes(bodies, a, b):
+        depth = -block.gaps.max(axis=1)
+        for k in np.flatnonzero(depth > 1e-9):
+            pair = (int(bodies.owner[block.a[k]]), int(bodies.owner[block.b[k]]))
+            depths[pair] = max(depths.get(pair, 0.0), float(depth[k]))
+    return depths

@@ -1,0 +1,306 @@
+"""The published recipe: four stages of stochastic-gradient steps, batched and pruned.
+
+Schedule as in the supplement: 200 steps a stage, learning rate 0.01 (0.001 for scale), momentum 0.9, decayed tenfold
+every 50 steps; weights 3, 1 / 5, 1 / 1 / 5, 1. Rotations step on their manifold.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.layout import gradients
+from diorama_core.layout.problem import Problem
+from diorama_core.layout.supports import half_planes
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """How steps are taken."""
+
+    steps: int = 200
+    """Per stage."""
+    rate: float = 0.01
+    scale_rate: float = 0.001
+    momentum: float = 0.9
+    decay: float = 0.1
+    decay_every: int = 50
+
+    def rates(self) -> Iterator[float]:
+        """Factor on the learning rate, step by step."""
+        for step in range(self.steps):
+            yield self.decay ** (step // self.decay_every)
+
+
+@dataclass(eq=False)
+class State:
+    """The layout while it is optimised."""
+
+    R: Float[np.ndarray, "n 3 3"]
+    p: Float[np.ndarray, "n 3"]
+    scale: Float[np.ndarray, "n 3"]
+
+
+Report = Callable[[str, int, State, float], None]
+"""Called every step: stage, step, layout, cost. May raise to cancel."""
+
+
+@dataclass(frozen=True, eq=False)
+class Edges:
+    """Support edges and adherences, flattened: child faces against surfaces."""
+
+    child: np.ndarray
+    holder: np.ndarray
+    """Index of the supporting object; -1 for planes."""
+    contact: Float[np.ndarray, "e 3"]
+    """Outward normals of the touching faces, object frame."""
+    point: Float[np.ndarray, "e 3"]
+    """A point of the surface, in its owner's frame at scale 1."""
+    normal: Float[np.ndarray, "e 3"]
+    """In its owner's frame."""
+    weight: Float[np.ndarray, " e"]
+    """Of orientation: 1 for supports, 5 for adherence."""
+    supports: int
+    """The first so many are supports."""
+
+    @classmethod
+    def of(cls, problem: Problem) -> Edges:
+        """All edges of a problem."""
+        held = [i for i, s in enumerate(problem.surface) if s is not None]
+        surfaces = [problem.surface[i] for i in held]
+        walls = [problem.walls[w] for _, w, _ in problem.adheres]
+        return cls(
+            child=np.array(held + [i for i, _, _ in problem.adheres], dtype=int),
+            holder=np.array([int(problem.parent[i]) for i in held] + [-1] * len(walls), dtype=int),
+            contact=np.array([problem.contact[i] for i in held] + [f for _, _, f in problem.adheres]).reshape(-1, 3),
+            point=np.array(
+                [s.polygon.mean(axis=0) for s in surfaces if s is not None] + [w.polygon[0] for w in walls]
+            ).reshape(-1, 3),
+            normal=np.array([s.normal for s in surfaces if s is not None] + [w.normal for w in walls]).reshape(-1, 3),
+            weight=np.array([1.0] * len(held) + [5.0] * len(walls)),
+            supports=len(held),
+        )
+
+    def owners(self, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Rotation, centre and scale of each edge's owner; the identity for planes."""
+        on_object = self.holder >= 0
+        R = np.where(on_object[:, None, None], state.R[self.holder], np.eye(3))
+        p = np.where(on_object[:, None], state.p[self.holder], 0.0)
+        scale = np.where(on_object[:, None], state.scale[self.holder], 1.0)
+        return R, p, scale
+
+    def scatter(self, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Matrices that add edge gradients to children, and to supporting objects."""
+        to_child, to_holder = np.zeros((count, len(self.child))), np.zeros((count, len(self.child)))
+        to_child[self.child, np.arange(len(self.child))] = 1.0
+        on_object = np.flatnonzero(self.holder >= 0)
+        to_holder[self.holder[on_object], on_object] = 1.0
+        return to_child, to_holder
+
+
+def orientation_stage(problem: Problem, state: State, schedule: Schedule, report: Report) -> None:
+    """Stage 1: turn objects until contact faces are parallel to their supports. 3 e_align + e_sem."""
+    edges = Edges.of(problem)
+    to_child, to_holder = edges.scatter(problem.count)
+    front = state.R[:, :, 0].copy()
+    velocity = np.zeros((problem.count, 3))
+    free = problem.free.astype(np.float64)[:, None]
+    on_object = edges.holder >= 0
+    inward = -edges.contact
+    for step, rate in enumerate(schedule.rates()):
+        face = np.einsum("eij,ej->ei", state.R[edges.child], inward)
+        owner = np.where(on_object[:, None, None], state.R[edges.holder], np.eye(3))
+        normal = np.einsum("eij,ej->ei", owner, edges.normal)
+        value, slope = gradients.align(face, normal)
+        slope = 3.0 * edges.weight[:, None] * slope
+        kept, turn = gradients.semantic(state.R[:, :, 0], front)
+        gradient = to_child @ _cross(face, slope) - to_holder @ _cross(normal, slope) + _cross(state.R[:, :, 0], turn)
+        velocity = schedule.momentum * velocity + gradient * free
+        state.R = np.matmul(_rotations(-schedule.rate * rate * velocity), state.R)
+        report("orientation", step, state, 3.0 * value + kept)
+    state.R = _orthonormal(state.R)
+
+
+def placement_stage(problem: Problem, state: State, schedule: Schedule, report: Report) -> None:
+    """Stage 2: move objects onto their supports, keeping their neighbours' relative positions. 5 e_place + e_rel."""
+    cost = _Placement.of(problem, state)
+    links = gradients.incidence(problem.relations, problem.count)
+    velocity, start = np.zeros((problem.count, 3)), state.p.copy()
+    free = problem.free.astype(np.float64)[:, None]
+    for step, rate in enumerate(schedule.rates()):
+        value, gradient = cost.of_positions(state.p)
+        kept, back = gradients.relative(state.p - start, problem.relations, links)
+        velocity = schedule.momentum * velocity + (5.0 * gradient + back) * free
+        state.p = state.p - schedule.rate * rate * velocity
+        report("placement", step, state, 5.0 * value + kept)
+
+
+def space_stage(problem: Problem, state: State, schedule: Schedule, report: Report) -> None:
+    """Stage 3: move and shrink objects until they are inside their supporting volumes. e_vol.
+
+    A supporter's own pose bounds the volume but is not moved by it.
+    """
+    held = np.array([i for i, s in enumerate(problem.surface) if s is not None], dtype=int)
+    if not len(held):
+        return
+    template, half = _contact_templates(problem, held)
+    v_p, v_s = np.zeros((len(held), 3)), np.zeros((len(held), 3))
+    free = problem.free[held].astype(np.float64)[:, None]
+    R = state.R[held]
+    volumes = _volumes(problem, state, held)
+    nested = bool((problem.parent >= 0).any())
+    for step, rate in enumerate(schedule.rates()):
+        if nested and step % 5 == 0:
+            volumes = _volumes(problem, state, held)
+        outward, offset, clearance, normal, level = volumes
+        p, scale = state.p[held], state.scale[held]
+        tilt = np.abs(np.einsum("ec,eck->ek", normal, R)) * half
+        corners = p[:, None, :] + np.matmul(template * scale[:, None, :], R.transpose(0, 2, 1))
+        top = np.einsum("ec,ec->e", normal, p) - level + np.einsum("ek,ek->e", tilt, scale)
+        value, at_corners, at_top = gradients.volume(corners, top, outward, offset, clearance)
+        to_scale = np.einsum("ecx,ecx->ex", np.matmul(at_corners, R), template) + at_top[:, None] * tilt
+        v_p = schedule.momentum * v_p + (at_corners.sum(axis=1) + at_top[:, None] * normal) * free
+        v_s = schedule.momentum * v_s + to_scale * free
+        state.p[held] = p - schedule.rate * rate * v_p
+        state.scale[held] = np.maximum(scale - schedule.scale_rate * rate * v_s, 0.05)
+        report("space", step, state, value)
+
+
+def refinement_stage(
+    problem: Problem, state: State, schedule: Schedule, report: Report, *, near_m: float = 0.1
+) -> None:
+    """Stage 4: placement again, and no boxes overlapping. 5 e_place + e_col; walls are obstacles."""
+    cost = _Placement.of(problem, state)
+    R, centre, size, apart = _with_walls(problem, state)
+    n = problem.count
+    velocity = np.zeros((n, 3))
+    free = problem.free.astype(np.float64)[:, None]
+    seen = centre[:n] + np.inf
+    for step, rate in enumerate(schedule.rates()):
+        centre[:n] = state.p
+        # Pairs further apart than near_m cannot touch before something has moved by half of that.
+        if step % 10 == 0 and np.abs(state.p - seen).max(initial=0.0) > near_m / 4:
+            pairs = gradients.near_pairs(R, centre, size, apart, near_m)
+            boxes, links = gradients.BoxPairs.of(R, size, pairs), gradients.incidence(pairs, len(centre))
+            seen = state.p.copy()
+        value, gradient = cost.of_positions(state.p)
+        overlap, away = boxes.collision(centre, links)
+        velocity = schedule.momentum * velocity + (5.0 * gradient + away[:n]) * free
+        state.p = state.p - schedule.rate * rate * velocity
+        report("refinement", step, state, 5.0 * value + overlap)
+
+
+@dataclass(frozen=True, eq=False)
+class _Placement:
+    """e_place as a function of positions only: everything else is fixed within a stage."""
+
+    slope: Float[np.ndarray, "e 3"]
+    level: Float[np.ndarray, " e"]
+    weight: Float[np.ndarray, " e"]
+    edges: Edges
+    scatter: Float[np.ndarray, "n e"]
+
+    @classmethod
+    def of(cls, problem: Problem, state: State) -> _Placement:
+        edges = Edges.of(problem)
+        R, _, scale = edges.owners(state)
+        size = problem.shape_size[edges.child] * state.scale[edges.child]
+        face = np.einsum("eij,ej->ei", state.R[edges.child], edges.contact * size / 2)
+        point = np.einsum("eij,ej->ei", R, edges.point * scale)
+        normal = np.einsum("eij,ej->ei", R, edges.normal)
+        to_child, to_holder = edges.scatter(problem.count)
+        level = np.einsum("ec,ec->e", point - face, normal)
+        return cls(normal, level, np.abs(normal).sum(axis=1), edges, to_child - to_holder)
+
+    def of_positions(self, p: Float[np.ndarray, "n 3"]) -> tuple[float, Float[np.ndarray, "n 3"]]:
+        relative = self.scatter.T @ p
+        distance = np.einsum("ec,ec->e", relative, self.slope) - self.level
+        value = float(np.abs(distance) @ self.weight)
+        return value, self.scatter @ ((np.sign(distance) * self.weight)[:, None] * self.slope)
+
+
+def _contact_templates(problem: Problem, held: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Corners of the touching faces in object frames at scale 1, and half extents."""
+    half = problem.shape_size[held] / 2
+    signs = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    template = np.zeros((len(held), 4, 3))
+    for row, contact in enumerate(problem.contact[held]):
+        axis = int(np.abs(contact).argmax())
+        others = [k for k in range(3) if k != axis]
+        template[row][:, others] = signs
+        template[row][:, axis] = contact[axis]
+    return template * half[:, None, :], half
+
+
+def _volumes(problem: Problem, state: State, held: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Sides (padded), offsets, clearances, normals and levels of the supporting volumes at the present poses."""
+    surfaces = []
+    for i in held:
+        j, surface = int(problem.parent[i]), problem.surface[i]
+        assert surface is not None
+        surfaces.append(surface if j < 0 else surface.at(state.R[j], state.p[j], state.scale[j]))
+    sides = [half_planes(s) for s in surfaces]
+    k = max(len(h) for _, h in sides)
+    outward, offset = np.zeros((len(held), k, 3)), np.zeros((len(held), k))
+    for row, (m, h) in enumerate(sides):
+        outward[row, : len(h)], offset[row, : len(h)] = m, h
+    normal = np.array([s.normal for s in surfaces])
+    level = np.array([float(s.normal @ s.polygon[0]) for s in surfaces])
+    return outward, offset, np.array([s.clearance_m for s in surfaces]), normal, level
+
+
+def _with_walls(problem: Problem, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Boxes of objects and of walls, and which pairs may collide."""
+    n, walls = problem.count, problem.walls
+    R = np.concatenate([state.R, np.array([_wall_frame(w.normal) for w in walls]).reshape(-1, 3, 3)])
+    centres, sizes = [], []
+    for k, wall in enumerate(walls):
+        local = wall.polygon @ R[n + k]
+        low, high = local.min(axis=0), local.max(axis=0)
+        low[0] -= max(wall.thickness, 0.1)
+        centres.append(R[n + k] @ ((low + high) / 2))
+        sizes.append(high - low)
+    centre = np.concatenate([state.p, np.array(centres).reshape(-1, 3)])
+    size = np.concatenate([problem.shape_size * state.scale, np.array(sizes).reshape(-1, 3)])
+    apart = np.zeros((n + len(walls), n + len(walls)), dtype=bool)
+    apart[:n, :n] = ~problem.kin & (problem.free[:, None] | problem.free[None])
+    for k, wall in enumerate(walls):
+        hangs = np.array([problem.on_plane[i] == wall.id for i in range(n)], dtype=bool)
+        apart[:n, n + k] = apart[n + k, :n] = problem.free & ~hangs
+    return R, centre, size, apart
+
+
+def _wall_frame(normal: np.ndarray) -> Float[np.ndarray, "3 3"]:
+    """A rotation whose first column is the wall's normal."""
+    helper = np.eye(3)[int(np.abs(normal).argmin())]
+    second = np.cross(normal, helper)
+    second /= np.linalg.norm(second)
+    return np.column_stack([normal, second, np.cross(normal, second)])
+
+
+def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """`np.cross` without its overhead."""
+    x0, x1, x2 = a.T
+    y0, y1, y2 = b.T
+    return np.column_stack([x1 * y2 - x2 * y1, x2 * y0 - x0 * y2, x0 * y1 - x1 * y0])
+
+
+def _rotations(vectors: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "n 3 3"]:
+    """Rotation matrices of rotation vectors (Rodrigues)."""
+    angle = np.sqrt(np.einsum("nc,nc->n", vectors, vectors) + 1e-24)
+    x, y, z = (vectors / angle[:, None]).T
+    s, c = np.sin(angle), np.cos(angle)
+    t = 1.0 - c
+    rows = [c + x * x * t, x * y * t - z * s, x * z * t + y * s]
+    rows += [y * x * t + z * s, c + y * y * t, y * z * t - x * s]
+    rows += [z * x * t - y * s, z * y * t + x * s, c + z * z * t]
+    return np.stack(rows, axis=1).reshape(-1, 3, 3)
+
+
+def _orthonormal(R: Float[np.ndarray, "n 3 3"]) -> Float[np.ndarray, "n 3 3"]:
+    """The nearest rotations, against rounding."""
+    u, _, vt = np.linalg.svd(R)
+    return np.asarray(u @ vt)

@@ -1,0 +1,268 @@
+"""Exact structure: from the top of the support tree down, every object gets the one orientation, size and height that
+its supporter allows; what stays free is two coordinates on the support surface.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from jaxtyping import Float
+from scipy.optimize import linprog
+
+from diorama_core.layout.problem import Problem
+from diorama_core.layout.quadratic import HARD, least_distance
+from diorama_core.layout.supports import Surface, half_planes, is_wall_like, plane_axes
+
+SMALLEST_SHRINK = 0.8
+"""An object that does not fit is made smaller by at most this factor; beyond, it stays large and is named."""
+UPRIGHT_WITHIN = float(np.cos(np.deg2rad(35.0)))
+"""Things hung within this angle of upright hang upright; others keep their roll."""
+INSET_M = 2e-4
+"""Kept between a contact face and the edge of its support, and under a shelf's ceiling."""
+
+
+@dataclass(frozen=True, eq=False)
+class Structure:
+    """A layout that is structurally exact, and the coordinates in which it can still move.
+
+    Object i moves by w_i = sum over its chain of supporters a of basis_a @ r_a, so children ride along.
+    """
+
+    R: Float[np.ndarray, "n 3 3"]
+    p: Float[np.ndarray, "n 3"]
+    scale: Float[np.ndarray, "n 3"]
+    basis: Float[np.ndarray, "n 3 2"]
+    """World directions of each object's two coordinates; zero columns where it cannot move."""
+    bound_owner: np.ndarray
+    bound_normal: Float[np.ndarray, "b 3"]
+    bound_slack: Float[np.ndarray, " b"]
+    """Rows m . (basis_i @ r_i) <= slack: the contact face stays on its surface."""
+    reasons: tuple[str, ...]
+
+
+@dataclass
+class _Walk:
+    """The structure while it grows."""
+
+    R: np.ndarray
+    p: np.ndarray
+    scale: np.ndarray
+    basis: np.ndarray
+    owners: list[int] = field(default_factory=list)
+    normals: list[np.ndarray] = field(default_factory=list)
+    slacks: list[float] = field(default_factory=list)
+    reasons: list[str] = field(default_factory=list)
+
+
+def exact_structure(problem: Problem, ray: Float[np.ndarray, "n 3"] | None = None) -> Structure:
+    """Walk the support tree from the top and fix what the supporters determine.
+
+    Args:
+        problem: the observed poses and the graph.
+        ray: unit viewing directions per object; where given, an object that must rise or sink slides along its ray so
+            that it stays where the photo shows it.
+    """
+    n = problem.count
+    walk = _Walk(problem.R.copy(), problem.p.copy(), problem.scale.copy(), np.zeros((n, 3, 2)))
+    against: dict[int, list[tuple[int, np.ndarray]]] = {}
+    for i, w, face in problem.adheres:
+        against.setdefault(i, []).append((w, face))
+    for i in problem.top_down:
+        if problem.free[i]:
+            surface = problem.surface[i]
+            if surface is None:
+                walk.basis[i] = np.eye(3)[:, :2]
+            else:
+                _settle(problem, walk, i, _posed(walk, problem, i, surface), against.get(i, []), ray)
+    owners = np.array(walk.owners, dtype=int)
+    return Structure(
+        walk.R, walk.p, walk.scale, walk.basis, owners,
+        np.array(walk.normals).reshape(-1, 3), np.array(walk.slacks), tuple(walk.reasons),
+    )  # fmt: skip
+
+
+def _posed(walk: _Walk, problem: Problem, i: int, surface: Surface) -> Surface:
+    j = int(problem.parent[i])
+    return surface if j < 0 else surface.at(walk.R[j], walk.p[j], walk.scale[j])
+
+
+def _settle(
+    problem: Problem,
+    walk: _Walk,
+    i: int,
+    surface: Surface,
+    against: list[tuple[int, np.ndarray]],
+    ray: np.ndarray | None,
+) -> None:
+    n = surface.normal
+    walk.R[i] = _aligned(walk.R[i], problem.contact[i], surface, [(problem.walls[w].normal, f) for w, f in against])
+    u, v = plane_axes(n)
+    target = _on_support(problem, walk, i, surface, None if ray is None else ray[i])
+    walk.basis[i] = np.column_stack([u, v])
+    _against_walls(problem, walk, i, target, against)
+    m, h = half_planes(surface)
+    reach = _fit(problem, walk, i, surface, m, h)
+    walk.p[i] = walk.p[i] + _lift(problem, walk, i, surface) * n
+    contact = _contact_centre(problem, walk, i)
+    slack = h - m @ contact - reach - INSET_M
+    mobile = np.linalg.norm(m @ walk.basis[i], axis=1) > 1e-6
+    m, slack = m[mobile], slack[mobile]
+    move = _into(m @ walk.basis[i], slack)
+    walk.p[i] = walk.p[i] + walk.basis[i] @ move
+    slack = slack - m @ (walk.basis[i] @ move)
+    walk.owners += [i] * len(m)
+    walk.normals += list(m)
+    walk.slacks += [max(float(s), 0.0) for s in slack]
+
+
+def _size(problem: Problem, walk: _Walk, i: int) -> np.ndarray:
+    return problem.shape_size[i] * walk.scale[i]
+
+
+def _contact_centre(problem: Problem, walk: _Walk, i: int) -> np.ndarray:
+    return walk.p[i] + walk.R[i] @ (problem.contact[i] * _size(problem, walk, i) / 2)
+
+
+def _lift(problem: Problem, walk: _Walk, i: int, surface: Surface) -> float:
+    """How far the contact face is below the surface."""
+    return float(surface.normal @ (surface.polygon[0] - _contact_centre(problem, walk, i)))
+
+
+def _on_support(problem: Problem, walk: _Walk, i: int, surface: Surface, ray: np.ndarray | None) -> np.ndarray:
+    """Move the object onto its surface: along the normal, or along its viewing ray where that meets it decently."""
+    lift = _lift(problem, walk, i, surface)
+    shift = lift * surface.normal
+    if ray is not None and abs(lift) > 1e-6:
+        meets = float(ray @ surface.normal)
+        if abs(meets) > 0.15:
+            slide = lift / meets * ray
+            limit = max(0.5 * float(_size(problem, walk, i).max()), 0.15)
+            sideways = slide - shift
+            far = float(np.linalg.norm(sideways))
+            shift = shift + sideways * min(1.0, limit / max(far, 1e-9))
+    walk.p[i] = walk.p[i] + shift
+    return walk.p[i]
+
+
+def _aligned(
+    R: np.ndarray, contact: np.ndarray, surface: Surface, against: list[tuple[np.ndarray, np.ndarray]]
+) -> np.ndarray:
+    """Swing the contact face onto the support, then twist about the normal to the observed front, or to a wall."""
+    n = surface.normal
+    swung = swing(R @ contact, -n) @ R
+    if against:
+        wall, face = against[0]
+        return _twist(swung, n, face, -wall)
+    if is_wall_like(surface):
+        up = np.array([0.0, 0.0, 1.0])
+        flat_up = up - (up @ n) * n
+        own = swung[:, 2] - (swung[:, 2] @ n) * n
+        if float(own @ flat_up) > UPRIGHT_WITHIN * float(np.linalg.norm(own) * np.linalg.norm(flat_up)):
+            return _twist(swung, n, np.array([0.0, 0.0, 1.0]), up)
+        return swung
+    axis = int(np.argmax([np.linalg.norm(np.cross(swung[:, k], n)) * (1.5 if k == 0 else 1.0) for k in range(3)]))
+    return _twist(swung, n, np.eye(3)[axis], R[:, axis])
+
+
+def swing(a: Float[np.ndarray, "3"], b: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
+    """The smallest rotation that takes unit vector a to unit vector b."""
+    c = float(a @ b)
+    if c < -1.0 + 1e-9:
+        perpendicular = np.cross(a, np.eye(3)[int(np.abs(a).argmin())])
+        perpendicular /= np.linalg.norm(perpendicular)
+        return 2.0 * np.outer(perpendicular, perpendicular) - np.eye(3)
+    x, y, z = np.cross(a, b)
+    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + K + K @ K / (1.0 + c)
+
+
+def _twist(R: np.ndarray, n: np.ndarray, axis_object: np.ndarray, toward: np.ndarray) -> np.ndarray:
+    """Turn about n until an object axis points toward a world direction, both seen along n."""
+    have, want = R @ axis_object, np.asarray(toward)
+    have, want = have - (have @ n) * n, want - (want @ n) * n
+    length = float(np.linalg.norm(have) * np.linalg.norm(want))
+    if length < 1e-9:
+        return R
+    sine, cosine = float(n @ np.cross(have, want)) / length, float(have @ want) / length
+    if abs(sine) < 1e-12 and cosine > 0:
+        return R
+    norm = np.hypot(sine, cosine)
+    sine, cosine = sine / norm, cosine / norm
+    K = np.array([[0.0, -n[2], n[1]], [n[2], 0.0, -n[0]], [-n[1], n[0], 0.0]])
+    return (np.eye(3) + sine * K + (1.0 - cosine) * (K @ K)) @ R
+
+
+def _against_walls(
+    problem: Problem, walk: _Walk, i: int, target: np.ndarray, against: list[tuple[int, np.ndarray]]
+) -> None:
+    """Bring faces to their walls and give up the coordinate that would leave them."""
+    basis = walk.basis[i]
+    for w, _ in against[:2]:
+        wall = problem.walls[w]
+        slope = basis.T @ wall.normal
+        steepness = float(slope @ slope)
+        if steepness < 0.25:
+            continue
+        half = 0.5 * np.abs((wall.normal @ walk.R[i]) * _size(problem, walk, i)).sum()
+        gap = float(wall.normal @ walk.p[i]) - wall.offset - half
+        walk.p[i] = walk.p[i] - basis @ (slope * gap / steepness)
+        along = basis @ (np.array([-slope[1], slope[0]]) / np.sqrt(steepness))
+        free = np.linalg.norm(basis, axis=0).min() > 1e-9
+        basis = np.column_stack([along, np.zeros(3)]) if free else np.zeros((3, 2))
+    walk.basis[i] = basis
+
+
+def _fit(problem: Problem, walk: _Walk, i: int, surface: Surface, m: np.ndarray, h: np.ndarray) -> np.ndarray:
+    """Shrink only what does not fit; returns the reach of the contact face along each outward normal."""
+    label = problem.labels[i]
+    normal_axis = int(np.abs(problem.contact[i]).argmax())
+    tall = float(_size(problem, walk, i)[normal_axis])
+    if tall > surface.clearance_m - INSET_M:
+        factor = max((surface.clearance_m - INSET_M) / tall, 1e-3)
+        if factor >= SMALLEST_SHRINK:
+            walk.scale[i, normal_axis] *= factor
+        else:
+            walk.reasons.append(f"too tall: {label} does not fit in the {surface.clearance_m:.2f} m above its support")
+    footprint = [k for k in range(3) if k != normal_axis]
+    middle = m @ surface.polygon.mean(axis=0)
+    room = _room(m, h - middle, _reach(problem, walk, i, m))
+    if room < 1.0:
+        for k in footprint:
+            axis = walk.R[i][:, k]
+            width = float(np.ptp(surface.polygon @ axis)) - 2 * INSET_M
+            factor = max(width, 1e-6) / float(_size(problem, walk, i)[k])
+            if SMALLEST_SHRINK <= factor < 1.0:
+                walk.scale[i, k] *= factor
+        room = _room(m, h - middle, _reach(problem, walk, i, m))
+        if SMALLEST_SHRINK <= room < 1.0:
+            walk.scale[i, footprint] *= room
+            room = 1.0
+    if room < 1.0:
+        walk.reasons.append(f"larger than its support: {label} overhangs by {100 * (1 - room):.0f} %")
+    return max(min(room, 1.0), 0.0) * _reach(problem, walk, i, m)
+
+
+def _reach(problem: Problem, walk: _Walk, i: int, m: np.ndarray) -> np.ndarray:
+    half = _size(problem, walk, i) * (1.0 - np.abs(problem.contact[i])) / 2
+    return np.abs((m @ walk.R[i]) * half).sum(axis=1)
+
+
+def _room(m: np.ndarray, h: np.ndarray, reach: np.ndarray) -> float:
+    """The largest share t of a footprint that fits somewhere on a surface: m x <= h - t reach; at most 1."""
+    h = h - INSET_M
+    if (h - reach >= 0).all():
+        return 1.0
+    u, v = plane_axes(np.cross(m[0], m[1]) / max(float(np.linalg.norm(np.cross(m[0], m[1]))), 1e-9))
+    A = np.column_stack([m @ u, m @ v, reach])
+    found = linprog([0.0, 0.0, -1.0], A_ub=A, b_ub=h, bounds=[(None, None), (None, None), (0.0, 1.0)])
+    if found.status != 0:
+        return 0.0
+    return float(found.x[2]) if found.x[2] < 1.0 - 1e-9 else 1.0
+
+
+def _into(rows: np.ndarray, slack: np.ndarray) -> Float[np.ndarray, "2"]:
+    """The shortest move r with rows r <= slack."""
+    if not len(rows) or (slack >= 0).all():
+        return np.zeros(2)
+    return least_distance(-rows, -slack, np.full(len(slack), HARD))

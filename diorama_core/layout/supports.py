@@ -1,0 +1,269 @@
+"""Where things rest: surfaces of supporters, touching faces, and edges that the graph leaves out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.library import taxonomy
+from diorama_core.library.record import Shape
+from diorama_core.scene.frames import FACE_NORMALS_OBJECT
+from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, Support, box_corners
+
+BOTTOM_FAVOURED = float(np.cos(np.deg2rad(55.0)))
+"""The bottom face touches when it faces the support within this angle, even if another face does better."""
+FLAT = 0.7
+"""A surface counts as upward when its normal's z is at least this."""
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """A flat convex place to rest on, in its owner's frame (the world for planes)."""
+
+    polygon: Float[np.ndarray, "k 3"]
+    """Counter-clockwise about `normal`; at scale 1 where the owner is an object."""
+    normal: Float[np.ndarray, "3"]
+    """Unit, out of the supporter."""
+    clearance_m: float
+    """Free depth along the normal at scale 1."""
+    of_plane: bool
+
+    def in_world(self, pose: Pose | None) -> Surface:
+        """The surface at its owner's pose."""
+        if pose is None:
+            return self
+        return self.at(pose.R_world_object, pose.position, pose.scale)
+
+    def at(self, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> Surface:
+        """The surface of an owner with this rotation, centre and scale."""
+        if self.of_plane:
+            return self
+        axis = int(np.abs(self.normal).argmax())
+        return Surface((self.polygon * scale) @ R.T + p, R @ self.normal, self.clearance_m * float(scale[axis]), False)
+
+
+def is_wall_like(surface: Surface | None) -> bool:
+    """Whether things are mounted on a surface rather than placed on it."""
+    return surface is not None and surface.of_plane and abs(float(surface.normal[2])) < FLAT
+
+
+def plane_surface(plane: Plane) -> Surface:
+    """A plane of the room as a place to rest on (its convex hull)."""
+    return Surface(convex_outline(plane.polygon, plane.normal), plane.normal, float("inf"), True)
+
+
+def convex_outline(polygon: Float[np.ndarray, "n 3"], normal: Float[np.ndarray, "3"]) -> Float[np.ndarray, "k 3"]:
+    """The convex hull of a planar polygon, counter-clockwise about its normal."""
+    u, v = plane_axes(normal)
+    flat = np.column_stack([polygon @ u, polygon @ v])
+    ordered = flat[np.lexsort((flat[:, 1], flat[:, 0]))]
+    chains = []
+    for run in (ordered, ordered[::-1]):
+        chain: list[np.ndarray] = []
+        for point in run:
+            while len(chain) > 1 and _cross(chain[-1] - chain[-2], point - chain[-1]) <= 1e-12:
+                chain.pop()
+            chain.append(point)
+        chains += chain[:-1]
+    hull = np.array(chains)
+    return hull[:, :1] * u + hull[:, 1:] * v + (normal @ polygon.mean(axis=0)) * normal
+
+
+def plane_axes(normal: Float[np.ndarray, "3"]) -> tuple[np.ndarray, np.ndarray]:
+    """Two unit axes that with the normal form a right-handed frame; the first is horizontal."""
+    u = np.array([-normal[1], normal[0], 0.0])
+    length = float(np.linalg.norm(u))
+    u = u / length if length > 1e-6 else np.array([1.0, 0.0, 0.0])
+    v = np.cross(normal, u)
+    v /= np.linalg.norm(v)
+    return np.cross(v, normal), v
+
+
+def _cross(a: np.ndarray, b: np.ndarray) -> float:
+    return float(a[0] * b[1] - a[1] * b[0])
+
+
+def object_surfaces(shape: Shape, item: SceneObject) -> tuple[Surface, ...]:
+    """Upward places of an object, in its frame; the top of its box when the shape has none."""
+    up = np.array([0.0, 0.0, 1.0])
+    found = tuple(Surface(np.asarray(s.polygon), up, s.clearance_m, False) for s in shape.surfaces)
+    return found or (_box_face(item.shape_size_m, 2, 1.0),)
+
+
+def _box_face(size: Sequence[float], axis: int, sign: float) -> Surface:
+    normal = np.zeros(3)
+    normal[axis] = sign
+    corners = box_corners(size)
+    face = corners[corners[:, axis] * sign > 0]
+    return Surface(convex_outline(face, normal), normal, float("inf"), False)
+
+
+def choose_surface(scene: Scene, item: SceneObject, edge: Support, holder: Shape | None) -> Surface:
+    """The surface on which the child of an edge rests."""
+    if holder is None:
+        return plane_surface(scene.plane(edge.parent))
+    parent = scene.object(edge.parent)
+    if edge.relation == "mounted on":
+        return _nearest_side(item, parent)
+    options = object_surfaces(holder, parent)
+    if edge.parent_surface is not None and 0 <= edge.parent_surface < len(options):
+        return options[edge.parent_surface]
+    return min(options, key=lambda s: misfit(item, s.in_world(parent.pose)))
+
+
+def _nearest_side(item: SceneObject, parent: SceneObject) -> Surface:
+    sides = [_box_face(parent.shape_size_m, axis, sign) for axis in (0, 1) for sign in (1.0, -1.0)]
+
+    def gap(side: Surface) -> float:
+        world = side.in_world(parent.pose)
+        return outside_m(world, item.pose.position) + abs(float(world.normal @ (item.pose.position - world.polygon[0])))
+
+    return min(sides, key=gap)
+
+
+def misfit(item: SceneObject, surface: Surface) -> float:
+    """How badly an object's observed pose agrees with resting on a surface (world): metres, lower is better."""
+    n = surface.normal
+    along = item.corners_world @ n
+    low, height = float(along.min()), float(np.ptp(along))
+    gap = abs(low - float(n @ surface.polygon[0]))
+    over = max(height - surface.clearance_m, 0.0)
+    return gap + outside_m(surface, item.pose.position) + 0.5 * over + 0.5 * _too_wide(item, surface)
+
+
+def _too_wide(item: SceneObject, surface: Surface) -> float:
+    """How much the object's box exceeds the surface in the narrower direction, metres."""
+    widths = sorted(s for s in item.size_m)[1:]
+    u, v = plane_axes(surface.normal)
+    room = sorted([float(np.ptp(surface.polygon @ u)), float(np.ptp(surface.polygon @ v))])
+    return max(min(widths) - room[0], 0.0) + max(max(widths) - room[1], 0.0)
+
+
+def half_planes(surface: Surface) -> tuple[Float[np.ndarray, "k 3"], Float[np.ndarray, " k"]]:
+    """Outward in-plane normals m and offsets h of a surface: inside where m . x <= h."""
+    sides = np.roll(surface.polygon, -1, axis=0) - surface.polygon
+    lengths = np.linalg.norm(sides, axis=1)
+    sides, corners = sides[lengths > 1e-9], surface.polygon[lengths > 1e-9]
+    outward = np.cross(sides / lengths[lengths > 1e-9, None], surface.normal)
+    return outward, np.einsum("ij,ij->i", outward, corners)
+
+
+def outside_m(surface: Surface, point: Float[np.ndarray, "3"]) -> float:
+    """Distance (in the plane) by which a point's projection misses the surface; 0 inside."""
+    m, h = half_planes(surface)
+    return max(float((m @ point - h).max()), 0.0)
+
+
+def choose_contact(
+    scene: Scene, item: SceneObject, edge: Support | None, surface: Surface | None
+) -> Float[np.ndarray, "3"]:
+    """Outward normal of the face that touches the supporter, in the object frame."""
+    if edge is None or surface is None:
+        return np.array(FACE_NORMALS_OBJECT["bottom"])
+    if edge.child_face is not None:
+        return np.array(FACE_NORMALS_OBJECT[edge.child_face])
+    holder = scene.object(edge.parent).pose if scene.has_object(edge.parent) else None
+    normal = surface.normal if holder is None else holder.R_world_object @ surface.normal
+    if abs(float(normal[2])) < FLAT and taxonomy.resolve(item.category).category.mount == "wall":
+        return np.array(FACE_NORMALS_OBJECT["back"])
+    facing = {
+        name: float(-(item.pose.R_world_object @ np.array(n)) @ normal) for name, n in FACE_NORMALS_OBJECT.items()
+    }
+    best = max(facing, key=facing.__getitem__)
+    return np.array(FACE_NORMALS_OBJECT["bottom" if facing["bottom"] >= BOTTOM_FAVOURED else best])
+
+
+def wall_faces(item: SceneObject, walls: Sequence[Plane]) -> list[tuple[int, np.ndarray, float, float]]:
+    """For each wall: its index, the object's face that looks at it, the gap in metres, and how parallel they are."""
+    found = []
+    for w, wall in enumerate(walls):
+        faces = [np.array(FACE_NORMALS_OBJECT[name]) for name in ("back", "left", "right", "front")]
+        facing = [float(-(item.pose.R_world_object @ f) @ wall.normal) for f in faces]
+        # The back goes to the wall unless another face looks at it much more plainly.
+        best = 0 if facing[0] > 0.7 else int(np.argmax(facing))
+        centre = item.pose.position + item.pose.R_world_object @ (faces[best] * item.size_m / 2)
+        inside = outside_m(plane_surface(wall), centre) < 0.5
+        gap = abs(float(wall.normal @ centre) - wall.offset)
+        found.append((w, faces[best], gap if inside else float("inf"), facing[best]))
+    return found
+
+
+def complete_edges(
+    scene: Scene, objects: Sequence[SceneObject], shapes: Sequence[Shape]
+) -> tuple[list[Support | None], tuple[str, ...]]:
+    """One support edge per object where there is anything to rest on: the graph's own, or the most plausible one.
+
+    Edges that close a cycle or lead nowhere are replaced. The reasons say what was assumed.
+    """
+    reasons: list[str] = []
+    edges: dict[str, Support | None] = {}
+    for item in objects:
+        edge = scene.support_of(item.id)
+        if edge is not None and not (scene.has_object(edge.parent) or scene.has_plane(edge.parent)):
+            edge = None
+        if edge is not None and _closes_cycle(edges, item.id, edge.parent):
+            reasons.append(
+                f"cycle: {item.label} and {_label(scene, edge.parent)} support each other; one edge was left out"
+            )
+            edge = None
+        edges[item.id] = edge
+    for k, item in enumerate(objects):
+        if edges[item.id] is None:
+            edges[item.id] = _most_plausible(scene, item, objects, shapes, edges)
+            found = edges[item.id]
+            on = f"taken to rest on {_label(scene, found.parent)}" if found is not None else "left at its height"
+            reasons.append(f"no support edge: {objects[k].label} was {on}")
+    return [edges[o.id] for o in objects], tuple(reasons)
+
+
+def _label(scene: Scene, any_id: str) -> str:
+    return scene.object(any_id).label if scene.has_object(any_id) else f"the {scene.plane(any_id).role}"
+
+
+def _closes_cycle(edges: dict[str, Support | None], child: str, parent: str) -> bool:
+    above: str | None = parent
+    while above is not None:
+        if above == child:
+            return True
+        edge = edges.get(above)
+        above = edge.parent if edge is not None else None
+    return False
+
+
+def _most_plausible(
+    scene: Scene,
+    item: SceneObject,
+    objects: Sequence[SceneObject],
+    shapes: Sequence[Shape],
+    edges: dict[str, Support | None],
+) -> Support | None:
+    """The supporter whose surface the observed pose agrees with best; None when there is nothing to rest on."""
+    mount = taxonomy.resolve(item.category).category.mount
+    options: list[tuple[float, str, Support]] = []
+    for plane in scene.architecture.planes:
+        usual = {"floor": "floor", "surface": "floor", "wall": "wall", "ceiling": "ceiling"}[mount]
+        if plane.role != usual and not (plane.role == "floor" and mount != "ceiling"):
+            continue
+        edge = Support(item.id, plane.id, "placed on" if plane.role == "floor" else "mounted on")
+        cost = _resting_cost(scene, item, edge, plane_surface(plane))
+        options.append((cost + (0.0 if plane.role == usual else 0.3), plane.id, edge))
+    for other, shape in zip(objects, shapes):
+        if other.id == item.id or mount == "ceiling" or other.pose.position[2] >= item.pose.position[2]:
+            continue
+        if _closes_cycle(edges, item.id, other.id):
+            continue
+        for surface in object_surfaces(shape, other):
+            world = surface.in_world(other.pose)
+            if outside_m(world, item.pose.position) < 0.1:
+                cost = misfit(item, world) + (0.15 if mount == "surface" else 0.4)
+                options.append((cost, other.id, Support(item.id, other.id)))
+    return min(options, key=lambda o: o[:2])[2] if options else None
+
+
+def _resting_cost(scene: Scene, item: SceneObject, edge: Support, surface: Surface) -> float:
+    contact = choose_contact(scene, replace(item), edge, surface)
+    centre = item.pose.position + item.pose.R_world_object @ (contact * item.size_m / 2)
+    return abs(float(surface.normal @ (centre - surface.polygon[0]))) + outside_m(surface, item.pose.position)
