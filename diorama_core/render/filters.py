@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
@@ -9,38 +11,53 @@ from diorama_core.render.appearance import linear_to_srgb
 from diorama_core.render.lighting import TILE
 
 
-def spread(
-    light: Float32[np.ndarray, "h w c"],
-    points: Float32[np.ndarray, "h w 3"],
-    normals: Float32[np.ndarray, "h w 3"],
-    found: Bool[np.ndarray, "h w"],
-    tolerance_m: Float[np.ndarray, "h w"],
-) -> Float32[np.ndarray, "h w c"]:
-    """Mean of light over each pixel's 5 x 5 neighbours that lie on the same smooth surface.
+@dataclass(frozen=True, eq=False)
+class Neighbours:
+    """For each pixel, which of its 5 x 5 neighbours lie on the same smooth surface, with their weights."""
 
-    The outer rows and columns count half, so that exactly the samples of one 4 x 4 block are gathered, centred.
+    weights: tuple[tuple[int, int, Float32[np.ndarray, "h w"]], ...]
+    """Row offset, column offset, weight (0 where the neighbour lies elsewhere or outside)."""
+    total: Float32[np.ndarray, "h w"]
 
-    Args:
-        light: Interleaved light, as `lighting.irradiance` gives it.
-        points: Where each pixel's place is in the world.
-        normals: Its normal.
-        found: Whether the pixel sees anything.
-        tolerance_m: How far a neighbour may leave the pixel's tangent plane.
-    """
-    half = TILE // 2
-    total, weight = np.zeros_like(light), np.zeros(found.shape, np.float32)
-    for dy in range(-half, half + 1):
-        for dx in range(-half, half + 1):
-            share = (0.5 if abs(dy) == half else 1.0) * (0.5 if abs(dx) == half else 1.0)
-            here, there = _shifted(found.shape, dy, dx)
-            offset = points[there] - points[here]
-            plane = np.abs(np.einsum("ijk,ijk->ij", offset, normals[here]))
-            turn = np.einsum("ijk,ijk->ij", normals[here], normals[there])
-            same = found[there] & (plane < tolerance_m[here]) & (turn > 0.85)
-            w = np.where(same, np.float32(share), np.float32(0))
-            weight[here] += w
-            total[here] += w[..., None] * light[there]
-    return total / np.maximum(weight, 1e-6)[..., None]
+    @classmethod
+    def of(
+        cls,
+        points: Float32[np.ndarray, "h w 3"],
+        normals: Float32[np.ndarray, "h w 3"],
+        found: Bool[np.ndarray, "h w"],
+        tolerance_m: Float32[np.ndarray, "h w"],
+    ) -> Neighbours:
+        """The outer rows and columns count half, so that exactly the samples of one 4 x 4 block are gathered.
+
+        Args:
+            points: Where each pixel's place is in the world.
+            normals: Its normal.
+            found: Whether the pixel sees anything.
+            tolerance_m: How far a neighbour may leave the pixel's tangent plane.
+        """
+        half, weights = TILE // 2, []
+        total = np.zeros(found.shape, np.float32)
+        for dy in range(-half, half + 1):
+            for dx in range(-half, half + 1):
+                share = (0.5 if abs(dy) == half else 1.0) * (0.5 if abs(dx) == half else 1.0)
+                here, there = _shifted(found.shape, dy, dx)
+                leave = np.abs(np.einsum("ijk,ijk->ij", points[there] - points[here], normals[here]))
+                turn = np.einsum("ijk,ijk->ij", normals[here], normals[there])
+                same = found[there] & (leave < tolerance_m[here]) & (turn > 0.85)
+                weight = np.zeros(found.shape, np.float32)
+                weight[here] = same * np.float32(share)
+                total += weight
+                weights.append((dy, dx, weight))
+        return cls(tuple(weights), np.maximum(total, 1e-6))
+
+    def mean(self, light: Float32[np.ndarray, "h w c"]) -> Float32[np.ndarray, "h w c"]:
+        """Interleaved light, gathered without crossing edges."""
+        channels = np.ascontiguousarray(np.moveaxis(light, -1, 0))
+        gathered = np.zeros_like(channels)
+        for dy, dx, weight in self.weights:
+            here, there = _shifted(weight.shape, dy, dx)
+            gathered[:, here[0], here[1]] += weight[here] * channels[:, there[0], there[1]]
+        return np.ascontiguousarray(np.moveaxis(gathered / self.total, 0, -1))
 
 
 def _shifted(shape: tuple[int, ...], dy: int, dx: int) -> tuple[tuple[slice, slice], tuple[slice, slice]]:

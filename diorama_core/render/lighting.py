@@ -8,11 +8,12 @@ part each; `filters.spread` gathers the block again, so that every pixel has the
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from jaxtyping import Float, Float32, Int
 
-from diorama_core.render.raycast import unit
+from diorama_core.render.raycast import facing, unit
 from diorama_core.render.world import Places, World
 
 TILE = 4
@@ -36,8 +37,6 @@ class Lighting:
     """From below."""
     reach_m: float = 2.5
     """Within this distance surfaces shade and colour one another."""
-    planes_block: bool = False
-    """Whether walls stop the window's light; they do not where the room is drawn as a closed box."""
 
 
 @dataclass(frozen=True)
@@ -68,8 +67,8 @@ def studio(bounds: Float[np.ndarray, "2 3"], toward_camera: Float[np.ndarray, "3
         window_edges=np.stack([across, upward]) * 0.42 * radius,
         window_irradiance=np.array([1.25, 1.18, 1.07]),
         reference_m=distance,
-        sky=np.array([0.56, 0.585, 0.62]),
-        ground=np.array([0.36, 0.345, 0.33]),
+        sky=np.array([0.62, 0.64, 0.67]),
+        ground=np.array([0.5, 0.475, 0.45]),
         reach_m=max(0.9 * radius, 0.05),
     )
 
@@ -88,15 +87,16 @@ def irradiance(
         effort: Rays per place.
     """
     lane = _ORDER[(pixels[:, 0] % TILE) * TILE + pixels[:, 1] % TILE]
-    origins = places.points + places.flat_normals * (1e-3 * max(light.reach_m, 0.2))
+    origins = places.points + places.flat_normals * np.float32(1e-3 * max(light.reach_m, 0.2))
+    frames = _tangent_frames(places.normals)
     window = np.zeros((len(lane), 3), np.float32)
     around = np.zeros((len(lane), 3), np.float32)
-    for turn in range(effort.window_rays):
-        sample = _hammersley(lane + turn * TILE * TILE, effort.window_rays * TILE * TILE)
-        window += _from_window(blockers, origins, places.normals, sample, light)
-    for turn in range(effort.sky_rays):
-        sample = _hammersley(lane + turn * TILE * TILE, effort.sky_rays * TILE * TILE)
-        around += _from_around(world, origins, places, sample, light)
+    for samples in _lanes(effort.window_rays):
+        window += _from_window(blockers, origins, places.normals, samples[lane], light)
+    for samples in _lanes(effort.sky_rays):
+        local = _cosine_directions(samples)[lane]
+        direction = frames[0] * local[:, :1] + frames[1] * local[:, 1:2] + places.normals * local[:, 2:]
+        around += _from_around(world, origins, direction, light)
     return window / max(effort.window_rays, 1), around / max(effort.sky_rays, 1)
 
 
@@ -104,73 +104,74 @@ def unshadowed(
     points: Float32[np.ndarray, "n 3"], normals: Float32[np.ndarray, "n 3"], light: Lighting
 ) -> Float32[np.ndarray, "n 3"]:
     """Light on places as if nothing were in the way: what bounced light is reckoned from."""
-    to_window = light.window_centre - points
-    distance = np.linalg.norm(to_window, axis=1, keepdims=True)
-    cosine = np.maximum(np.sum(normals * to_window, axis=1, keepdims=True) / distance, 0)
-    key = cosine * np.minimum((light.reference_m / distance) ** 2, 4.0) * light.window_irradiance
-    return (0.6 * key + ambient(normals, light)).astype(np.float32)
+    to_window = light.window_centre.astype(np.float32) - points
+    squared = np.einsum("ij,ij->i", to_window, to_window)
+    cosine = np.maximum(np.einsum("ij,ij->i", normals, to_window), 0) / np.sqrt(squared)
+    key = cosine * np.minimum(np.float32(light.reference_m**2) / squared, 4.0)
+    return key[:, None] * (0.6 * light.window_irradiance).astype(np.float32) + ambient(normals, light)
 
 
-def ambient(directions: Float[np.ndarray, "n 3"], light: Lighting) -> Float[np.ndarray, "n 3"]:
+def ambient(directions: Float[np.ndarray, "n 3"], light: Lighting) -> Float32[np.ndarray, "n 3"]:
     """Radiance of the surroundings along directions: from the ground's colour to the sky's."""
-    share = 0.5 + 0.5 * directions[:, 2:3]
-    return light.ground * (1 - share) + light.sky * share
+    share = 0.5 + 0.5 * directions[:, 2:3].astype(np.float32)
+    return light.ground.astype(np.float32) + share * (light.sky - light.ground).astype(np.float32)
 
 
 def _from_window(
     blockers: World, origins: np.ndarray, normals: np.ndarray, sample: np.ndarray, light: Lighting
 ) -> Float32[np.ndarray, "n 3"]:
-    target = light.window_centre + (2 * sample - 1) @ light.window_edges
-    ray = (target - origins).astype(np.float32)
-    distance = np.linalg.norm(ray, axis=1)
-    cosine = np.sum(normals * ray, axis=1) / distance
-    lit = np.flatnonzero(cosine > 0)
+    target = light.window_centre.astype(np.float32) + (2 * sample - 1) @ light.window_edges.astype(np.float32)
+    ray = target - origins
+    along = np.einsum("ij,ij->i", normals, ray)
+    lit = np.flatnonzero(along > 0)
     blocked = blockers.caster.occluded(np.concatenate([origins[lit], ray[lit]], axis=1), far=1.0)
+    squared = np.einsum("ij,ij->i", ray[lit], ray[lit])
+    fall = np.minimum(np.float32(light.reference_m**2) / squared, 4.0)
     strength = np.zeros(len(ray), np.float32)
-    strength[lit] = np.where(blocked, 0, cosine[lit] * np.minimum((light.reference_m / distance[lit]) ** 2, 4.0))
-    return (strength[:, None] * light.window_irradiance).astype(np.float32)
+    strength[lit] = np.where(blocked, 0, along[lit] / np.sqrt(squared) * fall)
+    return strength[:, None] * light.window_irradiance.astype(np.float32)
 
 
 def _from_around(
-    world: World, origins: np.ndarray, places: Places, sample: np.ndarray, light: Lighting
+    world: World, origins: np.ndarray, direction: Float32[np.ndarray, "n 3"], light: Lighting
 ) -> Float32[np.ndarray, "n 3"]:
-    """Radiance along one cosine-weighted direction: the surroundings, or the colour of what is near."""
-    direction = _cosine_directions(places.normals, sample)
-    rays = np.concatenate([origins, direction], axis=1).astype(np.float32)
-    hits = world.caster.first_hits(rays)
-    radiance = ambient(direction, light).astype(np.float32)
-    near = np.flatnonzero(hits.found & (hits.distance < light.reach_m))
+    """Radiance along one direction each: the surroundings, or the colour of what is near."""
+    hits = world.caster.first_hits(np.concatenate([origins, direction], axis=1))
+    radiance = ambient(direction, light)
+    near = np.flatnonzero(hits.distance < light.reach_m)
     if len(near):
-        chosen = type(hits)(hits.distance[near], hits.triangle[near], hits.barycentric[near])
+        chosen, toward = hits.chosen(near), direction[near]
         normals, colour = world.rough_look(chosen)
-        normals = np.where(np.sum(normals * direction[near], axis=1, keepdims=True) > 0, -normals, normals)
-        points = origins[near] + direction[near] * chosen.distance[:, None]
-        bounced = 0.8 * colour * unshadowed(points, normals, light)
-        fade = np.clip(chosen.distance / light.reach_m, 0, 1)[:, None] ** 2
-        radiance[near] = bounced * (1 - fade) + radiance[near] * fade
+        normals = facing(normals, toward)
+        points = origins[near] + toward * chosen.distance[:, None]
+        fade = (chosen.distance[:, None] / np.float32(light.reach_m)) ** 2
+        bounced = np.float32(0.8) * colour * unshadowed(points, normals, light)
+        radiance[near] += (1 - fade) * (bounced - radiance[near])
     return radiance
 
 
-def _cosine_directions(normals: Float32[np.ndarray, "n 3"], sample: Float[np.ndarray, "n 2"]) -> np.ndarray:
-    """Directions over the hemisphere about normals, with density proportional to the cosine."""
-    sign = np.where(normals[:, 2] >= 0, 1.0, -1.0).astype(np.float32)
-    a = -1 / (sign + normals[:, 2])
-    b = normals[:, 0] * normals[:, 1] * a
-    tangent = np.stack([1 + sign * normals[:, 0] ** 2 * a, sign * b, -sign * normals[:, 0]], axis=1)
-    bitangent = np.stack([b, sign + normals[:, 1] ** 2 * a, -normals[:, 1]], axis=1)
-    radius, angle = np.sqrt(sample[:, :1]), 2 * np.pi * sample[:, 1:]
-    up = np.sqrt(np.maximum(1 - sample[:, :1], 1e-6))
-    return (tangent * radius * np.cos(angle) + bitangent * radius * np.sin(angle) + normals * up).astype(np.float32)
+def _tangent_frames(normals: Float32[np.ndarray, "n 3"]) -> tuple[np.ndarray, np.ndarray]:
+    """Two unit vectors across each normal (Duff and others, 2017: without branches or square roots)."""
+    x, y, z = normals[:, 0], normals[:, 1], normals[:, 2]
+    sign = np.where(z >= 0, np.float32(1), np.float32(-1))
+    a = -1 / (sign + z)
+    b = x * y * a
+    return np.stack([1 + sign * x * x * a, sign * b, -sign * x], axis=1), np.stack([b, sign + y * y * a, -y], axis=1)
 
 
-def _hammersley(index: Int[np.ndarray, "n"], count: int) -> Float[np.ndarray, "n 2"]:
-    """Points of the Hammersley set of `count`, in an order whose sixteenths are each well spread."""
+def _cosine_directions(sample: Float32[np.ndarray, "16 2"]) -> Float32[np.ndarray, "16 3"]:
+    """Directions about +z with density proportional to the cosine."""
+    radius, angle = np.sqrt(sample[:, 0]), 2 * np.pi * sample[:, 1]
+    up = np.sqrt(np.maximum(1 - sample[:, 0], 1e-6))
+    return np.stack([radius * np.cos(angle), radius * np.sin(angle), up], axis=1).astype(np.float32)
+
+
+@cache
+def _lanes(rays: int) -> tuple[Float32[np.ndarray, "16 2"], ...]:
+    """For each ray of a pixel the 16 samples of a block; together they are the Hammersley set of 16 * rays points."""
+    count = rays * TILE * TILE
+    index = np.arange(count)
     golden = (index * 0.6180339887498949) % 1.0
-    bits = index.astype(np.uint32)
-    reversed_bits = np.zeros(len(index))
-    scale = 0.5
-    for _ in range(12):
-        reversed_bits += scale * (bits & 1)
-        bits >>= 1
-        scale *= 0.5
-    return np.stack([(reversed_bits + 0.5 / count) % 1.0, golden], axis=1)
+    mirrored = sum(((index >> bit) & 1) / 2.0 ** (bit + 1) for bit in range(12))
+    points = np.stack([(mirrored + 0.5 / count) % 1.0, golden], axis=1).astype(np.float32)
+    return tuple(points.reshape(rays, TILE * TILE, 2))

@@ -54,6 +54,10 @@ class Hits:
         """Whether the ray met anything."""
         return self.triangle >= 0
 
+    def chosen(self, which: np.ndarray) -> Hits:
+        """The hits at a mask or at indices."""
+        return Hits(self.distance[which], self.triangle[which], self.barycentric[which])
+
 
 @dataclass(frozen=True)
 class OrthographicView:
@@ -186,10 +190,11 @@ def face_normals(vertices: Float32[np.ndarray, "n 3"], faces: Int32[np.ndarray, 
 
 def unit(vectors: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
     """Vectors of length one; null vectors stay null."""
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12)
+    length = np.sqrt(np.einsum("...i,...i->...", vectors, vectors))[..., None]
+    return vectors / np.maximum(length, 1e-12)
 
 
 def facing(normals: Float[np.ndarray, "*n 3"], directions: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
     """Normals turned against the viewing directions."""
-    along = np.sum(normals * directions, axis=-1, keepdims=True)
+    along = np.einsum("...i,...i->...", normals, directions)[..., None]
     return np.where(along > 0, -normals, normals)

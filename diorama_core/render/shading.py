@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
-from jaxtyping import Bool, Float, Float32, Int
+from jaxtyping import Bool, Float32, Int
 
-from diorama_core.render.filters import spread, tone_mapped
-from diorama_core.render.lighting import Effort, Lighting, ambient, irradiance, unshadowed
-from diorama_core.render.raycast import Hits, RayArray, View, pixel_centres, unit
+from diorama_core.render.filters import Neighbours, tone_mapped
+from diorama_core.render.lighting import TILE, Effort, Lighting, ambient, irradiance, unshadowed
+from diorama_core.render.raycast import RayArray, View, pixel_centres, unit
 from diorama_core.render.world import Places, World
 
+Item = TypeVar("Item")
+Result = TypeVar("Result")
 _SUBPIXELS = (np.stack(np.meshgrid(np.arange(3), np.arange(3)), axis=-1).reshape(-1, 2) - 1) / 3.0
 
 
@@ -35,6 +40,8 @@ class _Grid:
     flat_normals: Float32[np.ndarray, "h w 3"]
     instance: Int[np.ndarray, "h w"]
     depth: Float32[np.ndarray, "h w"]
+    pixel_m: Float32[np.ndarray, "h w"]
+    """Width that a pixel covers at its depth."""
 
 
 def shoot(world: World, blockers: World, view: View, light: Lighting, effort: Effort) -> Shot:
@@ -47,25 +54,60 @@ def shoot(world: World, blockers: World, view: View, light: Lighting, effort: Ef
         light: What lights the world.
         effort: Rays per pixel.
     """
-    rays = view.rays(pixel_centres(view.width, view.height))
+    bands = _bands(view.height)
+    parts = _each(lambda band: _lit_band(world, blockers, view, band, light, effort), bands)
+    grid = _grid(parts, view)
+    noisy = np.concatenate([p.light for p in parts])
+    fallen = np.concatenate(_each(lambda band: _gathered(noisy, grid, band), bands))
+    seen = _each(
+        lambda pair: _seen(world, pair[1].places, pair[1].rays, fallen[pair[0]][pair[1].found], light),
+        list(zip(bands, parts, strict=True)),
+    )
+    radiance = np.zeros((*grid.found.shape, 3), np.float32)
+    radiance[grid.found] = np.concatenate(seen)
+    shot = Shot(radiance, grid.found.astype(np.float32))
+    return _with_smooth_edges(shot, world, view, light, grid, fallen)
+
+
+@dataclass(frozen=True, eq=False)
+class _Band:
+    """Some rows of the picture: what they see and, noisy, the light that falls on it."""
+
+    found: Bool[np.ndarray, "h w"]
+    rays: RayArray
+    places: Places
+    light: Float32[np.ndarray, "h w 3"]
+    depth: Float32[np.ndarray, "h w"]
+
+
+def _lit_band(world: World, blockers: World, view: View, rows: slice, light: Lighting, effort: Effort) -> _Band:
+    rays = view.rays(pixel_centres(view.width, rows.stop)[rows])
     hits = world.caster.first_hits(rays)
     found = hits.found
-    radiance = np.zeros((*found.shape, 3), np.float32)
-    if not found.any():
-        return Shot(radiance, np.zeros(found.shape, np.float32))
-    seen_rays, seen_hits = rays[found], _chosen(hits, found)
-    places = world.places(seen_rays, seen_hits)
-    grid = _grid(found, places, hits)
-    pixel_m = _pixel_footprint(view, grid.depth)
-    window, around = irradiance(world, blockers, places, np.argwhere(found), light, effort)
-    noisy = np.zeros((*found.shape, 6), np.float32)
-    noisy[found] = np.concatenate([window, around], axis=1)
-    gathered = spread(noisy, grid.points, grid.normals, found, 3 * pixel_m)
-    gathered = spread(gathered, grid.points, grid.normals, found, 3 * pixel_m)
-    fallen = gathered[..., :3] + gathered[..., 3:]
-    radiance[found] = _seen(world, places, seen_rays, fallen[found], light)
-    shot = Shot(radiance, found.astype(np.float32))
-    return _with_smooth_edges(shot, world, view, light, grid, fallen, pixel_m)
+    places = world.places(rays[found], hits.chosen(found))
+    window, around = irradiance(world, blockers, places, np.argwhere(found) + np.array([rows.start, 0]), light, effort)
+    noisy = np.zeros((*found.shape, 3), np.float32)
+    noisy[found] = window + around
+    return _Band(found, rays[found], places, noisy, np.where(found, hits.distance, 0).astype(np.float32))
+
+
+def _gathered(noisy: Float32[np.ndarray, "h w 3"], grid: _Grid, rows: slice) -> Float32[np.ndarray, "b w 3"]:
+    """Light of some rows without its noise: gathered over blocks, twice, from the rows and those around them."""
+    halo = slice(max(0, rows.start - TILE), rows.stop + TILE)
+    neighbours = Neighbours.of(grid.points[halo], grid.normals[halo], grid.found[halo], 3 * grid.pixel_m[halo])
+    smooth = neighbours.mean(neighbours.mean(noisy[halo]))
+    return smooth[rows.start - halo.start : rows.stop - halo.start]
+
+
+def _bands(height: int, rows: int = 48) -> list[slice]:
+    """Rows in groups small enough for the processor's cache."""
+    return [slice(start, min(start + rows, height)) for start in range(0, height, rows)]
+
+
+def _each(work: Callable[[Item], Result], items: list[Item]) -> list[Result]:
+    """Work on all items, two at a time; results in order, so that threads change nothing."""
+    with ThreadPoolExecutor(max_workers=2) as pool:
+        return list(pool.map(work, items))
 
 
 def _seen(
@@ -112,7 +154,7 @@ def _environment(world: World, rays: RayArray, light: Lighting) -> Float32[np.nd
     seen = ambient(rays[:, 3:], light).astype(np.float32) + _window_glare(rays, light)
     found = np.flatnonzero(hits.found)
     if len(found):
-        places = world.places(rays[found], _chosen(hits, found))
+        places = world.places(rays[found], hits.chosen(found))
         seen[found] = 0.85 * places.albedo * unshadowed(places.points, places.normals, light) + places.emissive
     return seen
 
@@ -139,37 +181,49 @@ def _beyond(
     seen = np.broadcast_to(ambient(direction, light), direction.shape).astype(np.float32)
     found = np.flatnonzero(hits.found)
     if len(found):
-        behind = world.places(onward[found], _chosen(hits, found))
+        behind = world.places(onward[found], hits.chosen(found))
         fallen = unshadowed(behind.points, behind.normals, light)
         seen[found] = _seen(world, behind, onward[found], fallen, light, depth + 1)
     return seen
 
 
 def _with_smooth_edges(
-    shot: Shot, world: World, view: View, light: Lighting, grid: _Grid, fallen: np.ndarray, pixel_m: np.ndarray
+    shot: Shot, world: World, view: View, light: Lighting, grid: _Grid, fallen: Float32[np.ndarray, "h w 3"]
 ) -> Shot:
-    """Pixels at edges seen again through nine positions; their light is taken from the neighbour that fits best."""
-    rows, columns = np.nonzero(_edges(shot, grid, pixel_m))
-    if not len(rows):
+    """Pixels at edges seen again through nine positions."""
+    pixels = np.argwhere(_edges(shot, grid))
+    if not len(pixels):
         return shot
-    centres = np.stack([columns + 0.5, rows + 0.5], axis=1)
-    positions = (centres[:, None] + _SUBPIXELS).reshape(-1, 2)
-    rays = view.rays(positions)
-    hits = world.caster.first_hits(rays)
-    seen = np.zeros((len(rays), 3), np.float32)
-    found = np.flatnonzero(hits.found)
-    if len(found):
-        places = world.places(rays[found], _chosen(hits, found))
-        near = np.repeat(np.stack([rows, columns], axis=1), len(_SUBPIXELS), axis=0)[found]
-        seen[found] = _seen(world, places, rays[found], _borrowed(places, near, grid, fallen), light)
+    groups = np.array_split(pixels, 1 + len(pixels) // 4096)
+    again = _each(lambda group: _seen_again(world, view, light, grid, fallen, group), groups)
     radiance, coverage = shot.radiance.copy(), shot.coverage.copy()
-    tamed = np.minimum(seen, 1.5)
-    radiance[rows, columns] = tamed.reshape(-1, len(_SUBPIXELS), 3).mean(axis=1)
-    coverage[rows, columns] = hits.found.reshape(-1, len(_SUBPIXELS)).mean(axis=1)
+    radiance[pixels[:, 0], pixels[:, 1]] = np.concatenate([colour for colour, _ in again])
+    coverage[pixels[:, 0], pixels[:, 1]] = np.concatenate([share for _, share in again])
     return Shot(radiance, coverage)
 
 
-def _edges(shot: Shot, grid: _Grid, pixel_m: Float32[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+def _seen_again(
+    world: World,
+    view: View,
+    light: Lighting,
+    grid: _Grid,
+    fallen: Float32[np.ndarray, "h w 3"],
+    pixels: Int[np.ndarray, "n 2"],
+) -> tuple[Float32[np.ndarray, "n 3"], Float32[np.ndarray, "n"]]:
+    """Mean light and coverage of pixels over nine positions; light falls as on the neighbour that fits best."""
+    count = len(_SUBPIXELS)
+    rays = view.rays((pixels[:, None, ::-1] + 0.5 + _SUBPIXELS).reshape(-1, 2))
+    hits = world.caster.first_hits(rays)
+    found = np.flatnonzero(hits.found)
+    places = world.places(rays[found], hits.chosen(found))
+    borrowed = _borrowed(places, np.repeat(pixels, count, axis=0)[found], grid, fallen)
+    seen = np.zeros((len(rays), 3), np.float32)
+    seen[found] = np.minimum(_seen(world, places, rays[found], borrowed, light), 1.5)
+    share = hits.found.reshape(-1, count).mean(axis=1)
+    return seen.reshape(-1, count, 3).mean(axis=1), share.astype(np.float32)
+
+
+def _edges(shot: Shot, grid: _Grid) -> Bool[np.ndarray, "h w"]:
     """Pixels beside a change of object, direction, depth or brightness."""
     edge = np.zeros(grid.found.shape, bool)
     bright = tone_mapped(shot.radiance).mean(axis=-1)
@@ -181,7 +235,7 @@ def _edges(shot: Shot, grid: _Grid, pixel_m: Float32[np.ndarray, "h w"]) -> Bool
         differs = (
             (grid.instance[here] != grid.instance[there])
             | (np.einsum("ijk,ijk->ij", grid.normals[here], grid.normals[there]) < 0.9)
-            | (leap > 4 * pixel_m[here])
+            | (leap > 4 * grid.pixel_m[here])
             | (np.abs(bright[here] - bright[there]) > 0.05)
         )
         edge[here] |= differs
@@ -210,20 +264,24 @@ def _borrowed(
     return taken
 
 
-def _grid(found: Bool[np.ndarray, "h w"], places: Places, hits: Hits) -> _Grid:
-    def image(values: np.ndarray, empty: float = 0.0) -> np.ndarray:
+def _grid(parts: list[_Band], view: View) -> _Grid:
+    found = np.concatenate([p.found for p in parts])
+    depth = np.concatenate([p.depth for p in parts])
+
+    def image(name: str, empty: float = 0.0) -> np.ndarray:
+        values = np.concatenate([getattr(p.places, name) for p in parts])
         whole = np.full((*found.shape, *values.shape[1:]), empty, values.dtype)
         whole[found] = values
         return whole
 
-    depth = np.where(found, hits.distance, 0).astype(np.float32)
     return _Grid(
         found,
-        image(places.points),
-        image(places.normals),
-        image(places.flat_normals),
-        image(places.instance, -1),
+        image("points"),
+        image("normals"),
+        image("flat_normals"),
+        image("instance", -1),
         depth,
+        _pixel_footprint(view, depth),
     )
 
 
@@ -233,7 +291,3 @@ def _pixel_footprint(view: View, depth: Float32[np.ndarray, "h w"]) -> Float32[n
     a, b = view.rays(middle).astype(np.float64)
     at_zero, per_metre = np.linalg.norm(b[:3] - a[:3]), np.linalg.norm(b[3:] - a[3:])
     return (at_zero + per_metre * depth).astype(np.float32)
-
-
-def _chosen(hits: Hits, which: Float[np.ndarray, "*n"] | Bool[np.ndarray, "*n"]) -> Hits:
-    return Hits(*(getattr(hits, f.name)[which] for f in fields(hits)))

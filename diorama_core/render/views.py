@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from jaxtyping import Float32, UInt8
+from jaxtyping import Float, Float32, UInt8
 from PIL import Image
 
 from diorama_core.library.record import Shape, ShapeLibrary
@@ -20,7 +20,7 @@ from diorama_core.render.picture import framing_camera
 from diorama_core.render.raycast import PinholeView, pixel_centres
 from diorama_core.render.shading import Shot, shoot
 from diorama_core.render.world import Placed, Places, World
-from diorama_core.scene.types import Camera, box_corners
+from diorama_core.scene.types import Camera
 
 
 @dataclass(frozen=True)
@@ -47,11 +47,11 @@ def usual_view(shape: Shape) -> StudioView:
     return FRONTAL if hung and depth < 0.4 * max(width, height) else THREE_QUARTER
 
 
-def studio_camera(shape: Shape, view: StudioView, width: int, height: int) -> Camera:
-    """A camera that has the whole shape in its picture."""
+def studio_camera(points: Float[np.ndarray, "n 3"], view: StudioView, width: int, height: int) -> Camera:
+    """A camera that has all points of a shape in its picture, as large as they fit."""
     horizontal = np.array([np.cos(view.yaw_rad), np.sin(view.yaw_rad), 0.0]) * np.cos(view.elevation_rad)
     back = horizontal + np.array([0.0, 0.0, np.sin(view.elevation_rad)])
-    return framing_camera(box_corners(shape.size_m), -back, width, height, fov_rad=np.radians(24.0), margin=0.06)
+    return framing_camera(points, -back, width, height, fov_rad=np.radians(24.0), margin=0.06)
 
 
 def render_shape(
@@ -75,9 +75,8 @@ def render_shape(
     """
     shape = library.shape(shape_id)
     view = view or usual_view(shape)
-    camera = PinholeView(studio_camera(shape, view, *size))
-    surfaces = shape_surfaces(library, shape_id)
-    alone = World([Placed(surfaces, np.eye(4), 0)])
+    alone = World([Placed(shape_surfaces(library, shape_id), np.eye(4), 0)])
+    camera = PinholeView(studio_camera(alone.vertices, view, *size))
     half = 0.5 * np.asarray(shape.size_m)
     light = studio(np.stack([-half, half]), -camera.camera.T_world_camera[:3, 2])
     shot = shoot(alone, alone, camera, light, effort)

@@ -78,7 +78,7 @@ class World:
         corners = self._faces[triangle]
         flat = facing(self._face_normals[triangle], direction)
         smooth = unit(_mixed(self._normals, corners, w))
-        smooth = np.where(np.sum(smooth * flat, axis=1, keepdims=True) < 0, -smooth, smooth)
+        smooth = np.where(np.einsum("ij,ij->i", smooth, flat)[:, None] < 0, -smooth, smooth)
         surface = self._surface_of_face[triangle]
         albedo, alpha = self._materials.colour(surface, _mixed(self._uv, corners, w))
         table = self._materials
@@ -150,7 +150,7 @@ def _joined(arrays: list[np.ndarray], columns: int) -> np.ndarray:
 
 def _mixed(values: np.ndarray, corners: np.ndarray, weights: np.ndarray) -> np.ndarray:
     """Vertex values interpolated in their triangles."""
-    return sum(values[corners[:, k]] * weights[:, k : k + 1] for k in range(3))
+    return np.einsum("nkc,nk->nc", values[corners], weights)
 
 
 class _MaterialTable:
