@@ -149,8 +149,8 @@ def _links(spots: _Spots, di: int, dj: int) -> tuple[Int[np.ndarray, "l"], Int[n
 def _flat_core(spots: _Spots, region: Int[np.ndarray, "k"]) -> Int[np.ndarray, "k"]:
     """The part of a region near its main level: the slopes of a cushion's rim fall away."""
     z = spots.z[region]
-    level = np.percentile(z, 70)
-    return region[np.abs(z - level) < 0.03]
+    tolerance = float(np.clip(0.02 * np.sqrt(len(region)) * spots.cell_m, 0.003, 0.03))
+    return region[np.abs(z - np.percentile(z, 70, method="nearest")) < tolerance]
 
 
 def _outline(spots: _Spots, region: Int[np.ndarray, "k"]) -> Float[np.ndarray, "n 2"]:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import beds, lighting, seating, storage, tables, upholstery
+from diorama_core.library.furniture import bathroom, beds, kitchen, lighting, seating, storage, tables, upholstery
 from diorama_core.library.furniture.model import Design
 
-FAMILIES = (seating, upholstery, tables, beds, storage, lighting)
+FAMILIES = (seating, upholstery, tables, beds, storage, lighting, kitchen, bathroom)
 
 
 def designs() -> tuple[Design, ...]:

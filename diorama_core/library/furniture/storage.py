@@ -50,7 +50,8 @@ def case(
     levels = [z0 + t + (z1 - z0 - t) * (k + 1) / (shelves + 1) for k in range(shelves)] if "open" in bays else []
     shell = open_case((depth, w, z1), body, levels, t, base=z0)
     dividers = [box((depth - 0.012, t * 0.9, z1 - z0 - 2 * t + 0.004), 0.002).moved(-0.004, -w / 2 + t + inner_w * k, z0 + t - 0.002) for k in range(1, len(bays))]
-    parts += shifted(shell + of(body, *dividers), -reveal / 2)
+    solid = [box((depth - 0.004, inner_w, z1 - z0 - t), 0.002).moved(-0.002, -w / 2 + t + inner_w * (k + 0.5), z0 + t / 2) for k, bay in enumerate(bays) if bay != "open"]
+    parts += shifted(shell + of(body, *dividers, *solid), -reveal / 2)
     x = depth / 2 - reveal / 2
     for k, bay in enumerate(bays):
         y = -w / 2 + t + inner_w * (k + 0.5)
@@ -66,16 +67,23 @@ def _bay(
 ) -> Parts:
     if bay == "open":
         return []
+    return of(m.SHADOW, box((0.003, w, h), 0.001).moved(x, y, z)) + _fronts(bay, x, y, z, w, h, front, pull, handle, panel, infill, hinge)
+
+
+def _fronts(
+    bay: Cell, x: float, y: float, z: float, w: float, h: float, front: Material, pull: Material, handle: str,
+    panel: str, infill: Material | None, hinge: int,
+) -> Parts:
     if bay == "door":
         return door_front(x, y, z, w, h, front, pull, handle, hinge, panel, infill)
     if bay == "pair":
         half = w / 2
-        left = door_front(x, y + half / 2, z, half - 0.003, h, front, pull, handle, 1, panel, infill)
-        return left + door_front(x, y - half / 2, z, half - 0.003, h, front, pull, handle, -1, panel, infill)
+        left = door_front(x, y + half / 2, z, half - 0.004, h, front, pull, handle, 1, panel, infill)
+        return left + door_front(x, y - half / 2, z, half - 0.004, h, front, pull, handle, -1, panel, infill)
     n = int(bay)
     each = h / n
     drawer_pull = "bar" if handle == "tall" else handle
-    return [p for k in range(n) for p in drawer_front(x, y, z + each * k, w, each - 0.005, front, pull, drawer_pull)]
+    return [p for k in range(n) for p in drawer_front(x, y, z + each * k, w, each - 0.006, front, pull, drawer_pull)]
 
 
 def bookcase(size: Size, wood: Material, levels: int, base: Base = "plinth", back: Material | None = None, columns: int = 1, crown: bool = False) -> Parts:
@@ -221,7 +229,7 @@ def wall_shelf(size: Size, wood: Material, kind: Literal["board", "bracket", "bo
         x, y = -d / 2, w / 2 - 0.14
         arm = [box((0.006, 0.03, h - 0.025), 0.002).moved(x + 0.003, y), box((d * 0.9, 0.03, 0.006), 0.002).moved(x + 0.45 * d, y, h - 0.031), rod((x + 0.004, y, 0.02), (x + d * 0.75, y, h - 0.032), 0.005, segments=8)]
         return of(wood, box((d, w, 0.026), 0.005, 2).moved(z=h - 0.026)) + of(metal, *both_sides(*arm))
-    n = max(int(round(h / 0.32)), 2)
+    n = max(int(round(h / 0.28)), 2)
     zs = np.linspace(0.02, h - 0.045, n)
     boards = [box((d - 0.004, w, 0.024), 0.005).moved(0.002, 0, z) for z in zs]
     if kind == "rail":
