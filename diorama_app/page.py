@@ -61,7 +61,7 @@ STYLE = """
 .dio .meter { height: 6px; border-radius: 3px; background: #dde3ea; overflow: hidden; margin-top: 5px; }
 .dio .meter i { display: block; height: 100%; background: #2f6fd6; transition: width .2s; }
 .dio .photo { width: 100%; border-radius: 8px; display: block; }
-canvas { background: linear-gradient(#f3f5f8, #dfe4eb); }
+canvas[data-engine] { background: linear-gradient(#f3f5f8, #dfe4eb); }
 </style>
 """
 
@@ -95,8 +95,8 @@ class LiveHtml:
         if on_action is not None:
             field = gui.add_text("·", "")
             uuid = component_uuid(field)
-            hide = f'<style>div:has(> .mantine-Flex-root label[for="{uuid}"]){{display:none}}</style>'
-            self._frame = f'{hide}<div class="dio" onclick="{_SEND % uuid}">%s</div>'
+            gui.add_html(f'<style>div:has(> .mantine-Flex-root label[for="{uuid}"]){{display:none}}</style>')
+            self._frame = f'<div class="dio" onclick="{_SEND % uuid}">%s</div>'
 
             @field.on_update
             async def _(event: viser.GuiEvent[Any]) -> None:
