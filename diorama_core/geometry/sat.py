@@ -14,6 +14,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from diorama_core.geometry.convex import ConvexPart
+from diorama_core.geometry.cross import cross
 
 _DEGENERATE = 1e-6
 """Cross products shorter than this (of unit vectors) give no axis."""
@@ -91,7 +92,7 @@ def _block(bodies: Bodies, a: np.ndarray, b: np.ndarray, cut: tuple[int | None, 
     v, f, e = cut
     Va, Vb = bodies.vertices[a, :v], bodies.vertices[b, :v]
     ea, eb = bodies.edges[a, :e], bodies.edges[b, :e]
-    crosses = np.cross(ea[:, :, None, :], eb[:, None, :, :]).reshape(len(a), -1, 3)
+    crosses = cross(ea[:, :, None, :], eb[:, None, :, :]).reshape(len(a), -1, 3)
     axes = np.concatenate([bodies.normals[a, :f], bodies.normals[b, :f], crosses], axis=1)
     lengths = np.sqrt((axes * axes).sum(axis=2))
     used = lengths > _DEGENERATE

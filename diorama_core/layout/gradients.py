@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from diorama_core.geometry.cross import cross
 from diorama_core.layout.costs import EPSILON
 
 Array = np.ndarray
@@ -80,10 +81,10 @@ class BoxPairs:
         """Axes of the given pairs."""
         i, j = pairs[:, 0], pairs[:, 1]
         a, b = R[i].transpose(0, 2, 1), R[j].transpose(0, 2, 1)
-        cross = np.cross(a[:, :, None, :], b[:, None, :, :]).reshape(len(i), 9, 3)
-        square = np.einsum("mac,mac->ma", cross, cross)[..., None]
-        cross = np.where(square > 1e-12, cross / np.sqrt(np.maximum(square, 1e-12)), 0.0)
-        axes = np.concatenate([a, b, cross], axis=1)
+        product = cross(a[:, :, None, :], b[:, None, :, :]).reshape(len(i), 9, 3)
+        square = np.einsum("mac,mac->ma", product, product)[..., None]
+        product = np.where(square > 1e-12, product / np.sqrt(np.maximum(square, 1e-12)), 0.0)
+        axes = np.concatenate([a, b, product], axis=1)
         reach = sum(0.5 * np.einsum("mak,mk->ma", np.abs(np.matmul(axes, R[k])), size[k]) for k in (i, j))
         used = np.einsum("mac,mac->ma", axes, axes) > 0.25
         return cls(i, j, axes, np.where(used, reach, np.inf))

@@ -12,14 +12,19 @@ import torch
 
 from diorama_core.artefacts import LayoutReport
 from diorama_core.layout import costs, staged
+from diorama_core.layout.gradients import near_pairs
 from diorama_core.layout.problem import Problem, build_problem
 from diorama_core.layout.report import measure
 from diorama_core.layout.staged import Edges, Report, Schedule, State
+from diorama_core.layout.volumes import Volumes
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.protocols import Preview
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
+
+PUBLISHED = Schedule()
+TOGETHER = Schedule(steps=400, decay_every=100)
 
 
 @dataclass(frozen=True)
@@ -29,7 +34,7 @@ class PaperRecipe:
     library: ShapeLibrary
     only: frozenset[str] | None = None
     """Ids free to move (with what they hold up); all when None."""
-    schedule: Schedule = Schedule()
+    schedule: Schedule = PUBLISHED
     stages: int = 4
     """How many of the four stages to run, for the ablation."""
     adherence_m: float = 0.3
@@ -55,7 +60,7 @@ class AllInOneRecipe:
     library: ShapeLibrary
     only: frozenset[str] | None = None
     """Ids free to move (with what they hold up); all when None."""
-    schedule: Schedule = Schedule(steps=400, decay_every=100)
+    schedule: Schedule = TOGETHER
     adherence_m: float = 0.3
     """Objects on the floor nearer to a wall than this are drawn to it."""
 
@@ -92,7 +97,7 @@ def _reporter(scene: Scene, problem: Problem, progress: Progress, preview: Previ
         if step % 10 == 0:
             progress.report(done / total, f"{stage}, step {step + 1}")
             if preview is not None:
-                poses = problem.poses(staged._orthonormal(state.R), state.p, state.scale)
+                poses = problem.poses(staged.orthonormal(state.R), state.p, state.scale)
                 preview(edits.place(scene, poses), [(stage, cost)])
 
     return report
@@ -119,11 +124,11 @@ def _all_at_once(problem: Problem, state: State, schedule: Schedule, report: Rep
         slopes = torch.autograd.grad(value, [turn, p, scale], allow_unused=True)
         for k, slope in enumerate(slopes):
             velocity[k] = schedule.momentum * velocity[k] + (0.0 if slope is None else slope * free)
-        state.R = np.matmul(staged._rotations(-schedule.rate * rate * velocity[0].numpy()), state.R)
+        state.R = np.matmul(staged.rotations(-schedule.rate * rate * velocity[0].numpy()), state.R)
         state.p = state.p - schedule.rate * rate * velocity[1].numpy()
         state.scale = np.maximum(state.scale - schedule.scale_rate * rate * velocity[2].numpy(), 0.05)
-        report("all terms", step, state, float(value))
-    state.R = staged._orthonormal(state.R)
+        report("all terms", step, state, float(value.detach()))
+    state.R = staged.orthonormal(state.R)
 
 
 class _Terms:
@@ -138,9 +143,10 @@ class _Terms:
         self.child = torch.tensor(self.edges.child)
         self.holder = torch.tensor(self.edges.holder)
         self.contact = torch.tensor(self.edges.contact)
-        self.held = self.edges.child[: self.edges.supports]
+        self.volumes = Volumes.of(problem)
+        self.held = self.volumes.held
         if len(self.held):
-            self.template = torch.tensor(staged._contact_templates(problem, self.held)[0])
+            self.template = torch.tensor(staged.contact_templates(problem, self.held)[0])
 
     def total(self, turn: torch.Tensor, p: torch.Tensor, scale: torch.Tensor, state: State) -> torch.Tensor:
         """3 e_align + e_sem + 5 e_place + e_rel + e_vol + e_col, adherence included in the first and third."""
@@ -167,16 +173,17 @@ class _Terms:
         if not len(self.held):
             return torch.zeros((), dtype=torch.float64)
         held = torch.tensor(self.held)
-        parts = staged._volumes(self.problem, state, self.held)
-        outward, offset, clearance, normal, level = (torch.tensor(x) for x in parts)
+        here = self.volumes.at(state.R, state.p, state.scale)
+        outward, offset, normal = torch.tensor(here.outward), torch.tensor(here.offset), torch.tensor(here.normal)
+        clearance, level = torch.tensor(here.clearance), torch.tensor(here.level)
         corners = p[held][:, None] + torch.einsum("eck,eik->eci", self.template * scale[held][:, None], R[held])
         tilt = torch.einsum("ec,eck->ek", normal, R[held]).abs() * self.size[held] * scale[held] / 2
         top = (normal * p[held]).sum(dim=1) - level + tilt.sum(dim=1)
         return costs.e_vol(corners, top, outward, offset, clearance)
 
     def _overlap(self, p: torch.Tensor, state: State) -> torch.Tensor:
-        R, centre, size, apart = staged._with_walls(self.problem, state)
-        pairs = staged.gradients.near_pairs(R, centre, size, apart, 0.0)
+        R, centre, size, apart = staged.with_walls(self.problem, state)
+        pairs = near_pairs(R, centre, size, apart, 0.0)
         if not len(pairs):
             return torch.zeros((), dtype=torch.float64)
         everywhere = torch.cat([p, torch.tensor(centre[self.problem.count :])])

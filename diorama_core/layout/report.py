@@ -7,7 +7,7 @@ from jaxtyping import Float
 
 from diorama_core.geometry.sat import pair_axes, place_bodies
 from diorama_core.layout.problem import Problem
-from diorama_core.layout.supports import half_planes
+from diorama_core.layout.volumes import Volumes
 
 ALIGNED_RAD = float(np.deg2rad(1.0))
 PLACED_M = 1e-3
@@ -52,22 +52,19 @@ def _structure(
     problem: Problem, R: np.ndarray, p: np.ndarray, scale: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Whether each supported object is aligned, placed and inside its support."""
-    aligned, placed, inside = [], [], []
-    for i, surface in enumerate(problem.surface):
-        if surface is None:
-            continue
-        j = int(problem.parent[i])
-        world = surface if j < 0 else surface.at(R[j], p[j], scale[j])
-        size, contact = problem.shape_size[i] * scale[i], problem.contact[i]
-        outward = R[i] @ contact
-        centre = p[i] + R[i] @ (contact * size / 2)
-        aligned.append(float(outward @ world.normal) <= -np.cos(ALIGNED_RAD))
-        placed.append(abs(float(world.normal @ (centre - world.polygon[0]))) <= PLACED_M)
-        m, h = half_planes(world)
-        reach = np.abs((m @ R[i]) * (size * (1.0 - np.abs(contact)) / 2)).sum(axis=1)
-        top = float(world.normal @ (p[i] - world.polygon[0])) + 0.5 * float(np.abs((world.normal @ R[i]) * size).sum())
-        inside.append(bool((m @ centre + reach <= h + INSIDE_M).all()) and top <= world.clearance_m + INSIDE_M)
-    return np.array(aligned, dtype=bool), np.array(placed, dtype=bool), np.array(inside, dtype=bool)
+    volumes = Volumes.of(problem)
+    here, held = volumes.at(R, p, scale), volumes.held
+    size, contact = problem.shape_size[held] * scale[held], problem.contact[held]
+    own = R[held]
+    outward = np.matmul(own, contact[..., None])[..., 0]
+    centre = p[held] + np.matmul(own, (contact * size / 2)[..., None])[..., 0]
+    aligned = (outward * here.normal).sum(axis=1) <= -np.cos(ALIGNED_RAD)
+    placed = np.abs((centre * here.normal).sum(axis=1) - here.level) <= PLACED_M
+    reach = (np.abs(np.matmul(here.outward, own)) * (size * (1.0 - np.abs(contact)) / 2)[:, None, :]).sum(axis=2)
+    past = np.matmul(here.outward, centre[..., None])[..., 0] + reach - here.offset
+    half = 0.5 * (np.abs(np.matmul(here.normal[:, None, :], own)[:, 0]) * size).sum(axis=1)
+    top = (p[held] * here.normal).sum(axis=1) - here.level + half
+    return aligned, placed, (past <= INSIDE_M).all(axis=1) & (top <= here.clearance + INSIDE_M)
 
 
 def part_overlaps(

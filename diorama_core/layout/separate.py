@@ -18,7 +18,7 @@ from diorama_core.geometry.sat import Bodies, PairAxes, pair_axes, place_bodies
 from diorama_core.layout.problem import Problem
 from diorama_core.layout.quadratic import HARD, SOFT, least_distance
 from diorama_core.layout.structure import Structure
-from diorama_core.layout.supports import is_wall_like, outside_m, plane_surface
+from diorama_core.layout.supports import is_wall_like, plane_surface
 
 APART_M = 5e-4
 """Separation asked for once two parts touched."""
@@ -98,18 +98,16 @@ def _wall_rows(problem: Problem, structure: Structure, bodies: Bodies, J: np.nda
     rows, need = [np.zeros((0, J.shape[2]))], [np.zeros(0)]
     fixed = {(i, w) for i, w, _ in problem.adheres}
     starts = np.searchsorted(bodies.owner, np.arange(problem.count))
-    for w, wall in enumerate(problem.walls):
+    radius = 0.5 * np.linalg.norm(problem.shape_size * structure.scale, axis=1)
+    for w, wall in enumerate(problem.walls if problem.count else ()):
         surface = plane_surface(wall)
-        height = np.minimum.reduceat((bodies.vertices @ wall.normal).min(axis=1), starts) if problem.count else []
-        for i in range(problem.count):
-            if problem.on_plane[i] == wall.id or (i, w) in fixed or not problem.free[i]:
-                continue
-            radius = 0.5 * float(np.linalg.norm(problem.shape_size[i] * structure.scale[i]))
-            behind = wall.offset - float(wall.normal @ structure.p[i])
-            if outside_m(surface, structure.p[i]) > radius or behind > radius + 0.5:
-                continue
-            rows.append((wall.normal @ J[i])[None])
-            need.append(np.array([wall.offset - float(height[i])]))
+        ahead = structure.p @ wall.normal - wall.offset
+        beside = (structure.p @ surface.outward.T - surface.offset).max(axis=1)
+        reached = problem.free & (beside <= radius) & (ahead >= -radius - 0.5)
+        reached &= np.array([problem.on_plane[i] != wall.id and (i, w) not in fixed for i in range(problem.count)])
+        nearest = np.minimum.reduceat((bodies.vertices @ wall.normal).min(axis=1), starts)
+        rows.append(np.einsum("c,ncv->nv", wall.normal, J[reached]))
+        need.append(wall.offset - nearest[reached])
     return np.vstack(rows), np.concatenate(need)
 
 

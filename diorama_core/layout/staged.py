@@ -12,9 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.geometry.cross import cross
 from diorama_core.layout import gradients
 from diorama_core.layout.problem import Problem
-from diorama_core.layout.supports import half_planes
+from diorama_core.layout.volumes import Volumes
 
 
 @dataclass(frozen=True)
@@ -117,11 +118,11 @@ def orientation_stage(problem: Problem, state: State, schedule: Schedule, report
         value, slope = gradients.align(face, normal)
         slope = 3.0 * edges.weight[:, None] * slope
         kept, turn = gradients.semantic(state.R[:, :, 0], front)
-        gradient = to_child @ _cross(face, slope) - to_holder @ _cross(normal, slope) + _cross(state.R[:, :, 0], turn)
+        gradient = to_child @ cross(face, slope) - to_holder @ cross(normal, slope) + cross(state.R[:, :, 0], turn)
         velocity = schedule.momentum * velocity + gradient * free
-        state.R = np.matmul(_rotations(-schedule.rate * rate * velocity), state.R)
+        state.R = np.matmul(rotations(-schedule.rate * rate * velocity), state.R)
         report("orientation", step, state, 3.0 * value + kept)
-    state.R = _orthonormal(state.R)
+    state.R = orthonormal(state.R)
 
 
 def placement_stage(problem: Problem, state: State, schedule: Schedule, report: Report) -> None:
@@ -143,26 +144,25 @@ def space_stage(problem: Problem, state: State, schedule: Schedule, report: Repo
 
     A supporter's own pose bounds the volume but is not moved by it.
     """
-    held = np.array([i for i, s in enumerate(problem.surface) if s is not None], dtype=int)
+    volumes = Volumes.of(problem)
+    held = volumes.held
     if not len(held):
         return
-    template, half = _contact_templates(problem, held)
+    template, half = contact_templates(problem, held)
     v_p, v_s = np.zeros((len(held), 3)), np.zeros((len(held), 3))
     free = problem.free[held].astype(np.float64)[:, None]
     R = state.R[held]
-    volumes = _volumes(problem, state, held)
     nested = bool((problem.parent >= 0).any())
     for step, rate in enumerate(schedule.rates()):
-        if nested and step % 5 == 0:
-            volumes = _volumes(problem, state, held)
-        outward, offset, clearance, normal, level = volumes
+        if step == 0 or nested:
+            here = volumes.at(state.R, state.p, state.scale)
         p, scale = state.p[held], state.scale[held]
-        tilt = np.abs(np.einsum("ec,eck->ek", normal, R)) * half
+        tilt = np.abs(np.matmul(here.normal[:, None, :], R)[:, 0]) * half
         corners = p[:, None, :] + np.matmul(template * scale[:, None, :], R.transpose(0, 2, 1))
-        top = np.einsum("ec,ec->e", normal, p) - level + np.einsum("ek,ek->e", tilt, scale)
-        value, at_corners, at_top = gradients.volume(corners, top, outward, offset, clearance)
-        to_scale = np.einsum("ecx,ecx->ex", np.matmul(at_corners, R), template) + at_top[:, None] * tilt
-        v_p = schedule.momentum * v_p + (at_corners.sum(axis=1) + at_top[:, None] * normal) * free
+        top = (here.normal * p).sum(axis=1) - here.level + (tilt * scale).sum(axis=1)
+        value, at_corners, at_top = gradients.volume(corners, top, here.outward, here.offset, here.clearance)
+        to_scale = (np.matmul(at_corners, R) * template).sum(axis=1) + at_top[:, None] * tilt
+        v_p = schedule.momentum * v_p + (at_corners.sum(axis=1) + at_top[:, None] * here.normal) * free
         v_s = schedule.momentum * v_s + to_scale * free
         state.p[held] = p - schedule.rate * rate * v_p
         state.scale[held] = np.maximum(scale - schedule.scale_rate * rate * v_s, 0.05)
@@ -174,7 +174,7 @@ def refinement_stage(
 ) -> None:
     """Stage 4: placement again, and no boxes overlapping. 5 e_place + e_col; walls are obstacles."""
     cost = _Placement.of(problem, state)
-    R, centre, size, apart = _with_walls(problem, state)
+    R, centre, size, apart = with_walls(problem, state)
     n = problem.count
     velocity = np.zeros((n, 3))
     free = problem.free.astype(np.float64)[:, None]
@@ -222,7 +222,7 @@ class _Placement:
         return value, self.scatter @ ((np.sign(distance) * self.weight)[:, None] * self.slope)
 
 
-def _contact_templates(problem: Problem, held: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def contact_templates(problem: Problem, held: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Corners of the touching faces in object frames at scale 1, and half extents."""
     half = problem.shape_size[held] / 2
     signs = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
@@ -235,24 +235,7 @@ def _contact_templates(problem: Problem, held: np.ndarray) -> tuple[np.ndarray, 
     return template * half[:, None, :], half
 
 
-def _volumes(problem: Problem, state: State, held: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Sides (padded), offsets, clearances, normals and levels of the supporting volumes at the present poses."""
-    surfaces = []
-    for i in held:
-        j, surface = int(problem.parent[i]), problem.surface[i]
-        assert surface is not None
-        surfaces.append(surface if j < 0 else surface.at(state.R[j], state.p[j], state.scale[j]))
-    sides = [half_planes(s) for s in surfaces]
-    k = max(len(h) for _, h in sides)
-    outward, offset = np.zeros((len(held), k, 3)), np.zeros((len(held), k))
-    for row, (m, h) in enumerate(sides):
-        outward[row, : len(h)], offset[row, : len(h)] = m, h
-    normal = np.array([s.normal for s in surfaces])
-    level = np.array([float(s.normal @ s.polygon[0]) for s in surfaces])
-    return outward, offset, np.array([s.clearance_m for s in surfaces]), normal, level
-
-
-def _with_walls(problem: Problem, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def with_walls(problem: Problem, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Boxes of objects and of walls, and which pairs may collide."""
     n, walls = problem.count, problem.walls
     R = np.concatenate([state.R, np.array([_wall_frame(w.normal) for w in walls]).reshape(-1, 3, 3)])
@@ -281,14 +264,7 @@ def _wall_frame(normal: np.ndarray) -> Float[np.ndarray, "3 3"]:
     return np.column_stack([normal, second, np.cross(normal, second)])
 
 
-def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """`np.cross` without its overhead."""
-    x0, x1, x2 = a.T
-    y0, y1, y2 = b.T
-    return np.column_stack([x1 * y2 - x2 * y1, x2 * y0 - x0 * y2, x0 * y1 - x1 * y0])
-
-
-def _rotations(vectors: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "n 3 3"]:
+def rotations(vectors: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "n 3 3"]:
     """Rotation matrices of rotation vectors (Rodrigues)."""
     angle = np.sqrt(np.einsum("nc,nc->n", vectors, vectors) + 1e-24)
     x, y, z = (vectors / angle[:, None]).T
@@ -300,7 +276,7 @@ def _rotations(vectors: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "n 3 3"]:
     return np.stack(rows, axis=1).reshape(-1, 3, 3)
 
 
-def _orthonormal(R: Float[np.ndarray, "n 3 3"]) -> Float[np.ndarray, "n 3 3"]:
+def orthonormal(R: Float[np.ndarray, "n 3 3"]) -> Float[np.ndarray, "n 3 3"]:
     """The nearest rotations, against rounding."""
     u, _, vt = np.linalg.svd(R)
     return np.asarray(u @ vt)

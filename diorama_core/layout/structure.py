@@ -10,9 +10,10 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import linprog
 
+from diorama_core.geometry.cross import cross
 from diorama_core.layout.problem import Problem
 from diorama_core.layout.quadratic import HARD, least_distance
-from diorama_core.layout.supports import Surface, half_planes, is_wall_like, plane_axes
+from diorama_core.layout.supports import Surface, is_wall_like, plane_axes
 
 SMALLEST_SHRINK = 0.8
 """An object that does not fit is made smaller by at most this factor; beyond, it stays large and is named."""
@@ -101,7 +102,7 @@ def _settle(
     target = _on_support(problem, walk, i, surface, None if ray is None else ray[i])
     walk.basis[i] = np.column_stack([u, v])
     _against_walls(problem, walk, i, target, against)
-    m, h = half_planes(surface)
+    m, h = surface.outward, surface.offset
     reach = _fit(problem, walk, i, surface, m, h)
     walk.p[i] = walk.p[i] + _lift(problem, walk, i, surface) * n
     contact = _contact_centre(problem, walk, i)
@@ -126,7 +127,7 @@ def _contact_centre(problem: Problem, walk: _Walk, i: int) -> np.ndarray:
 
 def _lift(problem: Problem, walk: _Walk, i: int, surface: Surface) -> float:
     """How far the contact face is below the surface."""
-    return float(surface.normal @ (surface.polygon[0] - _contact_centre(problem, walk, i)))
+    return surface.level - float(surface.normal @ _contact_centre(problem, walk, i))
 
 
 def _on_support(problem: Problem, walk: _Walk, i: int, surface: Surface, ray: np.ndarray | None) -> np.ndarray:
@@ -161,7 +162,7 @@ def _aligned(
         if float(own @ flat_up) > UPRIGHT_WITHIN * float(np.linalg.norm(own) * np.linalg.norm(flat_up)):
             return _twist(swung, n, np.array([0.0, 0.0, 1.0]), up)
         return swung
-    axis = int(np.argmax([np.linalg.norm(np.cross(swung[:, k], n)) * (1.5 if k == 0 else 1.0) for k in range(3)]))
+    axis = int(np.argmax([np.linalg.norm(cross(swung[:, k], n)) * (1.5 if k == 0 else 1.0) for k in range(3)]))
     return _twist(swung, n, np.eye(3)[axis], R[:, axis])
 
 
@@ -169,10 +170,10 @@ def swing(a: Float[np.ndarray, "3"], b: Float[np.ndarray, "3"]) -> Float[np.ndar
     """The smallest rotation that takes unit vector a to unit vector b."""
     c = float(a @ b)
     if c < -1.0 + 1e-9:
-        perpendicular = np.cross(a, np.eye(3)[int(np.abs(a).argmin())])
+        perpendicular = cross(a, np.eye(3)[int(np.abs(a).argmin())])
         perpendicular /= np.linalg.norm(perpendicular)
         return 2.0 * np.outer(perpendicular, perpendicular) - np.eye(3)
-    x, y, z = np.cross(a, b)
+    x, y, z = cross(a, b)
     K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     return np.eye(3) + K + K @ K / (1.0 + c)
 
@@ -184,7 +185,7 @@ def _twist(R: np.ndarray, n: np.ndarray, axis_object: np.ndarray, toward: np.nda
     length = float(np.linalg.norm(have) * np.linalg.norm(want))
     if length < 1e-9:
         return R
-    sine, cosine = float(n @ np.cross(have, want)) / length, float(have @ want) / length
+    sine, cosine = float(n @ cross(have, want)) / length, float(have @ want) / length
     if abs(sine) < 1e-12 and cosine > 0:
         return R
     norm = np.hypot(sine, cosine)
@@ -253,7 +254,7 @@ def _room(m: np.ndarray, h: np.ndarray, reach: np.ndarray) -> float:
     h = h - INSET_M
     if (h - reach >= 0).all():
         return 1.0
-    u, v = plane_axes(np.cross(m[0], m[1]) / max(float(np.linalg.norm(np.cross(m[0], m[1]))), 1e-9))
+    u, v = plane_axes(cross(m[0], m[1]) / max(float(np.linalg.norm(cross(m[0], m[1]))), 1e-9))
     A = np.column_stack([m @ u, m @ v, reach])
     found = linprog([0.0, 0.0, -1.0], A_ub=A, b_ub=h, bounds=[(None, None), (None, None), (0.0, 1.0)])
     if found.status != 0:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.geometry.cross import cross
 from diorama_core.library import taxonomy
-from diorama_core.library.record import Shape
+from diorama_core.library.record import Shape, SupportSurface
 from diorama_core.scene.frames import FACE_NORMALS_OBJECT
 from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, Support, box_corners
 
@@ -27,22 +29,48 @@ class Surface:
     """Counter-clockwise about `normal`; at scale 1 where the owner is an object."""
     normal: Float[np.ndarray, "3"]
     """Unit, out of the supporter."""
+    outward: Float[np.ndarray, "s 3"]
+    """Unit in-plane normals of its sides."""
+    offset: Float[np.ndarray, " s"]
+    """Inside is where outward . x <= offset."""
+    level: float
+    """The surface lies where normal . x = level."""
     clearance_m: float
     """Free depth along the normal at scale 1."""
     of_plane: bool
 
+    @classmethod
+    def of(cls, polygon: np.ndarray, normal: np.ndarray, clearance_m: float, *, of_plane: bool) -> Surface:
+        """A surface from its convex outline."""
+        sides = np.roll(polygon, -1, axis=0) - polygon
+        lengths = np.linalg.norm(sides, axis=1)
+        long = lengths > 1e-9
+        outward = cross(sides[long] / lengths[long, None], normal)
+        offset = (outward * polygon[long]).sum(axis=1)
+        return cls(polygon, normal, outward, offset, float(normal @ polygon.mean(axis=0)), clearance_m, of_plane)
+
     def in_world(self, pose: Pose | None) -> Surface:
         """The surface at its owner's pose."""
-        if pose is None:
-            return self
-        return self.at(pose.R_world_object, pose.position, pose.scale)
+        return self if pose is None else self.at(pose.R_world_object, pose.position, pose.scale)
 
     def at(self, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> Surface:
         """The surface of an owner with this rotation, centre and scale."""
         if self.of_plane:
             return self
         axis = int(np.abs(self.normal).argmax())
-        return Surface((self.polygon * scale) @ R.T + p, R @ self.normal, self.clearance_m * float(scale[axis]), False)
+        normal = R @ self.normal
+        outward = self.outward / scale
+        length = np.sqrt((outward * outward).sum(axis=1))
+        outward = (outward / length[:, None]) @ R.T
+        return Surface(
+            polygon=(self.polygon * scale) @ R.T + p,
+            normal=normal,
+            outward=outward,
+            offset=self.offset / length + outward @ p,
+            level=self.level * float(scale[axis]) + float(normal @ p),
+            clearance_m=self.clearance_m * float(scale[axis]),
+            of_plane=False,
+        )
 
 
 def is_wall_like(surface: Surface | None) -> bool:
@@ -50,9 +78,10 @@ def is_wall_like(surface: Surface | None) -> bool:
     return surface is not None and surface.of_plane and abs(float(surface.normal[2])) < FLAT
 
 
+@lru_cache(maxsize=256)
 def plane_surface(plane: Plane) -> Surface:
     """A plane of the room as a place to rest on (its convex hull)."""
-    return Surface(convex_outline(plane.polygon, plane.normal), plane.normal, float("inf"), True)
+    return Surface.of(convex_outline(plane.polygon, plane.normal), plane.normal, float("inf"), of_plane=True)
 
 
 def convex_outline(polygon: Float[np.ndarray, "n 3"], normal: Float[np.ndarray, "3"]) -> Float[np.ndarray, "k 3"]:
@@ -88,17 +117,21 @@ def _cross(a: np.ndarray, b: np.ndarray) -> float:
 
 def object_surfaces(shape: Shape, item: SceneObject) -> tuple[Surface, ...]:
     """Upward places of an object, in its frame; the top of its box when the shape has none."""
-    up = np.array([0.0, 0.0, 1.0])
-    found = tuple(Surface(np.asarray(s.polygon), up, s.clearance_m, False) for s in shape.surfaces)
-    return found or (_box_face(item.shape_size_m, 2, 1.0),)
+    return tuple(_shape_surface(s) for s in shape.surfaces) or (_box_face(item.shape_size_m, 2, 1.0),)
 
 
-def _box_face(size: Sequence[float], axis: int, sign: float) -> Surface:
+@lru_cache(maxsize=4096)
+def _shape_surface(surface: SupportSurface) -> Surface:
+    return Surface.of(np.asarray(surface.polygon), np.array([0.0, 0.0, 1.0]), surface.clearance_m, of_plane=False)
+
+
+@lru_cache(maxsize=1024)
+def _box_face(size: tuple[float, float, float], axis: int, sign: float) -> Surface:
     normal = np.zeros(3)
     normal[axis] = sign
     corners = box_corners(size)
     face = corners[corners[:, axis] * sign > 0]
-    return Surface(convex_outline(face, normal), normal, float("inf"), False)
+    return Surface.of(convex_outline(face, normal), normal, float("inf"), of_plane=False)
 
 
 def choose_surface(scene: Scene, item: SceneObject, edge: Support, holder: Shape | None) -> Surface:
@@ -119,7 +152,7 @@ def _nearest_side(item: SceneObject, parent: SceneObject) -> Surface:
 
     def gap(side: Surface) -> float:
         world = side.in_world(parent.pose)
-        return outside_m(world, item.pose.position) + abs(float(world.normal @ (item.pose.position - world.polygon[0])))
+        return outside_m(world, item.pose.position) + abs(float(world.normal @ item.pose.position) - world.level)
 
     return min(sides, key=gap)
 
@@ -129,32 +162,22 @@ def misfit(item: SceneObject, surface: Surface) -> float:
     n = surface.normal
     along = item.corners_world @ n
     low, height = float(along.min()), float(np.ptp(along))
-    gap = abs(low - float(n @ surface.polygon[0]))
+    gap = abs(low - surface.level)
     over = max(height - surface.clearance_m, 0.0)
     return gap + outside_m(surface, item.pose.position) + 0.5 * over + 0.5 * _too_wide(item, surface)
 
 
 def _too_wide(item: SceneObject, surface: Surface) -> float:
     """How much the object's box exceeds the surface in the narrower direction, metres."""
-    widths = sorted(s for s in item.size_m)[1:]
+    widths = sorted(item.size_m)[1:]
     u, v = plane_axes(surface.normal)
     room = sorted([float(np.ptp(surface.polygon @ u)), float(np.ptp(surface.polygon @ v))])
     return max(min(widths) - room[0], 0.0) + max(max(widths) - room[1], 0.0)
 
 
-def half_planes(surface: Surface) -> tuple[Float[np.ndarray, "k 3"], Float[np.ndarray, " k"]]:
-    """Outward in-plane normals m and offsets h of a surface: inside where m . x <= h."""
-    sides = np.roll(surface.polygon, -1, axis=0) - surface.polygon
-    lengths = np.linalg.norm(sides, axis=1)
-    sides, corners = sides[lengths > 1e-9], surface.polygon[lengths > 1e-9]
-    outward = np.cross(sides / lengths[lengths > 1e-9, None], surface.normal)
-    return outward, np.einsum("ij,ij->i", outward, corners)
-
-
 def outside_m(surface: Surface, point: Float[np.ndarray, "3"]) -> float:
     """Distance (in the plane) by which a point's projection misses the surface; 0 inside."""
-    m, h = half_planes(surface)
-    return max(float((m @ point - h).max()), 0.0)
+    return max(float((surface.outward @ point - surface.offset).max()), 0.0)
 
 
 def choose_contact(
@@ -179,15 +202,19 @@ def choose_contact(
 def wall_faces(item: SceneObject, walls: Sequence[Plane]) -> list[tuple[int, np.ndarray, float, float]]:
     """For each wall: its index, the object's face that looks at it, the gap in metres, and how parallel they are."""
     found = []
+    R, half = item.pose.R_world_object, item.size_m / 2
     for w, wall in enumerate(walls):
-        faces = [np.array(FACE_NORMALS_OBJECT[name]) for name in ("back", "left", "right", "front")]
-        facing = [float(-(item.pose.R_world_object @ f) @ wall.normal) for f in faces]
+        toward = -(R.T @ wall.normal)
+        axis = int(np.abs(toward[:2]).argmax())
         # The back goes to the wall unless another face looks at it much more plainly.
-        best = 0 if facing[0] > 0.7 else int(np.argmax(facing))
-        centre = item.pose.position + item.pose.R_world_object @ (faces[best] * item.size_m / 2)
+        face = np.array(FACE_NORMALS_OBJECT["back"])
+        if toward[0] > -0.7:
+            face = np.zeros(3)
+            face[axis] = np.sign(toward[axis])
+        centre = item.pose.position + R @ (face * half)
         inside = outside_m(plane_surface(wall), centre) < 0.5
         gap = abs(float(wall.normal @ centre) - wall.offset)
-        found.append((w, faces[best], gap if inside else float("inf"), facing[best]))
+        found.append((w, face, gap if inside else float("inf"), float(toward @ face)))
     return found
 
 
@@ -264,6 +291,6 @@ def _most_plausible(
 
 
 def _resting_cost(scene: Scene, item: SceneObject, edge: Support, surface: Surface) -> float:
-    contact = choose_contact(scene, replace(item), edge, surface)
+    contact = choose_contact(scene, item, edge, surface)
     centre = item.pose.position + item.pose.R_world_object @ (contact * item.size_m / 2)
-    return abs(float(surface.normal @ (centre - surface.polygon[0]))) + outside_m(surface, item.pose.position)
+    return abs(float(surface.normal @ centre) - surface.level) + outside_m(surface, item.pose.position)
