@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.architecture.evidence import PRIOR_MEDIAN_M, RoomEvidence
+from diorama_core.architecture.evidence import MAX_CEILING_M, PRIOR_MEDIAN_M, RoomEvidence
 
 REFINEMENTS = (0.08, 0.03, 0.012)
 SWEEPS = 3
@@ -14,7 +14,7 @@ MAX_LINES = 40
 MARGIN_M = 0.05
 
 _DISTANCES_M = np.geomspace(0.5, 9.0, 24)
-_CEILINGS_M = np.linspace(2.1, 3.4, 14)
+_CEILINGS_M = np.geomspace(2.1, MAX_CEILING_M, 24)
 
 
 def find_box(evidence: RoomEvidence) -> tuple[Float[np.ndarray, "4"], float]:
@@ -26,7 +26,11 @@ def find_box(evidence: RoomEvidence) -> tuple[Float[np.ndarray, "4"], float]:
 def _starts(evidence: RoomEvidence) -> list[Float[np.ndarray, "4"]]:
     """Rooms of usual size, small, deep and wide, each grown around the objects; and one tight around them."""
     x, y, z = evidence.camera.position
-    half, deep, high = 0.5 * PRIOR_MEDIAN_M[0], PRIOR_MEDIAN_M[1], max(PRIOR_MEDIAN_M[2], z + 0.4)
+    half, deep, high = (
+        0.5 * PRIOR_MEDIAN_M[0],
+        PRIOR_MEDIAN_M[1],
+        max(PRIOR_MEDIAN_M[2], z + 0.4, min(evidence.hung_top_m + 0.05, MAX_CEILING_M)),
+    )
     shapes = [(half, half, deep), (1.3, 1.3, 2.4), (half, half, 6.0), (3.5, 1.5, 4.0), (1.5, 3.5, 4.0)]
     boxes = [np.array([x - left, x + right, y + far, high]) for left, right, far in shapes]
     tight = np.array([x - 0.5, x + 0.5, y + 1.0, high])
@@ -75,7 +79,7 @@ def _candidates(evidence: RoomEvidence, box: Float[np.ndarray, "4"], coordinate:
     else:
         spread = (x - _DISTANCES_M, x + _DISTANCES_M, y + _DISTANCES_M)[coordinate]
     lines = _line_values(evidence, box, coordinate)
-    low, high = (1.9, 5.0) if coordinate == 3 else (0.4, 14.0)
+    low, high = (1.9, MAX_CEILING_M) if coordinate == 3 else (0.4, 14.0)
     reach = lines if coordinate == 3 else np.abs(lines - (y if coordinate == 2 else x))
     return np.concatenate([spread, lines[(reach > low) & (reach < high)]])
 

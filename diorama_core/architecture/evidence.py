@@ -14,7 +14,7 @@ from jaxtyping import Bool, Float, Float32, Int
 
 from diorama_core.artefacts import Cuboid, DetectedObject
 from diorama_core.geometry.segments import line_segments_px
-from diorama_core.library.taxonomy import CATEGORIES
+from diorama_core.library.taxonomy import CATEGORIES, category
 from diorama_core.scene.types import Camera
 
 AXIS_TOLERANCE_RAD = np.deg2rad(4.0)
@@ -26,7 +26,9 @@ EDGE_SIGMA = 0.006
 EDGE_THRESHOLD = 0.3
 """Response at which a boundary neither gains nor loses."""
 EDGE_SAMPLES = 40
+SURE_MASK = 0.95
 NEAR_M = 0.05
+MAX_CEILING_M = 5.0
 
 ORIENTATION_WEIGHT = 2.0
 EDGE_WEIGHT = 1.0
@@ -62,6 +64,8 @@ class RoomEvidence:
     """Least corner of each standing object's cuboid along the room's axes."""
     object_high: Float[np.ndarray, "k 3"]
     object_weights: Float[np.ndarray, "k"]
+    hung_top_m: float
+    """Top of the highest thing that hangs from the ceiling; 0 when nothing does."""
 
     def hits(self, boxes: Float[np.ndarray, "b 4"], directions: Float[np.ndarray, "s 3"]) -> Int[np.ndarray, "b s"]:
         """The axis of the face that each ray meets first: 0 a side wall, 1 the far wall, 2 floor or ceiling."""
@@ -81,6 +85,20 @@ class RoomEvidence:
 
     def edges(self, boxes: Float[np.ndarray, "b 4"]) -> Float[np.ndarray, "b 8"]:
         """Edge evidence along the visible part of each of the eight boundaries, in picture diagonals."""
+        response, lengths = self._responses(boxes)
+        return (response - EDGE_THRESHOLD).mean(axis=-1) * lengths
+
+    def boundary_support(self, box: Float[np.ndarray, "4"]) -> tuple[Float[np.ndarray, "8"], Float[np.ndarray, "8"]]:
+        """Mean response, 0 to 1, along each boundary where nothing hides it, and that part's length in diagonals."""
+        response, lengths = (values[0] for values in self._responses(box[None]))
+        free = np.abs(response - EDGE_THRESHOLD) > 1e-6
+        mean = (response * free).sum(axis=-1) / np.maximum(free.sum(axis=-1), 1)
+        return mean, lengths * free.mean(axis=-1)
+
+    def _responses(
+        self, boxes: Float[np.ndarray, "b 4"]
+    ) -> tuple[Float[np.ndarray, "b 8 samples"], Float[np.ndarray, "b 8"]]:
+        """Edge response at points along the visible part of each boundary, and that part's length in diagonals."""
         ends = self.camera.to_camera(box_edges(boxes, self.camera.position[1]))
         clipped, visible = self._clipped(ends)
         lengths = np.where(visible, np.linalg.norm(clipped[..., 1, :] - clipped[..., 0, :], axis=-1), 0.0)
@@ -91,7 +109,7 @@ class RoomEvidence:
         axes = EDGE_AXES[None, :, None]
         response = self.edge_maps[axes, rows.clip(0, map_height - 1), columns.clip(0, map_width - 1)]
         k = self.camera.intrinsics
-        return (response - EDGE_THRESHOLD).mean(axis=-1) * lengths / np.hypot(k.width, k.height)
+        return response, lengths / np.hypot(k.width, k.height)
 
     def _clipped(
         self, ends: Float[np.ndarray, "b 8 2 3"]
@@ -130,13 +148,16 @@ class RoomEvidence:
     def prior(self, boxes: Float[np.ndarray, "b 4"]) -> Float[np.ndarray, "b"]:
         """Log-normal preference for rooms of usual size."""
         sizes = np.stack([boxes[:, 1] - boxes[:, 0], boxes[:, 2] - self.camera.position[1], boxes[:, 3]], axis=1)
-        return -0.5 * ((np.log(np.maximum(sizes, 1e-3) / PRIOR_MEDIAN_M) / PRIOR_LOG_SIGMA) ** 2).sum(axis=1)
+        deviation = np.log(np.maximum(sizes, 1e-3) / PRIOR_MEDIAN_M) / PRIOR_LOG_SIGMA
+        # Beyond two sigma the cost grows linearly: halls and lofts exist.
+        far = np.maximum(np.abs(deviation) - 2.0, 0.0)
+        return -(0.5 * np.minimum(np.abs(deviation), 2.0) ** 2 + far).sum(axis=1)
 
     def score(self, boxes: Float[np.ndarray, "b 4"]) -> Float[np.ndarray, "b"]:
         """The sum that the search maximises; impossible boxes get minus infinity."""
         ox, oy, oz = self.camera.position
         possible = (boxes[:, 0] < ox - 0.2) & (boxes[:, 1] > ox + 0.2) & (boxes[:, 2] > oy + 0.5)
-        possible &= boxes[:, 3] > oz + 0.1
+        possible &= boxes[:, 3] > max(oz + 0.1, min(self.hung_top_m, MAX_CEILING_M))
         total = ORIENTATION_WEIGHT * self.orientation(boxes) + EDGE_WEIGHT * self.edges(boxes).sum(axis=1)
         total += OBJECT_WEIGHT * self.objects(boxes) + PRIOR_WEIGHT * self.prior(boxes)
         return np.where(possible, total, -np.inf)
@@ -202,6 +223,7 @@ def gather_evidence(
     map_scale = min(1.0, MAP_SIDE_PX / max(rgb.shape[:2]))
     middle = 0.5 * (segments[:, :2] + segments[:, 2:])
     directions, ray_axes, weights = _surface_rays(segments[free], axes[free], camera)
+    hung = {o.id for o in objects if category(o.category).mount == "ceiling"}
     solid = [c for c in cuboids if not _on_wall(c, objects)]
     corners = np.array([c.corners_world for c in solid]).reshape(-1, 8, 3)
     return RoomEvidence(
@@ -216,6 +238,7 @@ def gather_evidence(
         object_low=corners.min(axis=1),
         object_high=corners.max(axis=1),
         object_weights=np.array([max(c.confidence, 0.1) for c in solid]),
+        hung_top_m=max((float(c.corners_world[:, 2].max()) for c in cuboids if c.object_id in hung), default=0.0),
     )
 
 
@@ -273,6 +296,16 @@ def _edge_maps(
             distance = cv2.distanceTransform(canvas, cv2.DIST_L2, 3)
             maps[axis] = np.exp(-0.5 * (distance / sigma) ** 2)
     for found in objects:
-        x1, y1, x2, y2 = (round(v * scale) for v in found.box)
-        maps[:, y1:y2, x1:x2] = EDGE_THRESHOLD
+        maps[:, _neutral(found, (rows, columns), scale)] = EDGE_THRESHOLD
     return maps
+
+
+def _neutral(found: DetectedObject, shape: tuple[int, int], scale: float) -> Bool[np.ndarray, "hm wm"]:
+    """Where an object's own edges would mislead: its mask with a margin when that is sure, else its box."""
+    covered = np.zeros(shape, np.uint8)
+    if found.mask_confidence >= SURE_MASK:
+        covered = cv2.resize(found.mask.astype(np.uint8), shape[::-1], interpolation=cv2.INTER_AREA)
+        return cv2.dilate(covered, np.ones((9, 9), np.uint8)).astype(bool)
+    x1, y1, x2, y2 = (round(v * scale) for v in found.box)
+    covered[y1:y2, x1:x2] = 1
+    return covered.astype(bool)

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.architecture.box_planes import box_planes, visible_shares
+from diorama_core.architecture.box_planes import box_planes
 from diorama_core.architecture.box_search import MARGIN_M, find_box
 from diorama_core.architecture.colours import coloured
-from diorama_core.architecture.evidence import EDGE_NAMES, EDGE_THRESHOLD, RoomEvidence, gather_evidence
+from diorama_core.architecture.evidence import EDGE_NAMES, RoomEvidence, gather_evidence
 from diorama_core.architecture.supports import resolve_supports
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry
 from diorama_core.progress import Progress
@@ -19,6 +19,8 @@ from diorama_core.scene.types import Architecture
 MAX_PUSH_M = 2.0
 """Walls give way to objects by at most this; a cuboid farther out is taken for a mistake."""
 GUESS_CONFIDENCE = 0.15
+ENOUGH_BOUNDARY = 0.25
+"""Boundaries in view of this length, in picture diagonals, can be relied on as far as they respond."""
 _BOUNDARIES = {
     "back": ("floor back", "corner left", "corner right", "ceiling back"),
     "left": ("floor left", "corner left", "ceiling left"),
@@ -74,14 +76,13 @@ def pushed_out(box: Float[np.ndarray, "4"], evidence: RoomEvidence) -> Float[np.
 
 
 def face_confidences(box: Float[np.ndarray, "4"], evidence: RoomEvidence) -> dict[str, float]:
-    """How far each face is supported: the mean edge response along its visible boundaries, a guess without any."""
-    gains = dict(zip(EDGE_NAMES, evidence.edges(box[None])[0], strict=True))
-    shares = visible_shares(box, evidence.camera)
+    """How far each face is supported: the edge response along its visible boundaries, a guess without any."""
+    means, lengths = (dict(zip(EDGE_NAMES, v, strict=True)) for v in evidence.boundary_support(box))
     found = {"floor": 0.6}
     for face, names in _BOUNDARIES.items():
-        seen = sum(abs(gains[n]) for n in names)
-        support = sum(gains[n] for n in names) / (1.0 - EDGE_THRESHOLD) if seen > 0 else 0.0
-        found[face] = GUESS_CONFIDENCE + float(np.clip(support, 0.0, 0.7)) if shares[face] > 0 else GUESS_CONFIDENCE
+        length = sum(float(lengths[n]) for n in names)
+        response = sum(float(means[n] * lengths[n]) for n in names) / max(length, 1e-9)
+        found[face] = GUESS_CONFIDENCE + 0.75 * response * min(1.0, length / ENOUGH_BOUNDARY)
     return found
 
 
