@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float, Float32
+from jaxtyping import Bool, Float, Float32, Int
 
 from diorama_core.geometry.depth_grid import points_camera, reduced, smooth_normals_camera
-from diorama_core.geometry.planes import fit_plane
 from diorama_core.perception.camera.frames import world_frame
 from diorama_core.scene.types import Intrinsics
 
@@ -24,7 +23,13 @@ FLOOR_HEIGHT_M = (0.35, 3.5)
 """Camera heights over a floor; nearer level surfaces are tables."""
 BELOW_SHARE = 0.02
 """More than this share of all points clearly below a surface means that it is not the floor."""
-_MAX_TRIALS = 400
+POINT_NOISE_M, DEPTH_NOISE_PER_M = 0.006, 0.003
+"""Deviation of a measured point from its surface: a constant part, and one that grows with the square of depth."""
+NORMAL_NOISE_RAD = float(np.deg2rad(3.0))
+POINTS_PER_FACT, NORMALS_PER_FACT = 10.0, 50.0
+"""So many neighbouring points, or smoothed normals, err together and count as one."""
+_MAX_TRIALS = 300
+_MAX_VOTERS = 4000
 _BIN_M = 0.02
 
 
@@ -93,25 +98,39 @@ def _samples(depth_m: Float32[np.ndarray, "h w"], intrinsics: Intrinsics) -> _Sa
 
 
 def _level_direction(samples: _Samples, up_expected: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"] | None:
-    """The direction that most measured area faces, near the expected up; all candidates are weighed at once."""
+    """The direction near the expected up that most measured area faces and most other area lies along.
+
+    All candidates are weighed at once; the best is refined by least squares on the normals that agree.
+    """
     near = samples.normals @ up_expected > np.cos(UP_CONE_RAD)
     normals, areas = samples.normals[near], _tempered(samples.areas[near])
     if len(normals) < 30:
         return None
-    candidates = normals[np.linspace(0, len(normals) - 1, min(_MAX_TRIALS, len(normals))).astype(int)]
-    agreement = np.exp((normals @ candidates.T - 1.0) / np.deg2rad(5.0) ** 2)
+    candidates = normals[_spread(len(normals), _MAX_TRIALS)]
+    voters = _spread(len(normals), _MAX_VOTERS)
+    agreement = np.exp((normals[voters] @ candidates.T - 1.0) / np.deg2rad(5.0) ** 2)
+    support = areas[voters] @ agreement * (len(normals) / len(voters))
     # Walls cross level surfaces at right angles: a direction that walls lie along is more likely up.
-    across = samples.normals[~near]
-    support = areas @ agreement + 0.3 * (np.abs(across @ candidates.T) < np.sin(np.deg2rad(4.0))).sum(axis=0)
+    others = samples.normals[~near]
+    across = others[_spread(len(others), _MAX_VOTERS)]
+    along_walls = (np.abs(across @ candidates.T) < np.sin(np.deg2rad(4.0))).sum(axis=0)
+    support += 0.3 * along_walls * (len(others) / max(len(across), 1))
     prior = 1.0 - 0.5 * (1.0 - candidates @ up_expected) / (1.0 - np.cos(UP_CONE_RAD))
     up = candidates[int((support * prior).argmax())]
     for limit in (ALIGNED_RAD, LEVEL_RAD, LEVEL_RAD, LEVEL_RAD):
-        members = normals @ up > np.cos(limit)
-        if members.sum() < 10:
+        level = normals[normals @ up > np.cos(limit)]
+        if len(level) < 30:
             return None
-        mean = (normals[members] * areas[members, None]).sum(axis=0)
-        up = mean / np.linalg.norm(mean)
+        upright = samples.normals[np.abs(samples.normals @ up) < np.sin(limit)]
+        form = len(level) * np.eye(3) - level.T @ level + upright.T @ upright
+        least = np.linalg.eigh(form)[1][:, 0]
+        up = least if least @ up > 0 else -least
     return up
+
+
+def _spread(total: int, count: int) -> Int[np.ndarray, "m"]:
+    """At most `count` indices, evenly spread."""
+    return np.linspace(0, total - 1, min(count, total)).astype(int)
 
 
 def _tempered(areas: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
@@ -141,19 +160,28 @@ def _floor(samples: _Samples, up: Float[np.ndarray, "3"]) -> tuple[Float[np.ndar
 def _fitted_floor(
     samples: _Samples, level: Bool[np.ndarray, "n"], up: Float[np.ndarray, "3"], height: float
 ) -> tuple[Float[np.ndarray, "3"], float]:
-    """Least squares through the floor's points, the tolerance growing with distance as the sensor's noise does."""
+    """The direction that fits the floor's points and the walls' normals best, each trusted as far as it reaches.
+
+    A wide floor decides alone; of a far sliver the depth's noise tilts the plane, and upright surfaces keep it straight.
+    Both are quadratic forms in the direction sought, so their sum's least eigenvector is the answer.
+    """
     points = samples.points[level]
+    noise = POINT_NOISE_M + DEPTH_NOISE_PER_M * points[:, 2] ** 2
     start = up
-    for share in (0.06, 0.04, 0.03, 0.03):
-        near = np.abs(points @ up + height) < 0.01 + share * height * np.maximum(points[:, 2] / 3.0, 0.5)
+    for _ in range(4):
+        near = np.abs(points @ up + height) < 3.0 * noise
         if near.sum() < 30:
             break
-        normal, offset = fit_plane(points[near])
-        if normal @ start < 0:
-            normal, offset = -normal, -offset
-        if normal @ start < np.cos(ALIGNED_RAD):  # a sliver of floor does not fix a plane
+        weights = 1.0 / noise[near] ** 2
+        centre = (weights[:, None] * points[near]).sum(axis=0) / weights.sum()
+        off = (points[near] - centre) * np.sqrt(weights / POINTS_PER_FACT)[:, None]
+        upright = samples.normals[np.abs(samples.normals @ up) < np.sin(LEVEL_RAD)]
+        form = off.T @ off + upright.T @ upright / (NORMAL_NOISE_RAD**2 * NORMALS_PER_FACT)
+        candidate = np.linalg.eigh(form)[1][:, 0]
+        candidate = candidate if candidate @ start > 0 else -candidate
+        if candidate @ start < np.cos(ALIGNED_RAD):
             break
-        up, height = normal, -offset
+        up, height = candidate, -float(centre @ candidate)
     return up, height
 
 

@@ -25,11 +25,13 @@ from diorama_core.perception.camera.frames import (
 from diorama_core.scene.types import Intrinsics
 
 SIGMA_RAD = float(np.deg2rad(1.5))
+LEAST_SIGMA_RAD = float(np.deg2rad(0.3))
 PRIOR_WEIGHT = 0.03
 PITCH_PRIOR_RAD = (float(np.deg2rad(12.0)), float(np.deg2rad(20.0)))
 ROLL_SIGMA_RAD = float(np.deg2rad(5.0))
 FOCAL_PRIOR = (0.78, 0.25)
 """Focal length over the longer side: median, and standard deviation of the logarithm."""
+FOCAL_RANGE = (0.35, 2.5)
 FOCAL_GRID = np.geomspace(0.5, 1.6, 13)
 FEW_SEGMENTS = 8.0
 """So many segments are half of full evidence against the prior."""
@@ -152,14 +154,31 @@ def _refined(lines: Lines, R_start: Float[np.ndarray, "3 3"], focal_start: float
     free = 3 if known is not None else 4
     for sigma in np.array([2.0, 1.7, 1.4, 1.2, 1.0, 1.0, 1.0, 1.0]) * SIGMA_RAD:
         step = _gauss_newton_step(lines, R, focal, float(sigma), free, known)
-        R = R @ _rotation(step[:3])
-        if known is None:
-            focal = float(np.clip(focal * np.exp(np.clip(step[3], -0.2, 0.2)), 0.35, 2.5))
+        R, focal = _moved(R, focal, step, known)
+    for _ in range(5):
+        step = _gauss_newton_step(lines, R, focal, _own_sigma(lines, R, focal), free, known)
+        R, focal = _moved(R, focal, step, known)
     R = world_frame(R[2], R[1])
     best = _agreement(signed_sines(lines, R, focal)).max(axis=0)
     support = float(best @ lines.weights)
     prior = PRIOR_WEIGHT * _frame_log_prior(R[2])
     return FrameFit(R, focal, support, support + float(prior) + _focal_log_prior(focal, known))
+
+
+def _moved(
+    R: Float[np.ndarray, "3 3"], focal: float, step: Float[np.ndarray, "free"], known: float | None
+) -> tuple[Float[np.ndarray, "3 3"], float]:
+    if known is None:
+        focal = float(np.clip(focal * np.exp(np.clip(step[3], -0.2, 0.2)), *FOCAL_RANGE))
+    return R @ _rotation(step[:3]), focal
+
+
+def _own_sigma(lines: Lines, R: Float[np.ndarray, "3 3"], focal: float) -> float:
+    """The spread of this picture's agreeing segments: sharp pictures of straight things deserve a finer tolerance."""
+    sines = np.abs(signed_sines(lines, R, focal)).min(axis=0)
+    agreeing = sines[sines < 2.0 * SIGMA_RAD]
+    spread = 1.48 * float(np.median(agreeing)) if len(agreeing) else SIGMA_RAD
+    return float(np.clip(spread, LEAST_SIGMA_RAD, SIGMA_RAD))
 
 
 def _gauss_newton_step(
