@@ -38,7 +38,7 @@ def vanity(size: Size, body: Material, top: Material, bowl: str = "vessel", pull
     """A basin on a cabinet; `bowl` is "vessel" (standing on top) or "slab" (a ceramic slab)."""
     d, w, h = size
     rim = h - 0.18
-    z = rim - (0.13 if bowl == "vessel" else 0.0)
+    z = rim - (0.13 if bowl == "vessel" else 0.03)
     parts = of(body, box((d - 0.04, w - 0.02, z - 0.2), 0.004).moved(-0.01, 0, 0.17), *both_sides(*(taper((x, w / 2 - 0.04, 0), (x, w / 2 - 0.04, 0.18), 0.03, 0.04) for x in (d / 2 - 0.07, -d / 2 + 0.04))))
     if drawers:
         for k in range(2):
@@ -72,7 +72,7 @@ def toilet(size: Size, kind: str = "close", seat: Material = m.PORCELAIN) -> Par
     o = superellipse(length, w * 0.96, square, 44)
     o[:, 0] += 0.04 * length * (1 - (2 * o[:, 1] / w) ** 2)
     low = 0.13 if kind == "wall" else 0.0
-    body = [(0.52, low), (0.55, low + 0.02), (0.6, low + 0.08), (0.86, rim - 0.12), (0.97, rim - 0.03), (0.98, rim)]
+    body = [(0.60, low), (0.62, low + 0.02), (0.66, low + 0.1), (0.86, rim - 0.1), (0.97, rim - 0.03), (0.98, rim)]
     rings = np.array([np.column_stack([o[:, 0] * s - (1 - s) * 0.28 * length, o[:, 1] * s, np.full(len(o), z)]) for s, z in body])
     parts = of(m.PORCELAIN, loft(rings, crease_rad=np.deg2rad(60)).moved(x))
     parts += of(seat, prism(o * 0.99, 0.016, 0.006).moved(x, 0, rim + 0.002), prism(o * np.array([0.97, 0.97]), 0.02, 0.009).moved(x - 0.004, 0, rim + 0.02))

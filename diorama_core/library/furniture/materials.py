@@ -216,7 +216,7 @@ def _pages(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
 
 
 def _brushed(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
-    return _shade(rgb, 0.025 * _noise(rng, (0.6, 40)))
+    return _shade(rgb, 0.012 * _noise(rng, (0.6, 40)))
 
 
 def _wicker(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
