@@ -6,6 +6,8 @@ Colours are linear, as glTF states them; pictures (textures) are sRGB, as they c
 
 from __future__ import annotations
 
+import threading
+from collections import OrderedDict
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -68,7 +70,7 @@ def shape_surfaces(library: ShapeLibrary, shape_id: str, colour_srgb: Colour | N
         shape_id: Which shape; `LibraryError` when unknown.
         colour_srgb: Override of the main material's colour; see `recoloured`.
     """
-    surfaces = tuple(s for s in _read_parts(library.parts(shape_id)) if len(s.faces))
+    surfaces = _kept_surfaces(library.parts(shape_id))
     return surfaces if colour_srgb is None else recoloured(surfaces, colour_srgb)
 
 
@@ -98,6 +100,26 @@ def srgb_to_linear(colour: Float[np.ndarray, "*n"]) -> Float[np.ndarray, "*n"]:
 def linear_to_srgb(light: Float[np.ndarray, "*n"]) -> Float[np.ndarray, "*n"]:
     """Linear light 0 to 1 to display values (IEC 61966-2-1)."""
     return np.where(light <= 0.0031308, light * 12.92, 1.055 * np.maximum(light, 1e-9) ** (1 / 2.4) - 0.055)
+
+
+_KEPT: OrderedDict[int, tuple[trimesh.Scene, tuple[Surface, ...]]] = OrderedDict()
+_KEPT_LOCK = threading.Lock()
+_KEPT_SHAPES = 128
+
+
+def _kept_surfaces(parts: trimesh.Scene) -> tuple[Surface, ...]:
+    """The surfaces of a scene of parts, read once while the same scene object keeps being asked for."""
+    with _KEPT_LOCK:
+        kept = _KEPT.get(id(parts))
+        if kept is not None:
+            _KEPT.move_to_end(id(parts))
+            return kept[1]
+    surfaces = tuple(s for s in _read_parts(parts) if len(s.faces))
+    with _KEPT_LOCK:
+        _KEPT[id(parts)] = (parts, surfaces)  # holding the scene keeps its id from being given to another
+        while len(_KEPT) > _KEPT_SHAPES:
+            _KEPT.popitem(last=False)
+    return surfaces
 
 
 def _read_parts(parts: trimesh.Scene) -> list[Surface]:

@@ -15,7 +15,7 @@ from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import category
 from diorama_core.render.appearance import shape_surfaces
 from diorama_core.render.filters import as_bytes, tone_mapped
-from diorama_core.render.lighting import Effort, Lighting, irradiance, studio
+from diorama_core.render.lighting import TILE, Effort, Lighting, irradiance, studio
 from diorama_core.render.picture import framing_camera
 from diorama_core.render.raycast import PinholeView, pixel_centres
 from diorama_core.render.shading import Shot, shoot
@@ -32,6 +32,8 @@ class StudioView:
     elevation_rad: float
 
 
+EXPOSURE = 0.86
+"""Keeps white shapes apart from a white page."""
 STUDIO_EFFORT = Effort(window_rays=2, sky_rays=3)
 THREE_QUARTER = StudioView(np.radians(32.0), np.radians(22.0))
 FRONTAL = StudioView(np.radians(20.0), np.radians(6.0))
@@ -73,7 +75,7 @@ def render_shape(
     Returns:
         Colours and opacity, not premultiplied, sRGB.
     """
-    shape = library.shape(shape_id)
+    shape = _record(library, shape_id)
     view = view or usual_view(shape)
     alone = World([Placed(shape_surfaces(library, shape_id), np.eye(4), 0)])
     camera = PinholeView(studio_camera(alone.vertices, view, *size))
@@ -87,7 +89,7 @@ def render_shape(
 
 def thumbnail(library: ShapeLibrary, shape_id: str, size: int = 160) -> bytes:
     """A square PNG of a shape on a transparent background; made once per content, size and process."""
-    shape = library.shape(shape_id)
+    shape = _record(library, shape_id)
     key = (shape.content_hash or shape.id, size)
     with _CACHE_LOCK:
         cached = _CACHE.get(key)
@@ -98,6 +100,11 @@ def thumbnail(library: ShapeLibrary, shape_id: str, size: int = 160) -> bytes:
         with _CACHE_LOCK:
             _CACHE[key] = cached
     return cached
+
+
+def _record(library: ShapeLibrary, shape_id: str) -> Shape:
+    """The shape's record; from the list where it is, because `shape` may have to measure support surfaces first."""
+    return next((s for s in library.shapes() if s.id == shape_id), None) or library.shape(shape_id)
 
 
 _CACHE: dict[tuple[str, int], bytes] = {}
@@ -120,7 +127,8 @@ def _shadow(
     bare = np.add(*irradiance(World([]), World([]), places, pixels, light, effort))
     shadow = np.zeros((height, width), np.float32)
     shadow[near] = np.clip(1.0 - shaded.mean(axis=1) / bare.mean(axis=1), 0, 1)
-    smooth = cv2.GaussianBlur(shadow, (0, 0), max(1.0, width / 80)) * _vignette(width, height)
+    whole_blocks = cv2.blur(cv2.blur(shadow, (TILE, TILE)), (TILE, TILE))
+    smooth = cv2.GaussianBlur(whole_blocks, (0, 0), max(1.0, width / 100)) * _vignette(width, height)
     return np.clip(0.8 * (cv2.resize(smooth, (camera.width, camera.height)) - 0.03), 0, 0.8)
 
 
@@ -144,7 +152,7 @@ def _resized(camera: Camera, width: int, height: int) -> Camera:
 def _over(shot: Shot, shadow: Float32[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h w 4"]:
     """The shape over its shadow, as colour and opacity."""
     covered = shot.coverage[..., None]
-    colour = tone_mapped(shot.radiance / np.maximum(covered, 1e-3))
+    colour = tone_mapped(EXPOSURE * shot.radiance / np.maximum(covered, 1e-3))
     opacity = covered + shadow[..., None] * (1 - covered)
     straight = colour * covered / np.maximum(opacity, 1e-3)
     return np.concatenate([as_bytes(straight), as_bytes(opacity)], axis=-1)
