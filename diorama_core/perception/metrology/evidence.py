@@ -9,6 +9,7 @@ from jaxtyping import Bool, Float
 
 from diorama_core.artefacts import DetectedObject
 from diorama_core.library.taxonomy import Category, category
+from diorama_core.perception.metrology.silhouette import CORNER_EDGES, mask_reach
 
 _SHARE_SIGMA = 0.03
 _PIXEL_SIGMA = 3.0
@@ -31,6 +32,14 @@ class Evidence:
     """Whether edge e of object i is covered by object j's box, j being in front."""
     truncated: Bool[np.ndarray, "n 4"]
     """Whether an edge lies on the picture's border."""
+    mask_reach: Float[np.ndarray, "n 4"]
+    """How far masks reach into their boxes' corners (`silhouette.mask_reach`)."""
+    corner_weight: Float[np.ndarray, "n 4"]
+    """Trust in that, 0 where a corner is hidden or cut."""
+    mask_exact: Bool[np.ndarray, "n"]
+    """Whether the mask is the user's own."""
+    fill: Float[np.ndarray, "n"]
+    """Share of the box that the user's own mask fills; 1 where there is only a guess."""
 
     def __len__(self) -> int:
         return len(self.categories)
@@ -49,7 +58,15 @@ def gather(objects: tuple[DetectedObject, ...], width: int, height: int) -> Evid
     border = np.array([0.0, 0.0, width, height])
     truncated = np.abs(boxes - border) <= 0.006 * max(width, height)
     categories = tuple(category(o.category) for o in objects)
-    return Evidence(categories, boxes, sigma, _covered(boxes, height), truncated)
+    covered = _covered(boxes, height)
+    unseen = truncated | covered.any(axis=1).reshape(-1, 4)
+    trust = np.array([o.mask_confidence**2 for o in objects]).reshape(-1, 1)
+    weight = np.column_stack([np.where(unseen[:, e].any(axis=1), 0.0, 1.0) for e in CORNER_EDGES]) * trust
+    reach = np.array([mask_reach(o, b) for o, b in zip(objects, boxes, strict=True)]).reshape(-1, 4)
+    exact = np.array([o.mask_confidence >= 1 for o in objects], dtype=bool)
+    area = np.array([float(o.mask.sum()) for o in objects]) / (boxes[:, 2:] - boxes[:, :2]).prod(axis=1)
+    fill = np.where(exact, np.minimum(area, 1.0), 1.0)
+    return Evidence(categories, boxes, sigma, covered, truncated, reach, weight, exact, fill)
 
 
 def _proper(box: tuple[float, float, float, float], width: int, height: int) -> tuple[float, float, float, float]:

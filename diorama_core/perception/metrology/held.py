@@ -24,8 +24,13 @@ _TOP_SIGMA_M = 0.02
 _SEAT_SIGMA_M = 0.08
 _FOOTPRINT_SIGMA_M = 0.06
 _INNER_LEVEL_COST = 1.5
+_BACK_COST = 2.5
+"""Of lying on a backrest or headboard."""
 _ABOVE_PARENT = 0.5
 """Share of a thing's width that must lie within its supporter's box."""
+_AGAINST_WALLS = frozenset(
+    ["bed", "dresser", "cabinet", "sideboard", "console table", "tv stand", "bookshelf", "wardrobe", "refrigerator"]
+).union(["stove", "night stand", "kitchen counter", "washing machine", "toilet", "piano"])
 _SEATS_WITHOUT_SUPPORT_FLAG_COST = 2.0
 _SHELVED = frozenset({"bookshelf", "shelves", "tv stand", "cabinet", "desk"})
 _USUAL_MIDDLE_M = {
@@ -37,6 +42,7 @@ _USUAL_MIDDLE_M = {
     "shelves": 1.5,
     "radiator": 0.4,
 }
+_WALL_TOP_M, _WALL_TOP_SIGMA_M = 2.0, 0.5
 _MIDDLE_M, _MIDDLE_SIGMA_M = 1.4, 0.4
 
 
@@ -59,14 +65,21 @@ class Extent:
         return np.array([middle_x, self.back_m / 2, 0.0, half_x, self.back_m / 2])
 
 
-def extent_of(corners_world: Float[np.ndarray, "n 8 3"]) -> Extent:
-    """The extent of cuboids; of an ordinary room where there are none."""
+def extent_of(corners_world: Float[np.ndarray, "n 8 3"], names: tuple[str, ...]) -> Extent:
+    """The extent of cuboids of named categories; of an ordinary room where there are none.
+
+    Where a thing that usually stands against a wall is the farthest, the wall is right behind it.
+    """
     if not len(corners_world):
         return Extent(2.0, 2.0, 3.5, 0.4, 0.4, 0.4)
-    left = max(-float(corners_world[..., 0].min()), 1.0)
-    right = max(float(corners_world[..., 0].max()), 1.0)
-    back = max(float(corners_world[..., 1].max()), 1.5)
-    return Extent(left + 0.05, right + 0.05, back + 0.05, 0.25, 0.25, 0.12)
+    sides = (-corners_world[..., 0].min(axis=1), corners_world[..., 0].max(axis=1), corners_world[..., 1].max(axis=1))
+    reach, sigmas = [], []
+    for side, least in zip(sides, (1.0, 1.0, 1.5), strict=True):
+        farthest = int(np.argmax(side))
+        against = names[farthest] in _AGAINST_WALLS
+        reach.append((max(float(side[farthest]), least) + 0.05) * (1.0 if against else 1.1))
+        sigmas.append(0.12 if against else 0.3)
+    return Extent(reach[0], reach[1], reach[2], sigmas[0], sigmas[1], sigmas[2])
 
 
 def supporters_of(evidence: Evidence, index: int, candidates: list[int]) -> list[int]:
@@ -119,7 +132,8 @@ def _levels(evidence: Evidence, parent: int, tall: float) -> list[tuple[float, f
     if category.seat_height_m is not None:
         seat = min(category.seat_height_m, 0.95 * tall)
         cost = 0.0 if category.supports_things else _SEATS_WITHOUT_SUPPORT_FLAG_COST
-        return [(seat, _SEAT_SIGMA_M, cost), (seat + 0.15, _SEAT_SIGMA_M, cost + _INNER_LEVEL_COST)]
+        leaning = (seat + 0.15, _SEAT_SIGMA_M, cost + _INNER_LEVEL_COST)
+        return [(seat, _SEAT_SIGMA_M, cost), leaning, (tall, _SEAT_SIGMA_M, cost + _BACK_COST)]
     if category.name in _SHELVED:
         inner = [(share * tall, 0.06 * tall, _INNER_LEVEL_COST) for share in (0.15, 0.4, 0.65)]
         return [top, *inner]
@@ -146,8 +160,10 @@ def place_on_wall(evidence: Evidence, index: int, height_m: float, room: Extent,
             yaw_rad=yaw,
             base_m=0.0 if door else _usual_base(category.name, mode),
             base_sigma_m=0.0 if door else _MIDDLE_SIGMA_M,
+            top_m=_WALL_TOP_M,
+            top_sigma_m=_WALL_TOP_SIGMA_M,
             wall_m=wall,
-            wall_sigma=sigma,
+            wall_sigma=3.0 * sigma if door else sigma,
             footprint=room.footprint,
             footprint_sigma_m=0.4,
             extra=mode.cost + side_cost + cost,

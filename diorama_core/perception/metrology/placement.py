@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from jaxtyping import Float
 
 from diorama_core.geometry.projection import cuboid_corners
 from diorama_core.library.taxonomy import UNKNOWN, Category
+from diorama_core.perception.metrology.arrangement import arrange, distinct
 from diorama_core.perception.metrology.evidence import Evidence
 from diorama_core.perception.metrology.floor import place_on_floor, solve_from_both_starts
 from diorama_core.perception.metrology.held import (
@@ -19,21 +21,33 @@ from diorama_core.perception.metrology.held import (
     supporters_of,
 )
 from diorama_core.perception.metrology.problem import Cuboids, Problems, View, cuboids
+from diorama_core.perception.metrology.silhouette import corner_costs
 from diorama_core.perception.metrology.solver import Solutions
 
 FLOOR, WALL, CEILING = -1, -2, -3
 """Supporters that are no objects."""
 
-_FREE, _NEVER = 0.0, np.inf
+_NEVER = np.inf
 _ON_TOP_COST = {"floor": 4.0, "surface": 0.0, "wall": 4.0, "ceiling": _NEVER}
 _FLOOR_COST = {"floor": 0.0, "surface": 6.0, "wall": 12.0, "ceiling": _NEVER}
-_WALL_COST = {"floor": 12.0, "surface": 6.0, "wall": 0.0, "ceiling": 6.0}
-_CEILING_COST = {"floor": _NEVER, "surface": 14.0, "wall": _NEVER, "ceiling": 0.0}
-_UNNAMED_COSTS = {"on top": 2.0, "floor": 0.0, "wall": 3.0, "ceiling": 4.0}
-_LARGE = frozenset(
+_WALL_COST = {"floor": 12.0, "surface": 8.0, "wall": 0.0, "ceiling": 6.0}
+_CEILING_COST = {"floor": _NEVER, "surface": _NEVER, "wall": _NEVER, "ceiling": 0.0}
+_UNNAMED_COSTS = {"on top": 4.0, "floor": 0.0, "wall": 5.0, "ceiling": 6.0}
+_LEAST_FLAT_FILL = 0.7
+_NOT_FLAT_COST = 6.0
+"""Of an unnamed thing on a wall whose mask leaves much of its box empty: pictures and boards do not."""
+_SCREENS = frozenset({"television", "monitor"})
+_SCREEN_ON_WALL_COST = 3.0
+_BESIDE_ITS_SUPPORTER_COST = 8.0
+"""For a thing on the floor, or on a wall, that belongs on something its box rests in."""
+_FIXED_TO_WALLS = frozenset({"door", "window", "curtain", "radiator"})
+_LARGE = _FIXED_TO_WALLS | frozenset(
     ("sofa", "bed", "wardrobe", "table", "desk", "bathtub", "piano", "dresser", "bookshelf", "refrigerator", "rug")
 )
-"""Things on the floor that never stand on others."""
+"""Things that never stand on others."""
+_SURE_COST = 12.0
+"""Things on the floor that cost less than this tell how far the room reaches."""
+_CHILD_CAP = 12.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,55 +57,94 @@ class Placement:
     index: int
     supporter: int
     """Index of the supporting object, or FLOOR, WALL, CEILING."""
-    solution: Solutions
+    problem: Problems
     """A batch of one."""
     cuboid: Cuboids
     """A batch of one."""
+    cost: float
+    """Everything that speaks against it, in squared sigmas."""
 
-    @property
-    def cost(self) -> float:
-        """Everything that speaks against it, in squared sigmas."""
-        return float(self.solution.cost[0])
+
+@dataclass(frozen=True, eq=False)
+class _Readings:
+    """Solved rows of one object with their full costs, cheapest first."""
+
+    problems: Problems
+    boxes: Cuboids
+    costs: Float[np.ndarray, "k"]
+
+    def placement(self, row: int, supporter: int) -> Placement:
+        one = np.array([row])
+        box = Cuboids(self.boxes.centre[one], self.boxes.yaw_rad[one], self.boxes.size_m[one])
+        return Placement(int(self.problems.item[row]), supporter, self.problems.rows(one), box, float(self.costs[row]))
 
 
 def place_all(evidence: Evidence, view: View, height_m: float) -> tuple[Placement, ...]:
-    """Place every object, first on the floor, then on others, on walls and below the ceiling, the cheapest way each."""
-    count = len(evidence)
+    """Place every object: first on the floor, then on others, on walls and below the ceiling, the cheapest way each."""
     floor = _on_floor(evidence, view, height_m)
-    room = extent_of(_corners([p for i, p in floor.items() if _likely_on_floor(evidence.categories[i])]))
-    rows: list[Problems] = []
-    supporters: list[int] = []
-    for index in range(count):
-        for supporter, part in _held_rows(evidence, index, floor, room, height_m):
-            rows += part
-            supporters += [supporter] * len(part)
+    telling = [p for p in floor.values() if _tells_the_room(p, evidence)]
+    room = extent_of(_corners(telling), tuple(evidence.categories[p.index].name for p in telling))
     best = dict(floor)
-    if rows:
-        solved = solve_from_both_starts(rows, view)
-        for index in range(count):
-            mine = np.flatnonzero(solved.problems.item == index)
-            if len(mine):
-                chosen = mine[np.argmin(solved.cost[mine])]
-                challenger = _placement(index, supporters[chosen % len(rows)], solved, int(chosen), view)
-                if index not in best or challenger.cost < best[index].cost:
-                    best[index] = challenger
-    return tuple(_without_cycles(best, floor)[i] for i in range(count))
+    for index, challenger in _held(evidence, view, height_m, floor, room).items():
+        if index not in best or challenger.cost < best[index].cost:
+            best[index] = challenger
+    needed = {p.supporter for p in best.values() if p.supporter >= 0}
+    return tuple(floor[i] if i in needed else best[i] for i in range(len(evidence)))
 
 
 def _on_floor(evidence: Evidence, view: View, height_m: float) -> dict[int, Placement]:
+    """Every object that may stand on the floor, arranged so that they fit together."""
     rows: list[Problems] = []
     for index, category in enumerate(evidence.categories):
-        cost = _cost(category, "floor", _FLOOR_COST)
-        if np.isfinite(cost):
+        if category.mount != "ceiling" and category.name not in _FIXED_TO_WALLS:
+            cost = _floor_cost(evidence, index)
             rows += [p.changed(extra=p.extra + cost) for p in place_on_floor(evidence, index, height_m)]
     if not rows:
         return {}
-    solved = solve_from_both_starts(rows, view)
-    found = {}
-    for index in np.unique(solved.problems.item).astype(int):
-        mine = np.flatnonzero(solved.problems.item == index)
-        found[int(index)] = _placement(int(index), FLOOR, solved, int(mine[np.argmin(solved.cost[mine])]), view)
-    return found
+    readings = _readings(solve_from_both_starts(rows, view), evidence, view)
+    standing = [i for i in readings if evidence.categories[i].mount == "floor"]
+    costs = [readings[i].costs + _children_costs(evidence, view, height_m, i, readings[i]) for i in standing]
+    chosen = arrange([readings[i].boxes for i in standing], costs, [evidence.categories[i] for i in standing])
+    picked = dict(zip(standing, chosen, strict=True))
+    return {i: r.placement(picked.get(i, 0), FLOOR) for i, r in readings.items()}
+
+
+def _children_costs(
+    evidence: Evidence, view: View, height_m: float, parent: int, readings: _Readings
+) -> Float[np.ndarray, "k"]:
+    """How badly the things that rest in the parent's box would lie on each of its readings."""
+    total = np.zeros(len(readings.costs))
+    children = [
+        i
+        for i, category in enumerate(evidence.categories)
+        if category.mount == "surface" and parent in supporters_of(evidence, i, [parent])
+    ]
+    if not children or len(total) < 2:
+        return total
+    for reading in range(len(total)):
+        box = readings.placement(reading, FLOOR).cuboid
+        rows = [p for i in children for p in place_on(evidence, i, parent, box, height_m, 0.0)]
+        solved = solve_from_both_starts(rows, view)
+        for child in children:
+            total[reading] += min(float(solved.cost[solved.problems.item == child].min()), _CHILD_CAP)
+    return total
+
+
+def _held(
+    evidence: Evidence, view: View, height_m: float, floor: dict[int, Placement], room: Extent
+) -> dict[int, Placement]:
+    """The cheapest way to hold every object otherwise than by the floor."""
+    best: dict[int, Placement] = {}
+    groups: dict[int, list[Problems]] = {}
+    for index in range(len(evidence)):
+        for supporter, rows in _held_rows(evidence, index, floor, room, height_m):
+            groups.setdefault(supporter, []).extend(rows)
+    for supporter, rows in groups.items():
+        for index, readings in _readings(solve_from_both_starts(rows, view), evidence, view).items():
+            challenger = readings.placement(0, supporter)
+            if index not in best or challenger.cost < best[index].cost:
+                best[index] = challenger
+    return best
 
 
 def _held_rows(
@@ -101,18 +154,51 @@ def _held_rows(
     category = evidence.categories[index]
     options: list[tuple[int, list[Problems]]] = []
     on_top = _cost(category, "on top", _ON_TOP_COST)
+    parents = _possible_parents(evidence, index)
     if np.isfinite(on_top) and category.name not in _LARGE:
-        candidates = [i for i in floor if _likely_on_floor(evidence.categories[i])]
-        for parent in supporters_of(evidence, index, candidates):
+        for parent in parents:
             cost = on_top + _unlikely_parent_cost(evidence.categories[parent])
             options.append((parent, place_on(evidence, index, parent, floor[parent].cuboid, height_m, cost)))
-    on_wall = _cost(category, "wall", _WALL_COST)
-    if np.isfinite(on_wall) and category.name not in _LARGE:
+    on_wall = _SCREEN_ON_WALL_COST if category.name in _SCREENS else _cost(category, "wall", _WALL_COST)
+    if category is UNKNOWN and evidence.fill[index] < _LEAST_FLAT_FILL:
+        on_wall += _NOT_FLAT_COST
+    if category.mount == "surface" and parents:
+        on_wall += _BESIDE_ITS_SUPPORTER_COST
+    if category.name not in _LARGE or category.name in _FIXED_TO_WALLS:
         options.append((WALL, place_on_wall(evidence, index, height_m, room, on_wall)))
     below = _cost(category, "ceiling", _CEILING_COST)
     if np.isfinite(below):
         options.append((CEILING, place_below_ceiling(evidence, index, height_m, room, below)))
     return options
+
+
+def _readings(solved: Solutions, evidence: Evidence, view: View) -> dict[int, _Readings]:
+    """Distinct readings of every object in a batch, masks counted in."""
+    boxes = cuboids(solved.unknowns, solved.problems, view)
+    names = tuple(c.name for c in evidence.categories)
+    masks = (evidence.mask_reach, evidence.corner_weight, evidence.mask_exact)
+    corners = corner_costs(solved.problems, boxes, view, *masks, names)
+    costs = solved.cost + corners
+    found = {}
+    for index in np.unique(solved.problems.item).astype(int):
+        mine = np.flatnonzero(solved.problems.item == index)
+        own = Cuboids(boxes.centre[mine], boxes.yaw_rad[mine], boxes.size_m[mine])
+        kept = mine[distinct(own, costs[mine])]
+        kept_boxes = Cuboids(boxes.centre[kept], boxes.yaw_rad[kept], boxes.size_m[kept])
+        found[int(index)] = _Readings(solved.problems.rows(kept), kept_boxes, costs[kept])
+    return found
+
+
+def _floor_cost(evidence: Evidence, index: int) -> float:
+    category = evidence.categories[index]
+    cost = _cost(category, "floor", _FLOOR_COST)
+    misplaced = category.mount == "surface" and bool(_possible_parents(evidence, index))
+    return cost + _BESIDE_ITS_SUPPORTER_COST if misplaced else cost
+
+
+def _possible_parents(evidence: Evidence, index: int) -> list[int]:
+    standing = [i for i, c in enumerate(evidence.categories) if c.mount == "floor"]
+    return supporters_of(evidence, index, standing)
 
 
 def _cost(category: Category, where: str, table: dict[str, float]) -> float:
@@ -125,23 +211,15 @@ def _unlikely_parent_cost(category: Category) -> float:
     return 0.0 if category.supports_things else 4.0
 
 
-def _likely_on_floor(category: Category) -> bool:
-    return category.mount == "floor"
+def _tells_the_room(placement: Placement, evidence: Evidence) -> bool:
+    """Whether a thing surely stands on the floor where it was placed."""
+    category = evidence.categories[placement.index]
+    bottom_hidden = bool(evidence.hidden(placement.index)[3])
+    return category.mount == "floor" and placement.cost < _SURE_COST and not (category is UNKNOWN and bottom_hidden)
 
 
-def _corners(placements: list[Placement]) -> np.ndarray:
+def _corners(placements: list[Placement]) -> Float[np.ndarray, "n 8 3"]:
     if not placements:
         return np.zeros((0, 8, 3))
     boxes = [p.cuboid for p in placements]
     return np.concatenate([cuboid_corners(b.centre, b.yaw_rad, b.size_m) for b in boxes])
-
-
-def _placement(index: int, supporter: int, solved: Solutions, row: int, view: View) -> Placement:
-    solution = solved.rows(np.array([row]))
-    return Placement(index, supporter, solution, cuboids(solution.unknowns, solution.problems, view))
-
-
-def _without_cycles(best: dict[int, Placement], floor: dict[int, Placement]) -> dict[int, Placement]:
-    """A supporter must itself have stayed on the floor; where it did not, it is put back there."""
-    needed = {p.supporter for p in best.values() if p.supporter >= 0}
-    return {i: floor[i] if i in needed else p for i, p in best.items()}

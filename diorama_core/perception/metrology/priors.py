@@ -24,9 +24,22 @@ _ALSO = {
 }
 """Category: further categories it is used for, with the cost of that reading."""
 
-_UNNAMED = ("chair", "armchair", "sofa", "table", "coffee table", "dresser", "night stand", "bed", "wardrobe")
+_UNNAMED = {
+    "chair": 0.0,
+    "armchair": 1.0,
+    "sofa": 1.5,
+    "table": 1.0,
+    "coffee table": 1.0,
+    "dresser": 1.5,
+    "night stand": 1.0,
+    "bed": 2.5,
+    "wardrobe": 4.5,
+}
+"""What unnamed furniture may be, with the cost of the rarer kinds."""
 _UNNAMED_WIDENED = 1.3
-_UNNAMED_ANYTHING_COST = 3.5
+_UNNAMED_ANYTHING_COST = 6.0
+_USUAL_SPREAD = 3 * np.log(0.16)
+"""Sum of the logarithms of the sigmas of an ordinary category: wider ones explain anything, and pay for it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +61,8 @@ class SizeMode:
 def size_modes(name: str) -> tuple[SizeMode, ...]:
     """The modes of a canonical category, the most usual first."""
     if name == UNKNOWN.name:
-        kinds = tuple(_mode(category(kind).priors[0], 0.0, _UNNAMED_WIDENED) for kind in _UNNAMED)
+        priors = [(category(kind).priors[0], cost) for kind, cost in _UNNAMED.items()]
+        kinds = tuple(_mode(p, cost + _breadth_cost(p), _UNNAMED_WIDENED) for p, cost in priors)
         return (*kinds, _mode(UNKNOWN.priors[0], _UNNAMED_ANYTHING_COST))
     own = tuple(_mode(prior, 0.0) for prior in category(name).priors)
     also = tuple(_mode(category(kind).priors[0], cost) for kind, cost in _ALSO.get(name, ()))
@@ -59,7 +73,7 @@ def size_modes(name: str) -> tuple[SizeMode, ...]:
 def supported_modes(name: str) -> tuple[SizeMode, ...]:
     """The modes of a thing that lies on another; unnamed things are small there."""
     if name == UNKNOWN.name:
-        return (SizeMode(np.log([0.25, 0.3, 0.28]), np.array([0.5, 0.5, 0.5]), 0.0),)
+        return (SizeMode(np.log([0.2, 0.24, 0.24]), np.array([0.7, 0.7, 0.7]), 0.0),)
     return size_modes(name)
 
 
@@ -78,6 +92,11 @@ def hanging_modes(name: str) -> tuple[SizeMode, ...]:
         lamp = category("ceiling lamp").priors[0]
         return (_mode(lamp, 0.0, _UNNAMED_WIDENED),)
     return size_modes(name)
+
+
+def _breadth_cost(prior: SizePrior) -> float:
+    """Twice the difference of log densities at the mode between an ordinary category and this one."""
+    return max(0.0, 2.0 * float(np.log(prior.log_sigma_xyz).sum() - _USUAL_SPREAD))
 
 
 def _mode(prior: SizePrior, cost: float, widened: float = 1.0) -> SizeMode:

@@ -26,10 +26,12 @@ from diorama_core.scene.types import Intrinsics
 UNKNOWNS = 6
 ROBUST_BEYOND = 2.0
 """Residuals beyond this many sigmas count linearly."""
-OCCLUDED_WEIGHT = 0.12
+OCCLUDED_WEIGHT = 0.22
 """Weight of an edge on the side that something in front hides."""
 INVISIBLE_PENALTY = 12.0
 """Sigmas per edge for a cuboid that is not in the picture at all."""
+FAR_M = 6.0
+FAR_LOG_SIGMA = 0.15
 UNTOLD = 1e6
 """A sigma that means that nothing is known."""
 
@@ -147,6 +149,7 @@ def residuals(unknowns: Float[np.ndarray, "n 6"], problems: Problems, view: View
             ((boxes.top_m - problems.top_m) / problems.top_sigma_m)[:, None],
             _outside_footprint(boxes, problems),
             _off_wall(boxes, problems),
+            _too_far(boxes),
         ],
         axis=1,
     )
@@ -178,6 +181,12 @@ def _outside_footprint(boxes: Cuboids, problems: Problems) -> Float[np.ndarray, 
     reach = 0.5 * np.stack([along * depth + across * width, across * depth + along * width], axis=-1)
     room = np.maximum(np.stack([half_depth, half_width], axis=-1) - reach, 0.02)
     return np.maximum(np.abs(offset) - room, 0.0) / problems.footprint_sigma_m[:, None]
+
+
+def _too_far(boxes: Cuboids) -> Float[np.ndarray, "n 1"]:
+    """Rooms rarely reach farther than `FAR_M`."""
+    away = np.linalg.norm(boxes.centre[:, :2], axis=1)
+    return (np.maximum(np.log(np.maximum(away, 1e-6) / FAR_M), 0.0) / FAR_LOG_SIGMA)[:, None]
 
 
 def _off_wall(boxes: Cuboids, problems: Problems) -> Float[np.ndarray, "n 1"]:

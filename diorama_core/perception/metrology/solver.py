@@ -9,11 +9,12 @@ from jaxtyping import Float
 
 from diorama_core.perception.metrology.problem import UNKNOWNS, Problems, View, residuals
 
-_STEP = 1e-4
+_STEP = 1e-5
 _LONGEST_STEP = 0.7
 """Largest change of any unknown in one iteration."""
 _LEAST_GAIN = 1e-3
 """A row whose cost falls by less than this in an accepted step has settled."""
+_MOST_SIGMAS = 2.0
 _LOW = np.array([-8.0, np.log(0.15), np.log(0.005), np.log(0.01), np.log(0.005), -8.0])
 _HIGH = np.array([8.0, np.log(25.0), np.log(8.0), np.log(8.0), np.log(5.0), 8.0])
 
@@ -34,7 +35,8 @@ class Solutions:
 
 def solve(problems: Problems, start: Float[np.ndarray, "n 6"], view: View, iterations: int = 14) -> Solutions:
     """Minimise every row's cost from its start; rows that have settled are left alone."""
-    unknowns = np.clip(start, _LOW, _HIGH)
+    low, high = _bounds(problems)
+    unknowns = np.clip(start, low, high)
     cost = _cost(residuals(unknowns, problems, view))
     damping = np.full(len(problems), 1e-2)
     active = np.arange(len(problems))
@@ -43,7 +45,7 @@ def solve(problems: Problems, start: Float[np.ndarray, "n 6"], view: View, itera
             break
         part, here = problems.rows(active), unknowns[active]
         step = _step(part, here, damping[active], view)
-        there = np.clip(here + step, _LOW, _HIGH)
+        there = np.clip(here + step, low[active], high[active])
         reached = _cost(residuals(there, part, view))
         gain = cost[active] - reached
         better = gain > 0
@@ -54,6 +56,15 @@ def solve(problems: Problems, start: Float[np.ndarray, "n 6"], view: View, itera
     return Solutions(problems, unknowns, cost + problems.extra)
 
 
+def _bounds(problems: Problems) -> tuple[Float[np.ndarray, "n 6"], Float[np.ndarray, "n 6"]]:
+    """Sizes stay within what the category allows, whatever the box says."""
+    low, high = np.tile(_LOW, (len(problems), 1)), np.tile(_HIGH, (len(problems), 1))
+    reach = _MOST_SIGMAS * problems.log_size_sigma
+    low[:, 2:5] = np.maximum(low[:, 2:5], problems.log_size - reach)
+    high[:, 2:5] = np.minimum(high[:, 2:5], problems.log_size + reach)
+    return low, high
+
+
 def _cost(r: Float[np.ndarray, "n r"]) -> Float[np.ndarray, "n"]:
     return (r**2).sum(axis=1)
 
@@ -61,14 +72,14 @@ def _cost(r: Float[np.ndarray, "n r"]) -> Float[np.ndarray, "n"]:
 def _step(
     problems: Problems, unknowns: Float[np.ndarray, "n 6"], damping: Float[np.ndarray, "n"], view: View
 ) -> Float[np.ndarray, "n 6"]:
-    """The damped Gauss-Newton step, with derivatives by central differences."""
+    """The damped Gauss-Newton step, with derivatives by forward differences."""
     count = len(problems)
-    moves = _STEP * np.concatenate([np.eye(UNKNOWNS), -np.eye(UNKNOWNS)])
+    moves = _STEP * np.concatenate([np.zeros((1, UNKNOWNS)), np.eye(UNKNOWNS)])
     probes = (unknowns[None] + moves[:, None]).reshape(-1, UNKNOWNS)
-    repeated = problems.rows(np.tile(np.arange(count), 2 * UNKNOWNS))
-    values = residuals(probes, repeated, view).reshape(2, UNKNOWNS, count, -1)
-    jacobian = ((values[0] - values[1]) / (2 * _STEP)).transpose(1, 2, 0)
-    r = residuals(unknowns, problems, view)
+    repeated = problems.rows(np.tile(np.arange(count), UNKNOWNS + 1))
+    values = residuals(probes, repeated, view).reshape(UNKNOWNS + 1, count, -1)
+    r = values[0]
+    jacobian = ((values[1:] - r) / _STEP).transpose(1, 2, 0)
     normal = np.einsum("nri,nrj->nij", jacobian, jacobian)
     gradient = np.einsum("nri,nr->ni", jacobian, r)
     diagonal = np.einsum("nii->ni", normal)
