@@ -21,12 +21,12 @@ class Views:
     def room_view(self, client_id: int | None) -> None:
         """See the whole room."""
         view = self._plain(client_id)
-        view.look(*room_view(self._room.scene))
+        view.look(*room_view(self._room.scene, view.aspect))
 
     def top(self, client_id: int | None) -> None:
         """See the room from above."""
         view = self._plain(client_id)
-        view.look(*top_view(self._room.scene))
+        view.look(*top_view(self._room.scene, view.aspect))
 
     def photo(self, client_id: int | None) -> None:
         """Look through the photo's camera, the photo behind the model."""
@@ -72,9 +72,6 @@ class Views:
 def build_commands(room: Room, gestures: Gestures, views: Views) -> CommandTable:
     """Every command of the editor."""
 
-    def told(client_id: int | None, message: str) -> None:
-        room.notice(client_id, message)
-
     def escape(client_id: int | None) -> None:
         if not gestures.cancel():
             room.select(())
@@ -96,10 +93,8 @@ def build_commands(room: Room, gestures: Gestures, views: Views) -> CommandTable
 
     return CommandTable(
         (
-            Command(
-                "undo", "Undo", lambda c: told(c, editing.undo(room)), "Z", "cmd/ctrl", "Take back the last change"
-            ),
-            Command("redo", "Redo", lambda c: told(c, editing.redo(room)), "Z", "cmd/ctrl+shift", "Do it again"),
+            Command("undo", "Undo", lambda c: editing.undo(room), "Z", "cmd/ctrl", "Take back the last change"),
+            Command("redo", "Redo", lambda c: editing.redo(room), "Z", "cmd/ctrl+shift", "Do it again"),
             Command("view_room", "Room view", views.room_view, "R", None, "See the whole room"),
             Command("view_photo", "Photo view", views.photo, "P", None, "Look through the photo's camera"),
             Command("view_top", "Top view", views.top, "T", None, "See the room from above"),

@@ -12,13 +12,15 @@ from jaxtyping import Float, UInt8
 
 from diorama_app.viewport import quaternion, reduced
 from diorama_core.artefacts import Box, LabelledBox
-from diorama_core.scene.types import Camera, Scene
+from diorama_core.scene.types import Camera, Scene, box_corners
 
 BOARD_CENTRE = np.array([0.0, 0.0, 400.0])
 """The photo stands here, far above the room, while boxes are drawn on it."""
 BOARD_HEIGHT_M = 1.0
 BOARD_DISTANCE_M = 1.25
 DEFAULT_FOV_RAD = np.radians(50.0)
+USUAL_ASPECT = 0.93
+"""Of the 3D view between the panels in a window of 1280 x 720."""
 BOX_COLOURS = ((47, 111, 214), (214, 84, 47), (38, 150, 96), (160, 80, 200), (200, 150, 20), (20, 150, 170))
 
 NoticeKind = Literal["info", "good", "bad"]
@@ -86,8 +88,9 @@ class ClientView:
         """Width over height of this browser's 3D view."""
         return float(self._client.camera.aspect)
 
-    def notice(self, message: str, kind: NoticeKind = "info", seconds: float = 6.0) -> None:
-        """A short notice at the edge of the view."""
+    def notice(self, message: str, kind: NoticeKind = "info", seconds: float | None = None) -> None:
+        """A short notice at the edge of the view; what went wrong stays longer."""
+        seconds = seconds or (9.0 if kind == "bad" else 4.0)
         title = {"info": "Diorama", "good": "Done", "bad": "That did not work"}[kind]
         colour = {"info": (47, 111, 214), "good": (38, 150, 96), "bad": (210, 62, 50)}[kind]
         self._client.add_notification(title, message, color=colour, auto_close_seconds=seconds)
@@ -196,12 +199,12 @@ class ClientView:
             )
         ]
 
-        @scene.on_rect_select()
-        async def _(event: viser.SceneRectSelectEvent) -> None:
+        async def selected(event: viser.SceneRectSelectEvent) -> None:
             box = self._box_of(event)
             if box is not None:
                 on_box(box)
 
+        scene.on_rect_select()(selected)
         self._face_board(board)
 
     def close_board(self) -> None:
@@ -261,27 +264,38 @@ class ClientView:
         return None if x2 - x1 < 3 or y2 - y1 < 3 else (float(x1), float(y1), float(x2), float(y2))
 
 
-def room_view(scene: Scene) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+def room_view(scene: Scene, aspect: float = USUAL_ASPECT) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
     """A place above and behind the photo's camera, and the point to look at, that show the whole room."""
     low, high = bounds(scene)
     centre = (low + high) / 2
-    radius = max(float(np.linalg.norm(high - low)) / 2, 0.8)
-    toward = np.array([-0.45, -1.0, 0.62])
+    back = np.array([-0.45, -1.0, 0.62])
     if scene.camera is not None:
-        back = scene.camera.position - centre
-        flat = np.array([back[0], back[1], 0.0])
+        flat = (scene.camera.position - centre) * (1.0, 1.0, 0.0)
         if np.linalg.norm(flat) > 0.3:
             flat /= np.linalg.norm(flat)
-            toward = flat + 0.35 * np.array([-flat[1], flat[0], 0.0]) + np.array([0.0, 0.0, 0.62])
-    return centre + toward / np.linalg.norm(toward) * radius * 2.3, centre - np.array([0.0, 0.0, 0.12 * radius])
+            back = flat + 0.35 * np.array([-flat[1], flat[0], 0.0]) + np.array([0.0, 0.0, 0.62])
+    return _far_enough(low, high, back / np.linalg.norm(back), aspect), centre
 
 
-def top_view(scene: Scene) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+def top_view(scene: Scene, aspect: float = USUAL_ASPECT) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
     """Straight above the room."""
     low, high = bounds(scene)
+    back = np.array([0.0, -1e-3, 1.0])
+    return _far_enough(low, high, back / np.linalg.norm(back), aspect), (low + high) / 2
+
+
+def _far_enough(
+    low: Float[np.ndarray, "3"], high: Float[np.ndarray, "3"], back: Float[np.ndarray, "3"], aspect: float
+) -> Float[np.ndarray, "3"]:
+    """The nearest place in the direction `back` of a box's centre from which all of the box is in view."""
     centre = (low + high) / 2
-    span = max(float((high - low)[:2].max()), 1.5)
-    return centre + np.array([0.0, -1e-3, 1.25 * span + (high - low)[2] / 2]), centre
+    corners = box_corners(np.maximum(high - low, 0.5))
+    right = np.cross(-back, (0.0, 0.0, 1.0))
+    right /= np.linalg.norm(right)
+    up = np.cross(right, -back)
+    half = np.tan(DEFAULT_FOV_RAD / 2)
+    needed = np.maximum(np.abs(corners @ right) / (half * max(aspect, 0.2)), np.abs(corners @ up) / half)
+    return centre + back * float((needed + corners @ back).max()) * 1.04
 
 
 def bounds(scene: Scene) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:

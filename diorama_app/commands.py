@@ -58,8 +58,8 @@ class CommandTable:
             handle = gui.add_command(
                 command.label,
                 description=command.hint or None,
-                hotkey=command.hotkey,  # type: ignore[arg-type]
-                modifier=command.modifier,  # type: ignore[arg-type]
+                hotkey=command.hotkey,
+                modifier=command.modifier,
             )
             handle.on_trigger(_asker(command, ask))
 

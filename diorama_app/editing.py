@@ -17,18 +17,16 @@ from diorama_core.scene.types import Candidate, Pose, Scene, SceneObject, Suppor
 NUDGE_MERGE = "fields"
 
 
-def undo(room: Room) -> str:
+def undo(room: Room) -> None:
     """Take back the last change."""
-    label = room.document.undo()
+    room.document.undo()
     room.changed()
-    return f"Undid: {label}"
 
 
-def redo(room: Room) -> str:
+def redo(room: Room) -> None:
     """Do again what was undone."""
-    label = room.document.redo()
+    room.document.redo()
     room.changed()
-    return f"Did again: {label}"
 
 
 def delete_selected(room: Room) -> None:

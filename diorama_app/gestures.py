@@ -37,11 +37,12 @@ class Gestures:
         self._last_pick: tuple[int, Any] | None = None
         room.on_pick = self._picked
 
-        @room.server.scene.on_click()
-        async def _(event: viser.SceneClickEvent) -> None:
+        async def clicked(event: viser.SceneClickEvent) -> None:
             # A click on an object also arrives here, after the object's own event.
             if self._last_pick != (event.client_id, event.screen_pos):
                 room.post(event.client_id, lambda: room.select(()))
+
+        room.server.scene.on_click()(clicked)
 
     def set_mode(self, mode: GizmoMode) -> None:
         """Which handles the gizmo has: sliding and turning on the floor, or everything."""
@@ -81,13 +82,13 @@ class Gestures:
             position=pose.position,
         )
 
-        @gizmo.on_update
-        async def _(event: viser.TransformControlsEvent) -> None:
+        async def dragged(event: viser.TransformControlsEvent) -> None:
             wxyz, position = np.array(event.target.wxyz), np.array(event.target.position)
             client, phase = event.client_id, event.phase
             key = "gizmo" if phase == "update" else None
             self._room.post(client, lambda: self._dragged(phase, wxyz, position), key=key)
 
+        gizmo.on_update(dragged)
         return gizmo
 
     def _remove(self) -> None:

@@ -60,6 +60,7 @@ STYLE = """
 .dio .job .words { flex: 1 1 auto; min-width: 0; }
 .dio .meter { height: 6px; border-radius: 3px; background: #dde3ea; overflow: hidden; margin-top: 5px; }
 .dio .meter i { display: block; height: 100%; background: #2f6fd6; transition: width .2s; }
+.dio .small { width: 48px; height: 36px; object-fit: cover; border-radius: 4px; }
 .dio .photo { width: 100%; border-radius: 8px; display: block; }
 canvas[data-engine] { background: linear-gradient(#f3f5f8, #dfe4eb); }
 </style>
@@ -98,12 +99,12 @@ class LiveHtml:
             gui.add_html(f'<style>div:has(> .mantine-Flex-root label[for="{uuid}"]){{display:none}}</style>')
             self._frame = f'<div class="dio" onclick="{_SEND % uuid}">%s</div>'
 
-            @field.on_update
-            async def _(event: viser.GuiEvent[Any]) -> None:
+            async def clicked(event: viser.GuiEvent[Any]) -> None:
                 action = _read_action(event)
                 if action is not None:
                     on_action(action)
 
+            field.on_update(clicked)
         else:
             self._frame = '<div class="dio">%s</div>'
         self._handle = gui.add_html("", visible=False)

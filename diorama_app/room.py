@@ -158,7 +158,7 @@ class Room:
             view.show_backdrop(None, None, 1.0)
             view.show_overlay(None, None, 0.0)
             if not view.drawing:
-                view.look(position, target)
+                view.look(*room_view(self.scene, view.aspect))
 
     # -- browsers ---------------------------------------------------------------------------------------------
 

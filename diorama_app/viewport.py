@@ -71,8 +71,9 @@ class Viewport:
         if low_graphics:
             scene.configure_environment_map(None)
             scene.add_light_hemisphere(
-                "/lights/sky", sky_color=(255, 252, 246), ground_color=(176, 170, 162), intensity=1.1
+                "/lights/sky", sky_color=(255, 252, 246), ground_color=(176, 170, 162), intensity=1.0
             )
+            scene.add_light_ambient("/lights/around", color=(255, 250, 244), intensity=0.9)
         else:
             scene.configure_environment_map("apartment", environment_intensity=0.35)
             scene.add_light_hemisphere(

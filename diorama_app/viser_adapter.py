@@ -93,7 +93,7 @@ def create_server(
     _check_port(host, port)
     with _guarded_serve(visitors), contextlib.redirect_stdout(io.StringIO()):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=False)
-    server.request_share_url = _no_share_url  # type: ignore[method-assign]
+    server.request_share_url = _no_share_url
     _cap_uploads(server, too_large)
     return server
 
@@ -172,7 +172,7 @@ def _add_headers(response: Response, *, remember: str | None) -> None:
     response.headers["Referrer-Policy"] = "no-referrer"
     if remember is not None:
         cookie = SimpleCookie({TOKEN_COOKIE: remember})
-        cookie[TOKEN_COOKIE].update({"path": "/", "httponly": True, "samesite": "Strict"})
+        cookie[TOKEN_COOKIE].update({"path": "/", "httponly": "1", "samesite": "Strict"})
         response.headers["Set-Cookie"] = cookie[TOKEN_COOKIE].OutputString()
 
 

@@ -6,7 +6,11 @@ import re
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
+
+import numpy as np
+import viser.transforms as vtf
 
 from diorama_app.drafts import Draft
 from diorama_app.room import Room
@@ -19,6 +23,9 @@ from diorama_core.scene.types import Pose, Scene
 
 PREVIEW_EVERY_S = 0.05
 """Twenty pictures a second are what reaches a browser."""
+
+GLIDE_S = 0.9
+"""How long a layout that was found at once takes to settle before people's eyes."""
 
 Costs = Sequence[tuple[str, float]]
 
@@ -109,10 +116,30 @@ def optimise(room: Room, recipe_name: str, on_progress: Callable[[LayoutRun], No
         except BaseException:
             room.desk.post(room.refresh)  # cancelled or failed: everything goes back to the document
             raise
+        if time.monotonic() - run.started_at < GLIDE_S:
+            _glide(room, start, final, progress)
         room.desk.post(lambda: _arranged(room, start, final, report, run, on_progress))
 
     room.jobs.start("optimise", "Arranging the layout", work)
     return run
+
+
+def _glide(room: Room, start: Scene, final: Scene, progress: Progress) -> None:
+    """A recipe that finds its answer at once is still watched on its way there."""
+    frames = int(GLIDE_S / PREVIEW_EVERY_S)
+    for frame in range(1, frames + 1):
+        share = 0.5 - 0.5 * np.cos(np.pi * frame / frames)
+        between = {o.id: _between(start.object(o.id).pose, o.pose, float(share)) for o in final.objects}
+        room.desk.post(partial(room.preview, between), key="preview")
+        time.sleep(PREVIEW_EVERY_S)
+        progress.report(1.0, "Settling")
+
+
+def _between(a: Pose, b: Pose, share: float) -> Pose:
+    turn = vtf.SO3.from_matrix(b.R_world_object @ a.R_world_object.T)
+    R = vtf.SO3.exp(share * turn.log()).as_matrix() @ a.R_world_object
+    u, _, vt = np.linalg.svd(R)
+    return Pose(u @ vt, a.position + share * (b.position - a.position), a.scale + share * (b.scale - a.scale))
 
 
 def _show_step(
@@ -121,9 +148,10 @@ def _show_step(
     room.preview(untouched(room.scene, start, scene))
     run.times_s.append(now - run.started_at)
     for name, value in costs:
-        run.costs.setdefault(name, [float("nan")] * (len(run.times_s) - 1)).append(float(value))
+        # A cost that starts later or ends earlier than the others keeps its first or last value there.
+        run.costs.setdefault(name, [float(value)] * (len(run.times_s) - 1)).append(float(value))
     for values in run.costs.values():
-        values.extend([float("nan")] * (len(run.times_s) - len(values)))
+        values.extend([values[-1]] * (len(run.times_s) - len(values)))
     tell(run)
 
 

@@ -38,7 +38,7 @@ class Alternatives:
         size = [e * s for e, s in zip(candidate.shape_size_m, candidate.pose.scale, strict=True)]
         picture = self._room.thumbnails.html(candidate.shape_id)
         name = text(shape_caption(self._room, candidate.shape_id))
-        about = f"{size[1]:.2f} × {size[0]:.2f} × {size[2]:.2f} m"
+        about = f"{100 * size[1]:.0f} × {100 * size[0]:.0f} × {100 * size[2]:.0f} cm"
         return (
             f'<button type="button" class="tile {"on" if current else ""}" data-do="swap" data-arg="{index}" '
             f'title="{name}&#10;{about} (width, depth, height)&#10;score {candidate.score:.2f}">'

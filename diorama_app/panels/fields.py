@@ -9,19 +9,21 @@ from typing import Any
 def on_change(handle: Any, act: Callable[[Any, int], None]) -> None:
     """Call `act(value, client id)` when a person changes a field; not when the program does."""
 
-    @handle.on_update
-    async def _(event: Any) -> None:
+    async def changed(event: Any) -> None:
         if event.client_id is not None:
             act(event.target.value, event.client_id)
+
+    handle.on_update(changed)
 
 
 def on_press(handle: Any, act: Callable[[int], None]) -> None:
     """Call `act(client id)` when a person presses a button."""
 
-    @handle.on_click
-    async def _(event: Any) -> None:
+    async def pressed(event: Any) -> None:
         if event.client_id is not None:
             act(event.client_id)
+
+    handle.on_click(pressed)
 
 
 def show_value(handle: Any, value: Any) -> None:

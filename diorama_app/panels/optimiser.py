@@ -14,6 +14,18 @@ from diorama_app.work import LayoutRun
 RECIPES = {"Tidy up (feasible)": "feasible", "As in the paper": "paper", "All in one": "all-in-one"}
 COLOURS = ("#2f6fd6", "#d6542f", "#269660", "#a050c8", "#c89614", "#149696", "#7a5a3a", "#808080")
 CURVE_POINTS = 240
+SHARES = frozenset({"orientation", "placement", "structure", "in_support"})
+FIGURES = {
+    "orientation": "Upright on their support",
+    "placement": "Touching their support",
+    "structure": "Both",
+    "in_support": "Inside their support",
+    "part_overlap_m": "Deepest overlap",
+    "part_overlap_mean_m": "Mean overlap",
+    "overlapping_pairs": "Overlapping pairs",
+    "moved_m": "Moved, mean",
+    "moved_most_m": "Moved, most",
+}
 
 
 class Optimiser:
@@ -82,15 +94,20 @@ def _report(run: LayoutRun) -> str:
     report = run.report
     if report is None:
         return ""
-    names = list(dict.fromkeys([*report.before, *report.after]))
-    rows = "".join(
-        f"<tr><td>{text(name)}</td><td>{_number(report.before.get(name))} → {_number(report.after.get(name))}</td></tr>"
-        for name in names
-    )
+    names = [n for n in dict.fromkeys([*report.before, *report.after]) if n in report.after]
+    rows = "".join(_row(name, report.before.get(name), report.after[name]) for name in names)
     reasons = "".join(f"<p>{text(reason)}</p>" for reason in report.reasons)
     why = f'<div class="card warn" style="margin-top:6px">{reasons}</div>' if reasons else ""
     return f"<h4>Before → after ({report.seconds:.1f} s)</h4><table>{rows}</table>{why}"
 
 
-def _number(value: float | None) -> str:
-    return "–" if value is None else f"{value:.3g}"
+def _row(name: str, before: float | None, after: float) -> str:
+    label = FIGURES.get(name, name.removesuffix("_m").replace("_", " "))
+    first = "–" if before is None else _figure(name, before)
+    return f"<tr><td>{text(label)}</td><td>{first} → {_figure(name, after)}</td></tr>"
+
+
+def _figure(name: str, value: float) -> str:
+    if name in SHARES:
+        return f"{100 * value:.0f}%"
+    return f"{100 * value:.1f} cm" if name.endswith("_m") else f"{value:.3g}"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -83,20 +82,21 @@ class PhotoPanel:
     def _upload(self, gui: viser.GuiApi, kind: str, label: str, mime_type: str) -> None:
         handle = gui.add_upload_button(label, mime_type=mime_type)
 
-        @handle.on_upload
-        async def _(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
+        async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
             file = event.target.value
             self._room.post(event.client_id, lambda: self._received(kind, file.name, file.content, event.client_id))
+
+        handle.on_upload(uploaded)
 
     def _received(self, kind: str, name: str, content: bytes, client_id: int | None) -> None:
         draft = self._room.draft
         if kind == "photo":
-            files, boxes = {"photo": content}, ()
+            files: dict[str, bytes] = {"photo": content}
         elif draft.photo is None:
             raise InputError("upload the photo first, then what goes with it")
         else:
-            files, boxes = {**draft.files, kind: content}, draft.boxes
-        made = self._read(files, Draft(name=name, boxes=boxes) if kind == "photo" else draft)
+            files = {**draft.files, kind: content}
+        made = self._read(files, Draft(name=name) if kind == "photo" else draft)
         if kind == "boxes" and made.inputs is not None:
             made = replace(made, boxes=made.inputs.boxes)
         self._room.draft = made
@@ -222,7 +222,8 @@ def _box_list(draft: Draft) -> str:
         on = "on" if index == draft.highlighted else ""
         unknown = ' <span class="dim">as an object</span>' if box.category == "object" else ""
         rows.append(
-            f'<div class="row {on}" data-do="mark" data-arg="{index}"><span class="name">{text(box.label)}{unknown}</span>'
+            f'<div class="row {on}" data-do="mark" data-arg="{index}">'
+            f'<span class="name">{text(box.label)}{unknown}</span>'
             + button("✕", "drop", index, title="Delete this box")
             + "</div>"
         )
@@ -251,6 +252,3 @@ def _jpeg_uri(rgb: UInt8[np.ndarray, "h w 3"]) -> str:
     buffer = io.BytesIO()
     Image.fromarray(reduced(rgb, 480)).save(buffer, "JPEG", quality=80)
     return "data:image/jpeg;base64," + base64.b64encode(buffer.getvalue()).decode()
-
-
-Opened = Callable[[int | None], None]

@@ -118,7 +118,7 @@ def _small_picture(path: Path) -> str:
     except OSError:
         return ""
     uri = base64.b64encode(buffer.getvalue()).decode()
-    return f'<img alt="" style="width:48px;height:36px;object-fit:cover;border-radius:4px" src="data:image/jpeg;base64,{uri}">'
+    return f'<img alt="" class="small" src="data:image/jpeg;base64,{uri}">'
 
 
 def _shortcuts(commands: CommandTable) -> str:

@@ -71,8 +71,8 @@ class Properties:
         if not self._room.scene.objects:
             return '<div class="card">The room is empty. Insert furniture from the <b>Library</b> tab.</div>'
         return (
-            '<div class="card"><b>Click an object</b> in the view or in the list to move it, swap it or change its size.'
-            "<br><span class='dim'>Shift-click selects several; Esc clears.</span></div>"
+            '<div class="card"><b>Click an object</b> in the view or in the list to move it, swap it or '
+            "change its size.<br><span class='dim'>Shift-click selects several; Esc clears.</span></div>"
         )
 
     def _card(self, item: SceneObject) -> str:

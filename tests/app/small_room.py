@@ -88,13 +88,19 @@ def _glb(shape_id: str) -> bytes:
 
 def _chair(size: tuple[float, float, float]) -> list:
     x, y, z = size
-    legs = [((0.04, 0.04, 0.5 * z), (sx * (x / 2 - 0.02), sy * (y / 2 - 0.02), -0.25 * z)) for sx in (-1, 1) for sy in (-1, 1)]
+    legs = [
+        ((0.04, 0.04, 0.5 * z), (sx * (x / 2 - 0.02), sy * (y / 2 - 0.02), -0.25 * z))
+        for sx in (-1, 1)
+        for sy in (-1, 1)
+    ]
     return [*legs, ((x, y, 0.05), (0, 0, 0.02)), ((0.04, y, 0.5 * z), (-x / 2 + 0.02, 0, 0.25 * z))]
 
 
 def _table(size: tuple[float, float, float]) -> list:
     x, y, z = size
-    legs = [((0.06, 0.06, z - 0.04), (sx * (x / 2 - 0.05), sy * (y / 2 - 0.05), -0.02)) for sx in (-1, 1) for sy in (-1, 1)]
+    legs = [
+        ((0.06, 0.06, z - 0.04), (sx * (x / 2 - 0.05), sy * (y / 2 - 0.05), -0.02)) for sx in (-1, 1) for sy in (-1, 1)
+    ]
     return [*legs, ((x, y, 0.04), (0, 0, z / 2 - 0.02))]
 
 

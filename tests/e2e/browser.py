@@ -1,0 +1,165 @@
+"""A real Chromium on a real server, driven as a person would: mouse and keys on canvas and panels."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from playwright.sync_api import BrowserContext, Locator, Page, expect
+
+from diorama_app.server import Running
+
+FLAGS = (
+    "--no-sandbox",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--ignore-gpu-blocklist",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-timer-throttling",
+    "--disable-backgrounding-occluded-windows",
+    "--disable-renderer-backgrounding",
+    "--disable-dev-shm-usage",
+    "--disable-extensions",
+)
+SIZE = (1100, 640)
+PATIENCE_MS = 30_000
+
+SETTLED = """() => {
+    const m = window.__viserMutable, info = window.__viserTestpoints && window.__viserTestpoints.rendererInfo;
+    if (!m || !info || m.messageQueue.length > 0) { window.__quietFrom = null; return false; }
+    if (window.__quietFrom == null) { window.__quietFrom = info.render.frame; return false; }
+    return info.render.frame >= window.__quietFrom + 2;
+}"""
+
+PROJECT = """(point) => {
+    const m = window.__viserMutable, camera = m.camera, root = m.nodeRefFromName[''];
+    const p = camera.position.clone().set(point[0], point[1], point[2]);
+    root.updateWorldMatrix(true, false); camera.updateMatrixWorld();
+    p.applyMatrix4(root.matrixWorld).project(camera);
+    const box = m.canvas.getBoundingClientRect();
+    return [box.left + (p.x + 1) / 2 * box.width, box.top + (1 - p.y) / 2 * box.height];
+}"""
+
+ON_CANVAS = "([x, y]) => (document.elementFromPoint(x, y) || {}).tagName === 'CANVAS'"
+
+
+def chromium() -> str | None:
+    """Where a Chromium is, if there is one."""
+    known = [shutil.which(name) for name in ("chromium", "chromium-browser", "google-chrome", "chrome")]
+    return next((path for path in known if path), None)
+
+
+@dataclass
+class EditorPage:
+    """One tab of the editor."""
+
+    page: Page
+    running: Running
+    errors: list[str] = field(default_factory=list)
+
+    @classmethod
+    def open(cls, context: BrowserContext, running: Running) -> EditorPage:
+        page = context.new_page()
+        page.set_default_timeout(PATIENCE_MS)
+        made = cls(page, running)
+        page.on("pageerror", lambda error: made.errors.append(str(error)))
+        made.load()
+        return made
+
+    def load(self) -> None:
+        joined = set(self.running.room.views)
+        self.page.goto(f"http://127.0.0.1:{self.running.port}/?fixedDpr=1")
+        self.settle()
+        self.until(lambda: bool(set(self.running.room.views) - joined))
+        self.dismiss_notices()
+
+    def settle(self) -> None:
+        """Wait until the page has handled every message and drawn two frames since."""
+        self.page.evaluate("window.__quietFrom = null")
+        self.page.wait_for_function(SETTLED, polling=50)
+
+    def until(self, holds: Callable[[], bool], what: str = "") -> None:
+        """Poll the program's own state with the page's clock."""
+        for _ in range(PATIENCE_MS // 50):
+            if holds():
+                return
+            self.page.wait_for_timeout(50)
+        raise AssertionError(f"did not come about: {what or holds}")
+
+    def dismiss_notices(self) -> None:
+        for _ in range(6):
+            close = self.page.locator(".mantine-Notification-closeButton")
+            if close.count() == 0:
+                return
+            close.first.click(force=True)
+            self.page.wait_for_timeout(250)
+
+    def button(self, name: str) -> Locator:
+        return self.page.get_by_role("button", name=name, exact=True)
+
+    def tab(self, name: str) -> None:
+        self.page.get_by_role("tab", name=name, exact=True).click()
+
+    def row(self, label: str) -> Locator:
+        return self.page.locator(".dio .row .name").get_by_text(label, exact=True)
+
+    def notice(self, words: str) -> None:
+        """A notice with these words is shown."""
+        expect(self.page.locator(".mantine-Notification-root").filter(has_text=words).first).to_be_visible()
+
+    def place_of(self, world: np.ndarray) -> tuple[float, float]:
+        """Where a point of the world is on the page."""
+        x, y = self.page.evaluate(PROJECT, [float(v) for v in world])
+        return float(x), float(y)
+
+    def click_world(self, world: np.ndarray, *, modifiers: tuple[str, ...] = ()) -> None:
+        """Click on the canvas where a point of the world is seen."""
+        self.settle()
+        x, y = self.place_of(world)
+        assert self.page.evaluate(ON_CANVAS, [x, y]), f"something covers the canvas at {x:.0f}, {y:.0f}"
+        for key in modifiers:
+            self.page.keyboard.down(key)
+        self.page.mouse.move(x, y)
+        self.settle()
+        self.page.mouse.click(x, y)
+        for key in modifiers:
+            self.page.keyboard.up(key)
+
+    def drag(self, start: tuple[float, float], end: tuple[float, float], steps: int = 8) -> None:
+        """Drag on the page with the left button."""
+        self.page.mouse.move(*start)
+        self.settle()
+        self.page.mouse.down()
+        for i in range(1, steps + 1):
+            share = i / steps
+            self.page.mouse.move(start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1]))
+            self.page.wait_for_timeout(30)
+        self.settle()
+        self.page.mouse.up()
+
+    def upload(self, button: str, path: Path) -> None:
+        with self.page.expect_file_chooser() as chosen:
+            self.button(button).click()
+        chosen.value.set_files(str(path))
+
+    def picture(self, path: Path) -> None:
+        self.settle()
+        self.page.screenshot(path=str(path))
+
+    def mean_colour(self, world: np.ndarray, radius: int = 2) -> np.ndarray:
+        """What is drawn on the canvas around a point of the world, 0 to 255."""
+        import io
+
+        from PIL import Image
+
+        x, y = self.place_of(world)
+        clip = {"x": x - radius, "y": y - radius, "width": 2 * radius + 1, "height": 2 * radius + 1}
+        return np.asarray(Image.open(io.BytesIO(self.page.screenshot(clip=clip))).convert("RGB")).mean(axis=(0, 1))
