@@ -173,7 +173,7 @@ class Noise:
     """What observation does to a true layout: standard deviations."""
 
     tilt_rad: float = float(np.deg2rad(10.0))
-    offset_m: float = 0.06
+    offset_m: float = 0.08
     scale: float = 0.08
 
     def times(self, factor: float) -> Noise:
@@ -221,7 +221,7 @@ def _noisy(pose: Pose, noise: Noise, rng: np.random.Generator) -> Pose:
     K = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
     turn = np.eye(3) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K
     position = pose.position + rng.normal(0.0, noise.offset_m / np.sqrt(3.0), 3)
-    return Pose(turn @ pose.R_world_object, position, pose.scale * np.exp(rng.normal(0.0, noise.scale / 2, 3)))
+    return Pose(turn @ pose.R_world_object, position, pose.scale * np.exp(rng.normal(0.0, noise.scale, 3)))
 
 
 def perturb_graph(scene: Scene, share: float, seed: int) -> Scene:
@@ -250,7 +250,7 @@ class _Builder:
 
     def __init__(self, rng: np.random.Generator, count: int) -> None:
         self.rng, self.count = rng, count
-        side = float(np.sqrt(count) * 1.0 + 1.2)
+        side = float(np.sqrt(count) * 0.72 + 1.2)
         self.half_x, self.half_y = side * 0.55, side * 0.45
         self.library = box_library()
         self.objects: list[SceneObject] = []
@@ -282,7 +282,7 @@ class _Builder:
         return name
 
     def _free_floor(self, half: np.ndarray, *, margin: float = 0.05) -> np.ndarray | None:
-        for _ in range(60):
+        for _ in range(40):
             x = self.rng.uniform(-self.half_x + half[0], self.half_x - half[0])
             y = self.rng.uniform(-self.half_y + half[1], self.half_y - half[1])
             box = np.array([x - half[0] - margin, y - half[1] - margin, x + half[0] + margin, y + half[1] + margin])

@@ -69,12 +69,17 @@ def e_vol(
 
 
 def e_col(
-    p: Float[Tensor, "n 3"], R: Float[Tensor, "n 3 3"], size: Float[Tensor, "n 3"], pairs: Int[Tensor, "m 2"]
+    p: Float[Tensor, "n 3"],
+    R: Float[Tensor, "n 3 3"],
+    size: Float[Tensor, "n 3"],
+    pairs: Int[Tensor, "m 2"],
+    walls_from: int | None = None,
 ) -> Float[Tensor, ""]:
     """Penalises overlapping boxes: for pairs that no axis separates, the overlaps along the three axes of each box.
 
     Separating axis theorem over the fifteen axes of two oriented boxes; the two boxes' sums are averaged, so that the
-    order of a pair does not matter.
+    order of a pair does not matter. Boxes from index `walls_from` on are walls, normal first: against them only the
+    overlap along the normal counts, or a wall would push things along itself.
     """
     i, j = pairs[:, 0], pairs[:, 1]
     axes = box_axes(R[i], R[j])
@@ -82,7 +87,10 @@ def e_col(
     depth = reach - torch.einsum("mac,mc->ma", axes, p[i] - p[j]).abs()
     used = _norm(axes) > 0.5
     hit = torch.where(used, depth, torch.full_like(depth, float("inf"))).min(dim=1).values > 0
-    return 0.5 * torch.where(hit[:, None], depth[:, :6], torch.zeros_like(depth[:, :6])).sum()
+    weight = torch.full((len(i), 6), 0.5, dtype=p.dtype)
+    if walls_from is not None:
+        weight[j >= walls_from] = torch.eye(6, dtype=p.dtype)[3]
+    return torch.where(hit[:, None], weight * depth[:, :6], torch.zeros_like(weight)).sum()
 
 
 def box_axes(Ri: Float[Tensor, "m 3 3"], Rj: Float[Tensor, "m 3 3"]) -> Float[Tensor, "m 15 3"]:

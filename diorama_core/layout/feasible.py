@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from jaxtyping import Float
 
 from diorama_core.artefacts import LayoutReport
 from diorama_core.layout.problem import Problem, build_problem
+from diorama_core.layout.relocate import relocate
 from diorama_core.layout.report import measure
 from diorama_core.layout.separate import Program, Separation, build_program, separate
 from diorama_core.layout.structure import Structure, exact_structure
@@ -18,6 +20,9 @@ from diorama_core.pipeline.protocols import Preview
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
 from diorama_core.scene.types import Camera, Scene
+
+SHRINK = 0.95
+"""What a stuck object's footprint is multiplied by, each attempt."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +37,8 @@ class FeasibleRecipe:
     """Ids free to move (with what they hold up); all when None."""
     rounds: int = 12
     """Most rounds of choosing axes."""
+    attempts: int = 3
+    """How often stuck objects are made a little smaller before giving up."""
     evidence: float = 4.0
     """Cost of moving across the viewing ray relative to along it, when the scene has a camera; 1 is indifferent."""
     adherence_m: float = 0.06
@@ -46,36 +53,40 @@ class FeasibleRecipe:
         begun = time.perf_counter()
         progress.report(0.0, "reading the layout")
         problem = build_problem(scene, self.library, only=self.only, adherence_m=self.adherence_m)
-        structure = exact_structure(problem, self._rays(problem, scene.camera))
-        poses = problem.poses(structure.R, structure.p, structure.scale)
-        if preview is not None:
-            preview(edits.place(scene, poses), [("overlap_m", 0.0)])
-        program, found = self._separated(scene, problem, structure, progress, preview)
-        p = program.structure.p + program.moves(found.y)
-        structure = program.structure
-        settled = edits.place(scene, problem.poses(structure.R, p, structure.scale))
         before = measure(problem, problem.R, problem.p, problem.scale)
+        wanted = problem
+        for attempt in range(self.attempts):
+            structure = exact_structure(wanted, self._rays(wanted, scene.camera))
+            program = build_program(wanted, structure, self._weights(wanted, structure, scene.camera))
+            found = separate(program, rounds=self.rounds, check=self._watcher(scene, program, progress, preview))
+            found = relocate(program, found) if found.stuck else found
+            if not found.stuck or attempt == self.attempts - 1:
+                break
+            wanted = _smaller(wanted, structure, found)
+        p = structure.p + program.moves(found.y)
         after = measure(problem, structure.R, p, structure.scale)
-        reasons = problem.reasons + structure.reasons + _stuck_reasons(problem, found)
+        reasons = (
+            problem.reasons + structure.reasons + _shrunk_reasons(problem, wanted) + _stuck_reasons(problem, found)
+        )
         report = LayoutReport("feasible", before, after, time.perf_counter() - begun, reasons)
+        settled = edits.place(scene, problem.poses(structure.R, p, structure.scale))
         return edits.set_metrics(settled, after), report
 
-    def _separated(
-        self, scene: Scene, problem: Problem, structure: Structure, progress: Progress, preview: Preview | None
-    ) -> tuple[Program, Separation]:
-        program = build_program(problem, structure, self._weights(problem, structure, scene.camera))
+    def _watcher(
+        self, scene: Scene, program: Program, progress: Progress, preview: Preview | None
+    ) -> Callable[[np.ndarray, float], None]:
         turn = 0
+        structure, problem = program.structure, program.problem
 
         def check(y: np.ndarray, depth: float) -> None:
             nonlocal turn
             turn += 1
             progress.report(turn / (self.rounds + 1), "taking collisions away")
             if preview is not None:
-                p = structure.p + program.moves(y)
-                shown = edits.place(scene, problem.poses(structure.R, p, structure.scale))
-                preview(shown, [("overlap_m", max(depth, 0.0))])
+                poses = problem.poses(structure.R, structure.p + program.moves(y), structure.scale)
+                preview(edits.place(scene, poses), [("overlap_m", max(depth, 0.0))])
 
-        return program, separate(program, rounds=self.rounds, check=check)
+        return check
 
     def _rays(self, problem: Problem, camera: Camera | None) -> Float[np.ndarray, "n 3"] | None:
         if camera is None or self.evidence <= 1.0:
@@ -85,10 +96,7 @@ class FeasibleRecipe:
 
     def _weights(self, problem: Problem, structure: Structure, camera: Camera | None) -> Float[np.ndarray, "n 2 2"]:
         """What a move costs: things that hold up much move less; moves across the viewing ray cost more."""
-        load = np.zeros(problem.count)
-        for k in range(problem.count):
-            for i in problem.chain(k):
-                load[i] += 1.0
+        load = np.array([float(len(problem.rides(i))) for i in range(problem.count)])
         rays = self._rays(problem, camera)
         weights = np.tile(np.eye(2), (problem.count, 1, 1))
         if rays is not None:
@@ -98,10 +106,22 @@ class FeasibleRecipe:
         return weights * load[:, None, None]
 
 
+def _smaller(problem: Problem, structure: Structure, found: Separation) -> Problem:
+    """The lighter object of each stuck pair a little smaller across."""
+    scale = problem.scale.copy()
+    for pair in found.stuck:
+        free = [k for k in pair if problem.free[k]]
+        volume = {k: float(np.prod(problem.shape_size[k] * structure.scale[k])) for k in free}
+        if free:
+            k = min(free, key=lambda k: (volume[k], k))
+            scale[k] *= np.where(np.abs(problem.contact[k]) > 0.5, 1.0, SHRINK)
+    return replace(problem, scale=scale)
+
+
+def _shrunk_reasons(problem: Problem, wanted: Problem) -> tuple[str, ...]:
+    shrunk = np.flatnonzero((wanted.scale < problem.scale - 1e-12).any(axis=1))
+    return tuple(f"tight: {problem.labels[i]} was made a little smaller to fit" for i in shrunk)
+
+
 def _stuck_reasons(problem: Problem, found: Separation) -> tuple[str, ...]:
     return tuple(f"no room: {problem.labels[i]} and {problem.labels[j]} still overlap" for i, j in found.stuck)
-
-
-def selection(recipe: FeasibleRecipe, ids: frozenset[str]) -> FeasibleRecipe:
-    """The same recipe for some objects only."""
-    return replace(recipe, only=ids)

@@ -75,10 +75,18 @@ class BoxPairs:
     axes: Float[Array, "m 15 3"]
     reach: Float[Array, "m 15"]
     """Sum of both half extents; inf where an axis vanishes."""
+    weight: Float[Array, "m 6"]
+    """How much the overlap along each of the two boxes' own axes counts."""
 
     @classmethod
-    def of(cls, R: Float[Array, "n 3 3"], size: Float[Array, "n 3"], pairs: Int[Array, "m 2"]) -> BoxPairs:
-        """Axes of the given pairs."""
+    def of(
+        cls, R: Float[Array, "n 3 3"], size: Float[Array, "n 3"], pairs: Int[Array, "m 2"], *, walls_from: int
+    ) -> BoxPairs:
+        """Axes of the given pairs (first index smaller).
+
+        Boxes from index `walls_from` on are walls with their normal as first axis: only the overlap along it counts,
+        or a wall would also push things along itself.
+        """
         i, j = pairs[:, 0], pairs[:, 1]
         a, b = R[i].transpose(0, 2, 1), R[j].transpose(0, 2, 1)
         product = cross(a[:, :, None, :], b[:, None, :, :]).reshape(len(i), 9, 3)
@@ -87,7 +95,8 @@ class BoxPairs:
         axes = np.concatenate([a, b, product], axis=1)
         reach = sum(0.5 * np.einsum("mak,mk->ma", np.abs(np.matmul(axes, R[k])), size[k]) for k in (i, j))
         used = np.einsum("mac,mac->ma", axes, axes) > 0.25
-        return cls(i, j, axes, np.where(used, reach, np.inf))
+        weight = np.where((j >= walls_from)[:, None], np.eye(6)[3], 0.5)
+        return cls(i, j, axes, np.where(used, reach, np.inf), weight)
 
     def collision(self, p: Float[Array, "n 3"], incidence: Float[Array, "n m"]) -> tuple[float, Float[Array, "n 3"]]:
         """`costs.e_col`; the gradient is with respect to the positions."""
@@ -96,8 +105,9 @@ class BoxPairs:
         hit = depth.min(axis=1) > 0
         if not hit.any():
             return 0.0, np.zeros_like(p)
-        slope = -0.5 * np.matmul(np.sign(along[hit, None, :6]), self.axes[hit, :6])[:, 0]
-        return 0.5 * float(depth[hit, :6].sum()), incidence[:, hit] @ slope
+        weight = self.weight[hit]
+        slope = -np.matmul((np.sign(along[hit, :6]) * weight)[:, None], self.axes[hit, :6])[:, 0]
+        return float((depth[hit, :6] * weight).sum()), incidence[:, hit] @ slope
 
 
 def incidence(pairs: Int[Array, "m 2"], count: int) -> Float[Array, "n m"]:

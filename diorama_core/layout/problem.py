@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -77,6 +78,18 @@ class Problem:
         while self.parent[found[-1]] >= 0:
             found.append(int(self.parent[found[-1]]))
         return found
+
+    @cached_property
+    def _riders(self) -> tuple[tuple[int, ...], ...]:
+        riders: list[list[int]] = [[] for _ in range(self.count)]
+        for k in range(self.count):
+            for i in self.chain(k):
+                riders[i].append(k)
+        return tuple(tuple(r) for r in riders)
+
+    def rides(self, index: int) -> list[int]:
+        """The object and everything it holds up, directly or not."""
+        return list(self._riders[index])
 
     def poses(
         self, R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]

@@ -187,4 +187,4 @@ class _Terms:
         if not len(pairs):
             return torch.zeros((), dtype=torch.float64)
         everywhere = torch.cat([p, torch.tensor(centre[self.problem.count :])])
-        return costs.e_col(everywhere, torch.tensor(R), torch.tensor(size), torch.tensor(pairs))
+        return costs.e_col(everywhere, torch.tensor(R), torch.tensor(size), torch.tensor(pairs), self.problem.count)

@@ -12,13 +12,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Float
 
 from diorama_core.geometry.sat import Bodies, PairAxes, pair_axes, place_bodies
 from diorama_core.layout.problem import Problem
 from diorama_core.layout.quadratic import HARD, SOFT, least_distance
 from diorama_core.layout.structure import Structure
-from diorama_core.layout.supports import is_wall_like, plane_surface
+from diorama_core.layout.supports import plane_surface
 
 APART_M = 5e-4
 """Separation asked for once two parts touched."""
@@ -73,19 +73,14 @@ def build_program(problem: Problem, structure: Structure, weight: Float[np.ndarr
         weight: cost of each object's own two coordinates: r^T weight r.
     """
     n = problem.count
-    J = np.zeros((n, 3, 2 * n))
-    for i in range(n):
+    moving = [i for i in range(n) if problem.free[i] and np.abs(structure.basis[i]).max() > 0]
+    J, own = np.zeros((n, 3, 2 * len(moving))), np.zeros((n, 3, 2 * len(moving)))
+    for column, i in enumerate(moving):
         # r = L^-T y whitens the cost, so the least move is the least |y|.
-        own = structure.basis[i] @ np.linalg.inv(np.linalg.cholesky(weight[i])).T
-        for k in range(n):
-            if i in problem.chain(k):
-                J[k, :, 2 * i : 2 * i + 2] = own
-    mobile = np.abs(J).max(axis=(0, 1)) > 1e-9 if n else np.zeros(0, dtype=bool)
+        lever = structure.basis[i] @ np.linalg.inv(np.linalg.cholesky(weight[i])).T
+        J[problem.rides(i), :, 2 * column : 2 * column + 2] = lever
+        own[i, :, 2 * column : 2 * column + 2] = lever
     bodies = place_bodies(problem.parts, structure.R, structure.p, structure.scale)
-    own = np.zeros((n, 3, 2 * n))
-    for i in range(n):
-        own[i, :, 2 * i : 2 * i + 2] = J[i, :, 2 * i : 2 * i + 2]
-    J, own = J[:, :, mobile], own[:, :, mobile]
     bound = -np.einsum("bc,bcv->bv", structure.bound_normal, own[structure.bound_owner])
     wall_rows, wall_need = _wall_rows(problem, structure, bodies, J)
     rows, need = np.vstack([bound, wall_rows]), np.concatenate([-structure.bound_slack, wall_need])
@@ -134,9 +129,13 @@ def separate(program: Program, *, rounds: int, check: Callable[[Float[np.ndarray
     depth, _ = _touching(program, y)
     if depth > best[0]:
         depth, y = best
+    return Separation(y, *overlaps(program, y))
+
+
+def overlaps(program: Program, y: Float[np.ndarray, " v"]) -> tuple[float, tuple[tuple[int, int], ...]]:
+    """Deepest overlap of parts in metres, and the pairs of objects that touch, after the moves y."""
     depth, touching = _touching(program, y)
-    stuck = sorted({_owners(program, pair) for pair in touching})
-    return Separation(y, max(depth, 0.0), tuple(stuck))
+    return max(depth, 0.0), tuple(sorted({_owners(program, pair) for pair in touching}))
 
 
 def _owners(program: Program, pair: tuple[int, int]) -> tuple[int, int]:
@@ -209,8 +208,3 @@ def _choose_axis(program: Program, pair: tuple[int, int], normals: np.ndarray, g
     best = int(np.argmin(effort))
     if np.isfinite(effort[best]):
         program.chosen[pair] = (normals[best], float(gaps[best]))
-
-
-def objects_on_walls(problem: Problem) -> Int[np.ndarray, " k"]:
-    """Indices of objects that hang on walls."""
-    return np.array([i for i in range(problem.count) if is_wall_like(problem.surface[i])], dtype=int)
