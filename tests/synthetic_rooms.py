@@ -60,7 +60,7 @@ def box_room(x0: float, x1: float, y1: float, top: float, y0: float = -3.0) -> t
 def cuboid(name: str, centre, size, yaw_deg: float = 0.0) -> Cuboid:
     """A cuboid whose bottom centre is at `centre` (x, y, base z)."""
     size = np.asarray(size, dtype=float)
-    middle = np.asarray(centre, dtype=float) + [0, 0, 0.5 * size[2]]
+    middle = np.asarray(centre, dtype=float) + np.array([0, 0, 0.5 * size[2]])
     return Cuboid(name, yaw_rotation(np.deg2rad(yaw_deg)), middle, size, 1.0)
 
 

@@ -29,7 +29,7 @@ def _starts(evidence: RoomEvidence) -> list[Float[np.ndarray, "4"]]:
     half, deep, high = (
         0.5 * PRIOR_MEDIAN_M[0],
         PRIOR_MEDIAN_M[1],
-        max(PRIOR_MEDIAN_M[2], z + 0.4, min(evidence.hung_top_m + 0.05, MAX_CEILING_M)),
+        max(PRIOR_MEDIAN_M[2], z + 0.4),
     )
     shapes = [(half, half, deep), (1.3, 1.3, 2.4), (half, half, 6.0), (3.5, 1.5, 4.0), (1.5, 3.5, 4.0)]
     boxes = [np.array([x - left, x + right, y + far, high]) for left, right, far in shapes]

@@ -36,7 +36,7 @@ OBJECT_WEIGHT = 0.5
 PRIOR_WEIGHT = 0.1
 PRIOR_MEDIAN_M = np.array([4.2, 3.5, 2.6])
 """Width, depth from the camera, ceiling."""
-PRIOR_LOG_SIGMA = np.array([0.45, 0.5, 0.12])
+PRIOR_LOG_SIGMA = np.array([0.45, 0.5, 0.18])
 PROTRUSION_SCALE_M = 0.25
 
 _WALL_CATEGORIES = frozenset(c.name for c in CATEGORIES if c.mount in ("wall", "ceiling"))
@@ -131,9 +131,10 @@ class RoomEvidence:
         return clipped, inside & ~((za < NEAR_M) & (zb < NEAR_M))
 
     def objects(self, boxes: Float[np.ndarray, "b 4"]) -> Float[np.ndarray, "b"]:
-        """Minus how far the standing objects stick out of the box, 0 to 2."""
+        """Minus how far things stick out of the box: standing ones 0 to 2, and half as much for hanging ones."""
+        hung = -0.5 * np.clip((self.hung_top_m - boxes[:, 3]) / (2.0 * PROTRUSION_SCALE_M), 0.0, 1.0)
         if len(self.object_low) == 0:
-            return np.zeros(len(boxes))
+            return hung
         out = np.stack(
             [
                 boxes[:, 0:1] - self.object_low[:, 0],
@@ -143,7 +144,7 @@ class RoomEvidence:
             ]
         )
         cost = np.minimum(np.maximum(out, 0.0).max(axis=0) / PROTRUSION_SCALE_M, 2.0)
-        return -(cost * self.object_weights).sum(axis=1) / self.object_weights.sum()
+        return hung - (cost * self.object_weights).sum(axis=1) / self.object_weights.sum()
 
     def prior(self, boxes: Float[np.ndarray, "b 4"]) -> Float[np.ndarray, "b"]:
         """Log-normal preference for rooms of usual size."""
@@ -157,7 +158,7 @@ class RoomEvidence:
         """The sum that the search maximises; impossible boxes get minus infinity."""
         ox, oy, oz = self.camera.position
         possible = (boxes[:, 0] < ox - 0.2) & (boxes[:, 1] > ox + 0.2) & (boxes[:, 2] > oy + 0.5)
-        possible &= boxes[:, 3] > max(oz + 0.1, min(self.hung_top_m, MAX_CEILING_M))
+        possible &= boxes[:, 3] > oz + 0.1
         total = ORIENTATION_WEIGHT * self.orientation(boxes) + EDGE_WEIGHT * self.edges(boxes).sum(axis=1)
         total += OBJECT_WEIGHT * self.objects(boxes) + PRIOR_WEIGHT * self.prior(boxes)
         return np.where(possible, total, -np.inf)

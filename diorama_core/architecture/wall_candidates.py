@@ -212,19 +212,38 @@ def _seen_through(
     inliers: Bool[np.ndarray, "n"],
     top_m: float,
 ) -> float:
-    """Share of the would-be wall, floor to ceiling over its points' width, that has farther things behind it."""
+    """Share of the would-be wall, floor to ceiling over its points' width, that has farther things behind it.
+
+    One when what is in view above its own top is mostly farther: a screen, a wardrobe, a half-height partition.
+    """
     along = np.array([-normal[1], normal[0]])
     low, high = np.quantile(surface.points[inliers, :2] @ along, [0.02, 0.98])
+    crossing, share = _crossings(surface, normal, offset)
+    reach = crossing[:, :2] @ along
+    within = (share > 0) & (reach > low) & (reach < high) & (crossing[:, 2] > 0.05) & (crossing[:, 2] < top_m - 0.05)
+    rest = (1.0 - share) * np.linalg.norm(surface.points[:, :2] - surface.camera_position[:2], axis=1)
+    beyond = within & (rest > 0.10 + 2.0 * tolerance_m(surface.depth_m))
+    # Weighted by the wall's own area, not by that of what lies far behind it.
+    size = surface.area_m2 * np.clip(share, 0.0, 1.0) ** 2
+    own_top = float(np.quantile(surface.points[inliers, 2], 0.98))
+    above = within & (crossing[:, 2] > own_top + 0.05)
+    if above.sum() >= MIN_POINTS and own_top < top_m - 0.3 and (beyond & above).sum() > 0.6 * above.sum():
+        return 1.0
+    on = within & inliers
+    return float(size[beyond].sum() / max(size[beyond].sum() + size[on].sum(), 1e-9))
+
+
+def _crossings(
+    surface: MeasuredSurface, normal: Float[np.ndarray, "2"], offset: float
+) -> tuple[Float[np.ndarray, "n 3"], Float[np.ndarray, "n"]]:
+    """Where the rays to the points cross a vertical plane from its front, and at which share of their length.
+
+    The share is -1 where they do not.
+    """
     origin = surface.camera_position
     ray = surface.points - origin
     slope = ray[:, :2] @ normal
     with np.errstate(divide="ignore", invalid="ignore"):
         share = (offset - origin[:2] @ normal) / slope
-    crossing = origin + share[:, None] * ray
-    reach = crossing[:, :2] @ along
-    within = (slope < 0) & (reach > low) & (reach < high) & (crossing[:, 2] > 0.05) & (crossing[:, 2] < top_m - 0.05)
-    beyond = within & ((1.0 - share) * np.linalg.norm(ray[:, :2], axis=1) > 0.10 + 2.0 * tolerance_m(surface.depth_m))
-    on = within & inliers
-    # Weighted by the wall's own area, not by that of what lies far behind it.
-    size = surface.area_m2 * np.clip(share, 0.0, 1.0) ** 2
-    return float(size[beyond].sum() / max(size[beyond].sum() + size[on].sum(), 1e-9))
+    share = np.where(np.isfinite(share) & (slope < 0), share, -1.0)
+    return origin + share[:, None] * ray, share

@@ -18,8 +18,9 @@ MIN_RUN_SHARE = 0.025
 """A wall that leads in fewer headings than this share of the view is dropped."""
 CORNER_SLACK_RAD = np.deg2rad(5.0)
 COLLINEAR_M = 0.1
-MINOR_SHARE, MINOR_COSINE, MINOR_M = 0.4, float(np.cos(np.deg2rad(25.0))), 0.35
-"""A run with less than this share of its neighbour's area, turned and set off from it by less than that, joins it."""
+ALIKE_COSINE = float(np.cos(np.deg2rad(25.0)))
+ALIKE_M, ALIKE_PER_M = 0.1, 0.03
+"""Neighbours turned by less than that and apart by less than this, plus this per metre of distance, are one wall."""
 GAP_RAD = np.deg2rad(7.0)
 """Wider unknown stretches of the view are closed behind everything measured there."""
 MAX_HIDDEN_M = 3.0
@@ -134,14 +135,15 @@ def _collinear(a: WallCandidate, b: WallCandidate) -> bool:
 
 
 def _about_same(a: _Run, b: _Run, origin: Float[np.ndarray, "2"]) -> bool:
-    """The same line; or one is minor (noise, or assumed) and lies close along the other."""
+    """The same line; or the smaller one lies close along the larger, as noise and assumed walls do."""
     if _collinear(a.wall, b.wall):
         return True
     minor, major = sorted((a, b), key=lambda run: run.wall.area_m2)
-    if minor.wall.area_m2 > MINOR_SHARE * major.wall.area_m2 or minor.wall.normal @ major.wall.normal < MINOR_COSINE:
+    if minor.wall.normal @ major.wall.normal < ALIKE_COSINE:
         return False
     ends = [point_at(minor.wall, h, origin) for h in (minor.first, minor.last)]
-    return all(e is not None and abs(float(e @ major.wall.normal) - major.wall.offset) < MINOR_M for e in ends)
+    apart = [abs(float(e @ major.wall.normal) - major.wall.offset) if e is not None else np.inf for e in ends]
+    return max(apart) < ALIKE_M + ALIKE_PER_M * _range(minor, origin)
 
 
 def _without_furniture(runs: list[_Run], origin: Float[np.ndarray, "2"]) -> list[_Run]:
@@ -159,9 +161,11 @@ def _without_furniture(runs: list[_Run], origin: Float[np.ndarray, "2"]) -> list
 
 
 def _stands_before(run: _Run, wall: WallCandidate, origin: Float[np.ndarray, "2"]) -> bool:
+    """Nearer than the wall; and not a part of it that is built forward, whose front is large and parallel."""
     ends = [point_at(run.wall, h, origin) for h in (run.first, run.last)]
     nearer = all(e is not None and float(e @ wall.normal) > wall.offset - COLLINEAR_M for e in ends)
-    return nearer and run.wall.area_m2 < wall.area_m2
+    side_face = run.wall.normal @ wall.normal < ALIKE_COSINE
+    return nearer and (side_face or run.wall.area_m2 < wall.area_m2)
 
 
 def _closed(runs: list[_Run], surface: MeasuredSurface, view: tuple[float, float]) -> list[_Run]:

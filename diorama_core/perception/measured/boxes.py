@@ -18,6 +18,7 @@ FREE_GAIN = 0.93
 """The same for things that often stand askew."""
 SHORT_OF_USUAL = 0.6
 """A depth below this share of the usual one means that only the front was seen."""
+TOP_LAYER_M = 0.03
 MIN_SIZE_M = 0.02
 EDGE_QUANTILE = 0.01
 
@@ -64,6 +65,7 @@ def completed(
     camera_position: Float[np.ndarray, "3"],
     cut_off: Bool[np.ndarray, "3"],
     background: Float[np.ndarray, "m 3"],
+    points: Float[np.ndarray, "n 3"],
 ) -> Extent:
     """The box with its unseen back, and what the picture's sides cut off, added from the category's usual size.
 
@@ -73,6 +75,7 @@ def completed(
         camera_position: World.
         cut_off: Whether the mask touches the picture's left, right and upper side.
         background: World points seen around the object; it does not reach through them.
+        points: World points of the object; a top that is seen tells the extents.
     """
     R = yaw_rotation(extent.yaw_rad)
     eye = camera_position @ R
@@ -80,9 +83,10 @@ def completed(
     away = 0.5 * (low + high)[:2] - eye[:2]
     usual = usual_plan(extent.size, category)
     behind = background @ R
+    top_seen = _top_seen(points @ R, extent)
     for axis in (0, 1):
         facing = abs(away[axis]) / max(float(np.linalg.norm(away)), 1e-9)
-        unseen_back = facing > 0.5 and extent.size[axis] < SHORT_OF_USUAL * usual[axis]
+        unseen_back = facing > 0.5 and not top_seen[axis] and extent.size[axis] < SHORT_OF_USUAL * usual[axis]
         side_cut = facing <= 0.7 and cut_off[:2].any() and extent.size[axis] < usual[axis]
         if not unseen_back and not side_cut:
             continue
@@ -96,6 +100,15 @@ def completed(
     if cut_off[2]:
         high[2] = max(high[2], category.priors[0].height_m)
     return Extent(extent.yaw_rad, low, high)
+
+
+def _top_seen(local: Float[np.ndarray, "n 3"], extent: Extent) -> Bool[np.ndarray, "2"]:
+    """Along which axes the object's flat top is seen nearly from end to end."""
+    top = local[local[:, 2] > extent.high[2] - TOP_LAYER_M]
+    if len(top) < 20:
+        return np.zeros(2, dtype=bool)
+    span = np.ptp(np.quantile(top[:, :2], [0.02, 0.98], axis=0), axis=0)
+    return (span > 0.7 * extent.size[:2]) & (span > 3.0 * TOP_LAYER_M)
 
 
 def _outward(

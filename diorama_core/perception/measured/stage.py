@@ -105,7 +105,7 @@ def measured_extent(
     width = found.mask.shape[1]
     cut_off = np.array([found.box[0] < 2, found.box[2] > width - 2, found.box[1] < 2])
     behind = _ring_points(found.mask, points_world, depth_m, float(np.median(camera.to_camera(points)[:, 2])))
-    whole = completed(seen, category, camera.position, cut_off, behind)
+    whole = completed(seen, category, camera.position, cut_off, behind, points)
     share_seen = float(np.prod(seen.size[:2]) / np.prod(whole.size[:2]))
     confidence = (0.4 + 0.5 * min(1.0, len(points) / FULL_POINTS)) * (0.6 + 0.4 * share_seen)
     return whole, confidence
