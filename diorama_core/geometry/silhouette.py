@@ -7,12 +7,9 @@ that map, so with directions of unit depth (`Camera.rays`) the hit parameter is 
 
 from __future__ import annotations
 
-import threading
-from collections import OrderedDict
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Generic, TypeVar
+from typing import Any
 
 import numpy as np
 import open3d as o3d
@@ -23,8 +20,6 @@ from scipy.spatial import ConvexHull, QhullError
 from diorama_core.scene.types import Camera, box_corners
 
 _OPEN3D: Any = o3d  # its stubs do not know that arrays are taken for tensors
-
-T = TypeVar("T")
 
 _MIN_EXTENT_M = 1e-4
 _NEAR_M = 0.05
@@ -176,26 +171,3 @@ def clipped_bounds(
     bounds = np.concatenate([low, high], axis=-1)
     bounds[~np.isfinite(bounds).all(axis=-1)] = np.nan
     return bounds
-
-
-class KeyedCache(Generic[T]):
-    """Derived values by content key, least recently used dropped first; safe to share between threads."""
-
-    def __init__(self, limit: int = 512) -> None:
-        self._limit = limit
-        self._lock = threading.Lock()
-        self._values: OrderedDict[str, T] = OrderedDict()
-
-    def get(self, key: str, make: Callable[[], T]) -> T:
-        """The value of this key, made the first time."""
-        with self._lock:
-            if key not in self._values:
-                self._values[key] = make()
-                while len(self._values) > self._limit:
-                    self._values.popitem(last=False)
-            self._values.move_to_end(key)
-            return self._values[key]
-
-
-SHARED_CASTERS: KeyedCache[ShapeCaster] = KeyedCache()
-"""One memory for all stages: retrieval and pose look at the same shapes."""

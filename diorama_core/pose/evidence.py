@@ -20,7 +20,7 @@ _DEPTH_WEIGHT = 0.7
 _NORMALS_SHARE = 0.4
 _NOISE_FLOOR = 0.03
 """Error below which two poses are not told apart: the resolution of the silhouettes."""
-_FACING_STRENGTH = 0.5
+_FACING_STRENGTH = 0.7
 _STRETCH_SIGMA = 0.3
 _OFF_AXIS_SIGMA_RAD = float(np.deg2rad(35.0))
 

@@ -18,7 +18,25 @@ from diorama_core.scene.types import Camera
 _TABLES = frozenset({"table", "desk", "coffee table", "side table", "kitchen counter", "piano", "console table"})
 _AT_TABLES = frozenset({"chair", "office chair", "stool", "bench", "armchair", "sofa"})
 _TOWARD_VIEWER = frozenset({"monitor", "television", "laptop", "picture", "mirror", "clock", "keyboard", "microwave"})
-_NO_FRONT = frozenset({"plant", "vase", "bowl", "cup", "bottle", "basket", "trash can", "rug", "coffee table", "table"})
+_NO_FRONT = frozenset(
+    {
+        *("plant", "vase", "bowl", "cup", "bottle", "basket", "trash can", "rug", "box", "books", "pillow"),
+        *("table", "coffee table", "side table", "ottoman", "lamp", "floor lamp", "ceiling lamp"),
+    }
+)
+_TOWARD_CAMERA = {
+    "chair": 0.4,
+    "office chair": 0.4,
+    "stool": 0.3,
+    "bench": 0.6,
+    "armchair": 0.6,
+    "sofa": 0.9,
+    "desk": 0.8,
+    "bed": 1.5,
+    "object": 0.6,
+    "toy": 0.8,
+}
+"""How much more likely a thing shows its front than its back; cupboards and the like are hardly seen from behind."""
 _DRAWN_UP_M = 0.9
 _DRAWN_UP_COFFEE_M = 1.6
 _WALL_REACH_M = 0.7
@@ -74,6 +92,7 @@ def facing_of(
     camera: Camera,
     walls: WallSamples,
     on_wall: bool,
+    pillows: Sequence[Cuboid] = (),
 ) -> Facing:
     """Reasons to face somewhere for one object.
 
@@ -85,6 +104,7 @@ def facing_of(
         camera: The photo's camera.
         walls: Where walls are seen.
         on_wall: Whether it hangs on a wall.
+        pillows: What lies on it at its back or head.
     """
     toward_camera = _unit(camera.position[:2] - cuboid.centre[:2])
     if cuboid.front_known:
@@ -96,12 +116,24 @@ def facing_of(
     table = _nearest_table(thing.category, cuboid, cuboids, categories)
     if table is not None:
         return Facing(((1.2, _axis_toward(cuboid, table.centre[:2] - cuboid.centre[:2])), (0.1, toward_camera)))
-    wishes = [(0.5 if thing.category in _AT_TABLES - {"sofa"} else 0.8, toward_camera)]
+    wishes = [(_TOWARD_CAMERA.get(thing.category, 2.0), toward_camera)]
     wishes += [(weight, direction) for weight, direction in _away_from_walls(cuboid, walls) if weight > 0.05]
+    wishes += _away_from_pillows(cuboid, pillows)
     middle = np.mean([c.centre[:2] for c in cuboids], axis=0) - cuboid.centre[:2]
     if len(cuboids) >= 3 and np.linalg.norm(middle) > 0.3:
         wishes.append((0.3, _unit(middle)))
     return Facing(tuple(wishes))
+
+
+def _away_from_pillows(cuboid: Cuboid, pillows: Sequence[Cuboid]) -> list[tuple[float, Float[np.ndarray, "2"]]]:
+    """Pillows lie at the head of a bed and the back of a sofa."""
+    if not pillows:
+        return []
+    offset = np.mean([p.centre[:2] for p in pillows], axis=0) - cuboid.centre[:2]
+    depth = max(float(cuboid.size_m[:2].mean()), 1e-6)
+    strength = min(float(np.linalg.norm(offset)) / (0.3 * depth), 1.0)
+    nearest = max(_axes_xy(cuboid), key=lambda axis: float(-offset @ axis[0]))[0]
+    return [(1.5 * strength, nearest)]
 
 
 def _unit(v: np.ndarray) -> Float[np.ndarray, "2"]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,10 +17,13 @@ from diorama_core.artefacts import (
     PosedCandidates,
     RankedShapes,
 )
+from diorama_core.geometry.looks import SHARED_LOOKS
 from diorama_core.geometry.observed import Observed, observe_among
-from diorama_core.geometry.silhouette import SHARED_CASTERS, PoseBatch, ShapeCaster
+from diorama_core.geometry.silhouette import PoseBatch
+from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import category
+from diorama_core.pose.agree import agreed_ranks
 from diorama_core.pose.evidence import Evidence, MeasuredSurface
 from diorama_core.pose.facing import facing_of, wall_samples
 from diorama_core.pose.hypotheses import Anchor, anchor_of, hypotheses_for
@@ -28,6 +31,10 @@ from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.refine import BoxFit
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Candidate, Pose
+
+_RETRIEVAL_POWER = 1.5
+_POSE_POWER = 0.6
+"""How much retrieval and pose say about which shape is best: the picture's outline alone would ignore colours."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +54,10 @@ class _Posed:
 
     shape: Shape
     pose: Pose
-    log_score: float
     error: float
+    """Disagreement with the picture, 0 to 1."""
+    rank: float
+    """By which the shapes of one object are ordered: a logarithm, higher is better."""
 
 
 @dataclass(frozen=True)
@@ -85,11 +94,16 @@ class RenderAndCompare:
         ranked = {r.object_id: r.ranked for r in shapes if r.ranked}
         records = {s.id: s for s in self.library.shapes()}
         tasks = self._tasks(objects, geometry, depth, frozenset(ranked))
-        posed = []
+        found = []
         for index, task in enumerate(tasks):
             progress.report(index / len(tasks), f"Posing: {task.thing.label}")
-            posed.append(self._pose_object(task, ranked[task.thing.id], records))
-        return tuple(posed)
+            found.append(self._pose_object(task, ranked[task.thing.id], records))
+        ranks = agreed_ranks(
+            [task.thing.category for task in tasks],
+            [{posed.shape.id: posed.rank for posed in of_one} for of_one in found],
+            [task.fine.confidence(0.0, 1.0) for task in tasks],
+        )
+        return tuple(_candidates(*one) for one in zip(tasks, found, ranks, strict=True))
 
     def _tasks(
         self,
@@ -112,7 +126,8 @@ class RenderAndCompare:
             if thing.id not in wanted:
                 continue
             on_wall = parent_of.get(thing.id) == "wall"
-            facing = facing_of(thing, cuboids[i], cuboids, categories, geometry.camera, walls, on_wall)
+            lying = [cuboids[j] for j, parent in enumerate(parents) if parent == i and things[j].category == "pillow"]
+            facing = facing_of(thing, cuboids[i], cuboids, categories, geometry.camera, walls, on_wall, lying)
             coarse, fine = (
                 Evidence(geometry.camera, seen, facing, _surface(depth, seen))
                 for cells in (self.coarse_cells, self.fine_cells)
@@ -124,22 +139,19 @@ class RenderAndCompare:
 
     def _pose_object(
         self, task: _Task, ranked: tuple[tuple[str, float], ...], records: Mapping[str, Shape]
-    ) -> PosedCandidates:
-        posed = [(self._pose_shape(task, records[shape_id]), score) for shape_id, score in ranked]
-        best_retrieval = max(max(score for _, score in ranked), 1e-9)
-        scored = [(max(score, 0.0) / best_retrieval * np.exp(found.log_score), found) for found, score in posed]
-        scored.sort(key=lambda pair: (-pair[0], pair[1].shape.id))
-        top = max(scored[0][0], 1e-12)
-        candidates = tuple(
-            Candidate(found.shape.id, found.shape.size_m, float(score / top * (1.0 - scored[0][1].error)), found.pose)
-            for score, found in scored
-        )
-        confidence = task.fine.confidence(scored[0][1].error, task.cuboid.confidence)
-        return PosedCandidates(task.thing.id, candidates, confidence)
+    ) -> tuple[_Posed, ...]:
+        best = max(max(score for _, score in ranked), 1e-9)
+        posed = []
+        for shape_id, score in ranked:
+            found = self._pose_shape(task, records[shape_id])
+            liked = float(np.log(max(score / best, 1e-6)))
+            posed.append(replace(found, rank=_RETRIEVAL_POWER * liked + _POSE_POWER * found.rank))
+        return tuple(posed)
 
     def _pose_shape(self, task: _Task, shape: Shape) -> _Posed:
         """Search, refine and choose: a refinement is taken only where it scores better."""
-        caster = SHARED_CASTERS.get(shape.content_hash or shape.id, lambda: ShapeCaster(self.library.mesh(shape.id)))
+        folder = default_cache_dir() / "looks"
+        caster = SHARED_LOOKS.get(shape.content_hash, folder, lambda: self.library.parts(shape.id)).caster
         name = task.thing.category
         limits = SizeLimits.of(shape.size_m, name, task.cuboid.size_m)
         tried = hypotheses_for(task.cuboid, name, shape.symmetry, limits, task.anchor)
@@ -158,7 +170,19 @@ class RenderAndCompare:
         scores = task.fine.log_scores(errors, both, np.tile(off_axis, 2), limits)
         chosen = int(np.argmax(scores))
         pose = Pose(both.R[chosen], both.position[chosen], both.scale[chosen])
-        return _Posed(shape, pose, float(scores[chosen]), float(errors[chosen]))
+        return _Posed(shape, pose, float(errors[chosen]), float(scores[chosen]))
+
+
+def _candidates(task: _Task, found: tuple[_Posed, ...], ranks: Mapping[str, float]) -> PosedCandidates:
+    """The posed shapes of one object in order; scores are relative to the best one's agreement with the picture."""
+    ordered = sorted(found, key=lambda posed: (-ranks[posed.shape.id], posed.shape.id))
+    best = ordered[0]
+    top = ranks[best.shape.id]
+    candidates = tuple(
+        Candidate(p.shape.id, p.shape.size_m, float(np.exp(ranks[p.shape.id] - top) * (1.0 - best.error)), p.pose)
+        for p in ordered
+    )
+    return PosedCandidates(task.thing.id, candidates, task.fine.confidence(best.error, task.cuboid.confidence))
 
 
 def _surface(depth: DepthMap, seen: Observed) -> MeasuredSurface | None:

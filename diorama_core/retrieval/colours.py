@@ -6,13 +6,12 @@ Colours are CIE Lab (L 0..100). Lightness counts less than hue: a photo's light 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import cv2
 import numpy as np
-import trimesh
 from jaxtyping import Bool, Float, UInt8
 
+from diorama_core.geometry.looks import Look
 from diorama_core.scene.values import ArrayValue
 
 _LIGHTNESS_WEIGHT = 0.5
@@ -59,31 +58,11 @@ def palette_of_crop(rgb: UInt8[np.ndarray, "h w 3"], mask: Bool[np.ndarray, "h w
     return _main_colours(_to_lab(pixels), np.ones(len(pixels)))
 
 
-def palette_of_parts(parts: trimesh.Scene) -> Palette:
+def palette_of_look(look: Look) -> Palette:
     """The main colours of a shape's materials, by surface area."""
-    colours, areas = [], []
-    for mesh in parts.geometry.values():
-        colour = _material_rgb(getattr(mesh, "visual", None))
-        if colour is not None and mesh.area > 0:
-            colours.append(colour)
-            areas.append(float(mesh.area))
-    if not colours:
+    if not len(look.areas_m2):
         return NOTHING_KNOWN
-    return _main_colours(_to_lab(np.array(colours, dtype=np.uint8)), np.array(areas))
-
-
-def _material_rgb(visual: Any) -> UInt8[np.ndarray, "3"] | None:
-    """One colour for one part: its material's, or the mean of its vertex or face colours."""
-    if visual is None or not visual.defined:
-        return None
-    if visual.kind in ("face", "vertex"):
-        return np.asarray(visual.main_color, dtype=np.uint8)[:3]
-    material: Any = visual.material
-    texture = getattr(material, "baseColorTexture", None)
-    factor = np.asarray(material.main_color, dtype=np.float64)[:3]
-    if texture is not None:
-        factor = factor / 255.0 * np.asarray(texture.convert("RGB").resize((1, 1)), dtype=np.float64).reshape(3)
-    return np.clip(factor, 0, 255).astype(np.uint8)
+    return _main_colours(_to_lab(look.colours_srgb), look.areas_m2)
 
 
 def palette_agreement(seen: Palette, shape: Palette) -> float:

@@ -10,16 +10,20 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import Cuboid, DetectedObject, Inputs, ObjectGeometry, RankedShapes
+from diorama_core.geometry.looks import SHARED_LOOKS
 from diorama_core.geometry.observed import Observed, observe_among
-from diorama_core.geometry.silhouette import SHARED_CASTERS, KeyedCache, PoseBatch, ShapeCaster
+from diorama_core.geometry.silhouette import PoseBatch
+from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
+from diorama_core.library.taxonomy import UNKNOWN
 from diorama_core.progress import Progress
-from diorama_core.retrieval.colours import Palette, palette_agreement, palette_of_crop, palette_of_parts
-from diorama_core.retrieval.pools import pool_for, size_cost
+from diorama_core.retrieval.colours import Palette, palette_agreement, palette_of_crop, palette_of_look
+from diorama_core.retrieval.pools import Pool, Wish, pool_for, size_cost
 from diorama_core.scene.types import Support, yaw_rotation
 
-_PALETTES: KeyedCache[Palette] = KeyedCache(4096)
-_SIMILAR_LOG_SIZE = 0.35
+_SIMILAR_LOG_SIZE = 0.45
+_UNNAMED_OUTLINE = 3.0
+"""How much more the outline of a thing without a name counts."""
 _OWN_EVIDENCE = 0.4
 
 
@@ -39,7 +43,7 @@ class EmbeddedRetrieval:
     size_weight: float = 0.45
     silhouette_weight: float = 0.4
     """Of a mask that can be trusted; less for doubtful ones."""
-    colour_weight: float = 0.15
+    colour_weight: float = 0.25
 
     def __repr__(self) -> str:
         numbers = (self.keep, self.cells, self.size_weight, self.silhouette_weight, self.colour_weight)
@@ -51,43 +55,64 @@ class EmbeddedRetrieval:
         """Ranked shapes of every object that has a cuboid, in the order of `objects`."""
         cuboids = {c.object_id: c for c in geometry.cuboids}
         measured = [o for o in objects if o.id in cuboids]
-        holders = {s.parent for s in geometry.supports}
+        sizes = [cuboids[o.id].size_m for o in measured]
+        groups = _groups([o.category for o in measured], sizes)
+        pools = self._pools(measured, sizes, groups, geometry.supports)
         centres = np.array([cuboids[o.id].centre for o in measured]).reshape(-1, 3)
         parents = _parent_indices(measured, geometry.supports)
         scores: list[dict[str, float]] = []
-        notes: list[str] = []
         for index, thing in enumerate(measured):
             progress.report(index / len(measured), f"Looking for shapes: {thing.label}")
-            cuboid = cuboids[thing.id]
-            pool = pool_for(self.library, thing.category, cuboid.size_m, thing.id in holders)
             seen = observe_among(geometry.camera, measured, centres, parents, index, self.cells)
             palette = palette_of_crop(inputs.photo.rgb, thing.mask)
+            unnamed = thing.category == UNKNOWN.name
+            members = pools[groups[index]].members
             scores.append(
-                {m.shape.id: m.kind_factor * self._score(m.shape, cuboid, seen, palette) for m in pool.members}
+                {
+                    m.shape.id: m.kind_factor * self._score(m.shape, cuboids[thing.id], seen, palette, unnamed)
+                    for m in members
+                }
             )
-            notes.append(pool.note)
-        shared = _agreed([o.category for o in measured], [cuboids[o.id].size_m for o in measured], scores)
+        shared = _agreed(groups, scores)
         return tuple(
-            RankedShapes(thing.id, _best(ranking, self.keep), note)
-            for thing, ranking, note in zip(measured, shared, notes, strict=True)
+            RankedShapes(thing.id, _best(ranking, self.keep), pools[group].note)
+            for thing, ranking, group in zip(measured, shared, groups, strict=True)
         )
 
-    def _score(self, shape: Shape, cuboid: Cuboid, seen: Observed, palette: Palette) -> float:
+    def _pools(
+        self,
+        measured: Sequence[DetectedObject],
+        sizes_m: Sequence[np.ndarray],
+        groups: Sequence[int],
+        supports: Sequence[Support],
+    ) -> list[Pool]:
+        """One pool per group of alike objects."""
+        holders = {s.parent for s in supports}
+        parent_of = {s.child: s.parent for s in supports}
+        pools = []
+        for group in range(max(groups, default=-1) + 1):
+            members = [i for i, g in enumerate(groups) if g == group]
+            first = measured[members[0]]
+            wish = Wish(
+                category=first.category,
+                size_m=np.exp(np.median([np.log(np.maximum(sizes_m[i], 1e-3)) for i in members], axis=0)),
+                holds_things=any(measured[i].id in holders for i in members),
+                held_by=parent_of.get(first.id, "floor"),
+            )
+            pools.append(pool_for(self.library, wish))
+        return pools
+
+    def _score(self, shape: Shape, cuboid: Cuboid, seen: Observed, palette: Palette, unnamed: bool) -> float:
         """0 to 1: the best of the shape's quarter turns in the cuboid."""
+        look = SHARED_LOOKS.get(shape.content_hash, default_cache_dir() / "looks", lambda: self.library.parts(shape.id))
         targets, poses = quarter_turns(shape, cuboid)
         cost = np.array([size_cost(shape.size_m, t) for t in targets])
-        outline = seen.agreement(seen.silhouettes(self._caster(shape), poses))
-        outline_weight = self.silhouette_weight * (0.25 + 0.75 * seen.mask_trust)
+        outline = seen.agreement(seen.silhouettes(look.caster, poses))
+        outline_weight = self.silhouette_weight * (0.25 + 0.75 * seen.mask_trust) * (_UNNAMED_OUTLINE if unnamed else 1)
         fit = self.size_weight * np.exp(-cost / 2) + outline_weight * outline
-        colour = palette_agreement(palette, self._palette(shape))
+        colour = palette_agreement(palette, palette_of_look(look))
         total = self.size_weight + outline_weight + self.colour_weight
         return float((fit.max() + self.colour_weight * colour) / total)
-
-    def _caster(self, shape: Shape) -> ShapeCaster:
-        return SHARED_CASTERS.get(shape.content_hash or shape.id, lambda: ShapeCaster(self.library.mesh(shape.id)))
-
-    def _palette(self, shape: Shape) -> Palette:
-        return _PALETTES.get(shape.content_hash or shape.id, lambda: palette_of_parts(self.library.parts(shape.id)))
 
 
 def _fingerprint(library: ShapeLibrary) -> str:
@@ -112,17 +137,27 @@ def _parent_indices(objects: Sequence[DetectedObject], supports: Sequence[Suppor
     return [parent_of.get(o.id) for o in objects]
 
 
-def _agreed(
-    categories: Sequence[str], sizes_m: Sequence[np.ndarray], scores: Sequence[dict[str, float]]
-) -> list[dict[str, float]]:
-    """Each object's scores mixed with the mean of those of its own kind and size."""
-    shared = []
-    for i, own in enumerate(scores):
-        alike = [
-            scores[j]
-            for j in range(len(scores))
-            if categories[j] == categories[i] and _alike(sizes_m[i], sizes_m[j]) and scores[j].keys() == own.keys()
+def _groups(categories: Sequence[str], sizes_m: Sequence[np.ndarray]) -> list[int]:
+    """A group number for every object: those of one named category and similar size are of a kind."""
+    leaders: list[int] = []
+    groups = []
+    for i, name in enumerate(categories):
+        same = [
+            g
+            for g, leader in enumerate(leaders)
+            if name == categories[leader] and name != UNKNOWN.name and _alike(sizes_m[i], sizes_m[leader])
         ]
+        groups.append(same[0] if same else len(leaders))
+        if not same:
+            leaders.append(i)
+    return groups
+
+
+def _agreed(groups: Sequence[int], scores: Sequence[dict[str, float]]) -> list[dict[str, float]]:
+    """Each object's scores mixed with the mean of its group's."""
+    shared = []
+    for group, own in zip(groups, scores, strict=True):
+        alike = [s for g, s in zip(groups, scores, strict=True) if g == group]
         mean = {key: sum(s[key] for s in alike) / len(alike) for key in own}
         shared.append({key: _OWN_EVIDENCE * own[key] + (1 - _OWN_EVIDENCE) * mean[key] for key in own})
     return shared

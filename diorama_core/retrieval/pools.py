@@ -13,12 +13,16 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.library.taxonomy import UNKNOWN
+from diorama_core.library.taxonomy import UNKNOWN, category
+from diorama_core.scene.values import ArrayValue
 
 _ENOUGH = 4
 _RELATED_FACTOR = 0.6
-_PLAIN_FACTOR = 0.75
-_UNKNOWN_POOL = 24
+_OTHERWISE_FACTOR = 0.9
+_NAMED_POOL = 10
+_UNNAMED_POOL = 28
+_PLAIN_POOL = 3
+_SAME_SIZE_LOG = 0.35
 _LEAST_M = 0.01
 
 RELATED: dict[str, tuple[str, ...]] = {
@@ -100,48 +104,70 @@ class Pool:
     """For the user, where the object's own category has no shapes."""
 
 
-def pool_for(library: ShapeLibrary, category: str, size_m: Float[np.ndarray, "3"], holds_things: bool) -> Pool:
-    """Shapes for an object of a category and an observed size.
+@dataclass(frozen=True, eq=False)
+class Wish(ArrayValue):
+    """What is known of an object before any shape is looked at."""
 
-    Args:
-        library: Where shapes come from.
-        category: Canonical category, or "object".
-        size_m: Observed extents along x, y, z of the object frame.
-        holds_things: Whether something stands on the object: then only shapes with a surface are taken, if any are.
-    """
-    if category == UNKNOWN.name:
-        return Pool(_plausible(library, size_m, holds_things))
-    own = _usable(library, library.in_category(category), holds_things)
+    category: str
+    """Canonical, or "object"."""
+    size_m: Float[np.ndarray, "3"]
+    """Observed extents along x, y, z of the object frame."""
+    holds_things: bool
+    """Whether something stands on it: then only shapes with a surface are taken, if any are."""
+    held_by: str
+    """What holds it up: "floor", "wall", "ceiling" or an object's id."""
+
+
+def pool_for(library: ShapeLibrary, wish: Wish) -> Pool:
+    """Shapes worth comparing with the picture, at most a dozen or two; nearest sizes where there are more."""
+    if wish.category == UNKNOWN.name:
+        return Pool(_plausible(library, wish))
+    own = _nearest(_usable(library, library.in_category(wish.category), wish), wish.size_m, _NAMED_POOL)
     members = [Pooled(shape, 1.0) for shape in own]
     factor = _RELATED_FACTOR
-    for near in RELATED.get(category, ()):
+    for near in RELATED.get(wish.category, ()):
         if len(members) >= _ENOUGH:
             break
-        members += [Pooled(shape, factor) for shape in _usable(library, library.in_category(near), holds_things)]
+        near_shapes = _nearest(_usable(library, library.in_category(near), wish), wish.size_m, _NAMED_POOL)
+        members += [Pooled(shape, factor) for shape in near_shapes]
         factor *= _RELATED_FACTOR
     if own:
         return Pool(tuple(members))
-    note = f"no {category} among the shapes; the nearest kinds were taken"
-    return Pool(tuple(members) or _plausible(library, size_m, holds_things), note)
+    note = f"no {wish.category} among the shapes; the nearest kinds were taken"
+    return Pool(tuple(members) or _plausible(library, wish), note)
 
 
-def _usable(library: ShapeLibrary, shapes: tuple[Shape, ...], holds_things: bool) -> tuple[Shape, ...]:
+def _usable(library: ShapeLibrary, shapes: Sequence[Shape], wish: Wish) -> Sequence[Shape]:
     """The shapes that may hold things up, where that is asked; all of them where none may.
 
     Built-in shapes are empty by design; of others the measured support surfaces tell.
     """
-    if not holds_things:
+    if not wish.holds_things:
         return shapes
-    return tuple(s for s in shapes if s.source == "built in" or library.shape(s.id).surfaces) or shapes
+    return [s for s in shapes if s.source == "built in" or library.shape(s.id).surfaces] or shapes
 
 
-def _plausible(library: ShapeLibrary, size_m: Float[np.ndarray, "3"], holds_things: bool) -> tuple[Pooled, ...]:
-    """Shapes of any kind nearest in size to something unnamed; plain boxes first."""
-    shapes = _usable(library, library.shapes(), holds_things)
-    cost = [size_cost(shape.size_m, size_m) for shape in shapes]
-    order = np.argsort(np.array(cost) - 2.0 * np.array([s.category == "box" for s in shapes]), kind="stable")
+def _nearest(shapes: Sequence[Shape], size_m: np.ndarray, most: int) -> list[Shape]:
+    """The shapes nearest in size, either way round, in a stable order."""
+    cost = [size_cost(s.size_m, size_m) for s in shapes]
+    turned = [size_cost(s.size_m, size_m[[1, 0, 2]]) for s in shapes]
+    order = np.argsort(np.minimum(cost, turned), kind="stable")[:most]
+    return [shapes[i] for i in sorted(order)]
+
+
+def _plausible(library: ShapeLibrary, wish: Wish) -> tuple[Pooled, ...]:
+    """Shapes of any kind that are about as large as something unnamed and hang or stand like it; plain boxes too."""
+    mounts = {"wall": ("wall",), "ceiling": ("ceiling",)}.get(wish.held_by, ("floor", "surface"))
+    shapes = [s for s in library.shapes() if category(s.category).mount in mounts] or list(library.shapes())
+    wanted = np.log(np.maximum(wish.size_m, _LEAST_M))
+    overall = np.array([abs(float((np.log(np.maximum(s.size_m, _LEAST_M)) - wanted).mean())) for s in shapes])
+    lifelike = [s for s, difference in zip(shapes, overall, strict=True) if difference < _SAME_SIZE_LOG] or shapes
+    usable = _usable(library, lifelike, wish)
+    plain = [s for s in usable if s.category == "box"]
+    others = [s for s in usable if s.category != "box"]
     return tuple(
-        Pooled(shapes[i], 1.0 if shapes[i].category == "box" else _PLAIN_FACTOR) for i in order[:_UNKNOWN_POOL]
+        [Pooled(s, 1.0) for s in _nearest(plain, wish.size_m, _PLAIN_POOL)]
+        + [Pooled(s, _OTHERWISE_FACTOR) for s in _nearest(others, wish.size_m, _UNNAMED_POOL)]
     )
 
 

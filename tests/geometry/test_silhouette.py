@@ -8,7 +8,7 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from diorama_core.geometry.silhouette import BOX_EDGES, KeyedCache, PoseBatch, ShapeCaster, clipped_bounds
+from diorama_core.geometry.silhouette import BOX_EDGES, PoseBatch, ShapeCaster, clipped_bounds
 from diorama_core.geometry.window import Window, soft_iou
 from diorama_core.render.raycast import render_buffers
 from diorama_core.scene.types import Camera, Intrinsics, Pose, box_corners
@@ -79,15 +79,3 @@ def test_overlap_is_one_for_the_same_and_zero_for_nothing() -> None:
     seen, weight = np.array([1.0, 0.5, 0.0]), np.ones(3)
     assert soft_iou(seen, seen[None], weight)[0] == 1.0
     assert soft_iou(np.zeros(3), np.zeros((1, 3)), weight)[0] == 0.0
-
-
-def test_the_least_recently_used_is_dropped_first() -> None:
-    made: list[str] = []
-    cache: KeyedCache[str] = KeyedCache(2)
-
-    def get(key: str) -> str:
-        return cache.get(key, lambda: made.append(key) or key)
-
-    for key in ("a", "b", "a", "c", "a", "b"):
-        assert get(key) == key
-    assert made == ["a", "b", "c", "b"]

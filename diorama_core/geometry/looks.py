@@ -1,0 +1,134 @@
+"""What comparing pictures needs to know of a shape: its triangles and its colours, remembered in memory and on disk.
+
+Building a shape from its design takes much longer than reading its triangles back, so every shape is built at most
+once per machine.
+"""
+
+from __future__ import annotations
+
+import io
+import logging
+import os
+import tempfile
+import threading
+import zipfile
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import trimesh
+from jaxtyping import Float, Float32, Int32, UInt8
+
+from diorama_core.geometry.silhouette import ShapeCaster
+
+log = logging.getLogger(__name__)
+
+_FORMAT = "1"
+_KEPT = 512
+_LEAST_AREA_M2 = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """One shape at scale 1 in its own frame."""
+
+    vertices: Float32[np.ndarray, "v 3"]
+    faces: Int32[np.ndarray, "f 3"]
+    colours_srgb: UInt8[np.ndarray, "k 3"]
+    """One colour per part whose material has one."""
+    areas_m2: Float[np.ndarray, "k"]
+    """Surface of those parts."""
+
+    @cached_property
+    def caster(self) -> ShapeCaster:
+        """The triangles, prepared for rays."""
+        return ShapeCaster(trimesh.Trimesh(self.vertices, self.faces, process=False))
+
+
+def look_of(parts: trimesh.Scene) -> Look:
+    """The triangles and colours of a shape's parts."""
+    vertices, faces, colours, areas = [np.zeros((0, 3))], [np.zeros((0, 3), int)], [], []
+    count = 0
+    for node in parts.graph.nodes_geometry:
+        T, name = parts.graph[node]
+        mesh = parts.geometry[name]
+        vertices.append(trimesh.transform_points(mesh.vertices, T))
+        faces.append(np.asarray(mesh.faces) + count)
+        count += len(mesh.vertices)
+        colour = material_rgb(mesh.visual)
+        if colour is not None and mesh.area > _LEAST_AREA_M2:
+            colours.append(colour)
+            areas.append(float(mesh.area))
+    return Look(
+        np.concatenate(vertices).astype(np.float32),
+        np.concatenate(faces).astype(np.int32),
+        np.array(colours, dtype=np.uint8).reshape(-1, 3),
+        np.array(areas),
+    )
+
+
+def material_rgb(visual: Any) -> UInt8[np.ndarray, "3"] | None:
+    """One sRGB colour for one part: its material's, or the main one of its vertices or faces."""
+    if visual is None or not visual.defined:
+        return None
+    if visual.kind in ("face", "vertex"):
+        return np.asarray(visual.main_color, dtype=np.uint8)[:3]
+    material: Any = visual.material
+    texture = getattr(material, "baseColorTexture", None)
+    colour = np.asarray(material.main_color, dtype=np.float64)[:3]
+    if texture is not None:
+        colour = colour / 255.0 * np.asarray(texture.convert("RGB").resize((1, 1)), dtype=np.float64).reshape(3)
+    return np.clip(colour, 0, 255).astype(np.uint8)
+
+
+class LookStore:
+    """Looks by the content hash of their shapes; safe to share between threads."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._kept: OrderedDict[str, Look] = OrderedDict()
+
+    def get(self, key: str, folder: Path, parts: Callable[[], trimesh.Scene]) -> Look:
+        """The look kept under `key`: from memory, from a file in `folder`, or made from `parts()` and written there.
+
+        A folder that cannot be written costs time, nothing else. Without a key nothing is remembered.
+        """
+        if not key:
+            return look_of(parts())
+        with self._lock:
+            if key not in self._kept:
+                self._kept[key] = _read(folder / f"{key}.{_FORMAT}.npz") or _made(folder, key, parts())
+                while len(self._kept) > _KEPT:
+                    self._kept.popitem(last=False)
+            self._kept.move_to_end(key)
+            return self._kept[key]
+
+
+SHARED_LOOKS = LookStore()
+"""One memory for all stages: retrieval and pose look at the same shapes."""
+
+
+def _read(path: Path) -> Look | None:
+    try:
+        with np.load(path, allow_pickle=False) as data:
+            return Look(data["vertices"], data["faces"], data["colours"], data["areas"])
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        return None  # absent, or half a file from another program: it is made again
+
+
+def _made(folder: Path, key: str, parts: trimesh.Scene) -> Look:
+    look = look_of(parts)
+    data = io.BytesIO()
+    np.savez(data, vertices=look.vertices, faces=look.faces, colours=look.colours_srgb, areas=look.areas_m2)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=folder, delete=False) as part:
+            part.write(data.getvalue())
+        os.replace(part.name, folder / f"{key}.{_FORMAT}.npz")  # so that no reader ever sees half a file
+    except OSError as error:
+        log.warning("cannot keep shapes in %s (%s); they are built again each time", folder, error)
+    return look

@@ -1,0 +1,52 @@
+"""Things of a kind in one picture agree on their shape: four dining chairs are four of the same."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from diorama_core.library.taxonomy import UNKNOWN
+
+_OWN_SHARE = 0.35
+_ABSENT = -0.7
+_OVERLAP = 0.5
+
+
+def agreed_ranks(
+    categories: Sequence[str], ranks: Sequence[Mapping[str, float]], trust: Sequence[float]
+) -> list[dict[str, float]]:
+    """Each object's log ranks of shapes, mixed with those of objects of its kind.
+
+    Args:
+        categories: Category of every object; unnamed things stand alone.
+        ranks: For every object its shapes' log ranks, higher is better.
+        trust: How well every object is seen: how much it has to say for its group.
+
+    Returns:
+        For every object the same shapes with ranks relative to its best.
+    """
+    relative = [{key: value - max(own.values()) for key, value in own.items()} for own in ranks]
+    groups = _groups(categories, relative)
+    agreed = []
+    for group, own in zip(groups, relative, strict=True):
+        alike = [i for i, other in enumerate(groups) if other == group]
+        weight = sum(trust[i] + 1e-3 for i in alike)
+        mean = {key: sum((trust[i] + 1e-3) * relative[i].get(key, _ABSENT) for i in alike) / weight for key in own}
+        agreed.append({key: _OWN_SHARE * own[key] + (1 - _OWN_SHARE) * mean[key] for key in own})
+    return agreed
+
+
+def _groups(categories: Sequence[str], ranks: Sequence[Mapping[str, float]]) -> list[int]:
+    """A group number per object: those of one category with mostly the same shapes to choose from."""
+    leaders: list[int] = []
+    groups = []
+    for i, name in enumerate(categories):
+        found = [g for g, j in enumerate(leaders) if name == categories[j] and _overlap(ranks[i], ranks[j]) >= _OVERLAP]
+        alone = name == UNKNOWN.name or not found
+        groups.append(len(leaders) if alone else found[0])
+        if alone:
+            leaders.append(i)
+    return groups
+
+
+def _overlap(a: Mapping[str, float], b: Mapping[str, float]) -> float:
+    return len(a.keys() & b.keys()) / len(a.keys() | b.keys())
