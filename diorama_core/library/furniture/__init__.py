@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import bathroom, beds, electronics, kitchen, lighting, plants, seating, storage, tables, textiles, upholstery
+from diorama_core.library.furniture import bathroom, beds, electronics, kitchen, lighting, openings, plants, seating, smallware, storage, tables, textiles, upholstery
 from diorama_core.library.furniture.model import Design
 
-FAMILIES = (seating, upholstery, tables, beds, storage, lighting, kitchen, bathroom, electronics, textiles, plants)
+FAMILIES = (seating, upholstery, tables, beds, storage, lighting, kitchen, bathroom, electronics, textiles, plants, smallware, openings)
 
 
 def designs() -> tuple[Design, ...]:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.model import Builder, Design, Parts, Size, of
-from diorama_core.library.furniture.solids import Solid, ball, bend, cylinder, finish, lathe, rod, tube, unit
+from diorama_core.library.furniture.solids import Solid, ball, bend, cylinder, lathe, rod, tube, unit
 
 
 def pot(diameter: float, height: float, material: Material, shape: str = "taper") -> Parts:
@@ -26,29 +26,34 @@ def pot(diameter: float, height: float, material: Material, shape: str = "taper"
 
 
 def leaf(spine: np.ndarray, width: float, side: np.ndarray, fold: float = 0.25, tip: float = 0.5) -> Solid:
-    """A thin leaf along a spine, folded along its middle; widest at the share `tip` of its length."""
+    """A thin closed leaf along a spine, folded along its middle; widest at the share `tip` of its length."""
     s = np.linspace(0, 1, len(spine))
     shape = (s / tip) ** 0.7 * (s < tip) + ((1 - s) / (1 - tip)) ** 0.75 * (s >= tip)
-    half = width / 2 * np.clip(shape, 0.02, 1)[:, None]
+    half = width / 2 * shape[:, None]
+    half[0] = half[-1] = 0.0
     along = unit(np.gradient(spine, axis=0))
-    across = unit(side - along * (along @ side)[:, None] if side.ndim == 1 else side)
+    across = unit(side - along * (along @ side)[:, None])
     up = np.cross(along, across)
     left, right = spine + half * (across + fold * up), spine - half * (across - fold * up)
-    grid = np.stack([left, spine, right], axis=1)
-    return _thin(grid, up)
+    lift = 0.0009 * up * (half > 0)
+    vertices = np.concatenate([left, spine + lift, right, left, spine - lift, right])
+    normals = np.concatenate([unit(up - fold * across), up, unit(up + fold * across)])
+    reach = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(spine, axis=0), axis=1))])
+    uv = np.column_stack([np.tile(reach, 6), np.concatenate([half[:, 0], 0 * s, -half[:, 0]] * 2)])
+    return Solid(vertices, _leaf_faces(len(spine)), np.concatenate([normals, -normals]), uv)
 
 
-def _thin(grid: np.ndarray, up: np.ndarray) -> Solid:
-    """Both faces of a leaf, a hair apart, closed at the rim."""
-    m_, n = grid.shape[:2]
-    lift = 0.0006 * up[:, None, :]
-    index = np.arange(m_ * n).reshape(m_, n)
-    quad = np.stack([index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]], axis=-1).reshape(-1, 4)
-    rim = np.concatenate([index[:-1, 0], index[-1, :-1], index[:0:-1, -1], index[0, :0:-1]])
-    nxt, under = np.roll(rim, -1), m_ * n
-    q = np.concatenate([quad[:, ::-1], quad + under, np.stack([rim, rim + under, nxt + under, nxt], axis=1)[:, ::-1]])
-    vertices = np.concatenate([(grid + lift).reshape(-1, 3), (grid - lift).reshape(-1, 3)])
-    return finish(vertices, np.concatenate([q[:, [0, 1, 2]], q[:, [0, 2, 3]]]), crease_rad=np.deg2rad(80))
+@cache
+def _leaf_faces(n: int) -> np.ndarray:
+    """Upper and lower face of a leaf of n points along: left, spine and right rows of each."""
+    i = np.arange(n - 1)
+    quads = []
+    for first, second in ((0, 1), (1, 2)):
+        a, b = first * n + i, second * n + i
+        upper = np.stack([a, b, b + 1, a + 1], axis=1)
+        quads += [upper, upper[:, ::-1] + 3 * n]
+    q = np.concatenate(quads)
+    return np.concatenate([q[:, [0, 1, 2]], q[:, [0, 2, 3]]])
 
 
 def arching_leaf(base: np.ndarray, heading: float, length: float, width: float, rise: float, droop: float, tip: float = 0.5, points: int = 7) -> Solid:
@@ -170,12 +175,12 @@ def bushy(size: Size, pot_of: Material, green: Material, leaves: int = 120, leaf
         a = 2.39996 * k
         r = np.sqrt(max(1 - z * z, 0.0))
         direction = np.array([r * np.cos(a), r * np.sin(a), z])
-        base = centre + direction * radii * rng.uniform(0.55, 0.9)
+        base = centre + direction * radii * (0.3 + 0.6 * np.sqrt(rng.random()))
         size_k = leaf_size * rng.uniform(0.8, 1.2)
         blades.append(arching_leaf(base, a, size_k, size_k * 0.6, size_k * (0.3 + 0.5 * z), size_k * 0.4, 0.5, 5))
-        if k % 8 == 0:
+        if k % 16 == 0:
             stems.append(tube(bend([(0, 0, ph - 0.03), (base * 0.5 + np.array([0, 0, ph * 0.45])), base], 3), 0.003, 5))
-        if flowers is not None and k % 4 == 0:
+        if flowers is not None and k % 6 == 0:
             blooms.append(ball(0.034, 4).scaled(z=0.7).moved(*(centre + direction * radii * 1.02)))
     return pot(pd, ph, pot_of, shape) + of(m.BARK, *stems) + of(green, *blades) + (of(flowers, *blooms) if flowers else [])
 
@@ -243,9 +248,9 @@ DESIGNS: tuple[Design, ...] = (
     _d("spider", "spider plant", (0.48, 0.48, 0.42), "classic", partial(rosette, pot_of=m.TERRACOTTA, green=m.PALE_LEAF, leaves=34, width=0.022)),
     _d("aloe", "aloe in a stoneware pot", (0.32, 0.32, 0.34), "minimal", partial(rosette, pot_of=m.STONEWARE, green=m.PALE_LEAF, leaves=18, width=0.04, shape="cylinder", droop=0.25)),
     _d("dracaena", "dracaena in a dark pot", (0.70, 0.70, 1.40), "modern", partial(dracaena, pot_of=m.DARK_STONEWARE, green=m.LEAF)),
-    _d("herb", "pot of herbs", (0.24, 0.24, 0.28), "rustic", partial(bushy, pot_of=m.TERRACOTTA, green=m.LEAF, leaves=110, leaf_size=0.045)),
-    _d("shrub", "leafy shrub in a grey pot", (0.62, 0.62, 0.85), "classic", partial(bushy, pot_of=m.CONCRETE, green=m.DARK_LEAF, leaves=210, leaf_size=0.11)),
-    _d("flowering", "flowering pot plant", (0.32, 0.32, 0.36), "classic", partial(bushy, pot_of=m.BLUE_GLAZE, green=m.DARK_LEAF, leaves=120, leaf_size=0.06, flowers=PINK_PETAL, shape="bowl")),
+    _d("herb", "pot of herbs", (0.24, 0.24, 0.28), "rustic", partial(bushy, pot_of=m.TERRACOTTA, green=m.LEAF, leaves=200, leaf_size=0.05)),
+    _d("shrub", "leafy shrub in a grey pot", (0.62, 0.62, 0.85), "classic", partial(bushy, pot_of=m.CONCRETE, green=m.DARK_LEAF, leaves=300, leaf_size=0.13)),
+    _d("flowering", "flowering pot plant", (0.32, 0.32, 0.36), "classic", partial(bushy, pot_of=m.BLUE_GLAZE, green=m.DARK_LEAF, leaves=200, leaf_size=0.07, flowers=PINK_PETAL, shape="bowl")),
     _d("monstera", "monstera on a wooden plant stand", (0.80, 0.80, 1.00), "modern", partial(monstera, pot_of=m.PORCELAIN, green=m.DARK_LEAF)),
     _d("cactus", "cactus in a terracotta pot", (0.22, 0.24, 0.46), "industrial", partial(cactus, pot_of=m.TERRACOTTA, green=m.PALE_LEAF)),
     _d("cut-flowers", "cut flowers in a vase", (0.36, 0.36, 0.46), "classic", partial(bunch, vase=m.BLUE_GLAZE, green=m.LEAF, bloom=PETAL)),

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -164,7 +164,13 @@ def _cube_grid(n: int) -> tuple[Int[np.ndarray, "v 3"], Int[np.ndarray, "f 3"]]:
 
 def box(size: Vec, radius: float = 0.004, segments: int = 1) -> Solid:
     """A box with rounded edges, standing on z = 0, centred in x and y."""
-    half = np.asarray(size, dtype=np.float64) / 2
+    x, y, z = (float(s) for s in size)
+    return _box((x, y, z), radius, segments)
+
+
+@lru_cache(maxsize=1024)
+def _box(size: tuple[float, float, float], radius: float, segments: int) -> Solid:
+    half = np.asarray(size) / 2
     r = min(radius, float(half.min()) * 0.999)
     points, faces = _cube_grid(2 * segments + 1)
     high = points > segments
@@ -197,7 +203,7 @@ def pillow(size: Vec, grid: int = 12, pinch: float = 0.05) -> Solid:
     a = np.sin(np.linspace(-1, 1, grid + 1) * np.pi / 2)
     u, v = np.meshgrid(a, a, indexing="ij")
     x, y = u * (1 - pinch * (1 - v**2) * np.abs(u)), v * (1 - pinch * (1 - u**2) * np.abs(v))
-    z = ((1 - u**4) * (1 - v**4)) ** 0.55
+    z = ((1 - u**4) * (1 - v**4)) ** 0.45
     half = np.asarray(size, dtype=np.float64) / 2
     top = np.stack([x, y, z], axis=-1) * half
     return shell(top, top * np.array([1, 1, -1]), crease_rad=np.pi).moved(z=half[2])

@@ -13,19 +13,20 @@ from diorama_core.library.furniture.model import Builder, Design, Parts, Size, b
 from diorama_core.library.furniture.solids import ball, box, cushion, cylinder, pillow, prism, ring_path, rod, slab, superellipse, tube
 from diorama_core.library.record import SymmetryFold
 
-RED_RUG = Material("madder carpet", "persian", "#8a4a42", 0.95, 0.0, 1.0)
-BLUE_RUG = Material("indigo carpet", "persian", "#4d5f78", 0.95, 0.0, 1.0)
+RED_RUG = Material("madder carpet", "persian", "#7f4d45", 0.95, 0.0, 1.0)
+BLUE_RUG = Material("indigo carpet", "persian", "#566276", 0.95, 0.0, 1.0)
 STRIPED_RUG = Material("striped carpet", "stripes", "#7d8288", 0.95, 0.0, 1.0)
 BERBER_RUG = Material("berber carpet", "diamonds", "#dcd3c2", 0.95, 0.0, 1.0)
 JUTE = Material("jute", "wicker", "#b79e75", 0.95, 0.0, 0.1)
-STRIPED_CLOTH = Material("striped linen", "stripes", "#8b98a5", 0.92, 0.0, 1.0)
+STRIPED_CLOTH = Material("striped linen", "stripes", "#8b98a5", 0.92, 0.0, 0.5)
 
 
 def scatter_cushion(size: Size, cloth: Material, piping: Material | None = None, lean: float = 68.0) -> Parts:
     """A cushion leaning back as against a sofa; its face toward +X."""
     d, w, h = size
     thick = 0.15
-    parts = of(cloth, pillow((h, w, thick), 14))
+    face = pillow((h, w, thick), 14)
+    parts = of(cloth, replace(face, uv=face.vertices[:, 1::-1]))
     if piping is not None:
         a = np.sin(np.linspace(-1, 1, 15) * np.pi / 2)
         edge = np.concatenate([[(x, -1) for x in a[:-1]], [(1, y) for y in a[:-1]], [(x, 1) for x in a[:0:-1]], [(-1, y) for y in a[:0:-1]]])
@@ -52,7 +53,7 @@ def bolster(size: Size, cloth: Material) -> Parts:
     _, w, h = size
     r = h / 2
     body = cylinder(r, w, 0.03, 32).turned("x", 90).moved(0, w / 2, r)
-    rims = [tube(ring_path(superellipse(2 * r * 0.95, 2 * r * 0.95, 2, 32)), 0.006, 6, closed=True).turned("x", 90).moved(0, s * (w / 2 - 0.008), r) for s in (1, -1)]
+    rims = [tube(ring_path(superellipse(2 * r * 0.985, 2 * r * 0.985, 2, 32)), 0.006, 6, closed=True).turned("x", 90).moved(0, s * (w / 2 - 0.028), r) for s in (1, -1)]
     return of(cloth, body, *rims)
 
 
@@ -113,8 +114,8 @@ def rug(size: Size, pile: Material, pictured: bool, fringe: Material | None = No
         body = replace(body, uv=np.stack([y / w + 0.5, x / length + 0.5], axis=1))
     parts = of(pile, body)
     if fringe is not None:
-        n = int(w / 0.022)
-        tufts = [box((0.05, 0.008, h * 0.5), 0.002).moved(s * (length / 2 + 0.024), -w / 2 + w * (k + 0.5) / n, 0) for s in (1, -1) for k in range(n)]
+        n = int(w / 0.04)
+        tufts = [rod((s * length / 2, y, h * 0.3), (s * (length / 2 + 0.05), y + 0.004, h * 0.2), 0.003, 0.005, 4) for s in (1, -1) for y in -w / 2 + w * (np.arange(n) + 0.5) / n]
         parts += of(fringe, *tufts)
     return parts
 
