@@ -51,11 +51,10 @@ def facing_direction(up_camera: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"
     return along / np.linalg.norm(along)
 
 
-def frame_difference_rad(a: Float[np.ndarray, "3 3"], b: Float[np.ndarray, "3 3"]) -> float:
-    """Angle of the smallest turn that makes two room frames agree, quarter turns of the room left free."""
-    quarter = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-    turned, best = b, -1.0
-    for _ in range(4):
-        best = max(best, float((a * turned).sum()))
-        turned = quarter @ turned
-    return float(np.arccos(np.clip((best - 1.0) / 2.0, -1.0, 1.0)))
+def frame_difference_rad(a: Float[np.ndarray, "*n 3 3"], b: Float[np.ndarray, "3 3"]) -> Float[np.ndarray, "*n"]:
+    """Angle of the smallest turn that makes room frames agree with one, quarter turns of the room left free."""
+    (x, y, z), zero = b, np.zeros(3)
+    straight = (a * np.stack([x, y, zero])).sum(axis=(-2, -1))
+    turned = (a * np.stack([-y, x, zero])).sum(axis=(-2, -1))
+    trace = np.maximum(np.abs(straight), np.abs(turned)) + a[..., 2, :] @ z
+    return np.arccos(np.clip((trace - 1.0) / 2.0, -1.0, 1.0))

@@ -162,8 +162,8 @@ def _fitted_floor(
 ) -> tuple[Float[np.ndarray, "3"], float]:
     """The direction that fits the floor's points and the walls' normals best, each trusted as far as it reaches.
 
-    A wide floor decides alone; of a far sliver the depth's noise tilts the plane, and upright surfaces keep it straight.
-    Both are quadratic forms in the direction sought, so their sum's least eigenvector is the answer.
+    A wide floor decides alone; a far sliver is tilted by the depth's noise, and upright surfaces keep it straight. Both
+    are quadratic forms in the direction sought, so their sum's least eigenvector is the answer.
     """
     points = samples.points[level]
     noise = POINT_NOISE_M + DEPTH_NOISE_PER_M * points[:, 2] ** 2
@@ -195,7 +195,8 @@ def _wall_direction(
     upright = np.abs(samples.normals @ up) < np.sin(ALIGNED_RAD)
     if upright.sum() < 30:
         return along, 0.0
-    normals, weights = samples.normals[upright], _tempered(samples.areas[upright])
+    chosen = np.flatnonzero(upright)[_spread(int(upright.sum()), _MAX_VOTERS)]
+    normals, weights = samples.normals[chosen], _tempered(samples.areas[chosen])
     headings = np.arctan2(normals @ across, normals @ along)
     trials = np.deg2rad(np.arange(-45.0, 45.0, 0.5))
     turn = (headings[:, None] - trials + np.pi / 4) % (np.pi / 2) - np.pi / 4
@@ -205,4 +206,4 @@ def _wall_direction(
         w = weights * np.exp(-0.5 * (off / np.deg2rad(4.0)) ** 2)
         best += float((w * off).sum() / max(w.sum(), 1e-9))
     agree = np.abs((headings - best + np.pi / 4) % (np.pi / 2) - np.pi / 4) < LEVEL_RAD
-    return np.cos(best) * along + np.sin(best) * across, float(agree.sum() / len(samples.normals))
+    return np.cos(best) * along + np.sin(best) * across, float(agree.mean() * upright.mean())

@@ -38,6 +38,7 @@ FEW_SEGMENTS = 8.0
 _DIRECTIONS = 4000
 _RESCORED = 400
 _REFINED = 10
+_DIFFERENCE = 2e-3
 _SEPARATION_RAD = float(np.deg2rad(5.0))
 
 
@@ -98,7 +99,9 @@ def search_frames(lines: Lines, focal: float | None, count: int = _REFINED) -> t
     return tuple(fits[:count])
 
 
-def signed_sines(lines: Lines, axes_camera: Float[np.ndarray, "*k 3"], focal: float) -> Float[np.ndarray, "*k n"]:
+def signed_sines(
+    lines: Lines, axes_camera: Float[np.ndarray, "*k 3"], focal: float | Float[np.ndarray, "..."]
+) -> Float[np.ndarray, "*k n"]:
     """Sine in the picture between each segment and the line from its middle to each direction's vanishing point."""
     axes = np.asarray(axes_camera, dtype=np.float32)[..., None, :]
     to_x = focal * axes[..., 0] - lines.middles[:, 0] * axes[..., 2]
@@ -136,15 +139,18 @@ def _separated(
     ranked: list[tuple[float, Float[np.ndarray, "3 3"], float]], count: int
 ) -> list[tuple[float, Float[np.ndarray, "3 3"], float]]:
     """The best that differ from all better ones by more than five degrees (or ten percent of focal length)."""
+    if not ranked:
+        return []
+    frames = np.array([R for _, R, _ in ranked])
+    log_focals = np.log([f for _, _, f in ranked])
+    alive = np.ones(len(ranked), dtype=bool)
     kept: list[tuple[float, np.ndarray, float]] = []
-    for item in ranked:
-        near = (
-            abs(np.log(item[2] / k[2])) < 0.1 and frame_difference_rad(item[1], k[1]) < _SEPARATION_RAD for k in kept
-        )
-        if not any(near):
-            kept.append(item)
-        if len(kept) == count:
-            break
+    while alive.any() and len(kept) < count:
+        first = int(alive.argmax())
+        kept.append(ranked[first])
+        near = frame_difference_rad(frames, frames[first]) < _SEPARATION_RAD
+        alive &= ~(near & (np.abs(log_focals - log_focals[first]) < 0.1))
+        alive[first] = False
     return kept
 
 
@@ -185,27 +191,28 @@ def _gauss_newton_step(
     lines: Lines, R: Float[np.ndarray, "3 3"], focal: float, sigma: float, free: int, known: float | None
 ) -> Float[np.ndarray, "free"]:
     """One step of least squares on the segments' sines and the priors, in units of their deviations."""
-    sines = signed_sines(lines, R, focal).astype(np.float64)
-    nearest = np.abs(sines).argmin(axis=0)
+    nearest = np.abs(signed_sines(lines, R, focal)).argmin(axis=0)
     pick = (nearest, np.arange(len(nearest)))
-    weights = lines.weights * _agreement(sines[pick], sigma)
-
-    def residuals(step: np.ndarray) -> np.ndarray:
-        moved = R @ _rotation(step[:3])
-        f = focal * np.exp(step[3]) if free == 4 else focal
-        lines_part = np.sqrt(weights) * signed_sines(lines, moved, f)[pick].astype(np.float64) / sigma
-        pitch, roll = pitch_and_roll(moved[2])
-        prior = [(pitch - PITCH_PRIOR_RAD[0]) / PITCH_PRIOR_RAD[1], roll / ROLL_SIGMA_RAD]
-        if known is None:
-            prior.append(np.log(f / FOCAL_PRIOR[0]) / FOCAL_PRIOR[1])
-        return np.concatenate([lines_part, np.sqrt(PRIOR_WEIGHT) * np.array(prior)])
-
-    h = 2e-3
-    unit = np.eye(free) * h
-    J = np.stack([(residuals(e) - residuals(-e)) / (2 * h) for e in unit], axis=1)
-    r = residuals(np.zeros(free))
-    step = -np.linalg.solve(J.T @ J + 1e-6 * np.eye(free), J.T @ r)
+    trials = _trial_steps(free)
+    moved = R @ np.array([_rotation(t[:3]) for t in trials])
+    focals = focal * np.exp(trials[:, 3]) if free == 4 else np.full(len(trials), focal)
+    sines = signed_sines(lines, moved, focals[:, None, None])[:, *pick].astype(np.float64)
+    weights = np.sqrt(lines.weights * _agreement(sines[-1], sigma))
+    pitch, roll = pitch_and_roll(moved[:, 2])
+    priors = [(pitch - PITCH_PRIOR_RAD[0]) / PITCH_PRIOR_RAD[1], roll / ROLL_SIGMA_RAD]
+    if known is None:
+        priors.append(np.log(focals / FOCAL_PRIOR[0]) / FOCAL_PRIOR[1])
+    residuals = np.concatenate([weights * sines / sigma, np.sqrt(PRIOR_WEIGHT) * np.stack(priors, axis=1)], axis=1)
+    J = ((residuals[:free] - residuals[free:-1]) / (2 * _DIFFERENCE)).T
+    step = -np.linalg.solve(J.T @ J + 1e-6 * np.eye(free), J.T @ residuals[-1])
     return step * min(1.0, 0.1 / max(float(np.linalg.norm(step[:3])), 1e-9))
+
+
+@cache
+def _trial_steps(free: int) -> Float[np.ndarray, "m free"]:
+    """A little forward along each parameter, a little back, and nothing."""
+    forward = np.eye(free) * _DIFFERENCE
+    return np.concatenate([forward, -forward, np.zeros((1, free))])
 
 
 def _rotation(vector: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
