@@ -9,13 +9,13 @@ from jaxtyping import Bool, Float
 
 from diorama_core.artefacts import DetectedObject
 from diorama_core.library.taxonomy import Category, category
-from diorama_core.perception.metrology.silhouette import CORNER_EDGES, mask_reach
+from diorama_core.perception.metrology.silhouette import CORNER_EDGES, GUESSED_TRUST, mask_reach
 
 _SHARE_SIGMA = 0.03
 _PIXEL_SIGMA = 3.0
 """Of a picture 640 pixels wide."""
 _LEAST_BOX_PX = 2.0
-_COVERED = 0.5
+_COVERED = 0.65
 """Share of an edge that something in front must cover to hide it."""
 _CLEARLY_LOWER = 0.03
 """How much lower, as a share of the picture, a thing's box must end to be in front."""
@@ -60,10 +60,11 @@ def gather(objects: tuple[DetectedObject, ...], width: int, height: int) -> Evid
     categories = tuple(category(o.category) for o in objects)
     covered = _covered(boxes, height)
     unseen = truncated | covered.any(axis=1).reshape(-1, 4)
+    exact = np.array([o.mask_confidence >= 1 for o in objects], dtype=bool)
     trust = np.array([o.mask_confidence**2 for o in objects]).reshape(-1, 1)
+    trust = trust * np.where(exact, 1.0, GUESSED_TRUST)[:, None]
     weight = np.column_stack([np.where(unseen[:, e].any(axis=1), 0.0, 1.0) for e in CORNER_EDGES]) * trust
     reach = np.array([mask_reach(o, b) for o, b in zip(objects, boxes, strict=True)]).reshape(-1, 4)
-    exact = np.array([o.mask_confidence >= 1 for o in objects], dtype=bool)
     area = np.array([float(o.mask.sum()) for o in objects]) / (boxes[:, 2:] - boxes[:, :2]).prod(axis=1)
     fill = np.where(exact, np.minimum(area, 1.0), 1.0)
     return Evidence(categories, boxes, sigma, covered, truncated, reach, weight, exact, fill)

@@ -28,9 +28,10 @@ _BACK_COST = 2.5
 """Of lying on a backrest or headboard."""
 _ABOVE_PARENT = 0.5
 """Share of a thing's width that must lie within its supporter's box."""
-_AGAINST_WALLS = frozenset(
+AGAINST_WALLS = frozenset(
     ["bed", "dresser", "cabinet", "sideboard", "console table", "tv stand", "bookshelf", "wardrobe", "refrigerator"]
 ).union(["stove", "night stand", "kitchen counter", "washing machine", "toilet", "piano"])
+"""Categories whose backs stand at walls."""
 _SEATS_WITHOUT_SUPPORT_FLAG_COST = 2.0
 _SHELVED = frozenset({"bookshelf", "shelves", "tv stand", "cabinet", "desk"})
 _USUAL_MIDDLE_M = {
@@ -76,7 +77,7 @@ def extent_of(corners_world: Float[np.ndarray, "n 8 3"], names: tuple[str, ...])
     reach, sigmas = [], []
     for side, least in zip(sides, (1.0, 1.0, 1.5), strict=True):
         farthest = int(np.argmax(side))
-        against = names[farthest] in _AGAINST_WALLS
+        against = names[farthest] in AGAINST_WALLS
         reach.append((max(float(side[farthest]), least) + 0.05) * (1.0 if against else 1.1))
         sigmas.append(0.12 if against else 0.3)
     return Extent(reach[0], reach[1], reach[2], sigmas[0], sigmas[1], sigmas[2])

@@ -13,6 +13,7 @@ from diorama_core.perception.metrology.arrangement import arrange, distinct
 from diorama_core.perception.metrology.evidence import Evidence
 from diorama_core.perception.metrology.floor import place_on_floor, solve_from_both_starts
 from diorama_core.perception.metrology.held import (
+    AGAINST_WALLS,
     Extent,
     extent_of,
     place_below_ceiling,
@@ -37,8 +38,8 @@ _LEAST_FLAT_FILL = 0.7
 _NOT_FLAT_COST = 6.0
 """Of an unnamed thing on a wall whose mask leaves much of its box empty: pictures and boards do not."""
 _SCREENS = frozenset({"television", "monitor"})
-_SCREEN_ON_WALL_COST = 3.0
-_BESIDE_ITS_SUPPORTER_COST = 8.0
+_SCREEN_ON_WALL_COST, _SCREEN_ON_FLOOR_COST = 3.0, 12.0
+_BESIDE_ITS_SUPPORTER_COST = 20.0
 """For a thing on the floor, or on a wall, that belongs on something its box rests in."""
 _FIXED_TO_WALLS = frozenset({"door", "window", "curtain", "radiator"})
 _LARGE = _FIXED_TO_WALLS | frozenset(
@@ -48,6 +49,7 @@ _LARGE = _FIXED_TO_WALLS | frozenset(
 _SURE_COST = 12.0
 """Things on the floor that cost less than this tell how far the room reaches."""
 _CHILD_CAP = 12.0
+_AVERTED_COST = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,7 +180,7 @@ def _readings(solved: Solutions, evidence: Evidence, view: View) -> dict[int, _R
     names = tuple(c.name for c in evidence.categories)
     masks = (evidence.mask_reach, evidence.corner_weight, evidence.mask_exact)
     corners = corner_costs(solved.problems, boxes, view, *masks, names)
-    costs = solved.cost + corners
+    costs = solved.cost + corners + _averted_costs(solved.problems, boxes, evidence)
     found = {}
     for index in np.unique(solved.problems.item).astype(int):
         mine = np.flatnonzero(solved.problems.item == index)
@@ -189,9 +191,17 @@ def _readings(solved: Solutions, evidence: Evidence, view: View) -> dict[int, _R
     return found
 
 
+def _averted_costs(problems: Problems, boxes: Cuboids, evidence: Evidence) -> Float[np.ndarray, "n"]:
+    """A little against things with a front that turn their side to the camera: people picture fronts."""
+    fronted = np.array([c.name in AGAINST_WALLS for c in evidence.categories])[problems.item.astype(int)]
+    to_camera = boxes.centre[:, :2] / np.maximum(np.linalg.norm(boxes.centre[:, :2], axis=1, keepdims=True), 1e-6)
+    facing = np.abs(np.cos(boxes.yaw_rad) * to_camera[:, 0] + np.sin(boxes.yaw_rad) * to_camera[:, 1])
+    return np.where(fronted, _AVERTED_COST * (1.0 - facing), 0.0)
+
+
 def _floor_cost(evidence: Evidence, index: int) -> float:
     category = evidence.categories[index]
-    cost = _cost(category, "floor", _FLOOR_COST)
+    cost = _SCREEN_ON_FLOOR_COST if category.name in _SCREENS else _cost(category, "floor", _FLOOR_COST)
     misplaced = category.mount == "surface" and bool(_possible_parents(evidence, index))
     return cost + _BESIDE_ITS_SUPPORTER_COST if misplaced else cost
 

@@ -27,12 +27,12 @@ _ALSO = {
 _UNNAMED = {
     "chair": 0.0,
     "armchair": 1.0,
-    "sofa": 1.5,
+    "sofa": 1.0,
     "table": 1.0,
     "coffee table": 1.0,
     "dresser": 1.5,
     "night stand": 1.0,
-    "bed": 2.5,
+    "bed": 1.5,
     "wardrobe": 4.5,
 }
 """What unnamed furniture may be, with the cost of the rarer kinds."""

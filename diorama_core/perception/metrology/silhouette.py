@@ -23,13 +23,15 @@ _BEYOND_SIGMA_GUESSED = 0.12
 _EMPTY_SIGMA_SOLID = 0.13
 _EMPTY_SIGMA = 0.35
 _SOLID = frozenset(
-    ["dresser", "cabinet", "sideboard", "night stand", "wardrobe", "refrigerator", "stove", "washing machine", "bed"]
+    ["dresser", "cabinet", "sideboard", "night stand", "wardrobe", "refrigerator", "stove", "washing machine"]
 ).union(
     ["tv stand", "bookshelf", "box", "picture", "mirror", "door", "window", "television", "kitchen counter", "ottoman"]
 )
 """Categories whose things fill their cuboids."""
 _LEAST_CONFIDENCE = 0.5
 _CAP = 10.0
+GUESSED_TRUST = 0.5
+"""Of a mask that is not the user's own, at full agreement of its starts."""
 
 
 def mask_reach(thing: DetectedObject, box: Float[np.ndarray, "4"]) -> Float[np.ndarray, "4"]:
