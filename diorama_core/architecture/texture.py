@@ -19,6 +19,10 @@ MIN_SEEN_SHARE = 0.12
 MIN_SEEN_PX = 400
 MAX_GRAZING_COSINE = 0.06
 """Where the plane is seen more edge-on than this the photo is smeared and not used."""
+SURE_MASK = 0.95
+FOREIGN_SPREADS = 4.0
+FOREIGN_LEAST_LAB = np.array([14.0, 9.0, 9.0])
+"""A floor's texel is foreign when it differs by more than this many typical deviations, and by this much at least."""
 FADE_M = 0.6
 """Far from what is seen, the picture fades to the plane's plain colour over this length."""
 
@@ -36,14 +40,41 @@ def plane_textures(
         camera: The photo's camera.
         architecture: The room, with its plain colours.
     """
-    hidden = object_pixels((inputs.photo.height, inputs.photo.width), objects)
+    shape = (inputs.photo.height, inputs.photo.width)
+    unsure = [o for o in objects if o.mask_confidence < SURE_MASK]
+    hidden = object_pixels(shape, objects) | _boxes(shape, unsure)
     found: dict[str, np.ndarray] = {}
     for plane in architecture.planes:
         points, pixel_m = _texel_points(plane)
         colours, seen = _seen_colours(inputs.photo.rgb, hidden, camera, architecture.planes, plane, points)
+        if unsure and plane.role == "floor":
+            seen &= ~_foreign(colours, seen)
         if seen.mean() >= MIN_SEEN_SHARE and seen.sum() >= MIN_SEEN_PX:
             found[plane.id] = completed(colours, seen, plane.colour, FADE_M / pixel_m)
     return found
+
+
+def _boxes(shape: tuple[int, int], objects: list[DetectedObject]) -> Bool[np.ndarray, "h w"]:
+    """Whole boxes of objects whose masks may have missed legs and arms, with a margin."""
+    covered = np.zeros(shape, dtype=bool)
+    margin = 0.012 * max(shape)
+    for found in objects:
+        x1, y1, x2, y2 = found.box
+        rows = slice(max(0, int(y1 - margin)), int(y2 + margin) + 1)
+        covered[rows, max(0, int(x1 - margin)) : int(x2 + margin) + 1] = True
+    return covered
+
+
+def _foreign(colours: Float32[np.ndarray, "h w 3"], seen: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+    """Texels far from what most of a floor looks like: things nobody pointed at, smeared over it."""
+    lab = cv2.cvtColor(colours / 255.0, cv2.COLOR_RGB2LAB)
+    if not seen.any():
+        return np.zeros(seen.shape, dtype=bool)
+    deviation = np.abs(lab - np.median(lab[seen], axis=0))
+    typical = np.median(deviation[seen], axis=0)
+    far = (deviation / np.maximum(FOREIGN_SPREADS * typical, FOREIGN_LEAST_LAB)).max(axis=-1) > 1.0
+    compact = cv2.morphologyEx((far & seen).astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
+    return cv2.dilate(compact, np.ones((9, 9), np.uint8)).astype(bool)
 
 
 def _texel_points(plane: Plane) -> tuple[Float[np.ndarray, "h w 3"], float]:

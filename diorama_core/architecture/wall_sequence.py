@@ -152,8 +152,8 @@ def _without_furniture(runs: list[_Run], origin: Float[np.ndarray, "2"]) -> list
     position = 0
     while position < len(out):
         same = [j for j in range(position + 1, len(out)) if _collinear(out[position].wall, out[j].wall)]
-        between = out[position + 1 : same[-1]] if same else []
         wall = out[position].wall
+        between = [r for r in out[position + 1 : same[-1]] if not _collinear(r.wall, wall)] if same else []
         if same and all(_stands_before(run, wall, origin) for run in between):
             out[position : same[-1] + 1] = [_Run(wall, out[position].first, out[same[-1]].last)]
         position += 1
