@@ -17,13 +17,14 @@ def assemble(
     architecture: ArchitectureEstimate,
     posed: tuple[PosedCandidates, ...],
     library: ShapeLibrary,
+    colours: Mapping[str, tuple[float, float, float]],
 ) -> Scene:
-    """The scene before layout optimisation: every object in its best candidate's pose.
+    """The scene before layout optimisation: every object in its best candidate's pose, in its colour of the photo.
 
     Objects for which nothing could be retrieved are left out, and what they would hold up stands on their supporter.
     """
     candidates: Mapping[str, PosedCandidates] = {p.object_id: p for p in posed if p.candidates}
-    items = tuple(_scene_object(o, candidates[o.id], library) for o in objects if o.id in candidates)
+    items = tuple(_scene_object(o, candidates[o.id], library, colours.get(o.id)) for o in objects if o.id in candidates)
     kept = {item.id for item in items} | {p.id for p in architecture.architecture.planes}
     parent_of = {edge.child: edge.parent for edge in architecture.supports}
     supports = []
@@ -40,7 +41,12 @@ def assemble(
     return scene
 
 
-def _scene_object(item: DetectedObject, posed: PosedCandidates, library: ShapeLibrary) -> SceneObject:
+def _scene_object(
+    item: DetectedObject,
+    posed: PosedCandidates,
+    library: ShapeLibrary,
+    colour: tuple[float, float, float] | None,
+) -> SceneObject:
     best = posed.candidates[0]
     category = item.category if item.category != "object" else library.shape(best.shape_id).category
     return SceneObject(
@@ -54,4 +60,5 @@ def _scene_object(item: DetectedObject, posed: PosedCandidates, library: ShapeLi
         mask_id=item.mask_id,
         box_px=item.box,
         confidence=posed.confidence,
+        colour=colour,
     )

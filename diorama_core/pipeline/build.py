@@ -29,6 +29,7 @@ from diorama_core.perception.masks import EmbeddedMasks
 from diorama_core.perception.measured import MeasuredGeometry
 from diorama_core.perception.metrology import SingleViewMetrology
 from diorama_core.pipeline.assemble import assemble
+from diorama_core.pipeline.colours import photo_colours
 from diorama_core.pipeline.protocols import (
     ArchitectureStage,
     CameraStage,
@@ -144,7 +145,8 @@ def build_scene(
         "pose", s.pose, s.pose.pose, (inputs, objects, geometry, depth, shapes), progress.part(0.65, 0.85)
     )
     textures = plane_textures(inputs, objects, geometry.camera, room.architecture)
-    observed = _textured(assemble(objects, geometry, room, posed, library), textures)
+    colours = photo_colours(inputs.photo.rgb, objects)
+    observed = _textured(assemble(objects, geometry, room, posed, library, colours), textures)
 
     scene, report = observed, None
     if observed.objects:

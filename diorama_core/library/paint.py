@@ -1,0 +1,84 @@
+"""A shape in another colour: one definition for pictures, exports and the browser."""
+
+from __future__ import annotations
+
+import numpy as np
+import trimesh
+from jaxtyping import UInt8
+from PIL import Image
+from trimesh.visual.material import PBRMaterial
+
+Colour = tuple[float, float, float]
+"""sRGB, 0 to 1."""
+_DETAIL_MEAN = 0.8
+"""Mean lightness of a texture turned into detail: leaves room for lighter threads and fibres."""
+
+
+def painted(parts: trimesh.Scene, colour: Colour) -> trimesh.Scene:
+    """The shape with its main material, the one that covers most area, in `colour`.
+
+    The texture stays as light and dark detail, so wood keeps its grain and cloth its weave; legs, handles and screens
+    keep their own material: a blue sofa still stands on wooden feet.
+    """
+    scene = parts.copy()
+    main = _main_material(scene)
+    new: PBRMaterial | None = None
+    for mesh in scene.geometry.values():
+        if _material_key(mesh) != main or main is None:
+            continue
+        if main == _PLAIN:
+            mesh.visual = trimesh.visual.TextureVisuals(material=_in_colour(PBRMaterial(roughnessFactor=0.7), colour))
+            continue
+        new = new or _in_colour(_pbr(mesh), colour)
+        mesh.visual = trimesh.visual.TextureVisuals(uv=mesh.visual.uv, material=new)
+    return scene
+
+
+_PLAIN = "vertex or face colours"
+
+
+def _material_key(mesh: trimesh.Trimesh) -> str:
+    material = getattr(mesh.visual, "material", None)
+    if material is None:
+        return _PLAIN
+    return str(material.name or hash(material))
+
+
+def _main_material(scene: trimesh.Scene) -> str | None:
+    areas: dict[str, float] = {}
+    for mesh in scene.geometry.values():
+        if isinstance(mesh, trimesh.Trimesh):
+            key = _material_key(mesh)
+            areas[key] = areas.get(key, 0.0) + float(mesh.area)
+    return max(areas, key=areas.__getitem__, default=None)
+
+
+def _pbr(mesh: trimesh.Trimesh) -> PBRMaterial:
+    material = mesh.visual.material
+    return material if isinstance(material, PBRMaterial) else material.to_pbr()
+
+
+def _in_colour(source: PBRMaterial, colour: Colour) -> PBRMaterial:
+    texture = source.baseColorTexture
+    gain = 1.0 if texture is None else 1.0 / _srgb_to_linear(_DETAIL_MEAN)
+    linear = [min(_srgb_to_linear(c) * gain, 1.0) for c in colour]
+    return PBRMaterial(
+        name=f"{source.name or 'material'} painted",
+        baseColorFactor=[*(round(255 * c) for c in linear), 255],
+        baseColorTexture=None if texture is None else Image.fromarray(_detail(texture)),
+        metallicFactor=source.metallicFactor,
+        roughnessFactor=source.roughnessFactor,
+        doubleSided=source.doubleSided,
+    )
+
+
+def _detail(texture: Image.Image) -> UInt8[np.ndarray, "h w 3"]:
+    """The texture's light and dark, without its colour, around a fixed mean."""
+    grey = np.asarray(texture.convert("L"), dtype=np.float64) / 255.0
+    level = grey / max(float(grey.mean()), 1e-3) * _DETAIL_MEAN
+    return np.repeat(np.round(255 * np.clip(level, 0.0, 1.0)).astype(np.uint8)[..., None], 3, axis=2)
+
+
+def _srgb_to_linear(value: float) -> float:
+    """Display value to linear light (IEC 61966-2-1): glTF's base colour factor is linear."""
+    return value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4

@@ -1,0 +1,214 @@
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from PIL import Image
+
+from diorama_app.cli import main
+from tests.cli.room_photo import write_room
+
+
+@pytest.fixture(scope="module")
+def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A project built by the command itself."""
+    folder = tmp_path_factory.mktemp("cli")
+    photo, boxes = write_room(folder)
+    assert main(["build", str(photo), "--boxes", str(boxes), "-o", str(folder / "room")]) == 0
+    return folder / "room"
+
+
+def test_build_writes_a_whole_project(project: Path) -> None:
+    document = json.loads((project / "scene.json").read_text())
+    assert {o["category"] for o in document["objects"]} == {"chair", "sofa"}
+    roles = [p["role"] for p in document["architecture"]["planes"]]
+    assert "floor" in roles
+    assert "wall" in roles
+    assert (project / "photo.jpg").exists()
+    stages = {s["stage"] for s in json.loads((project / "project.json").read_text())["stages"]}
+    assert stages >= {"camera", "objects", "geometry", "architecture", "retrieval", "pose", "layout"}
+
+
+def test_building_again_reads_finished_stages(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    photo, boxes = project.parent / "room.png", project.parent / "boxes.json"
+    before = (project / "scene.json").read_text()
+    assert main(["build", str(photo), "--boxes", str(boxes), "-o", str(project), "--json"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert all(s["cached"] for s in report["stages"] if s["stage"] != "layout")
+    assert (project / "scene.json").read_text() == before
+
+
+def test_a_photo_alone_gives_a_room_and_an_invitation(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    photo, _ = write_room(tmp_path)
+    assert main(["build", str(photo), "-o", str(tmp_path / "empty")]) == 0
+    assert "draw boxes" in capsys.readouterr().out
+    document = json.loads((tmp_path / "empty" / "scene.json").read_text())
+    assert document["objects"] == []
+    assert any(p["role"] == "wall" for p in document["architecture"]["planes"])
+
+
+def test_optimise_reports_its_costs(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["optimise", str(project), "--json"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert report["recipe"] == "feasible"
+    assert set(report["before"]) == set(report["after"])
+
+
+def test_export_opens_elsewhere_in_metres_with_y_up(project: Path, tmp_path: Path) -> None:
+    assert main(["export", str(project), "--format", "glb", "-o", str(tmp_path / "room.glb")]) == 0
+    loaded = trimesh.load_scene(tmp_path / "room.glb")
+    document = json.loads((project / "scene.json").read_text())
+    assert len(loaded.geometry) >= len(document["objects"])
+    room = np.ptp(np.vstack([p["polygon"] for p in document["architecture"]["planes"]]), axis=0)
+    assert loaded.extents[1] == pytest.approx(room[2], abs=0.5)
+
+
+@pytest.mark.parametrize("view", ["photo", "top", "front", "orbit:30"])
+def test_picture_draws_every_view(project: Path, tmp_path: Path, view: str) -> None:
+    out = tmp_path / "view.png"
+    assert main(["picture", str(project), "-o", str(out), "--view", view, "--size", "160x120"]) == 0
+    image = np.asarray(Image.open(out).convert("RGB"))
+    assert image.shape == (120, 160, 3)
+    assert image.std() > 5
+
+
+def test_arrangements_write_scenes_with_other_shapes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    photo, boxes = write_room(tmp_path)
+    arguments = ["build", str(photo), "--boxes", str(boxes), "-o", str(tmp_path / "room"), "--arrangements", "3"]
+    assert main([*arguments, "--json"]) == 0
+    names = json.loads(capsys.readouterr().out)["scenes"]
+    shapes = [
+        tuple(o["shape"] for o in json.loads((tmp_path / "room" / name).read_text())["objects"]) for name in names
+    ]
+    assert len(set(shapes)) == 3
+
+
+def test_doctor_finds_what_is_needed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["doctor", "--json"]) == 0
+    findings = {f["name"]: f for f in json.loads(capsys.readouterr().out)}
+    assert findings["torch"]["ok"]
+    assert "shapes" in findings["shape library"]["detail"]
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [],
+        ["build"],
+        ["build", "x.jpg", "-o", "p", "--intrinsics", "1,2,3"],
+        ["build", "x.jpg", "-o", "p", "--fov", "900"],
+        ["build", "x.jpg", "-o", "p", "--fov", "60", "--intrinsics", "1,1,1,1"],
+        ["picture", "p", "-o", "x.png", "--view", "sideways"],
+        ["picture", "p", "-o", "x.png", "--size", "huge"],
+        ["export", "p", "--format", "doc", "-o", "x"],
+        ["paint"],
+    ],
+)
+def test_bad_usage_exits_2(arguments: list[str]) -> None:
+    with pytest.raises(SystemExit) as stop:
+        main(arguments)
+    assert stop.value.code == 2
+
+
+@pytest.mark.parametrize("command", ["serve", "build", "optimise", "export", "picture", "doctor"])
+def test_every_command_has_help_with_an_example(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as stop:
+        main([command, "--help"])
+    assert stop.value.code == 0
+    assert f"diorama {command}" in capsys.readouterr().out.split("example:")[1]
+
+
+def _one_line(capsys: pytest.CaptureFixture[str], arguments: list[str]) -> str:
+    assert main(arguments) == 1
+    captured = capsys.readouterr()
+    lines = [x for x in captured.err.splitlines() if x.startswith("diorama:") and not x.startswith("diorama: note")]
+    assert len(lines) == 1
+    assert "Traceback" not in captured.err
+    assert captured.out == ""
+    return lines[0]
+
+
+def _bad_photos(folder: Path) -> dict[str, Path]:
+    good, _ = write_room(folder)
+    bad = {
+        "missing": folder / "nowhere.jpg",
+        "text": folder / "text.jpg",
+        "empty": folder / "empty.jpg",
+        "truncated": folder / "truncated.png",
+        "tiny": folder / "tiny.png",
+        "folder": folder / "directory.png",
+    }
+    bad["text"].write_text("this is no picture")
+    bad["empty"].write_bytes(b"")
+    bad["truncated"].write_bytes(good.read_bytes()[:500])
+    Image.new("RGB", (1, 1)).save(bad["tiny"])
+    bad["folder"].mkdir()
+    return bad
+
+
+@pytest.mark.parametrize("case", ["missing", "text", "empty", "truncated", "tiny", "folder"])
+def test_a_bad_photo_is_one_clear_line_and_loses_nothing(
+    case: str, project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = (project / "scene.json").read_bytes()
+    photo = _bad_photos(tmp_path)[case]
+    assert photo.name in _one_line(capsys, ["build", str(photo), "-o", str(project)])
+    assert (project / "scene.json").read_bytes() == before
+
+
+@pytest.mark.parametrize("mode", ["L", "RGBA", "CMYK", "P", "I;16"])
+def test_pictures_of_every_colour_mode_are_read(mode: str, tmp_path: Path) -> None:
+    photo, boxes = write_room(tmp_path)
+    image = Image.open(photo)
+    if mode == "I;16":
+        converted = Image.fromarray(np.asarray(image.convert("L")).astype(np.uint16) * 257)
+    else:
+        converted = image.convert(mode)
+    path = tmp_path / ("room.tif" if mode == "CMYK" else "other.png")
+    converted.save(path)
+    assert main(["build", str(path), "--boxes", str(boxes), "-o", str(tmp_path / "room")]) == 0
+
+
+def test_boxes_outside_and_unknown_classes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    photo, boxes = write_room(tmp_path)
+    boxes.write_text(json.dumps([{"bbox": [900, 900, 950, 950], "class": "chair"}]))
+    assert "outside" in _one_line(capsys, ["build", str(photo), "--boxes", str(boxes), "-o", str(tmp_path / "a")])
+    boxes.write_text(json.dumps([{"bbox": [120, 110, 180, 200], "class": "flurbistan"}]))
+    assert main(["build", str(photo), "--boxes", str(boxes), "-o", str(tmp_path / "b")]) == 0
+    document = json.loads((tmp_path / "b" / "scene.json").read_text())
+    assert [o["label"] for o in document["objects"]] == ["flurbistan"]
+
+
+def test_depth_of_another_size_is_one_clear_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    photo, _ = write_room(tmp_path)
+    np.save(tmp_path / "depth.npy", np.full((50, 300), 2.0, np.float32))
+    arguments = ["build", str(photo), "--depth", str(tmp_path / "depth.npy"), "-o", str(tmp_path / "a")]
+    assert "depth.npy" in _one_line(capsys, arguments)
+
+
+def test_other_failures_are_one_clear_line(project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "file").write_text("")
+    photo = str(project.parent / "room.png")
+    cases = [
+        ["build", photo, "-o", str(tmp_path / "file" / "room")],
+        ["build", photo, "-o", str(tmp_path / "file")],
+        ["build", photo, "-o", str(tmp_path / "room"), "--profile", "foundation"],
+        ["build", photo, "-o", str(tmp_path / "room"), "--library", "mine"],
+        ["optimise", str(tmp_path)],
+        ["picture", str(project), "-o", str(tmp_path / "picture.gif")],
+        ["export", str(project), "--format", "glb", "-o", str(tmp_path / "file" / "room.glb")],
+    ]
+    for arguments in cases:
+        assert _one_line(capsys, arguments)
+
+
+def test_the_installed_command_runs() -> None:
+    command = Path(sys.executable).with_name("diorama")
+    done = subprocess.run([command, "--version"], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0
+    assert done.stdout.startswith("diorama ")

@@ -1,0 +1,46 @@
+from __future__ import annotations
+
+import numpy as np
+
+from diorama_core.artefacts import DetectedObject
+from diorama_core.pipeline.colours import photo_colours
+
+
+def _object(name: str, category: str, mask: np.ndarray) -> DetectedObject:
+    return DetectedObject(name, category, name, (0, 0, 1, 1), mask, 1, 1.0)
+
+
+def _masks() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    rgb = np.full((60, 80, 3), 200, np.uint8)
+    sofa, pillow = np.zeros((60, 80), bool), np.zeros((60, 80), bool)
+    sofa[20:50, 10:70] = True
+    pillow[22:40, 12:60] = True
+    rgb[sofa] = (30, 60, 140)
+    rgb[pillow] = (180, 40, 30)
+    return rgb, sofa, pillow
+
+
+def test_what_lies_in_front_does_not_colour_what_is_behind() -> None:
+    rgb, sofa, pillow = _masks()
+    colours = photo_colours(rgb, (_object("sofa", "sofa", sofa), _object("pillow", "pillow", pillow)))
+    np.testing.assert_allclose(colours["sofa"], np.array([30, 60, 140]) / 255, atol=0.02)
+    np.testing.assert_allclose(colours["pillow"], np.array([180, 40, 30]) / 255, atol=0.02)
+
+
+def test_shade_does_not_split_a_colour() -> None:
+    rgb, sofa, _ = _masks()
+    shade = np.linspace(0.6, 1.0, 80)[None, :, None]
+    shaded = (np.full((60, 80, 3), (60, 120, 200)) * shade).astype(np.uint8)
+    red, green, blue = photo_colours(shaded, (_object("sofa", "sofa", sofa),))["sofa"]
+    assert red < green < blue
+
+
+def test_many_coloured_tiny_and_empty_things_are_left_as_they_are(rng: np.random.Generator) -> None:
+    _, sofa, _ = _masks()
+    noise = rng.integers(0, 255, (60, 80, 3), dtype=np.uint8)
+    dot = np.zeros((60, 80), bool)
+    dot[5, 5] = True
+    objects = (_object("a", "sofa", sofa), _object("b", "chair", dot), _object("c", "chair", np.zeros_like(dot)))
+    assert photo_colours(noise, objects) == {}
+    rgb, sofa, _ = _masks()
+    assert photo_colours(rgb, (_object("p", "plant", sofa),)) == {}
