@@ -14,11 +14,18 @@ from diorama_core.scene.types import Architecture, Camera, Plane
 
 MAX_SIDE_PX = 512
 PIXELS_PER_M = 150.0
-MIN_SEEN_SHARE = 0.12
+MIN_SEEN_SHARE = 0.06
 """A plane seen in less of its area keeps its plain colour."""
 MIN_SEEN_PX = 400
 MAX_GRAZING_COSINE = 0.06
 """Where the plane is seen more edge-on than this the photo is smeared and not used."""
+GRAIN_LEAST_PX = 12
+EVEN_LEVELS = 14.0
+"""A patch whose colour varies more than this (of 255) over its breadth is a pattern or a rug, not a grain."""
+ISLAND_M = 0.22
+"""Pieces of a plane narrower than this are mostly rims, shadows and leaves of what stands before it."""
+RIM = 0.008
+"""Widening of what hides the room beyond its masks' own margin, as a share of the picture's longer side."""
 SURE_MASK = 0.95
 FOREIGN_SPREADS = 4.0
 FOREIGN_LEAST_LAB = np.array([14.0, 9.0, 9.0])
@@ -42,16 +49,32 @@ def plane_textures(
     """
     shape = (inputs.photo.height, inputs.photo.width)
     unsure = [o for o in objects if o.mask_confidence < SURE_MASK]
-    hidden = object_pixels(shape, objects) | _boxes(shape, unsure)
+    hidden = _grown(object_pixels(shape, objects)) | _boxes(shape, unsure)
     found: dict[str, np.ndarray] = {}
     for plane in architecture.planes:
         points, pixel_m = _texel_points(plane)
         colours, seen = _seen_colours(inputs.photo.rgb, hidden, camera, architecture.planes, plane, points)
         if unsure and plane.role == "floor":
             seen &= ~_foreign(colours, seen)
+        seen = _without_islands(seen, ISLAND_M / pixel_m)
         if seen.mean() >= MIN_SEEN_SHARE and seen.sum() >= MIN_SEEN_PX:
-            found[plane.id] = completed(colours, seen, plane.colour, FADE_M / pixel_m)
+            found[plane.id] = completed(colours, seen, plane.colour, FADE_M / pixel_m, grainy=plane.role == "floor")
     return found
+
+
+def _without_islands(seen: Bool[np.ndarray, "h w"], width_px: float) -> Bool[np.ndarray, "h w"]:
+    """What is left when everything narrower than a given width, between things that hide the plane, is given up."""
+    side = max(3, round(width_px) | 1)
+    opened = cv2.morphologyEx(seen.astype(np.uint8), cv2.MORPH_OPEN, np.ones((side, side), np.uint8))
+    return opened.astype(bool)
+
+
+def _grown(hidden: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+    """A wider margin, and gaps between legs and leaves closed: what shows there is mostly shadow and rims."""
+    rim = max(2, round(RIM * max(hidden.shape)))
+    gap = 2 * rim
+    wide = cv2.dilate(hidden.astype(np.uint8), np.ones((2 * (rim + gap) + 1,) * 2, np.uint8))
+    return cv2.erode(wide, np.ones((2 * gap + 1,) * 2, np.uint8), borderValue=1).astype(bool)
 
 
 def _boxes(shape: tuple[int, int], objects: list[DetectedObject]) -> Bool[np.ndarray, "h w"]:
@@ -119,19 +142,46 @@ def completed(
     seen: Bool[np.ndarray, "h w"],
     plain: tuple[float, float, float],
     fade_px: float,
+    *,
+    grainy: bool = False,
 ) -> UInt8[np.ndarray, "h w 3"]:
     """Fills what is not seen smoothly from what is, fading to the plain colour away from it.
 
-    Colours spread through an image pyramid (pull-push, Gortler et al. 1996), which leaves no streaks.
+    Colours spread through an image pyramid (pull-push, Gortler et al. 1996), which leaves no streaks. With `grainy`
+    the fine detail of the largest seen patch goes on over the rest, as carpets and boards do.
     """
     smooth = _pull_push(colours * seen[..., None], seen.astype(np.float32))
     distance = cv2.distanceTransform((~seen).astype(np.uint8), cv2.DIST_L2, 5)
     keep = np.exp(-distance / max(fade_px, 1.0))[..., None]
     filled = keep * smooth + (1.0 - keep) * (np.array(plain, np.float32) * 255.0)
+    if grainy:
+        filled = filled + _grain(colours, seen)
     # The first texels inside a mask's border still carry its rim; a soft seam hides the step.
     inner = cv2.erode(seen.astype(np.float32), np.ones((5, 5), np.uint8))
     weight = cv2.GaussianBlur(inner, (0, 0), 2.0)[..., None] * seen[..., None]
     return (weight * colours + (1.0 - weight) * filled).clip(0, 255).astype(np.uint8)
+
+
+def _grain(colours: Float32[np.ndarray, "h w 3"], seen: Bool[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w 3"]:
+    """Detail of the largest wholly seen square, mirrored over the plane; zero when that is too small or uneven."""
+    height, width = seen.shape
+    ringed = cv2.copyMakeBorder(seen.astype(np.uint8), 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=0)
+    reach = cv2.distanceTransform(ringed, cv2.DIST_C, 3)[1:-1, 1:-1]
+    row, column = np.unravel_index(int(reach.argmax()), reach.shape)
+    half = int(reach.max()) - 3
+    if half < GRAIN_LEAST_PX:
+        return np.zeros_like(colours)
+    patch = colours[row - half : row + half, column - half : column + half]
+    broad = cv2.GaussianBlur(patch, (0, 0), half / 8.0)
+    detail = patch - broad
+    if broad.std(axis=(0, 1)).max() > EVEN_LEVELS or np.abs(detail).max() > 6.0 * detail.std() + EVEN_LEVELS:
+        return np.zeros_like(colours)
+    mirrored = np.concatenate([detail, detail[::-1]])
+    mirrored = np.concatenate([mirrored, mirrored[:, ::-1]], axis=1)
+    period = 4 * half
+    rows = (np.arange(height) - row + half) % period
+    columns = (np.arange(width) - column + half) % period
+    return mirrored[np.ix_(rows, columns)]
 
 
 def _pull_push(
