@@ -25,7 +25,9 @@ from diorama_core.render.raycast import MeshCaster, OrthographicView, render_buf
 from diorama_core.scene.types import Architecture, Camera, Intrinsics, Plane, Pose, Scene, SceneObject, yaw_rotation
 
 SIZE = (1280, 960)
-LEFT, RIGHT, NEAR, FAR, HEIGHT = -2.75, 3.05, -1.6, 5.6, 2.6
+LEFT, RIGHT, NEAR, FAR, HEIGHT = -2.9, 2.9, -1.6, 5.55, 2.55
+HANGING = float("inf")
+"""Height of what hangs from the ceiling."""
 TO_VIEWER, TO_RIGHT, TO_LEFT = -90.0, 0.0, 180.0
 """Headings in degrees: where a shape's front points."""
 
@@ -39,8 +41,8 @@ class Item:
     x: float
     y: float
     heading_deg: float = TO_VIEWER
-    z: float | None = None
-    """Height of its middle; None lets it stand on what is beneath it."""
+    base_m: float | None = None
+    """Height of its underside; None lets it stand on what is beneath it."""
     scale: float = 1.0
     lean_deg: float = 0.0
     """Leaning backwards."""
@@ -49,19 +51,40 @@ class Item:
 
 
 ITEMS = (
-    Item("rug", "rug-plain", 1.0, 3.75),
-    Item("sofa", "sofa-blue-two", 1.2, 5.05),
-    Item("coffee table", "coffee-table-walnut-oval", 1.05, 3.75),
-    Item("armchair", "armchair-lounge-oak", 2.35, 3.7, 170.0),
-    Item("side table", "side-table-tripod-oak", 2.45, 5.2),
-    Item("lamp", "lamp-column-brass", 2.45, 5.2),
-    Item("floor lamp", "floor-lamp-tripod-oak", -0.1, 5.2),
-    Item("bookshelf", "bookshelf-oak-four", -0.95, 5.43),
-    Item("tv stand", "tv-stand-oak-open", -2.0, 5.3),
-    Item("dining table", "table-round-oak", -1.35, 3.2),
-    Item("chair", "chair-windsor-oak", -0.72, 2.95, 160.0),
-    Item("chair", "chair-windsor-oak", -1.55, 3.9, -75.0),
-    Item("chair", "chair-windsor-oak", -2.05, 3.1, 5.0),
+    Item("rug", "rug-persian-red", 1.2, 4.17, TO_RIGHT),
+    Item("sofa", "sofa-blue-two", 1.4, 5.07),
+    Item("pillow", "pillow-rust", 0.95, 5.1, -80.0, lean_deg=14.0),
+    Item("pillow", "pillow-striped", 1.88, 5.1, -98.0, lean_deg=14.0),
+    Item("coffee table", "coffee-table-walnut-oval", 1.1, 4.05),
+    Item("plant", "plant-flowering", 1.38, 4.1),
+    Item("books", "books-stack-large", 0.85, 4.03, -65.0),
+    Item("mug", "cup-mug-white", 1.1, 3.88, 40.0),
+    Item("armchair", "armchair-lounge-oak", 2.2, 4.1, 160.0),
+    Item("side table", "side-table-tripod-oak", 2.52, 5.2),
+    Item("lamp", "lamp-urn-blue", 2.52, 5.2),
+    Item("floor lamp", "floor-lamp-tripod-oak", 0.3, 5.17),
+    Item("picture", "picture-seascape-gilt", 1.4, FAR - 0.02, base_m=1.3),
+    Item("picture", "picture-botanic", 2.38, FAR - 0.015, base_m=1.38),
+    Item("clock", "clock-round-oak", -1.55, FAR - 0.025, base_m=1.66),
+    Item("bookshelf", "bookshelf-oak-four", -0.45, 5.38),
+    Item("books", "books-row", -0.62, 5.4, base_m=1.23, drawn=False),
+    Item("vase", "vase-moon-stone", -0.18, 5.38, base_m=1.23, drawn=False),
+    Item("books", "books-row-long", -0.45, 5.4, base_m=0.856, drawn=False),
+    Item("books", "books-stack-small", -0.7, 5.38, -70.0, base_m=0.476, drawn=False),
+    Item("books", "books-row", -0.32, 5.4, base_m=0.476, drawn=False),
+    Item("basket", "basket-shelf", -0.63, 5.38, base_m=0.1, drawn=False),
+    Item("basket", "basket-shelf", -0.24, 5.38, base_m=0.1, drawn=False),
+    Item("plant", "plant-aloe", -0.45, 5.38),
+    Item("tv stand", "tv-stand-oak-open", -1.7, 5.31),
+    Item("television", "television-feet", -1.7, 5.31),
+    Item("plant", "plant-fiddle", -2.42, 4.85),
+    Item("dining table", "table-round-oak", -1.3, 3.55),
+    Item("flowers", "plant-cut-flowers", -1.42, 3.6),
+    Item("bowl", "bowl-wood", -1.05, 3.45),
+    Item("chair", "chair-windsor-oak", -0.6, 3.67, 188.0),
+    Item("chair", "chair-windsor-oak", -1.62, 4.2, -62.0),
+    Item("chair", "chair-windsor-oak", -1.12, 2.86, 104.0),
+    Item("ceiling lamp", "ceiling-lamp-wicker-bell", -1.3, 3.55, base_m=HANGING),
 )
 
 
@@ -72,7 +95,8 @@ def standing(library: ShapeLibrary, item: Item, placed: list[SceneObject], numbe
     tilt = np.array([[np.cos(lean), 0, -np.sin(lean)], [0, 1, 0], [np.sin(lean), 0, np.cos(lean)]])
     R = yaw_rotation(np.radians(item.heading_deg)) @ tilt
     corners = np.asarray(library.mesh(item.shape).vertices) * item.scale @ R.T
-    z = item.z if item.z is not None else ground_below(library, placed, item.x, item.y) - corners[:, 2].min()
+    base = ground_below(library, placed, item.x, item.y) if item.base_m is None else item.base_m
+    z = HEIGHT - corners[:, 2].max() if base == HANGING else base - corners[:, 2].min()
     pose = Pose(R, np.array([item.x, item.y, z]), np.full(3, item.scale))
     name = f"{item.label.replace(' ', '-')}-{number}"
     return SceneObject(name, item.label, shape.category, item.shape, shape.size_m, pose)
@@ -124,28 +148,28 @@ def planks(pixels_per_metre: int = 260, seed: int = 7) -> np.ndarray:
         seam[:, left : left + 2] = 1
     grain = gaussian_filter(rng.normal(size=(height, width)), (40, 1.2))
     fine = gaussian_filter(rng.normal(size=(height, width)), (8, 0.6))
-    value = 1 + 0.075 * tone + 0.05 * grain / grain.std() + 0.02 * fine / fine.std()
-    value = gaussian_filter(value, 0.6) * (1 - 0.45 * gaussian_filter(seam, 0.7))
-    return np.clip(np.array([181, 141, 103]) * value[..., None], 0, 255).astype(np.uint8)
+    value = 1 + 0.045 * tone + 0.03 * grain / grain.std() + 0.02 * fine / fine.std()
+    value = gaussian_filter(value, 0.6) * (1 - 0.3 * gaussian_filter(seam, 0.7))
+    return np.clip(np.array([190, 155, 120]) * value[..., None], 0, 255).astype(np.uint8)
 
 
 def camera() -> Camera:
     """Eye height, a little to the left, looking slightly down."""
-    yaw, tilt = np.radians(2.5), np.radians(8.5)
+    yaw, tilt = np.radians(2.5), np.radians(7.5)
     z = np.array([np.sin(yaw) * np.cos(tilt), np.cos(yaw) * np.cos(tilt), -np.sin(tilt)])
     x = np.array([np.cos(yaw), -np.sin(yaw), 0.0])
     T = np.eye(4)
     T[:3, :3], T[:3, 3] = np.stack([x, np.cross(z, x), z], axis=1), [0.0, 0.0, 1.5]
-    return Camera(Intrinsics.from_fov(*SIZE, np.radians(66.0)), T)
+    return Camera(Intrinsics.from_fov(*SIZE, np.radians(62.0)), T)
 
 
 def daylight() -> Lighting:
     """Low sun through the windows of the left wall, and light from the room's own white walls."""
     return Lighting(
-        window_centre=np.array([LEFT + 0.15, 2.3, 1.75]),
+        window_centre=np.array([LEFT - 0.6, 2.05, 2.0]),
         window_edges=np.array([[0.0, 0.95, 0.0], [0.0, 0.0, 0.6]]),
         window_irradiance=np.array([1.5, 1.34, 1.08]) * 1.15,
-        reference_m=2.9,
+        reference_m=3.6,
         sky=np.array([0.56, 0.57, 0.585]),
         ground=np.array([0.47, 0.435, 0.395]),
         reach_m=1.6,
@@ -169,7 +193,7 @@ def visible_boxes(scene: Scene, library: ShapeLibrary) -> list[dict]:
     for index, (item, obj) in enumerate(zip(ITEMS, scene.objects, strict=True)):
         seen = together == index
         alone = MeshCaster([posed[index]]).buffers(scene.camera).silhouette
-        if not item.drawn or seen.sum() < 350 or seen.sum() < 0.3 * alone.sum():
+        if not item.drawn or seen.sum() < 350 or seen.sum() < 0.2 * alone.sum():
             continue
         rows, columns = np.nonzero(seen)
         box = [columns.min(), rows.min(), columns.max() + 1, rows.max() + 1]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 import trimesh
@@ -16,6 +16,7 @@ from jaxtyping import Float, Float32, Int32, UInt8
 from trimesh.visual.color import ColorVisuals
 from trimesh.visual.material import PBRMaterial
 
+from diorama_core.library.paint import painted
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.render.raycast import face_normals, unit
 
@@ -68,28 +69,9 @@ def shape_surfaces(library: ShapeLibrary, shape_id: str, colour_srgb: Colour | N
     Args:
         library: Where the shape is.
         shape_id: Which shape; `LibraryError` when unknown.
-        colour_srgb: Override of the main material's colour; see `recoloured`.
+        colour_srgb: Override of the main material's colour; see `library.paint.painted`.
     """
-    surfaces = _kept_surfaces(library.parts(shape_id))
-    return surfaces if colour_srgb is None else recoloured(surfaces, colour_srgb)
-
-
-def recoloured(surfaces: tuple[Surface, ...], colour_srgb: Colour) -> tuple[Surface, ...]:
-    """The surfaces with the material that covers most area painted in one plain colour.
-
-    Legs, handles and screens keep theirs: a blue sofa still stands on wooden feet.
-    """
-    area: dict[int, float] = {}
-    for surface in surfaces:
-        area[id(surface.material)] = area.get(id(surface.material), 0.0) + surface.area_m2
-    main = max(area, key=area.__getitem__, default=None)
-    red, green, blue = (float(c) for c in srgb_to_linear(np.asarray(colour_srgb)))
-    return tuple(
-        replace(s, material=replace(s.material, colour=(red, green, blue), texture=None), colours=None)
-        if id(s.material) == main
-        else s
-        for s in surfaces
-    )
+    return _kept_surfaces(library.parts(shape_id), colour_srgb)
 
 
 def srgb_to_linear(colour: Float[np.ndarray, "*n"]) -> Float[np.ndarray, "*n"]:
@@ -102,21 +84,23 @@ def linear_to_srgb(light: Float[np.ndarray, "*n"]) -> Float[np.ndarray, "*n"]:
     return np.where(light <= 0.0031308, light * 12.92, 1.055 * np.maximum(light, 1e-9) ** (1 / 2.4) - 0.055)
 
 
-_KEPT: OrderedDict[int, tuple[trimesh.Scene, tuple[Surface, ...]]] = OrderedDict()
+_KEPT: OrderedDict[tuple[int, Colour | None], tuple[trimesh.Scene, tuple[Surface, ...]]] = OrderedDict()
 _KEPT_LOCK = threading.Lock()
 _KEPT_SHAPES = 128
 
 
-def _kept_surfaces(parts: trimesh.Scene) -> tuple[Surface, ...]:
+def _kept_surfaces(parts: trimesh.Scene, colour: Colour | None) -> tuple[Surface, ...]:
     """The surfaces of a scene of parts, read once while the same scene object keeps being asked for."""
+    key = (id(parts), colour)
     with _KEPT_LOCK:
-        kept = _KEPT.get(id(parts))
+        kept = _KEPT.get(key)
         if kept is not None:
-            _KEPT.move_to_end(id(parts))
+            _KEPT.move_to_end(key)
             return kept[1]
-    surfaces = tuple(s for s in _read_parts(parts) if len(s.faces))
+    shown = parts if colour is None else painted(parts, colour)
+    surfaces = tuple(s for s in _read_parts(shown) if len(s.faces))
     with _KEPT_LOCK:
-        _KEPT[id(parts)] = (parts, surfaces)  # holding the scene keeps its id from being given to another
+        _KEPT[key] = (parts, surfaces)  # holding the scene keeps its id from being given to another
         while len(_KEPT) > _KEPT_SHAPES:
             _KEPT.popitem(last=False)
     return surfaces

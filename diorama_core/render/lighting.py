@@ -64,10 +64,10 @@ def studio(bounds: Float[np.ndarray, "2 3"], toward_camera: Float[np.ndarray, "3
     upward = np.cross(across, direction)
     return Lighting(
         window_centre=centre + direction * distance,
-        window_edges=np.stack([across, upward]) * 0.42 * radius,
-        window_irradiance=np.array([1.25, 1.18, 1.07]),
+        window_edges=np.stack([across, upward]) * 0.32 * radius,
+        window_irradiance=np.array([1.38, 1.3, 1.17]),
         reference_m=distance,
-        sky=np.array([0.62, 0.64, 0.67]),
+        sky=np.array([0.57, 0.59, 0.62]),
         ground=np.array([0.5, 0.475, 0.45]),
         reach_m=max(0.9 * radius, 0.05),
     )

@@ -17,7 +17,10 @@ from diorama_core.render.world import Places, World
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
-_SUBPIXELS = (np.stack(np.meshgrid(np.arange(3), np.arange(3)), axis=-1).reshape(-1, 2) - 1) / 3.0
+BRIGHTEST = 2.0
+"""Light beyond this is white anyway; unclipped it would eat away what it borders on."""
+_SUBPIXELS = np.array([[-1, -3], [3, -1], [1, 3], [-3, 1]]) / 8.0
+"""A square turned off the grid: near-level and near-upright edges get as many steps as slanted ones."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -190,15 +193,16 @@ def _beyond(
 def _with_smooth_edges(
     shot: Shot, world: World, view: View, light: Lighting, grid: _Grid, fallen: Float32[np.ndarray, "h w 3"]
 ) -> Shot:
-    """Pixels at edges seen again through nine positions."""
+    """Pixels at edges seen again through four more positions."""
     pixels = np.argwhere(_edges(shot, grid))
     if not len(pixels):
         return shot
     groups = np.array_split(pixels, 1 + len(pixels) // 4096)
     again = _each(lambda group: _seen_again(world, view, light, grid, fallen, group), groups)
-    radiance, coverage = shot.radiance.copy(), shot.coverage.copy()
-    radiance[pixels[:, 0], pixels[:, 1]] = np.concatenate([colour for colour, _ in again])
-    coverage[pixels[:, 0], pixels[:, 1]] = np.concatenate([share for _, share in again])
+    radiance, coverage = np.minimum(shot.radiance, BRIGHTEST), shot.coverage.copy()
+    at, weight = (pixels[:, 0], pixels[:, 1]), 1 / (1 + len(_SUBPIXELS))
+    radiance[at] += (1 - weight) * (np.concatenate([colour for colour, _ in again]) - radiance[at])
+    coverage[at] += (1 - weight) * (np.concatenate([share for _, share in again]) - coverage[at])
     return Shot(radiance, coverage)
 
 
@@ -210,7 +214,7 @@ def _seen_again(
     fallen: Float32[np.ndarray, "h w 3"],
     pixels: Int[np.ndarray, "n 2"],
 ) -> tuple[Float32[np.ndarray, "n 3"], Float32[np.ndarray, "n"]]:
-    """Mean light and coverage of pixels over nine positions; light falls as on the neighbour that fits best."""
+    """Mean light and coverage of pixels over further positions; light falls as on the neighbour that fits best."""
     count = len(_SUBPIXELS)
     rays = view.rays((pixels[:, None, ::-1] + 0.5 + _SUBPIXELS).reshape(-1, 2))
     hits = world.caster.first_hits(rays)
@@ -218,7 +222,7 @@ def _seen_again(
     places = world.places(rays[found], hits.chosen(found))
     borrowed = _borrowed(places, np.repeat(pixels, count, axis=0)[found], grid, fallen)
     seen = np.zeros((len(rays), 3), np.float32)
-    seen[found] = np.minimum(_seen(world, places, rays[found], borrowed, light), 1.5)
+    seen[found] = np.minimum(_seen(world, places, rays[found], borrowed, light), BRIGHTEST)
     share = hits.found.reshape(-1, count).mean(axis=1)
     return seen.reshape(-1, count, 3).mean(axis=1), share.astype(np.float32)
 
@@ -236,7 +240,7 @@ def _edges(shot: Shot, grid: _Grid) -> Bool[np.ndarray, "h w"]:
             (grid.instance[here] != grid.instance[there])
             | (np.einsum("ijk,ijk->ij", grid.normals[here], grid.normals[there]) < 0.9)
             | (leap > 4 * grid.pixel_m[here])
-            | (np.abs(bright[here] - bright[there]) > 0.05)
+            | (np.abs(bright[here] - bright[there]) > 0.07)
         )
         edge[here] |= differs
         edge[there] |= differs
@@ -246,21 +250,21 @@ def _edges(shot: Shot, grid: _Grid) -> Bool[np.ndarray, "h w"]:
 def _borrowed(
     places: Places, near: Int[np.ndarray, "n 2"], grid: _Grid, fallen: Float32[np.ndarray, "h w 3"]
 ) -> Float32[np.ndarray, "n 3"]:
-    """For places seen between pixels, the light on the best-fitting of the nine pixels around."""
+    """For places seen between pixels, the light on the best-fitting of the pixel and its four neighbours."""
     h, w = grid.found.shape
     best = np.full(len(near), np.inf, np.float32)
     taken = np.zeros((len(near), 3), np.float32)
     scale = np.maximum(grid.depth[near[:, 0], near[:, 1]], 0.1)
-    for dy in (0, -1, 1):
-        for dx in (0, -1, 1):
-            row, column = np.clip(near[:, 0] + dy, 0, h - 1), np.clip(near[:, 1] + dx, 0, w - 1)
-            offset = np.linalg.norm(grid.points[row, column] - places.points, axis=1) / scale
-            turn = 1 - np.sum(grid.normals[row, column] * places.normals, axis=1)
-            other = grid.instance[row, column] != places.instance
-            cost = 20 * offset + turn + 2.0 * other + 100.0 * ~grid.found[row, column]
-            better = cost < best
-            best = np.where(better, cost, best)
-            taken = np.where(better[:, None], fallen[row, column], taken)
+    for dy, dx in ((0, 0), (-1, 0), (1, 0), (0, -1), (0, 1)):
+        row, column = np.clip(near[:, 0] + dy, 0, h - 1), np.clip(near[:, 1] + dx, 0, w - 1)
+        apart = grid.points[row, column] - places.points
+        offset = np.sqrt(np.einsum("ij,ij->i", apart, apart)) / scale
+        turn = 1 - np.einsum("ij,ij->i", grid.normals[row, column], places.normals)
+        other = grid.instance[row, column] != places.instance
+        cost = 20 * offset + turn + 2.0 * other + 100.0 * ~grid.found[row, column]
+        better = np.flatnonzero(cost < best)
+        best[better] = cost[better]
+        taken[better] = fallen[row[better], column[better]]
     return taken
 
 
