@@ -13,6 +13,7 @@ from PIL import Image
 from trimesh.visual.material import PBRMaterial
 
 from diorama_core.geometry.planes import plane_axes, plane_uv
+from diorama_core.library.paint import painted
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.types import Plane
 
@@ -30,13 +31,13 @@ class ShapeBytes:
         self._lock = threading.Lock()
 
     def glb(self, shape_id: str, colour: Colour | None = None) -> bytes:
-        """The shape's GLB; with `colour` (sRGB 0 to 1) in place of its own colours."""
+        """The shape's GLB; with `colour` (sRGB 0 to 1) on its main material."""
         key = (shape_id, colour)
         with self._lock:
             if key in self._kept:
                 self._kept.move_to_end(key)
                 return self._kept[key]
-        data = self._library.glb(shape_id) if colour is None else _recoloured(self._library.parts(shape_id), colour)
+        data = self._library.glb(shape_id) if colour is None else _painted_glb(self._library.parts(shape_id), colour)
         with self._lock:
             self._kept[key] = data
             while len(self._kept) > KEPT:
@@ -44,13 +45,8 @@ class ShapeBytes:
         return data
 
 
-def _recoloured(parts: trimesh.Scene, colour: Colour) -> bytes:
-    scene = parts.copy()
-    factor = [*(round(255 * c) for c in colour), 255]
-    for mesh in scene.geometry.values():
-        material = PBRMaterial(baseColorFactor=factor, metallicFactor=0.0, roughnessFactor=0.7)
-        mesh.visual = trimesh.visual.TextureVisuals(material=material)
-    return bytes(scene.export(file_type="glb"))
+def _painted_glb(parts: trimesh.Scene, colour: Colour) -> bytes:
+    return bytes(painted(parts, colour).export(file_type="glb"))
 
 
 def plane_triangles(plane: Plane) -> Int32[np.ndarray, "m 3"]:

@@ -28,7 +28,7 @@ def test_what_lies_in_front_does_not_colour_what_is_behind() -> None:
 
 
 def test_shade_does_not_split_a_colour() -> None:
-    rgb, sofa, _ = _masks()
+    _, sofa, _ = _masks()
     shade = np.linspace(0.6, 1.0, 80)[None, :, None]
     shaded = (np.full((60, 80, 3), (60, 120, 200)) * shade).astype(np.uint8)
     red, green, blue = photo_colours(shaded, (_object("sofa", "sofa", sofa),))["sofa"]
