@@ -24,6 +24,8 @@ FRAME_MARGIN = 0.025
 FRAME_SLANT = 0.02
 HOPELESS_GAP = 0.12
 """A reading whose score is so much below the best one's is not worth a second look."""
+CLEAR_GAP = 0.05
+"""A second reading whose score is nearer than this to the best one's makes the best one doubtful."""
 SURE_SUPPORT, UNSURE_SUPPORT = 0.6, 0.2
 """Shares of agreeing lines at which confidence is full and none."""
 
@@ -107,6 +109,8 @@ def _from_lines(
         focal = source or "usual focal length assumed"
         return CameraEstimate((habit,), 0.05, f"{focal}; too few straight lines, usual tilt assumed")
     confidence = _unit((fits[0].support - UNSURE_SUPPORT) / (SURE_SUPPORT - UNSURE_SUPPORT))
+    if len(fits) > 1:
+        confidence *= 1.0 - 0.5 * (1.0 - _unit((fits[0].score - fits[1].score) / CLEAR_GAP))
     confidence = max(0.05, confidence if known else 0.85 * confidence)
     focal = source or "focal length from vanishing points"
     doubt = "" if confidence > 0.35 else " (few agreeing lines: check it)"

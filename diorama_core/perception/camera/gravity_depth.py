@@ -13,8 +13,10 @@ from diorama_core.scene.types import Intrinsics
 
 WORKING_SIDE_PX = 240
 """Depth is read at no more than so many pixels a side; planes need no more."""
-UP_CONE_RAD = float(np.deg2rad(35.0))
+UP_CONE_RAD = float(np.deg2rad(50.0))
 """How far gravity may lie from the expected direction."""
+UNSUPPORTED_CONE_RAD = float(np.deg2rad(25.0))
+"""The same where no floor confirms it: what faces further away is more likely a wall."""
 ALIGNED_RAD = float(np.deg2rad(12.0))
 LEVEL_RAD = float(np.deg2rad(8.0))
 MIN_LEVEL_M2 = 0.12
@@ -74,6 +76,8 @@ def frame_from_depth(
     if up is None:
         return None
     floor = _floor(samples, up)
+    if floor is None and up @ R_expected[2] < np.cos(UNSUPPORTED_CONE_RAD):
+        return None
     if floor is not None:
         up, height = floor
     level = samples.normals @ up > np.cos(LEVEL_RAD)
