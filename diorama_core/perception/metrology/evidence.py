@@ -21,6 +21,11 @@ _CLEARLY_LOWER = 0.03
 """How much lower, as a share of the picture, a thing's box must end to be in front."""
 
 
+def _bottom_lower(boxes: Float[np.ndarray, "n 4"], height: int) -> Bool[np.ndarray, "n n"]:
+    """Whether j's box ends clearly lower than i's: on the same floor, j is in front."""
+    return boxes[None, :, 3] > boxes[:, None, 3] + _CLEARLY_LOWER * height
+
+
 @dataclass(frozen=True, eq=False)
 class Evidence:
     """All objects of a picture, as arrays over objects."""
@@ -30,6 +35,8 @@ class Evidence:
     edge_sigma_px: Float[np.ndarray, "n 4"]
     covered_by: Bool[np.ndarray, "n n 4"]
     """Whether edge e of object i is covered by object j's box, j being in front."""
+    in_front: Bool[np.ndarray, "n n"]
+    """Whether object j is in front of object i, if both stand on the floor."""
     truncated: Bool[np.ndarray, "n 4"]
     """Whether an edge lies on the picture's border."""
     mask_reach: Float[np.ndarray, "n 4"]
@@ -44,10 +51,17 @@ class Evidence:
     def __len__(self) -> int:
         return len(self.categories)
 
-    def hidden(self, index: int, besides: tuple[int, ...] = ()) -> Bool[np.ndarray, "4"]:
-        """Edges of an object that others hide, not counting some (its supporter)."""
-        others = [j for j in range(len(self)) if j != index and j not in besides]
+    def hidden(self, index: int, parent: int | None = None) -> Bool[np.ndarray, "4"]:
+        """Edges of an object that others hide.
+
+        What rests on a parent is not hidden by it, nor by things on the floor that are not in front of the parent.
+        """
+        others = [j for j in range(len(self)) if j != index and (parent is None or self._may_hide(j, parent))]
         return self.covered_by[index][others].any(axis=0) if others else np.zeros(4, dtype=bool)
+
+    def _may_hide(self, other: int, parent: int) -> bool:
+        on_floor = self.categories[other].mount == "floor"
+        return other != parent and (not on_floor or bool(self.in_front[parent, other]))
 
 
 def gather(objects: tuple[DetectedObject, ...], width: int, height: int) -> Evidence:
@@ -67,7 +81,8 @@ def gather(objects: tuple[DetectedObject, ...], width: int, height: int) -> Evid
     reach = np.array([mask_reach(o, b) for o, b in zip(objects, boxes, strict=True)]).reshape(-1, 4)
     area = np.array([float(o.mask.sum()) for o in objects]) / (boxes[:, 2:] - boxes[:, :2]).prod(axis=1)
     fill = np.where(exact, np.minimum(area, 1.0), 1.0)
-    return Evidence(categories, boxes, sigma, covered, truncated, reach, weight, exact, fill)
+    in_front = _bottom_lower(boxes, height)
+    return Evidence(categories, boxes, sigma, covered, in_front, truncated, reach, weight, exact, fill)
 
 
 def _proper(box: tuple[float, float, float, float], width: int, height: int) -> tuple[float, float, float, float]:
@@ -88,5 +103,4 @@ def _covered(boxes: Float[np.ndarray, "n 4"], height: int) -> Bool[np.ndarray, "
         at = boxes[:, None, edge]
         strictly_inside = (boxes[None, :, across] < at) & (at < boxes[None, :, across + 2])
         covered[:, :, edge] = strictly_inside & (share[..., 1 - across] >= _COVERED)
-    in_front = boxes[None, :, 3] > boxes[:, None, 3] + _CLEARLY_LOWER * height
-    return covered & in_front[..., None] & ~np.eye(n, dtype=bool)[..., None]
+    return covered & _bottom_lower(boxes, height)[..., None] & ~np.eye(n, dtype=bool)[..., None]

@@ -24,6 +24,7 @@ _DOUBTFUL_CAP = 9.0
 _ODD_ANGLE_COST = 1.5
 _ODD_ANGLES_DEG = (30.0, -30.0, 60.0, -60.0)
 _SCAN_ITERATIONS = 10
+_FARTHER = 1.6
 _MAYBE_ELSEWHERE = frozenset({UNKNOWN.name, "box", "plant", "basket", "sink"})
 
 
@@ -67,11 +68,14 @@ def place_on_floor(evidence: Evidence, index: int, height_m: float) -> list[Prob
     return rows
 
 
-def solve_from_both_starts(rows: list[Problems], view: View) -> Solutions:
-    """Solve rows from the contact with their base and from their expected size."""
+def solve_all(rows: list[Problems], view: View) -> Solutions:
+    """Solve rows from the contact with their base, from their expected size, and from farther away.
+
+    The last matters for things cut by the picture's border, which fit from many distances.
+    """
     batch = stacked(rows)
-    starts = np.concatenate([contact_start(batch, view), size_start(batch, view)])
-    return solve(stacked([batch, batch]), starts, view)
+    starts = [contact_start(batch, view), size_start(batch, view), size_start(batch, view, _FARTHER)]
+    return solve(stacked([batch] * len(starts)), np.concatenate(starts), view)
 
 
 def _headings(category: Category) -> list[tuple[float, float]]:

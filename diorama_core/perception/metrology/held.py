@@ -33,6 +33,9 @@ AGAINST_WALLS = frozenset(
 ).union(["stove", "night stand", "kitchen counter", "washing machine", "toilet", "piano"])
 """Categories whose backs stand at walls."""
 _SEATS_WITHOUT_SUPPORT_FLAG_COST = 2.0
+_SEAT_THINGS = frozenset({"pillow", "toy", "books", "laptop", "basket", "box"})
+_ODD_ON_SEAT_COST = 2.0
+"""Of anything else lying on a seat or a bed."""
 _SHELVED = frozenset({"bookshelf", "shelves", "tv stand", "cabinet", "desk"})
 _USUAL_MIDDLE_M = {
     "picture": 1.5,
@@ -105,6 +108,7 @@ def place_on(
     bottom = float(parent_cuboid.base_m[0])
     footprint = [*parent_cuboid.centre[0, :2], parent_cuboid.yaw_rad[0], depth / 2, width / 2]
     rows = []
+    soft = evidence.categories[parent].seat_height_m is not None and evidence.categories[index].name not in _SEAT_THINGS
     for base, sigma, level_cost in _levels(evidence, parent, float(tall)):
         for mode in supported_modes(evidence.categories[index].name):
             for turn in (0.0,) if mode.square else (0.0, np.pi / 2):
@@ -115,12 +119,12 @@ def place_on(
                         mode,
                         camera_height_m=height_m,
                         yaw_rad=float(parent_cuboid.yaw_rad[0]) + turn,
-                        besides=(parent,),
+                        parent=parent,
                         base_m=bottom + base,
                         base_sigma_m=sigma,
                         footprint=np.array(footprint),
                         footprint_sigma_m=_FOOTPRINT_SIGMA_M,
-                        extra=mode.cost + level_cost + cost,
+                        extra=mode.cost + level_cost + cost + (_ODD_ON_SEAT_COST if soft else 0.0),
                     )
                 )
     return rows

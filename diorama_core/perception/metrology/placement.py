@@ -11,7 +11,7 @@ from diorama_core.geometry.projection import cuboid_corners
 from diorama_core.library.taxonomy import UNKNOWN, Category
 from diorama_core.perception.metrology.arrangement import arrange, distinct
 from diorama_core.perception.metrology.evidence import Evidence
-from diorama_core.perception.metrology.floor import place_on_floor, solve_from_both_starts
+from diorama_core.perception.metrology.floor import place_on_floor, solve_all
 from diorama_core.perception.metrology.held import (
     AGAINST_WALLS,
     Extent,
@@ -103,7 +103,7 @@ def _on_floor(evidence: Evidence, view: View, height_m: float) -> dict[int, Plac
             rows += [p.changed(extra=p.extra + cost) for p in place_on_floor(evidence, index, height_m)]
     if not rows:
         return {}
-    readings = _readings(solve_from_both_starts(rows, view), evidence, view)
+    readings = _readings(solve_all(rows, view), evidence, view)
     standing = [i for i in readings if evidence.categories[i].mount == "floor"]
     costs = [readings[i].costs + _children_costs(evidence, view, height_m, i, readings[i]) for i in standing]
     chosen = arrange([readings[i].boxes for i in standing], costs, [evidence.categories[i] for i in standing])
@@ -126,7 +126,7 @@ def _children_costs(
     for reading in range(len(total)):
         box = readings.placement(reading, FLOOR).cuboid
         rows = [p for i in children for p in place_on(evidence, i, parent, box, height_m, 0.0)]
-        solved = solve_from_both_starts(rows, view)
+        solved = solve_all(rows, view)
         for child in children:
             total[reading] += min(float(solved.cost[solved.problems.item == child].min()), _CHILD_CAP)
     return total
@@ -142,7 +142,7 @@ def _held(
         for supporter, rows in _held_rows(evidence, index, floor, room, height_m):
             groups.setdefault(supporter, []).extend(rows)
     for supporter, rows in groups.items():
-        for index, readings in _readings(solve_from_both_starts(rows, view), evidence, view).items():
+        for index, readings in _readings(solve_all(rows, view), evidence, view).items():
             challenger = readings.placement(0, supporter)
             if index not in best or challenger.cost < best[index].cost:
                 best[index] = challenger

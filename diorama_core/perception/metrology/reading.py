@@ -41,7 +41,7 @@ def heading_and_size(placement: Placement, category: Category) -> tuple[float, F
 def confidence_of(placement: Placement, evidence: Evidence, height_log_sigma: float) -> float:
     """Between 0 and 1: low for implausible sizes, bad fits, hidden or cut boxes, and an unsure camera height."""
     index = placement.index
-    besides = (placement.supporter,) if placement.supporter >= 0 else ()
-    unseen = int((evidence.hidden(index, besides) | evidence.truncated[index]).sum())
+    parent = placement.supporter if placement.supporter >= 0 else None
+    unseen = int((evidence.hidden(index, parent) | evidence.truncated[index]).sum())
     fit = np.exp(-placement.cost / _COST_SCALE)
     return float(np.clip(fit * _HIDDEN_FACTOR**unseen * np.exp(-height_log_sigma), 0.02, 1.0))

@@ -20,7 +20,7 @@ def row(
     *,
     camera_height_m: float,
     yaw_rad: float,
-    besides: tuple[int, ...] = (),
+    parent: int | None = None,
     **more: object,
 ) -> Problems:
     """A batch of one row: by default a thing on the floor; `more` replaces columns.
@@ -31,7 +31,7 @@ def row(
         mode: The assumed size.
         camera_height_m: The camera's height above the floor.
         yaw_rad: The assumed heading of the front.
-        besides: Objects that do not count as hiding this one.
+        parent: The object it rests on, if any.
         more: Columns of `Problems` that differ from a thing on the floor, without the row axis.
     """
     columns: dict[str, object] = {
@@ -40,7 +40,7 @@ def row(
         "yaw_rad": yaw_rad,
         "box_px": evidence.box_px[index],
         "edge_sigma_px": evidence.edge_sigma_px[index],
-        "hidden_beyond": evidence.hidden(index, besides),
+        "hidden_beyond": evidence.hidden(index, parent),
         "log_size": mode.log_size,
         "log_size_sigma": mode.sigma,
         "base_m": 0.0,
@@ -70,14 +70,14 @@ def contact_start(problems: Problems, view: View) -> Float[np.ndarray, "n 6"]:
     return np.where(meets[:, None], _start(plan, problems, view), size_start(problems, view))
 
 
-def size_start(problems: Problems, view: View) -> Float[np.ndarray, "n 6"]:
-    """Start at the distance at which a thing of the expected size fills the box."""
+def size_start(problems: Problems, view: View, farther: float = 1.0) -> Float[np.ndarray, "n 6"]:
+    """Start at the distance (times `farther`) at which a thing of the expected size fills the box."""
     box, k = problems.box_px, view.intrinsics
     rays = _rays((box[:, :2] + box[:, 2:]) / 2, view)
     size = np.exp(problems.log_size)
     by_height = k.fy * size[:, 2] / (box[:, 3] - box[:, 1])
     by_width = k.fx * np.sqrt(size[:, 0] * size[:, 1]) / (box[:, 2] - box[:, 0])
-    return _start(np.sqrt(by_height * by_width)[:, None] * rays[:, :2], problems, view)
+    return _start((farther * np.sqrt(by_height * by_width))[:, None] * rays[:, :2], problems, view)
 
 
 def _rays(pixels: Float[np.ndarray, "n 2"], view: View) -> Float[np.ndarray, "n 3"]:

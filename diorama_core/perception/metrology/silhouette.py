@@ -30,6 +30,8 @@ _SOLID = frozenset(
 """Categories whose things fill their cuboids."""
 _LEAST_CONFIDENCE = 0.5
 _CAP = 10.0
+_UNSEEN_COST = 1.0
+"""Per corner, of cuboids that reach behind the camera and whose corners cannot be compared."""
 GUESSED_TRUST = 0.5
 """Of a mask that is not the user's own, at full agreement of its starts."""
 
@@ -79,7 +81,8 @@ def corner_costs(
     beyond_sigma = np.where(exact[item], _BEYOND_SIGMA, _BEYOND_SIGMA_GUESSED)[:, None]
     sigmas = np.where(excess < 0, -excess / beyond_sigma, excess / empty_sigma)
     costs = np.minimum(np.nan_to_num(sigmas) ** 2, _CAP) * weight[item]
-    return np.where(usable, np.minimum(costs.sum(axis=1), _CAP), 0.0)
+    unseen = _UNSEEN_COST * weight[item].sum(axis=1)
+    return np.where(usable, np.minimum(costs.sum(axis=1), _CAP), unseen)
 
 
 def _normalised(pixels: Float[np.ndarray, "n p 2"], box: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n p 2"]:
