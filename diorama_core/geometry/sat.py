@@ -52,25 +52,44 @@ class PairAxes:
         return self.gaps + np.einsum("mkc,mc->mk", self.normals, move)
 
 
+@dataclass(frozen=True, eq=False)
+class PackedParts:
+    """The parts of several objects in their own frames, padded to common sizes: what `place_bodies` poses."""
+
+    vertices: Float[np.ndarray, "b v 3"]
+    normals: Float[np.ndarray, "b f 3"]
+    edges: Float[np.ndarray, "b e 3"]
+    simple: np.ndarray
+    owner: Int[np.ndarray, " b"]
+
+
+def pack_parts(parts: Sequence[Sequence[ConvexPart]]) -> PackedParts:
+    """Pad the parts of objects (one sequence each, none empty) once, for many placements."""
+    flat = [part for own in parts for part in own]
+    return PackedParts(
+        vertices=_padded([part.vertices for part in flat], repeat=True),
+        normals=_padded([part.normals for part in flat]),
+        edges=_padded([part.edges for part in flat]),
+        simple=np.array([len(q.vertices) == 8 and len(q.normals) == 3 and len(q.edges) == 3 for q in flat], dtype=bool),
+        owner=np.array([i for i, own in enumerate(parts) for _ in own], dtype=int),
+    )
+
+
 def place_bodies(
-    parts: Sequence[Sequence[ConvexPart]],
+    packed: PackedParts,
     R: Float[np.ndarray, "n 3 3"],
     p: Float[np.ndarray, "n 3"],
     scale: Float[np.ndarray, "n 3"],
 ) -> Bodies:
     """All parts of all objects, posed."""
-    flat = [part for own in parts for part in own]
-    owner = np.array([i for i, own in enumerate(parts) for _ in own], dtype=int)
-    vertices = _padded([part.vertices for part in flat], repeat=True)
-    normals, edges = _padded([part.normals for part in flat]), _padded([part.edges for part in flat])
-    to_world, S = R[owner], scale[owner][:, None, :]
-    world = np.matmul(vertices * S, to_world.transpose(0, 2, 1)) + p[owner][:, None, :]
+    to_world, S = R.transpose(0, 2, 1)[packed.owner], scale[packed.owner][:, None, :]
+    world = np.matmul(packed.vertices * S, to_world) + p[packed.owner][:, None, :]
     return Bodies(
         vertices=world,
-        normals=_unit(np.matmul(normals / S, to_world.transpose(0, 2, 1))),
-        edges=_unit(np.matmul(edges * S, to_world.transpose(0, 2, 1))),
-        simple=np.array([len(q.vertices) == 8 and len(q.normals) == 3 and len(q.edges) == 3 for q in flat], dtype=bool),
-        owner=owner,
+        normals=_unit(np.matmul(packed.normals / S, to_world)),
+        edges=_unit(np.matmul(packed.edges * S, to_world)),
+        simple=packed.simple,
+        owner=packed.owner,
         low=world.min(axis=1),
         high=world.max(axis=1),
     )

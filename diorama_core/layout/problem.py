@@ -13,6 +13,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from diorama_core.geometry.convex import ConvexPart
+from diorama_core.geometry.sat import PackedParts, pack_parts
 from diorama_core.layout.parts import parts_of_shape
 from diorama_core.layout.supports import (
     Surface,
@@ -24,7 +25,7 @@ from diorama_core.layout.supports import (
 )
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.support import descendants
-from diorama_core.scene.types import Plane, Pose, Scene, Support
+from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, Support
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +59,11 @@ class Problem:
     """Pairs that are near each other and should stay so."""
     kin: Bool[np.ndarray, "n n"]
     """Pairs that never collide: an object and its direct or indirect supporters, a rug and what is on it."""
+    rug_pairs: Bool[np.ndarray, "n n"]
+    """Pairs of which one is a rug: things stand over its edge."""
     parts: tuple[tuple[ConvexPart, ...], ...]
+    packed: PackedParts
+    """The same parts, ready to be posed."""
     reasons: tuple[str, ...] = ()
 
     @property
@@ -125,13 +130,16 @@ def build_problem(
         surfaces.append(choose_surface(scene, item, edge, held_by) if edge is not None else None)
         contacts[k] = choose_contact(scene, item, edge, surfaces[-1])
     walls = tuple(sorted(scene.architecture.by_role("wall"), key=lambda w: w.id))
+    rug_pairs = _rug_pairs(objects)
+    parts = tuple(parts_of_shape(library, s) for s in shapes)
     on_plane = tuple(e.parent if e is not None and e.parent not in index else None for e in edges)
     p = np.array([o.pose.position for o in objects]).reshape(-1, 3)
+    R = np.array([o.pose.R_world_object for o in objects]).reshape(-1, 3, 3)
     sizes = np.array([o.size_m for o in objects]).reshape(-1, 3)
     return Problem(
         ids=tuple(o.id for o in objects),
         labels=tuple(o.label for o in objects),
-        R=np.array([o.pose.R_world_object for o in objects]).reshape(-1, 3, 3),
+        R=R,
         p=p,
         scale=np.array([o.pose.scale for o in objects]).reshape(-1, 3),
         shape_size=np.array([o.shape_size_m for o in objects]).reshape(-1, 3),
@@ -140,64 +148,70 @@ def build_problem(
         surface=tuple(surfaces),
         contact=contacts,
         free=free,
-        adheres=_adherences(objects, edges, surfaces, walls, adherence_m),
+        adheres=_adherences(R, p, sizes, edges, surfaces, walls, adherence_m),
         walls=walls,
         relations=_relations(parent, on_plane, p, sizes),
-        kin=_kin(parent, [o.category for o in objects], sizes),
-        parts=tuple(parts_of_shape(library, s) for s in shapes),
+        kin=_kin(parent, rug_pairs),
+        rug_pairs=rug_pairs,
+        parts=parts,
+        packed=pack_parts(parts),
         reasons=reasons,
     )
 
 
-def _free(scene: Scene, objects: Sequence, only: frozenset[str] | None) -> Bool[np.ndarray, " n"]:
+def _free(scene: Scene, objects: Sequence[SceneObject], only: frozenset[str] | None) -> Bool[np.ndarray, " n"]:
     chosen = None if only is None else set(only).union(*(descendants(scene, i) for i in only if scene.has_object(i)))
     return np.array([not o.locked and (chosen is None or o.id in chosen) for o in objects], dtype=bool)
 
 
 def _adherences(
-    objects: Sequence,
+    R: np.ndarray,
+    p: np.ndarray,
+    sizes: np.ndarray,
     edges: Sequence[Support | None],
     surfaces: Sequence[Surface | None],
     walls: tuple[Plane, ...],
     within_m: float,
 ) -> tuple[tuple[int, int, np.ndarray], ...]:
+    """Stated adherences, and faces that already are parallel to a wall and near it."""
     found = []
-    for k, (item, edge) in enumerate(zip(objects, edges)):
-        if edge is None or surfaces[k] is None or is_wall_like(surfaces[k]):
-            continue
-        stated = set(edge.adheres_to)
-        found += [
-            (k, w, face)
-            for w, face, gap, facing in wall_faces(item, walls)
-            if walls[w].id in stated or (gap < within_m and facing > 0.97 and surfaces[k].of_plane)  # type: ignore[union-attr]
-        ]
-    return tuple(found)
+    for w, wall in enumerate(walls):
+        faces, gap, facing = wall_faces(R, p, sizes, wall)
+        for k, edge in enumerate(edges):
+            surface = surfaces[k]
+            if edge is None or surface is None or is_wall_like(surface):
+                continue
+            near = gap[k] < within_m and facing[k] > 0.97 and surface.of_plane
+            if near or wall.id in edge.adheres_to:
+                found.append((k, w, faces[k]))
+    return tuple(sorted(found, key=lambda a: a[:2]))
 
 
 def _relations(
     parent: np.ndarray, on_plane: Sequence[str | None], p: np.ndarray, sizes: np.ndarray
 ) -> Int[np.ndarray, "m 2"]:
     """Support edges between objects, and each object with its nearest three siblings closer than a metre."""
-    pairs = {(int(k), int(parent[k])) for k in range(len(parent)) if parent[k] >= 0}
-    holder = [str(parent[k]) if parent[k] >= 0 else f"plane {on_plane[k]}" for k in range(len(parent))]
+    pairs = {(k, int(j)) for k, j in enumerate(parent) if j >= 0}
+    names = {name: -2 - k for k, name in enumerate(sorted({n for n in on_plane if n is not None}))}
+    holder = np.where(parent >= 0, parent, [names[n] if n is not None else -1 for n in on_plane])
     radius = 0.5 * np.linalg.norm(sizes, axis=1)
-    for k in range(len(parent)):
-        siblings = [j for j in range(len(parent)) if j != k and holder[j] == holder[k]]
-        gap = {j: float(np.linalg.norm(p[j] - p[k]) - radius[j] - radius[k]) for j in siblings}
-        near = sorted((j for j in siblings if gap[j] < 1.0), key=gap.__getitem__)[:3]
-        pairs |= {(max(k, j), min(k, j)) for j in near}
+    gap = np.linalg.norm(p[:, None] - p[None], axis=2) - radius[:, None] - radius[None]
+    gap[(holder[:, None] != holder[None]) | np.eye(len(parent), dtype=bool) | (gap > 1.0)] = np.inf
+    for k, order in enumerate(np.argsort(gap, axis=1, kind="stable")[:, :3]):
+        pairs |= {(max(k, int(j)), min(k, int(j))) for j in order if np.isfinite(gap[k, j])}
     return np.array(sorted(pairs), dtype=int).reshape(-1, 2)
 
 
-def _kin(parent: np.ndarray, categories: Sequence[str], sizes: np.ndarray) -> Bool[np.ndarray, "n n"]:
-    n = len(parent)
-    kin = np.eye(n, dtype=bool)
-    for k in range(n):
+def _kin(parent: np.ndarray, rug_pairs: Bool[np.ndarray, "n n"]) -> Bool[np.ndarray, "n n"]:
+    kin = np.eye(len(parent), dtype=bool) | rug_pairs
+    for k in range(len(parent)):
         above = int(parent[k])
         while above >= 0:
             kin[k, above] = kin[above, k] = True
             above = int(parent[above])
-    rugs = np.array([c == "rug" and s[2] < 0.06 for c, s in zip(categories, sizes)], dtype=bool).reshape(-1)
-    kin[rugs, :] = True
-    kin[:, rugs] = True
     return kin
+
+
+def _rug_pairs(objects: Sequence[SceneObject]) -> Bool[np.ndarray, "n n"]:
+    rugs = np.array([o.category == "rug" and o.size_m[2] < 0.06 for o in objects], dtype=bool).reshape(-1)
+    return rugs[:, None] | rugs[None]

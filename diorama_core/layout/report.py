@@ -74,7 +74,7 @@ def part_overlaps(
     scale: Float[np.ndarray, "n 3"],
 ) -> dict[tuple[int, int], float]:
     """Depth in metres by which convex parts of two objects overlap, for the pairs that do; supporters left out."""
-    bodies = place_bodies(problem.parts, R, p, scale)
+    bodies = place_bodies(problem.packed, R, p, scale)
     if not problem.count:
         return {}
     starts = np.searchsorted(bodies.owner, np.arange(problem.count))

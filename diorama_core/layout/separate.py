@@ -80,7 +80,7 @@ def build_program(problem: Problem, structure: Structure, weight: Float[np.ndarr
         lever = structure.basis[i] @ np.linalg.inv(np.linalg.cholesky(weight[i])).T
         J[problem.rides(i), :, 2 * column : 2 * column + 2] = lever
         own[i, :, 2 * column : 2 * column + 2] = lever
-    bodies = place_bodies(problem.parts, structure.R, structure.p, structure.scale)
+    bodies = place_bodies(problem.packed, structure.R, structure.p, structure.scale)
     bound = -np.einsum("bc,bcv->bv", structure.bound_normal, own[structure.bound_owner])
     wall_rows, wall_need = _wall_rows(problem, structure, bodies, J)
     rows, need = np.vstack([bound, wall_rows]), np.concatenate([-structure.bound_slack, wall_need])

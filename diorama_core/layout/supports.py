@@ -17,6 +17,8 @@ from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, Support, b
 
 BOTTOM_FAVOURED = float(np.cos(np.deg2rad(55.0)))
 """The bottom face touches when it faces the support within this angle, even if another face does better."""
+SMALLEST_SHARE = 0.35
+"""A supporter narrower than this share of what it should hold cannot be meant."""
 FLAT = 0.7
 """A surface counts as upward when its normal's z is at least this."""
 
@@ -192,30 +194,43 @@ def choose_contact(
     normal = surface.normal if holder is None else holder.R_world_object @ surface.normal
     if abs(float(normal[2])) < FLAT and taxonomy.resolve(item.category).category.mount == "wall":
         return np.array(FACE_NORMALS_OBJECT["back"])
-    facing = {
-        name: float(-(item.pose.R_world_object @ np.array(n)) @ normal) for name, n in FACE_NORMALS_OBJECT.items()
-    }
-    best = max(facing, key=facing.__getitem__)
-    return np.array(FACE_NORMALS_OBJECT["bottom" if facing["bottom"] >= BOTTOM_FAVOURED else best])
+    down = -(item.pose.R_world_object.T @ normal)
+    if -down[2] >= BOTTOM_FAVOURED:
+        return np.array(FACE_NORMALS_OBJECT["bottom"])
+    face = np.zeros(3)
+    axis = int(np.abs(down).argmax())
+    face[axis] = np.sign(down[axis])
+    return face
 
 
-def wall_faces(item: SceneObject, walls: Sequence[Plane]) -> list[tuple[int, np.ndarray, float, float]]:
-    """For each wall: its index, the object's face that looks at it, the gap in metres, and how parallel they are."""
-    found = []
-    R, half = item.pose.R_world_object, item.size_m / 2
-    for w, wall in enumerate(walls):
-        toward = -(R.T @ wall.normal)
-        axis = int(np.abs(toward[:2]).argmax())
-        # The back goes to the wall unless another face looks at it much more plainly.
-        face = np.array(FACE_NORMALS_OBJECT["back"])
-        if toward[0] > -0.7:
-            face = np.zeros(3)
-            face[axis] = np.sign(toward[axis])
-        centre = item.pose.position + R @ (face * half)
-        inside = outside_m(plane_surface(wall), centre) < 0.5
-        gap = abs(float(wall.normal @ centre) - wall.offset)
-        found.append((w, face, gap if inside else float("inf"), float(toward @ face)))
-    return found
+def wall_faces(
+    R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], sizes: Float[np.ndarray, "n 3"], wall: Plane
+) -> tuple[Float[np.ndarray, "n 3"], Float[np.ndarray, " n"], Float[np.ndarray, " n"]]:
+    """How objects stand to a wall: the face that looks at it, its gap in metres (inf beside it), how parallel it is."""
+    toward = -(wall.normal @ R)
+    axis = np.abs(toward[:, :2]).argmax(axis=1)
+    rows = np.arange(len(R))
+    faces = np.zeros((len(R), 3))
+    faces[rows, axis] = np.sign(toward[rows, axis])
+    # The back goes to the wall unless another face looks at it much more plainly.
+    faces[toward[:, 0] <= -0.7] = FACE_NORMALS_OBJECT["back"]
+    centre = p + np.matmul(R, (faces * sizes / 2)[..., None])[..., 0]
+    surface = plane_surface(wall)
+    beside = (centre @ surface.outward.T - surface.offset).max(axis=1)
+    gap = np.abs(centre @ wall.normal - wall.offset)
+    return faces, np.where(beside < 0.5, gap, np.inf), (toward * faces).sum(axis=1)
+
+
+def holds(item: SceneObject, edge: Support, holder: SceneObject, shape: Shape) -> bool:
+    """Whether some surface of a supporter is at least `SMALLEST_SHARE` as wide as the thing on it."""
+    if edge.relation == "mounted on":
+        return True
+    widths = sorted(np.sort(item.size_m)[1:] if edge.child_face else item.size_m[:2])
+    for surface in object_surfaces(shape, holder):
+        spans = sorted(np.ptp(surface.polygon, axis=0)[:2] * holder.pose.scale[:2])
+        if spans[0] >= SMALLEST_SHARE * widths[0] and spans[1] >= SMALLEST_SHARE * widths[1]:
+            return True
+    return False
 
 
 def complete_edges(
@@ -227,6 +242,7 @@ def complete_edges(
     """
     reasons: list[str] = []
     edges: dict[str, Support | None] = {}
+    by_id = {o.id: s for o, s in zip(objects, shapes)}
     for item in objects:
         edge = scene.support_of(item.id)
         if edge is not None and not (scene.has_object(edge.parent) or scene.has_plane(edge.parent)):
@@ -236,6 +252,11 @@ def complete_edges(
                 f"cycle: {item.label} and {_label(scene, edge.parent)} support each other; one edge was left out"
             )
             edge = None
+        if edge is not None and scene.has_object(edge.parent):
+            holder = scene.object(edge.parent)
+            if not holds(item, edge, holder, by_id[edge.parent]):
+                reasons.append(f"larger than its support: {item.label} cannot stand on {holder.label}")
+                edge = None
         edges[item.id] = edge
     for k, item in enumerate(objects):
         if edges[item.id] is None:
