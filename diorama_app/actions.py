@@ -46,7 +46,10 @@ class Views:
         photo, camera = self._room.photo, self._room.scene.camera
         if photo is None or camera is None:
             raise EditRefused("this scene has no photo to lay over the model; upload one in the Photo panel")
-        self.one(client_id).show_overlay(camera, photo.rgb, opacity)
+        view = self.one(client_id)
+        if not view.through_photo and opacity > 0.0:
+            self.photo(client_id)
+        view.show_overlay(camera, photo.rgb, opacity)
 
     def focus(self, client_id: int | None) -> None:
         """Look at the selected object from nearby."""
@@ -66,6 +69,7 @@ class Views:
         view.close_board()
         view.show_backdrop(None, None, 1.0)
         view.show_overlay(None, None, 0.0)
+        self._room.refresh_panels()
         return view
 
 

@@ -19,6 +19,7 @@ BOARD_CENTRE = np.array([0.0, 0.0, 400.0])
 BOARD_HEIGHT_M = 1.0
 BOARD_DISTANCE_M = 1.25
 DEFAULT_FOV_RAD = np.radians(50.0)
+PYRAMID_SCALE = 0.22
 USUAL_ASPECT = 0.93
 """Of the 3D view between the panels in a window of 1280 x 720."""
 BOX_COLOURS = ((47, 111, 214), (214, 84, 47), (38, 150, 96), (160, 80, 200), (200, 150, 20), (20, 150, 170))
@@ -80,8 +81,21 @@ class ClientView:
         self.board: Board | None = None
         self._board_nodes: list[viser.SceneNodeHandle] = []
         self._box_nodes: list[viser.SceneNodeHandle] = []
+        self._pyramid: viser.CameraFrustumHandle | None = None
+        self._pyramid_of: tuple[Camera | None, UInt8[np.ndarray, "h w 3"] | None] = (None, None)
+        self.through_photo = False
         self._overlay: viser.ImageHandle | None = None
         self._backdrop: viser.ImageHandle | None = None
+
+    @property
+    def fov_rad(self) -> float:
+        """Vertical field of view of this browser's 3D view."""
+        return float(self._client.camera.fov)
+
+    @property
+    def comparing(self) -> bool:
+        """Whether the photo lies over the model here."""
+        return self._overlay is not None
 
     @property
     def aspect(self) -> float:
@@ -103,6 +117,8 @@ class ClientView:
         self, position: Float[np.ndarray, "3"], target: Float[np.ndarray, "3"], fov_rad: float = float(DEFAULT_FOV_RAD)
     ) -> None:
         """Look from a place at a point, upright."""
+        self.through_photo = False
+        self._show_pyramid()
         camera = self._client.camera
         with self._client.atomic():
             camera.fov = fov_rad
@@ -113,6 +129,8 @@ class ClientView:
 
     def look_through(self, camera: Camera, target_distance_m: float) -> None:
         """Look through the photo's camera, with the whole photo in view."""
+        self.through_photo = True
+        self._show_pyramid()
         k, R = camera.intrinsics, camera.T_world_camera[:3, :3]
         handle = self._client.camera
         with self._client.atomic():
@@ -137,6 +155,44 @@ class ClientView:
         return np.asarray(self._client.camera.look_at, dtype=np.float64)
 
     # -- the photo in the room ---------------------------------------------------------------------------------
+
+    def show_photo_camera(
+        self, camera: Camera | None, photo: UInt8[np.ndarray, "h w 3"] | None, on_click: Callable[[], None]
+    ) -> None:
+        """The photo in a small pyramid where it was taken, out of the way of the view through it."""
+        if self._pyramid is not None and self._pyramid_of[0] == camera and self._pyramid_of[1] is photo:
+            return
+        self._pyramid_of = (camera, photo)
+        if self._pyramid is not None:
+            self._pyramid.remove()
+            self._pyramid = None
+        if camera is None:
+            return
+        k = camera.intrinsics
+        self._pyramid = self._client.scene.add_camera_frustum(
+            "/photo_camera",
+            fov=k.vertical_fov_rad,
+            aspect=k.width / k.height,
+            scale=PYRAMID_SCALE,
+            thickness=1.5,
+            thickness_units="screen",
+            color=(70, 78, 92),
+            image=None if photo is None else reduced(photo, 512),
+            wxyz=quaternion(camera.T_world_camera[:3, :3]),
+            position=camera.position,
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+
+        async def clicked(event: viser.SceneNodePointerEvent[Any]) -> None:
+            on_click()
+
+        self._pyramid.on_click(clicked)
+        self._show_pyramid()
+
+    def _show_pyramid(self) -> None:
+        if self._pyramid is not None and self._pyramid.visible == self.through_photo:
+            self._pyramid.visible = not self.through_photo
 
     def show_backdrop(self, camera: Camera | None, photo: UInt8[np.ndarray, "h w 3"] | None, depth_m: float) -> None:
         """The photo as a backdrop at `depth_m` along its camera; none without a photo."""

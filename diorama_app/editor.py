@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import logging
 from pathlib import Path
 
 import viser
 
 from diorama_app.actions import Views, build_commands
+from diorama_app.example import example_project
 from diorama_app.gestures import Gestures
 from diorama_app.panels.alternatives import Alternatives
+from diorama_app.panels.compare import Compare
 from diorama_app.panels.job import JobStrip
 from diorama_app.panels.library import LibraryPanel
 from diorama_app.panels.optimiser import Optimiser
@@ -20,8 +23,11 @@ from diorama_app.panels.supports import Supports
 from diorama_app.panels.toolbar import Toolbar
 from diorama_app.room import Panel, Room
 from diorama_app.viser_adapter import MAX_UPLOAD_BYTES
+from diorama_core.errors import DioramaError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.project.storage import Project
+
+log = logging.getLogger(__name__)
 
 LEFT_WIDTH_PX = 292
 RIGHT_WIDTH_PX = 312
@@ -38,6 +44,7 @@ class Editor:
         self.room.viewport.light(low_graphics=low_graphics)
         self.gestures = Gestures(self.room)
         self.views = Views(self.room)
+        self.room.on_photo_camera = self.views.photo
         self.commands = build_commands(self.room, self.gestures, self.views)
         self.commands.register(server.gui, lambda command, client: self.room.post(client, lambda: command.run(client)))
         self._lay_out()
@@ -45,7 +52,7 @@ class Editor:
         server.on_client_disconnect(self._left)
 
     def open_first(self, project: Project | None) -> None:
-        """Show a project, or the empty room."""
+        """Show a project; without one the bundled example, or at least an empty room that says what to do."""
         done: list[BaseException] = []
 
         def open_it() -> None:
@@ -53,7 +60,7 @@ class Editor:
                 if project is not None:
                     self.room.open_project(project)
                 else:
-                    self.room.refresh()
+                    self._open_example()
             except BaseException as error:
                 done.append(error)
 
@@ -61,6 +68,17 @@ class Editor:
         self.room.desk.wait(60.0)
         if done:
             raise done[0]
+
+    def _open_example(self) -> None:
+        room = self.room
+        try:
+            example = example_project(room.projects_dir)
+            if example is not None:
+                room.open_project(example)
+                return
+        except DioramaError as error:
+            log.warning("the example cannot be opened: %s", error)
+        room.refresh()
 
     def refuse_upload(self, client_id: int, name: str, size: int) -> None:
         """Tell a person that a file was too large. May be called from any thread."""
@@ -87,6 +105,7 @@ class Editor:
             self.gestures,
             Toolbar(gui, room, self.commands, self.gestures),
             JobStrip(gui, room),
+            Compare(gui, room, self.views),
         ]
         left = gui.add_tab_group()
         with left.add_tab("Scene"):

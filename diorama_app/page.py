@@ -49,6 +49,8 @@ STYLE = """
 .dio .tile.on { background: #fdeadb; border-color: #ff7a1a; color: inherit; }
 .dio .tile img, .dio .tile .blank { width: 100%; aspect-ratio: 1; object-fit: contain; display: block;
   border-radius: 5px; background: #eef1f4; }
+.dio .tile .bar { flex-wrap: nowrap; gap: 3px; }
+.dio .tile .bar button { padding: 2px 3px; font-size: 11.5px; }
 .dio .tile b { display: block; font-size: 12px; font-weight: 500; line-height: 1.25; height: 2.5em; overflow: hidden;
   margin-top: 4px; }
 .dio .tile small { display: block; font-size: 11px; color: #6b7482; white-space: nowrap; overflow: hidden; }

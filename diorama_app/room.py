@@ -62,6 +62,7 @@ class Room:
         self.shapes = ShapeBytes(library)
         self.thumbnails = Thumbnails(library, on_ready=lambda: self.desk.post(self.refresh_panels, key="panels"))
         self.viewport = Viewport(server, self.shapes, pick=self._picked, later=self._later)
+        self.on_photo_camera: Callable[[int], None] | None = None
         self.on_pick: Callable[[str, viser.SceneNodePointerEvent], None] | None = None
 
     # -- the document -----------------------------------------------------------------------------------------
@@ -123,7 +124,8 @@ class Room:
     def refresh(self) -> None:
         """Bring every browser in line with the document."""
         self.viewport.show(self.scene, self.document.selection, self.textures)
-        self.viewport.show_photo_camera(self.scene.camera, None if self.photo is None else self.photo.rgb)
+        for client_id in self.views:
+            self._show_photo_camera(client_id)
         self.refresh_panels()
 
     def refresh_panels(self) -> None:
@@ -165,6 +167,7 @@ class Room:
     def joined(self, client: viser.ClientHandle) -> None:
         """A browser connected (or reloaded): everything shared is replayed to it by the server."""
         self.views[client.client_id] = ClientView(client)
+        self._show_photo_camera(client.client_id)
         self.refresh_panels()
 
     def left(self, client: viser.ClientHandle) -> None:
@@ -192,6 +195,16 @@ class Room:
         self.desk.stop()
         self.saver.stop()
         self.thumbnails.stop()
+
+    def _show_photo_camera(self, client_id: int) -> None:
+        photo = None if self.photo is None else self.photo.rgb
+
+        def through_it() -> None:
+            if self.on_photo_camera is not None:
+                ask = self.on_photo_camera
+                self.post(client_id, lambda: ask(client_id))
+
+        self.views[client_id].show_photo_camera(self.scene.camera, photo, through_it)
 
     def _picked(self, object_id: str, event: viser.SceneNodePointerEvent) -> None:
         if self.on_pick is not None:

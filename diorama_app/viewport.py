@@ -16,11 +16,10 @@ import viser.transforms as vtf
 from jaxtyping import Float, UInt8
 
 from diorama_app.shapes import ShapeBytes, plane_glb, plane_triangles
-from diorama_core.scene.types import Camera, Plane, Pose, Scene, SceneObject, box_corners
+from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, box_corners
 
 SELECTED_COLOUR = (255, 122, 26)
 LOCKED_COLOUR = (120, 130, 150)
-FRUSTUM_SCALE = 0.2
 OUTLINE_MARGIN_M = 0.012
 BOX_EDGES = [(a, a | bit) for bit in (1, 2, 4) for a in range(8) if not a & bit]
 
@@ -60,8 +59,6 @@ class Viewport:
         self._later = later
         self._objects: dict[str, _Shown] = {}
         self._planes: dict[str, tuple[Plane, viser.SceneNodeHandle]] = {}
-        self._frustum: viser.CameraFrustumHandle | None = None
-        self._frustum_key: Any = None
         self._names = 0
 
     def light(self, *, low_graphics: bool) -> None:
@@ -98,33 +95,6 @@ class Viewport:
                 shown = self._objects.get(object_id)
                 if shown is not None:
                     self._set_pose(shown, pose)
-
-    def show_photo_camera(self, camera: Camera | None, photo: UInt8[np.ndarray, "h w 3"] | None) -> None:
-        """The photo in a small pyramid where it was taken; none where there is no camera."""
-        key = (camera, None if photo is None else (photo.shape, photo.tobytes()[:512]))
-        if key == self._frustum_key:
-            return
-        self._frustum_key = key
-        if self._frustum is not None:
-            self._frustum.remove()
-            self._frustum = None
-        if camera is None:
-            return
-        k = camera.intrinsics
-        self._frustum = self._server.scene.add_camera_frustum(
-            "/photo_camera",
-            fov=k.vertical_fov_rad,
-            aspect=k.width / k.height,
-            scale=FRUSTUM_SCALE,
-            thickness=1.5,
-            thickness_units="screen",
-            color=(70, 78, 92),
-            image=None if photo is None else reduced(photo, 512),
-            wxyz=quaternion(camera.T_world_camera[:3, :3]),
-            position=camera.position,
-            cast_shadow=False,
-            receive_shadow=False,
-        )
 
     def node_name(self, object_id: str) -> str | None:
         """The frame that carries an object, for tests and for gizmos."""

@@ -72,12 +72,13 @@ def _built(room: Room, project: Project, scene: Scene, notes: tuple[str, ...], *
 
 
 def fresh_folder(projects_dir: Path, name: str) -> Path:
-    """A folder for a new project, named after the photo and not yet there."""
+    """A folder for a new project, named after the photo; one without a scene yet is taken up again."""
     stem = re.sub(r"[^A-Za-z0-9._-]+", "-", Path(name).stem).strip("-.")[:60] or "room"
     for number in range(1, 10_000):
         folder = projects_dir / (stem if number == 1 else f"{stem}-{number}")
-        if not folder.exists():
-            return folder
+        begun = (folder / "project.json").exists() and not (folder / "scene.json").exists()
+        if begun or not folder.exists():
+            return folder  # one that was begun is resumed
     raise InputError(f"{projects_dir} holds too many projects called {stem}; rename the photo")
 
 

@@ -27,7 +27,7 @@ class Toolbar:
             + self._button("undo", "&#8630; Undo", title=undo, disabled=not history.can_undo)
             + self._button("redo", "&#8631; Redo", disabled=not history.can_redo)
             + "</div><div class='bar'>"
-            + self._button("view_photo", "Photo", disabled=self._room.scene.camera is None)
+            + self._button("view_photo", "Photo view", disabled=self._room.scene.camera is None)
             + self._button("view_room", "Room")
             + self._button("view_top", "Top")
             + "</div><div class='bar'>"

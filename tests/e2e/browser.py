@@ -86,9 +86,21 @@ class EditorPage:
         self.page.evaluate("window.__quietFrom = null")
         self.page.wait_for_function(SETTLED, polling=50)
 
-    def until(self, holds: Callable[[], bool], what: str = "") -> None:
+    def canvas_box(self) -> tuple[float, float, float, float]:
+        """Left, top, width and height of the 3D view on the page."""
+        left, top, width, height = self.page.evaluate(
+            "(() => { const b = window.__viserMutable.canvas.getBoundingClientRect();"
+            " return [b.left, b.top, b.width, b.height]; })()"
+        )
+        return left, top, width, height
+
+    def on_canvas(self, x: float, y: float) -> bool:
+        """Whether nothing covers the canvas at this place of the page."""
+        return bool(self.page.evaluate(ON_CANVAS, [x, y]))
+
+    def until(self, holds: Callable[[], bool], what: str = "", seconds: float = PATIENCE_MS / 1000) -> None:
         """Poll the program's own state with the page's clock."""
-        for _ in range(PATIENCE_MS // 50):
+        for _ in range(int(seconds * 20)):
             if holds():
                 return
             self.page.wait_for_timeout(50)
@@ -124,7 +136,7 @@ class EditorPage:
         """Click on the canvas where a point of the world is seen."""
         self.settle()
         x, y = self.place_of(world)
-        assert self.page.evaluate(ON_CANVAS, [x, y]), f"something covers the canvas at {x:.0f}, {y:.0f}"
+        assert self.on_canvas(x, y), f"something covers the canvas at {x:.0f}, {y:.0f}"
         for key in modifiers:
             self.page.keyboard.down(key)
         self.page.mouse.move(x, y)

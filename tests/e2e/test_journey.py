@@ -1,0 +1,138 @@
+"""From a photo to a downloaded model, as the README promises, step by step, in a real browser."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from playwright.sync_api import expect
+
+from diorama_app.example import EXAMPLE
+from diorama_app.server import Running
+from diorama_core.scene.types import Scene, SceneObject
+from tests.e2e.browser import EditorPage
+
+pytestmark = pytest.mark.browser
+
+BUILD_S = 120
+
+
+def example_files() -> tuple[Path, Path]:
+    photo = next((p for p in (EXAMPLE / f"photo.{e}" for e in ("jpg", "png", "jpeg")) if p.exists()), None)
+    boxes = next((p for p in (EXAMPLE / "boxes.json", EXAMPLE / "photo_boxes.json") if p.exists()), None)
+    if photo is None or boxes is None:
+        pytest.skip("the bundled example has no photo with boxes yet")
+    return photo, boxes
+
+
+def shared_files(request: pytest.FixtureRequest) -> tuple[Path, Path]:
+    folder = request.getfixturevalue("shared") / "photos"
+    return folder / "im3d_4.jpg", folder / "im3d_4_detections.json"
+
+
+@pytest.mark.parametrize("source", ["example", "shared"])
+def test_a_photo_with_boxes_becomes_a_scene_that_is_edited_and_downloaded(
+    source: str,
+    request: pytest.FixtureRequest,
+    serve: Callable[..., Running],
+    visit: Callable[[Running], EditorPage],
+    tmp_path: Path,
+) -> None:
+    photo, boxes = example_files() if source == "example" else shared_files(request)
+    running = serve()
+    editor = visit(running)
+    room = running.room
+
+    editor.tab("Photo")
+    editor.upload("Upload a photo", photo)
+    editor.until(lambda: room.draft.photo is not None and room.draft.photo.name == photo.name, "the photo is read")
+    editor.page.get_by_text("More about this photo").click()
+    editor.upload("Add boxes (JSON)", boxes)
+    editor.until(lambda: len(room.draft.boxes) > 2, "the boxes are read")
+    marked = len(room.draft.boxes)
+    editor.dismiss_notices()
+    editor.button("Build scene").click()
+    expect(editor.page.get_by_text("Building the scene")).to_be_visible()
+    editor.until(lambda: room.jobs.status is None and len(room.scene.objects) > 0, "built", seconds=BUILD_S)
+    assert len(room.scene.objects) >= 0.9 * marked
+    assert room.scene.architecture.floor is not None
+    assert room.scene.architecture.by_role("wall")
+    editor.settle()
+
+    chair = _swappable(room.scene)
+    _click_on(editor, chair)
+    editor.page.locator(".dio .tile:not(.on)[data-do=swap]").first.click()
+    editor.until(lambda: room.scene.object(chair.id).shape_id != chair.shape_id, "swapped")
+    swapped = room.scene.object(chair.id)
+    editor.page.get_by_label("Place (m)").fill(f"{swapped.pose.position[0] + 0.2:.3f}")
+    editor.until(lambda: abs(room.scene.object(chair.id).pose.position[0] - swapped.pose.position[0] - 0.2) < 2e-3)
+    editor.button("↶ Undo").click()
+    editor.until(lambda: room.scene.object(chair.id).pose == swapped.pose, "undone")
+
+    editor.tab("Arrange")
+    before = room.scene
+    editor.button("Optimise layout").click()
+    editor.until(lambda: room.jobs.status is None and room.scene is not before, "arranged", seconds=BUILD_S)
+    assert room.document.history.current.label == "arrange the layout"
+    expect(editor.page.get_by_text("Before → after")).to_be_visible()
+
+    editor.tab("Project")
+    with editor.page.expect_download() as download:
+        editor.button("Download GLB").click()
+    path = tmp_path / "room.glb"
+    download.value.save_as(path)
+    _check_model(path, room.scene)
+
+
+def _swappable(scene: Scene) -> SceneObject:
+    """A chair with alternatives, or else whatever has some and stands free."""
+    ready = [o for o in scene.objects if len({c.shape_id for c in o.candidates}) > 1]
+    assert ready, "no object has alternatives"
+    return next((o for o in ready if "chair" in o.category), ready[0])
+
+
+def _click_on(editor: EditorPage, item: SceneObject) -> None:
+    """Click the object in the view, where it is seen; through the list when something hides it."""
+    document = editor.running.room.document
+    editor.page.keyboard.press("r")
+    editor.settle()
+    x, y = editor.place_of(item.pose.position)
+    if editor.on_canvas(x, y):
+        editor.page.mouse.move(x, y)
+        editor.settle()
+        editor.page.mouse.click(x, y)
+        editor.page.wait_for_timeout(500)
+    if document.selection != (item.id,):
+        editor.tab("Scene")
+        editor.page.locator(f'.dio .row[data-arg="{item.id}"] .name').click()
+    editor.until(lambda: document.selection == (item.id,), f"{item.label} is selected")
+
+
+def _check_model(path: Path, scene: Scene) -> None:
+    model = trimesh.load_scene(path)
+    assert len(model.geometry) >= len(scene.objects)
+    sizes = np.sort(model.extents)
+    corners = np.concatenate([o.corners_world for o in scene.objects] + [p.polygon for p in scene.architecture.planes])
+    np.testing.assert_allclose(sizes, np.sort(np.ptp(corners, axis=0)), atol=0.3)
+
+
+def test_the_bundled_example_is_there_from_the_start(
+    serve: Callable[..., Running], visit: Callable[[Running], EditorPage]
+) -> None:
+    if not (EXAMPLE / "scene.json").exists() and not (EXAMPLE / "project" / "scene.json").exists():
+        pytest.skip("no example project is bundled yet")
+    running = serve()
+    editor = visit(running)
+    scene = running.room.scene
+    assert scene.camera is not None
+    assert running.room.photo is not None
+    assert scene.architecture.floor is not None
+    assert len(scene.objects) >= 3
+    for item in scene.objects[:3]:
+        expect(editor.page.locator(f'.dio .row[data-arg="{item.id}"]')).to_be_visible()
+    names = editor.page.evaluate("Object.keys(window.__viserMutable.nodeRefFromName)")
+    assert sum("/objects/" in n and "/v" in n for n in names) >= len(scene.objects)
+    assert "/photo_camera" in names
