@@ -98,7 +98,7 @@ def _hits(
     scene.add_triangles(mesh.vertices.astype(np.float32), mesh.faces.astype(np.uint32))
     rays = np.zeros((len(x), 6), dtype=np.float32)
     rays[:, 0], rays[:, 1], rays[:, 2], rays[:, 5] = x, y, top, -1.0
-    hits = scene.list_intersections(o3d.core.Tensor(rays))
+    hits = scene.list_intersections(o3d.core.Tensor.from_numpy(rays))
     ray, t = hits["ray_ids"].numpy().astype(int), hits["t_hit"].numpy().astype(float)
     up = mesh.face_normals[hits["primitive_ids"].numpy()][:, 2]
     order = np.lexsort((t, ray))

@@ -2,10 +2,46 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import bathroom, beds, electronics, kitchen, lighting, openings, plants, seating, smallware, storage, tables, textiles, upholstery
+from diorama_core.library.furniture import (
+    bathroom,
+    beds,
+    books,
+    containers,
+    electronics,
+    kitchen,
+    lighting,
+    openings,
+    plants,
+    seating,
+    shelving,
+    storage,
+    sundries,
+    tables,
+    textiles,
+    upholstery,
+    vessels,
+)
 from diorama_core.library.furniture.model import Design
 
-FAMILIES = (seating, upholstery, tables, beds, storage, lighting, kitchen, bathroom, electronics, textiles, plants, smallware, openings)
+FAMILIES = (
+    seating,
+    upholstery,
+    tables,
+    beds,
+    storage,
+    shelving,
+    lighting,
+    kitchen,
+    bathroom,
+    electronics,
+    textiles,
+    plants,
+    vessels,
+    books,
+    containers,
+    openings,
+    sundries,
+)
 
 
 def designs() -> tuple[Design, ...]:

@@ -21,7 +21,9 @@ def pull(kind: str, width: float) -> list[Solid]:
         solids = [rod((0.024, -half, 0), (0.024, half, 0), 0.0055, segments=10), *ends]
         return [s.turned("x", 90) for s in solids] if kind == "tall" else solids
     if kind == "cup":
-        path = bend([(0, 0.04, 0), (0.018, 0.032, -0.004), (0.022, 0, -0.006), (0.018, -0.032, -0.004), (0, -0.04, 0)], 4)
+        path = bend(
+            [(0, 0.04, 0), (0.018, 0.032, -0.004), (0.022, 0, -0.006), (0.018, -0.032, -0.004), (0, -0.04, 0)], 4
+        )
         return [tube(path, 0.008, 8), box((0.02, 0.07, 0.006), 0.003).moved(0.008, 0, 0.002)]
     if kind == "strap":
         return [box((0.012, 0.03, 0.05), 0.004).moved(0.002, 0, -0.025)]
@@ -35,7 +37,9 @@ def drawer_front(
     t = 0.018
     parts = of(wood, box((t, width, height), 0.003).moved(x + t / 2, y, z))
     spots = (-0.25, 0.25) if width > 0.62 and kind in ("knob", "cup") else (0.0,)
-    return parts + of(metal, *(s.moved(x + t, y + f * width, z + height * 0.5) for f in spots for s in pull(kind, width)))
+    return parts + of(
+        metal, *(s.moved(x + t, y + f * width, z + height * 0.5) for f in spots for s in pull(kind, width))
+    )
 
 
 def door_front(
@@ -51,7 +55,10 @@ def door_front(
     panel: str = "flat",
     infill: Material | None = None,
 ) -> Parts:
-    """A cabinet door, its back on the plane `x`; `hinge` +1 is at its left (y high). `panel`: "flat", "shaker", "slats"."""
+    """A cabinet door, its back on the plane `x`; `hinge` +1 is at its left (y high).
+
+    `panel` is "flat", "shaker" or "slats".
+    """
     t = 0.018
     if panel == "flat":
         parts = of(wood, box((t, width, height), 0.003).moved(x + t / 2, y, z))
@@ -63,16 +70,30 @@ def door_front(
         if panel == "slats":
             n = max(int((height - 2 * s) / 0.045), 2)
             zs = np.linspace(z + s, z + height - s, n, endpoint=False)
-            parts += of(infill or wood, *(box((0.007, width - 2 * s + 0.004, 0.05), 0.002).turned("y", 24).moved(x + t * 0.45, y, zz) for zz in zs))
+            parts += of(
+                infill or wood,
+                *(
+                    box((0.007, width - 2 * s + 0.004, 0.05), 0.002).turned("y", 24).moved(x + t * 0.45, y, zz)
+                    for zz in zs
+                ),
+            )
         else:
-            parts += of(infill or wood, box((t * 0.5, width - 2 * s + 0.01, height - 2 * s + 0.01), 0.002).moved(x + t * 0.3, y, z + s - 0.005))
+            parts += of(
+                infill or wood,
+                box((t * 0.5, width - 2 * s + 0.01, height - 2 * s + 0.01), 0.002).moved(x + t * 0.3, y, z + s - 0.005),
+            )
     grip_z = z + height * (0.5 if height > 0.9 else 0.72 if z < 1.0 else 0.28)
     grip_y = y - hinge * (width / 2 - min(0.04, width * 0.12))
     return parts + of(metal, *(s.moved(x + t, grip_y, grip_z) for s in pull(kind, width)))
 
 
 def open_case(
-    size: Size, wood: Material, shelves: Sequence[float], t: float = 0.02, back: Material | None = None, base: float = 0.0
+    size: Size,
+    wood: Material,
+    shelves: Sequence[float],
+    t: float = 0.02,
+    back: Material | None = None,
+    base: float = 0.0,
 ) -> Parts:
     """A case open to the front, shelves' upper faces at the given heights; stands on z = `base`."""
     d, w, h = size

@@ -153,7 +153,7 @@ Picture = Float[np.ndarray, "h w 3"]
 
 def _noise(rng: np.random.Generator, sigma: tuple[float, float], size: int = TEXTURE_SIZE) -> Float[np.ndarray, "h w"]:
     """Tileable smooth noise with zero mean and unit deviation; sigma is (down, across) in pixels."""
-    field = gaussian_filter(rng.standard_normal((size, size)), sigma, mode="wrap")
+    field: np.ndarray = gaussian_filter(rng.standard_normal((size, size)), sigma, mode="wrap")
     return (field - field.mean()) / max(float(field.std()), 1e-9)
 
 
@@ -211,7 +211,7 @@ def _paper(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
 
 
 def _pages(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
-    lines = gaussian_filter(rng.standard_normal((TEXTURE_SIZE, 1)), (0.6, 0), mode="wrap")
+    lines: np.ndarray = gaussian_filter(rng.standard_normal((TEXTURE_SIZE, 1)), (0.6, 0), mode="wrap")
     return _shade(rgb, np.repeat(0.07 * lines, TEXTURE_SIZE, axis=1))
 
 
@@ -291,7 +291,7 @@ def _botanic(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
 
 
 def _waves(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
-    drift = gaussian_filter(_noise(rng, (5, 34)), 1)
+    drift: np.ndarray = gaussian_filter(_noise(rng, (5, 34)), 1)
     v = np.linspace(1, 0, TEXTURE_SIZE)[:, None, None]
     base = rgb * (1 - 0.55 * v) + np.array([0.90, 0.88, 0.84]) * 0.55 * v
     return np.clip(base * (1 + 0.10 * drift[..., None]), 0, 1)

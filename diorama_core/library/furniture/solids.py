@@ -12,8 +12,11 @@ from functools import cache, lru_cache
 
 import numpy as np
 from jaxtyping import Float, Int
+from scipy.interpolate import PchipInterpolator
 
 Vec = Sequence[float] | Float[np.ndarray, "3"]
+Profile = tuple[tuple[float, float], ...]
+"""(radius, height) pairs from the foot upward."""
 CREASE_RAD = np.deg2rad(38.0)
 """Neighbouring faces that meet at more than this keep a visible edge."""
 
@@ -270,7 +273,6 @@ def loft(
 
 def _loft_uv(rings: Float[np.ndarray, "m n 3"], i: Int[np.ndarray, "q"], j: Int[np.ndarray, "q"]) -> np.ndarray:
     """Texture coordinates per triangle corner: along the rings' path first, then round them."""
-    m, n = rings.shape[:2]
     step = np.linalg.norm(np.roll(rings, -1, axis=0) - rings, axis=2).mean(axis=1)
     along = np.concatenate([[0.0], np.cumsum(step)])
     turn = np.linalg.norm(np.roll(rings, -1, axis=1) - rings, axis=2).mean(axis=0)
@@ -285,6 +287,14 @@ def _flat_uv(points: Float[np.ndarray, "f 3 3"]) -> Float[np.ndarray, "f 3 2"]:
     """Coordinates of flat caps, by dropping their thinnest axis."""
     axis = int(np.ptp(points.reshape(-1, 3), axis=0).argmin())
     return points[:, :, [a for a in range(3) if a != axis]]
+
+
+def smooth_profile(profile: Profile, samples: int = 3) -> Profile:
+    """More points between the given ones, without bulging past them (monotone cubics)."""
+    p = np.asarray(profile, dtype=np.float64)
+    knots = np.arange(len(p))
+    dense = PchipInterpolator(knots, p, axis=0)(np.linspace(0, len(p) - 1, samples * (len(p) - 1) + 1))
+    return tuple((float(r), float(z)) for r, z in dense)
 
 
 def lathe(profile: Sequence[tuple[float, float]], segments: int = 24, crease_rad: float = CREASE_RAD) -> Solid:
@@ -306,17 +316,15 @@ def cylinder(radius: float, height: float, bevel: float = 0.003, segments: int =
 
 def tube(
     path: Float[np.ndarray, "m 3"] | Sequence[Vec],
-    radius: float | Sequence[float],
+    radius: float | Sequence[float] | Float[np.ndarray, "m"],
     segments: int = 8,
     closed: bool = False,
 ) -> Solid:
     """A round bar along a path, with one radius or one per point."""
     p = np.asarray(path, dtype=np.float64)
     radii = np.broadcast_to(np.asarray(radius, dtype=np.float64), (len(p),))
-    if closed:
-        tangents = unit(np.roll(p, -1, axis=0) - np.roll(p, 1, axis=0))
-    else:
-        tangents = unit(np.gradient(p, axis=0))
+    steps = np.roll(p, -1, axis=0) - np.roll(p, 1, axis=0) if closed else np.gradient(p, axis=0)
+    tangents = unit(steps)
     start = np.eye(3)[np.abs(tangents[0]).argmin()]
     side = unit(np.cross(tangents[0], start))
     angle = np.arange(segments) * 2 * np.pi / segments
@@ -398,7 +406,7 @@ def rounded_rectangle(depth: float, width: float, radius: float, arc: int = 5) -
     return np.concatenate(corners)
 
 
-def bend(points: Sequence[Vec], samples: int = 12) -> Float[np.ndarray, "m 3"]:
+def bend(points: Sequence[Vec] | Float[np.ndarray, "k 3"], samples: int = 12) -> Float[np.ndarray, "m 3"]:
     """A smooth path through points (Catmull-Rom), for tubes."""
     p = np.asarray(points, dtype=np.float64)
     padded = np.concatenate([[2 * p[0] - p[1]], p, [2 * p[-1] - p[-2]]])

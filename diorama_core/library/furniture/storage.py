@@ -1,151 +1,23 @@
-"""Things with doors, drawers and shelves. All of it empty."""
+"""Night stands, dressers, cabinets, sideboards and media units. All of it empty."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import partial
-from typing import Literal
-
-import numpy as np
 
 from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.carcass import door_front, drawer_front, open_case, plinth
+from diorama_core.library.furniture.carcass import door_front, drawer_front, open_case
+from diorama_core.library.furniture.cases import case
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Builder, Design, Parts, Size, both_sides, four, of, shifted
-from diorama_core.library.furniture.solids import beam, box, cylinder, rod, taper
-
-Base = Literal["legs", "splay", "plinth", "steel", "none"]
-Cell = str
-"""What fills one bay of a front: "open", "door", "pair" (of doors), or "3" and so on for that many drawers."""
-
-
-def feet(kind: Base, d: float, w: float, height: float, material: Material) -> Parts:
-    """What a case stands on."""
-    if kind == "plinth":
-        return plinth(d, w, height, material)
-    if kind == "none":
-        return []
-    x, y = d / 2 - 0.05, w / 2 - 0.06
-    if kind == "splay":
-        return of(material, *four(rod((x + 0.015, y + 0.03, 0), (x - 0.02, y - 0.02, height + 0.01), 0.011, 0.02, 14)))
-    if kind == "steel":
-        bar = both_sides(box((d - 0.06, 0.022, 0.022), 0.003).moved(0, y), *(box((0.022, 0.022, height), 0.003).moved(s * (x + 0.008), y) for s in (1, -1)))
-        return of(material, *bar)
-    return of(material, *four(taper((x, y, 0), (x, y, height + 0.01), 0.028, 0.044)))
-
-
-def case(
-    size: Size, body: Material, bays: Sequence[Cell], *, front: Material | None = None, pull: Material = m.BLACK_STEEL,
-    handle: str = "bar", base: Base = "legs", base_h: float = 0.12, legs: Material | None = None, top: Material | None = None,
-    panel: str = "flat", infill: Material | None = None, shelves: int = 1,
-) -> Parts:
-    """A case of bays side by side, each open, with a door, or a stack of drawers."""
-    d, w, h = size
-    fronts, t, reveal = front or body, 0.02, 0.02
-    cap = 0.024 if top is not None else 0.0
-    depth = d - reveal - 0.018
-    z0, z1 = base_h, h - cap
-    parts = feet(base, depth, w, base_h, legs or body)
-    inner_w = (w - 2 * t) / len(bays)
-    levels = [z0 + t + (z1 - z0 - t) * (k + 1) / (shelves + 1) for k in range(shelves)] if "open" in bays else []
-    shell = open_case((depth, w, z1), body, levels, t, base=z0)
-    dividers = [box((depth - 0.012, t * 0.9, z1 - z0 - 2 * t + 0.004), 0.002).moved(-0.004, -w / 2 + t + inner_w * k, z0 + t - 0.002) for k in range(1, len(bays))]
-    solid = [box((depth - 0.004, inner_w, z1 - z0 - t), 0.002).moved(-0.002, -w / 2 + t + inner_w * (k + 0.5), z0 + t / 2) for k, bay in enumerate(bays) if bay != "open"]
-    parts += shifted(shell + of(body, *dividers, *solid), -reveal / 2)
-    x = depth / 2 - reveal / 2
-    for k, bay in enumerate(bays):
-        y = -w / 2 + t + inner_w * (k + 0.5)
-        parts += _bay(bay, x, y, z0 + 0.004, inner_w + t * 0.8 - 0.005, z1 - z0 - 0.008, fronts, pull, handle, panel, infill, 1 if k % 2 else -1)
-    if top is not None:
-        parts += of(top, box((d, w + 0.02, cap), 0.006, 2).moved(z=h - cap))
-    return parts
-
-
-def _bay(
-    bay: Cell, x: float, y: float, z: float, w: float, h: float, front: Material, pull: Material, handle: str,
-    panel: str, infill: Material | None, hinge: int,
-) -> Parts:
-    if bay == "open":
-        return []
-    return of(m.SHADOW, box((0.003, w, h), 0.001).moved(x, y, z)) + _fronts(bay, x, y, z, w, h, front, pull, handle, panel, infill, hinge)
-
-
-def _fronts(
-    bay: Cell, x: float, y: float, z: float, w: float, h: float, front: Material, pull: Material, handle: str,
-    panel: str, infill: Material | None, hinge: int,
-) -> Parts:
-    if bay == "door":
-        return door_front(x, y, z, w, h, front, pull, handle, hinge, panel, infill)
-    if bay == "pair":
-        half = w / 2
-        left = door_front(x, y + half / 2, z, half - 0.004, h, front, pull, handle, 1, panel, infill)
-        return left + door_front(x, y - half / 2, z, half - 0.004, h, front, pull, handle, -1, panel, infill)
-    n = int(bay)
-    each = h / n
-    drawer_pull = "bar" if handle == "tall" else handle
-    return [p for k in range(n) for p in drawer_front(x, y, z + each * k, w, each - 0.006, front, pull, drawer_pull)]
-
-
-def bookcase(size: Size, wood: Material, levels: int, base: Base = "plinth", back: Material | None = None, columns: int = 1, crown: bool = False) -> Parts:
-    """An open bookcase with equal shelves."""
-    d, w, h = size
-    t, z0 = 0.022, 0.07 if base == "plinth" else 0.14 if base in ("legs", "splay") else 0.0
-    top = h - (0.03 if crown else 0.0)
-    pitch = (top - z0 - t) / levels
-    parts = open_case((d - 0.02 if crown else d, w - 0.03 if crown else w, top), wood, [z0 + t + pitch * k for k in range(1, levels)], t, back, z0)
-    parts += feet(base, d, w, z0, wood)
-    for k in range(1, columns):
-        parts += of(wood, box((d - 0.014, t, top - z0 - 0.01), 0.002).moved(-0.004, -w / 2 + w * k / columns, z0 + 0.005))
-    if crown:
-        parts += of(wood, box((d, w, 0.034), 0.01, 2).moved(z=h - 0.034))
-    return parts
-
-
-def frame_shelf(size: Size, boards: Material, frame: Material, levels: int, braces: bool = True) -> Parts:
-    """Boards on an open steel or wooden frame."""
-    d, w, h = size
-    s = 0.028
-    x, y = d / 2 - s / 2, w / 2 - s / 2
-    zs = np.linspace(0.12, h - 0.03, levels)
-    parts = of(frame, *four(box((s, s, h), 0.003).moved(x, y)))
-    parts += of(boards, *(box((d - 0.012, w - 2 * s - 0.002, 0.026), 0.004).moved(0, 0, z) for z in zs))
-    parts += of(frame, *(b for z in zs for b in both_sides(box((d, s * 0.9, 0.024), 0.003).moved(0, y, z + 0.001))))
-    if braces:
-        z0, z1 = zs[0] + 0.02, zs[-1]
-        parts += of(frame, *(rod((-x, f * y, z0), (-x, -f * y, z1), 0.005, segments=6) for f in (1, -1)))
-    return parts
-
-
-def ladder_shelf(size: Size, wood: Material, frame: Material, levels: int = 5) -> Parts:
-    """A leaning ladder: shelves grow deeper downward."""
-    d, w, h = size
-    front, rear = d / 2 - 0.01, -d / 2 + 0.02
-    sides = both_sides(beam((front, w / 2 - 0.014, 0), (rear, w / 2 - 0.014, h), 0.026, 0.045), box((0.024, 0.026, h * 0.98), 0.003).moved(rear - 0.006, w / 2 - 0.014))
-    parts = of(frame, *sides)
-    for z in np.linspace(0.14, h - 0.12, levels):
-        reach = front + (rear - front) * z / h
-        depth = max(reach - rear, 0.02) + 0.02
-        parts += of(wood, box((depth, w - 0.05, 0.022), 0.005).moved((reach + rear) / 2, 0, z))
-        parts += of(wood, box((0.012, w - 0.05, 0.05), 0.003).moved(rear, 0, z))
-    return parts
-
-
-def cube_shelf(size: Size, wood: Material, rows: int, columns: int) -> Parts:
-    """A grid of open cubes."""
-    d, w, h = size
-    t = 0.03
-    boards = [box((d, w, t), 0.004).moved(z=z) for z in (0.0, h - t)]
-    boards += [box((d, t, h - 0.004), 0.004).moved(0, s * (w - t) / 2, 0.002) for s in (1, -1)]
-    thin = 0.016
-    boards += [box((d - 0.01, w - t, thin), 0.002).moved(-0.004, 0, t + (h - 2 * t) * k / rows - thin / 2) for k in range(1, rows)]
-    boards += [box((d - 0.01, thin, h - t), 0.002).moved(-0.004, -w / 2 + t + (w - 2 * t) * k / columns, t / 2) for k in range(1, columns)]
-    return of(wood, *boards, box((0.006, w - 0.02, h - 0.02), 0.001).moved(-d / 2 + 0.005, 0, 0.01))
+from diorama_core.library.furniture.model import Builder, Design, Parts, Size, four, of, shifted
+from diorama_core.library.furniture.solids import box
 
 
 def filing_cabinet(size: Size, steel: Material, drawers: int) -> Parts:
     """A steel filing cabinet with label holders."""
     d, w, h = size
-    parts = of(steel, box((d - 0.03, w, h - 0.02), 0.006, 2).moved(-0.012, 0, 0.02), box((d - 0.08, w - 0.05, 0.03), 0.002))
+    parts = of(
+        steel, box((d - 0.03, w, h - 0.02), 0.006, 2).moved(-0.012, 0, 0.02), box((d - 0.08, w - 0.05, 0.03), 0.002)
+    )
     each = (h - 0.05) / drawers
     for k in range(drawers):
         z = 0.035 + each * k
@@ -157,49 +29,22 @@ def filing_cabinet(size: Size, steel: Material, drawers: int) -> Parts:
 def locker(size: Size, body: Material, doors: int) -> Parts:
     """Steel lockers with vent slots."""
     d, w, h = size
-    parts = of(body, box((d - 0.02, w, h - 0.08), 0.004).moved(-0.01, 0, 0.08), *four(box((0.03, 0.03, 0.09), 0.003).moved(d / 2 - 0.05, w / 2 - 0.03)))
+    parts = of(
+        body,
+        box((d - 0.02, w, h - 0.08), 0.004).moved(-0.01, 0, 0.08),
+        *four(box((0.03, 0.03, 0.09), 0.003).moved(d / 2 - 0.05, w / 2 - 0.03)),
+    )
     each = w / doors
     for k in range(doors):
         y = -w / 2 + each * (k + 0.5)
         parts += door_front(d / 2 - 0.02, y, 0.1, each - 0.012, h - 0.12, body, m.STEEL, "strap", -1)
-        parts += of(m.BLACK, *(box((0.004, each * 0.45, 0.008), 0.001).moved(d / 2 - 0.001, y, z) for z in (h - 0.2, h - 0.23, h - 0.26, 0.3, 0.27, 0.24)))
-    return parts
-
-
-def wardrobe(size: Size, body: Material, doors: int, front: Material | None = None, pull: Material = m.STEEL, panel: str = "flat", drawers: bool = False, crown: bool = False, mirror: int | None = None) -> Parts:
-    """A tall closet with hinged doors."""
-    d, w, h = size
-    base = 0.08
-    low = 0.26 if drawers else 0.0
-    cap = 0.06 if crown else 0.0
-    parts = of(body, box((d - 0.03, w - (0.04 if crown else 0), h - base - cap), 0.004).moved(-0.012, 0, base)) + plinth(d - 0.02, w - 0.02, base, body)
-    if crown:
-        parts += of(body, box((d, w, 0.04), 0.012, 2).moved(z=h - 0.04), box((d - 0.02, w - 0.025, 0.03), 0.006).moved(z=h - 0.065))
-    span = w - (0.05 if crown else 0.008)
-    each = span / doors
-    x = d / 2 - 0.027
-    for k in range(doors):
-        y = -span / 2 + each * (k + 0.5)
-        parts += door_front(x, y, base + low + 0.005, each - 0.005, h - base - low - cap - 0.012, front or body, pull, "tall", 1 if k % 2 else -1, panel)
-        if mirror == k:
-            parts += of(m.MIRROR, box((0.004, each - 0.08, h - base - 0.16), 0.001).pictured().moved(x + 0.0185, y, base + 0.07))
-    if drawers:
-        n = max(doors // 2, 1)
-        for k in range(n):
-            parts += drawer_front(x, -span / 2 + span / n * (k + 0.5), base + 0.006, span / n - 0.006, low - 0.012, front or body, pull, "bar")
-    return parts
-
-
-def sliding_wardrobe(size: Size, body: Material, front: Material, doors: int) -> Parts:
-    """A wardrobe with sliding doors in aluminium frames."""
-    d, w, h = size
-    parts = of(body, box((d - 0.04, w, h), 0.004).moved(-0.02), box((d, w, 0.03), 0.003), box((d, w, 0.03), 0.003).moved(z=h - 0.03))
-    each = w / doors
-    for k in range(doors):
-        x = d / 2 - (0.028 if k % 2 else 0.012)
-        y = -w / 2 + each * (k + 0.5)
-        parts += of(front, box((0.012, each - 0.02, h - 0.07), 0.002).moved(x - 0.003, y, 0.035))
-        parts += of(m.STEEL, *(box((0.018, 0.024, h - 0.06), 0.003).moved(x, y + s * (each / 2 - 0.012), 0.03) for s in (1, -1)), *(box((0.015, each - 0.02, 0.022), 0.003).moved(x, y, z) for z in (0.032, h - 0.054)))
+        parts += of(
+            m.BLACK,
+            *(
+                box((0.004, each * 0.45, 0.008), 0.001).moved(d / 2 - 0.001, y, z)
+                for z in (h - 0.2, h - 0.23, h - 0.26, 0.3, 0.27, 0.24)
+            ),
+        )
     return parts
 
 
@@ -209,45 +54,20 @@ def curio(size: Size, wood: Material, levels: int) -> Parts:
     low = 0.38 * h
     lower = case((d, w, low), wood, ["pair"], base="plinth", base_h=0.08, panel="shaker", handle="knob", pull=m.BRASS)
     pitch = (h - low - 0.04) / levels
-    upper = open_case((d - 0.05, w - 0.02, h - 0.03), wood, [low + 0.02 + pitch * k for k in range(1, levels)], 0.02, base=low)
+    upper = open_case(
+        (d - 0.05, w - 0.02, h - 0.03), wood, [low + 0.02 + pitch * k for k in range(1, levels)], 0.02, base=low
+    )
     x, half = d / 2 - 0.03, (w - 0.02) / 4
     frames: Parts = []
     for s in (1, -1):
         y, hh = s * half, h - low - 0.05
-        frames += of(wood, *(box((0.02, 0.045, hh), 0.003).moved(x, y + f * (half - 0.024), low + 0.012) for f in (1, -1)), *(box((0.02, 2 * half - 0.006, 0.045), 0.003).moved(x, y, z) for z in (low + 0.012, h - 0.083)), box((0.012, 0.014, hh), 0.002).moved(x, y, low + 0.012))
+        frames += of(
+            wood,
+            *(box((0.02, 0.045, hh), 0.003).moved(x, y + f * (half - 0.024), low + 0.012) for f in (1, -1)),
+            *(box((0.02, 2 * half - 0.006, 0.045), 0.003).moved(x, y, z) for z in (low + 0.012, h - 0.083)),
+            box((0.012, 0.014, hh), 0.002).moved(x, y, low + 0.012),
+        )
     return lower + shifted(upper, -0.02) + frames + of(wood, box((d, w + 0.01, 0.035), 0.01, 2).moved(z=h - 0.035))
-
-
-def wall_shelf(size: Size, wood: Material, kind: Literal["board", "bracket", "box", "stack", "rail"], metal: Material = m.BLACK_STEEL) -> Parts:
-    """Shelves hung on a wall (the back, -X, is the wall's)."""
-    d, w, h = size
-    if kind == "board":
-        return of(wood, box((d, w, h), 0.006, 2))
-    if kind == "box":
-        return open_case(size, wood, [h / 2 + 0.009], 0.018)
-    if kind == "bracket":
-        x, y = -d / 2, w / 2 - 0.14
-        arm = [box((0.006, 0.03, h - 0.025), 0.002).moved(x + 0.003, y), box((d * 0.9, 0.03, 0.006), 0.002).moved(x + 0.45 * d, y, h - 0.031), rod((x + 0.004, y, 0.02), (x + d * 0.75, y, h - 0.032), 0.005, segments=8)]
-        return of(wood, box((d, w, 0.026), 0.005, 2).moved(z=h - 0.026)) + of(metal, *both_sides(*arm))
-    n = max(int(round(h / 0.28)), 2)
-    zs = np.linspace(0.02, h - 0.045, n)
-    boards = [box((d - 0.004, w, 0.024), 0.005).moved(0.002, 0, z) for z in zs]
-    if kind == "rail":
-        posts = both_sides(box((0.018, 0.026, h), 0.003).moved(-d / 2 + 0.009, w / 2 - 0.15))
-        hooks = [b for z in zs for b in both_sides(box((d * 0.8, 0.012, 0.02), 0.002).moved(-0.08 * d, w / 2 - 0.15, z - 0.02))]
-        return of(wood, *boards) + of(metal, *posts, *hooks)
-    sides = both_sides(box((d, 0.02, h), 0.005).moved(0, w / 2 - 0.03))
-    return of(wood, *boards, *sides)
-
-
-def pipe_shelf(size: Size, wood: Material, steel: Material) -> Parts:
-    """Planks on plumber's pipe."""
-    d, w, h = size
-    y = w / 2 - 0.16
-    zs = np.linspace(0.05, h - 0.1, 2 if h < 0.7 else 3)
-    flanges = [cylinder(0.035, 0.01, 0.002, 16).turned("y", 90).moved(-d / 2, y, z) for z in (0.02 + 0.02, h - 0.04)]
-    pipes = [rod((-d / 2 + 0.02, y, 0.0), (-d / 2 + 0.02, y, h), 0.013), *(rod((-d / 2, y, z - 0.012), (d / 2 - 0.02, y, z - 0.012), 0.012) for z in zs)]
-    return of(wood, *(box((d - 0.01, w, 0.034), 0.005).moved(0.005, 0, z) for z in zs)) + of(steel, *both_sides(*flanges, *pipes))
 
 
 def _d(category: str, name: str, caption: str, size: Size, style: str, build: Builder, symmetry: int = 1) -> Design:
@@ -255,57 +75,338 @@ def _d(category: str, name: str, caption: str, size: Size, style: str, build: Bu
 
 
 DESIGNS: tuple[Design, ...] = (
-    _d("night stand", "oak-drawers", "oak night stand with two drawers", (0.42, 0.48, 0.55), "modern", partial(case, body=m.OAK, bays=["2"], base="splay", base_h=0.16)),
-    _d("night stand", "white-open", "white night stand with an open shelf", (0.40, 0.45, 0.58), "minimal", partial(case, body=m.WHITE, bays=["open"], front=m.WHITE, base="legs", base_h=0.14, legs=m.BIRCH)),
-    _d("night stand", "walnut-knob", "walnut bedside cabinet with three drawers", (0.44, 0.50, 0.64), "classic", partial(case, body=m.WALNUT, bays=["3"], base="plinth", base_h=0.06, handle="knob", pull=m.BRASS, top=m.WALNUT)),
-    _d("night stand", "door-sage", "sage bedside cabinet with a panelled door", (0.40, 0.44, 0.62), "rustic", partial(case, body=m.SAGE, bays=["door"], panel="shaker", handle="knob", pull=m.BRASS, top=m.OAK)),
-    _d("night stand", "steel", "steel-legged night stand", (0.40, 0.46, 0.52), "industrial", partial(case, body=m.RECLAIMED, bays=["2"], base="steel", base_h=0.18, legs=m.BLACK_STEEL, handle="cup")),
-    _d("night stand", "cane", "night stand with a cane door", (0.42, 0.48, 0.60), "modern", partial(case, body=m.LIGHT_OAK, bays=["door"], panel="shaker", infill=m.RATTAN, base="splay", base_h=0.18, handle="knob", pull=m.BRASS)),
-    _d("dresser", "oak-six", "oak dresser with six drawers", (0.48, 1.40, 0.80), "modern", partial(case, body=m.OAK, bays=["3", "3"], base="splay", base_h=0.16)),
-    _d("dresser", "white-four", "white chest of four drawers", (0.46, 0.80, 1.00), "minimal", partial(case, body=m.WHITE, bays=["4"], base="plinth", base_h=0.06, handle="none")),
-    _d("dresser", "mahogany", "mahogany chest of five drawers", (0.50, 0.92, 1.15), "classic", partial(case, body=m.MAHOGANY, bays=["5"], handle="knob", pull=m.BRASS, base="legs", base_h=0.1, top=m.MAHOGANY)),
-    _d("dresser", "tallboy", "tall narrow chest of drawers", (0.42, 0.56, 1.28), "modern", partial(case, body=m.WALNUT, bays=["6"], base="legs", base_h=0.12)),
-    _d("dresser", "cream-rustic", "cream painted dresser with an oak top", (0.48, 1.15, 0.86), "rustic", partial(case, body=m.CREAM, bays=["3", "3"], handle="cup", pull=m.IRON, base="plinth", base_h=0.07, top=m.OAK)),
-    _d("dresser", "industrial", "reclaimed-wood dresser on steel", (0.45, 1.20, 0.82), "industrial", partial(case, body=m.RECLAIMED, bays=["2", "2", "2"], base="steel", base_h=0.14, legs=m.BLACK_STEEL, handle="cup")),
-    _d("cabinet", "two-door-white", "white two-door cabinet", (0.42, 0.82, 0.90), "minimal", partial(case, body=m.WHITE, bays=["pair"], base="plinth", base_h=0.07)),
-    _d("cabinet", "shaker-navy", "navy cabinet with panelled doors", (0.45, 0.95, 1.05), "classic", partial(case, body=m.NAVY, bays=["pair"], panel="shaker", handle="knob", pull=m.BRASS, top=m.OAK, base="plinth", base_h=0.08)),
-    _d("cabinet", "cane-oak", "oak cabinet with cane doors", (0.42, 0.90, 1.10), "modern", partial(case, body=m.LIGHT_OAK, bays=["pair"], panel="shaker", infill=m.RATTAN, base="splay", base_h=0.18, handle="knob", pull=m.BRASS)),
-    _d("cabinet", "filing", "grey steel filing cabinet", (0.60, 0.46, 1.02), "industrial", partial(filing_cabinet, steel=m.LIGHT_GREY, drawers=3)),
-    _d("cabinet", "low-filing", "white pedestal on castors' plinth", (0.55, 0.42, 0.60), "minimal", partial(filing_cabinet, steel=m.WHITE, drawers=3)),
-    _d("cabinet", "lockers", "sage steel lockers", (0.45, 0.90, 1.80), "industrial", partial(locker, body=m.SAGE, doors=3)),
-    _d("cabinet", "display", "glazed walnut display cabinet", (0.42, 0.95, 1.90), "classic", partial(curio, wood=m.WALNUT, levels=4)),
-    _d("cabinet", "slatted", "pine cupboard with louvred doors", (0.42, 0.80, 1.20), "rustic", partial(case, body=m.PINE, bays=["pair"], panel="slats", base="plinth", base_h=0.07, handle="knob", pull=m.IRON)),
-    _d("sideboard", "walnut-long", "long walnut sideboard", (0.45, 1.75, 0.72), "modern", partial(case, body=m.WALNUT, bays=["door", "3", "door"], base="splay", base_h=0.18, handle="knob", pull=m.BRASS)),
-    _d("sideboard", "oak-classic", "oak sideboard with panelled doors", (0.48, 1.50, 0.88), "classic", partial(case, body=m.OAK, bays=["door", "2", "2", "door"], panel="shaker", handle="knob", pull=m.BRASS, base="legs", base_h=0.12, top=m.OAK)),
-    _d("sideboard", "white-minimal", "white sideboard without handles", (0.42, 1.60, 0.74), "minimal", partial(case, body=m.WHITE, bays=["door", "door", "door"], handle="none", base="plinth", base_h=0.06)),
-    _d("sideboard", "rustic", "reclaimed-wood sideboard", (0.46, 1.40, 0.82), "rustic", partial(case, body=m.RECLAIMED, bays=["pair", "3"], panel="shaker", handle="cup", pull=m.IRON, base="plinth", base_h=0.07)),
-    _d("sideboard", "cane", "black sideboard with cane doors", (0.44, 1.55, 0.78), "modern", partial(case, body=m.BLACK_WOOD, bays=["door", "door", "door"], panel="shaker", infill=m.RATTAN, base="steel", base_h=0.16, legs=m.BLACK_STEEL, handle="knob", pull=m.BRASS)),
-    _d("tv stand", "oak-open", "oak media unit with open bays", (0.42, 1.50, 0.50), "modern", partial(case, body=m.OAK, bays=["door", "open", "door"], base="splay", base_h=0.14, handle="none")),
-    _d("tv stand", "white-low", "low white television stand", (0.40, 1.60, 0.40), "minimal", partial(case, body=m.WHITE, bays=["1", "1", "1"], handle="none", base="plinth", base_h=0.05)),
-    _d("tv stand", "industrial", "reclaimed-wood media console on steel", (0.42, 1.40, 0.52), "industrial", partial(case, body=m.RECLAIMED, bays=["open", "2", "open"], base="steel", base_h=0.13, legs=m.BLACK_STEEL, handle="cup")),
-    _d("tv stand", "walnut-slats", "walnut media unit with slatted doors", (0.44, 1.80, 0.48), "modern", partial(case, body=m.WALNUT, bays=["door", "door", "door", "door"], panel="slats", base="legs", base_h=0.1, handle="none")),
-    _d("tv stand", "classic", "cherry television cabinet", (0.46, 1.25, 0.60), "classic", partial(case, body=m.CHERRY, bays=["door", "open", "door"], panel="shaker", handle="knob", pull=m.BRASS, base="plinth", base_h=0.07, top=m.CHERRY)),
-    _d("bookshelf", "oak-four", "oak bookcase with four shelves", (0.32, 0.90, 1.60), "classic", partial(bookcase, wood=m.OAK, levels=4)),
-    _d("bookshelf", "white-five", "tall white bookcase", (0.30, 0.80, 2.02), "minimal", partial(bookcase, wood=m.WHITE, levels=6, base="none")),
-    _d("bookshelf", "walnut-crown", "walnut bookcase with a cornice", (0.36, 1.05, 1.95), "classic", partial(bookcase, wood=m.WALNUT, levels=5, crown=True)),
-    _d("bookshelf", "low-oak", "low oak bookcase on splayed legs", (0.32, 1.10, 0.85), "modern", partial(bookcase, wood=m.LIGHT_OAK, levels=2, base="splay")),
-    _d("bookshelf", "steel-frame", "industrial shelving with reclaimed boards", (0.36, 1.05, 1.80), "industrial", partial(frame_shelf, boards=m.RECLAIMED, frame=m.BLACK_STEEL, levels=5)),
-    _d("bookshelf", "metal-rack", "grey metal storage rack", (0.42, 0.95, 1.70), "industrial", partial(frame_shelf, boards=m.LIGHT_GREY, frame=m.STEEL, levels=5)),
-    _d("bookshelf", "ladder", "leaning ladder shelf", (0.42, 0.65, 1.85), "modern", partial(ladder_shelf, wood=m.OAK, frame=m.BLACK_STEEL)),
-    _d("bookshelf", "cubes", "white cube shelving", (0.39, 1.12, 1.12), "minimal", partial(cube_shelf, wood=m.WHITE, rows=3, columns=3)),
-    _d("bookshelf", "cubes-tall", "tall birch cube shelving", (0.39, 0.77, 1.47), "minimal", partial(cube_shelf, wood=m.BIRCH, rows=4, columns=2)),
-    _d("bookshelf", "wide", "wide bookcase with two columns", (0.32, 1.50, 1.85), "rustic", partial(bookcase, wood=m.PINE, levels=5, columns=2)),
-    _d("wardrobe", "white-two", "white two-door wardrobe", (0.58, 1.00, 2.00), "minimal", partial(wardrobe, body=m.WHITE, doors=2)),
-    _d("wardrobe", "oak-three", "oak three-door wardrobe with drawers", (0.60, 1.45, 2.02), "modern", partial(wardrobe, body=m.OAK, doors=3, drawers=True, pull=m.BLACK_STEEL)),
-    _d("wardrobe", "armoire", "walnut armoire with a cornice", (0.62, 1.20, 2.08), "classic", partial(wardrobe, body=m.WALNUT, doors=2, panel="shaker", drawers=True, crown=True, pull=m.BRASS)),
-    _d("wardrobe", "sliding", "sliding-door wardrobe in light oak", (0.65, 1.80, 2.10), "modern", partial(sliding_wardrobe, body=m.WHITE, front=m.LIGHT_OAK, doors=2)),
-    _d("wardrobe", "mirror", "white wardrobe with a mirror door", (0.58, 1.50, 2.10), "modern", partial(wardrobe, body=m.WHITE, doors=3, mirror=1)),
-    _d("wardrobe", "rustic", "cream painted rustic wardrobe", (0.58, 1.10, 1.95), "rustic", partial(wardrobe, body=m.CREAM, doors=2, panel="shaker", crown=True, pull=m.IRON)),
-    _d("shelves", "floating-oak", "floating oak shelf", (0.22, 0.90, 0.045), "minimal", partial(wall_shelf, wood=m.OAK, kind="board")),
-    _d("shelves", "floating-white", "floating white shelf", (0.24, 1.10, 0.05), "minimal", partial(wall_shelf, wood=m.WHITE, kind="board")),
-    _d("shelves", "bracket", "walnut shelf on steel brackets", (0.24, 1.00, 0.22), "industrial", partial(wall_shelf, wood=m.WALNUT, kind="bracket")),
-    _d("shelves", "box", "oak wall box shelf", (0.24, 0.80, 0.50), "modern", partial(wall_shelf, wood=m.OAK, kind="box")),
-    _d("shelves", "stack", "three-tier wall shelf", (0.22, 0.90, 0.75), "classic", partial(wall_shelf, wood=m.CHERRY, kind="stack")),
-    _d("shelves", "rail", "wall-rail shelving with birch boards", (0.26, 1.10, 1.00), "modern", partial(wall_shelf, wood=m.BIRCH, kind="rail", metal=m.WHITE)),
-    _d("shelves", "pipe", "plank shelves on pipe brackets", (0.26, 1.10, 0.60), "industrial", partial(pipe_shelf, wood=m.RECLAIMED, steel=m.BLACK_STEEL)),
-)  # fmt: skip
+    _d(
+        "night stand",
+        "oak-drawers",
+        "oak night stand with two drawers",
+        (0.42, 0.48, 0.55),
+        "modern",
+        partial(case, body=m.OAK, bays=["2"], base="splay", base_h=0.16),
+    ),
+    _d(
+        "night stand",
+        "white-open",
+        "white night stand with an open shelf",
+        (0.40, 0.45, 0.58),
+        "minimal",
+        partial(case, body=m.WHITE, bays=["open"], front=m.WHITE, base="legs", base_h=0.14, legs=m.BIRCH),
+    ),
+    _d(
+        "night stand",
+        "walnut-knob",
+        "walnut bedside cabinet with three drawers",
+        (0.44, 0.50, 0.64),
+        "classic",
+        partial(case, body=m.WALNUT, bays=["3"], base="plinth", base_h=0.06, handle="knob", pull=m.BRASS, top=m.WALNUT),
+    ),
+    _d(
+        "night stand",
+        "door-sage",
+        "sage bedside cabinet with a panelled door",
+        (0.40, 0.44, 0.62),
+        "rustic",
+        partial(case, body=m.SAGE, bays=["door"], panel="shaker", handle="knob", pull=m.BRASS, top=m.OAK),
+    ),
+    _d(
+        "night stand",
+        "steel",
+        "steel-legged night stand",
+        (0.40, 0.46, 0.52),
+        "industrial",
+        partial(case, body=m.RECLAIMED, bays=["2"], base="steel", base_h=0.18, legs=m.BLACK_STEEL, handle="cup"),
+    ),
+    _d(
+        "night stand",
+        "cane",
+        "night stand with a cane door",
+        (0.42, 0.48, 0.60),
+        "modern",
+        partial(
+            case,
+            body=m.LIGHT_OAK,
+            bays=["door"],
+            panel="shaker",
+            infill=m.RATTAN,
+            base="splay",
+            base_h=0.18,
+            handle="knob",
+            pull=m.BRASS,
+        ),
+    ),
+    _d(
+        "dresser",
+        "oak-six",
+        "oak dresser with six drawers",
+        (0.48, 1.40, 0.80),
+        "modern",
+        partial(case, body=m.OAK, bays=["3", "3"], base="splay", base_h=0.16),
+    ),
+    _d(
+        "dresser",
+        "white-four",
+        "white chest of four drawers",
+        (0.46, 0.80, 1.00),
+        "minimal",
+        partial(case, body=m.WHITE, bays=["4"], base="plinth", base_h=0.06, handle="none"),
+    ),
+    _d(
+        "dresser",
+        "mahogany",
+        "mahogany chest of five drawers",
+        (0.50, 0.92, 1.15),
+        "classic",
+        partial(
+            case, body=m.MAHOGANY, bays=["5"], handle="knob", pull=m.BRASS, base="legs", base_h=0.1, top=m.MAHOGANY
+        ),
+    ),
+    _d(
+        "dresser",
+        "tallboy",
+        "tall narrow chest of drawers",
+        (0.42, 0.56, 1.28),
+        "modern",
+        partial(case, body=m.WALNUT, bays=["6"], base="legs", base_h=0.12),
+    ),
+    _d(
+        "dresser",
+        "cream-rustic",
+        "cream painted dresser with an oak top",
+        (0.48, 1.15, 0.86),
+        "rustic",
+        partial(case, body=m.CREAM, bays=["3", "3"], handle="cup", pull=m.IRON, base="plinth", base_h=0.07, top=m.OAK),
+    ),
+    _d(
+        "dresser",
+        "industrial",
+        "reclaimed-wood dresser on steel",
+        (0.45, 1.20, 0.82),
+        "industrial",
+        partial(
+            case, body=m.RECLAIMED, bays=["2", "2", "2"], base="steel", base_h=0.14, legs=m.BLACK_STEEL, handle="cup"
+        ),
+    ),
+    _d(
+        "cabinet",
+        "two-door-white",
+        "white two-door cabinet",
+        (0.42, 0.82, 0.90),
+        "minimal",
+        partial(case, body=m.WHITE, bays=["pair"], base="plinth", base_h=0.07),
+    ),
+    _d(
+        "cabinet",
+        "shaker-navy",
+        "navy cabinet with panelled doors",
+        (0.45, 0.95, 1.05),
+        "classic",
+        partial(
+            case,
+            body=m.NAVY,
+            bays=["pair"],
+            panel="shaker",
+            handle="knob",
+            pull=m.BRASS,
+            top=m.OAK,
+            base="plinth",
+            base_h=0.08,
+        ),
+    ),
+    _d(
+        "cabinet",
+        "cane-oak",
+        "oak cabinet with cane doors",
+        (0.42, 0.90, 1.10),
+        "modern",
+        partial(
+            case,
+            body=m.LIGHT_OAK,
+            bays=["pair"],
+            panel="shaker",
+            infill=m.RATTAN,
+            base="splay",
+            base_h=0.18,
+            handle="knob",
+            pull=m.BRASS,
+        ),
+    ),
+    _d(
+        "cabinet",
+        "filing",
+        "grey steel filing cabinet",
+        (0.60, 0.46, 1.02),
+        "industrial",
+        partial(filing_cabinet, steel=m.LIGHT_GREY, drawers=3),
+    ),
+    _d(
+        "cabinet",
+        "low-filing",
+        "white pedestal on castors' plinth",
+        (0.55, 0.42, 0.60),
+        "minimal",
+        partial(filing_cabinet, steel=m.WHITE, drawers=3),
+    ),
+    _d(
+        "cabinet",
+        "lockers",
+        "sage steel lockers",
+        (0.45, 0.90, 1.80),
+        "industrial",
+        partial(locker, body=m.SAGE, doors=3),
+    ),
+    _d(
+        "cabinet",
+        "display",
+        "glazed walnut display cabinet",
+        (0.42, 0.95, 1.90),
+        "classic",
+        partial(curio, wood=m.WALNUT, levels=4),
+    ),
+    _d(
+        "cabinet",
+        "slatted",
+        "pine cupboard with louvred doors",
+        (0.42, 0.80, 1.20),
+        "rustic",
+        partial(
+            case, body=m.PINE, bays=["pair"], panel="slats", base="plinth", base_h=0.07, handle="knob", pull=m.IRON
+        ),
+    ),
+    _d(
+        "sideboard",
+        "walnut-long",
+        "long walnut sideboard",
+        (0.45, 1.75, 0.72),
+        "modern",
+        partial(
+            case, body=m.WALNUT, bays=["door", "3", "door"], base="splay", base_h=0.18, handle="knob", pull=m.BRASS
+        ),
+    ),
+    _d(
+        "sideboard",
+        "oak-classic",
+        "oak sideboard with panelled doors",
+        (0.48, 1.50, 0.88),
+        "classic",
+        partial(
+            case,
+            body=m.OAK,
+            bays=["door", "2", "2", "door"],
+            panel="shaker",
+            handle="knob",
+            pull=m.BRASS,
+            base="legs",
+            base_h=0.12,
+            top=m.OAK,
+        ),
+    ),
+    _d(
+        "sideboard",
+        "white-minimal",
+        "white sideboard without handles",
+        (0.42, 1.60, 0.74),
+        "minimal",
+        partial(case, body=m.WHITE, bays=["door", "door", "door"], handle="none", base="plinth", base_h=0.06),
+    ),
+    _d(
+        "sideboard",
+        "rustic",
+        "reclaimed-wood sideboard",
+        (0.46, 1.40, 0.82),
+        "rustic",
+        partial(
+            case,
+            body=m.RECLAIMED,
+            bays=["pair", "3"],
+            panel="shaker",
+            handle="cup",
+            pull=m.IRON,
+            base="plinth",
+            base_h=0.07,
+        ),
+    ),
+    _d(
+        "sideboard",
+        "cane",
+        "black sideboard with cane doors",
+        (0.44, 1.55, 0.78),
+        "modern",
+        partial(
+            case,
+            body=m.BLACK_WOOD,
+            bays=["door", "door", "door"],
+            panel="shaker",
+            infill=m.RATTAN,
+            base="steel",
+            base_h=0.16,
+            legs=m.BLACK_STEEL,
+            handle="knob",
+            pull=m.BRASS,
+        ),
+    ),
+    _d(
+        "tv stand",
+        "oak-open",
+        "oak media unit with open bays",
+        (0.42, 1.50, 0.50),
+        "modern",
+        partial(case, body=m.OAK, bays=["door", "open", "door"], base="splay", base_h=0.14, handle="none"),
+    ),
+    _d(
+        "tv stand",
+        "white-low",
+        "low white television stand",
+        (0.40, 1.60, 0.40),
+        "minimal",
+        partial(case, body=m.WHITE, bays=["1", "1", "1"], handle="none", base="plinth", base_h=0.05),
+    ),
+    _d(
+        "tv stand",
+        "industrial",
+        "reclaimed-wood media console on steel",
+        (0.42, 1.40, 0.52),
+        "industrial",
+        partial(
+            case,
+            body=m.RECLAIMED,
+            bays=["open", "2", "open"],
+            base="steel",
+            base_h=0.13,
+            legs=m.BLACK_STEEL,
+            handle="cup",
+        ),
+    ),
+    _d(
+        "tv stand",
+        "walnut-slats",
+        "walnut media unit with slatted doors",
+        (0.44, 1.80, 0.48),
+        "modern",
+        partial(
+            case,
+            body=m.WALNUT,
+            bays=["door", "door", "door", "door"],
+            panel="slats",
+            base="legs",
+            base_h=0.1,
+            handle="none",
+        ),
+    ),
+    _d(
+        "tv stand",
+        "classic",
+        "cherry television cabinet",
+        (0.46, 1.25, 0.60),
+        "classic",
+        partial(
+            case,
+            body=m.CHERRY,
+            bays=["door", "open", "door"],
+            panel="shaker",
+            handle="knob",
+            pull=m.BRASS,
+            base="plinth",
+            base_h=0.07,
+            top=m.CHERRY,
+        ),
+    ),
+)
