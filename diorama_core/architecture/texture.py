@@ -24,6 +24,8 @@ EVEN_LEVELS = 14.0
 """A patch whose colour varies more than this (of 255) over its breadth is a pattern or a rug, not a grain."""
 ISLAND_M = 0.22
 """Pieces of a plane narrower than this are mostly rims, shadows and leaves of what stands before it."""
+ISLAND_SHARE = 0.04
+"""Pieces apart from the rest with a smaller share of all that is seen are given up too."""
 RIM = 0.008
 """Widening of what hides the room beyond its masks' own margin, as a share of the picture's longer side."""
 SURE_MASK = 0.95
@@ -63,10 +65,13 @@ def plane_textures(
 
 
 def _without_islands(seen: Bool[np.ndarray, "h w"], width_px: float) -> Bool[np.ndarray, "h w"]:
-    """What is left when everything narrower than a given width, between things that hide the plane, is given up."""
+    """What is left when narrow pieces between things that hide the plane, and small separate ones, are given up."""
     side = max(3, round(width_px) | 1)
     opened = cv2.morphologyEx(seen.astype(np.uint8), cv2.MORPH_OPEN, np.ones((side, side), np.uint8))
-    return opened.astype(bool)
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(opened)
+    large = stats[:, cv2.CC_STAT_AREA] >= ISLAND_SHARE * max(int(opened.sum()), 1)
+    large[0] = False
+    return large[labels] if count > 1 else opened.astype(bool)
 
 
 def _grown(hidden: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
