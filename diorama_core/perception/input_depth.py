@@ -1,4 +1,4 @@
-"""Reading measured depth: 16-bit PNG or TIFF in units, `.npy` in metres; missing is 0 afterwards."""
+"""Reading measured depth: 16-bit PNG or TIFF in units, `.npy` or EXR in metres; missing is 0 afterwards."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from jaxtyping import Float32, Shaped
 from numpy.lib import format as npy
 
 from diorama_core.errors import InputError
+from diorama_core.perception import exr
 from diorama_core.perception.input_photo import Source, load_pixels, open_picture
 
 DepthEncoding = Literal["linear", "sunrgbd"]
@@ -19,6 +20,8 @@ DepthEncoding = Literal["linear", "sunrgbd"]
 ASPECT_TOLERANCE = 0.02
 FARTHEST_M = 80.0
 """Beyond this a value is a sensor's way of saying "nothing seen"."""
+SKY_M = 1e4
+"""What renderers write where there is nothing (Blender 1e10, half floats 65504) is beyond this."""
 ROOM_MEDIAN_M = (0.15, 20.0)
 """Median depth of a photo of a room; outside, the unit is wrong."""
 MIN_COVERAGE = 0.01
@@ -43,7 +46,7 @@ def read_depth(
     else:
         values = _unrotated(raw) if encoding == "sunrgbd" else raw
         depth = (values / depth_scale).astype(np.float32)
-    depth = _cleaned(depth)
+    depth = _cleaned(depth, in_metres)
     notes = _check_plausible(source.name, depth, raw, in_metres, depth_scale, encoding)
     resized, more = _at_size(source.name, depth, photo_size)
     resized.setflags(write=False)
@@ -54,10 +57,11 @@ def _decode(source: Source) -> tuple[Shaped[np.ndarray, "h w"], bool]:
     """Raw values, and whether they are metres already."""
     if source.data.startswith(b"\x93NUMPY"):
         return _decode_npy(source), True
-    if source.data.startswith(b"\x76\x2f\x31\x01"):
-        raise InputError(
-            f"{source.name}: EXR depth cannot be read by the installed OpenCV; save it as .npy (metres) or 16-bit PNG"
-        )
+    if source.data.startswith(exr.MAGIC):
+        try:
+            return exr.read_depth_channel(source.data), True
+        except exr.ExrError as error:
+            raise InputError(f"{source.name}: {error}, or as .npy (metres) or 16-bit PNG") from error
     picture = open_picture(source, "depth")
     if picture.mode not in ("I;16", "I;16B", "I;16L", "I", "F"):
         raise InputError(
@@ -99,10 +103,10 @@ def _unrotated(values: Shaped[np.ndarray, "h w"]) -> Shaped[np.ndarray, "h w"]:
     return ((v >> 3) | (v << 13)) & 0xFFFF
 
 
-def _cleaned(depth_m: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
-    """NaN, infinities, zero, negative and absurdly far values all mean missing."""
+def _cleaned(depth_m: Float32[np.ndarray, "h w"], in_metres: bool) -> Float32[np.ndarray, "h w"]:
+    """NaN, infinities, zero, negative values and a renderer's sky all mean missing."""
     with np.errstate(invalid="ignore"):
-        seen = np.isfinite(depth_m) & (depth_m > 0)
+        seen = np.isfinite(depth_m) & (depth_m > 0) & (depth_m < (SKY_M if in_metres else np.inf))
     return np.where(seen, depth_m, 0).astype(np.float32)
 
 

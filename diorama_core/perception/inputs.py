@@ -48,7 +48,7 @@ def read_inputs(
     Args:
         image: The photo, a path or the bytes of an upload.
         name: What to call the photo; by default its file name.
-        depth: Measured depth: 16-bit PNG in units of 1 / `depth_scale` metres, or `.npy` float metres.
+        depth: Measured depth: 16-bit PNG in units of 1 / `depth_scale` metres, or `.npy` or EXR in metres.
         depth_scale: Units per metre of an integer depth.
         depth_encoding: "sunrgbd" where a PNG's bits are rotated as in SUN RGB-D.
         intrinsics: fx, fy, cx, cy in pixels of the upright original photo.

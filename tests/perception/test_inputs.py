@@ -272,6 +272,17 @@ class TestDepth:
     def test_float_sizes(self, dtype: type) -> None:
         assert self.read(npy(np.full((HEIGHT, WIDTH, 1), 1.5, dtype)))[0, 0] == 1.5
 
+    def test_exr_in_metres(self) -> None:
+        photo = encoded(picture(24 * 4, 20 * 4))
+        depth = read_inputs(photo, depth=Path(__file__).parent / "exr" / "zip.exr").inputs.depth_m
+        assert depth is not None
+        assert (depth[2, 2], depth[-2, 2]) == (1.0, 2.0)
+
+    def test_a_renderers_sky_is_missing(self) -> None:
+        values = np.full((HEIGHT, WIDTH), 1e10, np.float32)
+        values[: HEIGHT // 3] = 3.0
+        assert set(np.unique(self.read(npy(values)))) == {0.0, 3.0}
+
     def test_other_size_is_met_by_nearest_values(self) -> None:
         values = np.where(np.arange(WIDTH * 2) < WIDTH, 1000, 3000)[None].repeat(HEIGHT * 2, 0)
         depth = self.read(depth_png(values))
@@ -308,6 +319,8 @@ class TestDepth:
             (depth_png(np.full((HEIGHT, WIDTH), 20)), "--depth-scale"),
             (depth_png(np.full((HEIGHT, WIDTH), 1500))[:60], "damaged"),
             (b"\x76\x2f\x31\x01" + b"\0" * 64, "EXR"),
+            (b"\x76\x2f\x31\x01\x02\x02\0\0", "tiled"),
+            ((Path(__file__).parent / "exr" / "piz.exr").read_bytes(), "PIZ"),
         ],
     )
     def test_refused_in_one_line(self, data: bytes, word: str) -> None:
