@@ -9,18 +9,22 @@ from diorama_core.architecture.evidence import MAX_CEILING_M, PRIOR_MEDIAN_M, Ro
 
 REFINEMENTS = (0.08, 0.03, 0.012)
 SWEEPS = 3
+FINALISTS = 4
+"""Starts that are followed to the end after their first round."""
 MAX_LINES = 40
 """Segments, longest first, that suggest candidates."""
 MARGIN_M = 0.05
 
+_SCALES = np.geomspace(0.6, 1.7, 15)
 _DISTANCES_M = np.geomspace(0.5, 9.0, 24)
 _CEILINGS_M = np.geomspace(2.1, MAX_CEILING_M, 24)
 
 
 def find_box(evidence: RoomEvidence) -> tuple[Float[np.ndarray, "4"], float]:
     """The best box (x0, x1, y1, ceiling) and its score; deterministic."""
-    found = [_ascend(evidence, start) for start in _starts(evidence)]
-    return max(found, key=lambda pair: pair[1])
+    found = [_swept(evidence, start, float(evidence.score(start[None])[0])) for start in _starts(evidence)]
+    found.sort(key=lambda pair: -pair[1])
+    return max((_ascend(evidence, *pair) for pair in found[:FINALISTS]), key=lambda pair: pair[1])
 
 
 def _starts(evidence: RoomEvidence) -> list[Float[np.ndarray, "4"]]:
@@ -45,12 +49,11 @@ def around_objects(evidence: RoomEvidence, box: Float[np.ndarray, "4"]) -> Float
     return np.array([min(box[0], low[0]), max(box[1], high[0]), max(box[2], high[1]), max(box[3], high[2])])
 
 
-def _ascend(evidence: RoomEvidence, box: Float[np.ndarray, "4"]) -> tuple[Float[np.ndarray, "4"], float]:
-    best, score = box.copy(), float(evidence.score(box[None])[0])
+def _ascend(evidence: RoomEvidence, box: Float[np.ndarray, "4"], score: float) -> tuple[Float[np.ndarray, "4"], float]:
+    best = box
     for _ in range(SWEEPS):
         before = score
-        for coordinate in (2, 0, 1, 3):
-            best, score = _improved(evidence, best, score, coordinate, _candidates(evidence, best, coordinate))
+        best, score = _swept(evidence, best, score)
         if score <= before + 1e-9:
             break
     for step in REFINEMENTS:
@@ -61,11 +64,29 @@ def _ascend(evidence: RoomEvidence, box: Float[np.ndarray, "4"]) -> tuple[Float[
     return best, score
 
 
+def _swept(evidence: RoomEvidence, box: Float[np.ndarray, "4"], score: float) -> tuple[Float[np.ndarray, "4"], float]:
+    """One round: each number in turn, then the whole plan scaled about the camera, which keeps corners in place."""
+    for coordinate in (2, 0, 1, 3):
+        box, score = _improved(evidence, box, score, coordinate, _candidates(evidence, box, coordinate))
+    eye = np.array([*evidence.camera.position[[0, 0, 1]], 0.0])
+    scaled = eye + (box - eye) * _SCALES[:, None]
+    trial = np.concatenate([scaled, scaled])
+    trial[: len(scaled), 3] = box[3]
+    trial[len(scaled) :, 3] = evidence.camera.position[2] + (box[3] - evidence.camera.position[2]) * _SCALES
+    return _best_of(evidence, trial, box, score)
+
+
 def _improved(
     evidence: RoomEvidence, box: Float[np.ndarray, "4"], score: float, coordinate: int, values: Float[np.ndarray, "m"]
 ) -> tuple[Float[np.ndarray, "4"], float]:
     trial = np.repeat(box[None], len(values), axis=0)
     trial[:, coordinate] = values
+    return _best_of(evidence, trial, box, score)
+
+
+def _best_of(
+    evidence: RoomEvidence, trial: Float[np.ndarray, "m 4"], box: Float[np.ndarray, "4"], score: float
+) -> tuple[Float[np.ndarray, "4"], float]:
     scores = evidence.score(trial)
     best = int(scores.argmax())
     return (trial[best], float(scores[best])) if scores[best] > score else (box, score)
