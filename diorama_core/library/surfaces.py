@@ -11,7 +11,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import open3d as o3d
 import trimesh
 from jaxtyping import Float, Int
 from scipy.sparse import coo_matrix
@@ -94,6 +93,8 @@ def _hits(
     mesh: trimesh.Trimesh, x: Float[np.ndarray, "r"], y: Float[np.ndarray, "r"], top: float
 ) -> tuple[Int[np.ndarray, "h"], Float[np.ndarray, "h"], Float[np.ndarray, "h"]]:
     """Every hit of downward rays: ray number, height, and the face normal's z; sorted by ray, then downward."""
+    import open3d as o3d  # seconds to load, and listing shapes does without it
+
     scene = o3d.t.geometry.RaycastingScene(nthreads=1)
     scene.add_triangles(mesh.vertices.astype(np.float32), mesh.faces.astype(np.uint32))
     rays = np.zeros((len(x), 6), dtype=np.float32)
@@ -123,27 +124,25 @@ def _depth_and_gap(
 def _regions(spots: _Spots) -> list[Int[np.ndarray, "k"]]:
     """Spots grown together over neighbouring cells of nearly equal height, then flat patches of one level joined."""
     n = len(spots.z)
+    bins = np.round(spots.z / STEP_M).astype(np.int64)
+    key = _cell_key(spots.cell[:, 0], spots.cell[:, 1], bins)
+    order = np.argsort(key, kind="stable")
+    in_order = key[order]
     near = range(-REACH_CELLS, REACH_CELLS + 1)
-    links = [_links(spots, di, dj) for di in near for dj in near if (di, dj) > (0, 0)]
-    a, b = (np.concatenate(side) for side in zip(*links, strict=True))
+    pairs = []
+    for di, dj, dz in ((di, dj, dz) for di in near for dj in near for dz in (-1, 0, 1) if (di, dj) > (0, 0)):
+        wanted = _cell_key(spots.cell[:, 0] + di, spots.cell[:, 1] + dj, bins + dz)
+        at = np.minimum(np.searchsorted(in_order, wanted), n - 1)
+        found = np.flatnonzero(in_order[at] == wanted)
+        pairs.append((found, order[at[found]]))
+    a, b = (np.concatenate(side) for side in zip(*pairs, strict=True))
     graph = coo_matrix((np.ones(len(a)), (a, b)), shape=(n, n))
     count, label = connected_components(graph, directed=False)
     return [_flat_core(spots, np.flatnonzero(label == k)) for k in range(count)]
 
 
-def _links(spots: _Spots, di: int, dj: int) -> tuple[Int[np.ndarray, "l"], Int[np.ndarray, "l"]]:
-    """Pairs of spots `di`, `dj` cells apart and within a step of each other in height."""
-    bins = np.round(spots.z / STEP_M).astype(np.int64)
-    key = (spots.cell[:, 0] * 100_000 + spots.cell[:, 1]) * 100_000 + bins
-    order = np.argsort(key, kind="stable")
-    pairs_a, pairs_b = [], []
-    for dz in (-1, 0, 1):
-        wanted = ((spots.cell[:, 0] + di) * 100_000 + spots.cell[:, 1] + dj) * 100_000 + bins + dz
-        at = np.minimum(np.searchsorted(key[order], wanted), len(key) - 1)
-        hit = key[order][at] == wanted
-        pairs_a.append(np.flatnonzero(hit))
-        pairs_b.append(order[at[hit]])
-    return np.concatenate(pairs_a), np.concatenate(pairs_b)
+def _cell_key(i: Int[np.ndarray, "s"], j: Int[np.ndarray, "s"], level: Int[np.ndarray, "s"]) -> Int[np.ndarray, "s"]:
+    return (i * 100_000 + j) * 100_000 + level
 
 
 def _flat_core(spots: _Spots, region: Int[np.ndarray, "k"]) -> Int[np.ndarray, "k"]:

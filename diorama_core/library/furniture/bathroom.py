@@ -197,6 +197,7 @@ def bathtub(size: Size, kind: str = "panel", outside: Material = m.PORCELAIN) ->
     """`kind`: "panel" (boxed in), "oval" (free-standing) or "claw" (on feet). Long side along x."""
     d, w, h = size
     if kind == "panel":
+        h -= 0.12  # the tap reaches above the rim
         outer, inner = rounded_rectangle(d, w, 0.02, 5), rounded_rectangle(d * 0.9, w * 0.82, 0.16, 5)
         rings = [
             (outer, 0),
@@ -316,7 +317,7 @@ DESIGNS: tuple[Design, ...] = (
     ),
     _d("toilet", "square", "square toilet", (0.66, 0.37, 0.80), "minimal", partial(toilet, kind="square")),
     _d("toilet", "wooden-seat", "toilet with a wooden seat", (0.70, 0.39, 0.80), "rustic", partial(toilet, seat=m.OAK)),
-    _d("bathtub", "panel", "built-in white bath", (1.70, 0.75, 0.56), "minimal", bathtub),
+    _d("bathtub", "panel", "built-in white bath", (1.70, 0.75, 0.67), "minimal", bathtub),
     _d("bathtub", "oval", "free-standing oval bath", (1.68, 0.78, 0.58), "modern", partial(bathtub, kind="oval")),
     _d(
         "bathtub",

@@ -242,7 +242,7 @@ DESIGNS: tuple[Design, ...] = (
     _bed(
         "low-oak",
         "low oak platform bed without a headboard",
-        (2.08, 1.60, 0.50),
+        (2.08, 1.60, 0.66),
         "minimal",
         partial(bed, frame=m.LIGHT_OAK, head="none", duvet=m.WHITE_COTTON, throw=m.GREY_FABRIC, top_z=0.40),
     ),
@@ -298,7 +298,7 @@ DESIGNS: tuple[Design, ...] = (
     _bed(
         "divan-king",
         "king-size divan without a headboard",
-        (2.05, 1.82, 0.66),
+        (2.05, 1.82, 0.82),
         "modern",
         partial(
             bed, frame=m.TAUPE_FABRIC, head="none", duvet=m.WHITE_COTTON, throw=m.NAVY_FABRIC, base="box", top_z=0.56

@@ -216,6 +216,7 @@ def upright_piano(size: Size, wood: Material, legs: str = "column") -> Parts:
 def digital_piano(size: Size, body: Material) -> Parts:
     """A digital piano on a plain stand."""
     d, w, h = size
+    h -= 0.16  # the music rest reaches above the case
     z = h - 0.18
     parts = of(
         body,
@@ -384,5 +385,5 @@ DESIGNS: tuple[Design, ...] = (
         "rustic",
         partial(upright_piano, wood=m.WALNUT, legs="plain"),
     ),
-    _d("piano", "digital", "white digital piano", (0.42, 1.36, 0.85), "modern", partial(digital_piano, body=m.WHITE)),
+    _d("piano", "digital", "white digital piano", (0.42, 1.36, 1.00), "modern", partial(digital_piano, body=m.WHITE)),
 )

@@ -198,6 +198,7 @@ def counter(
 ) -> Parts:
     """Base units under a worktop; `units` are "door", "drawers" or "pair" from right to left."""
     d, w, h = size
+    h -= 0.24 if basin else 0.0  # the tap reaches above the worktop
     t = 0.038
     parts = of(body, box((d - 0.05, w - 0.01, h - t - 0.1), 0.003).moved(-0.015, 0, 0.1)) + of(
         m.CHARCOAL, box((d - 0.1, w - 0.02, 0.1), 0.002).moved(-0.025)
@@ -242,7 +243,7 @@ def _worktop_with_basin(d: float, w: float, h: float, t: float, top: Material) -
         box((0.006, bw, 0.16), 0.002).moved(s * (bd / 2 - 0.003), 0, h - 0.165) for s in (1, -1)
     ]
     floor = box((bd, bw, 0.006), 0.002).moved(z=h - 0.168)
-    return of(top, *strips) + of(m.STAINLESS, *sides, floor) + at(tap(0.3), -bd / 2 - 0.04, 0, h)
+    return of(top, *strips) + of(m.STAINLESS, *sides, floor) + at(tap(0.24), -bd / 2 - 0.04, 0, h)
 
 
 def tap(height: float, metal: Material = m.CHROME, reach: float = 0.18) -> Parts:
@@ -427,7 +428,7 @@ DESIGNS: tuple[Design, ...] = (
         "kitchen counter",
         "sink-unit",
         "grey kitchen unit with a steel sink",
-        (0.62, 1.60, 1.10),
+        (0.62, 1.60, 1.14),
         "modern",
         partial(counter, body=m.LIGHT_GREY, top=m.GRANITE, units=("door", "pair"), basin=True),
     ),

@@ -300,11 +300,13 @@ def smooth_profile(profile: Profile, samples: int = 3) -> Profile:
 def lathe(profile: Sequence[tuple[float, float]], segments: int = 24, crease_rad: float = CREASE_RAD) -> Solid:
     """A turned solid from (radius, height) pairs, bottom to top (and back down inside for a hollow)."""
     p = np.asarray(profile, dtype=np.float64)
+    closed = bool(np.allclose(p[0], p[-1]))  # a ring with a hole through it, as a lampshade
+    p = p[:-1] if closed else p
     angle = np.arange(segments) * 2 * np.pi / segments
     rings = np.stack(
         [p[:, :1] * np.cos(angle), p[:, :1] * np.sin(angle), np.broadcast_to(p[:, 1:], (len(p), segments))], axis=-1
     )
-    return loft(rings, crease_rad=crease_rad)
+    return loft(rings, closed=closed, crease_rad=crease_rad)
 
 
 def cylinder(radius: float, height: float, bevel: float = 0.003, segments: int = 24, top: float | None = None) -> Solid:

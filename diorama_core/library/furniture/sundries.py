@@ -132,7 +132,7 @@ DESIGNS: tuple[Design, ...] = (
         "modern",
         partial(teddy, fur=PALE_FUR, muzzle=BROWN_FUR),
     ),
-    _d("toy", "blocks", "wooden toy blocks", (0.18, 0.22, 0.21), "minimal", toy_blocks),
+    _d("toy", "blocks", "wooden toy blocks", (0.15, 0.20, 0.21), "minimal", toy_blocks),
     _d("toy", "car", "wooden toy car", (0.24, 0.13, 0.12), "rustic", partial(toy_car, paint=m.SAGE, wheel=m.OAK)),
     _d("toy", "ball", "striped ball", (0.22, 0.22, 0.22), "modern", partial(toy_ball, a=m.CREAM, b=m.NAVY), 36),
     _d(

@@ -35,15 +35,15 @@ ArmKind = Literal["track", "rolled", "slim", "pillow", "wood", "none"]
 
 def seat_cushion(d: float, w: float, t: float) -> list[Solid]:
     """A boxed seat cushion with piping round its upper and lower edge, standing on z = 0."""
-    pad = cushion((d, w, t), 9, 4.5, 12)
-    crown = cushion((d * 0.93, w * 0.93, 0.05), 5, 2.4, 8).moved(z=t - 0.032)
-    piping = tube(ring_path(superellipse(d * 0.965, w * 0.965, 9, 40), t * 0.87), 0.005, 5, closed=True)
+    pad = cushion((d, w, t), 9, 4.5, 10)
+    crown = cushion((d * 0.93, w * 0.93, 0.05), 5, 2.4, 7).moved(z=t - 0.032)
+    piping = tube(ring_path(superellipse(d * 0.965, w * 0.965, 9, 36), t * 0.87), 0.005, 4, closed=True)
     return [pad, crown, piping]
 
 
 def back_cushion(w: float, h: float, t: float, lean_deg: float = 12.0) -> Solid:
     """A loose back cushion leaning back, its foot at the origin, plump toward +X."""
-    pad = cushion((h, w, t), 5.5, 2.7, 12).turned("y", -90)
+    pad = cushion((h, w, t), 5.5, 2.7, 10).turned("y", -90)
     return pad.moved(x=t, z=h / 2).turned("y", -lean_deg)
 
 

@@ -314,7 +314,7 @@ DESIGNS: tuple[Design, ...] = (
         "vase",
         "amphora",
         "terracotta vase with two handles",
-        (0.24, 0.30, 0.42),
+        (0.24, 0.315, 0.42),
         "rustic",
         partial(vase, clay=m.TERRACOTTA, kind="urn", handles=True),
         2,
