@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.architecture.evidence import MAX_CEILING_M, PRIOR_MEDIAN_M, RoomEvidence
+from diorama_core.architecture.evidence import MAX_CEILING_M, PRIOR_MEDIAN_M, STRICT_OBJECT_WEIGHT, RoomEvidence
 
 REFINEMENTS = (0.08, 0.03, 0.012)
 SWEEPS = 3
@@ -25,6 +27,12 @@ def find_box(evidence: RoomEvidence) -> tuple[Float[np.ndarray, "4"], float]:
     found = [_swept(evidence, start, float(evidence.score(start[None])[0])) for start in _starts(evidence)]
     found.sort(key=lambda pair: -pair[1])
     return max((_ascend(evidence, *pair) for pair in found[:FINALISTS]), key=lambda pair: pair[1])
+
+
+def refined_around(evidence: RoomEvidence, box: Float[np.ndarray, "4"]) -> Float[np.ndarray, "4"]:
+    """The best box near one that holds the objects, among those that hold them too."""
+    strict = replace(evidence, object_weight=STRICT_OBJECT_WEIGHT)
+    return _ascend(strict, box, float(strict.score(box[None])[0]))[0]
 
 
 def _starts(evidence: RoomEvidence) -> list[Float[np.ndarray, "4"]]:

@@ -33,6 +33,8 @@ MAX_CEILING_M = 5.0
 ORIENTATION_WEIGHT = 2.0
 EDGE_WEIGHT = 1.0
 OBJECT_WEIGHT = 0.5
+STRICT_OBJECT_WEIGHT = 8.0
+"""At the end, when objects must be inside and lines only choose among the boxes that hold them."""
 PRIOR_WEIGHT = 0.1
 PRIOR_MEDIAN_M = np.array([4.2, 3.5, 2.6])
 """Width, depth from the camera, ceiling."""
@@ -66,6 +68,7 @@ class RoomEvidence:
     object_weights: Float[np.ndarray, "k"]
     hung_top_m: float
     """Top of the highest thing that hangs from the ceiling; 0 when nothing does."""
+    object_weight: float = OBJECT_WEIGHT
 
     def hits(self, boxes: Float[np.ndarray, "b 4"], directions: Float[np.ndarray, "s 3"]) -> Int[np.ndarray, "b s"]:
         """The axis of the face that each ray meets first: 0 a side wall, 1 the far wall, 2 floor or ceiling."""
@@ -160,7 +163,7 @@ class RoomEvidence:
         possible = (boxes[:, 0] < ox - 0.2) & (boxes[:, 1] > ox + 0.2) & (boxes[:, 2] > oy + 0.5)
         possible &= boxes[:, 3] > oz + 0.1
         total = ORIENTATION_WEIGHT * self.orientation(boxes) + EDGE_WEIGHT * self.edges(boxes).sum(axis=1)
-        total += OBJECT_WEIGHT * self.objects(boxes) + PRIOR_WEIGHT * self.prior(boxes)
+        total += self.object_weight * self.objects(boxes) + PRIOR_WEIGHT * self.prior(boxes)
         return np.where(possible, total, -np.inf)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.architecture.box_planes import box_planes
-from diorama_core.architecture.box_search import MARGIN_M, find_box
+from diorama_core.architecture.box_search import MARGIN_M, find_box, refined_around
 from diorama_core.architecture.colours import coloured
 from diorama_core.architecture.evidence import EDGE_NAMES, RoomEvidence, gather_evidence
 from diorama_core.architecture.supports import resolve_supports
@@ -45,6 +45,7 @@ class RoomBox:
         evidence = gather_evidence(inputs.photo.rgb, geometry.camera, objects, geometry.cuboids)
         progress.report(0.3, "Fitting a room to lines and objects")
         box = pushed_out(find_box(evidence)[0], evidence)
+        box = pushed_out(refined_around(evidence, box), evidence)
         confidences = face_confidences(box, evidence)
         hung = any(s.parent == "ceiling" for s in geometry.supports)
         planes = box_planes(box, geometry.camera, confidences, with_ceiling=hung)
