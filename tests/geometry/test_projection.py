@@ -1,0 +1,80 @@
+"""Projected bounds of cuboids against brute force."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from diorama_core.geometry.projection import NEAR_M, box_iou, cuboid_corners, visible_bounds
+from diorama_core.scene.types import Intrinsics, box_corners, yaw_rotation
+
+K = Intrinsics(640, 480, 520.0, 515.0, 310.0, 250.0)
+FROM_WORLD = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+"""Camera at the world's origin, level, facing +Y."""
+
+
+def surface_bounds(corners_camera: np.ndarray) -> np.ndarray | None:
+    """Bounds of densely sampled surface points that are inside the picture."""
+    steps = np.linspace(0, 1, 120)
+    u, v = (g.ravel() for g in np.meshgrid(steps, steps))
+    origin = corners_camera[0]
+    axes = [corners_camera[1] - origin, corners_camera[2] - origin, corners_camera[4] - origin]
+    faces = []
+    for k in range(3):
+        a, b, c = axes[k], axes[(k + 1) % 3], axes[(k + 2) % 3]
+        faces += [origin + side * c + np.outer(u, a) + np.outer(v, b) for side in (0.0, 1.0)]
+    points = np.concatenate(faces)
+    points = points[points[:, 2] > NEAR_M]
+    x, y = K.fx * points[:, 0] / points[:, 2] + K.cx, K.fy * points[:, 1] / points[:, 2] + K.cy
+    inside = (x >= 0) & (x <= K.width) & (y >= 0) & (y <= K.height)
+    if inside.sum() < 30:
+        return None
+    return np.array([x[inside].min(), y[inside].min(), x[inside].max(), y[inside].max()])
+
+
+coordinate = st.floats(-2.5, 2.5)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    x=coordinate, y=st.floats(0.3, 5.0), z=st.floats(-1.5, 1.5), yaw=st.floats(-3.2, 3.2),
+    size=st.tuples(*[st.floats(0.2, 2.5)] * 3),
+)  # fmt: skip
+def test_bounds_are_those_of_the_visible_surface(x: float, y: float, z: float, yaw: float, size: tuple) -> None:
+    corners = cuboid_corners(np.array([[x, y, z]]), np.array([yaw]), np.array([size])) @ FROM_WORLD.T
+    expected = surface_bounds(corners[0])
+    bounds, visible = visible_bounds(corners, K)
+    if expected is None:
+        return
+    assert visible[0]
+    assert (bounds[0, :2] <= expected[:2] + 1e-6).all()
+    assert (bounds[0, 2:] >= expected[2:] - 1e-6).all()
+    nearest = max(corners[0, :, 2].min(), NEAR_M)
+    coarse = 520 * max(size) / 119 / nearest * 3 + 2
+    assert np.abs(bounds[0] - expected).max() <= coarse
+
+
+def test_cuboid_behind_the_camera_is_invisible_and_finite() -> None:
+    corners = cuboid_corners(np.array([[0.0, -3.0, 0.0]]), np.zeros(1), np.ones((1, 3))) @ FROM_WORLD.T
+    bounds, visible = visible_bounds(corners, K)
+    assert not visible[0]
+    assert np.isfinite(bounds).all()
+
+
+def test_camera_inside_a_cuboid_sees_it_everywhere() -> None:
+    corners = cuboid_corners(np.zeros((1, 3)), np.zeros(1), np.full((1, 3), 4.0)) @ FROM_WORLD.T
+    bounds, visible = visible_bounds(corners, K)
+    assert visible[0]
+    np.testing.assert_allclose(bounds[0], [0, 0, 640, 480])
+
+
+def test_corners_agree_with_the_scene_types() -> None:
+    corners = cuboid_corners(np.array([[1.0, 2.0, 3.0]]), np.array([0.4]), np.array([[0.5, 1.0, 2.0]]))
+    expected = box_corners((0.5, 1.0, 2.0)) @ yaw_rotation(0.4).T + [1.0, 2.0, 3.0]
+    np.testing.assert_allclose(corners[0], expected)
+
+
+def test_box_iou() -> None:
+    a = np.array([[0, 0, 2, 2], [0, 0, 1, 1]])
+    np.testing.assert_allclose(box_iou(a, np.array([[1, 0, 3, 2], [2, 2, 3, 3]])), [1 / 3, 0.0])
