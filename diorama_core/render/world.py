@@ -163,24 +163,35 @@ class _MaterialTable:
         self.emissive = np.array([m.emissive for m in materials], dtype=np.float32).reshape(-1, 3)
         self._colour = np.array([m.colour for m in materials], dtype=np.float32).reshape(-1, 3)
         self._alpha = np.array([m.alpha for m in materials], dtype=np.float32)
-        self._textures = {i: _linear(m.texture) for i, m in enumerate(materials) if m.texture is not None}
-        self._repeats = {i for i in self._textures if _leaves_unit_square(surfaces[i].uv)}
-        self.mean_colour = self._colour.copy()
-        for index, picture in self._textures.items():
-            self.mean_colour[index] *= picture[..., :3].mean(axis=(0, 1))
+        self._pictures: list[tuple[Float32[np.ndarray, "h w c"], bool]] = []
+        """Linear texels, and whether they repeat."""
+        self._picture_of = np.full(len(surfaces), -1, dtype=np.int32)
+        known: dict[tuple[int, bool], int] = {}
+        for row, surface in enumerate(surfaces):
+            if surface.material.texture is not None:
+                key = (id(surface.material.texture), _leaves_unit_square(surface.uv))
+                if key not in known:
+                    known[key] = len(self._pictures)
+                    self._pictures.append((_linear(surface.material.texture), key[1]))
+                self._picture_of[row] = known[key]
+        means = [texels[..., :3].mean(axis=(0, 1)) for texels, _ in self._pictures]
+        self.mean_colour = self._colour * np.array([*means, np.ones(3)], dtype=np.float32)[self._picture_of]
 
     def colour(
         self, surface: Int32[np.ndarray, "n"], uv: Float32[np.ndarray, "n 2"]
     ) -> tuple[Float32[np.ndarray, "n 3"], Float32[np.ndarray, "n"]]:
-        """Linear base colour and opacity at texture coordinates (repeating, bilinear)."""
-        colour, alpha = self._colour[surface], self._alpha[surface]
-        for index, picture in self._textures.items():
-            chosen = np.flatnonzero(surface == index)
-            if len(chosen):
-                texel = _bilinear(picture, uv[chosen], repeat=index in self._repeats)
+        """Linear base colour and opacity at texture coordinates (bilinear)."""
+        colour, alpha, picture = self._colour[surface], self._alpha[surface], self._picture_of[surface]
+        order = np.argsort(picture, kind="stable")
+        bounds = np.searchsorted(picture[order], np.arange(len(self._pictures) + 1))
+        for (texels, repeat), start, stop in zip(self._pictures, bounds[:-1], bounds[1:], strict=True):
+            if start < stop:
+                chosen = order[start:stop]
+                texel = _bilinear(texels, uv[chosen], repeat=repeat)
                 colour[chosen] *= texel[:, :3]
-                if self._alpha[index] < 1 and texel.shape[1] == 4:
-                    alpha[chosen] *= texel[:, 3]
+                if texel.shape[1] == 4:
+                    clear = alpha[chosen] < 1
+                    alpha[chosen[clear]] *= texel[clear, 3]
         return colour, alpha
 
 
