@@ -17,7 +17,7 @@ MAGIC = b"\x76\x2f\x31\x01"
 DEPTH_CHANNELS = ("Z", "V", "Y", "depth.Z", "Depth.Z", "ViewLayer.Depth.Z", "depth.V", "Depth.V", "R")
 """Names under which renderers store depth, most telling first."""
 
-_TYPES = {0: np.dtype("<u4"), 1: np.dtype("<f2"), 2: np.dtype("<f4")}
+_TYPES: dict[int, np.dtype] = {0: np.dtype("<u4"), 1: np.dtype("<f2"), 2: np.dtype("<f4")}
 _LINES_PER_BLOCK = {0: 1, 1: 1, 2: 1, 3: 16}
 _NAMES = {4: "PIZ", 5: "PXR24", 6: "B44", 7: "B44A", 8: "DWAA", 9: "DWAB"}
 _TILED, _DEEP, _MULTI_PART = 0x200, 0x800, 0x1000
