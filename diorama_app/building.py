@@ -8,10 +8,10 @@ from typing import Any
 from diorama_core.errors import LibraryError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.build import Built
-from diorama_core.pipeline.protocols import LayoutStage
 from diorama_core.progress import Progress
 from diorama_core.project.files import write_atomically
 from diorama_core.project.storage import Project
+from diorama_core.protocols import LayoutStage
 from diorama_core.scene import edits
 from diorama_core.scene.schema import scene_to_json
 from diorama_core.scene.types import Scene

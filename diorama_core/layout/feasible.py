@@ -16,8 +16,8 @@ from diorama_core.layout.report import measure
 from diorama_core.layout.separate import Program, Separation, build_program, separate
 from diorama_core.layout.structure import Structure, exact_structure
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.pipeline.protocols import Preview
 from diorama_core.progress import Progress
+from diorama_core.protocols import Preview
 from diorama_core.scene import edits
 from diorama_core.scene.types import Camera, Scene
 

@@ -18,8 +18,8 @@ from diorama_core.layout.report import measure
 from diorama_core.layout.staged import Edges, Report, Schedule, State
 from diorama_core.layout.volumes import Volumes
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.pipeline.protocols import Preview
 from diorama_core.progress import Progress
+from diorama_core.protocols import Preview
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
 

@@ -6,7 +6,7 @@ from diorama_core.errors import InputError
 from diorama_core.layout.feasible import FeasibleRecipe
 from diorama_core.layout.published import AllInOneRecipe, PaperRecipe
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.pipeline.protocols import LayoutStage
+from diorama_core.protocols import LayoutStage
 
 NAMES = ("feasible", "paper", "all-in-one")
 """The default first."""

@@ -1,1 +1,1 @@
-"""Stage protocols, their explicit construction, and the runner that caches, reports and resumes."""
+"""The stages' explicit construction, and the runner that caches, reports and resumes."""

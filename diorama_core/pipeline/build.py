@@ -30,7 +30,10 @@ from diorama_core.perception.measured import MeasuredGeometry
 from diorama_core.perception.metrology import SingleViewMetrology
 from diorama_core.pipeline.assemble import assemble
 from diorama_core.pipeline.colours import photo_colours
-from diorama_core.pipeline.protocols import (
+from diorama_core.pipeline.runner import Runner, StageRun
+from diorama_core.pose import RenderAndCompare
+from diorama_core.progress import Progress
+from diorama_core.protocols import (
     ArchitectureStage,
     CameraStage,
     DepthStage,
@@ -41,9 +44,6 @@ from diorama_core.pipeline.protocols import (
     Preview,
     RetrievalStage,
 )
-from diorama_core.pipeline.runner import Runner, StageRun
-from diorama_core.pose import RenderAndCompare
-from diorama_core.progress import Progress
 from diorama_core.retrieval import EmbeddedRetrieval
 from diorama_core.scene.edits import set_metrics
 from diorama_core.scene.types import Scene

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from diorama_core.artefacts import Inputs
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.build import Built, Stages, build_scene
-from diorama_core.pipeline.protocols import Preview
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
+from diorama_core.protocols import Preview
 
 
 def build_project(

@@ -34,7 +34,7 @@ SURE_SUPPORT, UNSURE_SUPPORT = 0.6, 0.2
 class EmbeddedCamera:
     """Intrinsics from the user, the photo's header, vanishing points or habit; gravity from depth or vanishing points.
 
-    Implements `diorama_core.pipeline.protocols.CameraStage`.
+    Implements `diorama_core.protocols.CameraStage`.
     """
 
     hypotheses: int = 3
