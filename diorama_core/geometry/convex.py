@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import trimesh
 from jaxtyping import Float, Int
+from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
@@ -24,9 +25,15 @@ TIGHT = 0.88
 """A simpler body is taken when the hull fills at least this share of it."""
 MERGE = 0.93
 """Two parts become one when together they fill at least this share of their common hull."""
-MOST_PARTS = 20
+MOST_PARTS = 16
+MOST_PIECES = 40
+"""Components beyond this many are joined with their neighbours before anything else."""
 MOST_VERTICES = 24
 THINNEST_M = 1e-3
+_ROUGH = np.array(
+    [d for d in itertools.product((-2, -1, 0, 1, 2), repeat=3) if max(map(abs, d)) == 2], dtype=np.float64
+)
+"""Directions in which the extreme points of large clouds are taken to estimate volumes."""
 _SAME_DIRECTION = 1.0 - 1e-5
 
 
@@ -85,7 +92,7 @@ def convex_parts(mesh: trimesh.Trimesh) -> tuple[ConvexPart, ...]:
     clouds: list[np.ndarray] = []
     for component in _components(vertices, faces):
         clouds.extend(_split(vertices[component], 0))
-    clouds = _merge([_hull_points(c) for c in clouds])
+    clouds = _merge(_gathered([_hull_points(c) for c in clouds]))
     clouds = _drop_contained(sorted(clouds, key=_volume, reverse=True))
     return tuple(simplest_part(c) for c in clouds)
 
@@ -154,8 +161,12 @@ def _hull_points(points: np.ndarray) -> np.ndarray:
 
 
 def _volume(points: np.ndarray) -> float:
+    """Volume of the convex hull; of a rough one when there are many points."""
+    flat = points.reshape(-1, 3)
+    if len(flat) > 2 * len(_ROUGH):
+        flat = flat[np.unique((flat @ _ROUGH.T).argmax(axis=0))]
     try:
-        return float(ConvexHull(points.reshape(-1, 3)).volume)
+        return float(ConvexHull(flat).volume)
     except (QhullError, ValueError):
         return 0.0
 
@@ -168,68 +179,78 @@ def _solid_volume(triangles: Float[np.ndarray, "t 3 3"]) -> float:
 def _split(triangles: Float[np.ndarray, "t 3 3"], depth: int) -> list[np.ndarray]:
     """Cut a surface by axis planes while that removes a good share of its hull's volume."""
     whole = _volume(triangles)
-    if depth >= 4 or whole < 1e-7 or (depth == 0 and _solid_volume(triangles) >= TIGHT * whole):
+    if depth >= 3 or whole < 1e-6 or (depth == 0 and _solid_volume(triangles) >= TIGHT * whole):
         return [triangles]
     low, high = triangles.reshape(-1, 3).min(axis=0), triangles.reshape(-1, 3).max(axis=0)
-    best: tuple[float, list[np.ndarray]] = (0.9 * whole, [])
-    for axis, share in itertools.product(range(3), (0.1, 0.25, 0.4, 0.5, 0.6, 0.75, 0.9)):
-        halves = _cut(triangles, axis, float(low[axis] + share * (high[axis] - low[axis])))
-        total = sum(_volume(h) for h in halves)
-        if len(halves) == 2 and total < best[0]:
-            best = (total, halves)
-    return [piece for half in best[1] for piece in _split(half, depth + 1)] or [triangles]
+    best: tuple[float, int, float] | None = None
+    for axis, share in itertools.product(range(3), (0.12, 0.3, 0.5, 0.7, 0.88)):
+        at = float(low[axis] + share * (high[axis] - low[axis]))
+        total = sum(_volume(_one_side(triangles, axis, at, sign)) for sign in (1.0, -1.0))
+        if total < (0.9 * whole if best is None else best[0]):
+            best = (total, axis, at)
+    if best is None:
+        return [triangles]
+    halves = [_cut(triangles, best[1], best[2], sign) for sign in (1.0, -1.0)]
+    return [piece for half in halves for piece in _split(half, depth + 1)]
 
 
-def _cut(triangles: np.ndarray, axis: int, at: float) -> list[np.ndarray]:
-    """Both sides of a surface cut by the plane x[axis] = at, as triangles (degenerate ones allowed)."""
-    sides = []
-    for sign in (1.0, -1.0):
-        pieces = []
-        for triangle in triangles[(sign * (triangles[:, :, axis] - at)).max(axis=1) > 0]:
-            polygon = _clip(triangle, axis, at, sign)
-            pieces.extend([polygon[0], polygon[k], polygon[k + 1]] for k in range(1, len(polygon) - 1))
-        if pieces:
-            sides.append(np.array(pieces))
-    return sides
+def _one_side(triangles: np.ndarray, axis: int, at: float, sign: float) -> Float[np.ndarray, "n 3"]:
+    """Corners of the part of a surface on one side of the plane x[axis] = at."""
+    height = sign * (triangles[:, :, axis] - at)
+    points = [triangles[height >= 0]]
+    for k in range(3):
+        a, b = height[:, k], height[:, (k + 1) % 3]
+        crossing = a * b < 0
+        t = (a[crossing] / (a[crossing] - b[crossing]))[:, None]
+        points.append(triangles[crossing, k] * (1 - t) + triangles[crossing, (k + 1) % 3] * t)
+    return np.vstack(points)
 
 
-def _clip(polygon: np.ndarray, axis: int, at: float, sign: float) -> list[np.ndarray]:
-    kept = []
-    for a, b in zip(polygon, np.roll(polygon, -1, axis=0)):
-        da, db = sign * (a[axis] - at), sign * (b[axis] - at)
-        if da >= 0:
-            kept.append(a)
-        if da * db < 0:
-            kept.append(a + (b - a) * (da / (da - db)))
-    return kept
+def _cut(triangles: np.ndarray, axis: int, at: float, sign: float) -> Float[np.ndarray, "t 3 3"]:
+    """One side of a surface cut by the plane x[axis] = at, as triangles."""
+    normal, origin = np.zeros(3), np.zeros(3)
+    normal[axis], origin[axis] = sign, at
+    vertices, faces, _ = trimesh.intersections.slice_faces_plane(
+        triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3), normal, origin
+    )
+    return np.asarray(vertices)[np.asarray(faces)]
+
+
+def _gathered(clouds: list[np.ndarray]) -> list[np.ndarray]:
+    """At most `MOST_PIECES` clouds: many small ones (leaves, slats) are joined with their neighbours."""
+    if len(clouds) <= MOST_PIECES:
+        return clouds
+    centres = np.array([0.5 * (c.min(axis=0) + c.max(axis=0)) for c in clouds])
+    group = fcluster(linkage(centres, "ward"), MOST_PIECES, "maxclust")
+    return [_hull_points(np.vstack([c for c, g in zip(clouds, group) if g == k])) for k in np.unique(group)]
 
 
 def _merge(clouds: list[np.ndarray]) -> list[np.ndarray]:
-    """Join parts, best filled first, while the union stays nearly convex or there are too many parts."""
+    """Join parts while the union stays nearly convex; beyond `MOST_PARTS`, those that add least empty space."""
     parts = {k: (c, _volume(c)) for k, c in enumerate(clouds)}
-    fills = {pair: _fill(parts[pair[0]], parts[pair[1]], len(parts)) for pair in itertools.combinations(parts, 2)}
-    while fills:
-        pair = max(fills, key=fills.__getitem__)
-        if fills[pair] < MERGE and len(parts) <= MOST_PARTS:
+    added = {pair: _added(parts[pair[0]], parts[pair[1]]) for pair in itertools.combinations(parts, 2)}
+    while added:
+        pair = min(added, key=added.__getitem__)
+        filled = parts[pair[0]][1] + parts[pair[1]][1]
+        if added[pair] > (1.0 / MERGE - 1.0) * filled + 1e-7 and len(parts) <= MOST_PARTS:
             break
         joined = _hull_points(np.vstack([parts[pair[0]][0], parts[pair[1]][0]]))
         for k in pair:
             del parts[k]
-        fills = {p: f for p, f in fills.items() if not set(p) & set(pair)}
+        added = {p: v for p, v in added.items() if not set(p) & set(pair)}
         new = max([*parts, *pair]) + 1
         parts[new] = (joined, _volume(joined))
-        fills.update({(k, new): _fill(parts[k], parts[new], len(parts)) for k in parts if k != new})
+        added.update({(k, new): _added(parts[k], parts[new]) for k in parts if k != new})
     return [cloud for cloud, _ in parts.values()]
 
 
-def _fill(a: tuple[np.ndarray, float], b: tuple[np.ndarray, float], count: int) -> float:
-    """Share of the common hull that two parts fill; 0 without computing it when their boxes already rule it out."""
+def _added(a: tuple[np.ndarray, float], b: tuple[np.ndarray, float]) -> float:
+    """Empty volume that the common hull of two parts would enclose, m3; estimated from boxes for distant parts."""
     both = np.vstack([a[0], b[0]])
-    box = float(np.prod(both.max(axis=0) - both.min(axis=0)))
-    if count <= MOST_PARTS and a[1] + b[1] < 0.3 * MERGE * box:
-        return 0.0
-    hull = _volume(both)
-    return min((a[1] + b[1]) / hull, 1.0) if hull > 1e-12 else 1.0
+    apart = np.maximum(a[0].min(axis=0) - b[0].max(axis=0), b[0].min(axis=0) - a[0].max(axis=0)).max()
+    if apart > 0.01:
+        return 0.5 * float(np.prod(both.max(axis=0) - both.min(axis=0))) + float(apart)
+    return max(_volume(both) - a[1] - b[1], 0.0)
 
 
 def _drop_contained(clouds: list[np.ndarray]) -> list[np.ndarray]:
@@ -296,8 +317,23 @@ def _tip(corners: list[np.ndarray], k: int) -> tuple[float, np.ndarray | None]:
 
 
 def _oriented_box(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    to_box, extents = trimesh.bounds.oriented_bounds(points)
-    return np.asarray(to_box), np.asarray(extents)
+    """A tight box along the points' principal axis, as (homogeneous transform into the box's frame, extents)."""
+    centred = points - points.mean(axis=0)
+    axis = np.linalg.svd(centred, full_matrices=False)[2][0]
+    helper = np.eye(3)[int(np.abs(axis).argmin())]
+    u = np.cross(axis, helper)
+    u /= np.linalg.norm(u)
+    v = np.cross(axis, u)
+    angles = np.arange(18) * (np.pi / 36)
+    turned = np.cos(angles)[:, None] * u + np.sin(angles)[:, None] * v
+    across = np.cross(axis, turned)
+    areas = np.ptp(points @ turned.T, axis=0) * np.ptp(points @ across.T, axis=0)
+    k = int(areas.argmin())
+    R = np.stack([axis, turned[k], across[k]])
+    local = points @ R.T
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = R, -(local.min(axis=0) + local.max(axis=0)) / 2
+    return T, np.ptp(local, axis=0)
 
 
 def _turned_box(to_box: np.ndarray, extents: np.ndarray) -> ConvexPart:
