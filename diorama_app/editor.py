@@ -8,7 +8,7 @@ from pathlib import Path
 import viser
 
 from diorama_app.actions import Views, build_commands
-from diorama_app.example import example_project
+from diorama_app.example import example_draft, example_project
 from diorama_app.gestures import Gestures
 from diorama_app.panels.alternatives import Alternatives
 from diorama_app.panels.compare import Compare
@@ -23,6 +23,7 @@ from diorama_app.panels.supports import Supports
 from diorama_app.panels.toolbar import Toolbar
 from diorama_app.room import Panel, Room
 from diorama_app.viser_adapter import MAX_UPLOAD_BYTES
+from diorama_app.work import build
 from diorama_core.errors import DioramaError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.project.storage import Project
@@ -76,6 +77,10 @@ class Editor:
             if example is not None:
                 room.open_project(example)
                 return
+            draft = example_draft()
+            if draft is not None:
+                room.draft = draft
+                build(room, None)
         except DioramaError as error:
             log.warning("the example cannot be opened: %s", error)
         room.refresh()
@@ -101,10 +106,12 @@ class Editor:
         gui.main_panel.dock_left()
         gui.main_panel.set_width(LEFT_WIDTH_PX)
         room = self.room
+        toolbar = Toolbar(gui, room, self.commands, self.gestures)
+        room.job_panel = job_strip = JobStrip(gui, room)
         panels: list[Panel] = [
             self.gestures,
-            Toolbar(gui, room, self.commands, self.gestures),
-            JobStrip(gui, room),
+            toolbar,
+            job_strip,
             Compare(gui, room, self.views),
         ]
         left = gui.add_tab_group()

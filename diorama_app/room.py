@@ -7,6 +7,7 @@ Everything here runs on the desk's thread, except where a method says otherwise.
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Protocol
@@ -30,6 +31,7 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.project.storage import Project
 from diorama_core.scene.types import Pose, Scene
 
+JOB_TOLD_EVERY_S = 0.15
 MESH_OVERLAP_S = 0.45
 """How long an old mesh stays while the browser parses its successor."""
 
@@ -56,6 +58,8 @@ class Room:
         self.textures: Mapping[str, UInt8[np.ndarray, "h w 3"]] = {}
         self.views: dict[int, ClientView] = {}
         self.panels: list[Panel] = []
+        self.job_panel: Panel | None = None
+        self._job_told_at = 0.0
         self.desk = Desk(lambda message: self.notice_all(message, "bad"))
         self.jobs = Jobs(self._job_changed, self._job_ended)
         self.saver = Saver(on_error=lambda message: self.notice_all(message, "bad"))
@@ -216,7 +220,13 @@ class Room:
         timer.start()
 
     def _job_changed(self, status: JobStatus) -> None:
-        self.desk.post(self.refresh_panels, key="panels")
+        now = time.monotonic()
+        begins = status.fraction == 0.0
+        if begins or status.cancelling or now - self._job_told_at > JOB_TOLD_EVERY_S:
+            self._job_told_at = now
+            self.desk.post(
+                self.refresh_panels if begins or self.job_panel is None else self.job_panel.refresh, key="job"
+            )
 
     def _job_ended(self, outcome: Outcome) -> None:
         def tell() -> None:

@@ -70,6 +70,8 @@ def start(
         InputError: the port is taken.
         ProjectError, SceneError: the project cannot be opened.
     """
+    import open3d  # noqa: F401  # its import fails when another thread imports anything meanwhile
+
     if library is None:
         from diorama_core.library.catalogue import built_in_library
 
@@ -89,6 +91,7 @@ def start(
     except BaseException:
         stop_server(server)
         raise
+    threading.Thread(target=_warm_up, daemon=True, name="warm up").start()
     shown_host = "127.0.0.1" if host in ANY_HOST else host
     address = f"http://{f'[{shown_host}]' if ':' in shown_host else shown_host}:{server.get_port()}/"
     return Running(server, editor, address if token is None else f"{address}?token={token}")
@@ -118,3 +121,8 @@ def serve(
         log.info("stopping")
     finally:
         running.stop()
+
+
+def _warm_up() -> None:
+    """Load what the first build or optimisation needs, so that it starts at once."""
+    import diorama_core.project.build  # noqa: F401

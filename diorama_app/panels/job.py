@@ -9,24 +9,25 @@ from diorama_app.room import Room
 
 
 class JobStrip:
-    """Progress with a message, a bar and cancel."""
+    """Progress with a message, a bar and cancel. The button is apart from what changes, so that it can be pressed."""
 
     def __init__(self, gui: viser.GuiApi, room: Room) -> None:
         self._room = room
-        self._html = LiveHtml(gui, self._act)
+        self._head = LiveHtml(gui, self._act)
+        self._meter = LiveHtml(gui)
 
     def refresh(self) -> None:
         """Draw the running job; nothing when none runs."""
         status = self._room.jobs.status
         if status is None:
-            self._html.show("")
+            self._head.show("")
+            self._meter.show("")
             return
-        percent = round(100 * status.fraction)
-        self._html.show(
-            '<div class="card"><div class="job"><div class="words">'
-            f"<b>{text(status.title)}</b><br><span class='dim'>{text(status.message)}</span></div>"
-            + button("Cancel", "cancel", disabled=status.cancelling)
-            + f'</div><div class="meter"><i style="width:{percent}%"></i></div></div>'
+        cancel = button("Cancel", "cancel", disabled=status.cancelling)
+        self._head.show(f'<div class="job"><b class="words">{text(status.title)}</b>{cancel}</div>')
+        self._meter.show(
+            f'<div class="meter"><i style="width:{round(100 * status.fraction)}%"></i></div>'
+            f'<p class="dim" style="margin-top:3px">{text(status.message)}</p>'
         )
 
     def _act(self, action: Action) -> None:

@@ -9,6 +9,7 @@ from diorama_app.page import Action, LiveHtml, button, text
 from diorama_app.panels.fields import on_change
 from diorama_app.room import Room
 from diorama_core.library.record import Shape
+from diorama_core.library.search import search
 
 SHOWN = 18
 
@@ -44,9 +45,7 @@ class LibraryPanel:
             for shape in library.shapes():
                 firsts.setdefault(shape.category, shape)
             return list(firsts.values())
-        from diorama_core.library.search import search
-
-        return [library.shape(hit.shape.id) for hit in search(library, words, k=SHOWN)]
+        return list(search(library, words, k=SHOWN))
 
     def _tile(self, shape: Shape, swap: str) -> str:
         size = shape.size_m

@@ -21,11 +21,7 @@ BUILD_S = 120
 
 
 def example_files() -> tuple[Path, Path]:
-    photo = next((p for p in (EXAMPLE / f"photo.{e}" for e in ("jpg", "png", "jpeg")) if p.exists()), None)
-    boxes = next((p for p in (EXAMPLE / "boxes.json", EXAMPLE / "photo_boxes.json") if p.exists()), None)
-    if photo is None or boxes is None:
-        pytest.skip("the bundled example has no photo with boxes yet")
-    return photo, boxes
+    return EXAMPLE / "photo.jpg", EXAMPLE / "boxes.json"
 
 
 def shared_files(request: pytest.FixtureRequest) -> tuple[Path, Path]:
@@ -122,11 +118,11 @@ def _check_model(path: Path, scene: Scene) -> None:
 def test_the_bundled_example_is_there_from_the_start(
     serve: Callable[..., Running], visit: Callable[[Running], EditorPage]
 ) -> None:
-    if not (EXAMPLE / "scene.json").exists() and not (EXAMPLE / "project" / "scene.json").exists():
-        pytest.skip("no example project is bundled yet")
     running = serve()
     editor = visit(running)
-    scene = running.room.scene
+    room = running.room
+    editor.until(lambda: room.jobs.status is None and len(room.scene.objects) > 0, "the example", seconds=BUILD_S)
+    scene = room.scene
     assert scene.camera is not None
     assert running.room.photo is not None
     assert scene.architecture.floor is not None
