@@ -23,7 +23,7 @@ MINIMUM_UP = 0.9
 """Cosine of the steepest slope that still carries things."""
 STEP_M = 0.008
 """Neighbouring samples of one surface differ in height by no more than this (a seam, a plank's edge)."""
-REACH_CELLS = 3
+REACH_M = 0.03
 """Gaps narrower than this (between slats and planks) do not part a surface."""
 MINIMUM_FILL = 0.55
 """A region that fills less of its convex outline than this is a rim or a frame, not a surface."""
@@ -128,9 +128,10 @@ def _regions(spots: _Spots) -> list[Int[np.ndarray, "k"]]:
     key = _cell_key(spots.cell[:, 0], spots.cell[:, 1], bins)
     order = np.argsort(key, kind="stable")
     in_order = key[order]
-    near = range(-REACH_CELLS, REACH_CELLS + 1)
+    reach = int(np.clip(round(REACH_M / spots.cell_m), 1, 5))
+    steps = [(k * di, k * dj) for k in range(1, reach + 1) for di, dj in ((1, 0), (0, 1), (1, 1), (1, -1))]
     pairs = []
-    for di, dj, dz in ((di, dj, dz) for di in near for dj in near for dz in (-1, 0, 1) if (di, dj) > (0, 0)):
+    for (di, dj), dz in ((step, dz) for step in steps for dz in (-1, 0, 1)):
         wanted = _cell_key(spots.cell[:, 0] + di, spots.cell[:, 1] + dj, bins + dz)
         at = np.minimum(np.searchsorted(in_order, wanted), n - 1)
         found = np.flatnonzero(in_order[at] == wanted)

@@ -36,7 +36,7 @@ def bedding(d: float, w: float, z: float, thick: float, duvet: Material, pillows
     parts += of(duvet, _cover(-0.18 * d, d / 2 + 0.012, w + 0.03, z, 0.06, thick * 0.72, thick * 0.6))
     parts += of(m.WHITE_COTTON, _cover(-0.25 * d, -0.155 * d, w + 0.034, z + 0.026, 0.05, thick * 0.6))
     if throw is not None:
-        parts += of(throw, _cover(0.15 * d, 0.38 * d, w + 0.05, z + 0.04, 0.04, thick * 0.9))
+        parts += of(throw, _cover(0.15 * d, 0.38 * d, w + 0.05, z + 0.062, 0.035, thick * 0.9))
     each = w / pillows
     for k in range(pillows):
         y = -w / 2 + each * (k + 0.5)

@@ -75,14 +75,15 @@ def case(
     ]
     parts += shifted(shell + of(body, *dividers, *solid), -reveal / 2)
     x = depth / 2 - reveal / 2
+    front_w = (w - 0.004) / len(bays)  # fronts lie over the sides and dividers, edge to edge
     for k, bay in enumerate(bays):
-        y = -w / 2 + t + inner_w * (k + 0.5)
+        y = -w / 2 + 0.002 + front_w * (k + 0.5)
         parts += _bay(
             bay,
             x,
             y,
             z0 + 0.004,
-            inner_w + t * 0.8 - 0.005,
+            front_w - 0.007,
             z1 - z0 - 0.008,
             fronts,
             pull,
@@ -112,7 +113,7 @@ def _bay(
 ) -> Parts:
     if bay == "open":
         return []
-    return of(m.SHADOW, box((0.003, w, h), 0.001).moved(x, y, z)) + _fronts(
+    return of(m.SHADOW, box((0.003, w + 0.005, h), 0.001).moved(x, y, z)) + _fronts(
         bay, x, y, z, w, h, front, pull, handle, panel, infill, hinge
     )
 

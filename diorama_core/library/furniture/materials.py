@@ -185,7 +185,7 @@ def _weave(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
     weft = np.abs(np.sin(np.pi * i * threads / n))
     relief = np.where(over == 0, warp, weft) - 0.64
     slub = _noise(rng, (0.8, 12)) + _noise(rng, (12, 0.8))
-    return _shade(rgb, 0.10 * relief + 0.02 * slub + 0.006 * _noise(rng, (20, 20)))
+    return _shade(rgb, 0.06 * relief + 0.014 * slub + 0.006 * _noise(rng, (20, 20)))
 
 
 def _leather(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:

@@ -1,0 +1,93 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from diorama_core.library.furniture import solids
+from diorama_core.library.furniture.solids import Solid
+
+LENGTH = st.floats(0.02, 2.5)
+
+
+def welded(solid: Solid) -> trimesh.Trimesh:
+    mesh = trimesh.Trimesh(solid.vertices, solid.faces, process=False)
+    mesh.merge_vertices(merge_tex=True, merge_norm=True, digits_vertex=6)
+    mesh.update_faces(mesh.nondegenerate_faces())
+    return mesh
+
+
+SOLIDS = {
+    "box": solids.box((0.4, 0.6, 0.2), 0.02, 2),
+    "cushion": solids.cushion((0.5, 0.6, 0.15)),
+    "pillow": solids.pillow((0.45, 0.45, 0.15)),
+    "cylinder": solids.cylinder(0.1, 0.5),
+    "lathe": solids.lathe([(0.1, 0), (0.2, 0.3), (0.05, 0.5)]),
+    "ring": solids.lathe([(0.1, 0), (0.12, 0.2), (0.11, 0.2), (0.1, 0)]),
+    "tube": solids.tube([(0, 0, 0), (0, 0, 1), (0, 1, 1)], 0.05),
+    "beam": solids.beam((0, 0, 0), (1, 1, 1), 0.1, 0.05),
+    "taper": solids.taper((0, 0, 0), (0.1, 0, 1), 0.03, 0.06),
+    "prism": solids.prism(solids.rounded_rectangle(0.6, 1.0, 0.1), 0.03),
+    "slab": solids.slab(np.array([[(x, y, 0.1 * x * y) for y in np.linspace(0, 1, 5)] for x in (0, 0.4, 1)]), 0.05),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SOLIDS)
+def test_closed_and_outward(name: str) -> None:
+    mesh = welded(SOLIDS[name])
+    assert mesh.is_watertight
+    assert mesh.volume > 0
+
+
+@pytest.mark.parametrize("name", SOLIDS)
+def test_normals_agree_with_faces(name: str) -> None:
+    solid = SOLIDS[name]
+    corners = solid.vertices[solid.faces]
+    face_normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    means = solid.normals[solid.faces].mean(axis=1)
+    assert np.allclose(np.linalg.norm(solid.normals, axis=1), 1.0, atol=1e-6)
+    assert ((face_normals * means).sum(axis=1) > 0).mean() > 0.99
+
+
+@given(LENGTH, LENGTH, LENGTH, st.floats(0.001, 0.1), st.integers(1, 3))
+@settings(max_examples=40, deadline=None)
+def test_box_has_the_size_asked_for(x: float, y: float, z: float, radius: float, segments: int) -> None:
+    solid = solids.box((x, y, z), radius, segments)
+    assert np.allclose(np.ptp(solid.vertices, axis=0), (x, y, z), atol=1e-9)
+    assert abs(solid.vertices[:, 2].min()) < 1e-9
+
+
+@given(LENGTH, LENGTH, st.floats(0.02, 0.5), st.floats(2, 9), st.floats(2, 5))
+@settings(max_examples=30, deadline=None)
+def test_cushion_stays_inside_its_box_and_fills_it(x: float, y: float, z: float, square: float, puff: float) -> None:
+    solid = solids.cushion((x, y, z), square, puff)
+    assert (np.abs(solid.vertices[:, :2]) <= np.array([x, y]) / 2 + 1e-9).all()
+    assert np.isclose(np.ptp(solid.vertices[:, 2]), z)
+
+
+@given(st.sampled_from(sorted(SOLIDS)), st.sampled_from("xyz"), st.floats(-180, 180))
+@settings(max_examples=30, deadline=None)
+def test_turning_keeps_volume(name: str, axis: str, angle: float) -> None:
+    before, after = SOLIDS[name], SOLIDS[name].turned(axis, angle)
+    assert np.isclose(welded(after).volume, welded(before).volume, rtol=1e-6)
+
+
+def test_mirroring_twice_is_identity_and_keeps_faces_outward() -> None:
+    bent = solids.tube([(0, 0, 0), (0.2, 0.1, 0.3), (0.3, 0.4, 0.5)], 0.03)
+    assert welded(bent.mirrored()).volume > 0
+    assert np.allclose(bent.mirrored().mirrored().vertices, bent.vertices)
+
+
+def test_bevels_keep_large_faces_flat() -> None:
+    solid = solids.box((1.0, 1.0, 1.0), 0.01)
+    top = solid.vertices[:, 2] > 1.0 - 1e-6
+    assert (solid.normals[top][:, 2] > 0.95).all()
+
+
+def test_smooth_profile_never_bulges_past_its_points() -> None:
+    profile = ((0.4, 0.0), (0.1, 0.2), (0.1, 0.8), (0.3, 1.0))
+    radii = [r for r, _ in solids.smooth_profile(profile, 6)]
+    assert min(radii) >= 0.1 - 1e-9
+    assert max(radii) <= 0.4 + 1e-9

@@ -1,0 +1,80 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import trimesh
+
+from diorama_core.library.record import SupportSurface
+from diorama_core.library.surfaces import support_surfaces
+
+
+def block(size: tuple[float, float, float], at: tuple[float, float, float]) -> trimesh.Trimesh:
+    return trimesh.creation.box(size, transform=trimesh.transformations.translation_matrix(at))
+
+
+def area(surface: SupportSurface) -> float:
+    x, y = surface.polygon[:, 0], surface.polygon[:, 1]
+    return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+
+
+def bookcase() -> trimesh.Trimesh:
+    """0.9 wide, 0.3 deep, 1.7 tall; boards' upper faces at 0.02, 0.42, 0.82, 1.22 and the top at 1.70."""
+    sides = [block((0.3, 0.02, 1.7), (0, s * 0.44, 0.85)) for s in (1, -1)]
+    boards = [block((0.3, 0.88, 0.02), (0, 0, z - 0.01)) for z in (0.02, 0.42, 0.82, 1.22, 1.70)]
+    return trimesh.util.concatenate([*sides, *boards, block((0.01, 0.88, 1.7), (-0.145, 0, 0.85))])
+
+
+def test_a_box_has_one_top() -> None:
+    (top,) = support_surfaces(block((0.6, 0.8, 0.4), (0, 0, 0)))
+    assert top.height_m == pytest.approx(0.2, abs=1e-3)
+    assert area(top) == pytest.approx(0.48, rel=0.05)
+    assert top.clearance_m == np.inf
+    assert not top.interior
+
+
+def test_outline_is_counter_clockwise_and_convex() -> None:
+    (top,) = support_surfaces(block((0.6, 0.8, 0.4), (0, 0, 0)))
+    edges = np.roll(top.polygon, -1, axis=0) - top.polygon
+    turns = np.cross(edges, np.roll(edges, -1, axis=0))[:, 2]
+    assert (turns > -1e-9).all()
+    assert area(top) > 0
+
+
+def test_a_table_has_one_surface() -> None:
+    legs = [block((0.05, 0.05, 0.7), (sx * 0.35, sy * 0.55, 0.35)) for sx in (1, -1) for sy in (1, -1)]
+    table = trimesh.util.concatenate([block((0.8, 1.2, 0.03), (0, 0, 0.715)), *legs])
+    (top,) = support_surfaces(table)
+    assert top.height_m == pytest.approx(0.73, abs=1e-3)
+
+
+def test_planks_with_gaps_are_one_surface() -> None:
+    planks = trimesh.util.concatenate([block((0.09, 1.0, 0.03), (0.1 * k, 0, 0)) for k in range(5)])
+    (top,) = support_surfaces(planks)
+    assert area(top) == pytest.approx(0.49, rel=0.06)
+
+
+def test_bookcase_shelves_have_heights_and_clearances() -> None:
+    surfaces = support_surfaces(bookcase())
+    inside = sorted((s for s in surfaces if s.interior), key=lambda s: s.height_m)
+    tops = [s for s in surfaces if not s.interior]
+    assert [round(s.height_m, 2) for s in tops] == [1.70]
+    assert [round(s.height_m, 2) for s in inside] == [0.42, 0.82, 1.22]
+    assert [round(s.clearance_m, 2) for s in inside] == [0.38, 0.38, 0.46]
+
+
+def test_overlapping_solids_do_not_make_buried_surfaces() -> None:
+    pair = trimesh.util.concatenate([block((0.6, 0.6, 0.4), (0, 0, 0)), block((0.6, 0.6, 0.4), (0, 0, 0.1))])
+    (top,) = support_surfaces(pair)
+    assert top.height_m == pytest.approx(0.3, abs=1e-3)
+
+
+def test_a_slope_and_a_ball_carry_nothing() -> None:
+    wedge = trimesh.convex.convex_hull([(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0), (0, 0, 1), (0, 1, 1)])
+    assert support_surfaces(wedge) == ()
+    assert support_surfaces(trimesh.creation.icosphere(subdivisions=4, radius=0.3)) == ()
+
+
+def test_a_rim_is_no_surface() -> None:
+    frame = [block((0.04, 0.6, 0.04), (s * 0.28, 0, 0)) for s in (1, -1)]
+    frame += [block((0.6, 0.04, 0.04), (0, s * 0.28, 0)) for s in (1, -1)]
+    assert support_surfaces(trimesh.util.concatenate(frame)) == ()
