@@ -22,6 +22,7 @@ _NOISE_FLOOR = 0.03
 """Error below which two poses are not told apart: the resolution of the silhouettes."""
 _FACING_STRENGTH = 0.7
 _STRETCH_SIGMA = 0.3
+_MISFIT_SIGMA = 0.2
 _OFF_AXIS_SIGMA_RAD = float(np.deg2rad(35.0))
 
 
@@ -71,6 +72,7 @@ class Evidence:
         errors: Float[np.ndarray, "p"],
         poses: PoseBatch,
         off_axis_rad: Float[np.ndarray, "p"],
+        misfit: Float[np.ndarray, "p"],
         limits: SizeLimits,
     ) -> Float[np.ndarray, "p"]:
         """Scores by which poses of this object are compared; higher is better.
@@ -80,6 +82,7 @@ class Evidence:
         """
         cost = _FACING_STRENGTH * self.facing.cost(poses.R)
         cost = cost + 0.5 * (limits.stretch(poses.scale) / _STRETCH_SIGMA) ** 2
+        cost = cost + 0.5 * (misfit / _MISFIT_SIGMA) ** 2
         cost = cost + 0.5 * (off_axis_rad / _OFF_AXIS_SIGMA_RAD) ** 2
         return -np.log(errors + _NOISE_FLOOR) - cost
 

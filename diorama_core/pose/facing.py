@@ -91,7 +91,7 @@ def facing_of(
     categories: dict[str, str],
     camera: Camera,
     walls: WallSamples,
-    on_wall: bool,
+    out_of_wall: Float[np.ndarray, "2"] | None,
     pillows: Sequence[Cuboid] = (),
 ) -> Facing:
     """Reasons to face somewhere for one object.
@@ -103,15 +103,17 @@ def facing_of(
         categories: Category of every object id.
         camera: The photo's camera.
         walls: Where walls are seen.
-        on_wall: Whether it hangs on a wall.
+        out_of_wall: Into the room, for things that hang on a wall.
         pillows: What lies on it at its back or head.
     """
     toward_camera = _unit(camera.position[:2] - cuboid.centre[:2])
     if cuboid.front_known:
         return Facing(((3.0, _unit(cuboid.R_world_object[:2, 0])),))
+    if out_of_wall is not None:
+        return Facing(((4.0, _unit(out_of_wall)),))
     if thing.category in _NO_FRONT:
         return Facing(())
-    if on_wall or thing.category in _TOWARD_VIEWER:
+    if thing.category in _TOWARD_VIEWER:
         return Facing(((2.0, toward_camera),))
     table = _nearest_table(thing.category, cuboid, cuboids, categories)
     if table is not None:

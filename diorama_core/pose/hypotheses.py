@@ -15,6 +15,7 @@ from diorama_core.pose.limits import SizeLimits
 from diorama_core.scene.types import yaw_rotation
 
 _FINE_STEP_RAD = np.deg2rad(15.0)
+_THIN_M = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +52,8 @@ class Hypotheses:
 
     poses: PoseBatch
     off_axis_rad: Float[np.ndarray, "p"]
+    misfit: Float[np.ndarray, "p"]
+    """How far the limits keep the shape from filling the cuboid that way round: root mean square of log extents."""
 
 
 def hypotheses_for(
@@ -75,4 +78,6 @@ def hypotheses_for(
     scale = limits.scale_for(wanted)
     sizes = scale * limits.shape_size_m
     position = anchor.placed(np.tile(cuboid.centre, (len(total), 1)), R, sizes)
-    return Hypotheses(PoseBatch(R, position, scale), np.abs(off_axis))
+    thick = np.maximum(cuboid.size_m.min(), _THIN_M)
+    misfit = np.sqrt((np.log(np.maximum(sizes, thick) / np.maximum(wanted, thick)) ** 2).mean(axis=1))
+    return Hypotheses(PoseBatch(R, position, scale), np.abs(off_axis), misfit)

@@ -127,14 +127,15 @@ class RenderAndCompare:
                 continue
             on_wall = parent_of.get(thing.id) == "wall"
             lying = [cuboids[j] for j, parent in enumerate(parents) if parent == i and things[j].category == "pillow"]
-            facing = facing_of(thing, cuboids[i], cuboids, categories, geometry.camera, walls, on_wall, lying)
+            anchor = anchor_of(cuboids[i], on_wall, geometry.camera.position[:2] - cuboids[i].centre[:2])
+            out_of_wall = anchor.axis_world[:2] if on_wall else None
+            facing = facing_of(thing, cuboids[i], cuboids, categories, geometry.camera, walls, out_of_wall, lying)
             coarse, fine = (
                 Evidence(geometry.camera, seen, facing, _surface(depth, seen))
                 for cells in (self.coarse_cells, self.fine_cells)
                 for seen in [observe_among(geometry.camera, things, centres, parents, i, cells)]
             )
-            toward = geometry.camera.position[:2] - cuboids[i].centre[:2]
-            tasks.append(_Task(thing, cuboids[i], anchor_of(cuboids[i], on_wall, toward), coarse, fine))
+            tasks.append(_Task(thing, cuboids[i], anchor, coarse, fine))
         return tasks
 
     def _pose_object(
@@ -155,9 +156,10 @@ class RenderAndCompare:
         name = task.thing.category
         limits = SizeLimits.of(shape.size_m, name, task.cuboid.size_m)
         tried = hypotheses_for(task.cuboid, name, shape.symmetry, limits, task.anchor)
-        rough = task.coarse.log_scores(task.coarse.errors(caster, tried.poses), tried.poses, tried.off_axis_rad, limits)
+        errors = task.coarse.errors(caster, tried.poses)
+        rough = task.coarse.log_scores(errors, tried.poses, tried.off_axis_rad, tried.misfit, limits)
         best = np.argsort(-rough, kind="stable")[: self.refined]
-        start, off_axis = tried.poses[best], tried.off_axis_rad[best]
+        start, off_axis, misfit = tried.poses[best], tried.off_axis_rad[best], tried.misfit[best]
         yaw_sigma = np.deg2rad(9.0 if category(name).quarter_turns_free else 4.0)
         fit = BoxFit(task.fine.camera, task.fine.seen, task.anchor, limits, float(yaw_sigma))
         moved = fit.refined(caster, start)
@@ -167,7 +169,7 @@ class RenderAndCompare:
             np.concatenate([start.scale, moved.scale]),
         )
         errors = task.fine.errors(caster, both)
-        scores = task.fine.log_scores(errors, both, np.tile(off_axis, 2), limits)
+        scores = task.fine.log_scores(errors, both, np.tile(off_axis, 2), np.tile(misfit, 2), limits)
         chosen = int(np.argmax(scores))
         pose = Pose(both.R[chosen], both.position[chosen], both.scale[chosen])
         return _Posed(shape, pose, float(errors[chosen]), float(scores[chosen]))

@@ -18,7 +18,7 @@ _LIGHTNESS_WEIGHT = 0.5
 _BIN = 24.0
 _MOST_PIXELS = 4000
 _MAIN_COLOURS = 3
-_TOLERANCE = 35.0
+_TOLERANCE = 25.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,8 +22,11 @@ from diorama_core.retrieval.pools import Pool, Wish, pool_for, size_cost
 from diorama_core.scene.types import Support, yaw_rotation
 
 _SIMILAR_LOG_SIZE = 0.45
-_UNNAMED_OUTLINE = 3.0
-"""How much more the outline of a thing without a name counts."""
+_SIMILAR_LOG_SIZE_OF_SEATS = 0.8
+"""Seats in one room are usually of a set, so that different sizes are rather errors of measurement."""
+_SEATS = frozenset({"chair", "office chair", "stool", "armchair"})
+_UNNAMED_OUTLINE, _UNNAMED_SIZE = 3.0, 0.5
+"""How much more the outline, and how much less the guessed size, of a thing without a name counts."""
 _OWN_EVIDENCE = 0.4
 
 
@@ -43,7 +46,7 @@ class EmbeddedRetrieval:
     size_weight: float = 0.45
     silhouette_weight: float = 0.4
     """Of a mask that can be trusted; less for doubtful ones."""
-    colour_weight: float = 0.25
+    colour_weight: float = 0.2
 
     def __repr__(self) -> str:
         numbers = (self.keep, self.cells, self.size_weight, self.silhouette_weight, self.colour_weight)
@@ -108,10 +111,13 @@ class EmbeddedRetrieval:
         targets, poses = quarter_turns(shape, cuboid)
         cost = np.array([size_cost(shape.size_m, t) for t in targets])
         outline = seen.agreement(seen.silhouettes(look.caster, poses))
-        outline_weight = self.silhouette_weight * (0.25 + 0.75 * seen.mask_trust) * (_UNNAMED_OUTLINE if unnamed else 1)
-        fit = self.size_weight * np.exp(-cost / 2) + outline_weight * outline
+        outline_weight = self.silhouette_weight * (0.25 + 0.75 * seen.mask_trust)
+        size_weight = self.size_weight
+        if unnamed:
+            outline_weight, size_weight = _UNNAMED_OUTLINE * outline_weight, _UNNAMED_SIZE * size_weight
+        fit = size_weight * np.exp(-cost / 2) + outline_weight * outline
         colour = palette_agreement(palette, palette_of_look(look))
-        total = self.size_weight + outline_weight + self.colour_weight
+        total = size_weight + outline_weight + self.colour_weight
         return float((fit.max() + self.colour_weight * colour) / total)
 
 
@@ -142,13 +148,15 @@ def _groups(categories: Sequence[str], sizes_m: Sequence[np.ndarray]) -> list[in
     leaders: list[int] = []
     groups = []
     for i, name in enumerate(categories):
+        limit = _SIMILAR_LOG_SIZE_OF_SEATS if name in _SEATS else _SIMILAR_LOG_SIZE
         same = [
-            g
-            for g, leader in enumerate(leaders)
-            if name == categories[leader] and name != UNKNOWN.name and _alike(sizes_m[i], sizes_m[leader])
+            group
+            for group, leader in enumerate(leaders)
+            if name == categories[leader] and _log_difference(sizes_m[i], sizes_m[leader]) < limit
         ]
-        groups.append(same[0] if same else len(leaders))
-        if not same:
+        alone = name == UNKNOWN.name or not same
+        groups.append(len(leaders) if alone else same[0])
+        if alone:
             leaders.append(i)
     return groups
 
@@ -163,10 +171,10 @@ def _agreed(groups: Sequence[int], scores: Sequence[dict[str, float]]) -> list[d
     return shared
 
 
-def _alike(a_m: np.ndarray, b_m: np.ndarray) -> bool:
-    """Whether two cuboids could hold the same thing, either way round."""
+def _log_difference(a_m: np.ndarray, b_m: np.ndarray) -> float:
+    """The largest difference of log extents of two cuboids, the better way round."""
     a, b = np.log(np.maximum(a_m, 1e-3)), np.log(np.maximum(b_m, 1e-3))
-    return min(np.abs(a - b).max(), np.abs(a - b[[1, 0, 2]]).max()) < _SIMILAR_LOG_SIZE
+    return float(min(np.abs(a - b).max(), np.abs(a - b[[1, 0, 2]]).max()))
 
 
 def _best(scores: dict[str, float], keep: int) -> tuple[tuple[str, float], ...]:

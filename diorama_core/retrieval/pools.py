@@ -18,11 +18,12 @@ from diorama_core.scene.values import ArrayValue
 
 _ENOUGH = 4
 _RELATED_FACTOR = 0.6
-_OTHERWISE_FACTOR = 0.9
+_USUAL_FACTOR = 0.92
+_RARE_FACTOR = 0.78
 _NAMED_POOL = 10
-_UNNAMED_POOL = 28
-_PLAIN_POOL = 3
-_SAME_SIZE_LOG = 0.35
+_UNNAMED_POOL = 40
+_EACH_KIND = 3
+_SAME_SIZE_LOG = 0.4
 _LEAST_M = 0.01
 
 RELATED: dict[str, tuple[str, ...]] = {
@@ -87,6 +88,17 @@ RELATED: dict[str, tuple[str, ...]] = {
 """Near kinds of each category, nearest first."""
 
 
+USUAL = frozenset(
+    {
+        *("chair", "armchair", "office chair", "stool", "sofa", "ottoman", "bench", "bed", "night stand", "dresser"),
+        *("table", "coffee table", "side table", "desk", "cabinet", "sideboard", "bookshelf", "wardrobe", "tv stand"),
+        *("plant", "floor lamp", "lamp", "ceiling lamp", "vase", "books", "basket", "picture", "mirror", "shelves"),
+        *("television", "pillow", "curtain", "bowl", "cup"),
+    }
+)
+"""What an unnamed thing in a room most likely is; the rest are found in kitchens, bathrooms and offices."""
+
+
 @dataclass(frozen=True)
 class Pooled:
     """A shape that may stand for an object, and how well its kind fits (1: the very category)."""
@@ -149,26 +161,33 @@ def _usable(library: ShapeLibrary, shapes: Sequence[Shape], wish: Wish) -> Seque
 
 def _nearest(shapes: Sequence[Shape], size_m: np.ndarray, most: int) -> list[Shape]:
     """The shapes nearest in size, either way round, in a stable order."""
-    cost = [size_cost(s.size_m, size_m) for s in shapes]
-    turned = [size_cost(s.size_m, size_m[[1, 0, 2]]) for s in shapes]
-    order = np.argsort(np.minimum(cost, turned), kind="stable")[:most]
+    order = np.argsort([_fit_cost(s, size_m) for s in shapes], kind="stable")[:most]
     return [shapes[i] for i in sorted(order)]
 
 
 def _plausible(library: ShapeLibrary, wish: Wish) -> tuple[Pooled, ...]:
-    """Shapes of any kind that are about as large as something unnamed and hang or stand like it; plain boxes too."""
+    """For something unnamed: the two or three shapes nearest in size of every kind that is about as large.
+
+    Kinds that hang or stand like it, the usual ones first in line; plain boxes always.
+    """
     mounts = {"wall": ("wall",), "ceiling": ("ceiling",)}.get(wish.held_by, ("floor", "surface"))
-    shapes = [s for s in library.shapes() if category(s.category).mount in mounts] or list(library.shapes())
+    hung = [s for s in library.shapes() if category(s.category).mount in mounts] or list(library.shapes())
     wanted = np.log(np.maximum(wish.size_m, _LEAST_M))
-    overall = np.array([abs(float((np.log(np.maximum(s.size_m, _LEAST_M)) - wanted).mean())) for s in shapes])
-    lifelike = [s for s, difference in zip(shapes, overall, strict=True) if difference < _SAME_SIZE_LOG] or shapes
-    usable = _usable(library, lifelike, wish)
-    plain = [s for s in usable if s.category == "box"]
-    others = [s for s in usable if s.category != "box"]
-    return tuple(
-        [Pooled(s, 1.0) for s in _nearest(plain, wish.size_m, _PLAIN_POOL)]
-        + [Pooled(s, _OTHERWISE_FACTOR) for s in _nearest(others, wish.size_m, _UNNAMED_POOL)]
-    )
+    overall = [abs(float((np.log(np.maximum(s.size_m, _LEAST_M)) - wanted).mean())) for s in hung]
+    lifelike = [s for s, difference in zip(hung, overall, strict=True) if difference < _SAME_SIZE_LOG]
+    usable = _usable(library, lifelike or hung, wish)
+    members: list[Pooled] = []
+    for kind in dict.fromkeys(s.category for s in usable):
+        factor = 1.0 if kind == "box" else _USUAL_FACTOR if kind in USUAL else _RARE_FACTOR
+        same = [s for s in usable if s.category == kind]
+        members += [Pooled(s, factor) for s in _nearest(same, wish.size_m, _EACH_KIND)]
+    order = np.argsort([_fit_cost(m.shape, wish.size_m) for m in members], kind="stable")
+    return tuple(members[i] for i in order[:_UNNAMED_POOL])
+
+
+def _fit_cost(shape: Shape, size_m: np.ndarray) -> float:
+    """How unlike in size, either way round."""
+    return min(size_cost(shape.size_m, size_m), size_cost(shape.size_m, size_m[[1, 0, 2]]))
 
 
 def size_cost(size_m: Sequence[float] | np.ndarray, wanted_m: Sequence[float] | np.ndarray) -> float:
