@@ -26,6 +26,8 @@ TIGHT = 0.88
 MERGE = 0.93
 """Two parts become one when together they fill at least this share of their common hull."""
 MOST_PARTS = 16
+SMALL_SHARE = 0.02
+"""Components with less than this share of the shape's box keep their hull, whatever they look like."""
 MOST_PIECES = 40
 """Components beyond this many are joined with their neighbours before anything else."""
 MOST_VERTICES = 24
@@ -90,8 +92,9 @@ def convex_parts(mesh: trimesh.Trimesh) -> tuple[ConvexPart, ...]:
     if len(faces) == 0:
         raise ValueError("a shape without faces has no convex parts")
     clouds: list[np.ndarray] = []
+    small = SMALL_SHARE * float(np.prod(np.ptp(vertices, axis=0)))
     for component in _components(vertices, faces):
-        clouds.extend(_split(vertices[component], 0))
+        clouds.extend(_split(vertices[component], small, 0))
     clouds = _merge(_gathered([_hull_points(c) for c in clouds]))
     clouds = _drop_contained(sorted(clouds, key=_volume, reverse=True))
     return tuple(simplest_part(c) for c in clouds)
@@ -110,8 +113,7 @@ def simplest_part(points: Float[np.ndarray, "n 3"]) -> ConvexPart:
     to_box, extents = _oriented_box(points)
     if volume >= TIGHT * float(np.prod(extents)):
         return _turned_box(to_box, extents)
-    exact = hull_part(points)
-    return exact if len(exact.vertices) <= MOST_VERTICES else _polytope(points)
+    return hull_part(points) if len(_hull_points(points)) <= MOST_VERTICES else _polytope(points)
 
 
 def _padded(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -123,11 +125,10 @@ def _directions(vectors: np.ndarray) -> Float[np.ndarray, "k 3"]:
     """Unit vectors, parallel and opposite ones once; in a fixed order."""
     lengths = np.linalg.norm(vectors, axis=1)
     units = vectors[lengths > 1e-12] / lengths[lengths > 1e-12, None]
-    kept: list[np.ndarray] = []
-    for unit in units:
-        if all(abs(float(unit @ other)) < _SAME_DIRECTION for other in kept):
-            kept.append(unit)
-    return np.array(kept) if kept else np.eye(3)
+    same = np.abs(units @ units.T) >= _SAME_DIRECTION
+    # Each direction is kept unless an earlier one is the same.
+    kept = units[~np.tril(same, -1).any(axis=1)]
+    return kept if len(kept) else np.eye(3)
 
 
 def _hull_edges(hull: ConvexHull) -> Float[np.ndarray, "e 3"]:
@@ -142,14 +143,26 @@ def _hull_edges(hull: ConvexHull) -> Float[np.ndarray, "e 3"]:
 
 
 def _components(vertices: np.ndarray, faces: Int[np.ndarray, "f 3"]) -> list[np.ndarray]:
-    """Triangles (f 3) of each connected component; vertices at the same place count as one."""
+    """Triangles (f 3) of each body: faces that share an edge, by index or as the only two at that place.
+
+    Bodies that merely touch along an edge stay apart; seams within one body, where indices differ, do not cut it.
+    """
     _, merged = np.unique(np.round(vertices, 6), axis=0, return_inverse=True)
-    corner = merged.reshape(-1)[faces]
-    rows, columns = corner[:, [0, 1]].ravel(), corner[:, [1, 2]].ravel()
-    size = int(corner.max()) + 1
-    _, label = connected_components(coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(size, size)))
-    of_face = label[corner[:, 0]]
-    return [faces[of_face == k] for k in np.unique(of_face)]
+    by_place, by_index = _edge_numbers(merged.reshape(-1)[faces]), _edge_numbers(faces)
+    of_face = np.repeat(np.arange(len(faces)), 3)
+    manifold = np.bincount(by_place)[by_place] == 2
+    hubs = np.concatenate([by_place[manifold], int(by_place.max()) + 1 + by_index])
+    rows = np.concatenate([of_face[manifold], of_face])
+    size = len(faces) + int(hubs.max()) + 1
+    link = coo_matrix((np.ones(len(hubs)), (rows, len(faces) + hubs)), shape=(size, size))
+    label = connected_components(link, directed=False)[1][: len(faces)]
+    return [faces[label == k] for k in np.unique(label)]
+
+
+def _edge_numbers(corners: Int[np.ndarray, "f 3"]) -> Int[np.ndarray, " e"]:
+    """A number for each of the three sides of each face, the same for the same pair of corners."""
+    edges = np.sort(corners[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    return np.unique(edges[:, 0] * (int(corners.max()) + 1) + edges[:, 1], return_inverse=True)[1].reshape(-1)
 
 
 def _hull_points(points: np.ndarray) -> np.ndarray:
@@ -176,10 +189,10 @@ def _solid_volume(triangles: Float[np.ndarray, "t 3 3"]) -> float:
     return abs(float(np.einsum("ij,ij->i", triangles[:, 0], np.cross(triangles[:, 1], triangles[:, 2])).sum()) / 6.0)
 
 
-def _split(triangles: Float[np.ndarray, "t 3 3"], depth: int) -> list[np.ndarray]:
+def _split(triangles: Float[np.ndarray, "t 3 3"], small: float, depth: int) -> list[np.ndarray]:
     """Cut a surface by axis planes while that removes a good share of its hull's volume."""
     whole = _volume(triangles)
-    if depth >= 3 or whole < 1e-6 or (depth == 0 and _solid_volume(triangles) >= TIGHT * whole):
+    if depth >= 3 or whole <= small or (depth == 0 and _solid_volume(triangles) >= TIGHT * whole):
         return [triangles]
     low, high = triangles.reshape(-1, 3).min(axis=0), triangles.reshape(-1, 3).max(axis=0)
     best: tuple[float, int, float] | None = None
@@ -191,7 +204,7 @@ def _split(triangles: Float[np.ndarray, "t 3 3"], depth: int) -> list[np.ndarray
     if best is None:
         return [triangles]
     halves = [_cut(triangles, best[1], best[2], sign) for sign in (1.0, -1.0)]
-    return [piece for half in halves for piece in _split(half, depth + 1)]
+    return [piece for half in halves for piece in _split(half, small, depth + 1)]
 
 
 def _one_side(triangles: np.ndarray, axis: int, at: float, sign: float) -> Float[np.ndarray, "n 3"]:
