@@ -59,10 +59,11 @@ def support_surfaces(mesh: trimesh.Trimesh, lattice: int = 72) -> tuple[SupportS
     minimum_area = float(np.clip(0.12 * extent[0] * extent[1], 0.003, 0.05))
     narrowest = 0.1 if max(extent[:2]) > 0.5 else 0.03
     foot = float(low[2]) + (0.04 if extent[2] > 0.3 else 0.0)
+    half_footprint = 0.5 * extent[0] * extent[1]
     found = []
     for region in _regions(spots):
-        if np.median(spots.z[region]) < foot:  # a base plate, not a surface
-            continue
+        if np.median(spots.z[region]) < foot and len(region) * cell_m**2 < half_footprint:
+            continue  # a base plate, not a surface
         clearance = spots.clearance[region]
         if np.median(clearance) < blocked_below or len(region) * cell_m**2 < minimum_area:
             continue
@@ -128,7 +129,7 @@ def _regions(spots: _Spots) -> list[Int[np.ndarray, "k"]]:
     key = _cell_key(spots.cell[:, 0], spots.cell[:, 1], bins)
     order = np.argsort(key, kind="stable")
     in_order = key[order]
-    reach = int(np.clip(round(REACH_M / spots.cell_m), 1, 5))
+    reach = int(np.clip(round(REACH_M / spots.cell_m), 2, 5))
     steps = [(k * di, k * dj) for k in range(1, reach + 1) for di, dj in ((1, 0), (0, 1), (1, 1), (1, -1))]
     pairs = []
     for (di, dj), dz in ((step, dz) for step in steps for dz in (-1, 0, 1)):

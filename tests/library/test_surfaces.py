@@ -58,8 +58,8 @@ def test_bookcase_shelves_have_heights_and_clearances() -> None:
     inside = sorted((s for s in surfaces if s.interior), key=lambda s: s.height_m)
     tops = [s for s in surfaces if not s.interior]
     assert [round(s.height_m, 2) for s in tops] == [1.70]
-    assert [round(s.height_m, 2) for s in inside] == [0.42, 0.82, 1.22]
-    assert [round(s.clearance_m, 2) for s in inside] == [0.38, 0.38, 0.46]
+    assert [round(s.height_m, 2) for s in inside] == [0.02, 0.42, 0.82, 1.22]
+    assert [round(s.clearance_m, 2) for s in inside] == [0.38, 0.38, 0.38, 0.46]
 
 
 def test_overlapping_solids_do_not_make_buried_surfaces() -> None:

@@ -93,7 +93,7 @@ def case(
             1 if k % 2 else -1,
         )
     if top is not None:
-        parts += of(top, box((d, w + 0.02, cap), 0.006, 2).moved(z=h - cap))
+        parts += of(top, box((d, w + 0.02, cap + 0.001), 0.006, 2).moved(z=h - cap - 0.001))
     return parts
 
 

@@ -147,9 +147,9 @@ def shell_chair(size: Size, shell: Material, legs: Material, base: str) -> Parts
     path = bend(
         [
             (0.48 * d, 0, 0.435),
-            (0.40 * d, 0, 0.455),
-            (0.1 * d, 0, 0.43),
-            (-0.22 * d, 0, 0.445),
+            (0.40 * d, 0, 0.450),
+            (0.1 * d, 0, 0.442),
+            (-0.22 * d, 0, 0.441),
             (-0.36 * d, 0, 0.53),
             (-0.42 * d, 0, 0.66),
             (-0.49 * d, 0, h),
@@ -161,7 +161,7 @@ def shell_chair(size: Size, shell: Material, legs: Material, base: str) -> Parts
     half = w / 2 * np.interp(s, [0, 0.12, 0.45, 0.72, 0.92, 1], [0.78, 0.94, 1.0, 0.94, 0.84, 0.62])
     curl = np.interp(s, [0, 0.1, 0.5, 0.8, 1], [0.0, 0.03, 0.085, 0.05, 0.015])
     x = path[:, :1] + curl * np.interp(s, [0, 0.4, 0.7, 1], [0, 0.3, 1, 1]) * u**2 * 0.9
-    z = path[:, 2:] + curl * np.interp(s, [0, 0.4, 0.7, 1], [1, 0.75, 0.0, 0.0]) * u**2
+    z = path[:, 2:] + curl * np.interp(s, [0, 0.4, 0.7, 1], [0.6, 0.4, 0.0, 0.0]) * u**2
     surface = np.stack([x, half * u, z], axis=-1)
     parts = of(shell, slab(surface, 0.012))
     hub = 0.405 if base == "wood" else 0.375
