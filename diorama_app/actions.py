@@ -77,7 +77,12 @@ def build_commands(room: Room, gestures: Gestures, views: Views) -> CommandTable
     """Every command of the editor."""
 
     def escape(client_id: int | None) -> None:
-        if not gestures.cancel():
+        view = room.views.get(client_id) if client_id is not None else None
+        if gestures.cancel():
+            return
+        if view is not None and view.drawing:
+            views.room_view(client_id)
+        else:
             room.select(())
 
     def save(client_id: int | None) -> None:
@@ -118,6 +123,6 @@ def build_commands(room: Room, gestures: Gestures, views: Views) -> CommandTable
             Command("hide", "Hide or show", hide, "H", None, "Hide the selected object"),
             Command("lock", "Lock or unlock", lock, "L", None, "Keep the selected object as it is"),
             Command("save", "Save", save, "S", "cmd/ctrl", "Save now (every change is saved anyway)"),
-            Command("escape", "Clear selection", escape, "escape", None, "Select nothing"),
+            Command("escape", "Clear selection", escape, "escape", None, "Stop drawing, or select nothing"),
         )
     )

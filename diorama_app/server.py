@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import logging
+import signal
 import threading
-import time
 import webbrowser
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,8 +15,6 @@ from diorama_app.room import Room
 from diorama_app.viser_adapter import ANY_HOST, Visitors, create_server, stop_server
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.project.storage import Project
-
-log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -111,14 +108,16 @@ def serve(
     running = start(
         project=project, projects_dir=projects_dir, host=host, port=port, low_graphics=low_graphics, token=token
     )
-    log.info("Diorama is at %s (Ctrl+C stops it)", running.url)
+    print(f"Diorama is at {running.url} (Ctrl+C stops it)", flush=True)
     if open_browser:
         threading.Thread(target=webbrowser.open, args=(running.url,), daemon=True).start()
+    asked = threading.Event()
+    signal.signal(signal.SIGTERM, lambda *_: asked.set())
     try:
-        while True:
-            time.sleep(3600)
+        while not asked.wait(3600):
+            pass
     except KeyboardInterrupt:
-        log.info("stopping")
+        print("Saving and stopping.", flush=True)
     finally:
         running.stop()
 

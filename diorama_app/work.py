@@ -27,6 +27,9 @@ PREVIEW_EVERY_S = 0.05
 GLIDE_S = 0.9
 """How long a layout that was found at once takes to settle before people's eyes."""
 
+GLIDE_BELOW = 10
+"""A run with fewer pictures than this is too abrupt to be followed."""
+
 Costs = Sequence[tuple[str, float]]
 
 
@@ -103,13 +106,13 @@ def optimise(room: Room, recipe_name: str, on_progress: Callable[[LayoutRun], No
     def work(progress: Progress) -> None:
         from diorama_core.layout.recipes import recipe
 
-        shown = 0.0
+        shown, pictures = 0.0, 0
 
         def preview(scene: Scene, costs: Costs) -> None:
-            nonlocal shown
+            nonlocal shown, pictures
             now = time.monotonic()
             if now - shown >= PREVIEW_EVERY_S:
-                shown = now
+                shown, pictures = now, pictures + 1
                 room.desk.post(lambda: _show_step(room, start, scene, costs, run, now, on_progress), key="preview")
 
         try:
@@ -117,7 +120,7 @@ def optimise(room: Room, recipe_name: str, on_progress: Callable[[LayoutRun], No
         except BaseException:
             room.desk.post(room.refresh)  # cancelled or failed: everything goes back to the document
             raise
-        if time.monotonic() - run.started_at < GLIDE_S:
+        if pictures < GLIDE_BELOW:
             _glide(room, start, final, progress)
         room.desk.post(lambda: _arranged(room, start, final, report, run, on_progress))
 

@@ -31,17 +31,19 @@ class Alternatives:
             )
         else:
             tiles = "".join(self._tile(item, i, c) for i, c in enumerate(item.candidates[:SHOWN]))
-            self._html.show(f'<h4>Alternatives — click to swap</h4><div class="grid">{tiles}</div>')
+            self._html.show(
+                f'<h4>Alternatives — click to swap <span class="dim">(cm)</span></h4><div class="grid">{tiles}</div>'
+            )
 
     def _tile(self, item: SceneObject, index: int, candidate: Candidate) -> str:
         current = candidate.shape_id == item.shape_id
         size = [e * s for e, s in zip(candidate.shape_size_m, candidate.pose.scale, strict=True)]
         picture = self._room.thumbnails.html(candidate.shape_id)
         name = text(shape_caption(self._room, candidate.shape_id))
-        about = f"{100 * size[1]:.0f} × {100 * size[0]:.0f} × {100 * size[2]:.0f} cm"
+        about = f"{100 * size[1]:.0f} × {100 * size[0]:.0f} × {100 * size[2]:.0f} "
         return (
             f'<button type="button" class="tile {"on" if current else ""}" data-do="swap" data-arg="{index}" '
-            f'title="{name}&#10;{about} (width, depth, height)&#10;score {candidate.score:.2f}">'
+            f'title="{name}&#10;{about} cm (width, depth, height)&#10;score {candidate.score:.2f}">'
             f"{picture}<b>{name}</b><small>{about}</small>"
             f"<small>{'in use' if current else f'score {candidate.score:.2f}'}</small></button>"
         )
