@@ -146,7 +146,7 @@ def clipped_bounds(
     """Boxes of the edges' visible parts: clipped to the near plane and to the photo; NaN where nothing is visible."""
     k = camera.intrinsics
     x, y, z = points_camera[..., 0], points_camera[..., 1], points_camera[..., 2]
-    planes = np.stack(
+    slack = np.stack(
         [
             z - _NEAR_M,
             k.fx * x + k.cx * z,
@@ -156,7 +156,27 @@ def clipped_bounds(
         ],
         axis=-1,
     )
-    a, b = planes[:, edges[:, 0]], planes[:, edges[:, 1]]
+    inside = (slack >= 0).all(axis=(1, 2))
+    bounds = np.empty((len(points_camera), 4))
+    uv = _pixels(camera, points_camera[inside])
+    bounds[inside] = np.concatenate([uv.min(axis=1), uv.max(axis=1)], axis=-1)
+    bounds[~inside] = _cut_bounds(camera, points_camera[~inside], slack[~inside], edges)
+    return bounds
+
+
+def _pixels(camera: Camera, points_camera: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 2"]:
+    k, depth = camera.intrinsics, np.maximum(points_camera[..., 2], _NEAR_M / 2)
+    return np.stack([k.fx * points_camera[..., 0] / depth + k.cx, k.fy * points_camera[..., 1] / depth + k.cy], axis=-1)
+
+
+def _cut_bounds(
+    camera: Camera,
+    points_camera: Float[np.ndarray, "p n 3"],
+    slack: Float[np.ndarray, "p n 5"],
+    edges: Int[np.ndarray, "e 2"],
+) -> Float[np.ndarray, "p 4"]:
+    """As `clipped_bounds`, for shapes that leave the view; `slack` is positive inside each of its five planes."""
+    a, b = slack[:, edges[:, 0]], slack[:, edges[:, 1]]
     with np.errstate(divide="ignore", invalid="ignore"):
         cut = a / (a - b)
     enter = np.where((a < 0) & (b >= 0), cut, 0.0).max(axis=-1)
@@ -164,8 +184,7 @@ def clipped_bounds(
     visible = (enter <= leave) & ~((a < 0) & (b < 0)).any(axis=-1)
     start, end = points_camera[:, edges[:, 0]], points_camera[:, edges[:, 1]]
     ends = np.stack([start + (end - start) * enter[..., None], start + (end - start) * leave[..., None]], axis=2)
-    depth = np.maximum(ends[..., 2], _NEAR_M / 2)
-    uv = np.stack([k.fx * ends[..., 0] / depth + k.cx, k.fy * ends[..., 1] / depth + k.cy], axis=-1)
+    uv = _pixels(camera, ends)
     low = np.where(visible[..., None, None], uv, np.inf).min(axis=(1, 2))
     high = np.where(visible[..., None, None], uv, -np.inf).max(axis=(1, 2))
     bounds = np.concatenate([low, high], axis=-1)

@@ -19,10 +19,10 @@ from diorama_core.scene.values import ArrayValue
 _ENOUGH = 4
 _RELATED_FACTOR = 0.6
 _USUAL_FACTOR = 0.92
-_RARE_FACTOR = 0.78
+_RARE_FACTOR = 0.68
 _NAMED_POOL = 10
-_UNNAMED_POOL = 40
-_EACH_KIND = 3
+_UNNAMED_POOL = 30
+_EACH_KIND = 2
 _SAME_SIZE_LOG = 0.4
 _LEAST_M = 0.01
 
@@ -166,7 +166,7 @@ def _nearest(shapes: Sequence[Shape], size_m: np.ndarray, most: int) -> list[Sha
 
 
 def _plausible(library: ShapeLibrary, wish: Wish) -> tuple[Pooled, ...]:
-    """For something unnamed: the two or three shapes nearest in size of every kind that is about as large.
+    """For something unnamed: the two shapes nearest in size of every kind that is about as large.
 
     Kinds that hang or stand like it, the usual ones first in line; plain boxes always.
     """
