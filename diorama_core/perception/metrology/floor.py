@@ -10,7 +10,7 @@ from jaxtyping import Float
 from diorama_core.library.taxonomy import UNKNOWN, Category
 from diorama_core.perception.metrology.evidence import Evidence
 from diorama_core.perception.metrology.priors import size_modes
-from diorama_core.perception.metrology.problem import Problems, View, stacked
+from diorama_core.perception.metrology.problem import UNTOLD, Problems, View, stacked
 from diorama_core.perception.metrology.rows import contact_start, row, size_start
 from diorama_core.perception.metrology.solver import Solutions, solve
 
@@ -87,9 +87,10 @@ def _headings(category: Category) -> list[tuple[float, float]]:
 
 
 def _scan_rows(evidence: Evidence, index: int) -> list[Problems]:
+    """Rows for one object at every height; the cut is left out, it would draw the camera up and away."""
     category = evidence.categories[index]
     return [
-        row(evidence, index, mode, camera_height_m=float(height), yaw_rad=yaw)
+        row(evidence, index, mode, camera_height_m=float(height), yaw_rad=yaw, cut_sigma=UNTOLD)
         for mode in size_modes(category.name)
         for yaw in ((0.0,) if mode.square else (0.0, np.pi / 2))
         for height in HEIGHTS_M

@@ -20,7 +20,7 @@ from diorama_core.perception.metrology.rows import row
 
 CEILING_M = 2.6
 CEILING_SIGMA_M = 0.25
-_TOP_SIGMA_M = 0.02
+_TOP_SIGMA_M = 0.04
 _SEAT_SIGMA_M = 0.08
 _FOOTPRINT_SIGMA_M = 0.06
 _INNER_LEVEL_COST = 1.5
@@ -33,6 +33,8 @@ AGAINST_WALLS = frozenset(
 ).union(["stove", "night stand", "kitchen counter", "washing machine", "toilet", "piano"])
 """Categories whose backs stand at walls."""
 _SEATS_WITHOUT_SUPPORT_FLAG_COST = 2.0
+_FLAT_M = 0.2
+"""A door thinner than this along an axis is in the wall across that axis."""
 _SEAT_THINGS = frozenset({"pillow", "toy", "books", "laptop", "basket", "box"})
 _ODD_ON_SEAT_COST = 2.0
 """Of anything else lying on a seat or a bed."""
@@ -72,15 +74,16 @@ class Extent:
 def extent_of(corners_world: Float[np.ndarray, "n 8 3"], names: tuple[str, ...]) -> Extent:
     """The extent of cuboids of named categories; of an ordinary room where there are none.
 
-    Where a thing that usually stands against a wall is the farthest, the wall is right behind it.
+    Where a thing that usually stands against a wall is the farthest, or a door in that wall, the wall is right there.
     """
     if not len(corners_world):
         return Extent(2.0, 2.0, 3.5, 0.4, 0.4, 0.4)
     sides = (-corners_world[..., 0].min(axis=1), corners_world[..., 0].max(axis=1), corners_world[..., 1].max(axis=1))
     reach, sigmas = [], []
-    for side, least in zip(sides, (1.0, 1.0, 1.5), strict=True):
+    for side, least, axis in zip(sides, (1.0, 1.0, 1.5), (0, 0, 1), strict=True):
         farthest = int(np.argmax(side))
-        against = names[farthest] in AGAINST_WALLS
+        flat = np.ptp(corners_world[farthest, :, axis]) < _FLAT_M
+        against = names[farthest] in AGAINST_WALLS or (names[farthest] == "door" and flat)
         reach.append((max(float(side[farthest]), least) + 0.05) * (1.0 if against else 1.1))
         sigmas.append(0.12 if against else 0.3)
     return Extent(reach[0], reach[1], reach[2], sigmas[0], sigmas[1], sigmas[2])

@@ -84,10 +84,13 @@ class _Readings:
 def place_all(evidence: Evidence, view: View, height_m: float) -> tuple[Placement, ...]:
     """Place every object: first on the floor, then on others, on walls and below the ceiling, the cheapest way each."""
     floor = _on_floor(evidence, view, height_m)
-    telling = [p for p in floor.values() if _tells_the_room(p, evidence)]
-    room = extent_of(_corners(telling), tuple(evidence.categories[p.index].name for p in telling))
+    standing = [p for p in floor.values() if _tells_the_room(p, evidence)]
+    doors = [i for i, category in enumerate(evidence.categories) if category.name == "door"]
+    others = [i for i in range(len(evidence)) if i not in doors]
     best = dict(floor)
-    for index, challenger in _held(evidence, view, height_m, floor, room).items():
+    best.update(_held(evidence, view, height_m, floor, _room(standing, evidence), doors))
+    telling = standing + [best[i] for i in doors if best[i].cost < _SURE_COST]
+    for index, challenger in _held(evidence, view, height_m, floor, _room(telling, evidence), others).items():
         if index not in best or challenger.cost < best[index].cost:
             best[index] = challenger
     needed = {p.supporter for p in best.values() if p.supporter >= 0}
@@ -133,12 +136,17 @@ def _children_costs(
 
 
 def _held(
-    evidence: Evidence, view: View, height_m: float, floor: dict[int, Placement], room: Extent
+    evidence: Evidence,
+    view: View,
+    height_m: float,
+    floor: dict[int, Placement],
+    room: Extent,
+    indices: list[int],
 ) -> dict[int, Placement]:
-    """The cheapest way to hold every object otherwise than by the floor."""
+    """The cheapest way to hold some objects otherwise than by the floor."""
     best: dict[int, Placement] = {}
     groups: dict[int, list[Problems]] = {}
-    for index in range(len(evidence)):
+    for index in indices:
         for supporter, rows in _held_rows(evidence, index, floor, room, height_m):
             groups.setdefault(supporter, []).extend(rows)
     for supporter, rows in groups.items():
@@ -226,6 +234,10 @@ def _tells_the_room(placement: Placement, evidence: Evidence) -> bool:
     category = evidence.categories[placement.index]
     bottom_hidden = bool(evidence.hidden(placement.index)[3])
     return category.mount == "floor" and placement.cost < _SURE_COST and not (category is UNKNOWN and bottom_hidden)
+
+
+def _room(telling: list[Placement], evidence: Evidence) -> Extent:
+    return extent_of(_corners(telling), tuple(evidence.categories[p.index].name for p in telling))
 
 
 def _corners(placements: list[Placement]) -> Float[np.ndarray, "n 8 3"]:

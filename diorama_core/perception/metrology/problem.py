@@ -30,6 +30,8 @@ OCCLUDED_WEIGHT = 0.22
 """Weight of an edge on the side that something in front hides."""
 INVISIBLE_PENALTY = 12.0
 """Sigmas per edge for a cuboid that is not in the picture at all."""
+WALL_NEARER_LOG_SIGMA = 0.06
+CUT_NEAR_M = 0.2
 FAR_M = 6.0
 FAR_LOG_SIGMA = 0.15
 UNTOLD = 1e6
@@ -79,6 +81,8 @@ class Problems:
     """Coordinate of the object's back along its front axis (negative: a wall faces the camera)."""
     wall_sigma: Float[np.ndarray, "n"]
     """Of the logarithm of that coordinate's ratio."""
+    cut_sigma: Float[np.ndarray, "n"]
+    """How readily the cuboid may reach beyond the picture (of a logarithm of box sizes)."""
     extra: Float[np.ndarray, "n"]
     """Constant cost of the row's assumptions."""
 
@@ -129,21 +133,21 @@ def cuboids(unknowns: Float[np.ndarray, "n 6"], problems: Problems, view: View) 
     return Cuboids(np.column_stack([plan, base + size[:, 2] / 2]), problems.yaw_rad, size)
 
 
-def projected(
-    boxes: Cuboids, camera_height_m: Float[np.ndarray, "n"], view: View
-) -> tuple[Float[np.ndarray, "n 4"], Bool[np.ndarray, "n"]]:
-    """Bounds of the cuboids' visible parts in the picture, and whether there are any."""
+def corners_camera(boxes: Cuboids, camera_height_m: Float[np.ndarray, "n"], view: View) -> Float[np.ndarray, "n 8 3"]:
+    """The cuboids' corners in the camera frame."""
     corners = cuboid_corners(boxes.centre, boxes.yaw_rad, boxes.size_m)
     corners[..., 2] -= camera_height_m[:, None]
-    return visible_bounds(corners @ view.R_world_camera, view.intrinsics)
+    return corners @ view.R_world_camera
 
 
 def residuals(unknowns: Float[np.ndarray, "n 6"], problems: Problems, view: View) -> Float[np.ndarray, "n r"]:
     """Everything that speaks against a row's cuboid, in sigmas: their squares sum to its cost."""
     boxes = cuboids(unknowns, problems, view)
+    corners = corners_camera(boxes, problems.camera_height_m, view)
     return np.concatenate(
         [
-            _edges(boxes, problems, view),
+            _edges(corners, problems, view),
+            _cut_off(corners, problems, view),
             (unknowns[:, 2:5] - problems.log_size) / problems.log_size_sigma,
             unknowns[:, 5:6],
             ((boxes.top_m - problems.top_m) / problems.top_sigma_m)[:, None],
@@ -155,9 +159,19 @@ def residuals(unknowns: Float[np.ndarray, "n 6"], problems: Problems, view: View
     )
 
 
-def _edges(boxes: Cuboids, problems: Problems, view: View) -> Float[np.ndarray, "n 4"]:
+def _cut_off(corners: Float[np.ndarray, "n 8 3"], problems: Problems, view: View) -> Float[np.ndarray, "n 2"]:
+    """How much of the cuboid lies outside the picture, against the box: of readings that fit, the least cut one."""
+    k = view.intrinsics
+    depth = np.maximum(corners[..., 2:], CUT_NEAR_M)
+    pixels = corners[..., :2] / depth * [k.fx, k.fy] + [k.cx, k.cy]
+    outside = np.maximum(-pixels, pixels - [k.width, k.height]).max(axis=1)
+    extent = problems.box_px[:, 2:] - problems.box_px[:, :2]
+    return np.log1p(np.maximum(outside, 0.0) / extent) / problems.cut_sigma[:, None]
+
+
+def _edges(corners: Float[np.ndarray, "n 8 3"], problems: Problems, view: View) -> Float[np.ndarray, "n 4"]:
     """How far the projected box is from the observed one, edge by edge; lenient where something hides the rest."""
-    bounds, visible = projected(boxes, problems.camera_height_m, view)
+    bounds, visible = visible_bounds(corners, view.intrinsics)
     outward = (bounds - problems.box_px) * np.array([-1.0, -1.0, 1.0, 1.0])
     off = outward / problems.edge_sigma_px
     off = np.where(problems.hidden_beyond & (outward > 0), OCCLUDED_WEIGHT * off, off)
@@ -190,8 +204,11 @@ def _too_far(boxes: Cuboids) -> Float[np.ndarray, "n 1"]:
 
 
 def _off_wall(boxes: Cuboids, problems: Problems) -> Float[np.ndarray, "n 1"]:
-    """Whether the object's back lies in its wall."""
+    """Whether the object's back lies in its wall, which is no nearer than the things that stand before it."""
     front = np.stack([np.cos(boxes.yaw_rad), np.sin(boxes.yaw_rad)], axis=-1)
     back = (boxes.centre[:, :2] * front).sum(axis=1) - boxes.size_m[:, 0] / 2
     ratio = np.maximum(-back, 0.05) / problems.wall_m
-    return (np.log(ratio) / problems.wall_sigma)[:, None]
+    off = np.log(ratio)
+    nearer = np.minimum(problems.wall_sigma, np.maximum(WALL_NEARER_LOG_SIGMA, problems.wall_sigma / 5))
+    sigma = np.where((off < 0) & (problems.wall_sigma < UNTOLD), nearer, problems.wall_sigma)
+    return (off / sigma)[:, None]

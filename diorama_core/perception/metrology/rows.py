@@ -9,6 +9,7 @@ from diorama_core.perception.metrology.evidence import Evidence
 from diorama_core.perception.metrology.priors import SizeMode
 from diorama_core.perception.metrology.problem import UNKNOWNS, UNTOLD, Problems, View
 
+_CUT_LOG_SIGMA = 0.9
 _NEAREST_M = 0.4
 _FARTHEST_M = 12.0
 
@@ -51,6 +52,7 @@ def row(
         "footprint_sigma_m": UNTOLD,
         "wall_m": 1.0,
         "wall_sigma": UNTOLD,
+        "cut_sigma": _CUT_LOG_SIGMA,
         "extra": mode.cost,
     }
     columns.update(more)

@@ -10,8 +10,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from diorama_core.artefacts import DetectedObject
-from diorama_core.geometry.projection import cuboid_corners
-from diorama_core.perception.metrology.problem import Cuboids, Problems, View
+from diorama_core.perception.metrology.problem import Cuboids, Problems, View, corners_camera
 
 DIAGONALS: Float[np.ndarray, "4 2"] = np.array([[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]])
 """Toward the corners: top left, top right, bottom left, bottom right."""
@@ -67,9 +66,7 @@ def corner_costs(
         exact: Whether the mask is the user's own.
         names: Category of every object.
     """
-    corners = cuboid_corners(boxes.centre, boxes.yaw_rad, boxes.size_m)
-    corners[..., 2] -= problems.camera_height_m[:, None]
-    camera = corners @ view.R_world_camera
+    camera = corners_camera(boxes, problems.camera_height_m, view)
     k = view.intrinsics
     depth = np.maximum(camera[..., 2:], 1e-3)
     pixels = camera[..., :2] / depth * [k.fx, k.fy] + [k.cx, k.cy]
