@@ -22,6 +22,8 @@ MAX_GRAZING_COSINE = 0.06
 GRAIN_LEAST_PX = 12
 EVEN_LEVELS = 14.0
 """A patch whose colour varies more than this (of 255) over its breadth is a pattern or a rug, not a grain."""
+FRAME = 0.014
+"""Rim of the picture that is not used, as a share of its longer side: undistorted photos have pale frames there."""
 ISLAND_M = 0.22
 """Pieces of a plane narrower than this are mostly rims, shadows and leaves of what stands before it."""
 ISLAND_SHARE = 0.04
@@ -128,7 +130,8 @@ def _seen_colours(
     pixels = camera.project(points).astype(np.float32)
     depth = camera.to_camera(points)[..., 2]
     k = camera.intrinsics
-    seen = (depth > 0.05) & (pixels > 1).all(axis=-1) & (pixels < [k.width - 1, k.height - 1]).all(axis=-1)
+    frame = 1.0 + FRAME * max(k.width, k.height)
+    seen = (depth > 0.05) & (pixels > frame).all(axis=-1) & (pixels < [k.width - frame, k.height - frame]).all(axis=-1)
     rays = points - camera.position
     distance = np.linalg.norm(rays, axis=-1)
     seen &= -(rays @ plane.normal) > MAX_GRAZING_COSINE * distance
