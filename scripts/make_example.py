@@ -209,7 +209,8 @@ def main() -> None:
     library = built_in_library()
     scene = compose(library)
     size, effort = ((640, 480), Effort(2, 4)) if options.draft else (SIZE, Effort(8, 20))
-    image = picture(scene, library, size=size, textures={"planks": planks()}, light=daylight(), effort=effort)
+    look = {"textures": {"planks": planks()}, "photographed": False, "light": daylight()}
+    image = picture(scene, library, size=size, effort=effort, **look)
     options.out.mkdir(parents=True, exist_ok=True)
     Image.fromarray(image).save(options.out / "photo.jpg", quality=90, optimize=True, subsampling=0)
     k = camera().intrinsics

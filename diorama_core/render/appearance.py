@@ -40,6 +40,8 @@ class Material:
     maps: dict[str, UInt8[np.ndarray, "h w 3"]] = field(default_factory=dict)
     """Further glTF maps, kept for export: normalTexture, metallicRoughnessTexture, occlusionTexture, ..."""
     double_sided: bool = False
+    photographed: bool = False
+    """Whether the texture is a photograph that already holds the light of its room."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -33,6 +33,7 @@ def picture(
     view: str = "photo",
     size: tuple[int, int] | None = None,
     textures: Mapping[str, UInt8[np.ndarray, "h w c"]] | None = None,
+    photographed: bool = True,
     light: Lighting | None = None,
     effort: Effort = PICTURE_EFFORT,
 ) -> UInt8[np.ndarray, "h w 3"]:
@@ -46,6 +47,8 @@ def picture(
             Planes are not drawn from behind, so the room stays open toward the viewer.
         size: Width and height; None takes the photo's (reduced to 1280) or 1024 x 768.
         textures: Pictures of the planes by `Plane.texture`.
+        photographed: Whether those pictures hold the light of the room, as rectified photos do; then they are only
+            darkened where something stands in the way of the light, never lit a second time.
         light: None lights the room from above left of the viewer.
         effort: Rays per pixel.
 
@@ -55,7 +58,7 @@ def picture(
     """
     source = scene_view(scene, view, size)
     without = _behind(scene, source)
-    world = scene_world(scene, library, textures=textures, without=without)
+    world = scene_world(scene, library, textures=textures, photographed=photographed, without=without)
     blockers = scene_world(scene, library, without=without | {p.id for p in scene.architecture.planes})
     light = light or studio(_room_bounds(scene, world), -_axis(source))
     shot = shoot(world, blockers, source, light, effort)

@@ -120,6 +120,7 @@ def _seen(
     direction = unit(rays[:, 3:])
     base = places.albedo
     metal = places.metallic[:, None]
+    fallen = _relit(places, fallen, light)
     out = base * (1 - metal) * fallen + places.emissive
     out = out + _gloss(world, places, direction, fallen, light)
     clear = np.flatnonzero(places.alpha < 0.999)
@@ -128,6 +129,18 @@ def _seen(
         share = places.alpha[clear, None]
         out[clear] = out[clear] * share + beyond * (1 - share)
     return out.astype(np.float32)
+
+
+def _relit(places: Places, fallen: Float32[np.ndarray, "n 3"], light: Lighting) -> Float32[np.ndarray, "n 3"]:
+    """The light to multiply colours with: on photographed places only how much of it is held off."""
+    known = np.flatnonzero(places.photographed)
+    if not len(known):
+        return fallen
+    free = unshadowed(places.points[known], places.normals[known], light)
+    share = np.clip(fallen[known].mean(axis=1) / free.mean(axis=1), 0.0, 1.0)
+    relit = fallen.copy()
+    relit[known] = share[:, None]
+    return relit
 
 
 def _gloss(

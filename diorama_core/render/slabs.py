@@ -11,20 +11,22 @@ from diorama_core.render.appearance import Material, Surface, srgb_to_linear
 from diorama_core.scene.types import Plane
 
 
-def plane_surfaces(plane: Plane, texture: UInt8[np.ndarray, "h w c"] | None = None) -> tuple[Surface, Surface]:
+def plane_surfaces(
+    plane: Plane, texture: UInt8[np.ndarray, "h w c"] | None = None, *, photographed: bool = True
+) -> tuple[Surface, Surface]:
     """The face toward the room, textured where there is a picture, and the plain rest, extruded away from the room.
 
     Args:
         plane: Any polygon, concave ones included.
         texture: The plane's rectified picture, laid out as `geometry.planes.plane_uv` says.
+        photographed: Whether that picture holds the light of the room, rather than the bare colour of the material.
     """
     polygon, count = plane.polygon, len(plane.polygon)
     inner = _triangles(plane)
     behind = polygon - plane.normal * plane.thickness
     plain = _plain_material(plane)
-    front = _surface(
-        polygon, inner, plane.normal, plain if texture is None else _textured(plane, texture), plane_uv(plane)
-    )
+    face = plain if texture is None else _textured(plane, texture, photographed)
+    front = _surface(polygon, inner, plane.normal, face, plane_uv(plane))
     ring = np.arange(count)
     after = np.roll(ring, -1)
     walls, normals = [], []
@@ -66,5 +68,6 @@ def _plain_material(plane: Plane) -> Material:
     return Material(name=plane.role, colour=(red, green, blue), roughness=0.6 if plane.role == "floor" else 0.95)
 
 
-def _textured(plane: Plane, texture: UInt8[np.ndarray, "h w c"]) -> Material:
-    return Material(name=f"{plane.role} {plane.id}", colour=(1.0, 1.0, 1.0), roughness=0.8, texture=texture)
+def _textured(plane: Plane, texture: UInt8[np.ndarray, "h w c"], photographed: bool) -> Material:
+    name, white = f"{plane.role} {plane.id}", (1.0, 1.0, 1.0)
+    return Material(name=name, colour=white, roughness=0.8, texture=texture, photographed=photographed)

@@ -142,7 +142,7 @@ def _ground_places(points: Float32[np.ndarray, "n 3"]) -> Places:
     up = np.tile(np.array([0, 0, 1], np.float32), (len(points), 1))
     ones, zeros = np.ones(len(points), np.float32), np.zeros(len(points), np.float32)
     grey = np.full((len(points), 3), 0.8, np.float32)
-    return Places(points, up, up, grey, ones, zeros, ones, 0 * grey, np.zeros(len(points), np.int32))
+    return Places(points, up, up, grey, ones, zeros, ones, 0 * grey, np.zeros(len(points), np.int32), ones < 0)
 
 
 def _resized(camera: Camera, width: int, height: int) -> Camera:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float, Float32, Int, Int32, UInt8
+from jaxtyping import Bool, Float, Float32, Int, Int32, UInt8
 
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.render.appearance import Surface, shape_surfaces, srgb_to_linear
@@ -40,6 +40,8 @@ class Places:
     roughness: Float32[np.ndarray, "n"]
     emissive: Float32[np.ndarray, "n 3"]
     instance: Int32[np.ndarray, "n"]
+    photographed: Bool[np.ndarray, "n"]
+    """Whether the colour already holds the light of the room."""
 
 
 class World:
@@ -92,6 +94,7 @@ class World:
             roughness=table.roughness[surface],
             emissive=table.emissive[surface],
             instance=self._instance_of_face[triangle],
+            photographed=table.photographed[surface],
         )
 
     def rough_look(self, hits: Hits) -> tuple[Float32[np.ndarray, "n 3"], Float32[np.ndarray, "n 3"]]:
@@ -104,6 +107,7 @@ def scene_world(
     library: ShapeLibrary,
     *,
     textures: Mapping[str, UInt8[np.ndarray, "h w c"]] | None = None,
+    photographed: bool = True,
     without: frozenset[str] = frozenset(),
 ) -> World:
     """The scene's visible objects (instance = index in `scene.objects`) and planes (following indices).
@@ -112,6 +116,7 @@ def scene_world(
         scene: What to show; hidden objects are left out.
         library: Where its shapes are.
         textures: Pictures of the planes by `Plane.texture`.
+        photographed: Whether those pictures hold the light of the room, as rectified photos do.
         without: Ids of objects and planes to leave out.
     """
     placed: list[Placed] = []
@@ -121,7 +126,7 @@ def scene_world(
     for index, plane in enumerate(scene.architecture.planes, start=len(scene.objects)):
         if plane.id not in without:
             picture = (textures or {}).get(plane.texture) if plane.texture else None
-            placed.append(Placed(plane_surfaces(plane, picture), np.eye(4), index))
+            placed.append(Placed(plane_surfaces(plane, picture, photographed=photographed), np.eye(4), index))
     return World(placed)
 
 
@@ -162,6 +167,7 @@ class _MaterialTable:
         self.roughness = np.array([m.roughness for m in materials], dtype=np.float32)
         self.emissive = np.array([m.emissive for m in materials], dtype=np.float32).reshape(-1, 3)
         self._colour = np.array([m.colour for m in materials], dtype=np.float32).reshape(-1, 3)
+        self.photographed = np.array([m.photographed for m in materials], dtype=bool)
         self._alpha = np.array([m.alpha for m in materials], dtype=np.float32)
         self._pictures: list[tuple[Float32[np.ndarray, "h w c"], bool]] = []
         """Linear texels, and whether they repeat."""

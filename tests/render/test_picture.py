@@ -187,3 +187,16 @@ def test_same_scene_same_bytes() -> None:
     scene = furnished_room(LIBRARY)
     first = picture(scene, LIBRARY, size=SMALL)
     assert first.tobytes() == picture(scene, LIBRARY, size=SMALL).tobytes()
+
+
+def test_a_photographed_plane_is_not_lit_a_second_time() -> None:
+    """A grey photo on the ceiling, which no lamp reaches: nearly its own grey; as bare material it is darker."""
+    grey = np.full((8, 8, 3), 180, np.uint8)
+    room = box_room()
+    planes = tuple(replace(p, texture="c") if p.id == "ceiling" else p for p in room.planes)
+    scene = Scene(eye_camera(), Architecture(planes))
+    row, column = 3, 80
+    photo = picture(scene, LIBRARY, size=SMALL, textures={"c": grey}, effort=QUICK)[row, column]
+    bare = picture(scene, LIBRARY, size=SMALL, textures={"c": grey}, photographed=False, effort=QUICK)[row, column]
+    assert np.abs(photo.astype(int) - 180).max() < 45
+    assert (bare < photo).all()
