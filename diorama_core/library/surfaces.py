@@ -148,10 +148,12 @@ def _cell_key(i: Int[np.ndarray, "s"], j: Int[np.ndarray, "s"], level: Int[np.nd
 
 
 def _flat_core(spots: _Spots, region: Int[np.ndarray, "k"]) -> Int[np.ndarray, "k"]:
-    """The part of a region near its main level: the slopes of a cushion's rim fall away."""
+    """The part of a region at its most common level: the slopes of a cushion's rim and a shell's sides fall away."""
     z = spots.z[region]
     tolerance = float(np.clip(0.02 * np.sqrt(len(region)) * spots.cell_m, 0.003, 0.03))
-    return region[np.abs(z - np.percentile(z, 70, method="nearest")) < tolerance]
+    levels = np.sort(z)
+    within = np.searchsorted(levels, levels + tolerance, "right") - np.searchsorted(levels, levels - tolerance)
+    return region[np.abs(z - levels[within.argmax()]) <= tolerance]
 
 
 def _outline(spots: _Spots, region: Int[np.ndarray, "k"]) -> Float[np.ndarray, "n 2"]:
