@@ -31,7 +31,7 @@ ISLAND_SHARE = 0.04
 RIM = 0.008
 """Widening of what hides the room beyond its masks' own margin, as a share of the picture's longer side."""
 SURE_MASK = 0.95
-FOREIGN_SPREADS = 4.0
+FOREIGN_SPREADS = 2.5
 FOREIGN_LEAST_LAB = np.array([14.0, 9.0, 9.0])
 """A floor's texel is foreign when it differs by more than this many typical deviations, and by this much at least."""
 FADE_M = 0.6
@@ -61,6 +61,9 @@ def plane_textures(
         if unsure and plane.role == "floor":
             seen &= ~_foreign(colours, seen)
         seen = _without_islands(seen, ISLAND_M / pixel_m)
+        if unsure and plane.role == "floor" and not _grain(colours, seen).any():
+            # Patches of an uneven floor between guessed masks look worse than its plain colour.
+            continue
         if seen.mean() >= MIN_SEEN_SHARE and seen.sum() >= MIN_SEEN_PX:
             found[plane.id] = completed(colours, seen, plane.colour, FADE_M / pixel_m, grainy=plane.role == "floor")
     return found
