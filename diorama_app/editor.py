@@ -80,7 +80,7 @@ class Editor:
             draft = example_draft()
             if draft is not None:
                 room.draft = draft
-                build(room, None)
+                build(room, None, example=True)
         except DioramaError as error:
             log.warning("the example cannot be opened: %s", error)
         room.refresh()

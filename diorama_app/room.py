@@ -231,7 +231,7 @@ class Room:
     def _job_ended(self, outcome: Outcome) -> None:
         def tell() -> None:
             self.refresh()
-            if outcome.cancelled:
+            if outcome.cancelled and outcome.kind != "example":
                 self.notice_all("Stopped; nothing was changed.")
             elif outcome.error is not None:
                 self.notice_all(outcome.error, "bad")

@@ -33,7 +33,7 @@ GLIDE_BELOW = 10
 Costs = Sequence[tuple[str, float]]
 
 
-def build(room: Room, client_id: int | None) -> None:
+def build(room: Room, client_id: int | None, *, example: bool = False) -> None:
     """Build the draft's scene: in the open project when it came from there, else in a new one."""
     draft = room.draft
     if not draft.ready:
@@ -53,14 +53,26 @@ def build(room: Room, client_id: int | None) -> None:
         room.saver.flush()
         built = build_project(project, inputs, room.library, warnings=draft.warnings, progress=progress)
         notes = tuple(dict.fromkeys(built.notes))
-        room.post(client_id, lambda: _built(room, project, built.scene, notes, own=own))
+        room.post(client_id, lambda: _built(room, draft, project, built.scene, notes, own=own))
 
-    room.jobs.start("build", "Building the scene", work)
+    if example:
+        room.jobs.start("example", "Building the example", work)
+    else:
+        room.jobs.start("build", "Building the scene", work)
 
 
-def _built(room: Room, project: Project, scene: Scene, notes: tuple[str, ...], *, own: bool) -> None:
-    for view in room.views.values():
-        view.close_board()
+def make_way(room: Room) -> None:
+    """Stop building the example: somebody has brought a photo of their own."""
+    status = room.jobs.status
+    if status is not None and status.kind == "example":
+        room.jobs.cancel()
+
+
+def _built(room: Room, draft: Draft, project: Project, scene: Scene, notes: tuple[str, ...], *, own: bool) -> None:
+    newer = room.draft if room.draft is not draft else None
+    if newer is None:
+        for view in room.views.values():
+            view.close_board()
     if own and project == room.project:
         inputs = project.load_inputs()
         room.textures = project.textures(scene)
@@ -69,6 +81,9 @@ def _built(room: Room, project: Project, scene: Scene, notes: tuple[str, ...], *
         room.show_everyone_the_room()
     else:
         room.open_project(project)
+    if newer is not None:
+        room.draft = newer  # what somebody handed in meanwhile is not lost
+        room.refresh_panels()
     room.notice_all(f"The scene has {len(scene.objects)} objects. Click one to change it.", "good")
     for note in notes[:3]:
         room.notice_all(note)

@@ -107,12 +107,10 @@ class EditorPage:
         raise AssertionError(f"did not come about: {what or holds}")
 
     def dismiss_notices(self) -> None:
-        for _ in range(6):
-            close = self.page.locator(".mantine-Notification-closeButton")
-            if close.count() == 0:
-                return
-            close.first.click(force=True)
-            self.page.wait_for_timeout(250)
+        """Close what covers the canvas (the warning of software WebGL at the start, too)."""
+        closing = "document.querySelectorAll('.mantine-Notification-closeButton').forEach((b) => b.click())"
+        self.page.evaluate(closing)
+        self.page.wait_for_function("!document.querySelector('.mantine-Notification-closeButton')")
 
     def button(self, name: str) -> Locator:
         return self.page.get_by_role("button", name=name, exact=True)
