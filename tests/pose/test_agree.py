@@ -1,0 +1,30 @@
+"""Things of a kind agree on their shape."""
+
+from __future__ import annotations
+
+from diorama_core.pose.agree import agreed_ranks
+
+
+def best(ranks: dict[str, float]) -> str:
+    return max(ranks, key=lambda key: ranks[key])
+
+
+def test_a_badly_seen_chair_follows_the_well_seen_ones() -> None:
+    clear = {"a": 0.0, "b": -0.8}
+    doubtful = {"a": -0.1, "b": 0.0}
+    agreed = agreed_ranks(["chair"] * 3, [clear, clear, doubtful], [0.9, 0.9, 0.2])
+    assert [best(r) for r in agreed] == ["a", "a", "a"]
+
+
+def test_other_kinds_unnamed_things_and_other_choices_stand_alone() -> None:
+    a, b = {"a": 0.0, "b": -1.0}, {"a": -1.0, "b": 0.0}
+    for categories in (["chair", "stool"], ["object", "object"]):
+        assert [best(r) for r in agreed_ranks(categories, [a, b], [1.0, 0.1])] == ["a", "b"]
+    far = {"c": 0.0, "d": -0.2, "a": -0.1}
+    assert best(agreed_ranks(["chair", "chair"], [a, far], [1.0, 0.1])[1]) == "c"
+
+
+def test_one_alone_keeps_its_order() -> None:
+    (ranks,) = agreed_ranks(["sofa"], [{"a": -2.0, "b": -1.0, "c": -3.0}], [0.0])
+    assert sorted(ranks, key=lambda key: -ranks[key]) == ["b", "a", "c"]
+    assert ranks["b"] == 0.0

@@ -1,0 +1,47 @@
+"""Which shapes are looked at for an object."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, category
+from diorama_core.retrieval.pools import RELATED, Wish, pool_for
+
+LIBRARY = built_in_library()
+
+
+def pool(name: str, size, held_by: str = "floor", holds: bool = False):
+    return pool_for(LIBRARY, Wish(name, np.array(size), holds, held_by))
+
+
+def test_every_category_knows_its_near_kinds() -> None:
+    names = {c.name for c in CATEGORIES} - {UNKNOWN.name}
+    assert set(RELATED) == names
+    assert all(near in names and near != name for name, row in RELATED.items() for near in row)
+
+
+@pytest.mark.parametrize("name", [c.name for c in CATEGORIES])
+def test_every_category_finds_something_in_the_built_in_library(name: str) -> None:
+    prior = category(name).priors[0]
+    found = pool(name, (prior.depth_m, prior.width_m, prior.height_m))
+    assert 1 <= len(found.members) <= 40
+    assert all(0.0 < m.kind_factor <= 1.0 for m in found.members)
+
+
+def test_a_chair_is_looked_for_among_chairs_only() -> None:
+    found = pool("chair", (0.5, 0.5, 0.9))
+    assert {m.shape.category for m in found.members} == {"chair"}
+
+
+def test_unnamed_things_hang_or_stand_as_they_were_seen() -> None:
+    on_wall, below, standing = (pool("object", (0.1, 0.8, 0.7), held) for held in ("wall", "ceiling", "floor"))
+    assert {category(m.shape.category).mount for m in on_wall.members} == {"wall"}
+    assert {category(m.shape.category).mount for m in below.members} == {"ceiling"}
+    assert {category(m.shape.category).mount for m in standing.members} <= {"floor", "surface"}
+
+
+def test_unnamed_things_are_about_as_large_as_what_they_are_taken_for() -> None:
+    for member in pool("object", (0.9, 1.9, 0.8)).members:
+        assert abs(np.log(np.prod(member.shape.size_m) / (0.9 * 1.9 * 0.8))) < 1.3
