@@ -35,6 +35,8 @@ AGAINST_WALLS = frozenset(
 _SEATS_WITHOUT_SUPPORT_FLAG_COST = 2.0
 _FLAT_M = 0.2
 """A door thinner than this along an axis is in the wall across that axis."""
+_BACK_SHARE = {("bed", "pillow"): 0.45}
+"""Pillows lie at the head of a bed: in this share of its depth."""
 _SEAT_THINGS = frozenset({"pillow", "toy", "books", "laptop", "basket", "box"})
 _ODD_ON_SEAT_COST = 2.0
 """Of anything else lying on a seat or a bed."""
@@ -107,12 +109,13 @@ def place_on(
     evidence: Evidence, index: int, parent: int, parent_cuboid: Cuboids, height_m: float, cost: float
 ) -> list[Problems]:
     """Rows for an object on another's top, seat or shelves; `parent_cuboid` is a batch of one."""
-    depth, width, tall = parent_cuboid.size_m[0]
+    tall = float(parent_cuboid.size_m[0, 2])
     bottom = float(parent_cuboid.base_m[0])
-    footprint = [*parent_cuboid.centre[0, :2], parent_cuboid.yaw_rad[0], depth / 2, width / 2]
+    names = (evidence.categories[parent].name, evidence.categories[index].name)
+    footprint = _resting_place(parent_cuboid, _BACK_SHARE.get(names, 1.0))
     rows = []
     soft = evidence.categories[parent].seat_height_m is not None and evidence.categories[index].name not in _SEAT_THINGS
-    for base, sigma, level_cost in _levels(evidence, parent, float(tall)):
+    for base, sigma, level_cost in _levels(evidence, parent, tall):
         for mode in supported_modes(evidence.categories[index].name):
             for turn in (0.0,) if mode.square else (0.0, np.pi / 2):
                 rows.append(
@@ -125,12 +128,22 @@ def place_on(
                         parent=parent,
                         base_m=bottom + base,
                         base_sigma_m=sigma,
-                        footprint=np.array(footprint),
+                        footprint=footprint,
                         footprint_sigma_m=_FOOTPRINT_SIGMA_M,
                         extra=mode.cost + level_cost + cost + (_ODD_ON_SEAT_COST if soft else 0.0),
                     )
                 )
     return rows
+
+
+def _resting_place(parent_cuboid: Cuboids, back_share: float) -> Float[np.ndarray, "5"]:
+    """The parent's footprint, or the share of it that is farthest from its front, which faces the camera."""
+    depth, width, _ = parent_cuboid.size_m[0]
+    yaw, centre = float(parent_cuboid.yaw_rad[0]), parent_cuboid.centre[0, :2]
+    front = np.array([np.cos(yaw), np.sin(yaw)])
+    toward = -np.sign(front @ centre) or 1.0
+    moved = centre - toward * front * depth * (1.0 - back_share) / 2
+    return np.array([*moved, yaw, depth * back_share / 2, width / 2])
 
 
 def _levels(evidence: Evidence, parent: int, tall: float) -> list[tuple[float, float, float]]:
