@@ -12,8 +12,9 @@ from functools import cached_property
 import numpy as np
 import trimesh
 
-from diorama_core.errors import LibraryError
+from diorama_core.errors import EditRefused, LibraryError
 from diorama_core.library.record import Shape, SupportSurface
+from diorama_core.scene import edits
 from diorama_core.scene.types import Architecture, Plane, Pose, Scene, SceneObject, Support, yaw_rotation
 
 Boxes = tuple[tuple[tuple[float, float, float], tuple[float, float, float]], ...]
@@ -226,9 +227,6 @@ def _noisy(pose: Pose, noise: Noise, rng: np.random.Generator) -> Pose:
 
 def perturb_graph(scene: Scene, share: float, seed: int) -> Scene:
     """A share of the support edges made wrong or missing, half each; stays acyclic."""
-    from diorama_core.errors import EditRefused
-    from diorama_core.scene import edits
-
     rng = np.random.default_rng((seed, 77))
     chosen = rng.permutation(len(scene.supports))[: round(share * len(scene.supports))]
     changed = scene
@@ -250,9 +248,13 @@ class _Builder:
 
     def __init__(self, rng: np.random.Generator, count: int) -> None:
         self.rng, self.count = rng, count
-        side = float(np.sqrt(count) * 0.72 + 1.2)
+        side = float(np.sqrt(count) * 0.58 + 1.2)
         self.half_x, self.half_y = side * 0.55, side * 0.45
         self.library = box_library()
+        self._empty(1.0)
+
+    def _empty(self, growth: float) -> None:
+        self.half_x, self.half_y = self.half_x * growth, self.half_y * growth
         self.objects: list[SceneObject] = []
         self.supports: list[Support] = []
         self.floor_boxes: list[np.ndarray] = []
@@ -261,8 +263,12 @@ class _Builder:
 
     def furnish(self) -> Scene:
         """Until the room holds `count` objects."""
-        rng = self.rng
+        rng, tries = self.rng, 0
         while len(self.objects) < self.count:
+            tries += 1
+            if tries % (20 * self.count) == 0:
+                # Full: what stands against walls would be left behind by a larger room, so begin again.
+                self._empty(1.15)
             kind = rng.choice(["table", "chair", "shelf", "floor", "wall", "small", "small", "small", "book", "book"])
             getattr(self, f"_add_{kind}")()
         return Scene(
@@ -281,7 +287,7 @@ class _Builder:
         self.supports.append(Support(name, parent, relation, **edge))  # type: ignore[arg-type]
         return name
 
-    def _free_floor(self, half: np.ndarray, *, margin: float = 0.05) -> np.ndarray | None:
+    def _free_floor(self, half: np.ndarray, *, margin: float = 0.02) -> np.ndarray | None:
         for _ in range(40):
             x = self.rng.uniform(-self.half_x + half[0], self.half_x - half[0])
             y = self.rng.uniform(-self.half_y + half[1], self.half_y - half[1])
@@ -394,7 +400,7 @@ class _Builder:
         if _overlaps(box, resting):
             return
         resting.append(box)
-        centre = host.pose.apply(np.array([at[0], at[1], surface.height_m])) + [0.0, 0.0, shape.size_m[2] / 2]
+        centre = host.pose.apply(np.array([at[0], at[1], surface.height_m + shape.size_m[2] / 2]))
         if self._hits_wall_things(centre, shape):
             resting.pop()
             return

@@ -26,7 +26,7 @@ TIGHT = 0.88
 MERGE = 0.93
 """Two parts become one when together they fill at least this share of their common hull."""
 MOST_PARTS = 16
-SMALL_SHARE = 0.02
+SMALL_SHARE = 0.006
 """Components with less than this share of the shape's box keep their hull, whatever they look like."""
 MOST_PIECES = 40
 """Components beyond this many are joined with their neighbours before anything else."""
@@ -202,9 +202,20 @@ def _split(triangles: Float[np.ndarray, "t 3 3"], small: float, depth: int) -> l
         if total < (0.9 * whole if best is None else best[0]):
             best = (total, axis, at)
     if best is None:
-        return [triangles]
+        return _split_blindly(triangles, whole, small, depth)
     halves = [_cut(triangles, best[1], best[2], sign) for sign in (1.0, -1.0)]
     return [piece for half in halves for piece in _split(half, small, depth + 1)]
+
+
+def _split_blindly(triangles: np.ndarray, whole: float, small: float, depth: int) -> list[np.ndarray]:
+    """Rings gain nothing from one cut but much from two: halve along the longest side and see."""
+    if depth > 1:
+        return [triangles]
+    low, high = triangles.reshape(-1, 3).min(axis=0), triangles.reshape(-1, 3).max(axis=0)
+    axis = int((high - low).argmax())
+    halves = [_cut(triangles, axis, float(low[axis] + high[axis]) / 2, sign) for sign in (1.0, -1.0)]
+    pieces = [piece for half in halves if len(half) for piece in _split(half, small, depth + 1)]
+    return pieces if sum(_volume(piece) for piece in pieces) < 0.85 * whole else [triangles]
 
 
 def _one_side(triangles: np.ndarray, axis: int, at: float, sign: float) -> Float[np.ndarray, "n 3"]:

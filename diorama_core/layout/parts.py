@@ -13,7 +13,7 @@ from diorama_core.geometry.convex import ConvexPart, convex_parts
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
 
-VERSION = 4
+VERSION = 6
 """Of the decomposition: raise it when `convex_parts` changes, so that files of older versions are not read."""
 
 _KNOWN: dict[str, tuple[ConvexPart, ...]] = {}

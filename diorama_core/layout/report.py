@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.geometry.sat import pair_axes, place_bodies
+from diorama_core.layout.gradients import BoxPairs, near_pairs
 from diorama_core.layout.problem import Problem
 from diorama_core.layout.volumes import Volumes
 
@@ -24,7 +25,7 @@ def measure(
     """The report's figures for one layout of the problem's objects.
 
     `orientation`, `placement`, `structure`, `in_support`: shares of supported objects within 1 degree and 0.1 cm of
-    their support, and inside its bounds and clearance. `part_overlap_m`: deepest overlap of convex parts (0 when
+    their support, and inside its bounds and clearance. `box_overlap_m`: overlap of bounding boxes per object. `part_overlap_m`: deepest overlap of convex parts (0 when
     apart); `part_overlap_mean_m` and `overlapping_pairs` say how widespread. `moved_m`: mean distance from the
     observed positions.
     """
@@ -39,6 +40,7 @@ def measure(
         "part_overlap_m": max(depths.values(), default=0.0),
         "part_overlap_mean_m": sum(depths.values()) / max(problem.count, 1),
         "overlapping_pairs": float(len(depths)),
+        "box_overlap_m": _box_overlap(problem, R, p, scale),
         "moved_m": float(moved.mean()) if len(moved) else 0.0,
         "moved_most_m": float(moved.max()) if len(moved) else 0.0,
     }
@@ -65,6 +67,17 @@ def _structure(
     half = 0.5 * (np.abs(np.matmul(here.normal[:, None, :], own)[:, 0]) * size).sum(axis=1)
     top = (p[held] * here.normal).sum(axis=1) - here.level + half
     return aligned, placed, (past <= INSIDE_M).all(axis=1) & (top <= here.clearance + INSIDE_M)
+
+
+def _box_overlap(problem: Problem, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> float:
+    """Overlap depth of bounding boxes, summed over the pairs that should be apart, per object."""
+    size = problem.shape_size * scale
+    pairs = near_pairs(R, p, size, ~problem.kin, 0.0)
+    if not len(pairs):
+        return 0.0
+    boxes = BoxPairs.of(R, size, pairs, walls_from=problem.count)
+    depth = (boxes.reach - np.abs(np.matmul(boxes.axes, (p[boxes.i] - p[boxes.j])[..., None])[..., 0])).min(axis=1)
+    return float(np.maximum(depth, 0.0).sum()) / problem.count
 
 
 def part_overlaps(

@@ -1,0 +1,143 @@
+"""What the layout's approximations leave: overlap of the meshes themselves, and drift under gravity."""
+
+from __future__ import annotations
+
+import itertools
+
+import manifold3d
+import numpy as np
+import trimesh
+from jaxtyping import Float
+
+from diorama_core.errors import UnavailableError
+from diorama_core.geometry.sat import place_bodies
+from diorama_core.layout.problem import Problem, build_problem
+from diorama_core.layout.supports import is_wall_like
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.scene.types import Scene
+
+
+def mesh_overlap_m3(scene: Scene, library: ShapeLibrary, *, skip_supporters: bool = True) -> float:
+    """Volume in cubic metres shared by the objects' meshes, summed over pairs.
+
+    Meshes that are not closed are replaced by the hulls of their convex parts.
+
+    Args:
+        scene: posed objects.
+        library: their meshes.
+        skip_supporters: leave out pairs of an object and what holds it up, which touch on purpose.
+    """
+    problem = build_problem(scene, library)
+    solids = [_solid(scene, library, problem, k) for k in range(problem.count)]
+    bounds = [np.array(s.bounding_box()) for s in solids]
+    total = 0.0
+    for i, j in itertools.combinations(range(problem.count), 2):
+        if skip_supporters and problem.kin[i, j]:
+            continue
+        if (bounds[i][:3] < bounds[j][3:]).all() and (bounds[j][:3] < bounds[i][3:]).all():
+            total += max(float((solids[i] ^ solids[j]).volume()), 0.0)
+    return total
+
+
+def _solid(scene: Scene, library: ShapeLibrary, problem: Problem, index: int) -> manifold3d.Manifold:
+    item = scene.object(problem.ids[index])
+    closed = []
+    for body in library.mesh(item.shape_id).split(only_watertight=False):
+        if body.is_watertight and body.volume > 0:
+            closed.append(_manifold(body, item.pose.matrix))
+    solid = manifold3d.Manifold.batch_boolean(closed, manifold3d.OpType.Add) if closed else None
+    if solid is None or solid.status() != manifold3d.Error.NoError or solid.is_empty():
+        hulls = [_manifold(trimesh.convex.convex_hull(q.vertices), item.pose.matrix) for q in problem.parts[index]]
+        solid = manifold3d.Manifold.batch_boolean(hulls, manifold3d.OpType.Add)
+    return solid
+
+
+def _manifold(mesh: trimesh.Trimesh, matrix: Float[np.ndarray, "4 4"]) -> manifold3d.Manifold:
+    merged = mesh.copy()
+    merged.merge_vertices(merge_tex=True, merge_norm=True)
+    merged.apply_transform(matrix)
+    return manifold3d.Manifold(
+        manifold3d.Mesh(np.asarray(merged.vertices, np.float32), np.asarray(merged.faces, np.uint32))
+    )
+
+
+def drift(
+    scene: Scene, library: ShapeLibrary, *, seconds: float = 2.0, step_s: float = 0.004
+) -> dict[str, tuple[float, float]]:
+    """How far each object moves (metres) and turns (radians) when gravity is switched on, by id.
+
+    Convex parts are the collision bodies; room planes are static; objects hung on walls or ceilings are fixed, as are
+    locked ones.
+
+    Raises:
+        UnavailableError: when MuJoCo is not installed.
+    """
+    try:
+        import mujoco
+    except ImportError as missing:
+        raise UnavailableError("the drift test needs MuJoCo; install it with: pip install 'diorama[sim]'") from missing
+    problem = build_problem(scene, library)
+    model = mujoco.MjModel.from_xml_string(_model_xml(scene, problem, step_s))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    start = {name: (data.body(name).xpos.copy(), data.body(name).xmat.reshape(3, 3).copy()) for name in problem.ids}
+    for _ in range(round(seconds / step_s)):
+        mujoco.mj_step(model, data)
+    moved = {}
+    for name, (p, R) in start.items():
+        body = data.body(name)
+        cosine = (np.trace(body.xmat.reshape(3, 3) @ R.T) - 1.0) / 2.0
+        moved[name] = (float(np.linalg.norm(body.xpos - p)), float(np.arccos(np.clip(cosine, -1.0, 1.0))))
+    return moved
+
+
+def stable_share(moved: dict[str, tuple[float, float]], *, most_m: float = 0.01, most_rad: float = 0.0349) -> float:
+    """Share of objects that moved under 1 cm and turned under 2 degrees."""
+    return float(np.mean([d <= most_m and a <= most_rad for d, a in moved.values()])) if moved else 1.0
+
+
+def _model_xml(scene: Scene, problem: Problem, step_s: float) -> str:
+    """A MuJoCo model of the scene: one free body per object, its convex parts as meshes, planes of the room static."""
+    scale = np.array([scene.object(name).pose.scale for name in problem.ids]).reshape(-1, 3)
+    assets, bodies = [], []
+    here = place_bodies(problem.packed, np.tile(np.eye(3), (problem.count, 1, 1)), np.zeros((problem.count, 3)), scale)
+    for k, name in enumerate(problem.ids):
+        pose = scene.object(name).pose
+        geoms = []
+        for number in np.flatnonzero(here.owner == k):
+            points = " ".join(f"{x:.7g}" for x in here.vertices[number].ravel())
+            assets.append(f'<mesh name="m{number}" vertex="{points}" inertia="convex"/>')
+            geoms.append(f'<geom type="mesh" mesh="m{number}" density="200"/>')
+        hung = is_wall_like(problem.surface[k]) or problem.surface[k] is None or problem.contact[k][2] > 0.5
+        joint = "" if hung or not problem.free[k] else "<freejoint/>"
+        at, turn = _numbers(pose.position), _numbers(_quaternion(pose.R_world_object))
+        bodies.append(f'<body name="{name}" pos="{at}" quat="{turn}">{joint}{"".join(geoms)}</body>')
+    room = [_plane_xml(p.normal, p.centre) for p in scene.architecture.planes if p.role == "floor"]
+    return (
+        f'<mujoco><option timestep="{step_s}" integrator="implicitfast" cone="elliptic"/>'
+        '<default><geom friction="1 0.02 0.001" solref="0.01 1" margin="0.0005"/></default>'
+        f"<asset>{''.join(assets)}</asset><worldbody>{''.join(room)}{''.join(bodies)}</worldbody></mujoco>"
+    )
+
+
+def _plane_xml(normal: np.ndarray, point: np.ndarray) -> str:
+    return f'<geom type="plane" size="50 50 1" pos="{_numbers(point)}" zaxis="{_numbers(normal)}"/>'
+
+
+def _numbers(values: np.ndarray) -> str:
+    return " ".join(f"{float(x):.9g}" for x in values)
+
+
+def _quaternion(R: Float[np.ndarray, "3 3"]) -> Float[np.ndarray, "4"]:
+    """w, x, y, z of a rotation (Shepperd's method through the largest component)."""
+    K = np.array(
+        [
+            [R[0, 0] - R[1, 1] - R[2, 2], 0.0, 0.0, 0.0],
+            [R[0, 1] + R[1, 0], R[1, 1] - R[0, 0] - R[2, 2], 0.0, 0.0],
+            [R[0, 2] + R[2, 0], R[1, 2] + R[2, 1], R[2, 2] - R[0, 0] - R[1, 1], 0.0],
+            [R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1], np.trace(R)],
+        ]
+    )
+    _, vectors = np.linalg.eigh(K / 3.0)
+    x, y, z, w = vectors[:, -1]
+    return np.array([w, x, y, z])
