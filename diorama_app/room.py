@@ -55,6 +55,8 @@ class Room:
         self.draft = Draft()
         self.project: Project | None = None
         self.photo: Photo | None = None
+        self.notes: tuple[str, ...] = ()
+        """What the pipeline had to say of how the scene was made."""
         self.textures: Mapping[str, UInt8[np.ndarray, "h w 3"]] = {}
         self.views: dict[int, ClientView] = {}
         self.panels: list[Panel] = []
@@ -146,6 +148,7 @@ class Room:
         textures = project.textures(scene)
         self.saver.flush()
         self.project, self.textures = project, textures
+        self.read_notes()
         self.photo = None if inputs is None else inputs.photo
         self.draft = Draft()
         if inputs is not None:
@@ -153,6 +156,11 @@ class Room:
         self.document.open(scene)
         self.show_everyone_the_room()
         self.refresh()
+
+    def read_notes(self) -> None:
+        """Learn what the project's build had to say."""
+        notes = self.project.info().get("notes", []) if self.project is not None else []
+        self.notes = tuple(dict.fromkeys(str(note) for note in notes))
 
     def show_everyone_the_room(self) -> None:
         """New visitors and all who are here look at the whole room."""

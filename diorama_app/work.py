@@ -48,12 +48,15 @@ def build(room: Room, client_id: int | None, *, example: bool = False) -> None:
         from diorama_core.project.build import build_project
 
         own = draft.from_project and room.project is not None
-        project = room.project if own else Project.create(fresh_folder(room.projects_dir, draft.name), name=draft.name)
+        project = (
+            room.project
+            if own
+            else Project.create(fresh_folder(room.projects_dir, draft.name), name=Path(draft.name).stem)
+        )
         assert project is not None
         room.saver.flush()
         built = build_project(project, inputs, room.library, warnings=draft.warnings, progress=progress)
-        notes = tuple(dict.fromkeys(built.notes))
-        room.post(client_id, lambda: _built(room, draft, project, built.scene, notes, own=own))
+        room.post(client_id, lambda: _built(room, draft, project, built.scene, own=own))
 
     if example:
         room.jobs.start("example", "Building the example", work)
@@ -68,7 +71,7 @@ def make_way(room: Room) -> None:
         room.jobs.cancel()
 
 
-def _built(room: Room, draft: Draft, project: Project, scene: Scene, notes: tuple[str, ...], *, own: bool) -> None:
+def _built(room: Room, draft: Draft, project: Project, scene: Scene, *, own: bool) -> None:
     newer = room.draft if room.draft is not draft else None
     if newer is None:
         for view in room.views.values():
@@ -76,6 +79,7 @@ def _built(room: Room, draft: Draft, project: Project, scene: Scene, notes: tupl
     if own and project == room.project:
         inputs = project.load_inputs()
         room.textures = project.textures(scene)
+        room.read_notes()
         room.draft = Draft(inputs, inputs.boxes if inputs else (), from_project=True, name=project.name)
         room.commit("build the scene", scene, selection=())
         room.show_everyone_the_room()
@@ -85,8 +89,6 @@ def _built(room: Room, draft: Draft, project: Project, scene: Scene, notes: tupl
         room.draft = newer  # what somebody handed in meanwhile is not lost
         room.refresh_panels()
     room.notice_all(f"The scene has {len(scene.objects)} objects. Click one to change it.", "good")
-    for note in notes[:3]:
-        room.notice_all(note)
 
 
 def fresh_folder(projects_dir: Path, name: str) -> Path:

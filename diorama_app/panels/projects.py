@@ -32,6 +32,7 @@ class Projects:
         on_press(self._export, lambda client: room.post(client, lambda: work.export_glb(room, client)))
         save = gui.add_button("Save now", color="gray", hint=commands["save"].tooltip)
         on_press(save, lambda client: room.post(client, lambda: commands["save"].run(client)))
+        self._notes = LiveHtml(gui)
         self._list = LiveHtml(gui, self._act)
         self._keys = LiveHtml(gui)
         self._keys.show(_shortcuts(commands))
@@ -47,6 +48,8 @@ class Projects:
         else:
             where = "Every change is saved as you make it."
             self._status.show(f"<p><b>{text(room.project.name)}</b><br><span class='dim'>{where}</span></p>")
+        notes = "".join(f"<p>{text(note[:1].upper() + note[1:])}.</p>" for note in room.notes[:6])
+        self._notes.show(f'<h4>How this scene was made</h4><div class="card">{notes}</div>' if notes else "")
         rows = "".join(self._row(folder) for folder in recent_projects(room.projects_dir)[:RECENT])
         self._list.show(f"<h4>Recent projects</h4>{rows}" if rows else "")
 
