@@ -141,7 +141,7 @@ class ObjectGeometry(ArrayValue):
     camera: Camera
     cuboids: tuple[Cuboid, ...]
     supports: tuple[Support, ...]
-    """Parents are object ids, "floor", or "wall" where the architecture will say which wall."""
+    """Parents are object ids, or "floor", "ceiling" or "wall", for which the architecture will say which plane."""
     source: str
     confidence: float = 1.0
 

@@ -8,7 +8,8 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import DetectedObject, ObjectGeometry
-from diorama_core.geometry.projection import NEAR_M, box_iou, visible_bounds
+from diorama_core.geometry.projection import box_iou, visible_bounds
+from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.types import Camera, Scene
 
@@ -68,22 +69,13 @@ def agreement(
 
 
 def shape_iou(scene: Scene, object_id: str, box: tuple[float, float, float, float], library: ShapeLibrary) -> float:
-    """Intersection over union of the box with the bounds of the posed shape's visible vertices; 0 without a shape."""
+    """Intersection over union of the box with the bounds of the posed shape's visible part; 0 without a shape."""
     if scene.camera is None or not scene.has_object(object_id):
         return 0.0
     item = scene.object(object_id)
-    bounds = projected_bounds(scene.camera, item.pose.apply(np.asarray(library.mesh(item.shape_id).vertices)))
-    return 0.0 if bounds is None else float(box_iou(bounds, np.array(box)))
-
-
-def projected_bounds(camera: Camera, points_world: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "4"] | None:
-    """Bounds in the picture of points in front of the camera, clipped to the picture; None when none is."""
-    points = points_world[camera.to_camera(points_world)[:, 2] > NEAR_M]
-    if not len(points):
-        return None
-    k = camera.intrinsics
-    pixels = np.clip(camera.project(points), 0.0, [k.width, k.height])
-    return np.concatenate([pixels.min(axis=0), pixels.max(axis=0)])
+    pose = PoseBatch(item.pose.R_world_object[None], item.pose.position[None], item.pose.scale[None])
+    bounds = ShapeCaster(library.mesh(item.shape_id)).bounds_px(scene.camera, pose)[0]
+    return 0.0 if np.isnan(bounds).any() else float(box_iou(bounds, np.array(box)))
 
 
 def _cuboid_iou(camera: Camera, corners_world: Float[np.ndarray, "8 3"], box: object) -> float:

@@ -6,7 +6,7 @@ Objects are sorted by id, so that no result depends on the order in which a scen
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -23,9 +23,13 @@ from diorama_core.layout.supports import (
     is_wall_like,
     wall_faces,
 )
+from diorama_core.library import taxonomy
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, Support
+
+FIRM_SHARE = 0.55
+"""Share of a soft thing's extent that does not give way: pillows lean on and sink into one another."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +46,8 @@ class Problem:
     """Observed scales."""
     shape_size: Float[np.ndarray, "n 3"]
     """Extents at scale 1, metres."""
+    firm: Float[np.ndarray, " n"]
+    """Share of the extents that does not give way: 1, less for soft things."""
     parent: Int[np.ndarray, " n"]
     """Index of the supporting object, or -1."""
     on_plane: tuple[str | None, ...]
@@ -54,6 +60,10 @@ class Problem:
     """False for constants: locked, or outside the selection."""
     adheres: tuple[tuple[int, int, Float[np.ndarray, "3"]], ...]
     """(object, wall, outward normal of the object's face against that wall, in the object frame)."""
+    grounded: Bool[np.ndarray, " n"]
+    """Doors: they hang on a wall and reach down to the floor."""
+    floor_m: float
+    """Height of the floor; 0 without one."""
     walls: tuple[Plane, ...]
     relations: Int[np.ndarray, "m 2"]
     """Pairs that are near each other and should stay so."""
@@ -131,7 +141,8 @@ def build_problem(
         contacts[k] = choose_contact(scene, item, edge, surfaces[-1])
     walls = tuple(sorted(scene.architecture.by_role("wall"), key=lambda w: w.id))
     rug_pairs = _rug_pairs(objects)
-    parts = tuple(parts_of_shape(library, s) for s in shapes)
+    firm = np.array([FIRM_SHARE if _is_soft(o) else 1.0 for o in objects]).reshape(-1)
+    parts = tuple(_scaled(parts_of_shape(library, s), share) for s, share in zip(shapes, firm))
     on_plane = tuple(e.parent if e is not None and e.parent not in index else None for e in edges)
     p = np.array([o.pose.position for o in objects]).reshape(-1, 3)
     R = np.array([o.pose.R_world_object for o in objects]).reshape(-1, 3, 3)
@@ -143,12 +154,15 @@ def build_problem(
         p=p,
         scale=np.array([o.pose.scale for o in objects]).reshape(-1, 3),
         shape_size=np.array([o.shape_size_m for o in objects]).reshape(-1, 3),
+        firm=firm,
         parent=parent,
         on_plane=on_plane,
         surface=tuple(surfaces),
         contact=contacts,
         free=free,
         adheres=_adherences(R, p, sizes, edges, surfaces, walls, adherence_m),
+        grounded=np.array([o.category == "door" for o in objects], dtype=bool),
+        floor_m=float(floor.centre[2]) if (floor := scene.architecture.floor) is not None else 0.0,
         walls=walls,
         relations=_relations(parent, on_plane, p, sizes),
         kin=_kin(parent, rug_pairs),
@@ -157,6 +171,14 @@ def build_problem(
         packed=pack_parts(parts),
         reasons=reasons,
     )
+
+
+def _is_soft(item: SceneObject) -> bool:
+    return taxonomy.resolve(item.category).category.soft
+
+
+def _scaled(parts: tuple[ConvexPart, ...], share: float) -> tuple[ConvexPart, ...]:
+    return parts if share == 1.0 else tuple(replace(part, vertices=part.vertices * share) for part in parts)
 
 
 def _free(scene: Scene, objects: Sequence[SceneObject], only: frozenset[str] | None) -> Bool[np.ndarray, " n"]:

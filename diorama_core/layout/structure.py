@@ -100,8 +100,11 @@ def _settle(
     walk.R[i] = _aligned(walk.R[i], problem.contact[i], surface, [(problem.walls[w].normal, f) for w, f in against])
     u, v = plane_axes(n)
     target = _on_support(problem, walk, i, surface, None if ray is None else ray[i])
-    walk.basis[i] = np.column_stack([u, v])
+    grounded = problem.grounded[i] and is_wall_like(surface)
+    walk.basis[i] = np.column_stack([u, np.zeros(3) if grounded else v])
     _against_walls(problem, walk, i, target, against)
+    if grounded:
+        _reach_floor(problem, walk, i)
     m, h = surface.outward, surface.offset
     reach = _fit(problem, walk, i, surface, m, h)
     walk.p[i] = walk.p[i] + _lift(problem, walk, i, surface) * n
@@ -115,6 +118,16 @@ def _settle(
     walk.owners += [i] * len(m)
     walk.normals += list(m)
     walk.slacks += [max(float(s), 0.0) for s in slack]
+
+
+def _reach_floor(problem: Problem, walk: _Walk, i: int) -> None:
+    """Stretch a door to the floor, keeping its top where it was seen; lower it where that would change it too much."""
+    height = float(_size(problem, walk, i)[2])
+    top = float(walk.p[i][2]) + height / 2
+    factor = (top - problem.floor_m) / height
+    if SMALLEST_SHRINK <= factor <= 1.0 / SMALLEST_SHRINK:
+        walk.scale[i, 2] *= factor
+    walk.p[i] = [*walk.p[i][:2], problem.floor_m + float(_size(problem, walk, i)[2]) / 2]
 
 
 def _size(problem: Problem, walk: _Walk, i: int) -> np.ndarray:
@@ -245,7 +258,7 @@ def _fit(problem: Problem, walk: _Walk, i: int, surface: Surface, m: np.ndarray,
 
 
 def _reach(problem: Problem, walk: _Walk, i: int, m: np.ndarray) -> np.ndarray:
-    half = _size(problem, walk, i) * (1.0 - np.abs(problem.contact[i])) / 2
+    half = problem.firm[i] * _size(problem, walk, i) * (1.0 - np.abs(problem.contact[i])) / 2
     return np.abs((m @ walk.R[i]) * half).sum(axis=1)
 
 

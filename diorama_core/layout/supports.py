@@ -166,7 +166,7 @@ def misfit(item: SceneObject, surface: Surface) -> float:
     low, height = float(along.min()), float(np.ptp(along))
     gap = abs(low - surface.level)
     over = max(height - surface.clearance_m, 0.0)
-    return gap + outside_m(surface, item.pose.position) + 0.5 * over + 0.5 * _too_wide(item, surface)
+    return gap + outside_m(surface, item.pose.position) + 2.0 * over + 2.0 * _too_wide(item, surface)
 
 
 def _too_wide(item: SceneObject, surface: Surface) -> float:

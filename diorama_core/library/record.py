@@ -60,15 +60,15 @@ class ShapeLibrary(Protocol):
     """Where shapes come from. Read-only and safe to share between threads."""
 
     def shapes(self) -> tuple[Shape, ...]:
-        """All records, in a stable order."""
+        """All records, in a stable order; cheap, so without support surfaces."""
         ...
 
     def shape(self, shape_id: str) -> Shape:
-        """One record; raises `LibraryError` when unknown."""
+        """One record with its support surfaces; raises `LibraryError` when unknown."""
         ...
 
     def in_category(self, category: str) -> tuple[Shape, ...]:
-        """Records of one canonical category, in a stable order."""
+        """Records of one canonical category, in a stable order; without support surfaces."""
         ...
 
     def mesh(self, shape_id: str) -> trimesh.Trimesh:

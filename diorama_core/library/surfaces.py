@@ -28,6 +28,11 @@ REACH_M = 0.03
 MINIMUM_FILL = 0.55
 """A region that fills less of its convex outline than this is a rim or a frame, not a surface."""
 
+SEAM_STEP_M = 0.05
+"""Open surfaces whose heights differ by less may be joined."""
+SEAM_FILL = 0.9
+"""Joined surfaces fill at least this share of their common outline."""
+
 
 @dataclass(frozen=True)
 class _Spots:
@@ -71,6 +76,7 @@ def support_surfaces(mesh: trimesh.Trimesh, lattice: int = 72) -> tuple[SupportS
         if len(region) * cell_m**2 < MINIMUM_FILL * _area(outline) or _breadth(outline) < narrowest:
             continue
         found.append(_surface(spots, region, outline))
+    found = _joined(found)
     return tuple(sorted(found, key=lambda s: (-round(s.height_m, 3), *np.round(s.polygon.mean(axis=0)[:2], 3))))
 
 
@@ -175,9 +181,38 @@ def _breadth(outline: Float[np.ndarray, "n 2"]) -> float:
     return float(np.ptp(outline @ normals.T, axis=0).min())
 
 
+def _joined(surfaces: list[SupportSurface]) -> list[SupportSurface]:
+    """Open surfaces at about one height with only a seam between them become one: the cushions of a seat, a made bed.
+
+    What lies on them does not mind the seam. Joined only where the common outline holds little else.
+    """
+    surfaces = list(surfaces)
+    for i in range(len(surfaces)):
+        for j in range(i + 1, len(surfaces)):
+            common = _common_outline(surfaces[i], surfaces[j])
+            if common is not None:
+                rest = [s for k, s in enumerate(surfaces) if k not in (i, j)]
+                return _joined([*rest, common])
+    return surfaces
+
+
+def _common_outline(a: SupportSurface, b: SupportSurface) -> SupportSurface | None:
+    if a.interior or b.interior or abs(a.height_m - b.height_m) > SEAM_STEP_M:
+        return None
+    points = np.vstack([a.polygon, b.polygon])[:, :2]
+    outline = points[ConvexHull(points).vertices]
+    parts = [_area(s.polygon[:, :2]) for s in (a, b)]
+    if sum(parts) < SEAM_FILL * _area(outline):
+        return None
+    height = float(np.average([a.height_m, b.height_m], weights=parts))
+    return SupportSurface(np.column_stack([outline, np.full(len(outline), height)]), float("inf"), False)
+
+
 def _surface(spots: _Spots, region: Int[np.ndarray, "k"], outline: Float[np.ndarray, "n 2"]) -> SupportSurface:
     """Outline, level and free height of one region."""
     clearance = spots.clearance[region]
     polygon = np.column_stack([outline, np.full(len(outline), float(np.median(spots.z[region])))])
-    lowest = float(np.percentile(clearance, 10, method="lower"))
-    return SupportSurface(polygon, lowest, bool(np.isfinite(clearance).mean() > 0.5))
+    # Under the open sky things fit beside what overhangs a part of the surface (a throw, a headboard's edge).
+    interior = bool(np.isfinite(clearance).mean() > 0.5)
+    lowest = float(np.percentile(clearance, 10, method="lower")) if interior else float("inf")
+    return SupportSurface(polygon, lowest, interior)

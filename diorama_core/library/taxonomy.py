@@ -58,6 +58,8 @@ class Category:
     """Whether people put things on it, so that its shapes must come empty."""
     quarter_turns_free: bool = False
     """Whether it often stands at odd angles to the room (chairs, plants)."""
+    soft: bool = False
+    """Whether it gives way: soft things lie against and partly in one another."""
 
 
 @dataclass(frozen=True)
@@ -125,7 +127,7 @@ CATEGORIES: tuple[Category, ...] = (
     _c("computer", (0.42, 0.2, 0.45), (0.2, 0.25, 0.2), "surface", synonyms="pc, desktop computer, computer tower, printer, tower"),
     _c("keyboard", (0.03, 0.43, 0.15), (0.3, 0.15, 0.2), "surface", synonyms="computer keyboard"),
     _c("microwave", (0.3, 0.5, 0.38), (0.12, 0.12, 0.15), "surface", synonyms="microwave oven, toaster oven, toaster, oven toaster"),
-    _c("pillow", (0.38, 0.48, 0.2), (0.2, 0.2, 0.3), "surface", synonyms="cushion, throw pillow, bolster"),
+    _c("pillow", (0.38, 0.48, 0.2), (0.2, 0.2, 0.3), "surface", synonyms="cushion, throw pillow, bolster", soft=True),
     _c("books", (0.15, 0.4, 0.3), (0.5, 0.4, 0.4), "surface", synonyms="book, book stack, stack of books, magazine, papers, paper, pile of books"),
     _c("plant", (0.9, 0.5, 0.5), (0.5, 0.4, 0.4), "floor", synonyms="potted plant, houseplant, pot plant, flower, flowers, tree, pottedplant, succulent", quarter_turns_free=True),
     _c("vase", (0.3, 0.18, 0.18), (0.3, 0.3, 0.3), "surface", synonyms="jar, urn, jug, pitcher, flower vase"),
