@@ -18,8 +18,8 @@ from diorama_core.layout.problem import build_problem
 from diorama_core.layout.published import AllInOneRecipe, PaperRecipe, one_thread
 from diorama_core.layout.recipes import recipe
 from diorama_core.layout.report import measure
-from diorama_core.protocols import LayoutStage
 from diorama_core.progress import Progress
+from diorama_core.protocols import LayoutStage
 from diorama_core.scene.types import Pose, Scene
 
 ROOM = 20

@@ -288,6 +288,8 @@ class _Builder:
         return name
 
     def _free_floor(self, half: np.ndarray, *, margin: float = 0.02) -> np.ndarray | None:
+        if half[0] >= self.half_x or half[1] >= self.half_y:
+            return None
         for _ in range(40):
             x = self.rng.uniform(-self.half_x + half[0], self.half_x - half[0])
             y = self.rng.uniform(-self.half_y + half[1], self.half_y - half[1])

@@ -41,8 +41,9 @@ class FeasibleRecipe:
     """How often stuck objects are made a little smaller before giving up."""
     evidence: float = 4.0
     """Cost of moving across the viewing ray relative to along it, when the scene has a camera; 1 is indifferent."""
-    adherence_m: float = 0.06
-    """Faces parallel to a wall and nearer than this are set against it."""
+    adherence_m: float = 0.0
+    """Faces parallel to a wall and nearer than this are set against it, besides those whose support edge says so. Above
+    0 a second run may change a layout: the first can bring things near walls."""
 
     def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
         """Returns the scene with every free object's pose made feasible, and what was achieved.

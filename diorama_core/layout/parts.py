@@ -59,7 +59,7 @@ def _write(path: Path, parts: tuple[ConvexPart, ...]) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".tmp", delete=False) as file:
-            np.savez(file, count=len(parts), **arrays)  # type: ignore[arg-type]
+            np.savez(file, count=len(parts), **arrays)
         os.replace(file.name, path)
     except OSError:
         return

@@ -37,7 +37,7 @@ class PaperRecipe:
     schedule: Schedule = PUBLISHED
     stages: int = 4
     """How many of the four stages to run, for the ablation."""
-    adherence_m: float = 0.3
+    adherence_m: float = 0.1
     """Objects on the floor nearer to a wall than this are drawn to it."""
 
     def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
@@ -61,7 +61,7 @@ class AllInOneRecipe:
     only: frozenset[str] | None = None
     """Ids free to move (with what they hold up); all when None."""
     schedule: Schedule = TOGETHER
-    adherence_m: float = 0.3
+    adherence_m: float = 0.1
     """Objects on the floor nearer to a wall than this are drawn to it."""
 
     def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:

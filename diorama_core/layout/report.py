@@ -25,9 +25,9 @@ def measure(
     """The report's figures for one layout of the problem's objects.
 
     `orientation`, `placement`, `structure`, `in_support`: shares of supported objects within 1 degree and 0.1 cm of
-    their support, and inside its bounds and clearance. `box_overlap_m`: overlap of bounding boxes per object. `part_overlap_m`: deepest overlap of convex parts (0 when
-    apart); `part_overlap_mean_m` and `overlapping_pairs` say how widespread. `moved_m`: mean distance from the
-    observed positions.
+    their support, and inside its bounds and clearance. `part_overlap_m`: deepest overlap of convex parts (0 when
+    apart); `part_overlap_mean_m` and `overlapping_pairs` say how widespread. `box_overlap_m`: overlap of bounding
+    boxes per object, tucked chairs included. `moved_m`: mean distance from the observed positions.
     """
     aligned, placed, inside = _structure(problem, R, p, scale)
     depths = part_overlaps(problem, R, p, scale)

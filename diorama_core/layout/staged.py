@@ -127,7 +127,7 @@ def orientation_stage(problem: Problem, state: State, schedule: Schedule, report
 
 def placement_stage(problem: Problem, state: State, schedule: Schedule, report: Report) -> None:
     """Stage 2: move objects onto their supports, keeping their neighbours' relative positions. 5 e_place + e_rel."""
-    cost = _Placement.of(problem, state)
+    cost = Placement.of(problem, state)
     links = gradients.incidence(problem.relations, problem.count)
     velocity, start = np.zeros((problem.count, 3)), state.p.copy()
     free = problem.free.astype(np.float64)[:, None]
@@ -173,7 +173,7 @@ def refinement_stage(
     problem: Problem, state: State, schedule: Schedule, report: Report, *, near_m: float = 0.1
 ) -> None:
     """Stage 4: placement again, and no boxes overlapping. 5 e_place + e_col; walls are obstacles."""
-    cost = _Placement.of(problem, state)
+    cost = Placement.of(problem, state)
     R, centre, size, apart = with_walls(problem, state)
     n = problem.count
     velocity = np.zeros((n, 3))
@@ -194,7 +194,7 @@ def refinement_stage(
 
 
 @dataclass(frozen=True, eq=False)
-class _Placement:
+class Placement:
     """e_place as a function of positions only: everything else is fixed within a stage."""
 
     slope: Float[np.ndarray, "e 3"]
@@ -204,7 +204,8 @@ class _Placement:
     scatter: Float[np.ndarray, "n e"]
 
     @classmethod
-    def of(cls, problem: Problem, state: State) -> _Placement:
+    def of(cls, problem: Problem, state: State) -> Placement:
+        """The cost at the present rotations and scales."""
         edges = Edges.of(problem)
         R, _, scale = edges.owners(state)
         size = problem.shape_size[edges.child] * state.scale[edges.child]
@@ -216,6 +217,7 @@ class _Placement:
         return cls(normal, level, np.abs(normal).sum(axis=1), edges, to_child - to_holder)
 
     def of_positions(self, p: Float[np.ndarray, "n 3"]) -> tuple[float, Float[np.ndarray, "n 3"]]:
+        """Its value and its gradient."""
         relative = self.scatter.T @ p
         distance = np.einsum("ec,ec->e", relative, self.slope) - self.level
         value = float(np.abs(distance) @ self.weight)

@@ -99,10 +99,10 @@ def _settle(
     n = surface.normal
     walk.R[i] = _aligned(walk.R[i], problem.contact[i], surface, [(problem.walls[w].normal, f) for w, f in against])
     u, v = plane_axes(n)
-    target = _on_support(problem, walk, i, surface, None if ray is None else ray[i])
+    _on_support(problem, walk, i, surface, None if ray is None else ray[i])
     grounded = problem.grounded[i] and is_wall_like(surface)
     walk.basis[i] = np.column_stack([u, np.zeros(3) if grounded else v])
-    _against_walls(problem, walk, i, target, against)
+    _against_walls(problem, walk, i, against)
     if grounded:
         _reach_floor(problem, walk, i)
     m, h = surface.outward, surface.offset
@@ -143,7 +143,7 @@ def _lift(problem: Problem, walk: _Walk, i: int, surface: Surface) -> float:
     return surface.level - float(surface.normal @ _contact_centre(problem, walk, i))
 
 
-def _on_support(problem: Problem, walk: _Walk, i: int, surface: Surface, ray: np.ndarray | None) -> np.ndarray:
+def _on_support(problem: Problem, walk: _Walk, i: int, surface: Surface, ray: np.ndarray | None) -> None:
     """Move the object onto its surface: along the normal, or along its viewing ray where that meets it decently."""
     lift = _lift(problem, walk, i, surface)
     shift = lift * surface.normal
@@ -156,7 +156,6 @@ def _on_support(problem: Problem, walk: _Walk, i: int, surface: Surface, ray: np
             far = float(np.linalg.norm(sideways))
             shift = shift + sideways * min(1.0, limit / max(far, 1e-9))
     walk.p[i] = walk.p[i] + shift
-    return walk.p[i]
 
 
 def _aligned(
@@ -207,9 +206,7 @@ def _twist(R: np.ndarray, n: np.ndarray, axis_object: np.ndarray, toward: np.nda
     return (np.eye(3) + sine * K + (1.0 - cosine) * (K @ K)) @ R
 
 
-def _against_walls(
-    problem: Problem, walk: _Walk, i: int, target: np.ndarray, against: list[tuple[int, np.ndarray]]
-) -> None:
+def _against_walls(problem: Problem, walk: _Walk, i: int, against: list[tuple[int, np.ndarray]]) -> None:
     """Bring faces to their walls and give up the coordinate that would leave them."""
     basis = walk.basis[i]
     for w, _ in against[:2]:
@@ -272,7 +269,8 @@ def _room(m: np.ndarray, h: np.ndarray, reach: np.ndarray) -> float:
     found = linprog([0.0, 0.0, -1.0], A_ub=A, b_ub=h, bounds=[(None, None), (None, None), (0.0, 1.0)])
     if found.status != 0:
         return 0.0
-    return float(found.x[2]) if found.x[2] < 1.0 - 1e-9 else 1.0
+    share = float(np.asarray(found.x)[2])
+    return share if share < 1.0 - 1e-9 else 1.0
 
 
 def _into(rows: np.ndarray, slack: np.ndarray) -> Float[np.ndarray, "2"]:

@@ -75,8 +75,10 @@ def test_gradients_against_finite_differences() -> None:
     )
     R, size = rotations(3), tensor(3, 3, seed=6).detach().abs() + 1.5
     assert gradcheck(lambda p: costs.e_col(p, R, size, pairs), (tensor(3, 3),))
-    assert gradcheck(lambda a, b: sum(costs.adherence(a, b, tensor(2, 3, seed=7).detach(), tensor(2, 3, seed=8).detach())),
-                     (tensor(2, 3), tensor(2, 3, seed=1)))  # fmt: skip
+    wall, point = tensor(2, 3, seed=7).detach(), tensor(2, 3, seed=8).detach()
+    assert gradcheck(
+        lambda face, centre: sum(costs.adherence(face, centre, wall, point)), (tensor(2, 3), tensor(2, 3, seed=1))
+    )
 
 
 def test_gradients_are_finite_where_costs_vanish() -> None:
@@ -101,7 +103,7 @@ def test_hand_written_gradients_equal_autograd() -> None:
         (gradients.semantic(a.detach().numpy(), b.detach().numpy()), costs.e_sem(a, b), a),
         (gradients.place(a.detach().numpy(), b.detach().numpy(), n.detach().numpy()), costs.e_place(a, b, n), a),
     ):
-        assert hand[0] == pytest.approx(float(value))
+        assert hand[0] == pytest.approx(float(value.detach()))
         assert np.allclose(hand[1], autograd(value, want)[0])
 
 
@@ -111,7 +113,7 @@ def test_hand_written_pair_gradients_equal_autograd() -> None:
     links = gradients.incidence(pairs, 4)
     value = costs.e_rel(p, start, torch.tensor(pairs))
     hand = gradients.relative((p.detach() - start).numpy(), pairs, links)
-    assert hand[0] == pytest.approx(float(value))
+    assert hand[0] == pytest.approx(float(value.detach()))
     assert np.allclose(hand[1], autograd(value, p)[0])
     R, size = rotations(4), tensor(4, 3, seed=3).detach().abs() + 1.0
     for walls_from in (4, 3):
@@ -119,7 +121,7 @@ def test_hand_written_pair_gradients_equal_autograd() -> None:
         assert float(value) > 0
         boxes = gradients.BoxPairs.of(R.numpy(), size.numpy(), pairs, walls_from=walls_from)
         hand = boxes.collision(p.detach().numpy(), links)
-        assert hand[0] == pytest.approx(float(value))
+        assert hand[0] == pytest.approx(float(value.detach()))
         assert np.allclose(hand[1], autograd(value, p)[0])
 
 
@@ -129,6 +131,6 @@ def test_hand_written_volume_gradients_equal_autograd() -> None:
     clearance = torch.tensor([0.1, float("inf"), -1.0], dtype=torch.float64)
     value = costs.e_vol(corners, top, outward, offset, clearance)
     hand = gradients.volume(*(x.detach().numpy() for x in (corners, top, outward, offset, clearance)))
-    assert hand[0] == pytest.approx(float(value))
+    assert hand[0] == pytest.approx(float(value.detach()))
     for ours, theirs in zip(hand[1:], autograd(value, corners, top)):
         assert np.allclose(ours, theirs)
