@@ -31,6 +31,8 @@ GLIDE_BELOW = 10
 """A run with fewer pictures than this is too abrupt to be followed."""
 
 Costs = Sequence[tuple[str, float]]
+Samples = list[tuple[float, tuple[tuple[str, float], ...]]]
+"""Seconds since the start, and every cost then; only ever appended to."""
 
 
 def build(room: Room, client_id: int | None, *, example: bool = False) -> None:
@@ -112,6 +114,15 @@ class LayoutRun:
     costs: dict[str, list[float]]
     report: LayoutReport | None = None
 
+    def read(self, samples: Samples) -> None:
+        """Take up what the optimiser has written since. A cost that begins later or ends earlier keeps its level."""
+        for at_s, costs in samples[len(self.times_s) :]:
+            self.times_s.append(at_s)
+            for name, value in costs:
+                self.costs.setdefault(name, [float(value)] * (len(self.times_s) - 1)).append(float(value))
+            for values in self.costs.values():
+                values.extend([values[-1]] * (len(self.times_s) - len(values)))
+
 
 def optimise(room: Room, recipe_name: str, on_progress: Callable[[LayoutRun], None]) -> LayoutRun:
     """Optimise the layout with live preview; commits once, as one undo step. `on_progress` is called on the desk."""
@@ -124,19 +135,22 @@ def optimise(room: Room, recipe_name: str, on_progress: Callable[[LayoutRun], No
         from diorama_core.layout.recipes import recipe
 
         shown, pictures = 0.0, 0
+        samples: Samples = []
 
         def preview(scene: Scene, costs: Costs) -> None:
             nonlocal shown, pictures
             now = time.monotonic()
+            samples.append((now - run.started_at, tuple(costs)))
             if now - shown >= PREVIEW_EVERY_S:
                 shown, pictures = now, pictures + 1
-                room.desk.post(lambda: _show_step(room, start, scene, costs, run, now, on_progress), key="preview")
+                room.desk.post(lambda: _show_step(room, start, scene, run, samples, on_progress), key="preview")
 
         try:
             final, report = recipe(recipe_name, room.library).optimise(start, progress, preview)
         except BaseException:
             room.desk.post(room.refresh)  # cancelled or failed: everything goes back to the document
             raise
+        room.desk.post(lambda: run.read(samples))
         if pictures < GLIDE_BELOW:
             _glide(room, start, final, progress)
         room.desk.post(lambda: _arranged(room, start, final, report, run, on_progress))
@@ -164,15 +178,10 @@ def _between(a: Pose, b: Pose, share: float) -> Pose:
 
 
 def _show_step(
-    room: Room, start: Scene, scene: Scene, costs: Costs, run: LayoutRun, now: float, tell: Callable[[LayoutRun], None]
+    room: Room, start: Scene, scene: Scene, run: LayoutRun, samples: Samples, tell: Callable[[LayoutRun], None]
 ) -> None:
     room.preview(untouched(room.scene, start, scene))
-    run.times_s.append(now - run.started_at)
-    for name, value in costs:
-        # A cost that starts later or ends earlier than the others keeps its first or last value there.
-        run.costs.setdefault(name, [float(value)] * (len(run.times_s) - 1)).append(float(value))
-    for values in run.costs.values():
-        values.extend([values[-1]] * (len(run.times_s) - len(values)))
+    run.read(samples)
     tell(run)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import socket
 import time
 import urllib.error
@@ -13,6 +12,7 @@ import pytest
 import viser
 import websockets
 from viser import _messages
+from websockets.sync.client import connect
 
 from diorama_app import viser_adapter
 from diorama_app.viser_adapter import Visitors, component_uuid, create_server, stop_server
@@ -43,18 +43,15 @@ def fetch(server: viser.ViserServer, path: str = "/", **headers: str) -> tuple[i
 
 
 def connects(server: viser.ViserServer, **headers: str) -> bool:
-    async def attempt() -> bool:
-        try:
-            async with websockets.connect(
-                f"ws://127.0.0.1:{server.get_port()}/",
-                additional_headers=headers,
-                subprotocols=[websockets.Subprotocol(f"viser-v{viser.__version__}")],
-            ):
-                return True
-        except websockets.InvalidStatus as refused:
-            return refused.response.status_code != 403
-
-    return asyncio.run(attempt())
+    try:
+        with connect(
+            f"ws://127.0.0.1:{server.get_port()}/",
+            additional_headers=headers,
+            subprotocols=[websockets.Subprotocol(f"viser-v{viser.__version__}")],
+        ):
+            return True
+    except websockets.InvalidStatus as refused:
+        return refused.response.status_code != 403
 
 
 def test_it_is_the_version_that_was_measured() -> None:
