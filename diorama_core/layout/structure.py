@@ -23,6 +23,9 @@ INSET_M = 2e-4
 """Kept between a contact face and the edge of its support, and under a shelf's ceiling."""
 
 
+_FRONT_FIRST = np.array([2.25, 1.0, 1.0])
+
+
 @dataclass(frozen=True, eq=False)
 class Structure:
     """A layout that is structurally exact, and the coordinates in which it can still move.
@@ -174,7 +177,8 @@ def _aligned(
         if float(own @ flat_up) > UPRIGHT_WITHIN * float(np.linalg.norm(own) * np.linalg.norm(flat_up)):
             return _twist(swung, n, np.array([0.0, 0.0, 1.0]), up)
         return swung
-    axis = int(np.argmax([np.linalg.norm(cross(swung[:, k], n)) * (1.5 if k == 0 else 1.0) for k in range(3)]))
+    # The front, unless another axis lies much flatter on the support.
+    axis = int(((1.0 - (n @ swung) ** 2) * _FRONT_FIRST).argmax())
     return _twist(swung, n, np.eye(3)[axis], R[:, axis])
 
 

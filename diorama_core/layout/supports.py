@@ -105,12 +105,12 @@ def convex_outline(polygon: Float[np.ndarray, "n 3"], normal: Float[np.ndarray, 
 
 def plane_axes(normal: Float[np.ndarray, "3"]) -> tuple[np.ndarray, np.ndarray]:
     """Two unit axes that with the normal form a right-handed frame; the first is horizontal."""
-    u = np.array([-normal[1], normal[0], 0.0])
-    length = float(np.linalg.norm(u))
-    u = u / length if length > 1e-6 else np.array([1.0, 0.0, 0.0])
-    v = np.cross(normal, u)
-    v /= np.linalg.norm(v)
-    return np.cross(v, normal), v
+    x, y, z = (float(c) for c in normal)
+    length = float(np.hypot(x, y))
+    if length <= 1e-6:
+        return np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0 if z > 0 else -1.0, 0.0])
+    u0, u1 = -y / length, x / length
+    return np.array([u0, u1, 0.0]), np.array([-z * u1, z * u0, x * u1 - y * u0])
 
 
 def _cross(a: np.ndarray, b: np.ndarray) -> float:
