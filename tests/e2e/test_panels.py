@@ -188,6 +188,15 @@ def test_the_photo_view_stands_where_the_photo_was_taken(editor: EditorPage) -> 
         scale = (box[3] / 2) / np.tan(view.fov_rad / 2) / camera.intrinsics.fy
         assert x - (box[0] + box[2] / 2) == pytest.approx(u * scale, abs=2.5)
         assert y - (box[1] + box[3] / 2) == pytest.approx(v * scale, abs=2.5)
+    slider = editor.page.locator(".mantine-Flex-root", has_text="Photo over model").locator("input[type=text]")
+    slider.fill("100")
+    slider.press("Tab")
+    editor.until(lambda: view.comparing, "the photo lies over the model")
+    brown = camera.position + camera.rays(np.array([340.0, 310.0]))
+    editor.settle()
+    np.testing.assert_allclose(editor.mean_colour(brown), (120, 80, 50), atol=25)
+    editor.button("Room").click()
+    editor.until(lambda: not view.comparing and not view.through_photo, "the model alone again")
 
 
 def test_an_empty_room_says_what_to_do(
