@@ -134,7 +134,12 @@ def swap_shape(room: Room, object_id: str, shape_id: str) -> None:
 def _swap(room: Room, item: SceneObject, candidate: Candidate) -> None:
     if candidate.shape_id == item.shape_id:
         return
-    room.edit(f"swap {item.label}", lambda s: edits.swap(s, item.id, candidate, keep_pose=True))
+
+    def take(scene: Scene) -> Scene:
+        # What was clicked is what comes: in the colours of its picture, not in those of what it replaces.
+        return edits.recolour(edits.swap(scene, item.id, candidate, keep_pose=True), item.id, None)
+
+    room.edit(f"swap {item.label}", take)
 
 
 def insert_shape(room: Room, shape_id: str, looked_at: Float[np.ndarray, "3"] | None) -> None:

@@ -196,7 +196,11 @@ class PhotoPanel:
             )
         if self._picture_of is not draft.photo:
             self._picture_of, self._picture = draft.photo, _jpeg_uri(draft.photo.rgb)
-        state = f"{len(draft.boxes)} boxes" if draft.boxes else "<b>Draw a box around each piece of furniture.</b>"
+        state = (
+            ("1 box" if len(draft.boxes) == 1 else f"{len(draft.boxes)} boxes")
+            if draft.boxes
+            else "<b>Draw a box around each piece of furniture.</b>"
+        )
         extras = [n for n, there in _extras(draft).items() if there]
         extra = f" · with {', '.join(extras)}" if extras else ""
         return (

@@ -100,6 +100,14 @@ def test_inserted_things_stand_on_the_floor_clear_of_others(room: Room, shape_id
     assert (new.pose.position[:2] < high[:2]).all()
 
 
+def test_a_swap_brings_the_colours_of_its_picture(room: Room) -> None:
+    room.edit("paint", lambda s: edits.recolour(s, "chair_1", (0.1, 0.2, 0.9)))
+    editing.swap_candidate(room, "chair_1", 1)
+    assert room.scene.object("chair_1").colour is None
+    editing.undo(room)
+    assert room.scene.object("chair_1").colour == (0.1, 0.2, 0.9)
+
+
 def test_every_commit_is_on_disk_within_a_second(room: Room) -> None:
     editing.set_yaw(room, "chair_1", 77.0)
     until = time.monotonic() + 1.5
