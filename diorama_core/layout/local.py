@@ -104,7 +104,7 @@ class DragSolver:
         for k in problem.rides(i):
             for above in changed.chain(k):
                 kin[k, above] = kin[above, k] = True
-        return replace(changed, kin=kin | (problem.kin & problem.rug_pairs)), edge
+        return replace(changed, kin=kin | (problem.kin & problem.yielding)), edge
 
 
 def resolve_drag(scene: Scene, library: ShapeLibrary, object_id: str, pose: Pose) -> Scene:

@@ -32,6 +32,10 @@ FIRM_SHARE = 0.55
 """Share of a soft thing's extent that does not give way: pillows lean on and sink into one another."""
 
 
+SOFT = frozenset({"pillow"})
+"""Categories that give way to each other."""
+
+
 @dataclass(frozen=True, eq=False)
 class Problem:
     """Everything an optimiser needs, indexed by object (sorted by id)."""
@@ -68,9 +72,9 @@ class Problem:
     relations: Int[np.ndarray, "m 2"]
     """Pairs that are near each other and should stay so."""
     kin: Bool[np.ndarray, "n n"]
-    """Pairs that never collide: an object and its direct or indirect supporters, a rug and what is on it."""
-    rug_pairs: Bool[np.ndarray, "n n"]
-    """Pairs of which one is a rug: things stand over its edge."""
+    """Pairs that never collide: an object and its direct or indirect supporters, and `yielding` ones."""
+    yielding: Bool[np.ndarray, "n n"]
+    """Pairs that may overlap: things stand over the edge of a rug, pillows press into each other."""
     parts: tuple[tuple[ConvexPart, ...], ...]
     packed: PackedParts
     """The same parts, ready to be posed."""
@@ -140,7 +144,7 @@ def build_problem(
         surfaces.append(choose_surface(scene, item, edge, held_by) if edge is not None else None)
         contacts[k] = choose_contact(scene, item, edge, surfaces[-1])
     walls = tuple(sorted(scene.architecture.by_role("wall"), key=lambda w: w.id))
-    rug_pairs = _rug_pairs(objects)
+    yielding = _yielding_pairs(objects)
     firm = np.array([FIRM_SHARE if _is_soft(o) else 1.0 for o in objects]).reshape(-1)
     parts = tuple(_scaled(parts_of_shape(library, s), share) for s, share in zip(shapes, firm))
     on_plane = tuple(e.parent if e is not None and e.parent not in index else None for e in edges)
@@ -165,8 +169,8 @@ def build_problem(
         floor_m=float(floor.centre[2]) if (floor := scene.architecture.floor) is not None else 0.0,
         walls=walls,
         relations=_relations(parent, on_plane, p, sizes),
-        kin=_kin(parent, rug_pairs),
-        rug_pairs=rug_pairs,
+        kin=_kin(parent, yielding),
+        yielding=yielding,
         parts=parts,
         packed=pack_parts(parts),
         reasons=reasons,
@@ -224,8 +228,8 @@ def _relations(
     return np.array(sorted(pairs), dtype=int).reshape(-1, 2)
 
 
-def _kin(parent: np.ndarray, rug_pairs: Bool[np.ndarray, "n n"]) -> Bool[np.ndarray, "n n"]:
-    kin = np.eye(len(parent), dtype=bool) | rug_pairs
+def _kin(parent: np.ndarray, yielding: Bool[np.ndarray, "n n"]) -> Bool[np.ndarray, "n n"]:
+    kin = np.eye(len(parent), dtype=bool) | yielding
     for k in range(len(parent)):
         above = int(parent[k])
         while above >= 0:
@@ -234,6 +238,8 @@ def _kin(parent: np.ndarray, rug_pairs: Bool[np.ndarray, "n n"]) -> Bool[np.ndar
     return kin
 
 
-def _rug_pairs(objects: Sequence[SceneObject]) -> Bool[np.ndarray, "n n"]:
+def _yielding_pairs(objects: Sequence[SceneObject]) -> Bool[np.ndarray, "n n"]:
+    """Rugs with anything, and soft things with each other."""
     rugs = np.array([o.category == "rug" and o.size_m[2] < 0.06 for o in objects], dtype=bool).reshape(-1)
-    return rugs[:, None] | rugs[None]
+    soft = np.array([o.category in SOFT for o in objects], dtype=bool).reshape(-1)
+    return rugs[:, None] | rugs[None] | (soft[:, None] & soft[None])

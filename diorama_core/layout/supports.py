@@ -19,6 +19,8 @@ BOTTOM_FAVOURED = float(np.cos(np.deg2rad(55.0)))
 """The bottom face touches when it faces the support within this angle, even if another face does better."""
 SMALLEST_SHARE = 0.35
 """A supporter narrower than this share of what it should hold cannot be meant."""
+SMALLEST_CLEARANCE = 0.75
+"""A place with less than this share of a thing's height above it is chosen only where there is no other."""
 FLAT = 0.7
 """A surface counts as upward when its normal's z is at least this."""
 
@@ -166,7 +168,8 @@ def misfit(item: SceneObject, surface: Surface) -> float:
     low, height = float(along.min()), float(np.ptp(along))
     gap = abs(low - surface.level)
     over = max(height - surface.clearance_m, 0.0)
-    return gap + outside_m(surface, item.pose.position) + 2.0 * over + 2.0 * _too_wide(item, surface)
+    squeezed = 1.0 if surface.clearance_m < SMALLEST_CLEARANCE * height else 0.0
+    return gap + outside_m(surface, item.pose.position) + 0.5 * over + squeezed + 0.5 * _too_wide(item, surface)
 
 
 def _too_wide(item: SceneObject, surface: Surface) -> float:
