@@ -68,3 +68,14 @@ install() {
         touch .venv/.system-ok
     fi
 }
+
+# prepare_shapes: what is derived from the built-in shapes, once for each state of their code.
+prepare_shapes() {
+    local stamp
+    stamp=".venv/.shapes-$(cat diorama_core/library/furniture/*.py diorama_core/library/*.py | cksum | tr ' ' '-')"
+    [ -e "$stamp" ] && return
+    say "Preparing the shape library (once; about a minute)…"
+    .venv/bin/diorama library build || { say "The shapes could not be prepared; the line above says why."; exit 1; }
+    rm -f .venv/.shapes-*
+    touch "$stamp"
+}
