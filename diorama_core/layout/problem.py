@@ -16,6 +16,7 @@ from diorama_core.geometry.convex import ConvexPart
 from diorama_core.geometry.sat import PackedParts, pack_parts
 from diorama_core.layout.parts import parts_of_shape
 from diorama_core.layout.supports import (
+    SOFT,
     Surface,
     choose_contact,
     choose_surface,
@@ -30,10 +31,6 @@ from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, Support
 
 FIRM_SHARE = 0.55
 """Share of a soft thing's extent that does not give way: pillows lean on and sink into one another."""
-
-
-SOFT = frozenset({"pillow"})
-"""Categories that give way to each other."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,6 +19,8 @@ BOTTOM_FAVOURED = float(np.cos(np.deg2rad(55.0)))
 """The bottom face touches when it faces the support within this angle, even if another face does better."""
 SMALLEST_SHARE = 0.35
 """A supporter narrower than this share of what it should hold cannot be meant."""
+SOFT = frozenset({"pillow"})
+"""Categories that give way to each other."""
 SMALLEST_CLEARANCE = 0.75
 """A place with less than this share of a thing's height above it is chosen only where there is no other."""
 FLAT = 0.7
@@ -148,7 +150,18 @@ def choose_surface(scene: Scene, item: SceneObject, edge: Support, holder: Shape
     options = object_surfaces(holder, parent)
     if edge.parent_surface is not None and 0 <= edge.parent_surface < len(options):
         return options[edge.parent_surface]
+    if item.category in SOFT:
+        return _spread(options)
     return min(options, key=lambda s: misfit(item, s.in_world(parent.pose)))
+
+
+def _spread(options: Sequence[Surface]) -> Surface:
+    """The largest place, widened over all others at its height: where pillows lie, those of the shape give way."""
+    largest = max(options, key=lambda s: float(np.prod(np.ptp(s.polygon, axis=0)[:2])))
+    points = np.vstack([s.polygon for s in options])
+    points[:, 2] = largest.level
+    outline = convex_outline(points, largest.normal)
+    return Surface.of(outline, largest.normal, largest.clearance_m, of_plane=False)
 
 
 def _nearest_side(item: SceneObject, parent: SceneObject) -> Surface:
