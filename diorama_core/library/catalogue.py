@@ -70,6 +70,9 @@ class BuiltInLibrary:
         self._glbs: _Kept[bytes] = _Kept(256)
         self._surfaces: _Kept[tuple[SupportSurface, ...]] = _Kept(4096)
 
+    def __repr__(self) -> str:
+        return f"BuiltInLibrary({len(self._records)} shapes)"
+
     def shapes(self) -> tuple[Shape, ...]:
         """All records in a stable order, without support surfaces."""
         return tuple(self._records.values())
