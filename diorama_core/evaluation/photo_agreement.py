@@ -53,7 +53,8 @@ def agreement(
     for item in objects:
         cuboid = cuboids.get(item.id)
         corners = None if cuboid is None else cuboid.corners_world
-        size = tuple(float(v) for v in final.object(item.id).size_m) if final.has_object(item.id) else (0.0, 0.0, 0.0)
+        depth, width, height = final.object(item.id).size_m if final.has_object(item.id) else (0.0, 0.0, 0.0)
+        size = (float(depth), float(width), float(height))
         rows.append(
             Agreement(
                 object_id=item.id,
@@ -83,7 +84,7 @@ def _cuboid_iou(camera: Camera, corners_world: Float[np.ndarray, "8 3"], box: ob
     return float(box_iou(bounds[0], np.array(box))) if visible[0] else 0.0
 
 
-def _plausible(category: str, size_m: tuple[float, ...]) -> bool:
+def _plausible(category: str, size_m: tuple[float, float, float]) -> bool:
     if category not in PLAUSIBLE_M:
         return True
     side, low, high = PLAUSIBLE_M[category]

@@ -30,7 +30,7 @@ from diorama_core.perception.masks import EmbeddedMasks
 from diorama_core.perception.measured import MeasuredGeometry
 from diorama_core.perception.metrology import SingleViewMetrology
 from diorama_core.pipeline.assemble import assemble
-from diorama_core.pipeline.colours import photo_colours
+from diorama_core.pipeline.colours import photo_colours, shared_by_sets
 from diorama_core.pipeline.runner import Runner, StageRun
 from diorama_core.pose import RenderAndCompare
 from diorama_core.progress import Progress
@@ -147,7 +147,8 @@ def build_scene(
         "pose", s.pose, s.pose.pose, (inputs, objects, geometry, depth, shapes), progress.part(0.65, 0.85)
     )
     textures = plane_textures(inputs, objects, geometry.camera, room.architecture)
-    colours = photo_colours(inputs.photo.rgb, objects)
+    shape_of = {p.object_id: p.candidates[0].shape_id for p in posed if p.candidates}
+    colours = shared_by_sets(photo_colours(inputs.photo.rgb, objects), objects, shape_of)
     observed = _textured(assemble(objects, geometry, room, posed, library, colours), textures)
 
     scene, report = observed, None

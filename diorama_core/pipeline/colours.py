@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import cv2
 import numpy as np
 from jaxtyping import Bool, UInt8
 
 from diorama_core.artefacts import DetectedObject
 
-KEEP_THEIR_OWN = frozenset(
-    {"picture", "mirror", "window", "plant", "books", "television", "monitor", "laptop", "clock", "toy", "keyboard"}
-)
+KEEP_THEIR_OWN = frozenset("picture mirror window plant books television monitor laptop clock toy keyboard rug".split())
 """Categories whose look is not one colour of one main material."""
+SETS = frozenset({"chair", "office chair", "stool"})
+"""Categories whose equal shapes in one room are a set."""
 _BIN = 20.0
 _FEWEST_PIXELS = 60
 _LEAST_SHARE = 0.25
@@ -36,6 +38,24 @@ def photo_colours(rgb: UInt8[np.ndarray, "h w 3"], objects: tuple[DetectedObject
         if colour is not None:
             colours[item.id] = colour
     return colours
+
+
+def shared_by_sets(
+    colours: dict[str, Colour], objects: tuple[DetectedObject, ...], shape_of: Mapping[str, str]
+) -> dict[str, Colour]:
+    """Seats of one shape get one colour: that of the one whose mask is surest, among those that have one."""
+    sure = {o.id: (o.mask_confidence * float(np.sqrt(o.mask.sum())), o.id) for o in objects}
+    sets: dict[tuple[str, str], list[str]] = {}
+    for item in objects:
+        if item.category in SETS and item.id in shape_of:
+            sets.setdefault((item.category, shape_of[item.id]), []).append(item.id)
+    shared = dict(colours)
+    for members in sets.values():
+        coloured = [m for m in members if m in colours]
+        if coloured:
+            colour = colours[max(coloured, key=sure.__getitem__)]
+            shared.update(dict.fromkeys(members, colour))
+    return shared
 
 
 def _main_colour(rgb: UInt8[np.ndarray, "h w 3"], mask: Bool[np.ndarray, "h w"]) -> Colour | None:

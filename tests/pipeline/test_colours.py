@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 
 from diorama_core.artefacts import DetectedObject
-from diorama_core.pipeline.colours import photo_colours
+from diorama_core.pipeline.colours import photo_colours, shared_by_sets
 
 
 def _object(name: str, category: str, mask: np.ndarray) -> DetectedObject:
@@ -44,3 +44,13 @@ def test_many_coloured_tiny_and_empty_things_are_left_as_they_are(rng: np.random
     assert photo_colours(noise, objects) == {}
     rgb, sofa, _ = _masks()
     assert photo_colours(rgb, (_object("p", "plant", sofa),)) == {}
+
+
+def test_chairs_of_one_shape_share_the_surest_colour() -> None:
+    _, big, _ = _masks()
+    small = big.copy()
+    small[:, 20:] = False
+    objects = (_object("a", "chair", small), _object("b", "chair", big), _object("c", "chair", small))
+    colours = {"a": (0.1, 0.1, 0.1), "b": (0.9, 0.0, 0.0), "c": (0.2, 0.2, 0.2)}
+    shared = shared_by_sets(colours, objects, {"a": "shell", "b": "shell", "c": "windsor"})
+    assert shared == {"a": (0.9, 0.0, 0.0), "b": (0.9, 0.0, 0.0), "c": (0.2, 0.2, 0.2)}
