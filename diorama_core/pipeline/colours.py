@@ -10,7 +10,12 @@ from jaxtyping import Bool, UInt8
 
 from diorama_core.artefacts import DetectedObject
 
-KEEP_THEIR_OWN = frozenset("picture mirror window plant books television monitor laptop clock toy keyboard rug".split())
+KEEP_THEIR_OWN = frozenset(
+    {
+        *("picture", "mirror", "window", "plant", "books", "television"),
+        *("monitor", "laptop", "clock", "toy", "keyboard", "rug"),
+    }
+)
 """Categories whose look is not one colour of one main material."""
 SETS = frozenset({"chair", "office chair", "stool"})
 """Categories whose equal shapes in one room are a set."""
