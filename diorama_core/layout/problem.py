@@ -16,15 +16,14 @@ from diorama_core.geometry.convex import ConvexPart
 from diorama_core.geometry.sat import PackedParts, pack_parts
 from diorama_core.layout.parts import parts_of_shape
 from diorama_core.layout.supports import (
-    SOFT,
     Surface,
     choose_contact,
     choose_surface,
     complete_edges,
+    is_soft,
     is_wall_like,
     wall_faces,
 )
-from diorama_core.library import taxonomy
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, Support
@@ -71,7 +70,7 @@ class Problem:
     kin: Bool[np.ndarray, "n n"]
     """Pairs that never collide: an object and its direct or indirect supporters, and `yielding` ones."""
     yielding: Bool[np.ndarray, "n n"]
-    """Pairs that may overlap: things stand over the edge of a rug, pillows press into each other."""
+    """Pairs of which one is a rug: things stand over its edge."""
     parts: tuple[tuple[ConvexPart, ...], ...]
     packed: PackedParts
     """The same parts, ready to be posed."""
@@ -142,7 +141,7 @@ def build_problem(
         contacts[k] = choose_contact(scene, item, edge, surfaces[-1])
     walls = tuple(sorted(scene.architecture.by_role("wall"), key=lambda w: w.id))
     yielding = _yielding_pairs(objects)
-    firm = np.array([FIRM_SHARE if _is_soft(o) else 1.0 for o in objects]).reshape(-1)
+    firm = np.array([FIRM_SHARE if is_soft(o) else 1.0 for o in objects]).reshape(-1)
     parts = tuple(_scaled(parts_of_shape(library, s), share) for s, share in zip(shapes, firm))
     on_plane = tuple(e.parent if e is not None and e.parent not in index else None for e in edges)
     p = np.array([o.pose.position for o in objects]).reshape(-1, 3)
@@ -172,10 +171,6 @@ def build_problem(
         packed=pack_parts(parts),
         reasons=reasons,
     )
-
-
-def _is_soft(item: SceneObject) -> bool:
-    return taxonomy.resolve(item.category).category.soft
 
 
 def _scaled(parts: tuple[ConvexPart, ...], share: float) -> tuple[ConvexPart, ...]:
@@ -236,7 +231,5 @@ def _kin(parent: np.ndarray, yielding: Bool[np.ndarray, "n n"]) -> Bool[np.ndarr
 
 
 def _yielding_pairs(objects: Sequence[SceneObject]) -> Bool[np.ndarray, "n n"]:
-    """Rugs with anything, and soft things with each other."""
     rugs = np.array([o.category == "rug" and o.size_m[2] < 0.06 for o in objects], dtype=bool).reshape(-1)
-    soft = np.array([o.category in SOFT for o in objects], dtype=bool).reshape(-1)
-    return rugs[:, None] | rugs[None] | (soft[:, None] & soft[None])
+    return rugs[:, None] | rugs[None]

@@ -6,8 +6,10 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.geometry.sat import pair_axes, place_bodies
+from diorama_core.layout import gradients
 from diorama_core.layout.gradients import BoxPairs, near_pairs
 from diorama_core.layout.problem import Problem
+from diorama_core.layout.staged import contact_templates
 from diorama_core.layout.volumes import Volumes
 
 ALIGNED_RAD = float(np.deg2rad(1.0))
@@ -27,7 +29,8 @@ def measure(
     `orientation`, `placement`, `structure`, `in_support`: shares of supported objects within 1 degree and 0.1 cm of
     their support, and inside its bounds and clearance. `part_overlap_m`: deepest overlap of convex parts (0 when
     apart); `part_overlap_mean_m` and `overlapping_pairs` say how widespread. `box_overlap_m`: overlap of bounding
-    boxes per object, tucked chairs included. `moved_m`: mean distance from the observed positions.
+    boxes per object, tucked chairs included. `moved_m`: mean distance from the observed positions. `e_...`: the
+    published costs.
     """
     aligned, placed, inside = _structure(problem, R, p, scale)
     depths = part_overlaps(problem, R, p, scale)
@@ -43,6 +46,39 @@ def measure(
         "box_overlap_m": _box_overlap(problem, R, p, scale),
         "moved_m": float(moved.mean()) if len(moved) else 0.0,
         "moved_most_m": float(moved.max()) if len(moved) else 0.0,
+        **cost_values(problem, R, p, scale),
+    }
+
+
+def cost_values(
+    problem: Problem,
+    R: Float[np.ndarray, "n 3 3"],
+    p: Float[np.ndarray, "n 3"],
+    scale: Float[np.ndarray, "n 3"],
+) -> dict[str, float]:
+    """The published costs of a layout (`layout.costs`), support edges only."""
+    volumes = Volumes.of(problem)
+    held = volumes.held
+    if not len(held):
+        return dict.fromkeys(("e_align", "e_sem", "e_place", "e_rel", "e_vol", "e_col"), 0.0)
+    here, size = volumes.at(R, p, scale), problem.shape_size * scale
+    faces, half = contact_templates(problem, held)
+    corners = p[held][:, None] + np.matmul(faces * scale[held][:, None], R[held].transpose(0, 2, 1))
+    tilt = np.abs(np.matmul(here.normal[:, None, :], R[held])[:, 0]) * half * scale[held]
+    top = (here.normal * p[held]).sum(axis=1) - here.level + tilt.sum(axis=1)
+    inward = -np.matmul(R[held], problem.contact[held][..., None])[..., 0]
+    centre = corners.mean(axis=1)
+    foot = centre - ((centre * here.normal).sum(axis=1) - here.level)[:, None] * here.normal
+    pairs = near_pairs(R, p, size, ~problem.kin, 0.0)
+    boxes = BoxPairs.of(R, size, pairs, walls_from=problem.count)
+    links = gradients.incidence(problem.relations, problem.count)
+    return {
+        "e_align": gradients.align(inward, here.normal)[0],
+        "e_sem": gradients.semantic(R[:, :, 0].copy(), problem.R[:, :, 0])[0],
+        "e_place": gradients.place(centre, foot, here.normal)[0],
+        "e_rel": gradients.relative(p - problem.p, problem.relations, links)[0],
+        "e_vol": gradients.volume(corners, top, here.outward, here.offset, here.clearance)[0],
+        "e_col": boxes.collision(p, gradients.incidence(pairs, problem.count))[0] if len(pairs) else 0.0,
     }
 
 
@@ -62,7 +98,10 @@ def _structure(
     centre = p[held] + np.matmul(own, (contact * size / 2)[..., None])[..., 0]
     aligned = (outward * here.normal).sum(axis=1) <= -np.cos(ALIGNED_RAD)
     placed = np.abs((centre * here.normal).sum(axis=1) - here.level) <= PLACED_M
-    reach = (np.abs(np.matmul(here.outward, own)) * (size * (1.0 - np.abs(contact)) / 2)[:, None, :]).sum(axis=2)
+    reach = (
+        np.abs(np.matmul(here.outward, own))
+        * (problem.firm[held, None] * size * (1.0 - np.abs(contact)) / 2)[:, None, :]
+    ).sum(axis=2)
     past = np.matmul(here.outward, centre[..., None])[..., 0] + reach - here.offset
     half = 0.5 * (np.abs(np.matmul(here.normal[:, None, :], own)[:, 0]) * size).sum(axis=1)
     top = (p[held] * here.normal).sum(axis=1) - here.level + half

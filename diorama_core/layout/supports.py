@@ -19,8 +19,6 @@ BOTTOM_FAVOURED = float(np.cos(np.deg2rad(55.0)))
 """The bottom face touches when it faces the support within this angle, even if another face does better."""
 SMALLEST_SHARE = 0.35
 """A supporter narrower than this share of what it should hold cannot be meant."""
-SOFT = frozenset({"pillow"})
-"""Categories that give way to each other."""
 SMALLEST_CLEARANCE = 0.75
 """A place with less than this share of a thing's height above it is chosen only where there is no other."""
 FLAT = 0.7
@@ -77,6 +75,11 @@ class Surface:
             clearance_m=self.clearance_m * float(scale[axis]),
             of_plane=False,
         )
+
+
+def is_soft(item: SceneObject) -> bool:
+    """Whether a thing gives way: it sinks into its neighbours and leans over edges."""
+    return taxonomy.resolve(item.category).category.soft
 
 
 def is_wall_like(surface: Surface | None) -> bool:
@@ -150,7 +153,7 @@ def choose_surface(scene: Scene, item: SceneObject, edge: Support, holder: Shape
     options = object_surfaces(holder, parent)
     if edge.parent_surface is not None and 0 <= edge.parent_surface < len(options):
         return options[edge.parent_surface]
-    if item.category in SOFT:
+    if is_soft(item):
         return _spread(options)
     return min(options, key=lambda s: misfit(item, s.in_world(parent.pose)))
 

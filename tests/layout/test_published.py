@@ -8,6 +8,7 @@ from diorama_core.evaluation.rooms import box_library, generate_room
 from diorama_core.layout import costs, staged
 from diorama_core.layout.problem import build_problem
 from diorama_core.layout.published import AllInOneRecipe, PaperRecipe, one_thread
+from diorama_core.layout.report import measure
 from diorama_core.layout.staged import Schedule
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Scene
@@ -80,3 +81,17 @@ def test_torch_threads_are_given_back() -> None:
     with one_thread():
         assert torch.get_num_threads() == 1
     assert torch.get_num_threads() == before
+
+
+def test_the_report_names_every_cost_and_exact_structure_has_none() -> None:
+    room = generate_room(7, 12)
+    problem = build_problem(room.truth, LIBRARY)
+    figures = measure(problem, problem.R, problem.p, problem.scale)
+    for name in ("e_align", "e_sem", "e_place", "e_rel", "e_vol"):
+        assert figures[name] == pytest.approx(0.0, abs=1e-6), name
+    seen = build_problem(room.observed, LIBRARY)
+    noisy = measure(seen, seen.R, seen.p, seen.scale)
+    assert noisy["e_align"] > 0.1
+    assert noisy["e_place"] > 0.1
+    assert noisy["e_sem"] == pytest.approx(0.0, abs=1e-9)
+    assert noisy["e_rel"] == pytest.approx(0.0, abs=1e-9)
