@@ -65,6 +65,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_export(commands)
     _add_picture(commands)
     _add_library(commands)
+    _add_bench(commands)
     _add_doctor(commands)
     return parser
 
@@ -318,6 +319,30 @@ def _print_shapes(shapes: Sequence[Shape], as_json: bool) -> None:
     for s in shapes:
         x, y, z = s.size_m
         print(f"{s.id:<28} {s.category:<16} {y:.2f} x {x:.2f} x {z:.2f} m  {s.caption}")
+
+
+def _add_bench(commands: Any) -> None:
+    p: argparse.ArgumentParser = commands.add_parser("bench", help="Measure the stages on generated rooms.")
+    tables = p.add_subparsers(dest="table", required=True, metavar="layout")
+    layout = _command(
+        tables, "layout", _bench_layout, "The layout recipes against each other.", "diorama bench layout --scenes 40"
+    )
+    layout.add_argument("--scenes", type=int, default=40, metavar="N", help="generated rooms (default: %(default)s)")
+    layout.add_argument("--seed", type=int, default=0, metavar="S", help="of the rooms (default: %(default)s)")
+    layout.add_argument("--json", type=Path, metavar="FILE", help="write the results as JSON too")
+
+
+def _bench_layout(a: argparse.Namespace) -> None:
+    from diorama_core.evaluation.layout_bench import run
+    from diorama_core.project.files import write_atomically
+
+    if a.scenes < 1:
+        raise InputError(f"--scenes {a.scenes}: ask for at least one")
+    with _progress_bar() as progress:
+        bench = run(scenes=a.scenes, seed=a.seed, progress=progress)
+    if a.json:
+        write_atomically(a.json, json.dumps(bench.to_json(), indent=1).encode())
+    print(bench.to_markdown())
 
 
 def _add_doctor(commands: Any) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import UInt8
 
 from diorama_core.architecture.from_depth import PlanarRoom
-from diorama_core.architecture.hanging import hung_on_walls
+from diorama_core.architecture.hanging import hung_up
 from diorama_core.architecture.room_box import RoomBox
 from diorama_core.architecture.texture import plane_textures
 from diorama_core.artefacts import (
@@ -138,7 +138,7 @@ def build_scene(
     room = runner.run(
         "architecture", s.architecture, s.architecture.reconstruct, (inputs, objects, geometry), progress.part(0.4, 0.5)
     )
-    geometry = hung_on_walls(geometry, room)
+    geometry = hung_up(geometry, room)
     depth = runner.run("depth", s.depth, s.depth.depth, (inputs, objects, geometry, room), progress.part(0.5, 0.55))
     shapes = runner.run(
         "retrieval", s.retrieval, s.retrieval.retrieve, (inputs, objects, geometry), progress.part(0.55, 0.65)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_core.architecture.hanging import MAX_SCALE, hung_on_walls
+from diorama_core.architecture.hanging import MAX_SCALE, hung_on_ceiling, hung_on_walls
 from diorama_core.artefacts import ArchitectureEstimate, ObjectGeometry
 from diorama_core.scene.types import Architecture, Support
 from tests.synthetic_rooms import box_room, cuboid, look
@@ -42,3 +42,15 @@ def test_a_door_stays_on_the_floor():
 def test_standing_things_stay():
     chair = cuboid("chair", (0.3, 3.0, 0.0), (0.5, 0.5, 0.9))
     assert hung(chair, "placed on", "floor") == chair
+
+
+@pytest.mark.parametrize("z", [1.9, 2.2, 2.5])
+def test_a_lamp_reaches_the_ceiling_inside_the_room(z):
+    lamp = cuboid("lamp", (0.1, 2.6, z), (0.4, 0.4, 0.3))
+    edge = Support("lamp", "ceiling", "mounted on")
+    geometry = ObjectGeometry(CAMERA, (lamp,), (edge,), "known")
+    room = ArchitectureEstimate(Architecture(ROOM), (edge,), 1.0, "known")
+    (found,) = hung_on_ceiling(geometry, room).cuboids
+    assert found.corners_world[:, 2].max() == pytest.approx(2.6, abs=1e-9)
+    assert found.corners_world[:, 1].max() < 4.0
+    assert (found.size_m <= 1.8 * MAX_SCALE * lamp.size_m).all()
