@@ -34,6 +34,9 @@ def example_project(projects_dir: Path) -> Project | None:
         # Copied beside and renamed, so that a copy cut short is never taken for the project.
         with tempfile.TemporaryDirectory(dir=projects_dir) as part:
             shutil.copytree(bundled, Path(part) / NAME)
+            draft = example_draft()
+            if draft is not None:
+                Project.open(Path(part) / NAME).save_inputs(draft.inputs, draft.warnings)
             os.replace(Path(part) / NAME, target)
     except OSError as error:
         raise ProjectError(

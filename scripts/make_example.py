@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,6 +20,9 @@ from scipy.ndimage import gaussian_filter
 
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.perception.inputs import read_inputs
+from diorama_core.project.build import build_project
+from diorama_core.project.storage import Project
 from diorama_core.render.lighting import Effort, Lighting
 from diorama_core.render.picture import looking_along, picture
 from diorama_core.render.raycast import MeshCaster, OrthographicView, render_buffers
@@ -204,19 +208,43 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, default=Path(__file__).resolve().parents[1] / "assets" / "example")
     parser.add_argument("--draft", action="store_true", help="a quick look at half size")
+    parser.add_argument("--project-only", action="store_true", help="keep the picture, build its project again")
     options = parser.parse_args()
     library = built_in_library()
+    if not options.project_only:
+        draw(library, options.out, options.draft)
+    build(library, options.out)
+
+
+def build(library: ShapeLibrary, out: Path) -> None:
+    """The scene that the pipeline makes of the picture, as a project without what can be made again."""
+    folder = out / "project"
+    shutil.rmtree(folder, ignore_errors=True)
+    k = json.loads((out / "intrinsics.json").read_text())
+    read = read_inputs(
+        out / "photo.jpg", boxes=out / "boxes.json", intrinsics=(k["fx"], k["fy"], k["cx"], k["cy"]), name="photo.jpg"
+    )
+    project = Project.create(folder, name="Example")
+    build_project(project, read.inputs, library, warnings=read.warnings)
+    project.update_info(stages=[])
+    (folder / "photo.jpg").unlink()
+    for made_again in ("stages", "backups"):
+        shutil.rmtree(folder / made_again, ignore_errors=True)
+
+
+def draw(library: ShapeLibrary, out: Path, draft: bool) -> None:
+    """The picture, its boxes and its camera."""
     scene = compose(library)
-    size, effort = ((640, 480), Effort(2, 4)) if options.draft else (SIZE, Effort(8, 20))
+    size, effort = ((640, 480), Effort(2, 4)) if draft else (SIZE, Effort(8, 20))
     look = {"textures": {"planks": planks()}, "photographed": False, "light": daylight()}
     image = picture(scene, library, size=size, effort=effort, **look)
-    options.out.mkdir(parents=True, exist_ok=True)
-    Image.fromarray(image).save(options.out / "photo.jpg", quality=90, optimize=True, subsampling=0)
+    out.mkdir(parents=True, exist_ok=True)
+    Image.fromarray(image).save(out / "photo.jpg", quality=90, optimize=True, subsampling=0)
     k = camera().intrinsics
     numbers = {"width": k.width, "height": k.height, "fx": k.fx, "fy": k.fy, "cx": k.cx, "cy": k.cy}
-    (options.out / "intrinsics.json").write_text(json.dumps(numbers, indent=1) + "\n")
+    (out / "intrinsics.json").write_text(json.dumps(numbers, indent=1) + "\n")
     rows = ",\n ".join(json.dumps(box) for box in visible_boxes(scene, library))
-    (options.out / "boxes.json").write_text(f"[{rows}]\n")
+    (out / "boxes.json").write_text(f"[{rows}]\n")
 
 
 if __name__ == "__main__":
