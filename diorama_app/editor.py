@@ -8,7 +8,7 @@ from pathlib import Path
 import viser
 
 from diorama_app.actions import Views, build_commands
-from diorama_app.example import example_draft, example_project
+from diorama_app.example import example_project
 from diorama_app.gestures import Gestures
 from diorama_app.panels.alternatives import Alternatives
 from diorama_app.panels.compare import Compare
@@ -23,7 +23,6 @@ from diorama_app.panels.supports import Supports
 from diorama_app.panels.toolbar import Toolbar
 from diorama_app.room import Panel, Room
 from diorama_app.viser_adapter import MAX_UPLOAD_BYTES
-from diorama_app.work import build
 from diorama_core.errors import DioramaError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.project.storage import Project
@@ -77,10 +76,6 @@ class Editor:
             if example is not None:
                 room.open_project(example)
                 return
-            draft = example_draft()
-            if draft is not None:
-                room.draft = draft
-                build(room, None, example=True)
         except DioramaError as error:
             log.warning("the example cannot be opened: %s", error)
         room.refresh()

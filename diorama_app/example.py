@@ -1,4 +1,4 @@
-"""The bundled example: the project's own photo with boxes, built into a project the first time it is wanted."""
+"""The bundled example: the scene that `scripts/make_example.py` built from its own photo, copied to be edited."""
 
 from __future__ import annotations
 
@@ -8,9 +8,8 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from diorama_app.drafts import Draft
 from diorama_core.errors import ProjectError
-from diorama_core.perception.inputs import read_inputs
+from diorama_core.perception.inputs import ReadInputs, read_inputs
 from diorama_core.project.storage import Project
 
 EXAMPLE = Path(__file__).resolve().parents[1] / "assets" / "example"
@@ -34,9 +33,8 @@ def example_project(projects_dir: Path) -> Project | None:
         # Copied beside and renamed, so that a copy cut short is never taken for the project.
         with tempfile.TemporaryDirectory(dir=projects_dir) as part:
             shutil.copytree(bundled, Path(part) / NAME)
-            draft = example_draft()
-            if draft is not None:
-                Project.open(Path(part) / NAME).save_inputs(draft.inputs, draft.warnings)
+            read = example_inputs()
+            Project.open(Path(part) / NAME).save_inputs(read.inputs, read.warnings)
             os.replace(Path(part) / NAME, target)
     except OSError as error:
         raise ProjectError(
@@ -45,13 +43,8 @@ def example_project(projects_dir: Path) -> Project | None:
     return Project.open(target)
 
 
-def example_draft() -> Draft | None:
-    """The example's photo with its boxes, ready to be built; None when none is bundled."""
-    photo, boxes, camera = EXAMPLE / "photo.jpg", EXAMPLE / "boxes.json", EXAMPLE / "intrinsics.json"
-    if not photo.exists() or not boxes.exists():
-        return None
-    given = json.loads(camera.read_text()) if camera.exists() else None
-    intrinsics = None if given is None else (given["fx"], given["fy"], given["cx"], given["cy"])
-    read = read_inputs(photo, boxes=boxes, intrinsics=intrinsics)
-    files = {"photo": photo.read_bytes(), "boxes": boxes.read_bytes()}
-    return Draft(read.inputs, read.inputs.boxes, warnings=read.warnings, files=files, name=NAME)
+def example_inputs() -> ReadInputs:
+    """The example's photo with its boxes and camera."""
+    k = json.loads((EXAMPLE / "intrinsics.json").read_text())
+    camera = (k["fx"], k["fy"], k["cx"], k["cy"])
+    return read_inputs(EXAMPLE / "photo.jpg", boxes=EXAMPLE / "boxes.json", intrinsics=camera)

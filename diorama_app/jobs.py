@@ -13,7 +13,7 @@ from diorama_core.progress import CancelToken, Progress, ProgressEvent
 
 log = logging.getLogger(__name__)
 
-JobKind = Literal["build", "example", "optimise", "export"]
+JobKind = Literal["build", "optimise", "export"]
 
 
 @dataclass(frozen=True)

@@ -239,7 +239,7 @@ class Room:
     def _job_ended(self, outcome: Outcome) -> None:
         def tell() -> None:
             self.refresh()
-            if outcome.cancelled and outcome.kind != "example":
+            if outcome.cancelled:
                 self.notice_all("Stopped; nothing was changed.")
             elif outcome.error is not None:
                 self.notice_all(outcome.error, "bad")

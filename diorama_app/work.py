@@ -35,7 +35,7 @@ Samples = list[tuple[float, tuple[tuple[str, float], ...]]]
 """Seconds since the start, and every cost then; only ever appended to."""
 
 
-def build(room: Room, client_id: int | None, *, example: bool = False) -> None:
+def build(room: Room, client_id: int | None) -> None:
     """Build the draft's scene: in the open project when it came from there, else in a new one."""
     draft = room.draft
     if not draft.ready:
@@ -60,17 +60,7 @@ def build(room: Room, client_id: int | None, *, example: bool = False) -> None:
         built = build_project(project, inputs, room.library, warnings=draft.warnings, progress=progress)
         room.post(client_id, lambda: _built(room, draft, project, built.scene, own=own))
 
-    if example:
-        room.jobs.start("example", "Building the example", work)
-    else:
-        room.jobs.start("build", "Building the scene", work)
-
-
-def make_way(room: Room) -> None:
-    """Stop building the example: somebody has brought a photo of their own."""
-    status = room.jobs.status
-    if status is not None and status.kind == "example":
-        room.jobs.cancel()
+    room.jobs.start("build", "Building the scene", work)
 
 
 def _built(room: Room, draft: Draft, project: Project, scene: Scene, *, own: bool) -> None:

@@ -100,8 +100,6 @@ class PhotoPanel:
         if kind == "boxes" and made.inputs is not None:
             made = replace(made, boxes=made.inputs.boxes)
         self._room.draft = made
-        if kind == "photo":
-            work.make_way(self._room)
         for warning in made.warnings[:3]:
             self._room.notice(client_id, warning)
         if kind == "photo":

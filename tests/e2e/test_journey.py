@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,11 +10,8 @@ import pytest
 import trimesh
 from playwright.sync_api import expect
 
-from diorama_app.example import EXAMPLE, example_draft
+from diorama_app.example import EXAMPLE
 from diorama_app.server import Running
-from diorama_core.library.catalogue import built_in_library
-from diorama_core.project.build import build_project
-from diorama_core.project.storage import Project
 from diorama_core.scene.types import Scene, SceneObject
 from tests.conftest import SHARED
 from tests.e2e.browser import EditorPage
@@ -26,21 +22,9 @@ BUILD_S = 300
 """A build takes some fifteen seconds of two free cores; test machines are often busy."""
 
 
-@pytest.fixture(scope="module")
-def built_example(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The bundled example's own photo and boxes, built once."""
-    draft = example_draft()
-    assert draft is not None
-    project = Project.create(tmp_path_factory.mktemp("built") / "example")
-    built = build_project(project, draft.to_build(), built_in_library())
-    assert len(built.scene.objects) >= 0.9 * len(draft.boxes)
-    return project.folder
-
-
 @pytest.fixture
-def with_example(built_example: Path, serve: Callable[..., Running], tmp_path: Path) -> Running:
-    """A server as it starts from the second time on."""
-    shutil.copytree(built_example, tmp_path / "projects" / "example")
+def with_example(serve: Callable[..., Running]) -> Running:
+    """A server as it starts the first time: on the bundled example."""
     return serve()
 
 
@@ -104,21 +88,6 @@ def test_a_photo_with_boxes_becomes_a_scene(with_example: Running, visit: Callab
     assert room.scene.architecture.by_role("wall")
     editor.tab("Scene")
     expect(editor.page.locator(".dio .row[data-arg]:visible")).to_have_count(len(room.scene.objects))
-
-
-def test_the_first_start_builds_the_example_and_makes_way_for_a_photo(
-    serve: Callable[..., Running], visit: Callable[[Running], EditorPage]
-) -> None:
-    running = serve()
-    editor = visit(running)
-    room = running.room
-    expect(editor.page.get_by_text("Building the example")).to_be_visible()
-    editor.tab("Photo")
-    photo, _ = _photo_with_boxes()
-    editor.upload("Upload a photo", photo)
-    editor.until(lambda: room.jobs.status is None, "the example makes way", seconds=60)
-    assert room.draft.photo is not None
-    assert room.draft.photo.name == photo.name
 
 
 def _photo_with_boxes() -> tuple[Path, Path]:
