@@ -320,9 +320,13 @@ class ClientView:
         return None if x2 - x1 < 3 or y2 - y1 < 3 else (float(x1), float(y1), float(x2), float(y2))
 
 
+AROUND_M = np.array([0.5, 0.5, 0.3])
+"""Margin of the room view around the furniture."""
+
+
 def room_view(scene: Scene, aspect: float = USUAL_ASPECT) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
-    """A place above and behind the photo's camera, and the point to look at, that show the whole room."""
-    low, high = bounds(scene)
+    """A place above and behind the photo's camera, and the point to look at, that show all the furniture."""
+    low, high = _furnished_bounds(scene)
     centre = (low + high) / 2
     back = np.array([-0.45, -1.0, 0.62])
     if scene.camera is not None:
@@ -352,6 +356,16 @@ def _far_enough(
     half = np.tan(DEFAULT_FOV_RAD / 2)
     needed = np.maximum(np.abs(corners @ right) / (half * max(aspect, 0.2)), np.abs(corners @ up) / half)
     return centre + back * float((needed + corners @ back).max()) * 1.04
+
+
+def _furnished_bounds(scene: Scene) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+    """The box around what stands in the room and the wall behind it; around the whole room when it is empty."""
+    low, high = bounds(scene)
+    if not scene.objects:
+        return low, high
+    corners = np.concatenate([o.corners_world for o in scene.objects])
+    inner_low, inner_high = corners.min(axis=0) - AROUND_M, corners.max(axis=0) + AROUND_M
+    return np.maximum(low, inner_low), np.minimum(high, inner_high)
 
 
 def bounds(scene: Scene) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:

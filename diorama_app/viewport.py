@@ -74,8 +74,9 @@ class Viewport:
         else:
             scene.configure_environment_map("apartment", environment_intensity=0.35)
             scene.add_light_hemisphere(
-                "/lights/sky", sky_color=(255, 252, 246), ground_color=(170, 164, 156), intensity=0.45
+                "/lights/sky", sky_color=(255, 252, 246), ground_color=(176, 170, 162), intensity=0.75
             )
+            scene.add_light_ambient("/lights/around", color=(255, 250, 244), intensity=0.55)
 
     def show(
         self, scene: Scene, selection: tuple[str, ...], textures: Mapping[str, UInt8[np.ndarray, "h w 3"]]
