@@ -81,7 +81,7 @@ class Problem:
         """Number of objects."""
         return len(self.ids)
 
-    @property
+    @cached_property
     def top_down(self) -> tuple[int, ...]:
         """Object indices, supporters before what they support."""
         depth = [len(self.chain(i)) for i in range(self.count)]

@@ -75,9 +75,10 @@ def build_program(problem: Problem, structure: Structure, weight: Float[np.ndarr
     n = problem.count
     moving = [i for i in range(n) if problem.free[i] and np.abs(structure.basis[i]).max() > 0]
     J, own = np.zeros((n, 3, 2 * len(moving))), np.zeros((n, 3, 2 * len(moving)))
+    # r = L^-T y whitens the cost, so the least move is the least |y|.
+    whiten = np.linalg.inv(np.linalg.cholesky(weight)).transpose(0, 2, 1)
     for column, i in enumerate(moving):
-        # r = L^-T y whitens the cost, so the least move is the least |y|.
-        lever = structure.basis[i] @ np.linalg.inv(np.linalg.cholesky(weight[i])).T
+        lever = structure.basis[i] @ whiten[i]
         J[problem.rides(i), :, 2 * column : 2 * column + 2] = lever
         own[i, :, 2 * column : 2 * column + 2] = lever
     bodies = place_bodies(problem.packed, structure.R, structure.p, structure.scale)

@@ -5,6 +5,7 @@ its supporter allows; what stays free is two coordinates on the support surface.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import hypot, sqrt
 
 import numpy as np
 from jaxtyping import Float
@@ -23,6 +24,7 @@ INSET_M = 2e-4
 """Kept between a contact face and the edge of its support, and under a shelf's ceiling."""
 
 
+_IDENTITY = np.eye(3)
 _FRONT_FIRST = np.array([2.25, 1.0, 1.0])
 
 
@@ -113,11 +115,13 @@ def _settle(
     walk.p[i] = walk.p[i] + _lift(problem, walk, i, surface) * n
     contact = _contact_centre(problem, walk, i)
     slack = h - m @ contact - reach - INSET_M
-    mobile = np.linalg.norm(m @ walk.basis[i], axis=1) > 1e-6
-    m, slack = m[mobile], slack[mobile]
-    move = _into(m @ walk.basis[i], slack)
-    walk.p[i] = walk.p[i] + walk.basis[i] @ move
-    slack = slack - m @ (walk.basis[i] @ move)
+    rows = m @ walk.basis[i]
+    mobile = (rows * rows).sum(axis=1) > 1e-12
+    m, slack, rows = m[mobile], slack[mobile], rows[mobile]
+    if (slack < 0).any():
+        move = walk.basis[i] @ _into(rows, slack)
+        walk.p[i] = walk.p[i] + move
+        slack = slack - m @ move
     walk.owners += [i] * len(m)
     walk.normals += list(m)
     walk.slacks += [max(float(s), 0.0) for s in slack]
@@ -179,7 +183,7 @@ def _aligned(
         return swung
     # The front, unless another axis lies much flatter on the support.
     axis = int(((1.0 - (n @ swung) ** 2) * _FRONT_FIRST).argmax())
-    return _twist(swung, n, np.eye(3)[axis], R[:, axis])
+    return _twist(swung, n, _IDENTITY[axis], R[:, axis])
 
 
 def swing(a: Float[np.ndarray, "3"], b: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
@@ -191,23 +195,24 @@ def swing(a: Float[np.ndarray, "3"], b: Float[np.ndarray, "3"]) -> Float[np.ndar
         return 2.0 * np.outer(perpendicular, perpendicular) - np.eye(3)
     x, y, z = cross(a, b)
     K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.eye(3) + K + K @ K / (1.0 + c)
+    return _IDENTITY + K + K @ K / (1.0 + c)
 
 
 def _twist(R: np.ndarray, n: np.ndarray, axis_object: np.ndarray, toward: np.ndarray) -> np.ndarray:
     """Turn about n until an object axis points toward a world direction, both seen along n."""
     have, want = R @ axis_object, np.asarray(toward)
     have, want = have - (have @ n) * n, want - (want @ n) * n
-    length = float(np.linalg.norm(have) * np.linalg.norm(want))
+    length = sqrt(float(have @ have) * float(want @ want))
     if length < 1e-9:
         return R
     sine, cosine = float(n @ cross(have, want)) / length, float(have @ want) / length
     if abs(sine) < 1e-12 and cosine > 0:
         return R
-    norm = np.hypot(sine, cosine)
+    norm = hypot(sine, cosine)
     sine, cosine = sine / norm, cosine / norm
-    K = np.array([[0.0, -n[2], n[1]], [n[2], 0.0, -n[0]], [-n[1], n[0], 0.0]])
-    return (np.eye(3) + sine * K + (1.0 - cosine) * (K @ K)) @ R
+    x, y, z = n.tolist()
+    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return (_IDENTITY + sine * K + (1.0 - cosine) * (K @ K)) @ R
 
 
 def _against_walls(problem: Problem, walk: _Walk, i: int, against: list[tuple[int, np.ndarray]]) -> None:
@@ -240,8 +245,9 @@ def _fit(problem: Problem, walk: _Walk, i: int, surface: Surface, m: np.ndarray,
         else:
             walk.reasons.append(f"too tall: {label} does not fit in the {surface.clearance_m:.2f} m above its support")
     footprint = [k for k in range(3) if k != normal_axis]
-    middle = m @ surface.polygon.mean(axis=0)
-    room = _room(m, h - middle, _reach(problem, walk, i, m))
+    middle = m @ (surface.polygon.sum(axis=0) / len(surface.polygon))
+    reach = _reach(problem, walk, i, m)
+    room = _room(m, h - middle, reach)
     if room < 1.0:
         for k in footprint:
             axis = walk.R[i][:, k]
@@ -253,9 +259,10 @@ def _fit(problem: Problem, walk: _Walk, i: int, surface: Surface, m: np.ndarray,
         if SMALLEST_SHRINK <= room < 1.0:
             walk.scale[i, footprint] *= room
             room = 1.0
+        reach = _reach(problem, walk, i, m)
     if room < 1.0:
         walk.reasons.append(f"larger than its support: {label} overhangs by {100 * (1 - room):.0f} %")
-    return max(min(room, 1.0), 0.0) * _reach(problem, walk, i, m)
+    return max(min(room, 1.0), 0.0) * reach
 
 
 def _reach(problem: Problem, walk: _Walk, i: int, m: np.ndarray) -> np.ndarray:
