@@ -12,7 +12,9 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from diorama_core.geometry.cross import cross
-from diorama_core.layout.costs import EPSILON
+
+EPSILON = 1e-9
+"""Smooths the norms where they vanish; metres or radians."""
 
 Array = np.ndarray
 

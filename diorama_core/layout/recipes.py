@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from diorama_core.errors import InputError
 from diorama_core.layout.feasible import FeasibleRecipe
-from diorama_core.layout.published import AllInOneRecipe, PaperRecipe
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.protocols import LayoutStage
 
@@ -26,11 +25,11 @@ def recipe(name: str, library: ShapeLibrary, only: frozenset[str] | None = None)
     """
     if name == "feasible":
         return FeasibleRecipe(library, only)
+    # torch takes two seconds to load, and the default recipe does without it.
+    from diorama_core.layout.published import AllInOneRecipe, PaperRecipe
+
     if name == "paper":
         return PaperRecipe(library, only)
     if name == "all-in-one":
         return AllInOneRecipe(library, only)
     raise InputError(f"there is no layout recipe {name!r}; choose one of {', '.join(NAMES)}")
-
-
-__all__ = ["NAMES", "AllInOneRecipe", "FeasibleRecipe", "PaperRecipe", "recipe"]
