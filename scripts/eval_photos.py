@@ -1,6 +1,6 @@
 """Builds a scene from every photo of a folder with `photos.json` and reports how well each agrees with its picture.
 
-    python scripts/eval_photos.py ../shared/photos -o /tmp/photos [--only im3d_1 nyu_00000] [--pictures]
+    python scripts/eval_photos.py ../shared/photos -o built [--only im3d_1 nyu_00000] [--pictures]
 
 Writes one project a photo, `report.json`, and with --pictures `ID.png`: photo, rendering, and seen from outside.
 """
@@ -20,6 +20,7 @@ from PIL import Image
 
 from diorama_core.evaluation.photo_agreement import agreement
 from diorama_core.library.catalogue import built_in_library
+from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.inputs import read_inputs
 from diorama_core.pipeline.build import Built
 from diorama_core.project.build import build_project
@@ -51,7 +52,7 @@ def main() -> int:
     return int(any(r.get("failed") for r in rows))
 
 
-def evaluate(folder: Path, record: dict, output: Path, library: object, pictures: bool) -> dict:
+def evaluate(folder: Path, record: dict, output: Path, library: ShapeLibrary, pictures: bool) -> dict:
     started = time.perf_counter()
     given = {
         "intrinsics": tuple(record["K"]) if record.get("K") else None,
@@ -64,9 +65,9 @@ def evaluate(folder: Path, record: dict, output: Path, library: object, pictures
     place = output / record["id"]
     shutil.rmtree(place, ignore_errors=True)
     project = Project.create(place)
-    built = build_project(project, read.inputs, library, warnings=read.warnings)  # type: ignore[arg-type]
+    built = build_project(project, read.inputs, library, warnings=read.warnings)
     seconds = time.perf_counter() - started
-    rows = agreement(built.objects, built.geometry, built.observed, built.scene, library)  # type: ignore[arg-type]
+    rows = agreement(built.objects, built.geometry, built.observed, built.scene, library)
     if pictures:
         draw(built, read.inputs.photo.rgb, library, output / f"{record['id']}.png")
     return {
@@ -82,12 +83,12 @@ def evaluate(folder: Path, record: dict, output: Path, library: object, pictures
     }
 
 
-def draw(built: Built, photo: np.ndarray, library: object, path: Path) -> None:
+def draw(built: Built, photo: np.ndarray, library: ShapeLibrary, path: Path) -> None:
     height = 480
     width = round(photo.shape[1] * height / photo.shape[0])
     views = [np.asarray(Image.fromarray(photo).resize((width, height)))]
     for view, size in (("photo", (width, height)), ("orbit:25", (height, height))):
-        views.append(picture(built.scene, library, view=view, size=size, textures=built.textures))  # type: ignore[arg-type]
+        views.append(picture(built.scene, library, view=view, size=size, textures=built.textures))
     Image.fromarray(np.hstack(views)).save(path)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from functools import partial
 from multiprocessing import get_context
 
 from diorama_core.geometry.looks import SHARED_LOOKS
@@ -52,5 +53,5 @@ def _prepare(shape_ids: tuple[str, ...]) -> None:
     for shape_id in shape_ids:
         shape = library.shape(shape_id)
         library.glb(shape_id)
-        SHARED_LOOKS.get(shape.content_hash, looks, lambda: library.parts(shape_id))  # noqa: B023
+        SHARED_LOOKS.get(shape.content_hash, looks, partial(library.parts, shape_id))
         parts_of_shape(library, shape)

@@ -9,7 +9,7 @@ import numpy as np
 
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, four, of
+from diorama_core.library.furniture.model import Builder, Design, Parts, Size, both_sides, four, of
 from diorama_core.library.furniture.solids import (
     Solid,
     beam,
@@ -26,6 +26,7 @@ from diorama_core.library.furniture.solids import (
     taper,
     tube,
 )
+from diorama_core.library.record import SymmetryFold
 
 
 def curved_back(
@@ -391,16 +392,16 @@ def hairpin_bench(size: Size, wood: Material, steel: Material) -> Parts:
     return of(wood, box((d, w, 0.045), 0.009).moved(z=h - 0.045)) + of(steel, *four(tube(pin, 0.006)))
 
 
-def _chair(name: str, caption: str, size: Size, style: str, build: object) -> Design:
-    return Design(f"chair-{name}", "chair", caption, size, style, build)  # type: ignore[arg-type]
+def _chair(name: str, caption: str, size: Size, style: str, build: Builder) -> Design:
+    return Design(f"chair-{name}", "chair", caption, size, style, build)
 
 
-def _stool(name: str, caption: str, size: Size, style: str, build: object, symmetry: int) -> Design:
-    return Design(f"stool-{name}", "stool", caption, size, style, build, symmetry)  # type: ignore[arg-type]
+def _stool(name: str, caption: str, size: Size, style: str, build: Builder, symmetry: SymmetryFold) -> Design:
+    return Design(f"stool-{name}", "stool", caption, size, style, build, symmetry)
 
 
-def _bench(name: str, caption: str, size: Size, style: str, build: object) -> Design:
-    return Design(f"bench-{name}", "bench", caption, size, style, build, 2)  # type: ignore[arg-type]
+def _bench(name: str, caption: str, size: Size, style: str, build: Builder) -> Design:
+    return Design(f"bench-{name}", "bench", caption, size, style, build, 2)
 
 
 DESIGNS: tuple[Design, ...] = (

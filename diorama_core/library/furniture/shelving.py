@@ -13,6 +13,7 @@ from diorama_core.library.furniture.cases import Base, feet
 from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.model import Builder, Design, Parts, Size, both_sides, four, of
 from diorama_core.library.furniture.solids import beam, box, cylinder, rod
+from diorama_core.library.record import SymmetryFold
 
 
 def bookcase(
@@ -231,8 +232,10 @@ def pipe_shelf(size: Size, wood: Material, steel: Material) -> Parts:
     )
 
 
-def _d(category: str, name: str, caption: str, size: Size, style: str, build: Builder, symmetry: int = 1) -> Design:
-    return Design(f"{category.replace(' ', '-')}-{name}", category, caption, size, style, build, symmetry)  # type: ignore[arg-type]
+def _d(
+    category: str, name: str, caption: str, size: Size, style: str, build: Builder, symmetry: SymmetryFold = 1
+) -> Design:
+    return Design(f"{category.replace(' ', '-')}-{name}", category, caption, size, style, build, symmetry)
 
 
 DESIGNS: tuple[Design, ...] = (

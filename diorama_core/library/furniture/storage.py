@@ -10,6 +10,7 @@ from diorama_core.library.furniture.cases import case
 from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.model import Builder, Design, Parts, Size, four, of, shifted
 from diorama_core.library.furniture.solids import box
+from diorama_core.library.record import SymmetryFold
 
 
 def filing_cabinet(size: Size, steel: Material, drawers: int) -> Parts:
@@ -70,8 +71,10 @@ def curio(size: Size, wood: Material, levels: int) -> Parts:
     return lower + shifted(upper, -0.02) + frames + of(wood, box((d, w + 0.01, 0.035), 0.01, 2).moved(z=h - 0.035))
 
 
-def _d(category: str, name: str, caption: str, size: Size, style: str, build: Builder, symmetry: int = 1) -> Design:
-    return Design(f"{category.replace(' ', '-')}-{name}", category, caption, size, style, build, symmetry)  # type: ignore[arg-type]
+def _d(
+    category: str, name: str, caption: str, size: Size, style: str, build: Builder, symmetry: SymmetryFold = 1
+) -> Design:
+    return Design(f"{category.replace(' ', '-')}-{name}", category, caption, size, style, build, symmetry)
 
 
 DESIGNS: tuple[Design, ...] = (
