@@ -124,4 +124,4 @@ def serve(
 
 def _warm_up() -> None:
     """Load what the first build or optimisation needs, so that it starts at once."""
-    import diorama_core.project.build  # noqa: F401
+    import diorama_core.project.build  # noqa: F401  # loading it is the whole work of this thread
