@@ -49,19 +49,18 @@ _CLASSES: dict[str, type] = {
 
 
 def dump(value: Any) -> bytes:
-    """An artefact (or tuple of artefacts) as bytes."""
+    """An artefact (or tuple of artefacts) as bytes: the same value gives the same bytes, at any time of day."""
     arrays: list[np.ndarray] = []
     tree = _encode(value, arrays)
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:
-        archive.writestr("tree.json", json.dumps(tree, allow_nan=False))
+        archive.writestr(zipfile.ZipInfo("tree.json"), json.dumps(tree, allow_nan=False))
         for i, array in enumerate(arrays):
             raw = io.BytesIO()
             np.lib.format.write_array(raw, array, allow_pickle=False)
             sparse = array.dtype == bool or array.dtype == np.int32
-            archive.writestr(
-                f"{i}.npy", raw.getvalue(), zipfile.ZIP_DEFLATED if sparse else zipfile.ZIP_STORED, compresslevel=1
-            )
+            packing = zipfile.ZIP_DEFLATED if sparse else zipfile.ZIP_STORED
+            archive.writestr(zipfile.ZipInfo(f"{i}.npy"), raw.getvalue(), packing, compresslevel=1)
     return buffer.getvalue()
 
 

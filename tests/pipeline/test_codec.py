@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import io
 import json
+import time
 import zipfile
 
 import numpy as np
@@ -29,6 +30,12 @@ def test_artefacts_survive_the_file_exactly(scene: Scene) -> None:
     assert codec.load(codec.dump(value)) == value
 
 
+def test_the_same_artefact_gives_the_same_bytes_at_any_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    first = codec.dump(example_inputs())
+    monkeypatch.setattr(time, "time", lambda: 2_000_000_000.0)
+    assert codec.dump(example_inputs()) == first
+
+
 def test_masks_keep_their_type() -> None:
     mask = np.zeros((4, 5), dtype=bool)
     mask[1, 2] = True
@@ -44,7 +51,9 @@ def test_fingerprints_tell_contents_apart() -> None:
     assert codec.fingerprint(example_inputs(0)) != codec.fingerprint(example_inputs(1))
 
 
-@pytest.mark.parametrize("data", [b"", b"not a zip", codec.dump(example_inputs())[:100]])
+@pytest.mark.parametrize(
+    "data", [b"", b"not a zip", codec.dump(example_inputs())[:100]], ids=["empty", "not a zip", "truncated"]
+)
 def test_damaged_bytes_are_refused(data: bytes) -> None:
     with pytest.raises(ProjectError, match="damaged"):
         codec.load(data)
