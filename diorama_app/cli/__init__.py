@@ -1,0 +1,56 @@
+"""The command line: `diorama COMMAND`. Each command is one function; heavy imports happen inside it."""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import os
+import sys
+from collections.abc import Sequence
+
+import diorama_core
+from diorama_app.cli.bench import add_bench
+from diorama_app.cli.doctor import add_doctor
+from diorama_app.cli.library import add_library
+from diorama_app.cli.scenes import add_build, add_export, add_optimise, add_picture, add_serve
+from diorama_core.errors import Cancelled, DioramaError
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command; returns the exit status: 0 done, 1 failed with one clear line, 2 bad usage, 130 stopped."""
+    # Small problems run faster on one thread than on two that wait for each other.
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
+    arguments = _parser().parse_args(argv)
+    logging.basicConfig(level=logging.DEBUG if arguments.verbose else logging.ERROR, stream=sys.stderr)
+    try:
+        return int(arguments.run(arguments) or 0)
+    except KeyboardInterrupt:
+        print("diorama: stopped; finished stages are kept and the next run resumes there", file=sys.stderr)
+        return 130
+    except Cancelled as error:
+        print(f"diorama: {error}", file=sys.stderr)
+        return 130
+    except DioramaError as error:
+        if arguments.verbose:
+            logging.exception("details")
+        print(f"diorama: {error}", file=sys.stderr)
+        return 1
+    except BrokenPipeError:
+        return 1
+    except Exception as error:
+        if arguments.verbose:
+            logging.exception("details")
+        where = f"{type(error).__name__}: {error}"
+        print(f"diorama: internal error ({where}); run again with --verbose and report it", file=sys.stderr)
+        return 1
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="diorama", description="One picture of a room becomes an editable 3D scene.", allow_abbrev=False
+    )
+    parser.add_argument("--version", action="version", version=f"diorama {diorama_core.__version__}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for add in (add_serve, add_build, add_optimise, add_export, add_picture, add_library, add_bench, add_doctor):
+        add(commands)
+    return parser

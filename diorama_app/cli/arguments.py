@@ -1,0 +1,94 @@
+"""What the commands share: how a command is declared and how its arguments are read."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from diorama_core.project.storage import Project
+    from diorama_core.scene.types import Scene
+
+RECIPES = ("feasible", "paper", "all-in-one")
+PROFILES = ("auto", "embedded", "foundation")
+
+
+def command(commands: Any, name: str, run: Any, summary: str, example: str) -> argparse.ArgumentParser:
+    """A subcommand that runs `run`, with a summary and an example."""
+    parser: argparse.ArgumentParser = commands.add_parser(
+        name,
+        help=summary,
+        description=summary,
+        epilog=f"example:\n  {example}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.add_argument("--verbose", action="store_true", help="log what happens and show tracebacks")
+    parser.set_defaults(run=run)
+    return parser
+
+
+def opened(folder: Path) -> tuple[Project, Scene]:
+    """A project folder and its scene."""
+    from diorama_core.project.storage import Project
+
+    project = Project.open(folder)
+    return project, project.load_scene()
+
+
+def progress_bar() -> Any:
+    """The bar on stderr."""
+    from diorama_app.progress_bar import progress_bar
+
+    return progress_bar()
+
+
+def positive(text: str) -> float:
+    """A positive number."""
+    value = float(text)
+    if not 0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text} is not a positive number")
+    return value
+
+
+def field_of_view(text: str) -> float:
+    """Degrees, horizontal, 5 to 150."""
+    value = positive(text)
+    if not 5 <= value <= 150:
+        raise argparse.ArgumentTypeError(f"{text} degrees; give a horizontal field of view between 5 and 150")
+    return value
+
+
+def intrinsics(text: str) -> tuple[float, float, float, float]:
+    """fx, fy, cx, cy in pixels."""
+    try:
+        fx, fy, cx, cy = (float(part) for part in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r}; give four numbers in pixels: fx,fy,cx,cy") from None
+    if not (fx > 0 and fy > 0):
+        raise argparse.ArgumentTypeError(f"{text!r}; focal lengths must be positive")
+    return fx, fy, cx, cy
+
+
+def view(text: str) -> str:
+    """photo, top, front or orbit:DEG."""
+    kind, _, angle = text.partition(":")
+    try:
+        known = text in ("photo", "top", "front") or (kind == "orbit" and abs(float(angle)) < 1e6)
+    except ValueError:
+        known = False
+    if not known:
+        raise argparse.ArgumentTypeError(f"{text!r}; choose photo, top, front or orbit:DEG, such as orbit:30")
+    return text
+
+
+def size(text: str) -> tuple[int, int]:
+    """Width and height in pixels."""
+    try:
+        width, height = (int(part) for part in text.lower().split("x"))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r}; give width x height, such as 1024x768") from None
+    if not (16 <= width <= 8192 and 16 <= height <= 8192):
+        raise argparse.ArgumentTypeError(f"{text!r}; each side must be between 16 and 8192")
+    return width, height

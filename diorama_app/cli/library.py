@@ -1,0 +1,72 @@
+"""Commands about shapes: `diorama library ...`."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from diorama_app.cli.arguments import command, progress_bar
+from diorama_core.errors import InputError
+
+if TYPE_CHECKING:
+    from diorama_core.library.record import Shape
+
+
+def add_library(commands: Any) -> None:
+    """Declare `diorama library`."""
+    p: argparse.ArgumentParser = commands.add_parser("library", help="The shapes that scenes are made of.")
+    actions = p.add_subparsers(dest="action", required=True, metavar="build|list|search")
+    command(actions, "build", _library_build, "Prepare the built-in shapes once.", "diorama library build")
+    lists = command(actions, "list", _library_list, "List the shapes.", "diorama library list --category chair")
+    lists.add_argument("--category", help="only this category (synonyms are understood)")
+    lists.add_argument("--json", action="store_true")
+    search = command(
+        actions, "search", _library_search, "Find shapes by words.", 'diorama library search "wooden armchair"'
+    )
+    search.add_argument("text", metavar="TEXT")
+    search.add_argument("-k", type=int, default=10, help="how many (default: %(default)s)")
+    search.add_argument("--json", action="store_true")
+
+
+def _library_build(a: argparse.Namespace) -> None:
+    from diorama_core.library.catalogue import default_cache_dir
+    from diorama_core.pipeline.prepare import prepare_library
+
+    with progress_bar() as progress:
+        count = prepare_library(progress=progress)
+    print(f"{count} shapes ready in {default_cache_dir()}")
+
+
+def _library_list(a: argparse.Namespace) -> None:
+    from diorama_app.building import library_named
+    from diorama_core.library.taxonomy import resolve
+
+    library = library_named("built-in")
+    found = library.shapes() if a.category is None else library.in_category(resolve(a.category).category.name)
+    _print_shapes(found, a.json)
+
+
+def _library_search(a: argparse.Namespace) -> None:
+    from diorama_app.building import library_named
+    from diorama_core.library.search import search
+    from diorama_core.library.taxonomy import resolve
+
+    if a.k < 1:
+        raise InputError(f"-k {a.k}: ask for at least one shape")
+    note = resolve(a.text).note
+    if note:
+        print(f"diorama: note: {note}", file=sys.stderr)
+    _print_shapes(search(library_named("built-in"), a.text, a.k), a.json)
+
+
+def _print_shapes(shapes: Sequence[Shape], as_json: bool) -> None:
+    if as_json:
+        rows = [{"id": s.id, "category": s.category, "caption": s.caption, "size_m": list(s.size_m)} for s in shapes]
+        print(json.dumps(rows))
+        return
+    for s in shapes:
+        x, y, z = s.size_m
+        print(f"{s.id:<28} {s.category:<16} {y:.2f} x {x:.2f} x {z:.2f} m  {s.caption}")

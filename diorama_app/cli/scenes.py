@@ -1,0 +1,211 @@
+"""Commands that make, change and show scenes: serve, build, optimise, export, picture."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from diorama_app.cli.arguments import (
+    PROFILES,
+    RECIPES,
+    command,
+    field_of_view,
+    intrinsics,
+    opened,
+    positive,
+    progress_bar,
+    size,
+    view,
+)
+from diorama_core.errors import InputError, UnavailableError
+
+EXPORT_FORMATS = ("glb",)
+
+
+def add_serve(commands: Any) -> None:
+    """Declare `diorama serve`."""
+    p = command(commands, "serve", _serve, "Open the editor in the browser.", "diorama serve my-room --port 8081")
+    p.add_argument("project", nargs="?", type=Path, metavar="PROJECT", help="project folder (default: the example)")
+    p.add_argument("--host", default="127.0.0.1", help="address to listen on (default: %(default)s)")
+    p.add_argument("--port", type=int, default=8080, help="port to listen on, 0 for any (default: %(default)s)")
+    p.add_argument("--projects", type=Path, metavar="DIR", help="where new projects go (default: ~/Diorama)")
+    p.add_argument("--no-open", action="store_true", help="do not open a browser window")
+    p.add_argument("--low-graphics", action="store_true", help="no shadows or environment light (software WebGL)")
+    p.add_argument("--token", metavar="T", help="browsers must give this token: needed for hosts other than this one")
+
+
+def _serve(a: argparse.Namespace) -> None:
+    from diorama_app.server import serve
+
+    serve(
+        project=a.project,
+        projects_dir=a.projects or Path.home() / "Diorama",
+        host=a.host,
+        port=a.port,
+        open_browser=not a.no_open,
+        low_graphics=a.low_graphics,
+        token=a.token,
+    )
+
+
+def add_build(commands: Any) -> None:
+    """Declare `diorama build`."""
+    p = command(
+        commands, "build", _build, "Build a scene from a photo.", "diorama build room.jpg --boxes boxes.json -o my-room"
+    )
+    p.add_argument("image", type=Path, metavar="IMAGE", help="the photo")
+    p.add_argument("-o", "--output", type=Path, required=True, metavar="PROJECT", help="project folder to write")
+    p.add_argument("--depth", type=Path, metavar="FILE", help="measured depth: 16-bit PNG, .npy in metres, or EXR")
+    p.add_argument("--depth-scale", type=positive, default=1000.0, help="depth PNG units a metre (default: 1000)")
+    p.add_argument("--depth-encoding", choices=("linear", "sunrgbd"), default="linear", help="how a PNG stores depth")
+    inner = p.add_mutually_exclusive_group()
+    inner.add_argument("--intrinsics", type=intrinsics, metavar="fx,fy,cx,cy", help="camera intrinsics in pixels")
+    inner.add_argument("--fov", type=field_of_view, metavar="DEG", help="horizontal field of view in degrees")
+    p.add_argument(
+        "--boxes", type=Path, metavar="FILE", help='JSON list of {"bbox": [x1, y1, x2, y2], "class": "chair"}'
+    )
+    p.add_argument("--masks", type=Path, metavar="FILE", help="PNG with one colour or id per object, black is none")
+    p.add_argument("--profile", choices=PROFILES, default="auto", help="which networks to use (default: %(default)s)")
+    p.add_argument("--arrangements", type=int, default=1, metavar="N", help="scenes with other shapes to write beside")
+    p.add_argument("--library", default="built-in", metavar="NAME", help="shape library (default: %(default)s)")
+    p.add_argument("--recipe", choices=RECIPES, default=RECIPES[0], help="layout optimiser (default: %(default)s)")
+    p.add_argument("--seed", type=int, default=0, help="seed of random stages (the embedded ones draw nothing)")
+    p.add_argument("--json", action="store_true", help="print the result as JSON")
+
+
+def _build(a: argparse.Namespace) -> None:
+    from diorama_app.building import build_report, library_named, write_arrangements
+    from diorama_core.perception.inputs import read_inputs
+    from diorama_core.pipeline.build import embedded_stages
+    from diorama_core.project.build import build_project
+    from diorama_core.project.storage import Project
+
+    if a.profile == "foundation":
+        raise UnavailableError(
+            "the foundation profile needs networks that this version cannot load yet; use --profile embedded"
+        )
+    if a.arrangements < 1:
+        raise InputError(f"--arrangements {a.arrangements}: ask for at least one")
+    read = read_inputs(
+        a.image,
+        depth=a.depth,
+        depth_scale=a.depth_scale,
+        depth_encoding=a.depth_encoding,
+        intrinsics=a.intrinsics,
+        fov_deg=a.fov,
+        boxes=a.boxes,
+        masks=a.masks,
+    )
+    for warning in read.warnings:
+        print(f"diorama: note: {warning}", file=sys.stderr)
+    library = library_named(a.library)
+    project = Project.create(a.output)
+    stages = embedded_stages(read.inputs, library, recipe=a.recipe)
+    with progress_bar() as progress:
+        built = build_project(project, read.inputs, library, stages=stages, warnings=read.warnings, progress=progress)
+        scenes = write_arrangements(project, built.scene, stages.layout, a.arrangements, progress)
+    report = build_report(project, built, scenes)
+    if a.json:
+        print(json.dumps(report))
+    else:
+        print(f"{a.output}: {report['summary']}")
+        if not built.objects:
+            print(f"No boxes were given: open it with 'diorama serve {a.output}' and draw boxes around the furniture.")
+
+
+def add_optimise(commands: Any) -> None:
+    """Declare `diorama optimise`."""
+    p = command(
+        commands,
+        "optimise",
+        _optimise,
+        "Run the layout optimiser on a project.",
+        "diorama optimise my-room --recipe paper",
+    )
+    p.add_argument("project", type=Path, metavar="PROJECT")
+    p.add_argument("--recipe", choices=RECIPES, default=RECIPES[0], help="(default: %(default)s)")
+    p.add_argument("--json", action="store_true", help="print the report as JSON")
+
+
+def _optimise(a: argparse.Namespace) -> None:
+    from dataclasses import asdict
+
+    from diorama_app.building import library_named
+    from diorama_core.layout.recipes import recipe
+    from diorama_core.scene.edits import set_metrics
+
+    project, scene = opened(a.project)
+    with progress_bar() as progress:
+        arranged, report = recipe(a.recipe, library_named("built-in")).optimise(scene, progress)
+    project.save_scene(set_metrics(arranged, report.after))
+    if a.json:
+        print(json.dumps(asdict(report)))
+        return
+    width = max((len(name) for name in report.after), default=0)
+    for name, after in report.after.items():
+        before = report.before.get(name)
+        print(f"{name:<{width}}  {'' if before is None else f'{before:10.4f} ->'} {after:10.4f}")
+    for reason in report.reasons:
+        print(f"note: {reason}")
+
+
+def add_export(commands: Any) -> None:
+    """Declare `diorama export`."""
+    p = command(
+        commands,
+        "export",
+        _export,
+        "Write a project's scene for other tools.",
+        "diorama export my-room --format glb -o room.glb",
+    )
+    p.add_argument("project", type=Path, metavar="PROJECT")
+    p.add_argument("--format", choices=EXPORT_FORMATS, required=True)
+    p.add_argument("-o", "--output", type=Path, required=True, metavar="FILE")
+
+
+def _export(a: argparse.Namespace) -> None:
+    from diorama_app.building import library_named
+    from diorama_core.export.gltf import write_glb
+
+    project, scene = opened(a.project)
+    write_glb(scene, library_named("built-in"), a.output, textures=project.textures(scene))
+    print(f"{a.output}: {len(scene.objects)} objects, {len(scene.architecture.planes)} planes")
+
+
+def add_picture(commands: Any) -> None:
+    """Declare `diorama picture`."""
+    p = command(
+        commands,
+        "picture",
+        _picture,
+        "Draw a project's scene.",
+        "diorama picture my-room -o top.png --view top --size 1200x900",
+    )
+    p.add_argument("project", type=Path, metavar="PROJECT")
+    p.add_argument("-o", "--output", type=Path, required=True, metavar="FILE.png")
+    p.add_argument("--view", type=view, default="photo", metavar="photo|top|front|orbit:DEG", help="(default: photo)")
+    p.add_argument("--size", type=size, metavar="WxH", help="in pixels (default: the photo's, at most 1024 wide)")
+
+
+def _picture(a: argparse.Namespace) -> None:
+    import io
+
+    from PIL import Image
+
+    from diorama_app.building import library_named
+    from diorama_core.project.files import write_atomically
+    from diorama_core.render.picture import picture
+
+    project, scene = opened(a.project)
+    textures = project.textures(scene)
+    image = picture(scene, library_named("built-in"), view=a.view, size=a.size, textures=textures)
+    buffer = io.BytesIO()
+    kind = {".png": "PNG", ".jpg": "JPEG", ".jpeg": "JPEG"}.get(a.output.suffix.lower())
+    if kind is None:
+        raise InputError(f"{a.output}: pictures are written as .png or .jpg; choose such a name")
+    Image.fromarray(image).save(buffer, kind)
+    write_atomically(a.output, buffer.getvalue())
+    print(f"{a.output}: {image.shape[1]}x{image.shape[0]}")
