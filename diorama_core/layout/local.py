@@ -9,7 +9,7 @@ import numpy as np
 from diorama_core.layout.problem import Problem, build_problem
 from diorama_core.layout.relocate import relocate
 from diorama_core.layout.separate import build_program, separate
-from diorama_core.layout.structure import exact_structure
+from diorama_core.layout.structure import Structure, exact_structure
 from diorama_core.layout.supports import Surface, object_surfaces, outside_m, plane_surface
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene import edits
@@ -48,7 +48,7 @@ class DragSolver:
         if not self.problem.free[i]:
             return self.scene
         problem, edge = self._at(pose)
-        structure = exact_structure(problem)
+        structure = self._settled(problem)
         weight = np.tile(np.eye(2), (problem.count, 1, 1))
         program = build_program(problem, structure, weight)
         found = separate(program, rounds=self.rounds, check=lambda y, depth: None)
@@ -69,6 +69,20 @@ class DragSolver:
         R[i], p[i], scale[i] = pose.R_world_object, pose.position, pose.scale
         moved = replace(old, R=R, p=p, scale=scale, adheres=tuple(a for a in old.adheres if a[0] not in old.rides(i)))
         return self._put_down(moved)
+
+    def _settled(self, problem: Problem) -> Structure:
+        """The object on its support, its load carried along as it lies; put anew only where the object was resized."""
+        i, load = self.index, self.problem.rides(self.index)[1:]
+        structure = exact_structure(problem, only=(i,))
+        if not load:
+            return structure
+        if not np.array_equal(structure.scale[i], self.problem.scale[i]):
+            return exact_structure(problem)
+        R, p = structure.R.copy(), structure.p.copy()
+        turn = structure.R[i] @ self.problem.R[i].T
+        R[load] = turn @ self.problem.R[load]
+        p[load] = structure.p[i] + (self.problem.p[load] - self.problem.p[i]) @ turn.T
+        return replace(structure, R=R, p=p)
 
     def _put_down(self, problem: Problem) -> tuple[Problem, Support | None]:
         i = self.index

@@ -10,6 +10,8 @@ from diorama_core.layout.separate import APART_M, Program, Separation, overlaps
 
 _RADII_M = np.array([0.01, 0.02, 0.04, 0.07, 0.1, 0.15, 0.2, 0.27, 0.35, 0.45, 0.6])
 _DIRECTIONS = 24
+_REACHES_M = (0.1, 0.7)
+"""Looked through in turn: most find a spot close by, and then only close neighbours were compared."""
 
 
 def relocate(program: Program, found: Separation) -> Separation:
@@ -59,12 +61,29 @@ def _nearest_spot(program: Program, y: Float[np.ndarray, " v"], i: int) -> Float
     if not len(tried):
         return None
     moving = np.abs(program.J[:, :, columns]).max(axis=(1, 2)) > 1e-9
+    far = np.abs(program.J[moving] @ (tried - y).T).max(axis=(0, 1))
+    for reach in _REACHES_M:
+        spot = _first_free(program, y, moving, tried[far <= reach], reach)
+        if spot is not None:
+            return spot
+        tried, far = tried[far > reach], far[far > reach]
+    return None
+
+
+def _first_free(
+    program: Program, y: np.ndarray, moving: np.ndarray, spots: Float[np.ndarray, "s v"], reach: float
+) -> Float[np.ndarray, " v"] | None:
     owner = program.bodies.owner
-    blocks = _pairs_around(program, y, moving)
+    blocks = _pairs_around(program, y, moving, reach) if len(spots) else []
     levers = [program.J[owner[block.a]] - program.J[owner[block.b]] for block in blocks]
-    for spot in tried:
-        if all((b.separations(g @ spot).max(axis=1) >= 0.5 * APART_M).all() for b, g in zip(blocks, levers)):
-            return np.asarray(spot)
+    for begin in range(0, len(spots), _DIRECTIONS):
+        ring = spots[begin : begin + _DIRECTIONS]
+        free = np.ones(len(ring), dtype=bool)
+        for block, lever in zip(blocks, levers):
+            apart = block.gaps[..., None] + block.normals @ (lever @ ring.T)
+            free &= (apart.max(axis=1) >= 0.5 * APART_M).all(axis=0)
+        if free.any():
+            return np.asarray(ring[int(free.argmax())])
     return None
 
 
@@ -77,13 +96,12 @@ def _steps(lever: Float[np.ndarray, "3 c"]) -> Float[np.ndarray, "s c"]:
     return (_RADII_M[:, None, None] * unit).reshape(-1, lever.shape[1])
 
 
-def _pairs_around(program: Program, y: Float[np.ndarray, " v"], moving: np.ndarray) -> list[PairAxes]:
+def _pairs_around(program: Program, y: Float[np.ndarray, " v"], moving: np.ndarray, reach: float) -> list[PairAxes]:
     bodies, problem = program.bodies, program.problem
     w = program.moves(y)[bodies.owner]
     low, high = bodies.low + w, bodies.high + w
     ours = np.flatnonzero(moving[bodies.owner])
     theirs = np.flatnonzero(~moving[bodies.owner])
-    reach = _RADII_M[-1]
     near = ((low[ours, None] - reach < high[None, theirs]) & (low[None, theirs] < high[ours, None] + reach)).all(axis=2)
     near &= ~problem.kin[bodies.owner[ours][:, None], bodies.owner[theirs][None]]
     a, b = np.nonzero(near)

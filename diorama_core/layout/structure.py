@@ -4,7 +4,9 @@ its supporter allows; what stays free is two coordinates on the support surface.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, field
+from itertools import combinations
 from math import hypot, sqrt
 
 import numpy as np
@@ -20,6 +22,8 @@ SMALLEST_SHRINK = 0.8
 """An object that does not fit is made smaller by at most this factor; beyond, it stays large and is named."""
 UPRIGHT_WITHIN = float(np.cos(np.deg2rad(35.0)))
 """Things hung within this angle of upright hang upright; others keep their roll."""
+_FEW_SIDES = 10
+"""Of a surface; with more, a linear program is quicker than all corners."""
 INSET_M = 2e-4
 """Kept between a contact face and the edge of its support, and under a shelf's ceiling."""
 
@@ -61,13 +65,16 @@ class _Walk:
     reasons: list[str] = field(default_factory=list)
 
 
-def exact_structure(problem: Problem, ray: Float[np.ndarray, "n 3"] | None = None) -> Structure:
+def exact_structure(
+    problem: Problem, ray: Float[np.ndarray, "n 3"] | None = None, *, only: Collection[int] | None = None
+) -> Structure:
     """Walk the support tree from the top and fix what the supporters determine.
 
     Args:
         problem: the observed poses and the graph.
         ray: unit viewing directions per object; where given, an object that must rise or sink slides along its ray so
             that it stays where the photo shows it.
+        only: indices of the objects to settle; the others keep their poses and cannot move. All free ones when None.
     """
     n = problem.count
     walk = _Walk(problem.R.copy(), problem.p.copy(), problem.scale.copy(), np.zeros((n, 3, 2)))
@@ -75,7 +82,7 @@ def exact_structure(problem: Problem, ray: Float[np.ndarray, "n 3"] | None = Non
     for i, w, face in problem.adheres:
         against.setdefault(i, []).append((w, face))
     for i in problem.top_down:
-        if problem.free[i]:
+        if problem.free[i] and (only is None or i in only):
             surface = problem.surface[i]
             if surface is None:
                 walk.basis[i] = np.eye(3)[:, :2]
@@ -277,11 +284,23 @@ def _room(m: np.ndarray, h: np.ndarray, reach: np.ndarray) -> float:
         return 1.0
     u, v = plane_axes(cross(m[0], m[1]) / max(float(np.linalg.norm(cross(m[0], m[1]))), 1e-9))
     A = np.column_stack([m @ u, m @ v, reach])
-    found = linprog([0.0, 0.0, -1.0], A_ub=A, b_ub=h, bounds=[(None, None), (None, None), (0.0, 1.0)])
-    if found.status != 0:
-        return 0.0
-    share = float(np.asarray(found.x)[2])
+    share = _highest_vertex(A, h) if len(A) <= _FEW_SIDES else _highest(A, h)
     return share if share < 1.0 - 1e-9 else 1.0
+
+
+def _highest(A: np.ndarray, h: np.ndarray) -> float:
+    found = linprog([0.0, 0.0, -1.0], A_ub=A, b_ub=h, bounds=[(None, None), (None, None), (0.0, 1.0)])
+    return float(np.asarray(found.x)[2]) if found.status == 0 else 0.0
+
+
+def _highest_vertex(A: np.ndarray, h: np.ndarray) -> float:
+    """The same through all corners of A x <= h at once: a tenth of the time for the few sides that most tops have."""
+    triples = np.array(list(combinations(range(len(A)), 3)))
+    corners, bounds = A[triples], h[triples]
+    firm = np.abs(np.linalg.det(corners)) > 1e-9
+    x = np.linalg.solve(corners[firm], bounds[firm][..., None])[..., 0]
+    inside = (x @ A.T <= h + 1e-9).all(axis=1)
+    return float(np.clip(x[inside, 2].max(initial=0.0), 0.0, 1.0))
 
 
 def _into(rows: np.ndarray, slack: np.ndarray) -> Float[np.ndarray, "2"]:
