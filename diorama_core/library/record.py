@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal, Protocol
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any, Literal, Protocol, cast
 
 import numpy as np
 import trimesh
 from jaxtyping import Float
 
+from diorama_core.errors import LibraryError
+from diorama_core.scene.types import FaceName
 from diorama_core.scene.values import ArrayValue, frozen_array
 
 SymmetryFold = Literal[1, 2, 4, 36]
@@ -35,6 +39,31 @@ class SupportSurface(ArrayValue):
 
 
 @dataclass(frozen=True)
+class Assumption:
+    """One thing about a model that its file does not say for certain."""
+
+    value: str
+    """`+y` for an axis of the file, a number of metres for a unit, a category."""
+    confidence: float
+    """0 (a coin toss) to 1 (the user or the file said so)."""
+    reason: str
+    """Where it comes from, in a few plain words."""
+
+
+@dataclass(frozen=True)
+class Guess:
+    """What was assumed about a model that was brought in, so that a person can see and correct it."""
+
+    up: Assumption
+    """Axis of the file that points up."""
+    front: Assumption
+    """Axis of the file that the front looks along."""
+    unit: Assumption
+    """Metres in one unit of the file."""
+    category: Assumption
+
+
+@dataclass(frozen=True)
 class Shape:
     """The record of one shape. Canonical frame: +X front, +Z up, centred on its bounding box, metres."""
 
@@ -53,7 +82,15 @@ class Shape:
     surfaces: tuple[SupportSurface, ...] = ()
     mass_kg: float = 1.0
     content_hash: str = ""
-    """Hash of the geometry and materials: the key of everything derived from it."""
+    """Hash of the geometry and materials: the key of everything derived from it (thumbnail, pose templates, parts)."""
+    synonyms: tuple[str, ...] = ()
+    """What else a person may call this shape, beyond the names of its category: a data set's own words for it."""
+    contact_faces: tuple[FaceName, ...] = ("bottom",)
+    """Faces of the canonical box that may touch a supporter, the usual one first."""
+    triangles: int = 0
+    """0 when nobody counted."""
+    guess: Guess | None = None
+    """None when nothing had to be assumed (built-in shapes)."""
 
 
 class ShapeLibrary(Protocol):
@@ -82,3 +119,50 @@ class ShapeLibrary(Protocol):
     def glb(self, shape_id: str) -> bytes:
         """`parts` as GLB bytes, still +Z up and in metres (viewers rotate as their convention asks)."""
         ...
+
+
+def usual_contact_faces(mount: str) -> tuple[FaceName, ...]:
+    """Faces that touch a supporter, the usual one first, for where a category is found (`taxonomy.Mount`)."""
+    if mount == "wall":
+        return ("back", "bottom")  # a clock hangs, and also stands on a shelf
+    return ("top",) if mount == "ceiling" else ("bottom",)
+
+
+def shape_to_json(shape: Shape) -> str:
+    """The whole record, surfaces included, as one line of JSON; `shape_from_json` gives it back unchanged."""
+    row = {name: value for name, value in vars(shape).items() if name not in ("surfaces", "guess")}
+    row["surfaces"] = [
+        {
+            "polygon": s.polygon.tolist(),
+            "clearance_m": s.clearance_m if np.isfinite(s.clearance_m) else None,
+            "interior": s.interior,
+        }
+        for s in shape.surfaces
+    ]
+    row["guess"] = None if shape.guess is None else asdict(shape.guess)
+    return json.dumps(row, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+
+
+def shape_from_json(text: str) -> Shape:
+    """The record that `shape_to_json` wrote.
+
+    Raises:
+        LibraryError: when the text is not such a record.
+    """
+    try:
+        row = json.loads(text)
+        row |= {name: tuple(row[name]) for name in ("size_m", "synonyms", "contact_faces")}
+        row["surfaces"] = tuple(_surface_from(s) for s in row["surfaces"])
+        row["guess"] = None if row["guess"] is None else _guess_from(row["guess"])
+        return Shape(**row)
+    except (ValueError, TypeError, KeyError) as error:
+        raise LibraryError(f"a shape record cannot be read ({error}); add the shape to its library again") from error
+
+
+def _surface_from(row: Mapping[str, Any]) -> SupportSurface:
+    clearance = row["clearance_m"]
+    return SupportSurface(np.array(row["polygon"]), np.inf if clearance is None else clearance, row["interior"])
+
+
+def _guess_from(row: Mapping[str, Any]) -> Guess:
+    return Guess(**{name: Assumption(**cast("dict[str, Any]", value)) for name, value in row.items()})
