@@ -64,12 +64,19 @@ def _in_colour(source: PBRMaterial, colour: Colour) -> PBRMaterial:
     linear = [min(_srgb_to_linear(c) * gain, 1.0) for c in colour]
     return PBRMaterial(
         name=f"{source.name or 'material'} painted",
-        baseColorFactor=[*(round(255 * c) for c in linear), 255],
+        baseColorFactor=[*(round(255 * c) for c in linear), _opacity(source)],
         baseColorTexture=None if texture is None else Image.fromarray(_detail(texture)),
         metallicFactor=source.metallicFactor,
         roughnessFactor=source.roughnessFactor,
         doubleSided=source.doubleSided,
+        emissiveFactor=source.emissiveFactor,
+        alphaMode=source.alphaMode,
     )
+
+
+def _opacity(source: PBRMaterial) -> int:
+    factor = source.baseColorFactor
+    return 255 if source.alphaMode != "BLEND" or factor is None else int(factor[3])
 
 
 def _detail(texture: Image.Image) -> UInt8[np.ndarray, "h w 3"]:

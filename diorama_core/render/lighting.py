@@ -124,7 +124,7 @@ def _from_window(
     ray = target - origins
     along = np.einsum("ij,ij->i", normals, ray)
     lit = np.flatnonzero(along > 0)
-    blocked = blockers.caster.occluded(np.concatenate([origins[lit], ray[lit]], axis=1), far=1.0)
+    blocked = blockers.shadow_caster.occluded(np.concatenate([origins[lit], ray[lit]], axis=1), far=1.0)
     squared = np.einsum("ij,ij->i", ray[lit], ray[lit])
     fall = np.minimum(np.float32(light.reference_m**2) / squared, 4.0)
     strength = np.zeros(len(ray), np.float32)

@@ -122,13 +122,12 @@ def _seen(
     metal = places.metallic[:, None]
     fallen = _relit(places, fallen, light)
     out = base * (1 - metal) * fallen + places.emissive
-    out = out + _gloss(world, places, direction, fallen, light)
     clear = np.flatnonzero(places.alpha < 0.999)
     if len(clear) and depth < 3:
         beyond = _beyond(world, places, rays, clear, light, depth)
         share = places.alpha[clear, None]
         out[clear] = out[clear] * share + beyond * (1 - share)
-    return out.astype(np.float32)
+    return (out + _gloss(world, places, direction, fallen, light)).astype(np.float32)
 
 
 def _relit(places: Places, fallen: Float32[np.ndarray, "n 3"], light: Lighting) -> Float32[np.ndarray, "n 3"]:

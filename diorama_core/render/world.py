@@ -14,6 +14,9 @@ from diorama_core.render.raycast import Caster, Hits, RayArray, face_normals, fa
 from diorama_core.render.slabs import plane_surfaces
 from diorama_core.scene.types import Scene
 
+CLEAR = 0.6
+"""Surfaces of less opacity cast no shadow."""
+
 
 @dataclass(frozen=True, eq=False)
 class Placed:
@@ -65,6 +68,12 @@ class World:
         self._materials = _MaterialTable(surfaces)
         self._face_normals = face_normals(self.vertices, self._faces)
         self.caster = Caster(self.vertices, self._faces)
+        self.shadow_caster = self._shadow_caster()
+
+    def _shadow_caster(self) -> Caster:
+        """Only what holds light off: clear glass lets it through."""
+        opaque = self._materials.opacity[self._surface_of_face] > CLEAR
+        return self.caster if opaque.all() else Caster(self.vertices, self._faces[opaque])
 
     @property
     def bounds(self) -> Float[np.ndarray, "2 3"]:
@@ -168,7 +177,7 @@ class _MaterialTable:
         self.emissive = np.array([m.emissive for m in materials], dtype=np.float32).reshape(-1, 3)
         self._colour = np.array([m.colour for m in materials], dtype=np.float32).reshape(-1, 3)
         self.photographed = np.array([m.photographed for m in materials], dtype=bool)
-        self._alpha = np.array([m.alpha for m in materials], dtype=np.float32)
+        self.opacity = np.array([m.alpha for m in materials], dtype=np.float32)
         self._pictures: list[tuple[Float32[np.ndarray, "h w c"], bool]] = []
         """Linear texels, and whether they repeat."""
         self._picture_of = np.full(len(surfaces), -1, dtype=np.int32)
@@ -187,7 +196,7 @@ class _MaterialTable:
         self, surface: Int32[np.ndarray, "n"], uv: Float32[np.ndarray, "n 2"]
     ) -> tuple[Float32[np.ndarray, "n 3"], Float32[np.ndarray, "n"]]:
         """Linear base colour and opacity at texture coordinates (bilinear)."""
-        colour, alpha, picture = self._colour[surface], self._alpha[surface], self._picture_of[surface]
+        colour, alpha, picture = self._colour[surface], self.opacity[surface], self._picture_of[surface]
         order = np.argsort(picture, kind="stable")
         bounds = np.searchsorted(picture[order], np.arange(len(self._pictures) + 1))
         for (texels, repeat), start, stop in zip(self._pictures, bounds[:-1], bounds[1:], strict=True):

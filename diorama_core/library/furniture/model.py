@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 import trimesh
@@ -50,6 +52,38 @@ class Design:
     symmetry: SymmetryFold = 1
     mass_kg: float | None = None
     """None lets the catalogue guess from the category and the size."""
+
+
+def design(
+    category: str,
+    name: str,
+    caption: str,
+    size_m: Size,
+    style: str,
+    build: Callable[..., Parts],
+    symmetry: SymmetryFold = 1,
+    *,
+    id: str | None = None,
+    mass_kg: float | None = None,
+    **options: Any,
+) -> Design:
+    """A design called after its category and `name` (or `id`, where it was once called otherwise).
+
+    Args:
+        category: Canonical category.
+        name: What tells it from its siblings.
+        caption: One line a person would say of it.
+        size_m: Extents along x, y and z.
+        style: modern, classic, industrial, rustic or minimal.
+        build: Called with the size and `options`.
+        symmetry: Turns about up that leave it looking the same.
+        id: The whole id.
+        mass_kg: None lets the catalogue guess.
+        options: What else the builder is to know.
+    """
+    known_as = id or f"{category.replace(' ', '-')}-{name}"
+    builder = partial(build, **options) if options else build
+    return Design(known_as, category, caption, size_m, style, builder, symmetry, mass_kg)
 
 
 def of(material: Material, *solids: Solid) -> Parts:

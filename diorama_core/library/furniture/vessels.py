@@ -38,7 +38,10 @@ def hollow(profile: Profile, radius: float, height: float, wall: float, bottom: 
     """A turned vessel with an inside, from an outer profile in fractions."""
     outside = [(a * radius, b * height) for a, b in profile]
     inside = [(max(r - wall, 0.004), max(z, bottom)) for r, z in reversed(outside) if z > bottom]
-    return lathe([*outside, *inside, (0.004, bottom)], 36, np.deg2rad(55))
+    floor = max(float(np.interp(bottom, [z for _, z in outside], [r for r, _ in outside])) - wall, 0.004)
+    return lathe(
+        [*outside, *inside, (floor, bottom + wall), (floor * 0.8, bottom), (0.004, bottom)], 36, np.deg2rad(55)
+    )
 
 
 def vase(size: Size, clay: Material, kind: str, handles: bool = False) -> Parts:
