@@ -14,8 +14,25 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.errors import EditRefused
+from diorama_core.scene.room_edits import (
+    ceiling_height,
+    edge_length_m,
+    floor_height,
+    move_plane,
+    rescale,
+    rescale_by_edge,
+    rescale_to_length,
+    set_ceiling_height,
+    set_plane_look,
+)
 from diorama_core.scene.support import check_edge, descendants
 from diorama_core.scene.types import Candidate, Plane, Pose, Scene, SceneObject, Support
+
+__all__ = [
+    "attach", "ceiling_height", "detach", "duplicate", "edge_length_m", "floor_height", "fresh_id", "insert", "move",
+    "move_plane", "place", "recolour", "remove", "rename", "rescale", "rescale_by_edge", "rescale_to_length",
+    "set_ceiling_height", "set_hidden", "set_locked", "set_metrics", "set_plane_look", "set_planes", "swap",
+]  # fmt: skip
 
 SMALLEST_SIZE_M = 1e-3
 LARGEST_SIZE_M = 50.0

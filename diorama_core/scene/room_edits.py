@@ -1,0 +1,227 @@
+"""Edits of the room itself, and of the scale of everything: pure functions Scene -> Scene.
+
+What is fastened to a plane follows it: things mounted on it, things that stand on it, things that stand against it,
+and whatever those hold up. Locked objects stay where they are. Planes that share corners with a moved one are
+stretched or cut so that the room stays closed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.errors import EditRefused
+from diorama_core.scene.support import descendants
+from diorama_core.scene.types import Camera, Plane, Pose, Scene, SceneObject
+
+JOINED_M = 0.01
+"""Corners of two planes nearer than this are one corner of the room."""
+LARGEST_MOVE_M = 30.0
+LOWEST_CEILING_M, HIGHEST_CEILING_M = 1.0, 30.0
+SMALLEST_FACTOR, LARGEST_FACTOR = 0.02, 50.0
+PARALLEL = 0.985
+"""Planes turned by less than about ten degrees cannot be kept joined by sliding along one another."""
+
+Points = Float[np.ndarray, "n 3"]
+
+
+def move_plane(scene: Scene, plane_id: str, distance_m: float) -> Scene:
+    """Move a wall, the floor or the ceiling along its normal; the planes that meet it follow, so the room stays closed.
+
+    Args:
+        scene: The scene.
+        plane_id: The plane to move.
+        distance_m: Outward: positive makes the room larger, negative smaller.
+
+    Raises:
+        EditRefused: when there is no such plane, or a plane that meets it would vanish or turn over.
+    """
+    plane = _plane(scene, plane_id)
+    if not np.isfinite(distance_m) or abs(distance_m) > LARGEST_MOVE_M:
+        raise EditRefused(f"a plane cannot move by {distance_m:g} m; give at most {LARGEST_MOVE_M:g} m")
+    planes = _with_plane_moved(scene.architecture.planes, plane, float(distance_m))
+    shift = -plane.normal * distance_m
+    return _carry(_with_planes(scene, planes), _fastened(scene, {plane_id}), shift)
+
+
+def set_ceiling_height(scene: Scene, height_m: float) -> Scene:
+    """Bring the top of the room to a height above the floor; sloped ceilings keep their slope, walls grow or shrink.
+
+    Works without a ceiling too, on the walls' tops. Lamps and whatever else hangs from the ceiling follow.
+
+    Raises:
+        EditRefused: when the room has neither ceiling nor walls, or the height is not a room's.
+    """
+    if not np.isfinite(height_m) or not LOWEST_CEILING_M <= height_m <= HIGHEST_CEILING_M:
+        raise EditRefused(
+            f"a ceiling at {height_m:g} m is no room; give {LOWEST_CEILING_M:g} to {HIGHEST_CEILING_M:g} m"
+        )
+    upper = scene.architecture.by_role("ceiling") or scene.architecture.by_role("wall")
+    if not upper:
+        raise EditRefused("the room has neither a ceiling nor walls; there is nothing to raise or lower")
+    floor_m = floor_height(scene)
+    rise = height_m - (max(float(p.polygon[:, 2].max()) for p in upper) - floor_m)
+
+    def raised(plane: Plane) -> Plane:
+        if plane.role == "floor":
+            return plane
+        top = (
+            plane.polygon[:, 2] > _waist(plane, floor_m) if plane.role == "wall" else np.ones(len(plane.polygon), bool)
+        )
+        polygon = plane.polygon.copy()
+        polygon[top, 2] += rise
+        return replace(plane, polygon=polygon)
+
+    planes = tuple(_sound(p, raised(p)) for p in scene.architecture.planes)
+    ceilings = {p.id for p in scene.architecture.by_role("ceiling")}
+    return _carry(_with_planes(scene, planes), _fastened(scene, ceilings), np.array([0.0, 0.0, rise]))
+
+
+def rescale(scene: Scene, factor: float) -> Scene:
+    """Everything larger or smaller about the world's origin, camera included: the photo looks the same.
+
+    Raises:
+        EditRefused: when the factor is not a positive number of a usable size.
+    """
+    if not np.isfinite(factor) or not SMALLEST_FACTOR <= factor <= LARGEST_FACTOR:
+        raise EditRefused(f"a scene cannot be scaled by {factor:g}; give {SMALLEST_FACTOR:g} to {LARGEST_FACTOR:g}")
+
+    def scaled_pose(pose: Pose) -> Pose:
+        return Pose(pose.R_world_object, pose.position * factor, pose.scale * factor)
+
+    def scaled(item: SceneObject) -> SceneObject:
+        candidates = tuple(replace(c, pose=scaled_pose(c.pose)) for c in item.candidates)
+        return replace(item, pose=scaled_pose(item.pose), candidates=candidates)
+
+    planes = tuple(replace(p, polygon=p.polygon * factor) for p in scene.architecture.planes)
+    return replace(
+        _with_planes(scene, planes),
+        camera=None if scene.camera is None else _scaled_camera(scene.camera, factor),
+        objects=tuple(scaled(o) for o in scene.objects),
+        metrics=(),
+    )
+
+
+def rescale_to_length(scene: Scene, length_now_m: float, length_true_m: float) -> Scene:
+    """Scale everything so that something that measures `length_now_m` in the scene measures `length_true_m`.
+
+    Raises:
+        EditRefused: when a length is not positive or the two are too far apart.
+    """
+    if not (np.isfinite([length_now_m, length_true_m]).all() and min(length_now_m, length_true_m) > 1e-6):
+        raise EditRefused("a known length must be a positive number of metres")
+    return rescale(scene, length_true_m / length_now_m)
+
+
+def edge_length_m(scene: Scene, plane_id: str, edge: int) -> float:
+    """Length of one edge of a plane: `edge` runs from that corner of its polygon to the next."""
+    polygon = _plane(scene, plane_id).polygon
+    return float(np.linalg.norm(polygon[(edge + 1) % len(polygon)] - polygon[edge % len(polygon)]))
+
+
+def rescale_by_edge(scene: Scene, plane_id: str, edge: int, length_m: float) -> Scene:
+    """ "This edge is 2.40 m": scale everything so that an edge of a plane has a known length."""
+    return rescale_to_length(scene, edge_length_m(scene, plane_id, edge), length_m)
+
+
+def floor_height(scene: Scene) -> float:
+    """z of the floor in the world; 0 without one."""
+    floor = scene.architecture.floor
+    return 0.0 if floor is None else float(floor.polygon[:, 2].mean())
+
+
+def ceiling_height(scene: Scene) -> float | None:
+    """Height of the room's top above its floor; None where there is neither a ceiling nor a wall."""
+    upper = scene.architecture.by_role("ceiling") or scene.architecture.by_role("wall")
+    return max(float(p.polygon[:, 2].max()) for p in upper) - floor_height(scene) if upper else None
+
+
+def set_plane_look(
+    scene: Scene, plane_id: str, *, colour: tuple[float, float, float] | None = None, texture: str | None = None
+) -> Scene:
+    """A plane's picture by name, or its plain material with None; the colour is kept when none is given."""
+    plane = _plane(scene, plane_id)
+    changed = replace(plane, texture=texture, colour=plane.colour if colour is None else colour)
+    return _with_planes(scene, tuple(changed if p.id == plane_id else p for p in scene.architecture.planes))
+
+
+def _with_plane_moved(planes: tuple[Plane, ...], moved: Plane, distance_m: float) -> tuple[Plane, ...]:
+    """All planes with one moved outward; corners on its rim slide along the other planes that meet there."""
+
+    def slide(corner: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
+        rows = [moved.normal]
+        for other in planes:
+            meets = other.id != moved.id and np.linalg.norm(other.polygon - corner, axis=1).min() < JOINED_M
+            if meets and abs(float(other.normal @ moved.normal)) < PARALLEL:
+                # Where more than three planes meet, the first ones decide: three already fix the corner.
+                more = [*rows, other.normal]
+                rows = more if np.linalg.matrix_rank(np.array(more), tol=0.1) == len(more) else rows
+        wanted = np.zeros(len(rows))
+        wanted[0] = -distance_m
+        # The least displacement that keeps the corner on every plane it belongs to.
+        return corner + np.linalg.lstsq(np.array(rows), wanted, rcond=1e-6)[0]
+
+    def adjusted(plane: Plane) -> Plane:
+        if plane.id == moved.id:
+            return replace(plane, polygon=np.array([slide(c) for c in plane.polygon]))
+        if abs(float(plane.normal @ moved.normal)) >= PARALLEL:
+            return plane
+        on = _on_plane(plane.polygon, moved)
+        polygon = plane.polygon.copy()
+        for index in np.flatnonzero(on):
+            polygon[index] = slide(polygon[index])
+        return replace(plane, polygon=polygon)
+
+    return tuple(_sound(p, adjusted(p)) for p in planes)
+
+
+def _on_plane(points: Points, plane: Plane) -> np.ndarray:
+    """Which points lie on a plane, within the bounds of its polygon."""
+    near = np.abs(points @ plane.normal - plane.offset) < JOINED_M
+    low, high = plane.polygon.min(axis=0) - JOINED_M, plane.polygon.max(axis=0) + JOINED_M
+    return np.asarray(near & ((points >= low) & (points <= high)).all(axis=1))
+
+
+def _waist(plane: Plane, floor_m: float) -> float:
+    """Height above which a wall's corners belong to its top."""
+    return 0.5 * (floor_m + float(plane.polygon[:, 2].max()))
+
+
+def _sound(before: Plane, after: Plane) -> Plane:
+    """The changed plane; refused when it has vanished or turned over."""
+    area = float(np.linalg.norm(np.cross(after.polygon, np.roll(after.polygon, -1, axis=0)).sum(axis=0))) / 2
+    if after is not before and (area < 1e-4 or float(before.normal @ after.normal) < 0.7):
+        raise EditRefused(f"that would leave nothing of {before.id}; move by less")
+    return after
+
+
+def _with_planes(scene: Scene, planes: tuple[Plane, ...]) -> Scene:
+    return replace(scene, architecture=replace(scene.architecture, planes=planes))
+
+
+def _fastened(scene: Scene, plane_ids: Iterable[str]) -> frozenset[str]:
+    """Objects that follow planes: held up by them or standing against them, with all they hold up; none locked."""
+    ids = set(plane_ids)
+    held = {s.child for s in scene.supports if s.parent in ids or ids & set(s.adheres_to)}
+    held |= {below for top in held for below in descendants(scene, top)}
+    return frozenset(o for o in held if scene.has_object(o) and not scene.object(o).locked)
+
+
+def _carry(scene: Scene, object_ids: frozenset[str], shift_world: Float[np.ndarray, "3"]) -> Scene:
+    moved = (replace(o, pose=o.pose.moved(shift_world)) if o.id in object_ids else o for o in scene.objects)
+    return replace(scene, objects=tuple(moved))
+
+
+def _scaled_camera(camera: Camera, factor: float) -> Camera:
+    T = camera.T_world_camera.copy()
+    T[:3, 3] *= factor
+    return replace(camera, T_world_camera=T)
+
+
+def _plane(scene: Scene, plane_id: str) -> Plane:
+    if not scene.has_plane(plane_id):
+        raise EditRefused(f"there is no plane {plane_id!r}; choose a wall, the floor or the ceiling of the outliner")
+    return scene.plane(plane_id)
