@@ -197,7 +197,7 @@ def _content_hash(design: Design) -> str:
 def _code_hash() -> str:
     """Hash of the code that builds and measures shapes: geometry and materials follow from it and the design."""
     here = Path(__file__).parent
-    sources = [*sorted((here / "furniture").glob("*.py")), here / "surfaces.py"]
+    sources = [*sorted((here / "furniture").rglob("*.py")), here / "surfaces.py"]
     return hashlib.sha256(b"\0".join(s.read_bytes() for s in sources)).hexdigest()
 
 

@@ -60,6 +60,8 @@ class Category:
     """Whether it often stands at odd angles to the room (chairs, plants)."""
     soft: bool = False
     """Whether it gives way: soft things lie against and partly in one another."""
+    kin: str = ""
+    """The broader category whose rules it shares (where it stands, what goes with it), for a special kind of one."""
 
 
 @dataclass(frozen=True)
@@ -188,6 +190,17 @@ def category(name: str) -> Category:
     if found is None or found.name != name:
         raise KeyError(name)
     return found
+
+
+@cache
+def broad(name: str) -> str:
+    """The category whose rules hold for this one: its kin, or itself when it has none or is unknown."""
+    return next((c.kin for c in CATEGORIES if c.name == name and c.kin), name)
+
+
+def with_kin(*names: str) -> frozenset[str]:
+    """These categories and all the special kinds of them."""
+    return frozenset(names) | {c.name for c in CATEGORIES if c.kin in names}
 
 
 @cache

@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.library.taxonomy import UNKNOWN, category
+from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, broad, category
 from diorama_core.scene.values import ArrayValue
 
 _ENOUGH = 4
@@ -85,7 +85,18 @@ RELATED: dict[str, tuple[str, ...]] = {
     "piano": ("desk", "sideboard", "console table"),
     "toy": ("box", "vase"),
 }
-"""Near kinds of each category, nearest first."""
+"""Near kinds of each broad category, nearest first."""
+
+
+def near_kinds(name: str) -> tuple[str, ...]:
+    """Near kinds of a category, nearest first; of a special kind, its broad category and that one's."""
+    kin = broad(name)
+    return RELATED.get(name, ()) if kin == name else (kin, *(k for k in RELATED.get(kin, ()) if k != name))
+
+
+def own_kinds(name: str) -> tuple[str, ...]:
+    """A category and all the special kinds of it: a stool may turn out to be a bar stool."""
+    return (name, *(c.name for c in CATEGORIES if c.kin == name))
 
 
 USUAL = frozenset(
@@ -134,10 +145,11 @@ def pool_for(library: ShapeLibrary, wish: Wish) -> Pool:
     """Shapes worth comparing with the picture, at most a dozen or two; nearest sizes where there are more."""
     if wish.category == UNKNOWN.name:
         return Pool(_plausible(library, wish))
-    own = _nearest(_usable(library, library.in_category(wish.category), wish), wish.size_m, _NAMED_POOL)
+    kinds = [shape for kind in own_kinds(wish.category) for shape in library.in_category(kind)]
+    own = _nearest(_usable(library, kinds, wish), wish.size_m, _NAMED_POOL)
     members = [Pooled(shape, 1.0) for shape in own]
     factor = _RELATED_FACTOR
-    for near in RELATED.get(wish.category, ()):
+    for near in near_kinds(wish.category):
         if len(members) >= _ENOUGH:
             break
         near_shapes = _nearest(_usable(library, library.in_category(near), wish), wish.size_m, _NAMED_POOL)

@@ -7,7 +7,7 @@ import pytest
 
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, category
-from diorama_core.retrieval.pools import RELATED, Wish, pool_for
+from diorama_core.retrieval.pools import RELATED, Wish, near_kinds, own_kinds, pool_for
 
 LIBRARY = built_in_library()
 
@@ -18,8 +18,10 @@ def pool(name: str, size, held_by: str = "floor", holds: bool = False):
 
 def test_every_category_knows_its_near_kinds() -> None:
     names = {c.name for c in CATEGORIES} - {UNKNOWN.name}
-    assert set(RELATED) == names
-    assert all(near in names and near != name for name, row in RELATED.items() for near in row)
+    assert set(RELATED) == {name for name in names if not category(name).kin}
+    assert all(near_kinds(name) for name in names)
+    assert all(near in names and near != name for name in names for near in near_kinds(name))
+    assert all(name in own_kinds(category(name).kin) for name in names if category(name).kin)
 
 
 @pytest.mark.parametrize("name", [c.name for c in CATEGORIES])

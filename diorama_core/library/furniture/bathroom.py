@@ -8,7 +8,7 @@ import numpy as np
 
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.carcass import door_front, drawer_front
-from diorama_core.library.furniture.kitchen import at, tap
+from diorama_core.library.furniture.fittings import at, tap
 from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.model import Builder, Design, Parts, Size, both_sides, of
 from diorama_core.library.furniture.solids import (

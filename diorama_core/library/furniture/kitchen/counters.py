@@ -1,0 +1,122 @@
+"""Base units under a worktop."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from diorama_core.library.furniture import materials as m
+from diorama_core.library.furniture.carcass import door_front, drawer_front
+from diorama_core.library.furniture.fittings import at, tap
+from diorama_core.library.furniture.materials import Material
+from diorama_core.library.furniture.model import Design, Parts, Size, of
+from diorama_core.library.furniture.solids import box
+
+
+def counter(
+    size: Size,
+    body: Material,
+    top: Material,
+    units: tuple[str, ...],
+    panel: str = "flat",
+    pull: Material = m.STEEL,
+    handle: str = "bar",
+    basin: bool = False,
+) -> Parts:
+    """Base units under a worktop; `units` are "door", "drawers" or "pair" from right to left."""
+    d, w, h = size
+    h -= 0.24 if basin else 0.0  # the tap reaches above the worktop
+    t = 0.038
+    parts = of(body, box((d - 0.05, w - 0.01, h - t - 0.1), 0.003).moved(-0.015, 0, 0.1)) + of(
+        m.CHARCOAL, box((d - 0.1, w - 0.02, 0.1), 0.002).moved(-0.025)
+    )
+    parts += of(m.SHADOW, box((0.004, w - 0.014, h - t - 0.104), 0.001).moved(d / 2 - 0.039, 0, 0.102))
+    if basin:
+        parts += _worktop_with_basin(d, w, h, t, top)
+    else:
+        parts += of(top, box((d, w, t), 0.006, 2).moved(z=h - t))
+    each, x, z, hh = w / len(units), d / 2 - 0.038, 0.105, h - t - 0.112
+    for k, unit_kind in enumerate(units):
+        y = -w / 2 + each * (k + 0.5)
+        if unit_kind == "drawers":
+            for low, share in ((0.0, 0.4), (0.4, 0.36), (0.76, 0.24)):
+                parts += drawer_front(x, y, z + low * hh, each - 0.006, share * hh - 0.006, body, pull, handle)
+        elif unit_kind == "pair":
+            for s in (1, -1):
+                parts += door_front(
+                    x,
+                    y + s * each / 4,
+                    z,
+                    each / 2 - 0.006,
+                    hh,
+                    body,
+                    pull,
+                    "tall" if handle == "bar" else handle,
+                    s,
+                    panel,
+                )
+        else:
+            parts += door_front(
+                x, y, z, each - 0.006, hh, body, pull, "tall" if handle == "bar" else handle, 1 if k % 2 else -1, panel
+            )
+    return parts
+
+
+def _worktop_with_basin(d: float, w: float, h: float, t: float, top: Material) -> Parts:
+    bw, bd = 0.5, d * 0.62
+    strips = [box((d, (w - bw) / 2, t), 0.005).moved(0, s * (w + bw) / 4, h - t) for s in (1, -1)]
+    strips += [box(((d - bd) / 2, bw + 0.002, t), 0.005).moved(s * (d + bd) / 4, 0, h - t) for s in (1, -1)]
+    sides = [box((bd, 0.006, 0.16), 0.002).moved(0, s * (bw / 2 - 0.003), h - 0.165) for s in (1, -1)] + [
+        box((0.006, bw, 0.16), 0.002).moved(s * (bd / 2 - 0.003), 0, h - 0.165) for s in (1, -1)
+    ]
+    floor = box((bd, bw, 0.006), 0.002).moved(z=h - 0.168)
+    return of(top, *strips) + of(m.STAINLESS, *sides, floor) + at(tap(0.24), -bd / 2 - 0.04, 0, h)
+
+
+DESIGNS: tuple[Design, ...] = (
+    Design(
+        "kitchen-counter-white-oak",
+        "kitchen counter",
+        "white kitchen units with an oak worktop",
+        (0.62, 1.80, 0.90),
+        "modern",
+        partial(counter, body=m.WHITE, top=m.OAK, units=("door", "drawers", "door")),
+    ),
+    Design(
+        "kitchen-counter-sage-marble",
+        "kitchen counter",
+        "sage panelled units with a marble top",
+        (0.62, 2.00, 0.91),
+        "classic",
+        partial(
+            counter, body=m.SAGE, top=m.MARBLE, units=("pair", "drawers"), panel="shaker", pull=m.BRASS, handle="knob"
+        ),
+    ),
+    Design(
+        "kitchen-counter-sink-unit",
+        "kitchen counter",
+        "grey kitchen unit with a steel sink",
+        (0.62, 1.60, 1.14),
+        "modern",
+        partial(counter, body=m.LIGHT_GREY, top=m.GRANITE, units=("door", "pair"), basin=True),
+    ),
+    Design(
+        "kitchen-counter-island",
+        "kitchen counter",
+        "navy kitchen island",
+        (0.90, 1.60, 0.92),
+        "modern",
+        partial(
+            counter, body=m.NAVY, top=m.LIGHT_OAK, units=("drawers", "door", "drawers"), panel="shaker", pull=m.BRASS
+        ),
+    ),
+    Design(
+        "kitchen-counter-concrete",
+        "kitchen counter",
+        "walnut units with a concrete worktop",
+        (0.64, 2.40, 0.90),
+        "industrial",
+        partial(
+            counter, body=m.WALNUT, top=m.CONCRETE, units=("door", "drawers", "drawers", "door"), pull=m.BLACK_STEEL
+        ),
+    ),
+)

@@ -1,0 +1,94 @@
+"""Microwaves, mini ovens and toasters."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from diorama_core.library.furniture import materials as m
+from diorama_core.library.furniture.fittings import at, bar_handle, knob
+from diorama_core.library.furniture.materials import Material
+from diorama_core.library.furniture.model import Design, Parts, Size, four, of
+from diorama_core.library.furniture.solids import box, cylinder, prism, rounded_rectangle
+
+
+def microwave(size: Size, body: Material, kind: str = "microwave") -> Parts:
+    """`kind`: "microwave", "oven" (a mini oven with knobs) or "toaster"."""
+    d, w, h = size
+    if kind == "toaster":
+        shell = prism(rounded_rectangle(h, w, 0.05, 6), d, 0.02).turned("y", -90).moved(d / 2, 0, h / 2)
+        slots = [box((0.026, w * 0.68, 0.012), 0.003).moved(x, 0, h - 0.009) for x in (-0.17 * d, 0.17 * d)]
+        lever = box((0.03, 0.03, 0.014), 0.004).moved(0, w / 2 + 0.004, h * 0.6)
+        return of(body, shell.moved(0, 0, 0.0)) + of(m.BLACK, *slots, lever, box((d - 0.03, w - 0.03, 0.012), 0.003))
+    parts = of(body, box((d - 0.03, w, h - 0.012), 0.008, 2).moved(-0.015, 0, 0.012)) + of(
+        m.BLACK, *four(cylinder(0.014, 0.015, 0.002, 10).moved(d / 2 - 0.07, w / 2 - 0.05))
+    )
+    x, glass_w = d / 2 - 0.032, w * 0.68
+    y = w / 2 - glass_w / 2 - 0.014
+    parts += of(
+        body if kind == "oven" else m.CHARCOAL, box((0.024, glass_w, h - 0.035), 0.006, 2).moved(x + 0.01, y, 0.022)
+    ) + of(m.DARK_GLASS, box((0.004, glass_w - 0.07, h - 0.12), 0.001).moved(x + 0.022, y, 0.06))
+    side_y = -w / 2 + (w - glass_w) / 2 - 0.008
+    parts += of(
+        m.CHARCOAL if kind != "oven" else body,
+        box((0.02, w - glass_w - 0.03, h - 0.035), 0.005, 2).moved(x + 0.006, side_y, 0.022),
+    )
+    if kind == "oven":
+        for z in (0.27, 0.52, 0.77):
+            parts += at(knob(0.017), x + 0.016, side_y, z * h)
+        return parts + at(bar_handle(glass_w * 0.8, False), x + 0.01, y, h - 0.045)
+    keys = [
+        box((0.004, 0.02, 0.012), 0.001).moved(x + 0.016, side_y + (c - 1) * 0.028, 0.07 + 0.03 * r)
+        for r in range(4)
+        for c in range(3)
+    ]
+    display = box((0.004, 0.085, 0.032), 0.001).moved(x + 0.015, side_y, h - 0.08)
+    return (
+        parts
+        + of(m.GREY, *keys)
+        + of(m.SCREEN, display)
+        + at(bar_handle(h * 0.7, True), x + 0.016, y - glass_w / 2 + 0.03, h / 2)
+    )
+
+
+DESIGNS: tuple[Design, ...] = (
+    Design(
+        "microwave-black",
+        "microwave",
+        "black microwave oven",
+        (0.38, 0.50, 0.29),
+        "modern",
+        partial(microwave, body=m.BLACK),
+    ),
+    Design(
+        "microwave-steel",
+        "microwave",
+        "stainless-steel microwave",
+        (0.40, 0.52, 0.31),
+        "modern",
+        partial(microwave, body=m.STAINLESS),
+    ),
+    Design(
+        "microwave-white",
+        "microwave",
+        "white microwave",
+        (0.36, 0.46, 0.27),
+        "minimal",
+        partial(microwave, body=m.WHITE),
+    ),
+    Design(
+        "microwave-mini-oven",
+        "microwave",
+        "small countertop oven with knobs",
+        (0.36, 0.45, 0.27),
+        "classic",
+        partial(microwave, body=m.STAINLESS, kind="oven"),
+    ),
+    Design(
+        "microwave-toaster",
+        "microwave",
+        "cream two-slot toaster",
+        (0.18, 0.30, 0.20),
+        "classic",
+        partial(microwave, body=m.CREAM, kind="toaster"),
+    ),
+)

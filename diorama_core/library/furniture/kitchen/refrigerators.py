@@ -1,0 +1,89 @@
+"""Refrigerators."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from diorama_core.library.furniture import materials as m
+from diorama_core.library.furniture.fittings import at, bar_handle
+from diorama_core.library.furniture.materials import Material
+from diorama_core.library.furniture.model import Design, Parts, Size, of
+from diorama_core.library.furniture.solids import box
+
+
+def refrigerator(size: Size, body: Material, layout: str, round_edge: float = 0.012) -> Parts:
+    """`layout`: "top" (freezer above), "bottom" (freezer below), "double" (side by side), "single"."""
+    d, w, h = size
+    door_t = 0.06
+    x = d / 2 - 0.045 - door_t
+    core = box((d - 0.045 - door_t - 0.005, w - 0.006, h - 0.05), 0.008).moved(
+        -d / 2 + (d - 0.05 - door_t) / 2, 0, 0.045
+    )
+    parts = of(body if layout != "double" else m.GREY, core) + of(
+        m.BLACK, box((d - 0.14, w - 0.04, 0.06), 0.003).moved(-0.02)
+    )
+    z0, z1 = 0.06, h
+    split = {"top": 0.68, "bottom": 0.38}.get(layout, 0.0)
+    spans = [(z0, z1)] if not split else [(z0, z0 + split * (z1 - z0)), (z0 + split * (z1 - z0), z1)]
+    columns = (-w / 4, w / 4) if layout == "double" else (0.0,)
+    for y in columns:
+        for low, high in spans:
+            width, height = (w / 2 if layout == "double" else w) - 0.004, high - low - 0.008
+            parts += of(body, box((door_t, width, height), round_edge, 3).moved(x + door_t / 2, y, low + 0.004))
+            side = -np.sign(y) if y else 1.0
+            length = min(0.5, height * 0.62) if height > 0.6 else min(0.25, 0.6 * height)
+            near_split = (
+                high - length / 2 - 0.09
+                if split and low == z0
+                else low + length / 2 + 0.09
+                if split
+                else (low + high) / 2
+            )
+            parts += at(bar_handle(length, True), x + door_t - 0.004, y + side * (width / 2 - 0.05), near_split)
+    return parts
+
+
+DESIGNS: tuple[Design, ...] = (
+    Design(
+        "refrigerator-white-top",
+        "refrigerator",
+        "white refrigerator with a freezer above",
+        (0.68, 0.66, 1.55),
+        "minimal",
+        partial(refrigerator, body=m.WHITE, layout="top"),
+    ),
+    Design(
+        "refrigerator-steel-bottom",
+        "refrigerator",
+        "stainless-steel fridge freezer",
+        (0.68, 0.62, 1.86),
+        "modern",
+        partial(refrigerator, body=m.STAINLESS, layout="bottom"),
+    ),
+    Design(
+        "refrigerator-double",
+        "refrigerator",
+        "side-by-side stainless-steel refrigerator",
+        (0.74, 0.92, 1.78),
+        "modern",
+        partial(refrigerator, body=m.STAINLESS, layout="double"),
+    ),
+    Design(
+        "refrigerator-retro",
+        "refrigerator",
+        "rounded sage refrigerator",
+        (0.70, 0.60, 1.52),
+        "classic",
+        partial(refrigerator, body=m.SAGE, layout="single", round_edge=0.055),
+    ),
+    Design(
+        "refrigerator-small",
+        "refrigerator",
+        "small white refrigerator",
+        (0.56, 0.52, 0.84),
+        "minimal",
+        partial(refrigerator, body=m.WHITE, layout="single"),
+    ),
+)

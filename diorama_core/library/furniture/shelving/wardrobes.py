@@ -1,0 +1,147 @@
+"""Wardrobes."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from diorama_core.library.furniture import materials as m
+from diorama_core.library.furniture.carcass import door_front, drawer_front, plinth
+from diorama_core.library.furniture.materials import Material
+from diorama_core.library.furniture.model import Design, Parts, Size, of
+from diorama_core.library.furniture.solids import box
+
+
+def wardrobe(
+    size: Size,
+    body: Material,
+    doors: int,
+    front: Material | None = None,
+    pull: Material = m.STEEL,
+    panel: str = "flat",
+    drawers: bool = False,
+    crown: bool = False,
+    mirror: int | None = None,
+) -> Parts:
+    """A tall closet with hinged doors."""
+    d, w, h = size
+    base = 0.08
+    low = 0.26 if drawers else 0.0
+    cap = 0.06 if crown else 0.0
+    parts = of(
+        body, box((d - 0.03, w - (0.04 if crown else 0), h - base - cap), 0.004).moved(-0.012, 0, base)
+    ) + plinth(d - 0.02, w - 0.02, base, body)
+    if crown:
+        parts += of(
+            body,
+            box((d, w, 0.04), 0.012, 2).moved(z=h - 0.04),
+            box((d - 0.02, w - 0.025, 0.03), 0.006).moved(z=h - 0.065),
+        )
+    span = w - (0.05 if crown else 0.008)
+    each = span / doors
+    x = d / 2 - 0.027
+    for k in range(doors):
+        y = -span / 2 + each * (k + 0.5)
+        parts += door_front(
+            x,
+            y,
+            base + low + 0.005,
+            each - 0.005,
+            h - base - low - cap - 0.012,
+            front or body,
+            pull,
+            "tall",
+            1 if k % 2 else -1,
+            panel,
+        )
+        if mirror == k:
+            parts += of(
+                m.MIRROR, box((0.004, each - 0.08, h - base - 0.16), 0.001).pictured().moved(x + 0.0185, y, base + 0.07)
+            )
+    if drawers:
+        n = max(doors // 2, 1)
+        for k in range(n):
+            parts += drawer_front(
+                x,
+                -span / 2 + span / n * (k + 0.5),
+                base + 0.006,
+                span / n - 0.006,
+                low - 0.012,
+                front or body,
+                pull,
+                "bar",
+            )
+    return parts
+
+
+def sliding_wardrobe(size: Size, body: Material, front: Material, doors: int) -> Parts:
+    """A wardrobe with sliding doors in aluminium frames."""
+    d, w, h = size
+    parts = of(
+        body,
+        box((d - 0.04, w, h), 0.004).moved(-0.02),
+        box((d, w, 0.03), 0.003),
+        box((d, w, 0.03), 0.003).moved(z=h - 0.03),
+    )
+    each = w / doors
+    for k in range(doors):
+        x = d / 2 - (0.028 if k % 2 else 0.012)
+        y = -w / 2 + each * (k + 0.5)
+        parts += of(front, box((0.012, each - 0.02, h - 0.07), 0.002).moved(x - 0.003, y, 0.035))
+        parts += of(
+            m.STEEL,
+            *(box((0.018, 0.024, h - 0.06), 0.003).moved(x, y + s * (each / 2 - 0.012), 0.03) for s in (1, -1)),
+            *(box((0.015, each - 0.02, 0.022), 0.003).moved(x, y, z) for z in (0.032, h - 0.054)),
+        )
+    return parts
+
+
+DESIGNS: tuple[Design, ...] = (
+    Design(
+        "wardrobe-white-two",
+        "wardrobe",
+        "white two-door wardrobe",
+        (0.58, 1.00, 2.00),
+        "minimal",
+        partial(wardrobe, body=m.WHITE, doors=2),
+    ),
+    Design(
+        "wardrobe-oak-three",
+        "wardrobe",
+        "oak three-door wardrobe with drawers",
+        (0.60, 1.45, 2.02),
+        "modern",
+        partial(wardrobe, body=m.OAK, doors=3, drawers=True, pull=m.BLACK_STEEL),
+    ),
+    Design(
+        "wardrobe-armoire",
+        "wardrobe",
+        "walnut armoire with a cornice",
+        (0.62, 1.20, 2.08),
+        "classic",
+        partial(wardrobe, body=m.WALNUT, doors=2, panel="shaker", drawers=True, crown=True, pull=m.BRASS),
+    ),
+    Design(
+        "wardrobe-sliding",
+        "wardrobe",
+        "sliding-door wardrobe in light oak",
+        (0.65, 1.80, 2.10),
+        "modern",
+        partial(sliding_wardrobe, body=m.WHITE, front=m.LIGHT_OAK, doors=2),
+    ),
+    Design(
+        "wardrobe-mirror",
+        "wardrobe",
+        "white wardrobe with a mirror door",
+        (0.58, 1.50, 2.10),
+        "modern",
+        partial(wardrobe, body=m.WHITE, doors=3, mirror=1),
+    ),
+    Design(
+        "wardrobe-rustic",
+        "wardrobe",
+        "cream painted rustic wardrobe",
+        (0.58, 1.10, 1.95),
+        "rustic",
+        partial(wardrobe, body=m.CREAM, doors=2, panel="shaker", crown=True, pull=m.IRON),
+    ),
+)

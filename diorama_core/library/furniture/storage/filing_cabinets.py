@@ -1,0 +1,45 @@
+"""Filing cabinets."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from diorama_core.library.furniture import materials as m
+from diorama_core.library.furniture.carcass import drawer_front
+from diorama_core.library.furniture.materials import Material
+from diorama_core.library.furniture.model import Design, Parts, Size, of
+from diorama_core.library.furniture.solids import box
+
+
+def filing_cabinet(size: Size, steel: Material, drawers: int) -> Parts:
+    """A steel filing cabinet with label holders."""
+    d, w, h = size
+    parts = of(
+        steel, box((d - 0.03, w, h - 0.02), 0.006, 2).moved(-0.012, 0, 0.02), box((d - 0.08, w - 0.05, 0.03), 0.002)
+    )
+    each = (h - 0.05) / drawers
+    for k in range(drawers):
+        z = 0.035 + each * k
+        parts += drawer_front(d / 2 - 0.027, 0, z, w - 0.02, each - 0.008, steel, m.STEEL, "cup")
+        parts += of(m.WHITE, box((0.003, 0.07, 0.03), 0.001).moved(d / 2 - 0.008, 0, z + each * 0.72))
+    return parts
+
+
+DESIGNS: tuple[Design, ...] = (
+    Design(
+        "cabinet-filing",
+        "cabinet",
+        "grey steel filing cabinet",
+        (0.60, 0.46, 1.02),
+        "industrial",
+        partial(filing_cabinet, steel=m.LIGHT_GREY, drawers=3),
+    ),
+    Design(
+        "cabinet-low-filing",
+        "cabinet",
+        "white pedestal on castors' plinth",
+        (0.55, 0.42, 0.60),
+        "minimal",
+        partial(filing_cabinet, steel=m.WHITE, drawers=3),
+    ),
+)

@@ -1,0 +1,45 @@
+"""Steel lockers."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from diorama_core.library.furniture import materials as m
+from diorama_core.library.furniture.carcass import door_front
+from diorama_core.library.furniture.materials import Material
+from diorama_core.library.furniture.model import Design, Parts, Size, four, of
+from diorama_core.library.furniture.solids import box
+
+
+def locker(size: Size, body: Material, doors: int) -> Parts:
+    """Steel lockers with vent slots."""
+    d, w, h = size
+    parts = of(
+        body,
+        box((d - 0.02, w, h - 0.08), 0.004).moved(-0.01, 0, 0.08),
+        *four(box((0.03, 0.03, 0.09), 0.003).moved(d / 2 - 0.05, w / 2 - 0.03)),
+    )
+    each = w / doors
+    for k in range(doors):
+        y = -w / 2 + each * (k + 0.5)
+        parts += door_front(d / 2 - 0.02, y, 0.1, each - 0.012, h - 0.12, body, m.STEEL, "strap", -1)
+        parts += of(
+            m.BLACK,
+            *(
+                box((0.004, each * 0.45, 0.008), 0.001).moved(d / 2 - 0.001, y, z)
+                for z in (h - 0.2, h - 0.23, h - 0.26, 0.3, 0.27, 0.24)
+            ),
+        )
+    return parts
+
+
+DESIGNS: tuple[Design, ...] = (
+    Design(
+        "cabinet-lockers",
+        "cabinet",
+        "sage steel lockers",
+        (0.45, 0.90, 1.80),
+        "industrial",
+        partial(locker, body=m.SAGE, doors=3),
+    ),
+)

@@ -1,0 +1,146 @@
+"""Desks."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from diorama_core.library.furniture import materials as m
+from diorama_core.library.furniture.carcass import drawer_front
+from diorama_core.library.furniture.materials import Material
+from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, four, of
+from diorama_core.library.furniture.solids import box, rod, taper
+from diorama_core.library.furniture.tables.dining_tables import trestle_table
+from diorama_core.library.furniture.tables.tops import table_top
+
+
+def pedestal_desk(size: Size, wood: Material, body: Material, pull: Material, sides: tuple[int, ...] = (1,)) -> Parts:
+    """A desk with drawer pedestals at its left (1) or right (-1); front is where one sits."""
+    d, w, h = size
+    t, pw = 0.028, 0.42 if w > 1.2 else 0.36
+    parts = of(wood, box((d, w, t), 0.006, 2).moved(z=h - t))
+    for side in (1, -1):
+        y = side * (w / 2 - pw / 2 - 0.02)
+        if side in sides:
+            parts += of(
+                body,
+                box((d - 0.06, pw, h - t - 0.05), 0.004).moved(-0.005, y, 0.05),
+                box((d - 0.12, pw - 0.06, 0.05), 0.002).moved(0, y),
+            )
+            for z, fh in ((0.06, 0.30), (0.37, 0.155), (0.535, h - t - 0.545)):
+                parts += drawer_front(d / 2 - 0.037, y, z, pw - 0.012, fh, body, pull, "bar")
+        else:
+            parts += of(
+                body,
+                *(
+                    box((0.045, 0.045, h - t), 0.004).moved(x, side * (w / 2 - 0.05))
+                    for x in (d / 2 - 0.06, -d / 2 + 0.06)
+                ),
+            )
+    return parts + of(body, box((0.018, w - 0.1, 0.32), 0.003).moved(-d / 2 + 0.06, 0, h - t - 0.32))
+
+
+def drawer_desk(size: Size, wood: Material, legs: Material, pull: Material, splay: bool = True) -> Parts:
+    """A writing desk: shallow drawers under the top, slim legs."""
+    d, w, h = size
+    t, case = 0.022, 0.1
+    parts = of(
+        wood, box((d, w, t), 0.006, 2).moved(z=h - t), box((d - 0.04, w - 0.06, case), 0.004).moved(z=h - t - case)
+    )
+    x, y = d / 2 - 0.07, w / 2 - 0.08
+    leg = (
+        rod((x + 0.03, y + 0.035, 0), (x - 0.01, y - 0.01, h - t - case + 0.01), 0.012, 0.021, 14)
+        if splay
+        else taper((x + 0.02, y + 0.02, 0), (x + 0.02, y + 0.02, h - t - case + 0.01), 0.026, 0.04)
+    )
+    parts += of(legs, *four(leg))
+    n = 3 if w > 1.25 else 2
+    each = (w - 0.09) / n
+    for k in range(n):
+        parts += drawer_front(
+            d / 2 - 0.021,
+            -w / 2 + 0.045 + each * (k + 0.5),
+            h - t - case + 0.008,
+            each - 0.008,
+            case - 0.016,
+            wood,
+            pull,
+            "knob",
+        )
+    return parts
+
+
+def standing_desk(size: Size, top: Material, frame: Material) -> Parts:
+    """A plain top on two telescopic columns."""
+    d, w, h = size
+    y, t = w / 2 - 0.25, 0.027
+    feet = both_sides(
+        box((d - 0.06, 0.075, 0.03), 0.01, 2).moved(0, y),
+        box((0.09, 0.06, h - 0.42), 0.006).moved(0, y, 0.03),
+        box((0.07, 0.045, h - t - 0.04), 0.006).moved(0, y, 0.03),
+        box((d - 0.16, 0.05, 0.03)).moved(0, y, h - t - 0.03),
+    )
+    return of(top, table_top(d, w, t, "square").moved(z=h - t)) + of(
+        frame, *feet, box((0.06, 2 * y, 0.04)).moved(0, 0, h - t - 0.05)
+    )
+
+
+DESIGNS: tuple[Design, ...] = (
+    Design(
+        "desk-writing-oak",
+        "desk",
+        "oak writing desk with drawers",
+        (0.65, 1.30, 0.76),
+        "modern",
+        partial(drawer_desk, wood=m.OAK, legs=m.OAK, pull=m.BLACK_STEEL),
+    ),
+    Design(
+        "desk-writing-white",
+        "desk",
+        "white writing desk",
+        (0.60, 1.10, 0.75),
+        "minimal",
+        partial(drawer_desk, wood=m.WHITE, legs=m.BIRCH, pull=m.BRASS, splay=False),
+    ),
+    Design(
+        "desk-pedestal-walnut",
+        "desk",
+        "walnut desk with a drawer pedestal",
+        (0.70, 1.45, 0.75),
+        "classic",
+        partial(pedestal_desk, wood=m.WALNUT, body=m.WALNUT, pull=m.BRASS),
+    ),
+    Design(
+        "desk-pedestal-double",
+        "desk",
+        "mahogany partner's desk with two pedestals",
+        (0.80, 1.60, 0.77),
+        "classic",
+        partial(pedestal_desk, wood=m.MAHOGANY, body=m.MAHOGANY, pull=m.BRASS, sides=(1, -1)),
+    ),
+    Design(
+        "desk-office-grey",
+        "desk",
+        "grey office desk with drawers",
+        (0.75, 1.50, 0.74),
+        "minimal",
+        partial(pedestal_desk, wood=m.LIGHT_OAK, body=m.LIGHT_GREY, pull=m.STEEL, sides=(-1,)),
+    ),
+    Design(
+        "desk-standing",
+        "desk",
+        "height-adjustable desk with an oak top",
+        (0.75, 1.50, 0.78),
+        "modern",
+        partial(standing_desk, top=m.OAK, frame=m.BLACK_STEEL),
+        2,
+    ),
+    Design(
+        "desk-trestle",
+        "desk",
+        "reclaimed-wood desk on A-frames",
+        (0.70, 1.40, 0.75),
+        "industrial",
+        partial(trestle_table, top=m.RECLAIMED, frame=m.BLACK_STEEL, kind="a"),
+        2,
+    ),
+)

@@ -1,0 +1,97 @@
+"""Ottomans, footstools and poufs."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from diorama_core.library.furniture import materials as m
+from diorama_core.library.furniture.materials import Material
+from diorama_core.library.furniture.model import Design, Parts, Size, four, of
+from diorama_core.library.furniture.solids import box, cushion, cylinder, loft, ring_path, superellipse, taper, tube
+
+
+def square_ottoman(size: Size, cloth: Material, legs: Material) -> Parts:
+    """An upholstered footstool with piping."""
+    d, w, h = size
+    piping = [
+        tube(ring_path(superellipse(d * 0.975, w * 0.975, 10, 56), z), 0.005, 5, closed=True) for z in (h - 0.13,)
+    ]
+    return of(
+        legs, *four(taper((d / 2 - 0.05, w / 2 - 0.05, 0), (d / 2 - 0.065, w / 2 - 0.065, 0.12), 0.024, 0.04))
+    ) + of(
+        cloth,
+        box((d - 0.02, w - 0.02, h - 0.2), 0.02, 2).moved(z=0.1),
+        cushion((d, w, 0.15), 10, 4, 12).moved(z=h - 0.15),
+        *piping,
+    )
+
+
+def round_pouf(size: Size, cloth: Material, ribs: int = 0) -> Parts:
+    """A floor pouf; ribbed like a knitted or leather one when `ribs` is given."""
+    d, _, h = size
+    n, rows = max(8 * ribs, 40), 13
+    a = np.arange(n) * 2 * np.pi / n
+    groove = 1 - 0.035 * np.abs(np.cos(ribs * a / 2)) ** 6 if ribs else np.ones(n)
+    t = np.linspace(-1, 1, rows)
+    r = (1 - np.abs(t) ** 3.2) ** (1 / 2.4)
+    r[0] = r[-1] = 0.03
+    rings = np.stack(
+        [
+            np.stack([np.cos(a) * groove * rr, np.sin(a) * groove * rr, np.full(n, tt)], axis=1)
+            for rr, tt in zip(r, t, strict=True)
+        ]
+    )
+    rings *= np.array([d / 2, d / 2, h / 2])
+    rings[:, :, 2] += h / 2
+    return of(cloth, loft(rings, crease_rad=np.pi), cylinder(0.022, 0.008, 0.003, 16).moved(z=h - 0.006))
+
+
+DESIGNS: tuple[Design, ...] = (
+    Design(
+        "ottoman-square-grey",
+        "ottoman",
+        "square grey footstool",
+        (0.55, 0.60, 0.42),
+        "modern",
+        partial(square_ottoman, cloth=m.GREY_FABRIC, legs=m.OAK),
+        2,
+    ),
+    Design(
+        "ottoman-wide-leather",
+        "ottoman",
+        "wide brown leather ottoman",
+        (0.60, 0.90, 0.43),
+        "classic",
+        partial(square_ottoman, cloth=m.BROWN_LEATHER, legs=m.DARK_WALNUT),
+        2,
+    ),
+    Design(
+        "ottoman-pouf-oatmeal",
+        "ottoman",
+        "ribbed oatmeal pouf",
+        (0.55, 0.55, 0.38),
+        "rustic",
+        partial(round_pouf, cloth=m.OATMEAL, ribs=16),
+        36,
+    ),
+    Design(
+        "ottoman-pouf-leather",
+        "ottoman",
+        "tan leather pouf",
+        (0.52, 0.52, 0.36),
+        "modern",
+        partial(round_pouf, cloth=m.TAN_LEATHER, ribs=10),
+        36,
+    ),
+    Design(
+        "ottoman-pouf-ochre",
+        "ottoman",
+        "smooth ochre pouf",
+        (0.58, 0.58, 0.40),
+        "modern",
+        partial(round_pouf, cloth=m.MUSTARD_FABRIC),
+        36,
+    ),
+)
