@@ -16,7 +16,8 @@ import trimesh
 from jaxtyping import Float
 from PIL import Image
 
-from diorama_core.library.furniture.textures import PAINTERS
+from diorama_core.library.furniture.prints import PRINTS
+from diorama_core.library.furniture.textures import PAINTERS, Painter
 
 
 @dataclass(frozen=True)
@@ -25,7 +26,7 @@ class Material:
 
     name: str
     kind: str
-    """Key of `textures.PAINTERS`: which picture is painted."""
+    """Key of `textures.PAINTERS` or `prints.PRINTS`: which picture is painted."""
     colour: str
     """sRGB, as "#rrggbb": the average colour."""
     roughness: float = 0.7
@@ -164,13 +165,17 @@ PANE = Material("window pane", "sky", "#a9c3d6", 0.06, 0.0, 1.0, glow=0.05)
 def picture_bytes(material: Material) -> bytes:
     """The material's base colour picture, sRGB: PNG when plain, else JPEG."""
     rng = np.random.default_rng(zlib.crc32(f"{material.kind} {material.name}".encode()))
-    pixels = np.round(PAINTERS[material.kind](material.rgb, rng) * 255).astype(np.uint8)
+    pixels = np.round(_painter(material.kind)(material.rgb, rng) * 255).astype(np.uint8)
     buffer = io.BytesIO()
     if material.kind == "plain":
         Image.fromarray(pixels).save(buffer, "PNG")
     else:
         Image.fromarray(pixels).save(buffer, "JPEG", quality=88, subsampling=0)
     return buffer.getvalue()
+
+
+def _painter(kind: str) -> Painter:
+    return PAINTERS[kind] if kind in PAINTERS else PRINTS[kind]
 
 
 def pbr(material: Material) -> trimesh.visual.material.PBRMaterial:

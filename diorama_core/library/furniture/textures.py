@@ -17,13 +17,13 @@ TEXTURE_SIZE = 192
 Picture = Float[np.ndarray, "h w 3"]
 
 
-def _noise(rng: np.random.Generator, sigma: tuple[float, float], size: int = TEXTURE_SIZE) -> Float[np.ndarray, "h w"]:
+def noise(rng: np.random.Generator, sigma: tuple[float, float], size: int = TEXTURE_SIZE) -> Float[np.ndarray, "h w"]:
     """Tileable smooth noise with zero mean and unit deviation; sigma is (down, across) in pixels."""
     field: np.ndarray = gaussian_filter(rng.standard_normal((size, size)), sigma, mode="wrap")
     return (field - field.mean()) / max(float(field.std()), 1e-9)
 
 
-def _shade(rgb: Float[np.ndarray, "3"], amount: Float[np.ndarray, "h w"]) -> Picture:
+def shade(rgb: Float[np.ndarray, "3"], amount: Float[np.ndarray, "h w"]) -> Picture:
     """The colour lightened and darkened by a relative amount."""
     return np.clip(rgb * (1.0 + amount[..., None]), 0, 1)
 
@@ -35,11 +35,11 @@ def _plain(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
 def _wood(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
     n = TEXTURE_SIZE
     across = np.arange(n)[:, None] / n
-    warp = _noise(rng, (14, 60)) * 0.035
+    warp = noise(rng, (14, 60)) * 0.035
     rings = np.sin(2 * np.pi * (7 * across + 3.0 * warp)) * 0.5 + np.sin(2 * np.pi * (17 * across + 6 * warp)) * 0.3
-    fibre = _noise(rng, (0.6, 22))
-    broad = _noise(rng, (9, 70))
-    return _shade(rgb, 0.055 * rings + 0.04 * fibre + 0.05 * broad)
+    fibre = noise(rng, (0.6, 22))
+    broad = noise(rng, (9, 70))
+    return shade(rgb, 0.055 * rings + 0.04 * fibre + 0.05 * broad)
 
 
 def _weave(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
@@ -50,39 +50,39 @@ def _weave(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
     warp = np.abs(np.sin(np.pi * j * threads / n))
     weft = np.abs(np.sin(np.pi * i * threads / n))
     relief = np.where(over == 0, warp, weft) - 0.64
-    slub = _noise(rng, (0.8, 12)) + _noise(rng, (12, 0.8))
-    return _shade(rgb, 0.06 * relief + 0.014 * slub + 0.006 * _noise(rng, (20, 20)))
+    slub = noise(rng, (0.8, 12)) + noise(rng, (12, 0.8))
+    return shade(rgb, 0.06 * relief + 0.014 * slub + 0.006 * noise(rng, (20, 20)))
 
 
 def _leather(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
-    pores = _noise(rng, (1.6, 1.6))
-    return _shade(rgb, 0.045 * np.tanh(pores) + 0.02 * _noise(rng, (28, 28)))
+    pores = noise(rng, (1.6, 1.6))
+    return shade(rgb, 0.045 * np.tanh(pores) + 0.02 * noise(rng, (28, 28)))
 
 
 def _clay(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
-    return _shade(rgb, 0.03 * _noise(rng, (16, 16)) + 0.018 * _noise(rng, (1, 1)))
+    return shade(rgb, 0.03 * noise(rng, (16, 16)) + 0.018 * noise(rng, (1, 1)))
 
 
 def _marble(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
-    veins = np.exp(-((_noise(rng, (14, 22)) + 0.25 * _noise(rng, (4, 4))) ** 2) * 60)
-    return _shade(rgb, -0.17 * gaussian_filter(veins, 0.8, mode="wrap") + 0.02 * _noise(rng, (18, 18)))
+    veins = np.exp(-((noise(rng, (14, 22)) + 0.25 * noise(rng, (4, 4))) ** 2) * 60)
+    return shade(rgb, -0.17 * gaussian_filter(veins, 0.8, mode="wrap") + 0.02 * noise(rng, (18, 18)))
 
 
 def _speckle(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
-    return _shade(rgb, 0.16 * _noise(rng, (0.8, 0.8)) + 0.08 * _noise(rng, (3, 3)))
+    return shade(rgb, 0.16 * noise(rng, (0.8, 0.8)) + 0.08 * noise(rng, (3, 3)))
 
 
 def _paper(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
-    return _shade(rgb, 0.02 * _noise(rng, (0.7, 5)) + 0.02 * _noise(rng, (18, 18)))
+    return shade(rgb, 0.02 * noise(rng, (0.7, 5)) + 0.02 * noise(rng, (18, 18)))
 
 
 def _pages(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
     lines: np.ndarray = gaussian_filter(rng.standard_normal((TEXTURE_SIZE, 1)), (0.6, 0), mode="wrap")
-    return _shade(rgb, np.repeat(0.07 * lines, TEXTURE_SIZE, axis=1))
+    return shade(rgb, np.repeat(0.07 * lines, TEXTURE_SIZE, axis=1))
 
 
 def _brushed(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
-    return _shade(rgb, 0.012 * _noise(rng, (0.6, 40)))
+    return shade(rgb, 0.012 * noise(rng, (0.6, 40)))
 
 
 def _wicker(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
@@ -91,11 +91,11 @@ def _wicker(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
     over = (i.astype(int) + j.astype(int)) % 2 == 0
     a, b = i % 1.0 - 0.5, j % 1.0 - 0.5
     bulge = np.where(over, np.cos(a * np.pi) * (0.6 + 0.4 * np.cos(b * np.pi)), np.cos(b * np.pi) * 0.8)
-    return _shade(rgb, 0.5 * (bulge - 0.62) + 0.04 * _noise(rng, (1, 1), n))
+    return shade(rgb, 0.5 * (bulge - 0.62) + 0.04 * noise(rng, (1, 1), n))
 
 
 def _leaf(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
-    return _shade(rgb, 0.08 * _noise(rng, (10, 10)) + 0.05 * _noise(rng, (1.5, 6)))
+    return shade(rgb, 0.08 * noise(rng, (10, 10)) + 0.05 * noise(rng, (1.5, 6)))
 
 
 def _screen(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
@@ -108,7 +108,7 @@ def _mirror(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
     v, u = np.meshgrid(np.linspace(1, 0, 96), np.linspace(0, 1, 96), indexing="ij")
     d = u + 0.8 * v
     streaks = 0.10 * ((d > 0.55) & (d < 0.8)) + 0.07 * ((d > 0.88) & (d < 0.96))
-    return _shade(rgb, gaussian_filter(streaks, 1.2) + 0.16 * (v - 0.5))
+    return shade(rgb, gaussian_filter(streaks, 1.2) + 0.16 * (v - 0.5))
 
 
 def _sky(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
@@ -119,7 +119,7 @@ def _sky(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
     share = np.clip((v - 0.25) / 0.75, 0, 1)[..., None] ** 0.8
     picture = rgb * 0.93 * share + haze * (1 - share)
     crowns = 0.22 + 0.05 * np.sin(9 * u + 1) + 0.035 * np.sin(23 * u + 4 * v)
-    picture[v < crowns] = trees + 0.06 * _noise(rng, (5, 5), n)[v < crowns][:, None]
+    picture[v < crowns] = trees + 0.06 * noise(rng, (5, 5), n)[v < crowns][:, None]
     picture[v < 0.08] = trees * 0.5 + haze * 0.4
     return np.clip(gaussian_filter(picture, (2.2, 2.2, 0)), 0, 1)
 
@@ -130,9 +130,9 @@ def _hills(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
     sky = np.array([0.90, 0.87, 0.81])
     picture = sky * (1 - 0.12 * v[..., None]) * np.ones((n, n, 1))
     for k, (level, tone) in enumerate(((0.55, 0.62), (0.42, 0.42), (0.28, 0.22), (0.13, 0.0))):
-        ridge = level + 0.055 * _noise(rng, (1, 16 + 4 * k))[:1]
+        ridge = level + 0.055 * noise(rng, (1, 16 + 4 * k))[:1]
         picture[np.broadcast_to(v, (n, n)) < ridge] = rgb * (1 - tone) + sky * tone
-    return picture * (1 + 0.02 * _noise(rng, (1, 1))[..., None])
+    return picture * (1 + 0.02 * noise(rng, (1, 1))[..., None])
 
 
 def _abstract(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
@@ -144,7 +144,7 @@ def _abstract(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
     for tone, (x, y, r) in zip(tones, spots, strict=True):
         wobble = 1 + 0.06 * np.sin(3 * np.arctan2(v - y, u - x) + 9 * r)
         picture[np.hypot(u - x, v - y) < r * wobble] = tone
-    return picture * (1 + 0.015 * _noise(rng, (1.2, 1.2))[..., None])
+    return picture * (1 + 0.015 * noise(rng, (1.2, 1.2))[..., None])
 
 
 def _botanic(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
@@ -164,7 +164,7 @@ def _botanic(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
 
 
 def _waves(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
-    drift: np.ndarray = gaussian_filter(_noise(rng, (5, 34)), 1)
+    drift: np.ndarray = gaussian_filter(noise(rng, (5, 34)), 1)
     v = np.linspace(1, 0, TEXTURE_SIZE)[:, None, None]
     base = rgb * (1 - 0.55 * v) + np.array([0.90, 0.88, 0.84]) * 0.55 * v
     return np.clip(base * (1 + 0.10 * drift[..., None]), 0, 1)
@@ -188,7 +188,7 @@ def _persian(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
     picture[border] = dark
     picture[border & (np.sin((x + y) * 34) > 0.35) & (np.sin((x - y) * 34) > 0.2)] = cream
     picture[((edge > 0.75) & (edge < 0.78)) | (edge > 0.97)] = cream
-    return np.clip(gaussian_filter(picture, (0.8, 0.8, 0)) * (1 + 0.04 * _noise(rng, (0.7, 0.7), n)[..., None]), 0, 1)
+    return np.clip(gaussian_filter(picture, (0.8, 0.8, 0)) * (1 + 0.04 * noise(rng, (0.7, 0.7), n)[..., None]), 0, 1)
 
 
 def _stripes(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
@@ -196,7 +196,7 @@ def _stripes(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
     bands = (np.sin(np.linspace(0, 14 * np.pi, n)) > 0.5)[:, None, None]
     pale = np.array([0.88, 0.85, 0.78])
     picture = np.where(bands, rgb, pale) * np.ones((n, n, 1))
-    return np.clip(picture * (1 + 0.035 * _noise(rng, (0.7, 0.7))[..., None]), 0, 1)
+    return np.clip(picture * (1 + 0.035 * noise(rng, (0.7, 0.7))[..., None]), 0, 1)
 
 
 def _diamonds(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
@@ -204,7 +204,7 @@ def _diamonds(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
     y, x = np.meshgrid(np.linspace(0, 1, n), np.linspace(0, 1, n), indexing="ij")
     line = (np.abs((4 * x + 4 * y) % 1 - 0.5) > 0.465) | (np.abs((4 * x - 4 * y) % 1 - 0.5) > 0.465)
     picture = np.where(gaussian_filter(line.astype(float), 0.8)[..., None] > 0.4, rgb * 0.35, rgb)
-    return np.clip(picture * (1 + 0.04 * _noise(rng, (1, 1))[..., None]), 0, 1)
+    return np.clip(picture * (1 + 0.04 * noise(rng, (1, 1))[..., None]), 0, 1)
 
 
 def _dial(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
