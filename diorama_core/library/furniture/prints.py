@@ -27,7 +27,7 @@ def _page(colour: Rgb = PAPER, n: int = TEXTURE_SIZE) -> Picture:
 
 
 def _grained(picture: Picture, rng: np.random.Generator, amount: float = 0.018) -> Picture:
-    soft = gaussian_filter(picture, (0.6, 0.6, 0))
+    soft: Picture = gaussian_filter(picture, (0.6, 0.6, 0))
     return np.clip(soft * (1 + amount * noise(rng, (0.9, 0.9), len(picture))[..., None]), 0, 1)
 
 
@@ -339,16 +339,20 @@ def _digits(rgb: Rgb, rng: np.random.Generator) -> Picture:
     picture = _page(np.array([0.09, 0.10, 0.11]), 128)
     for left, shown in zip((0.08, 0.28, 0.56, 0.76), ("bc", "abcdef", "abcdef", "abcdefg"), strict=True):
         x, y = (u - left) / 0.15, (v - 0.26) / 0.48
+        level = np.abs(x - 0.5) < 0.42
         bars = {
-            "a": (np.abs(y - 1) < 0.06) & (np.abs(x - 0.5) < 0.42), "d": (np.abs(y) < 0.06) & (np.abs(x - 0.5) < 0.42),
-            "g": (np.abs(y - 0.5) < 0.06) & (np.abs(x - 0.5) < 0.42), "b": (np.abs(x - 1) < 0.1) & (np.abs(y - 0.75) < 0.2),
-            "c": (np.abs(x - 1) < 0.1) & (np.abs(y - 0.25) < 0.2), "f": (np.abs(x) < 0.1) & (np.abs(y - 0.75) < 0.2),
+            "a": (np.abs(y - 1) < 0.06) & level,
+            "g": (np.abs(y - 0.5) < 0.06) & level,
+            "d": (np.abs(y) < 0.06) & level,
+            "b": (np.abs(x - 1) < 0.1) & (np.abs(y - 0.75) < 0.2),
+            "c": (np.abs(x - 1) < 0.1) & (np.abs(y - 0.25) < 0.2),
             "e": (np.abs(x) < 0.1) & (np.abs(y - 0.25) < 0.2),
-        }  # fmt: skip
+            "f": (np.abs(x) < 0.1) & (np.abs(y - 0.75) < 0.2),
+        }
         for segment in shown:
             picture[bars[segment]] = rgb
-    for y in (0.4, 0.6):
-        picture[np.hypot(u - 0.5, v - y) < 0.025] = rgb
+    for height in (0.4, 0.6):
+        picture[np.hypot(u - 0.5, v - height) < 0.025] = rgb
     return gaussian_filter(picture, (0.7, 0.7, 0))
 
 
