@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 
+from diorama_core.geometry.planes import plane_axes
 from diorama_core.scene.types import Camera, Plane
+
+CONVEX_SLACK_M = 1e-6
+"""A corner nearer than this to the line of an edge does not make a polygon concave."""
 
 
 def pixel_centres(width: int, height: int, step: int = 1) -> Float[np.ndarray, "h w 2"]:
@@ -27,19 +31,36 @@ def convex_edges(plane: Plane) -> tuple[Float[np.ndarray, "m 3"], Float[np.ndarr
 def cast_plane(
     origin: Float[np.ndarray, "3"], directions: Float[np.ndarray, "*n 3"], plane: Plane, slack_m: float = 1e-6
 ) -> Float[np.ndarray, "*n"]:
-    """Distances, in units of each direction's length, at which rays meet a convex plane; `inf` where they miss.
+    """Distances, in units of each direction's length, at which rays meet a bounded plane; `inf` where they miss.
 
-    Both sides count. `slack_m` widens the polygon, so that neighbouring planes leave no gap between them.
+    Both sides count. `slack_m` widens a convex polygon, so that neighbouring planes leave no gap between them; other
+    polygons (an L, a wall with a doorway) are taken as they are.
     """
     slope = directions @ plane.normal
     with np.errstate(divide="ignore", invalid="ignore"):
         t = (plane.offset - origin @ plane.normal) / slope
     t = np.where((np.abs(slope) > 1e-9) & (t > 1e-6), t, np.inf)
     reach = np.where(np.isfinite(t), t, 0.0)
-    inside = np.ones(t.shape, dtype=bool)
-    for inward, offset in zip(*convex_edges(plane), strict=True):
-        inside &= origin @ inward + reach * (directions @ inward) >= offset - slack_m
+    inward, offsets = convex_edges(plane)
+    if (plane.polygon @ inward.T >= offsets - CONVEX_SLACK_M).all():
+        inside = np.ones(t.shape, dtype=bool)
+        for normal, offset in zip(inward, offsets, strict=True):
+            inside &= origin @ normal + reach * (directions @ normal) >= offset - slack_m
+    else:
+        inside = in_polygon(origin + reach[..., None] * directions, plane)
     return np.where(inside, t, np.inf)
+
+
+def in_polygon(points: Float[np.ndarray, "*n 3"], plane: Plane) -> Bool[np.ndarray, "*n"]:
+    """Whether points of a plane lie in its polygon, whatever its shape: an odd number of edges beside them."""
+    axes = np.stack(plane_axes(plane), axis=1)
+    x, y = np.moveaxis(points @ axes, -1, 0)
+    corners = plane.polygon @ axes
+    inside = np.zeros(x.shape, dtype=bool)
+    for (ax, ay), (bx, by) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        if ay != by:
+            inside ^= ((ay > y) != (by > y)) & (x < ax + (y - ay) * (bx - ax) / (by - ay))
+    return inside
 
 
 def cast_planes(
@@ -48,7 +69,7 @@ def cast_planes(
     planes: tuple[Plane, ...],
     slack_m: float = 1e-3,
 ) -> tuple[Float[np.ndarray, "*n"], Int[np.ndarray, "*n"]]:
-    """Nearest hit among convex planes: distance (`inf` where none) and index of the plane (-1 where none)."""
+    """Nearest hit among bounded planes: distance (`inf` where none) and index of the plane (-1 where none)."""
     nearest = np.full(directions.shape[:-1], np.inf)
     which = np.full(directions.shape[:-1], -1)
     for index, plane in enumerate(planes):
