@@ -139,7 +139,10 @@ def _optimise(a: argparse.Namespace) -> None:
 
     project, scene = opened(a.project)
     with progress_bar() as progress:
-        arranged, report = recipe(a.recipe, library_named("built-in")).optimise(scene, progress)
+        inputs = project.load_inputs()
+        measured = inputs is not None and inputs.depth_m is not None
+        arrange = recipe(a.recipe, library_named("built-in"), depth_measured=measured)
+        arranged, report = arrange.optimise(scene, progress)
     project.save_scene(set_metrics(arranged, report.after))
     if a.json:
         print(json.dumps(asdict(report)))

@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import LayoutReport
+from diorama_core.layout.evidence import PhotoEvidence, photo_evidence
 from diorama_core.layout.problem import Problem, build_problem
 from diorama_core.layout.relocate import relocate
 from diorama_core.layout.report import measure
@@ -21,6 +22,9 @@ from diorama_core.protocols import Preview
 from diorama_core.scene import edits
 from diorama_core.scene.types import Camera, Scene
 
+MEASURED_WEIGHT, REASONED_WEIGHT = 2.0, 0.3
+"""What leaving the observed distance costs against leaving the observed outline: for a measured distance, and for one
+that was reasoned from a photo alone."""
 SHRINK = 0.95
 """What a stuck object's footprint is multiplied by, each attempt."""
 
@@ -41,6 +45,9 @@ class FeasibleRecipe:
     """How often stuck objects are made a little smaller before giving up."""
     evidence: float = 4.0
     """Cost of moving across the viewing ray relative to along it, when the scene has a camera; 1 is indifferent."""
+    depth_weight: float = REASONED_WEIGHT
+    """How much leaving the observed distance counts against leaving the observed outline; for the objects that their
+    support or wall moved, when the scene has a camera."""
     adherence_m: float = 0.0
     """Faces parallel to a wall and nearer than this are set against it, besides those whose support edge says so. Above
     0 a second run may change a layout: the first can bring things near walls."""
@@ -55,9 +62,11 @@ class FeasibleRecipe:
         progress.report(0.0, "reading the layout")
         problem = build_problem(scene, self.library, only=self.only, adherence_m=self.adherence_m)
         before = measure(problem, problem.R, problem.p, problem.scale)
+        evidence = self._evidence(problem, scene.camera)
         wanted = problem
         for attempt in range(self.attempts):
-            structure = exact_structure(wanted, self._rays(wanted, scene.camera))
+            seen = None if evidence is None else evidence.limited(wanted.scale)
+            structure = exact_structure(wanted, self._rays(wanted, scene.camera), seen)
             program = build_program(wanted, structure, self._weights(wanted, structure, scene.camera))
             found = separate(program, rounds=self.rounds, check=self._watcher(scene, program, progress, preview))
             found = relocate(program, found) if found.stuck else found
@@ -94,6 +103,11 @@ class FeasibleRecipe:
             return None
         away = problem.p - camera.position
         return away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-9)
+
+    def _evidence(self, problem: Problem, camera: Camera | None) -> PhotoEvidence | None:
+        if camera is None or self.evidence <= 1.0:
+            return None
+        return photo_evidence(problem, camera, depth_weight=self.depth_weight)
 
     def _weights(self, problem: Problem, structure: Structure, camera: Camera | None) -> Float[np.ndarray, "n 2 2"]:
         """What a move costs: things that hold up much move less; moves across the viewing ray cost more."""

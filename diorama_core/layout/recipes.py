@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from diorama_core.errors import InputError
-from diorama_core.layout.feasible import FeasibleRecipe
+from diorama_core.layout.feasible import MEASURED_WEIGHT, REASONED_WEIGHT, FeasibleRecipe
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.protocols import LayoutStage
 
@@ -11,7 +11,9 @@ NAMES = ("feasible", "paper", "all-in-one")
 """The default first."""
 
 
-def recipe(name: str, library: ShapeLibrary, only: frozenset[str] | None = None) -> LayoutStage:
+def recipe(
+    name: str, library: ShapeLibrary, only: frozenset[str] | None = None, *, depth_measured: bool = False
+) -> LayoutStage:
     """The recipe of this name.
 
     Args:
@@ -19,12 +21,13 @@ def recipe(name: str, library: ShapeLibrary, only: frozenset[str] | None = None)
             term at once, the paper's ablation).
         library: where shapes come from.
         only: ids free to move; everything else is constant.
+        depth_measured: the observed distances were measured, not reasoned: the default recipe then keeps to them.
 
     Raises:
         InputError: when there is no such recipe.
     """
     if name == "feasible":
-        return FeasibleRecipe(library, only)
+        return FeasibleRecipe(library, only, depth_weight=MEASURED_WEIGHT if depth_measured else REASONED_WEIGHT)
     # torch takes two seconds to load, and the default recipe does without it.
     from diorama_core.layout.published import AllInOneRecipe, PaperRecipe
 

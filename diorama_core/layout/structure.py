@@ -14,6 +14,7 @@ from jaxtyping import Float
 from scipy.optimize import linprog
 
 from diorama_core.geometry.cross import cross
+from diorama_core.layout.evidence import PhotoEvidence
 from diorama_core.layout.problem import Problem
 from diorama_core.layout.quadratic import HARD, least_distance
 from diorama_core.layout.supports import Surface, is_wall_like, plane_axes
@@ -66,7 +67,11 @@ class _Walk:
 
 
 def exact_structure(
-    problem: Problem, ray: Float[np.ndarray, "n 3"] | None = None, *, only: Collection[int] | None = None
+    problem: Problem,
+    ray: Float[np.ndarray, "n 3"] | None = None,
+    evidence: PhotoEvidence | None = None,
+    *,
+    only: Collection[int] | None = None,
 ) -> Structure:
     """Walk the support tree from the top and fix what the supporters determine.
 
@@ -74,6 +79,7 @@ def exact_structure(
         problem: the observed poses and the graph.
         ray: unit viewing directions per object; where given, an object that must rise or sink slides along its ray so
             that it stays where the photo shows it.
+        evidence: what the camera saw, for objects that their support moved.
         only: indices of the objects to settle; the others keep their poses and cannot move. All free ones when None.
     """
     n = problem.count
@@ -87,7 +93,7 @@ def exact_structure(
             if surface is None:
                 walk.basis[i] = np.eye(3)[:, :2]
             else:
-                _settle(problem, walk, i, _posed(walk, problem, i, surface), against.get(i, []), ray)
+                _settle(problem, walk, i, _posed(walk, problem, i, surface), against.get(i, []), ray, evidence)
     owners = np.array(walk.owners, dtype=int)
     return Structure(
         walk.R, walk.p, walk.scale, walk.basis, owners,
@@ -107,6 +113,7 @@ def _settle(
     surface: Surface,
     against: list[tuple[int, np.ndarray]],
     ray: np.ndarray | None,
+    evidence: PhotoEvidence | None,
 ) -> None:
     n = surface.normal
     walk.R[i] = _aligned(walk.R[i], problem.contact[i], surface, [(problem.walls[w].normal, f) for w, f in against])
@@ -117,6 +124,10 @@ def _settle(
     _against_walls(problem, walk, i, against)
     if grounded:
         _reach_floor(problem, walk, i)
+    if evidence is not None:
+        pinned = problem.contact[i] + sum((face for _, face in against), np.zeros(3))
+        pinned[2] -= float(grounded)
+        walk.p[i], walk.scale[i] = evidence.fitted(i, walk.R[i], walk.p[i], walk.scale[i], walk.basis[i], pinned)
     m, h = surface.outward, surface.offset
     reach = _fit(problem, walk, i, surface, m, h)
     walk.p[i] = walk.p[i] + _lift(problem, walk, i, surface) * n

@@ -99,7 +99,7 @@ def embedded_stages(inputs: Inputs, library: ShapeLibrary, *, recipe: str = DEFA
         depth=MeasuredDepth() if measured else RenderedDepth(),
         retrieval=EmbeddedRetrieval(library),
         pose=RenderAndCompare(library),
-        layout=layout_recipe(recipe, library),
+        layout=layout_recipe(recipe, library, depth_measured=measured),
     )
 
 
