@@ -36,6 +36,7 @@ BULK_DENSITY: dict[str, float] = {
     "computer": 220, "keyboard": 350, "microwave": 250, "pillow": 25, "books": 500, "plant": 25, "vase": 250,
     "bowl": 180, "cup": 350, "bottle": 600, "clock": 200, "box": 60, "basket": 40, "trash can": 45, "picture": 250,
     "mirror": 350, "shelves": 110, "curtain": 12, "window": 250, "door": 350, "radiator": 330, "rug": 200, "piano": 190,
+    "fireplace": 180, "heater": 110, "fan": 30, "ceiling fan": 14, "air conditioner": 160,
     "toy": 60, "object": 100,
 }  # fmt: skip
 """Kilograms per cubic metre of bounding box: a rough guess for physics, from weighing catalogues' furniture."""

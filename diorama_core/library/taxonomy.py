@@ -146,10 +146,15 @@ CATEGORIES: tuple[Category, ...] = (
     _c("curtain", (2.2, 1.2, 0.12), (0.2, 0.4, 0.3), "wall", synonyms="curtains, drapes, blinds, blind, shower curtain"),
     _c("window", (1.2, 1.1, 0.08), (0.25, 0.35, 0.3), "wall", synonyms="windows, window frame"),
     _c("door", (2.03, 0.85, 0.06), (0.04, 0.1, 0.3), "wall", synonyms="doorway, doors, door frame"),
-    _c("radiator", (0.6, 1.0, 0.12), (0.15, 0.3, 0.2), "wall", synonyms="heater, air conditioner"),
+    _c("radiator", (0.6, 1.0, 0.12), (0.15, 0.3, 0.2), "wall"),
     _c("rug", (0.015, 1.6, 2.2), (0.3, 0.3, 0.3), "floor", synonyms="carpet, mat, floor mat, floormat, bath mat", supports_things=True),
     _c("piano", (1.15, 1.45, 0.62), (0.15, 0.1, 0.15), synonyms="upright piano, keyboard piano"),
     _c("toy", (0.25, 0.25, 0.2), (0.4, 0.4, 0.4), "surface", synonyms="teddy bear, teddy, doll, stuffed animal, ball"),
+    _c("fireplace", (1.15, 1.2, 0.42), (0.3, 0.4, 0.2), synonyms="mantelpiece, mantel, hearth, wood stove, wood burner, log burner, chimney", supports_things=True),
+    _c("heater", (0.5, 0.34, 0.28), (0.35, 0.4, 0.4), synonyms="space heater, electric heater, fan heater, oil heater, convector"),
+    _c("fan", (0.9, 0.42, 0.38), (0.5, 0.3, 0.3), synonyms="pedestal fan, standing fan, table fan, desk fan, electric fan, tower fan", quarter_turns_free=True),
+    _c("ceiling fan", (0.36, 1.2, 1.2), (0.25, 0.15, 0.15), "ceiling", synonyms="ceiling ventilator"),
+    _c("air conditioner", (0.34, 0.75, 0.28), (0.35, 0.3, 0.35), "wall", synonyms="air conditioning, air con, aircon, ac unit, split unit, cooler"),
     UNKNOWN,
 )  # fmt: skip
 

@@ -82,7 +82,7 @@ def render_shape(
     half = 0.5 * np.asarray(shape.size_m)
     light = studio(np.stack([-half, half]), -camera.camera.T_world_camera[:3, 2])
     shot = shoot(alone, alone, camera, light, effort)
-    hung = category(shape.category).mount == "wall"
+    hung = category(shape.category).mount in ("wall", "ceiling")
     shadow = np.zeros(shot.coverage.shape, np.float32) if hung else _shadow(shape, alone, light, camera, effort)
     return _over(shot, shadow)
 

@@ -6,6 +6,7 @@ from diorama_core.library.furniture import (
     bathroom,
     beds,
     books,
+    climate,
     containers,
     electronics,
     kitchen,
@@ -41,6 +42,7 @@ FAMILIES = (
     containers,
     openings,
     sundries,
+    climate,
 )
 
 
