@@ -12,6 +12,7 @@ import diorama_core
 from diorama_app.cli.bench import add_bench
 from diorama_app.cli.doctor import add_doctor
 from diorama_app.cli.library import add_library
+from diorama_app.cli.models import add_models
 from diorama_app.cli.scenes import add_build, add_export, add_optimise, add_picture, add_serve
 from diorama_core.errors import Cancelled, DioramaError
 
@@ -51,6 +52,16 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"diorama {diorama_core.__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for add in (add_serve, add_build, add_optimise, add_export, add_picture, add_library, add_bench, add_doctor):
+    for add in (
+        add_serve,
+        add_build,
+        add_optimise,
+        add_export,
+        add_picture,
+        add_library,
+        add_models,
+        add_bench,
+        add_doctor,
+    ):
         add(commands)
     return parser

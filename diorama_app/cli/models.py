@@ -1,0 +1,122 @@
+"""Commands about networks: `diorama models ...`."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from diorama_app.cli.arguments import command, progress_bar
+from diorama_core.errors import UnavailableError
+
+if TYPE_CHECKING:
+    from diorama_core.models.manifest import Network
+
+
+def add_models(commands: Any) -> None:
+    """Declare `diorama models`."""
+    p: argparse.ArgumentParser = commands.add_parser("models", help="Networks that Diorama can use, all optional.")
+    actions = p.add_subparsers(dest="action", required=True, metavar="list|pull|verify|path")
+    lists = command(actions, "list", _list, "List the networks and which are here.", "diorama models list")
+    lists.add_argument("--json", action="store_true")
+    pulls = command(actions, "pull", _pull, "Fetch networks.", "diorama models pull lite")
+    pulls.add_argument(
+        "what", nargs="*", default=None, metavar="lite|default|paper|ID", help="sets or networks (default: lite)"
+    )
+    pulls.add_argument("--yes", action="store_true", help="accept the licences without asking")
+    pulls.add_argument(
+        "--from", dest="source", type=Path, metavar="FOLDER", help="take files that were fetched elsewhere; no network"
+    )
+    verify = command(actions, "verify", _verify, "Read every byte and compare.", "diorama models verify")
+    verify.add_argument("--json", action="store_true")
+    command(actions, "path", _path, "Where the networks lie.", "diorama models path")
+
+
+def _list(a: argparse.Namespace) -> None:
+    from diorama_core.models.manifest import NETWORKS
+    from diorama_core.models.store import ModelStore
+
+    store = ModelStore.default()
+    rows: list[dict[str, Any]] = [
+        {
+            "id": n.id,
+            "role": n.role,
+            "title": n.title,
+            "size_mb": round(n.size_bytes / 1e6),
+            "licence": n.licence,
+            "sets": list(n.tiers),
+            "here": store.has(n),
+        }
+        for n in NETWORKS
+    ]
+    if a.json:
+        print(json.dumps(rows))
+        return
+    for row in rows:
+        mark = "here" if row["here"] else "-"
+        print(
+            f"{mark:<5} {row['id']:<17} {row['role']:<15} {row['size_mb']:>5} MB  {row['licence']:<13}"
+            f" {', '.join(row['sets']):<22} {row['title']}"
+        )
+
+
+def _pull(a: argparse.Namespace) -> None:
+    from diorama_core.models.manifest import TIERS, network, networks_of
+    from diorama_core.models.pull import pull
+    from diorama_core.models.store import ModelStore
+
+    store = ModelStore.default()
+    if a.source is not None:
+        for name in store.add_folder(a.source):
+            print(f"{name}: ready in {store.folder / name}")
+        return
+    chosen: dict[str, Network] = {}
+    for what in a.what or ["lite"]:
+        chosen.update({n.id: n for n in (networks_of(what) if what in TIERS else (network(what),))})
+    with progress_bar() as progress:
+        fetched = pull(store, tuple(chosen.values()), accept=_asker(a.yes), progress=progress)
+    print(f"{len(fetched)} networks fetched, {len(chosen) - len(fetched)} were here already: {store.folder}")
+
+
+def _asker(yes: bool) -> Any:
+    def accept(networks: Sequence[Network]) -> bool:
+        for n in networks:
+            source = n.repo or n.url
+            print(f"{n.title}: {n.licence}, {n.size_bytes / 1e6:.0f} MB, from {source}", file=sys.stderr)
+        if yes:
+            return True
+        if not sys.stdin.isatty():
+            return False
+        print("Accept these licences and fetch? [y/N] ", end="", file=sys.stderr, flush=True)
+        return sys.stdin.readline().strip().lower() in ("y", "yes")
+
+    return accept
+
+
+def _verify(a: argparse.Namespace) -> None:
+    from diorama_core.models.manifest import NETWORKS
+    from diorama_core.models.store import ModelStore
+
+    store = ModelStore.default()
+    checks = [store.check(n) for n in NETWORKS]
+    if a.json:
+        print(json.dumps([{"id": c.network.id, "state": c.state} for c in checks]))
+    else:
+        for c in checks:
+            if c.state != "absent":
+                print(f"{c.network.id:<17} {c.state}")
+        if all(c.state == "absent" for c in checks):
+            print("no networks are here; fetch some with: diorama models pull lite")
+    wrong = [c.network.id for c in checks if c.state not in ("ok", "absent")]
+    if wrong:
+        listed = ", ".join(wrong)
+        raise UnavailableError(f"{store.folder}: {listed} cannot be used; run: diorama models pull {wrong[0]}")
+
+
+def _path(a: argparse.Namespace) -> None:
+    from diorama_core.models.store import default_folder
+
+    print(default_folder())

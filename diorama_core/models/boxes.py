@@ -1,0 +1,81 @@
+"""Boxes that networks found, and the suppression of double ones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int
+
+
+@dataclass(frozen=True, eq=False)
+class Detections:
+    """Boxes in pixels of the picture that was given, best first."""
+
+    boxes: Float[np.ndarray, "n 4"]
+    """x1, y1, x2, y2, clipped to the picture."""
+    scores: Float[np.ndarray, "n"]
+    labels: Int[np.ndarray, "n"]
+    """Index of the phrase or class."""
+
+    def __len__(self) -> int:
+        return len(self.scores)
+
+    def rows(self, keep: np.ndarray) -> Detections:
+        """A selection."""
+        return Detections(self.boxes[keep], self.scores[keep], self.labels[keep])
+
+
+def clipped(boxes: Float[np.ndarray, "n 4"], width: int, height: int) -> Float[np.ndarray, "n 4"]:
+    """Boxes within the picture."""
+    return np.clip(boxes, 0, [width, height, width, height])
+
+
+def areas(boxes: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n"]:
+    """In square pixels."""
+    return np.maximum(boxes[:, 2] - boxes[:, 0], 0) * np.maximum(boxes[:, 3] - boxes[:, 1], 0)
+
+
+def intersections(a: Float[np.ndarray, "4"], boxes: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n"]:
+    """Shared areas of one box with others."""
+    low, high = np.maximum(a[:2], boxes[:, :2]), np.minimum(a[2:], boxes[:, 2:])
+    return np.prod(np.maximum(high - low, 0), axis=1)
+
+
+def without_doubles(found: Detections, iou: float, *, across_classes: bool) -> Detections:
+    """Non-maximum suppression: of boxes that overlap more than `iou`, the best stays.
+
+    Args:
+        found: in any order.
+        iou: intersection over union above which two boxes are the same thing.
+        across_classes: whether boxes of different classes suppress one another.
+    """
+    order = np.argsort(-found.scores, kind="stable")
+    area = areas(found.boxes)
+    kept: list[int] = []
+    for i in order:
+        rivals = np.array([k for k in kept if across_classes or found.labels[k] == found.labels[i]], dtype=int)
+        shared = intersections(found.boxes[i], found.boxes[rivals])
+        union = area[rivals] + area[i] - shared
+        if not (shared > iou * np.maximum(union, 1e-9)).any():
+            kept.append(int(i))
+    return found.rows(np.array(kept, dtype=int))
+
+
+def without_parts_of_same(found: Detections, share: float) -> Detections:
+    """Of two boxes of a class where one lies within the other by more than `share` of itself, the outer one stays
+    when it is as good, the inner ones where the outer one merely lumps several together (paper, supplement A).
+    """
+    keep = np.ones(len(found), dtype=bool)
+    area = areas(found.boxes)
+    for i in np.argsort(-area, kind="stable"):
+        same = keep & (found.labels == found.labels[i]) & (area < area[i])
+        inside = np.flatnonzero(same & (intersections(found.boxes[i], found.boxes) > share * np.maximum(area, 1e-9)))
+        if not len(inside):
+            continue
+        lumped = len(inside) > 1 and areas(found.boxes[inside]).sum() > 0.5 * area[i]
+        if lumped and found.scores[inside].mean() > found.scores[i]:
+            keep[i] = False
+        else:
+            keep[inside] = False
+    return found.rows(np.flatnonzero(keep))

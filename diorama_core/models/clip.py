@@ -1,0 +1,81 @@
+"""Texts, pictures and shapes in one space: OpenCLIP B-32 and DuoduoCLIP's shape tower (Lee et al. 2025)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float32, UInt8
+from PIL import Image
+
+from diorama_core.models.images import CLIP_MEAN, CLIP_STD, normalised, resized
+from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
+from diorama_core.models.tokens import clip_tokens, load_tokenizer
+
+TOKENS = 77
+SIDE = 224
+
+
+@dataclass(frozen=True)
+class OpenClip:
+    """Input: texts, or RGB pictures of eight bits and any size. Output: unit vectors of 512 numbers."""
+
+    text_graph: Path = field(repr=False)
+    image_graph: Path = field(repr=False)
+    tokenizer: Path = field(repr=False)
+    weights: str = "openclip-b32"
+    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
+
+    @cached_property
+    def _tokenizer(self) -> Any:
+        return load_tokenizer(self.tokenizer)
+
+    def texts(self, texts: Sequence[str]) -> Float32[np.ndarray, "n 512"]:
+        """One vector per text."""
+        session = self.pool.get(self.text_graph)
+        name = next(iter(session.inputs))
+        ids, _ = clip_tokens(self._tokenizer, texts, TOKENS)
+        rows = [next(iter(session.run({name: one[None]}).values())) for one in ids]
+        return unit(np.concatenate(rows)) if rows else np.zeros((0, 512), np.float32)
+
+    def images(self, pictures: Sequence[UInt8[np.ndarray, "h w 3"]]) -> Float32[np.ndarray, "n 512"]:
+        """One vector per picture."""
+        session = self.pool.get(self.image_graph)
+        name = next(iter(session.inputs))
+        rows = [next(iter(session.run({name: clip_pixels(p)}).values())) for p in pictures]
+        return unit(np.concatenate(rows)) if rows else np.zeros((0, 512), np.float32)
+
+
+@dataclass(frozen=True)
+class DuoduoClip:
+    """Input: several views of one shape. Output: one unit vector in OpenCLIP's space; texts come from `OpenClip`."""
+
+    graph: Path = field(repr=False)
+    weights: str = "duoduoclip"
+    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
+
+    def shape(self, views: Sequence[UInt8[np.ndarray, "h w 3"]]) -> Float32[np.ndarray, "512"]:
+        """The shape that the views show; the order of the views does not matter, one is enough (a photo's crop)."""
+        session = self.pool.get(self.graph)
+        pixels = np.concatenate([clip_pixels(v) for v in views])[None]
+        return unit(next(iter(session.run({next(iter(session.inputs)): pixels}).values())))[0]
+
+
+def clip_pixels(rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "1 3 224 224"]:
+    """The shorter side becomes 224, the middle is cut out, CLIP statistics."""
+    height, width = rgb.shape[:2]
+    scale = SIDE / min(height, width)
+    size = (SIDE, int(width * scale)) if height <= width else (int(height * scale), SIDE)
+    small = resized(rgb, size, Image.Resampling.BICUBIC)
+    top, left = (size[0] - SIDE) // 2, (size[1] - SIDE) // 2
+    return normalised(small[top : top + SIDE, left : left + SIDE], CLIP_MEAN, CLIP_STD)
+
+
+def unit(vectors: np.ndarray) -> Float32[np.ndarray, "n d"]:
+    """Rows of length one."""
+    flat = vectors.reshape(len(vectors), -1).astype(np.float32)
+    return flat / np.maximum(np.linalg.norm(flat, axis=1, keepdims=True), 1e-12)

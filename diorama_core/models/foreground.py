@@ -1,0 +1,50 @@
+"""What stands out from the room: BiRefNet and MVANet (Zheng et al. 2024; Yu et al. 2024)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Bool, Float32, UInt8
+
+from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, enlarged, normalised, resized
+from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
+
+SIDE = 1024
+WHITE = 255
+
+
+@dataclass(frozen=True)
+class Foreground:
+    """Input: an upright RGB picture, eight bits. Output: probability of foreground in its pixels.
+
+    BiRefNet and MVANet share the signature: one picture of 1024 x 1024 in, one map of logits out.
+    """
+
+    graph: Path = field(repr=False)
+    weights: str = "birefnet"
+    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
+
+    def probability(self, rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "h w"]:
+        """0 to 1."""
+        session = self.pool.get(self.graph)
+        out = session.run({next(iter(session.inputs)): self.pixels(rgb)})
+        logits = np.squeeze(out[session.outputs[-1]]).astype(np.float32)
+        probability = 1.0 / (1.0 + np.exp(-np.clip(logits, -30, 30)))
+        return enlarged(probability.astype(np.float32), rgb.shape[:2])
+
+    def pixels(self, rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "1 3 1024 1024"]:
+        """Stretched, ImageNet statistics."""
+        return normalised(resized(rgb, (SIDE, SIDE)), IMAGENET_MEAN, IMAGENET_STD)
+
+    def mask(self, rgb: UInt8[np.ndarray, "h w 3"], threshold: float = 0.5) -> Bool[np.ndarray, "h w"]:
+        """Two passes: what the first one found is painted white, so that the second finds what it had overlooked
+        (paper, supplement A).
+        """
+        first = self.probability(rgb) > threshold
+        if not first.any():
+            return first
+        painted = rgb.copy()
+        painted[first] = WHITE
+        return first | (self.probability(painted) > threshold)

@@ -1,0 +1,71 @@
+"""OWLv2: finds whatever words name (Minderer et al., Scaling open-vocabulary object detection, 2023)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float32, Int64, UInt8
+
+from diorama_core.models.boxes import Detections, clipped
+from diorama_core.models.images import CLIP_MEAN, CLIP_STD, antialiased, normalised, padded_square
+from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
+from diorama_core.models.tokens import clip_tokens, load_tokenizer
+
+TOKENS = 16
+DEFAULT_SIDE = 960
+MOST_PHRASES = 64
+"""Phrases in one run; more are asked in turns."""
+
+
+@dataclass(frozen=True)
+class Owlv2:
+    """Input: an upright RGB picture, eight bits, any size, and phrases such as "a photo of chair".
+
+    Output: boxes in the picture's pixels, each with the phrase that fits best and its probability.
+    """
+
+    graph: Path = field(repr=False)
+    tokenizer: Path = field(repr=False)
+    weights: str = "owlv2"
+    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
+
+    @cached_property
+    def _tokenizer(self) -> Any:
+        return load_tokenizer(self.tokenizer)
+
+    def detect(self, rgb: UInt8[np.ndarray, "h w 3"], phrases: Sequence[str], threshold: float) -> Detections:
+        """Boxes above the threshold, best first; empty without phrases."""
+        height, width = rgb.shape[:2]
+        pixels = self.pixels(rgb)
+        logits, boxes = [], np.zeros((0, 4))
+        for start in range(0, len(phrases), MOST_PHRASES):
+            some = phrases[start : start + MOST_PHRASES]
+            ids, mask = self.tokens(some)
+            out = self.pool.get(self.graph).run({"input_ids": ids, "attention_mask": mask, "pixel_values": pixels})
+            logits.append(out["logits"][0, :, : len(some)])
+            boxes = out["pred_boxes"][0].astype(np.float64)
+        if not logits:
+            return Detections(np.zeros((0, 4)), np.zeros(0), np.zeros(0, dtype=int))
+        joined = np.concatenate(logits, axis=1)
+        labels = joined.argmax(axis=1)
+        scores = 1.0 / (1.0 + np.exp(-joined[np.arange(len(joined)), labels].astype(np.float64)))
+        keep = np.flatnonzero(scores > threshold)
+        keep = keep[np.argsort(-scores[keep], kind="stable")]
+        corners = np.concatenate([boxes[:, :2] - boxes[:, 2:] / 2, boxes[:, :2] + boxes[:, 2:] / 2], axis=1)
+        in_pixels = corners[keep] * max(height, width)  # boxes are relative to the padded square
+        return Detections(clipped(in_pixels, width, height), scores[keep], labels[keep])
+
+    def pixels(self, rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "1 3 side side"]:
+        """Padded to a square at the right and bottom, reduced with anti-aliasing, CLIP statistics."""
+        shape = self.pool.get(self.graph).inputs["pixel_values"].shape
+        side = shape[-1] if isinstance(shape[-1], int) else DEFAULT_SIDE
+        return normalised(antialiased(padded_square(rgb), side), CLIP_MEAN, CLIP_STD)
+
+    def tokens(self, phrases: Sequence[str]) -> tuple[Int64[np.ndarray, "q 16"], Int64[np.ndarray, "q 16"]]:
+        """Token ids, padded with zeros, and which of them are words."""
+        return clip_tokens(self._tokenizer, phrases, TOKENS)

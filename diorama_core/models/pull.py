@@ -1,0 +1,248 @@
+"""Fetching networks: pinned, resumable, checked, with the licence shown first.
+
+`huggingface_hub` does the transfer, so HF_ENDPOINT (mirrors), HF_TOKEN, HF_HUB_OFFLINE and the proxy variables mean
+what they mean everywhere.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import shutil
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from diorama_core.errors import Cancelled, InputError, UnavailableError
+from diorama_core.models.manifest import ModelFile, Network
+from diorama_core.models.store import ModelStore, how_to_get
+from diorama_core.progress import Progress
+
+SPARE_BYTES = 200_000_000
+"""Left free on the disk after a pull."""
+_CHUNK = 1 << 18
+"""Bytes between two looks at the cancel token."""
+
+Accept = Callable[[Sequence[Network]], bool]
+"""Shows the licences of networks that were never fetched before and says whether the user accepts them."""
+
+
+def pull(
+    store: ModelStore, networks: Sequence[Network], *, accept: Accept, progress: Progress | None = None
+) -> tuple[str, ...]:
+    """Fetch what is missing of some networks.
+
+    Args:
+        store: where they go.
+        networks: which; ones that are whole already cost nothing.
+        accept: asked once for licences that were not accepted on this machine before.
+        progress: bytes done over all files; honours cancellation. What arrived stays for the next try.
+
+    Returns:
+        Ids of the networks that were fetched.
+
+    Raises:
+        UnavailableError: no network, refused, not found, wrong content, disk full: one line with what to do.
+        InputError: the licence was not accepted, or a network cannot be pulled.
+        Cancelled: on request.
+    """
+    progress = progress or Progress()
+    wanted = [(n, f) for n in networks for f in store.missing(n)]
+    if not wanted:
+        return ()
+    for network, _ in wanted:
+        if not network.pullable:
+            raise InputError(f"{network.title} cannot be pulled: {how_to_get(network)}")
+    _ask(store, [n for n in networks if store.missing(n)], accept)
+    _check_space(store, wanted)
+    total = sum(_about(n, f) for n, f in wanted)
+    done = 0
+    for network, file in wanted:
+        size = _about(network, file)
+        part = progress.part(min(done / total, 1.0), min((done + size) / total, 1.0))
+        _fetch(store, network, file, part)
+        done += size
+    progress.report(1.0, "networks are ready")
+    return tuple(dict.fromkeys(n.id for n, _ in wanted))
+
+
+def _ask(store: ModelStore, networks: Sequence[Network], accept: Accept) -> None:
+    known = store.accepted_licences()
+    unknown = [n for n in networks if n.id not in known]
+    if not unknown:
+        return
+    if not accept(unknown):
+        raise InputError("the licences were not accepted; nothing was fetched (accept them with --yes)")
+    try:
+        store.accept_licences(frozenset(n.id for n in unknown))
+    except OSError as error:
+        raise _disk_error(store, error) from error
+
+
+def _about(network: Network, file: ModelFile) -> int:
+    if file.bytes is not None:
+        return file.bytes
+    return max(1, network.size_bytes // len(network.files))
+
+
+def _check_space(store: ModelStore, wanted: Sequence[tuple[Network, ModelFile]]) -> None:
+    needed = sum(_about(n, f) for n, f in wanted)
+    place = store.folder
+    while not place.exists() and place != place.parent:
+        place = place.parent
+    free = shutil.disk_usage(place).free
+    if needed + SPARE_BYTES > free:
+        raise UnavailableError(
+            f"{store.folder}: {needed / 1e9:.1f} GB are needed and {free / 1e9:.1f} GB are free; "
+            "make room, or set DIORAMA_MODELS to a folder on a larger disk"
+        )
+
+
+def _fetch(store: ModelStore, network: Network, file: ModelFile, progress: Progress) -> None:
+    """One file: downloaded beside, checked, moved into place."""
+    staging = store.folder / ".part" / network.id
+    name = f"{network.title}: {Path(file.path).name}"
+    progress.report(0.0, name)
+    with _one_line(store, network):
+        staging.mkdir(parents=True, exist_ok=True)
+        meter = _meter(progress, name, _about(network, file))
+        if network.url:
+            revision, arrived = "", _from_url(network, file, staging, meter)
+        else:
+            revision = _revision(store, network)
+            arrived = _from_hub(network, file, revision, staging, meter)
+        store.adopt(network, file, arrived, revision)
+    progress.report(1.0, name)
+
+
+def _meter(progress: Progress, name: str, size: int) -> type:
+    """A progress-bar class for `huggingface_hub` that draws nothing and reports here."""
+    from huggingface_hub.utils.tqdm import tqdm as hub_tqdm
+
+    class Meter(hub_tqdm):  # type: ignore[misc, unused-ignore]
+        """Reports the bytes of one file."""
+
+        def __init__(self, *args: Any, **kwargs: Any) -> None:
+            self._bytes = int(kwargs.get("initial") or 0)
+            super().__init__(*args, **{**kwargs, "disable": True})  # type: ignore[no-untyped-call]
+
+        def update(self, n: float | None = 1) -> None:
+            """So many more bytes."""
+            self._bytes += int(n or 0)
+            progress.report(min(self._bytes / max(size, 1), 0.999), f"{name} ({self._bytes / 1e6:.0f} MB)")
+
+    return Meter
+
+
+def _endpoint() -> str | None:
+    return os.environ.get("HF_ENDPOINT", "").rstrip("/") or None
+
+
+def _revision(store: ModelStore, network: Network) -> str:
+    """The pinned revision; a branch or nothing is resolved once, and files of one network never mix revisions."""
+    pinned = network.revision or ""
+    if len(pinned) == 40:
+        return pinned
+    recorded = store.installed(network).revision
+    if recorded:
+        return recorded
+    from huggingface_hub import HfApi
+
+    found = HfApi(endpoint=_endpoint()).model_info(network.repo, revision=network.revision, timeout=20.0).sha
+    return found or pinned or "main"
+
+
+def _from_hub(network: Network, file: ModelFile, revision: str, staging: Path, meter: type) -> Path:
+    from huggingface_hub import constants, hf_hub_download
+
+    constants.DOWNLOAD_CHUNK_SIZE = _CHUNK  # cancellation and progress are looked at between chunks
+    path = hf_hub_download(
+        network.repo, file.path, revision=revision, local_dir=staging, endpoint=_endpoint(), tqdm_class=meter
+    )
+    return Path(path)
+
+
+def _from_url(network: Network, file: ModelFile, staging: Path, meter: type) -> Path:
+    """From an ordinary address, resuming what lies there; same transfer code, same variables."""
+    from huggingface_hub import constants
+    from huggingface_hub.file_download import http_get
+
+    if constants.is_offline_mode():
+        raise UnavailableError(f"{network.title} cannot be fetched: HF_HUB_OFFLINE is set; unset it and pull again")
+    constants.DOWNLOAD_CHUNK_SIZE = _CHUNK
+    part = staging / f"{Path(file.path).name}.incomplete"
+    with part.open("ab") as target:
+        http_get(
+            f"{network.url}/{file.path}",
+            target,
+            resume_size=target.tell(),
+            expected_size=file.bytes,
+            tqdm_class=meter,
+        )
+    return part
+
+
+@contextmanager
+def _one_line(store: ModelStore, network: Network) -> Iterator[None]:
+    """Whatever goes wrong in a transfer, as one line that says what to do."""
+    try:
+        yield
+    except (UnavailableError, InputError, Cancelled):
+        raise
+    except Exception as error:
+        raise _explained(store, network, error) from error
+
+
+def _explained(store: ModelStore, network: Network, error: Exception) -> UnavailableError:
+    from huggingface_hub.errors import GatedRepoError, OfflineModeIsEnabled
+
+    chain = list(_causes(error))
+    status = next((s for e in chain if (s := _status(e)) is not None), None)
+    where = _endpoint() or "https://huggingface.co" if network.repo else network.url
+    full = next((e for e in chain if isinstance(e, OSError) and e.errno in (errno.ENOSPC, errno.EDQUOT)), None)
+    if full is not None or any(isinstance(e, PermissionError) for e in chain):
+        return _disk_error(store, full or error)
+    if any(isinstance(e, OfflineModeIsEnabled) for e in chain):
+        return UnavailableError(f"{network.title} cannot be fetched: HF_HUB_OFFLINE is set; unset it and pull again")
+    if status in (401, 403) or any(isinstance(e, GatedRepoError) for e in chain):
+        return UnavailableError(
+            f"{where} refused {network.title} ({status or 403}); accept its terms there and set HF_TOKEN, "
+            "or use a mirror (HF_ENDPOINT)"
+        )
+    if status == 404:
+        return UnavailableError(
+            f"{where} has no {network.repo or network.id} at the pinned revision (404); "
+            "use another mirror (HF_ENDPOINT)"
+        )
+    if status is not None:
+        return UnavailableError(f"{where} answered {status} for {network.title}; try again later, the rest is kept")
+    if "onsistency" in str(error):
+        return UnavailableError(f"{network.title}: the transfer was incomplete; pull again, it resumes there")
+    return UnavailableError(
+        f"{network.title} could not be fetched from {where} ({_words(chain[-1])}); "
+        "check the connection or the proxy (HTTPS_PROXY) and pull again, it resumes where it stopped"
+    )
+
+
+def _causes(error: BaseException | None) -> Iterator[BaseException]:
+    seen = 0
+    while error is not None and seen < 10:
+        yield error
+        error, seen = error.__cause__ or error.__context__, seen + 1
+
+
+def _status(error: BaseException) -> int | None:
+    code = getattr(getattr(error, "response", None), "status_code", None)
+    return int(code) if isinstance(code, int) else None
+
+
+def _disk_error(store: ModelStore, error: BaseException) -> UnavailableError:
+    reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    return UnavailableError(
+        f"{store.folder}: networks cannot be written there ({reason}); make room or set DIORAMA_MODELS"
+    )
+
+
+def _words(error: BaseException) -> str:
+    return " ".join(str(error).split())[:120] or type(error).__name__

@@ -1,0 +1,163 @@
+"""Running networks with onnxruntime: loaded when first used, shared, freed on demand.
+
+CUDA is used where onnxruntime offers it, else the processor. DIORAMA_DEVICE=cpu and DIORAMA_THREADS=N override.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from diorama_core.errors import UnavailableError
+
+MOST_THREADS = 16
+"""More threads than this slow these networks down."""
+
+
+@dataclass(frozen=True)
+class LoadedNetwork:
+    """A loaded graph, for reports."""
+
+    path: Path
+    device: str
+    memory_bytes: int
+    """How much the process grew by loading it; the graph's files where that cannot be told."""
+
+
+class Session:
+    """One loaded graph."""
+
+    def __init__(self, raw: Any, info: LoadedNetwork) -> None:
+        self._raw, self.info = raw, info
+        self.inputs: dict[str, Any] = {i.name: i for i in raw.get_inputs()}
+        self.outputs: tuple[str, ...] = tuple(o.name for o in raw.get_outputs())
+
+    def run(self, feeds: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """All outputs by name; inputs are converted to the graph's number types.
+
+        Raises:
+            UnavailableError: when the graph does not have the expected inputs, or fails.
+        """
+        unknown = sorted(set(feeds) - set(self.inputs))
+        lacking = sorted(set(self.inputs) - set(feeds))
+        if unknown or lacking:
+            raise UnavailableError(
+                f"{self.info.path}: this graph is not the expected network (inputs {', '.join(self.inputs)}); "
+                "run: diorama models verify"
+            )
+        converted: dict[str, np.ndarray] = {
+            name: value.astype(_TYPES[self.inputs[name].type], copy=False) for name, value in feeds.items()
+        }
+        try:
+            values = self._raw.run(None, converted)
+        except Exception as error:
+            reason = " ".join(str(error).split())[:200]
+            raise UnavailableError(f"{self.info.path}: the network failed ({reason}); see `diorama doctor`") from error
+        return {
+            name: v.astype(np.float32) if v.dtype == np.float16 else v
+            for name, v in zip(self.outputs, values, strict=True)
+        }
+
+
+_TYPES = {
+    "tensor(float)": np.float32,
+    "tensor(float16)": np.float16,
+    "tensor(double)": np.float64,
+    "tensor(int64)": np.int64,
+    "tensor(int32)": np.int32,
+    "tensor(uint8)": np.uint8,
+    "tensor(bool)": np.bool_,
+}
+
+
+@dataclass
+class SessionPool:
+    """Graphs by path; each is loaded once, by whoever needs it first."""
+
+    _loaded: dict[Path, Session] = field(default_factory=dict)
+    _lock: threading.RLock = field(default_factory=threading.RLock)
+
+    def get(self, path: Path) -> Session:
+        """The loaded graph.
+
+        Raises:
+            UnavailableError: when the file is absent or damaged.
+        """
+        path = path.resolve()
+        with self._lock:
+            if path not in self._loaded:
+                self._loaded[path] = _load(path)
+            return self._loaded[path]
+
+    def release(self, path: Path | None = None) -> None:
+        """Free one graph, or all of them; whoever runs one at this moment finishes first."""
+        with self._lock:
+            if path is None:
+                self._loaded.clear()
+            else:
+                self._loaded.pop(path.resolve(), None)
+
+    def report(self) -> tuple[LoadedNetwork, ...]:
+        """What is loaded now and what it takes."""
+        with self._lock:
+            return tuple(s.info for s in self._loaded.values())
+
+
+SHARED_SESSIONS = SessionPool()
+"""What a process uses unless told otherwise."""
+
+
+def thread_count() -> int:
+    """Threads of one network: the cores this process may use, at most `MOST_THREADS`."""
+    stated = os.environ.get("DIORAMA_THREADS", "")
+    if stated.isdigit() and int(stated) > 0:
+        return int(stated)
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return max(1, min(cores, MOST_THREADS))
+
+
+def providers() -> list[str]:
+    """Execution providers in the order of preference."""
+    import onnxruntime
+
+    cpu = ["CPUExecutionProvider"]
+    if os.environ.get("DIORAMA_DEVICE", "").lower() == "cpu":
+        return cpu
+    cuda = "CUDAExecutionProvider"
+    return [cuda, *cpu] if cuda in onnxruntime.get_available_providers() else cpu
+
+
+def _load(path: Path) -> Session:
+    import onnxruntime
+
+    if not path.is_file():
+        raise UnavailableError(f"{path}: this network is not on this machine; run: diorama models pull lite")
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = thread_count()
+    options.inter_op_num_threads = 1
+    options.log_severity_level = 3
+    before = _resident_bytes()
+    try:
+        raw = onnxruntime.InferenceSession(str(path), options, providers=providers())
+    except Exception as error:
+        reason = " ".join(str(error).split())[:160]
+        raise UnavailableError(f"{path}: cannot be loaded ({reason}); run: diorama models verify") from error
+    grown = _resident_bytes() - before
+    files = sum(p.stat().st_size for p in (path, path.with_name(path.name + "_data")) if p.exists())
+    device = "cuda" if raw.get_providers()[0].startswith("CUDA") else "cpu"
+    return Session(raw, LoadedNetwork(path, device, grown if grown > 0 else files))
+
+
+def _resident_bytes() -> int:
+    """Memory of this process; 0 where the system does not tell."""
+    try:
+        pages = int(Path("/proc/self/statm").read_text().split()[1])
+    except (OSError, IndexError, ValueError):
+        return 0
+    return pages * os.sysconf("SC_PAGE_SIZE")

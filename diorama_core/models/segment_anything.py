@@ -1,0 +1,116 @@
+"""Masks from boxes: SAM 2.1 and SlimSAM (Ravi et al. 2024; Chen et al. 2023). One class each, the same two methods."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+from jaxtyping import Bool, Float, Float32, UInt8
+
+from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, enlarged, normalised, resized
+from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
+
+SIDE = 1024
+
+
+@dataclass(frozen=True, eq=False)
+class PromptedMask:
+    """The best of the three masks that a box gave."""
+
+    mask: Bool[np.ndarray, "h w"]
+    quality: float
+    """The network's own estimate of the mask's intersection over union, 0 to 1."""
+
+
+class BoxSegmenter(Protocol):
+    """Input: an upright RGB picture and boxes (x1, y1, x2, y2) in its pixels. Output: one mask per box."""
+
+    def masks(self, rgb: UInt8[np.ndarray, "h w 3"], boxes: Float[np.ndarray, "n 4"]) -> Iterator[PromptedMask]:
+        """Masks in the order of the boxes."""
+        ...
+
+
+@dataclass(frozen=True)
+class Sam2:
+    """SAM 2.1: the picture is stretched to 1024 x 1024."""
+
+    encoder: Path = field(repr=False)
+    decoder: Path = field(repr=False)
+    weights: str = "sam2.1"
+    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
+
+    def masks(self, rgb: UInt8[np.ndarray, "h w 3"], boxes: Float[np.ndarray, "n 4"]) -> Iterator[PromptedMask]:
+        """Masks in the order of the boxes; the picture is encoded once."""
+        height, width = rgb.shape[:2]
+        features = self.pool.get(self.encoder).run({"pixel_values": self.pixels(rgb)})
+        decoder = self.pool.get(self.decoder)
+        feeds = {name: value for name, value in features.items() if name in decoder.inputs}
+        for box in np.asarray(boxes, np.float32).reshape(-1, 4):
+            prompt: dict[str, np.ndarray] = {
+                "input_points": np.zeros((1, 1, 0, 2), np.float32),
+                "input_labels": np.zeros((1, 1, 0), np.int64),
+                "input_boxes": (box * np.array([SIDE / width, SIDE / height] * 2, np.float32))[None, None],
+            }
+            out = decoder.run({**feeds, **{k: v for k, v in prompt.items() if k in decoder.inputs}})
+            yield _best(out, lambda logits: enlarged(logits, (height, width)))
+
+    def pixels(self, rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "1 3 1024 1024"]:
+        """Stretched, ImageNet statistics."""
+        return normalised(resized(rgb, (SIDE, SIDE)), IMAGENET_MEAN, IMAGENET_STD)
+
+
+@dataclass(frozen=True)
+class SlimSam:
+    """SlimSAM, the points-and-boxes export: the longer side becomes 1024, the rest is padded with zeros."""
+
+    encoder: Path = field(repr=False)
+    decoder: Path = field(repr=False)
+    weights: str = "slimsam"
+    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
+
+    def masks(self, rgb: UInt8[np.ndarray, "h w 3"], boxes: Float[np.ndarray, "n 4"]) -> Iterator[PromptedMask]:
+        """Masks in the order of the boxes; the picture is encoded once."""
+        height, width = rgb.shape[:2]
+        features = self.pool.get(self.encoder).run({"pixel_values": self.pixels(rgb)})
+        decoder = self.pool.get(self.decoder)
+        feeds = {name: value for name, value in features.items() if name in decoder.inputs}
+        inner = fitted_size(height, width)
+        scale = np.array([inner[1] / width, inner[0] / height] * 2, np.float32)
+        for box in np.asarray(boxes, np.float32).reshape(-1, 4):
+            prompt: dict[str, np.ndarray] = {
+                "input_points": np.zeros((1, 1, 0, 2), np.float32),
+                "input_labels": np.zeros((1, 1, 0), np.int64),
+                "input_boxes": (box * scale)[None, None],
+            }
+            out = decoder.run({**feeds, **{k: v for k, v in prompt.items() if k in decoder.inputs}})
+            yield _best(out, lambda logits: _unpadded(logits, inner, (height, width)))
+
+    def pixels(self, rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "1 3 1024 1024"]:
+        """Fitted, ImageNet statistics, then padded with zeros at the right and bottom."""
+        height, width = fitted_size(*rgb.shape[:2])
+        square = np.zeros((1, 3, SIDE, SIDE), np.float32)
+        square[..., :height, :width] = normalised(resized(rgb, (height, width)), IMAGENET_MEAN, IMAGENET_STD)
+        return square
+
+
+def fitted_size(height: int, width: int) -> tuple[int, int]:
+    """Height and width when the longer side is 1024."""
+    scale = SIDE / max(height, width)
+    return int(height * scale + 0.5), int(width * scale + 0.5)
+
+
+def _unpadded(
+    logits: Float32[np.ndarray, "256 256"], inner: tuple[int, int], size: tuple[int, int]
+) -> Float32[np.ndarray, "h w"]:
+    square = enlarged(logits, (SIDE, SIDE))
+    return enlarged(square[: inner[0], : inner[1]], size)
+
+
+def _best(out: dict[str, np.ndarray], to_picture: Callable[[np.ndarray], np.ndarray]) -> PromptedMask:
+    scores = out["iou_scores"].reshape(-1)
+    best = int(scores.argmax())
+    logits = out["pred_masks"].reshape(len(scores), *out["pred_masks"].shape[-2:])[best]
+    return PromptedMask(to_picture(logits) > 0.0, float(np.clip(scores[best], 0.0, 1.0)))

@@ -1,0 +1,239 @@
+"""Where networks lie on disk, and which of them may be used: complete, checked, recorded.
+
+A network's folder is `<store>/<id>/`, with its files at their paths in the repository, so that a graph's external data
+lies beside it. `installed.json` in it lists size and sha256 of every file that was checked; a file without such an
+entry, or of another size, counts as absent. Downloads happen in `<store>/.part/` and are moved when they are whole.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+import platformdirs
+from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
+
+from diorama_core.errors import InputError, UnavailableError
+from diorama_core.models.manifest import NETWORKS, ModelFile, Network
+
+RECORD = "installed.json"
+LICENCES = "licences.json"
+_BLOCK = 1 << 20
+
+
+class FileRecord(BaseModel):
+    """A file that was checked."""
+
+    model_config = ConfigDict(frozen=True)
+
+    bytes: int
+    sha256: str
+
+
+class Installed(BaseModel):
+    """The record of one network."""
+
+    model_config = ConfigDict(frozen=True)
+
+    revision: str = ""
+    files: dict[str, FileRecord] = {}
+
+
+@dataclass(frozen=True)
+class Check:
+    """What a thorough look at one network found."""
+
+    network: Network
+    state: str
+    """"ok", "absent", or what is wrong."""
+
+
+def default_folder() -> Path:
+    """DIORAMA_MODELS; else below HF_HOME where that is set; else in Diorama's own cache."""
+    if own := os.environ.get("DIORAMA_MODELS"):
+        return Path(own).expanduser()
+    if hub := os.environ.get("HF_HOME"):
+        return Path(hub).expanduser() / "diorama"
+    if cache := os.environ.get("DIORAMA_CACHE"):
+        return Path(cache).expanduser() / "models"
+    return Path(platformdirs.user_cache_dir("diorama")) / "models"
+
+
+@dataclass(frozen=True)
+class ModelStore:
+    """The networks on this machine."""
+
+    folder: Path
+
+    @classmethod
+    def default(cls) -> ModelStore:
+        """The store that commands and editor use."""
+        return cls(default_folder())
+
+    def folder_of(self, network: Network) -> Path:
+        """Where the network's files lie."""
+        return self.folder / network.id
+
+    def installed(self, network: Network) -> Installed:
+        """What was checked and recorded; nothing where the record is absent or damaged."""
+        try:
+            return Installed.model_validate_json((self.folder_of(network) / RECORD).read_bytes())
+        except (OSError, ValidationError):
+            return Installed()
+
+    def has(self, network: Network) -> bool:
+        """Whether every file is there, whole and checked."""
+        record = self.installed(network)
+        return all(self._whole(network, f, record) for f in network.files)
+
+    def _whole(self, network: Network, file: ModelFile, record: Installed) -> bool:
+        known = record.files.get(file.path)
+        path = self.folder_of(network) / file.path
+        return known is not None and path.is_file() and path.stat().st_size == known.bytes
+
+    def missing(self, network: Network) -> tuple[ModelFile, ...]:
+        """Files that still have to be fetched."""
+        record = self.installed(network)
+        return tuple(f for f in network.files if not self._whole(network, f, record))
+
+    def path(self, network: Network, file: str) -> Path:
+        """The path of one file, ready to load.
+
+        Raises:
+            UnavailableError: when the network is not (wholly) on this machine.
+        """
+        if not self.has(network):
+            raise UnavailableError(f"{network.title} is not on this machine; {how_to_get(network)}")
+        return self.folder_of(network) / file
+
+    def identity(self, network: Network) -> str:
+        """Changes with the weights: for cache keys."""
+        record = self.installed(network)
+        digests = "".join(record.files[f.path].sha256 for f in network.files if f.path in record.files)
+        return f"{network.id}:{hashlib.sha256(digests.encode()).hexdigest()[:12]}"
+
+    def adopt(self, network: Network, file: ModelFile, arrived: Path, revision: str, digest: str | None = None) -> None:
+        """Check a file that arrived whole, move it into place and record it.
+
+        Raises:
+            UnavailableError: when its content is not what the manifest (or an earlier pull) names; it is deleted then.
+        """
+        record = self.installed(network)
+        found = digest or sha256_of(arrived)
+        expected = (file.sha256, *file.also_sha256) if file.sha256 else ()
+        if expected and found not in expected:
+            arrived.unlink(missing_ok=True)
+            raise UnavailableError(
+                f"{network.title}: {file.path} arrived with the wrong content (sha256 {found[:12]}…, "
+                f"expected {str(file.sha256)[:12]}…); it was deleted: pull again, or from another mirror (HF_ENDPOINT)"
+            )
+        target = self.folder_of(network) / file.path
+        target.parent.mkdir(parents=True, exist_ok=True)
+        size = arrived.stat().st_size
+        os.replace(arrived, target)
+        files = {**record.files, file.path: FileRecord(bytes=size, sha256=found)}
+        self._write(network, Installed(revision=revision, files=files))
+
+    def _write(self, network: Network, record: Installed) -> None:
+        write_json(self.folder_of(network) / RECORD, record.model_dump())
+
+    def add_folder(self, source: Path) -> tuple[str, ...]:
+        """Take up files that were fetched elsewhere: any file below `source` whose content the manifest knows, and
+        folders named after networks that users convert themselves.
+
+        Returns:
+            The networks that are complete now and were not before.
+
+        Raises:
+            InputError: when nothing there belongs to a network.
+        """
+        if not source.is_dir():
+            raise InputError(f"{source}: this is no folder; give the folder that holds the networks' files")
+        before = {n.id for n in NETWORKS if self.has(n)}
+        taken = sum(self._taken_up(source, network, file) for network in NETWORKS for file in self.missing(network))
+        if not taken:
+            raise InputError(f"{source}: no file there belongs to a network that is missing; see `diorama models list`")
+        return tuple(n.id for n in NETWORKS if n.id not in before and self.has(n))
+
+    def _taken_up(self, source: Path, network: Network, file: ModelFile) -> bool:
+        for found in _candidates(source, network, file):
+            digest = sha256_of(found)
+            if file.sha256 and digest not in (file.sha256, *file.also_sha256):
+                continue
+            part = self.folder / ".part" / network.id / file.path
+            part.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(found, part)
+            self.adopt(network, file, part, network.revision or "local", digest)
+            return True
+        return False
+
+    def check(self, network: Network) -> Check:
+        """Read every byte of an installed network and compare with the record and the manifest."""
+        record = self.installed(network)
+        if not record.files:
+            return Check(network, "absent")
+        absent = [f.path for f in self.missing(network)]
+        if absent:
+            return Check(network, f"incomplete: {', '.join(absent)} is missing or cut off; pull again")
+        for file in network.files:
+            digest = sha256_of(self.folder_of(network) / file.path)
+            if digest != record.files[file.path].sha256:
+                return Check(network, f"{file.path} was changed since it was fetched; pull again")
+        return Check(network, "ok")
+
+    def forget(self, network: Network) -> None:
+        """Delete a network's files."""
+        shutil.rmtree(self.folder_of(network), ignore_errors=True)
+
+    def accepted_licences(self) -> frozenset[str]:
+        """Ids of the networks whose licence was accepted on this machine."""
+        try:
+            return frozenset(TypeAdapter(list[str]).validate_json((self.folder / LICENCES).read_bytes()))
+        except (OSError, ValidationError):
+            return frozenset()
+
+    def accept_licences(self, network_ids: frozenset[str]) -> None:
+        """Remember that the licences of these networks were accepted."""
+        write_json(self.folder / LICENCES, sorted(self.accepted_licences() | network_ids))
+
+
+def _candidates(source: Path, network: Network, file: ModelFile) -> list[Path]:
+    """Where a file may lie below a folder: in the repository's layout; where its content is known, anywhere."""
+    name = Path(file.path).name
+    places = [source / network.id / file.path, source / network.id / name]
+    if network.repo:
+        places += [source / network.repo / file.path, source / network.repo.split("/")[-1] / file.path]
+    if file.sha256:
+        places += sorted(source.rglob(name))
+    return [p for p in dict.fromkeys(places) if p.is_file()]
+
+
+def how_to_get(network: Network) -> str:
+    """What a user does to get a network."""
+    if network.pullable:
+        tier = network.tiers[0] if network.tiers else network.id
+        return f"run: diorama models pull {tier}"
+    if network.conversion:
+        return f"convert your own checkpoint with {network.conversion}, then: diorama models pull --from FOLDER"
+    return "put your own copy in a folder named after it, then: diorama models pull --from FOLDER"
+
+
+def sha256_of(path: Path) -> str:
+    """Hexadecimal digest of a file's bytes."""
+    digest = hashlib.sha256()
+    with path.open("rb") as file:
+        while block := file.read(_BLOCK):
+            digest.update(block)
+    return digest.hexdigest()
+
+
+def write_json(path: Path, value: object) -> None:
+    """Write by temporary file and rename."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_suffix(f".{os.getpid()}.part")
+    part.write_text(json.dumps(value, indent=1, sort_keys=True))
+    os.replace(part, path)
