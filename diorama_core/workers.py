@@ -1,0 +1,189 @@
+"""Many independent pieces of work on many cores: a pool of processes here, or Ray on other machines.
+
+The same function runs in both. It must be importable by name (defined at the top of a module) and its items and results
+must be picklable. One piece that fails, or kills the process it runs in, never stops the others.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from itertools import islice
+from multiprocessing import get_context
+from typing import Any, Generic, Protocol, TypeVar
+
+from diorama_core.errors import DioramaError, InputError, UnavailableError
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+
+_AHEAD = 2
+"""Pieces handed out per process, so that none waits for the next."""
+
+
+class WorkerDied(DioramaError):
+    """The process of one piece of work ended without an answer (killed for memory, or a crash in native code)."""
+
+
+@dataclass(frozen=True)
+class Done(Generic[Item, Result]):
+    """One finished piece of work: its value, or why there is none."""
+
+    item: Item
+    value: Result | None
+    error: Exception | None = None
+
+    def unwrap(self) -> Result:
+        """The value; raises the piece's own error."""
+        if self.error is not None:
+            raise self.error
+        return self.value  # type: ignore[return-value]  # without an error the value is the function's own
+
+
+class Workers(Protocol):
+    """Where pieces of work are done."""
+
+    def map(self, function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Done[Item, Result]]:
+        """`function` of every item, as they finish, in no particular order.
+
+        Items are drawn as they are needed, so there may be very many. Closing the iterator drops what has not started.
+        """
+        ...
+
+    @property
+    def count(self) -> int:
+        """How many pieces are done at once."""
+        ...
+
+
+def workers(ray_address: str | None = None, count: int | None = None) -> Workers:
+    """Ray at an address, or this machine's cores.
+
+    Args:
+        ray_address: `auto`, `HOST:PORT`, `ray://HOST:PORT` of a running cluster, or `local` to start Ray here; None
+            for a plain pool of processes.
+        count: Processes on this machine; all cores by default. A cluster knows its own size.
+
+    Raises:
+        UnavailableError: when Ray is asked for and not installed, or no cluster answers.
+        InputError: when the count is not positive.
+    """
+    if count is not None and count < 1:
+        raise InputError(f"{count} processes: ask for at least one")
+    return LocalWorkers(count or os.cpu_count() or 1) if ray_address is None else RayWorkers(ray_address, count)
+
+
+@dataclass(frozen=True)
+class LocalWorkers:
+    """A pool of processes on this machine, made anew for each `map`."""
+
+    count: int
+
+    def map(self, function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Done[Item, Result]]:
+        """See `Workers.map`."""
+        waiting = iter(items)
+        pool, running = self._pool(self.count), dict[Future[Result], Item]()
+        try:
+            while True:
+                for item in islice(waiting, self.count * _AHEAD - len(running)):
+                    running[pool.submit(function, item)] = item
+                if not running:
+                    return
+                finished, _ = wait(running, return_when=FIRST_COMPLETED)
+                if any(isinstance(f.exception(), BrokenProcessPool) for f in finished):
+                    suspects, running = list(running.values()), {}
+                    pool.shutdown(wait=False, cancel_futures=True)
+                    pool = self._pool(self.count)
+                    yield from (self._alone(function, item) for item in suspects)
+                for future in finished & running.keys():
+                    yield _done(running.pop(future), future)
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+
+    def _alone(self, function: Callable[[Item], Result], item: Item) -> Done[Item, Result]:
+        """One piece in a process of its own, to find out which of several killed the pool."""
+        with self._pool(1) as pool:
+            future = pool.submit(function, item)
+            wait([future])
+            return _done(item, future)
+
+    @staticmethod
+    def _pool(count: int) -> ProcessPoolExecutor:
+        # Fresh processes: a fork would copy the locks of threads that do not exist in the child.
+        return ProcessPoolExecutor(count, mp_context=get_context("spawn"))
+
+
+def _done(item: Item, future: Future[Result]) -> Done[Item, Result]:
+    error = future.exception()
+    if isinstance(error, BrokenProcessPool):
+        return Done(item, None, WorkerDied("the process ended without an answer; it may have run out of memory"))
+    if isinstance(error, Exception):
+        return Done(item, None, error)
+    return Done(item, future.result())
+
+
+class RayWorkers:
+    """The cores of a Ray cluster. Every machine needs this version of Diorama, and the same folders to read.
+
+    Args:
+        address: as in `workers`.
+        count: cores used by Ray where it is started here; a running cluster decides itself.
+
+    Raises:
+        UnavailableError: when Ray is not installed, or no cluster answers.
+    """
+
+    def __init__(self, address: str, count: int | None = None) -> None:
+        try:
+            import ray
+        except ImportError as error:
+            raise UnavailableError("--ray needs Ray, which is not installed: pip install 'diorama[cluster]'") from error
+        self._ray: Any = ray
+        if not ray.is_initialized():
+            os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # nobody is told that Diorama runs
+            os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")  # else Ray warns about its own future
+            cores = {"num_cpus": count} if address == "local" and count else {}
+            try:
+                ray.init(address=address, log_to_driver=False, include_dashboard=False, logging_level="error", **cores)
+            except (ConnectionError, ValueError, RuntimeError) as error:
+                reason = str(error).splitlines()[0]
+                raise UnavailableError(
+                    f"no Ray cluster answers at '{address}' ({reason}); give the address that 'ray start' printed, "
+                    "or 'local'"
+                ) from error
+
+    @property
+    def count(self) -> int:
+        """Cores of the cluster."""
+        return max(int(self._ray.cluster_resources().get("CPU", 1)), 1)
+
+    def map(self, function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Done[Item, Result]]:
+        """See `Workers.map`."""
+        ray = self._ray
+        remote = ray.remote(function).options(max_retries=0)
+        waiting, running = iter(items), dict[Any, Item]()
+        try:
+            while True:
+                for item in islice(waiting, self.count * _AHEAD - len(running)):
+                    running[remote.remote(item)] = item
+                if not running:
+                    return
+                finished, _ = ray.wait(list(running), num_returns=1)
+                for reference in finished:
+                    yield self._answer(reference, running.pop(reference))
+        finally:
+            for reference in running:
+                ray.cancel(reference, force=True)
+
+    def _answer(self, reference: Any, item: Item) -> Done[Item, Any]:
+        from ray.exceptions import RayError, RayTaskError
+
+        try:
+            return Done(item, self._ray.get(reference))
+        except RayTaskError as error:
+            return Done(item, None, error.cause if isinstance(error.cause, Exception) else error)
+        except RayError as error:
+            return Done(item, None, WorkerDied(f"the process ended without an answer ({type(error).__name__})"))

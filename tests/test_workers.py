@@ -1,0 +1,67 @@
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+
+import pytest
+
+from diorama_core.errors import InputError, LibraryError
+from diorama_core.workers import LocalWorkers, RayWorkers, WorkerDied, Workers, workers
+
+
+def square_or_fail(number: int) -> int:
+    if number == 3:
+        raise LibraryError("three is malformed")
+    if number == 5:
+        os._exit(9)  # as the system does to a process that takes all memory
+    return number * number
+
+
+@pytest.fixture(scope="module")
+def local_ray() -> Iterator[Workers]:
+    ray = pytest.importorskip("ray", reason="needs Ray (pip install 'diorama[cluster]')")
+    yield RayWorkers("local", 2)
+    ray.shutdown()
+
+
+def _check(pool: Workers) -> None:
+    answers = {done.item: done for done in pool.map(square_or_fail, range(12))}
+    assert sorted(answers) == list(range(12))
+    assert {i: d.value for i, d in answers.items() if d.error is None} == {
+        i: i * i for i in range(12) if i not in (3, 5)
+    }
+    assert isinstance(answers[3].error, LibraryError)
+    assert str(answers[3].error) == "three is malformed"
+    assert isinstance(answers[5].error, WorkerDied)
+    with pytest.raises(LibraryError):
+        answers[3].unwrap()
+    assert answers[4].unwrap() == 16
+
+
+def test_failures_and_killed_processes_cost_only_their_own_piece() -> None:
+    _check(LocalWorkers(2))
+
+
+def test_the_same_on_ray(local_ray: Workers) -> None:
+    assert local_ray.count == 2
+    _check(local_ray)
+
+
+def test_items_are_drawn_as_needed_and_the_rest_is_dropped() -> None:
+    drawn = []
+
+    def numbers() -> Iterator[int]:
+        for number in range(10, 10_000):
+            drawn.append(number)
+            yield number
+
+    answers = LocalWorkers(1).map(square_or_fail, numbers())
+    assert next(answers).value == 100
+    answers.close()  # type: ignore[attr-defined]
+    assert len(drawn) < 10
+
+
+def test_a_senseless_count_is_refused() -> None:
+    with pytest.raises(InputError, match="at least one"):
+        workers(count=0)
+    assert workers(count=3).count == 3
