@@ -24,7 +24,7 @@ _AHEAD = 2
 """Pieces handed out per process, so that none waits for the next."""
 
 
-class WorkerDied(DioramaError):
+class WorkerDied(DioramaError):  # noqa: N818  # as its siblings in `errors`
     """The process of one piece of work ended without an answer (killed for memory, or a crash in native code)."""
 
 
