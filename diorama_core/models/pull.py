@@ -7,6 +7,7 @@ what they mean everywhere.
 from __future__ import annotations
 
 import errno
+import logging
 import os
 import shutil
 from collections.abc import Callable, Iterator, Sequence
@@ -104,14 +105,11 @@ def _fetch(store: ModelStore, network: Network, file: ModelFile, progress: Progr
     staging = store.folder / ".part" / network.id
     name = f"{network.title}: {Path(file.path).name}"
     progress.report(0.0, name)
-    with _one_line(store, network):
+    with _one_line(store, network), _quiet_hub():
         staging.mkdir(parents=True, exist_ok=True)
         meter = _meter(progress, name, _about(network, file))
-        if network.url:
-            revision, arrived = "", _from_url(network, file, staging, meter)
-        else:
-            revision = _revision(store, network)
-            arrived = _from_hub(network, file, revision, staging, meter)
+        revision = "" if network.url else _revision(store, network)
+        arrived = _downloaded(network, file, revision, staging, meter)
         store.adopt(network, file, arrived, revision)
     progress.report(1.0, name)
 
@@ -153,34 +151,49 @@ def _revision(store: ModelStore, network: Network) -> str:
     return found or pinned or "main"
 
 
-def _from_hub(network: Network, file: ModelFile, revision: str, staging: Path, meter: type) -> Path:
-    from huggingface_hub import constants, hf_hub_download
+def _address(network: Network, file: ModelFile, revision: str) -> tuple[str, dict[str, str]]:
+    """Where a file is, and the headers (token, agent) that belong to a request for it."""
+    if network.url:
+        return f"{network.url}/{file.path}", {}
+    from huggingface_hub import hf_hub_url
+    from huggingface_hub.utils._headers import build_hf_headers
 
-    constants.DOWNLOAD_CHUNK_SIZE = _CHUNK  # cancellation and progress are looked at between chunks
-    path = hf_hub_download(
-        network.repo, file.path, revision=revision, local_dir=staging, endpoint=_endpoint(), tqdm_class=meter
-    )
-    return Path(path)
+    url = hf_hub_url(network.repo, file.path, revision=revision, endpoint=_endpoint())
+    return url, build_hf_headers(library_name="diorama")
 
 
-def _from_url(network: Network, file: ModelFile, staging: Path, meter: type) -> Path:
-    """From an ordinary address, resuming what lies there; same transfer code, same variables."""
+def _downloaded(network: Network, file: ModelFile, revision: str, staging: Path, meter: type) -> Path:
+    """The whole file beside its place; what an earlier try left there is continued."""
     from huggingface_hub import constants
     from huggingface_hub.file_download import http_get
 
     if constants.is_offline_mode():
         raise UnavailableError(f"{network.title} cannot be fetched: HF_HUB_OFFLINE is set; unset it and pull again")
-    constants.DOWNLOAD_CHUNK_SIZE = _CHUNK
-    part = staging / f"{Path(file.path).name}.incomplete"
+    constants.DOWNLOAD_CHUNK_SIZE = _CHUNK  # cancellation and progress are looked at between chunks
+    url, headers = _address(network, file, revision)
+    part = staging / f"{file.path.replace('/', '--')}.{revision[:12] or 'plain'}.incomplete"
     with part.open("ab") as target:
         http_get(
-            f"{network.url}/{file.path}",
+            url,
             target,
             resume_size=target.tell(),
+            headers=headers,
             expected_size=file.bytes,
             tqdm_class=meter,
         )
     return part
+
+
+@contextmanager
+def _quiet_hub() -> Iterator[None]:
+    """The hub's own warnings are said again, better, by the error that follows them; retries need no words."""
+    logger = logging.getLogger("huggingface_hub")
+    before = logger.level
+    logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        logger.setLevel(before)
 
 
 @contextmanager
