@@ -8,8 +8,10 @@ from diorama_core.library.furniture import (
     books,
     climate,
     containers,
+    decor,
     electronics,
     kitchen,
+    kitchenware,
     lighting,
     openings,
     plants,
@@ -20,7 +22,6 @@ from diorama_core.library.furniture import (
     tables,
     textiles,
     upholstery,
-    vessels,
 )
 from diorama_core.library.furniture.model import Design
 
@@ -37,7 +38,8 @@ FAMILIES = (
     electronics,
     textiles,
     plants,
-    vessels,
+    kitchenware,
+    decor,
     books,
     containers,
     openings,

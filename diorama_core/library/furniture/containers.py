@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from diorama_core.library.furniture import materials as m
+from diorama_core.library.furniture.hollow_ware import hollow
 from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.model import Builder, Design, Parts, Size, both_sides, four, of
 from diorama_core.library.furniture.solids import (
@@ -23,7 +24,6 @@ from diorama_core.library.furniture.solids import (
     superellipse,
     tube,
 )
-from diorama_core.library.furniture.vessels import hollow
 from diorama_core.library.record import SymmetryFold
 
 
