@@ -5,19 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.architecture.colours import coloured, object_pixels
 from diorama_core.architecture.supports import resolve_supports
-from diorama_core.architecture.wall_candidates import MeasuredSurface, find_walls, tolerance_m
-from diorama_core.architecture.wall_sequence import BEHIND_CAMERA_M, WallPiece, heading, outline
+from diorama_core.architecture.surface import MeasuredSurface, measured_surface
+from diorama_core.architecture.wall_candidates import find_walls, tolerance_m
+from diorama_core.architecture.wall_path import heading
+from diorama_core.architecture.wall_sequence import BEHIND_CAMERA_M, WallPiece, outline
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry
-from diorama_core.geometry.depth_grid import points_camera, reduced, smooth_normals_camera
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Architecture, Camera, Plane
 
-GRID_PX = 320
 USUAL_CEILING_M = 2.6
 GUESS_CONFIDENCE = 0.15
 MIN_FLAT_SHARE = 0.004
@@ -45,12 +45,13 @@ class PlanarRoom:
         if inputs.depth_m is None:
             raise ValueError("PlanarRoom needs measured depth; use RoomBox for a photo alone")
         progress.report(0.0, "Looking for planes in the measured depth")
-        surface = measured_surface(inputs, geometry.camera, objects)
+        hidden = object_pixels((inputs.photo.height, inputs.photo.width), objects)
+        surface = measured_surface(inputs.depth_m, geometry.camera, hidden)
         ceiling_m = ceiling_height(surface)
         top_m = ceiling_m if ceiling_m is not None else _usual_top(surface)
         walls = find_walls(surface, top_m)
         progress.report(0.6, "Closing the room at its corners")
-        pieces = outline(surface, walls, view_headings(geometry.camera))
+        pieces = outline(surface, walls, view_headings(geometry.camera), top_m)
         guessed = not pieces
         pieces = pieces or (_guessed_wall(surface, geometry.camera),)
         floor_seen = _share(surface, 0.0, 1.0) > MIN_FLAT_SHARE
@@ -66,35 +67,6 @@ class PlanarRoom:
             confidence=float(np.mean([p.confidence for p in architecture.planes])),
             source=_source(len(pieces), guessed, floor_seen, ceiling_m),
         )
-
-
-def measured_surface(inputs: Inputs, camera: Camera, objects: tuple[DetectedObject, ...]) -> MeasuredSurface:
-    """World points, normals and areas of the measured pixels on a grid of at most `GRID_PX`."""
-    assert inputs.depth_m is not None
-    depth, k = reduced(inputs.depth_m, camera.intrinsics, GRID_PX)
-    R = camera.T_world_camera[:3, :3]
-    local = points_camera(depth, k)
-    normals_local = smooth_normals_camera(depth, k)
-    valid = depth > 0
-    facing = np.abs((normals_local * local).sum(axis=-1)) / np.maximum(np.linalg.norm(local, axis=-1), 1e-9)
-    area = depth.astype(np.float64) ** 2 / (k.fx * k.fy) / np.maximum(facing, 0.2)
-    return MeasuredSurface(
-        camera_position=camera.position,
-        points=(local @ R.T + camera.position)[valid],
-        normals=(normals_local @ R.T)[valid],
-        depth_m=depth[valid].astype(np.float64),
-        area_m2=area[valid],
-        is_object=_small_object_pixels(inputs, objects, (depth.shape[0], depth.shape[1]))[valid],
-    )
-
-
-def _small_object_pixels(
-    inputs: Inputs, objects: tuple[DetectedObject, ...], shape: tuple[int, int]
-) -> Bool[np.ndarray, "hs ws"]:
-    full = object_pixels((inputs.photo.height, inputs.photo.width), objects)
-    rows = ((np.arange(shape[0]) + 0.5) * full.shape[0] / shape[0]).astype(int)
-    columns = ((np.arange(shape[1]) + 0.5) * full.shape[1] / shape[1]).astype(int)
-    return full[np.ix_(rows, columns)]
 
 
 def ceiling_height(surface: MeasuredSurface) -> float | None:

@@ -7,11 +7,21 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float
 
+from diorama_core.architecture.surface import MeasuredSurface
+
 BIN_RAD = np.deg2rad(5.0)
 GROWTH_RAD = np.deg2rad(10.0)
 """Normals within this of a direction belong to it (PlainRecon's growth)."""
-SNAP_RAD = np.deg2rad(6.0)
-"""Directions within this of a room axis are taken to be it."""
+APART_RAD = np.deg2rad(12.5)
+"""Directions nearer than this to a stronger one are not looked at on their own; fits turn freely."""
+MAX_SNAP_RAD = np.deg2rad(6.0)
+"""Walls turned from a room axis by less than this are taken to lie along it where their points agree with that: """
+AXIS_SHARE = 0.85
+"""when at least this share of what lies on the freely turned line lies on the one along the axis too, within"""
+TIGHT_M, TIGHT_PER_NOISE_M = 0.012, 1.0
+"""this distance, plus the second times the noise."""
+SAME_SHARE = 0.5
+"""A candidate more of whose points than this lie on a larger one is that one."""
 OFFSET_BIN_M = 0.05
 GAP_M = 0.4
 """A wider gap along a wall, in plan, parts it in two that are judged on their own."""
@@ -21,20 +31,6 @@ MIN_RISE_M = 0.4
 """A wall's points span at least this height."""
 MAX_SEEN_THROUGH = 0.35
 """A wall of which a larger share is seen through is furniture: windows and doorways stay below."""
-
-
-@dataclass(frozen=True)
-class MeasuredSurface:
-    """Measured points of the empty part of the picture, in the world, flattened."""
-
-    camera_position: Float[np.ndarray, "3"]
-    points: Float[np.ndarray, "n 3"]
-    normals: Float[np.ndarray, "n 3"]
-    """Toward the camera; zero where unknown."""
-    depth_m: Float[np.ndarray, "n"]
-    area_m2: Float[np.ndarray, "n"]
-    """Surface that each pixel sees."""
-    is_object: Bool[np.ndarray, "n"]
 
 
 @dataclass(frozen=True)
@@ -67,13 +63,18 @@ def find_walls(surface: MeasuredSurface, top_m: float) -> list[WallCandidate]:
     found: list[WallCandidate] = []
     for normal in _directions(surface, upright):
         found += _parallel_walls(surface, upright, normal, top_m)
-    kept = sorted(found, key=lambda w: -w.area_m2)
-    return [w for i, w in enumerate(kept) if not any(_same(w, other) for other in kept[:i])]
+    kept: list[WallCandidate] = []
+    for wall in sorted(found, key=lambda w: -w.area_m2):
+        if not any(_same(surface, wall, other) for other in kept):
+            kept.append(wall)
+    return kept
 
 
-def _same(a: WallCandidate, b: WallCandidate) -> bool:
-    shared = (a.inliers & b.inliers).sum()
-    return bool(shared > 0.5 * min(a.inliers.sum(), b.inliers.sum()))
+def _same(surface: MeasuredSurface, minor: WallCandidate, major: WallCandidate) -> bool:
+    """Whether the smaller candidate's points lie on the larger one too."""
+    near = np.abs(surface.points[minor.inliers, :2] @ major.normal - major.offset)
+    near = near < tolerance_m(surface.depth_m[minor.inliers])
+    return bool(near.mean() > SAME_SHARE and minor.normal @ major.normal > np.cos(APART_RAD))
 
 
 def _directions(surface: MeasuredSurface, upright: Bool[np.ndarray, "n"]) -> list[Float[np.ndarray, "2"]]:
@@ -89,20 +90,15 @@ def _directions(surface: MeasuredSurface, upright: Bool[np.ndarray, "n"]) -> lis
         if smooth[peak] < max(MIN_AREA_M2, 0.01 * weight.sum()):
             break
         centre = -np.pi + (peak + 0.5) * BIN_RAD
-        if any(abs(_turn(centre - other)) < 2.5 * GROWTH_RAD for other in found):
+        if any(abs(_turn(centre - other)) < APART_RAD for other in found):
             continue
         near = np.abs(_turn(heading - centre)) < GROWTH_RAD
         found.append(centre + float(np.average(_turn(heading[near] - centre), weights=weight[near])))
-    return [np.array([np.cos(a), np.sin(a)]) for a in map(_snapped, found)]
+    return [np.array([np.cos(a), np.sin(a)]) for a in found]
 
 
 def _turn(angle_rad: np.ndarray | float) -> np.ndarray:
     return (np.asarray(angle_rad) + np.pi) % (2 * np.pi) - np.pi
-
-
-def _snapped(heading: float) -> float:
-    axis = round(heading / (np.pi / 2)) * (np.pi / 2)
-    return axis if abs(_turn(heading - axis)) < SNAP_RAD else heading
 
 
 def _parallel_walls(
@@ -135,7 +131,7 @@ def _refined(
     """The wall through a slice of points; where that cannot be one, the walls among its parts between gaps."""
     if near.sum() < MIN_POINTS:
         return []
-    fitted, offset = _fit_line(surface.points[near, :2], surface.area_m2[near], normal)
+    fitted, offset = fit_line(surface.points[near, :2], surface.area_m2[near], normal, surface.noise)
     inliers = np.abs(surface.points[:, :2] @ fitted - offset) < tolerance_m(surface.depth_m)
     inliers &= (surface.normals[:, :2] @ fitted > np.cos(2.0 * GROWTH_RAD)) & ~surface.is_object
     if offset > surface.camera_position[:2] @ fitted - 0.1:
@@ -186,23 +182,49 @@ def _spread(values: Float[np.ndarray, "n"]) -> float:
     return float(high - low)
 
 
-def _fit_line(
-    points: Float[np.ndarray, "n 2"], weights: Float[np.ndarray, "n"], normal: Float[np.ndarray, "2"]
+def fit_line(
+    points: Float[np.ndarray, "n 2"], weights: Float[np.ndarray, "n"], normal: Float[np.ndarray, "2"], noise: float
 ) -> tuple[Float[np.ndarray, "2"], float]:
-    """Robust line through points seen from above; one that lies along a room axis keeps that direction."""
-    offsets = points @ normal
-    offset = float(np.median(offsets))
-    if np.abs(normal).max() > np.cos(1e-6):
-        core = np.abs(offsets - offset) < 2.0 * max(float(np.median(np.abs(offsets - offset))), 0.005)
-        return normal, float(np.average(offsets[core], weights=weights[core]))
-    for _ in range(3):
+    """Robust line through points seen from above: its normal, along a room axis where that agrees, and offset.
+
+    Args:
+        points: In plan, at least two.
+        weights: Of the points.
+        normal: About where it faces.
+        noise: Relative error of the depths.
+    """
+    offset = float(np.median(points @ normal))
+    for _ in range(4):
         residual = np.abs(points @ normal - offset)
-        core = residual < max(2.5 * float(np.median(residual)), 0.005)
-        centre = points[core].mean(axis=0)
-        turned = np.linalg.eigh(np.cov((points[core] - centre).T))[1][:, 0]
+        core = residual <= max(2.5 * float(np.median(residual)), 0.005)
+        centre = np.average(points[core], axis=0, weights=weights[core])
+        turned = np.linalg.eigh(np.cov((points[core] - centre).T, aweights=weights[core]))[1][:, 0]
         normal = turned if turned @ normal > 0 else -turned
         offset = float(centre @ normal)
-    return normal, offset
+    axis = _along_axis(points, weights, normal, noise)
+    if axis is None:
+        return normal, offset
+    tight = TIGHT_M + TIGHT_PER_NOISE_M * noise
+    agree, at_axis = (weights[np.abs(points @ n - o) < tight].sum() for n, o in ((normal, offset), axis))
+    return axis if at_axis > AXIS_SHARE * agree else (normal, offset)
+
+
+def _along_axis(
+    points: Float[np.ndarray, "n 2"], weights: Float[np.ndarray, "n"], normal: Float[np.ndarray, "2"], noise: float
+) -> tuple[Float[np.ndarray, "2"], float] | None:
+    """The line along the nearest room axis that most points lie on; none when that is too far turned."""
+    heading = float(np.arctan2(normal[1], normal[0]))
+    quarter = round(heading / (np.pi / 2)) * (np.pi / 2)
+    if abs(_turn(heading - quarter)) > MAX_SNAP_RAD:
+        return None
+    axis = np.round([np.cos(quarter), np.sin(quarter)])
+    offsets = points @ axis
+    width = TIGHT_M + TIGHT_PER_NOISE_M * noise
+    index = ((offsets - offsets.min()) / width).astype(int)
+    votes = np.convolve(np.bincount(index, weights=weights), np.ones(2), mode="same")
+    centre = float(offsets.min()) + float(votes.argmax()) * width
+    core = np.abs(offsets - centre) < 1.5 * width
+    return axis, float(np.average(offsets[core], weights=weights[core])) if core.any() else centre
 
 
 def _seen_through(
@@ -218,7 +240,7 @@ def _seen_through(
     """
     along = np.array([-normal[1], normal[0]])
     low, high = np.quantile(surface.points[inliers, :2] @ along, [0.02, 0.98])
-    crossing, share = _crossings(surface, normal, offset)
+    crossing, share = crossings(surface, normal, offset)
     reach = crossing[:, :2] @ along
     within = (share > 0) & (reach > low) & (reach < high) & (crossing[:, 2] > 0.05) & (crossing[:, 2] < top_m - 0.05)
     rest = (1.0 - share) * np.linalg.norm(surface.points[:, :2] - surface.camera_position[:2], axis=1)
@@ -233,7 +255,7 @@ def _seen_through(
     return float(size[beyond].sum() / max(size[beyond].sum() + size[on].sum(), 1e-9))
 
 
-def _crossings(
+def crossings(
     surface: MeasuredSurface, normal: Float[np.ndarray, "2"], offset: float
 ) -> tuple[Float[np.ndarray, "n 3"], Float[np.ndarray, "n"]]:
     """Where the rays to the points cross a vertical plane from its front, and at which share of their length.

@@ -9,13 +9,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Float
 
-from diorama_core.architecture.wall_candidates import MeasuredSurface, WallCandidate
+from diorama_core.architecture.surface import MeasuredSurface
+from diorama_core.architecture.wall_candidates import WallCandidate
+from diorama_core.architecture.wall_path import Run, heading, wall_runs
 
-HEADING_BINS = 180
-MIN_RUN_SHARE = 0.025
-"""A wall that leads in fewer headings than this share of the view is dropped."""
 CORNER_SLACK_RAD = np.deg2rad(5.0)
 COLLINEAR_M = 0.1
 ALIKE_COSINE = float(np.cos(np.deg2rad(25.0)))
@@ -45,32 +44,22 @@ class WallPiece:
         return float(np.linalg.norm(self.end - self.start))
 
 
-@dataclass(frozen=True)
-class _Run:
-    wall: WallCandidate
-    first: float
-    last: float
-
-
-def heading(point: Float[np.ndarray, "*n 2"], origin: Float[np.ndarray, "2"]) -> Float[np.ndarray, "*n"]:
-    """Heading of points seen from `origin`, from +Y to the right, radians."""
-    offset = np.asarray(point) - origin
-    return np.arctan2(offset[..., 0], offset[..., 1])
-
-
-def outline(surface: MeasuredSurface, walls: list[WallCandidate], view: tuple[float, float]) -> tuple[WallPiece, ...]:
+def outline(
+    surface: MeasuredSurface, walls: list[WallCandidate], view: tuple[float, float], top_m: float
+) -> tuple[WallPiece, ...]:
     """The walls as a chain of pieces that meet, from the left to the right end of the view.
 
     Args:
         surface: The measured points.
         walls: Candidates that may be walls.
         view: Headings of the picture's left and right side.
+        top_m: Height at which walls end.
     """
     origin = surface.camera_position[:2]
-    runs = _runs(surface, walls, view)
+    runs = wall_runs(surface, walls, view, top_m)
     if not runs:
         return ()
-    runs = _merged(_closed(_without_furniture(runs, origin), surface, view), origin)
+    runs = _merged(_closed(_merged(runs, origin), surface, view), origin)
     pieces: list[WallPiece] = []
     start = _beyond_view(runs[0], view[0], origin, left=True)
     for run, following in pairwise(runs):
@@ -82,49 +71,13 @@ def outline(surface: MeasuredSurface, walls: list[WallCandidate], view: tuple[fl
     return tuple(p for p in pieces if p.length_m > 0.02)
 
 
-def _runs(surface: MeasuredSurface, walls: list[WallCandidate], view: tuple[float, float]) -> list[_Run]:
-    """Which wall leads in each heading, as runs from left to right; short runs give way to their neighbours."""
-    if not walls:
-        return []
-    origin = surface.camera_position[:2]
-    headings = heading(surface.points[:, :2], origin)
-    width = (view[1] - view[0]) / HEADING_BINS
-    index = ((headings - view[0]) / width).astype(int).clip(0, HEADING_BINS - 1)
-    votes = np.array([np.bincount(index[w.inliers], minlength=HEADING_BINS) for w in walls])
-    labels = np.where(votes.max(axis=0) >= 3, votes.argmax(axis=0), -1)
-    labels = _without_short_runs(labels, max(2, round(MIN_RUN_SHARE * HEADING_BINS)))
-    runs: list[_Run] = []
-    for first, last, label in _spans(labels):
-        if label >= 0:
-            runs.append(_Run(walls[label], view[0] + first * width, view[0] + last * width))
-    return _merged(runs, origin)
-
-
-def _spans(labels: Int[np.ndarray, "m"]) -> list[tuple[int, int, int]]:
-    """(first, one past last, label) of each stretch of equal labels."""
-    breaks = [0, *(np.flatnonzero(np.diff(labels)) + 1).tolist(), len(labels)]
-    return [(a, b, int(labels[a])) for a, b in pairwise(breaks)]
-
-
-def _without_short_runs(labels: Int[np.ndarray, "m"], least: int) -> Int[np.ndarray, "m"]:
-    """Labels whose total length is below `least`, or stretches below a third of it, become unknown."""
-    out = labels.copy()
-    for label in set(labels.tolist()) - {-1}:
-        if (labels == label).sum() < least:
-            out[labels == label] = -1
-    for first, last, label in _spans(out):
-        if label >= 0 and last - first < max(2, least // 2):
-            out[first:last] = -1
-    return out
-
-
-def _merged(runs: list[_Run], origin: Float[np.ndarray, "2"]) -> list[_Run]:
+def _merged(runs: list[Run], origin: Float[np.ndarray, "2"]) -> list[Run]:
     """Neighbouring runs of what is about the same wall become one, whatever was unknown between them."""
-    out: list[_Run] = []
+    out: list[Run] = []
     for run in runs:
         if out and _about_same(out[-1], run, origin):
             larger = max(out[-1].wall, run.wall, key=lambda w: w.area_m2)
-            out[-1] = _Run(larger, out[-1].first, run.last)
+            out[-1] = Run(larger, out[-1].first, run.last)
         else:
             out.append(run)
     return out
@@ -134,7 +87,7 @@ def _collinear(a: WallCandidate, b: WallCandidate) -> bool:
     return bool(a.normal @ b.normal > np.cos(np.deg2rad(3.0)) and abs(a.offset - b.offset) < COLLINEAR_M)
 
 
-def _about_same(a: _Run, b: _Run, origin: Float[np.ndarray, "2"]) -> bool:
+def _about_same(a: Run, b: Run, origin: Float[np.ndarray, "2"]) -> bool:
     """The same line; or the smaller one lies close along the larger, as noise and assumed walls do."""
     if _collinear(a.wall, b.wall):
         return True
@@ -146,39 +99,17 @@ def _about_same(a: _Run, b: _Run, origin: Float[np.ndarray, "2"]) -> bool:
     return max(apart) < ALIKE_M + ALIKE_PER_M * _range(minor, origin)
 
 
-def _without_furniture(runs: list[_Run], origin: Float[np.ndarray, "2"]) -> list[_Run]:
-    """Drops what stands between two runs of one larger wall and in front of it."""
-    out = list(runs)
-    position = 0
-    while position < len(out):
-        same = [j for j in range(position + 1, len(out)) if _collinear(out[position].wall, out[j].wall)]
-        wall = out[position].wall
-        between = [r for r in out[position + 1 : same[-1]] if not _collinear(r.wall, wall)] if same else []
-        if same and all(_stands_before(run, wall, origin) for run in between):
-            out[position : same[-1] + 1] = [_Run(wall, out[position].first, out[same[-1]].last)]
-        position += 1
-    return out
-
-
-def _stands_before(run: _Run, wall: WallCandidate, origin: Float[np.ndarray, "2"]) -> bool:
-    """Nearer than the wall; and not a part of it that is built forward, whose front is large and parallel."""
-    ends = [point_at(run.wall, h, origin) for h in (run.first, run.last)]
-    nearer = all(e is not None and float(e @ wall.normal) > wall.offset - COLLINEAR_M for e in ends)
-    side_face = run.wall.normal @ wall.normal < ALIKE_COSINE
-    return nearer and (side_face or run.wall.area_m2 < wall.area_m2)
-
-
-def _closed(runs: list[_Run], surface: MeasuredSurface, view: tuple[float, float]) -> list[_Run]:
+def _closed(runs: list[Run], surface: MeasuredSurface, view: tuple[float, float]) -> list[Run]:
     """The runs with assumed walls put where no wall leads: behind what is measured there."""
     origin = surface.camera_position[:2]
     headings = heading(surface.points[:, :2], origin)
     ends = [view[0], *(h for run in runs for h in (run.first, run.last)), view[1]]
-    out: list[_Run] = []
+    out: list[Run] = []
     for number in range(len(runs) + 1):
         first, last = ends[2 * number], ends[2 * number + 1]
         seen = (headings >= first) & (headings <= last) & (surface.points[:, 2] > 0.1)
         if last - first > GAP_RAD and seen.sum() >= 50:
-            out.append(_Run(_assumed(surface.points[seen, :2], 0.5 * (first + last)), first, last))
+            out.append(Run(_assumed(surface.points[seen, :2], 0.5 * (first + last)), first, last))
         out += runs[number : number + 1]
     return out
 
@@ -210,7 +141,7 @@ def point_at(wall: WallCandidate, toward: float, origin: Float[np.ndarray, "2"])
 
 
 def _joint(
-    a: _Run, b: _Run, origin: Float[np.ndarray, "2"]
+    a: Run, b: Run, origin: Float[np.ndarray, "2"]
 ) -> tuple[Float[np.ndarray, "2"], list[WallPiece], Float[np.ndarray, "2"]]:
     """How run a hands over to run b: a shared corner, or hidden pieces between the nearer and the farther wall."""
     corner = meeting_point(a.wall, b.wall)
@@ -277,7 +208,7 @@ def _is_hidden(point: Float[np.ndarray, "2"], origin: Float[np.ndarray, "2"], si
     return turn > -0.01 if right else turn < 0.01
 
 
-def _beyond_view(run: _Run, side: float, origin: Float[np.ndarray, "2"], *, left: bool) -> Float[np.ndarray, "2"]:
+def _beyond_view(run: Run, side: float, origin: Float[np.ndarray, "2"], *, left: bool) -> Float[np.ndarray, "2"]:
     """Where the first or last wall ends: behind the camera, a little outside the picture, or where it was last seen."""
     outward = -run.wall.along if left else run.wall.along
     if outward[1] < -0.7:
@@ -296,7 +227,7 @@ def _at_y(wall: WallCandidate, y: float) -> Float[np.ndarray, "2"]:
     return np.array([(wall.offset - wall.normal[1] * y) / wall.normal[0], y])
 
 
-def _range(run: _Run, origin: Float[np.ndarray, "2"]) -> float:
+def _range(run: Run, origin: Float[np.ndarray, "2"]) -> float:
     """Distance of the farther end of what is seen of a run."""
     ends = [point_at(run.wall, h, origin) for h in (run.first, run.last)]
     return max((float(np.linalg.norm(e - origin)) for e in ends if e is not None), default=MAX_RANGE_M)
