@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from diorama_core.errors import LibraryError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.build import Built
 from diorama_core.progress import Progress
@@ -18,12 +17,10 @@ from diorama_core.scene.types import Scene
 
 
 def library_named(name: str) -> ShapeLibrary:
-    """The shape library of that name; raises `LibraryError` when there is none."""
-    from diorama_core.library.catalogue import built_in_library
+    """The shape library of that name, or several joined by `+`; raises `LibraryError` when there is none."""
+    from diorama_core.library.store import open_library
 
-    if name != "built-in":
-        raise LibraryError(f"there is no library {name!r}; available: built-in")
-    return built_in_library()
+    return open_library(name)
 
 
 def arrangement(scene: Scene, rank: int) -> Scene:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -86,15 +85,12 @@ def photos(shared: Path) -> list[PhotoEntry]:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def _own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Caches of this run go to a temporary folder."""
-    before = os.environ.get("DIORAMA_CACHE")
-    os.environ["DIORAMA_CACHE"] = str(tmp_path_factory.mktemp("cache"))
-    yield
-    if before is None:
-        del os.environ["DIORAMA_CACHE"]
-    else:
-        os.environ["DIORAMA_CACHE"] = before
+def _own_folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Caches and libraries of this run go to temporary folders."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("DIORAMA_CACHE", str(tmp_path_factory.mktemp("cache")))
+        patch.setenv("DIORAMA_LIBRARIES", str(tmp_path_factory.mktemp("libraries")))
+        yield
 
 
 @pytest.fixture
