@@ -38,6 +38,7 @@ BULK_DENSITY: dict[str, float] = {
     "mirror": 350, "shelves": 110, "curtain": 12, "window": 250, "door": 350, "radiator": 330, "rug": 200, "piano": 190,
     "fireplace": 180, "heater": 110, "fan": 30, "ceiling fan": 14, "air conditioner": 160,
     "glass": 250, "plate": 500, "tray": 200, "jar": 350, "fruit": 300,
+    "chandelier": 12, "wall lamp": 60, "candle": 250,
     "toy": 60, "object": 100,
 }  # fmt: skip
 """Kilograms per cubic metre of bounding box: a rough guess for physics, from weighing catalogues' furniture."""

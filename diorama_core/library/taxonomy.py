@@ -122,7 +122,7 @@ CATEGORIES: tuple[Category, ...] = (
     _c("bathtub", (0.58, 0.75, 1.65), (0.12, 0.1, 0.1), synonyms="bath, tub, bath tub"),
     _c("floor lamp", (1.55, 0.4, 0.4), (0.12, 0.25, 0.25), synonyms="standing lamp, torchiere, floor light", quarter_turns_free=True),
     _c("lamp", (0.58, 0.34, 0.34), (0.22, 0.2, 0.2), "surface", synonyms="table lamp, desk lamp, bedside lamp, reading lamp"),
-    _c("ceiling lamp", (0.4, 0.45, 0.45), (0.4, 0.35, 0.35), "ceiling", synonyms="pendant, pendant lamp, chandelier, ceiling light, pendant light"),
+    _c("ceiling lamp", (0.4, 0.45, 0.45), (0.4, 0.35, 0.35), "ceiling", synonyms="pendant, pendant lamp, ceiling light, pendant light"),
     _c("television", (0.65, 1.0, 0.25), (0.3, 0.3, 0.6), "surface", synonyms="tv, telly, tv set, flatscreen, tv monitor"),
     _c("monitor", (0.45, 0.55, 0.2), (0.2, 0.2, 0.3), "surface", synonyms="computer monitor, screen, display, computer screen"),
     _c("laptop", (0.24, 0.34, 0.25), (0.15, 0.12, 0.2), "surface", synonyms="notebook computer, macbook"),
@@ -160,6 +160,9 @@ CATEGORIES: tuple[Category, ...] = (
     _c("tray", (0.05, 0.4, 0.36), (0.45, 0.25, 0.2), "surface", synonyms="serving tray, platter, salver", kin="bowl", supports_things=True),
     _c("jar", (0.19, 0.13, 0.13), (0.35, 0.3, 0.3), "surface", synonyms="storage jar, canister, cookie jar, biscuit jar, mason jar, preserving jar, ginger jar", kin="vase"),
     _c("fruit", (0.12, 0.2, 0.18), (0.5, 0.5, 0.5), "surface", synonyms="fruit bowl, apple, orange, banana, bananas, lemon, fruits"),
+    _c("chandelier", (0.65, 0.7, 0.7), (0.25, 0.25, 0.25), "ceiling", synonyms="chandeliers, candelabrum lamp", kin="ceiling lamp"),
+    _c("wall lamp", (0.26, 0.2, 0.22), (0.4, 0.5, 0.45), "wall", synonyms="sconce, wall light, wall sconce, wall lamps, picture light, vanity light"),
+    _c("candle", (0.22, 0.14, 0.12), (0.7, 0.6, 0.4), "surface", synonyms="candles, candlestick, candle holder, candelabra, candleholder, tea light, tealight"),
     UNKNOWN,
 )  # fmt: skip
 

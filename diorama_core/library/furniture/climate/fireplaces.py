@@ -13,8 +13,8 @@ RED_BRICK = Material("red brick", "brick", "#8a5a48", 0.9, 0.0, 0.62)
 WHITE_BRICK = Material("painted brick", "brick", "#d9d4ca", 0.85, 0.0, 0.62)
 SOOT = Material("sooty brick", "brick", "#4b4541", 0.95, 0.0, 0.62)
 SLATE = Material("slate", "clay", "#4a4d50", 0.7, 0.0, 0.6)
-EMBER = m.lit("embers", "#c9733c", 0.6)
-FLAME = m.lit("flames", "#e0924a", 0.6)
+EMBER = m.lit("embers", "#b8744c", 0.6)
+FLAME = m.lit("flames", "#d69a68", 0.7)
 
 
 def logs(w: float, x: float, z: float) -> Parts:

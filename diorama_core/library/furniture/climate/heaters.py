@@ -18,7 +18,7 @@ from diorama_core.library.furniture.solids import (
 )
 
 GRILLE = Material("steel grille", "mesh", "#9b9d9e", 0.5, 0.3, 0.06)
-COIL = m.lit("hot coil", "#c98a5e", 0.35)
+
 
 
 def oil_heater(size: Size, body: Material) -> Parts:

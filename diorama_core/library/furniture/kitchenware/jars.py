@@ -16,7 +16,7 @@ JAM = m.paint("jam", "#7d3a3a", 0.3)
 GINGHAM = Material("gingham", "check", "#a05a52", 0.92, 0.0, 0.08)
 APPLE = Material("apple", "clay", "#a5544a", 0.4, 0.0, 0.1)
 GREEN_APPLE = Material("green apple", "clay", "#9aa860", 0.4, 0.0, 0.1)
-ORANGE = Material("orange", "clay", "#cf9159", 0.6, 0.0, 0.05)
+ORANGE = Material("orange", "clay", "#cd9560", 0.6, 0.0, 0.05)
 BANANA = Material("banana", "clay", "#d3bb72", 0.55, 0.0, 0.2)
 LEMON = Material("lemon", "clay", "#d6c370", 0.55, 0.0, 0.05)
 
