@@ -1,59 +1,174 @@
-"""Finding shapes by words: "oak bookcase", "blue couch", "round table"."""
+"""Finding shapes by words: "oak bookcase", "blue couch", "small round tables"."""
 
 from __future__ import annotations
 
 import difflib
-import re
+import weakref
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float, Int
 
 from diorama_core.library import taxonomy
+from diorama_core.library.language import SizeWish, broader, narrower, size_wish, tokens
+from diorama_core.library.naming import Wish, understand
 from diorama_core.library.record import Shape, ShapeLibrary
 
 CATEGORY_POINTS = 3.0
+KIN_POINTS = 2.0
+"""A special kind of what was asked for (a high chair for a chair), or the general kind."""
 WORD_POINTS = 1.0
-NEAR_POINTS = 0.6
-_IGNORED = frozenset({"a", "an", "the", "with", "of", "and", "in", "on", "for", "some", "my"})
+NAME_WORD_POINTS = 0.4
+"""Words of the category's name count less: they have named the category already."""
+CONCEPT_POINTS = 0.8
+"""`oak` where wood was asked for."""
+GENERAL_POINTS = 0.4
+"""`wood` where oak was asked for."""
+SPELLING_POINTS = 0.6
+SIZE_POINTS = 0.7
+SIZE_WORD_POINTS = 0.15
+"""A caption that says "tall" counts little: sizes are measured."""
+_SPELLING_CUTOFF = 0.8
+_LEAST_SIZE_M = 0.01
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a search found, and what there is to say about how the text was understood."""
+
+    shapes: tuple[Shape, ...]
+    """Best first."""
+    scores: tuple[float, ...]
+    wish: Wish
+    note: str = ""
+    """For the user, when something was not known."""
 
 
 def search(library: ShapeLibrary, text: str, k: int = 24) -> tuple[Shape, ...]:
-    """The `k` shapes that fit the words best, best first; all in their stable order when there are no words.
+    """The `k` shapes that fit the words best, best first; all in their stable order when there are no words."""
+    return find(library, text, k).shapes
 
-    Names of categories (with synonyms, plurals and near spellings) weigh most, then words of the caption, the style
-    and the id. Nothing that shares no word with the text is returned, unless no shape shares any: then a name that is
-    not known stands for its nearest category.
+
+def find(library: ShapeLibrary, text: str, k: int = 24) -> Found:
+    """The `k` shapes that fit the words best, with notes on how the words were understood.
+
+    Names of categories (synonyms, plurals, near names: `naming`) weigh most, then words of the caption, the style, the
+    id and the shape's own synonyms, also by meaning ("wooden" finds oak) and comparative size ("small", "tall", or a
+    size such as "60 x 50 x 110 cm"). Nothing that shares neither a category nor a word with the text is found.
     """
-    words = _words(text)
+    index, wish = text_index(library), understand(text)
+    if not tokens(text):
+        return Found(index.shapes[:k], (0.0,) * min(k, len(index.shapes)), wish)
+    scores = index.scores(wish)
+    positions = np.flatnonzero(scores > 0)
+    order = positions[np.lexsort((positions, -scores[positions]))][:k]
+    known = not wish.categories and any(index.knows(word) for word in wish.words)  # "oak" needs no noun
+    note = "" if known else wish.note
+    return Found(tuple(index.shapes[i] for i in order), tuple(float(scores[i]) for i in order), wish, note)
+
+
+class TextIndex:
+    """Which shapes have which words; made once for a library, in about a hundredth of a millisecond a shape."""
+
+    def __init__(self, shapes: Sequence[Shape]) -> None:
+        self.shapes = tuple(shapes)
+        words: dict[str, list[int]] = {}
+        categories: dict[str, list[int]] = {}
+        known: dict[str, tuple[str, ...]] = {}
+        for position, shape in enumerate(self.shapes):
+            categories.setdefault(shape.category, []).append(position)
+            for text in (shape.caption, shape.style, shape.id, shape.category, *shape.synonyms):
+                found = known.get(text)
+                if found is None:
+                    found = known[text] = tokens(text)
+                for word in found:
+                    places = words.setdefault(word, [])
+                    if not places or places[-1] != position:
+                        places.append(position)
+        self._words = {word: np.array(places) for word, places in words.items()}
+        self._categories = {name: np.array(places) for name, places in categories.items()}
+
+    def scores(self, wish: Wish) -> Float[np.ndarray, "n"]:
+        """How well each shape fits, 0 where nothing does."""
+        category = np.zeros(len(self.shapes))
+        for name in wish.categories:
+            for kin in _kin(name):
+                places = self._of_category(kin)
+                category[places] = np.maximum(category[places], CATEGORY_POINTS if kin == name else KIN_POINTS)
+        total = category.copy()
+        sizes: list[SizeWish] = []
+        for word in wish.words:
+            asked = size_wish(word)
+            if asked is not None:
+                sizes.append(asked)
+            total += (SIZE_WORD_POINTS if asked else WORD_POINTS) * self._word(word)
+        for word in wish.naming:
+            total += NAME_WORD_POINTS * self._word(word)
+        fits = total > 0
+        for asked in sizes:
+            total[fits] += SIZE_POINTS * self._comparative(asked)[fits]
+        if wish.size_m is not None and (wish.categories or not wish.words):
+            total[fits] += 2 * SIZE_POINTS * self._nearness(wish.size_m)[fits]
+        return np.maximum(total, np.where(fits, 1e-6, 0.0))
+
+    def knows(self, word: str) -> bool:
+        """Whether any shape has the word, in its normal form, or one of its meaning."""
+        return any(w in self._words for w in (word, *narrower(word)))
+
+    def _of_category(self, name: str) -> Int[np.ndarray, "m"]:
+        return self._categories.get(name, np.zeros(0, int))
+
+    def _word(self, word: str) -> Float[np.ndarray, "n"]:
+        """1 where the word is, less where something of its meaning or spelling is."""
+        points = np.zeros(len(self.shapes))
+        for general in broader(word):
+            points[self._places(general)] = GENERAL_POINTS
+        for kind in narrower(word):
+            points[self._places(kind)] = CONCEPT_POINTS
+        points[self._places(word)] = 1.0
+        if not points.any() and len(word) > 3:
+            for near in difflib.get_close_matches(word, list(self._words), n=1, cutoff=_SPELLING_CUTOFF):
+                points[self._places(near)] = SPELLING_POINTS
+        return points
+
+    def _places(self, word: str) -> Int[np.ndarray, "m"]:
+        return self._words.get(word, np.zeros(0, int))
+
+    @cached_property
+    def _log_sizes(self) -> Float[np.ndarray, "n 3"]:
+        sizes = np.array([s.size_m for s in self.shapes]).reshape(-1, 3)
+        return np.log(np.maximum(sizes, _LEAST_SIZE_M))
+
+    def _comparative(self, asked: SizeWish) -> Float[np.ndarray, "n"]:
+        """-1 to 1: how much less or more of the asked size a shape has than its category's average."""
+        depth, width, height = self._log_sizes.T
+        measure = {"volume": depth + width + height, "height": height, "width": width, "depth": depth}[asked.of]
+        relative = np.zeros(len(self.shapes))
+        for places in self._categories.values():
+            spread = max(float(measure[places].std()), 0.05)
+            relative[places] = (measure[places] - measure[places].mean()) / spread
+        return np.clip(asked.sign * relative / 2, -1, 1)
+
+    def _nearness(self, size_m: tuple[float, float, float]) -> Float[np.ndarray, "n"]:
+        """1 for shapes of this size, falling to 0 as extents differ."""
+        wanted = np.log(np.maximum(size_m, _LEAST_SIZE_M))
+        return np.exp(-(((self._log_sizes - wanted) / 0.4) ** 2).sum(axis=1) / 2)
+
+
+_INDICES: weakref.WeakKeyDictionary[ShapeLibrary, TextIndex] = weakref.WeakKeyDictionary()
+
+
+def text_index(library: ShapeLibrary) -> TextIndex:
+    """The index of a library's words, remembered for as long as its records stay the same."""
     shapes = library.shapes()
-    if not words:
-        return shapes[:k]
-    category = _category(text, words)
-    scores = [_score(shape, words, category) for shape in shapes]
-    order = sorted((i for i, s in enumerate(scores) if s > 0), key=lambda i: (-scores[i], i))
-    return tuple(shapes[i] for i in order[:k])
+    known = _INDICES.get(library)
+    if known is None or known.shapes != shapes:
+        known = _INDICES[library] = TextIndex(shapes)
+    return known
 
 
-def _words(text: str) -> tuple[str, ...]:
-    return tuple(w for w in re.findall(r"[a-z0-9]+", text.lower()) if w not in _IGNORED)
-
-
-def _category(text: str, words: tuple[str, ...]) -> str | None:
-    """The category that the text names: by its last words first, then by any one of them."""
-    whole = taxonomy.resolve(text)
-    if whole.exact:
-        return whole.category.name
-    for word in reversed(words):
-        named = taxonomy.resolve(word)
-        if named.exact:
-            return named.category.name
-    near = taxonomy.resolve(words[-1])
-    return near.category.name if near.category is not taxonomy.UNKNOWN else None
-
-
-def _score(shape: Shape, words: tuple[str, ...], category: str | None) -> float:
-    known = set(_words(f"{shape.caption} {shape.style} {shape.id} {shape.category}"))
-    score = CATEGORY_POINTS if shape.category == category else 0.0
-    for word in words:
-        if word in known or word.rstrip("s") in known:
-            score += WORD_POINTS
-        elif len(word) > 3 and difflib.get_close_matches(word, known, n=1, cutoff=0.8):
-            score += NEAR_POINTS
-    return score
+def _kin(name: str) -> tuple[str, ...]:
+    """A category, its special kinds, and the kind that it is one of."""
+    return tuple(dict.fromkeys((name, *sorted(taxonomy.with_kin(name)), taxonomy.broad(name))))

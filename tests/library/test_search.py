@@ -2,10 +2,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from diorama_core.library.catalogue import BuiltInLibrary, built_in_library
-from diorama_core.library.search import search
+from diorama_core.library.ingest.sink import Ingested
+from diorama_core.library.naming import understand
+from diorama_core.library.record import Shape
+from diorama_core.library.search import TextIndex, find, search
+from diorama_core.library.store import StoredLibrary
 
 
 @pytest.fixture(scope="module")
@@ -48,3 +53,54 @@ def test_no_words_list_everything_in_order(library: BuiltInLibrary) -> None:
 
 def test_nonsense_finds_nothing(library: BuiltInLibrary) -> None:
     assert search(library, "qwxzzk") == ()
+
+
+def test_meaning_counts(library: BuiltInLibrary) -> None:
+    wooden = search(library, "wooden armchair", 3)
+    assert {s.category for s in wooden} == {"armchair"}
+    assert all(any(w in s.caption for w in ("oak", "walnut", "mahogany", "wooden", "pine")) for s in wooden)
+    assert "sofa" in {s.category for s in search(library, "grey sofa", 3)}
+    assert "grey" in search(library, "gray sofa", 1)[0].caption
+
+
+def test_comparative_sizes_order_a_category(library: BuiltInLibrary) -> None:
+    def volumes(text: str) -> list[float]:
+        return [float(np.prod(s.size_m)) for s in search(library, text, 3)]
+
+    assert max(volumes("small table")) < min(volumes("large table"))
+    heights = [s.size_m[2] for s in search(library, "tall bookshelf", 3)]
+    assert min(heights) > np.median([s.size_m[2] for s in library.in_category("bookshelf")])
+
+
+def test_a_size_in_the_text_finds_that_size(library: BuiltInLibrary) -> None:
+    desk = library.in_category("desk")[0]
+    x, y, z = desk.size_m
+    assert search(library, f"desk {100 * y:.0f} x {100 * x:.0f} x {100 * z:.0f} cm", 1)[0].size_m == desk.size_m
+
+
+def test_special_kinds_follow_the_general_one(library: BuiltInLibrary) -> None:
+    kinds = [s.category for s in search(library, "chair", 200)]
+    assert kinds[0] == "chair"
+    assert "high chair" in kinds
+    assert kinds.index("high chair") > len(library.in_category("chair")) - 1
+
+
+def test_unknown_nouns_are_noted_and_describing_words_are_not(library: BuiltInLibrary) -> None:
+    found = find(library, "chifforobe", 3)
+    assert {s.category for s in found.shapes} == {"wardrobe"}
+    assert "nearest is 'wardrobe'" in found.note
+    assert find(library, "oak").note == ""
+    assert "not known" in find(library, "qwxzzk").note
+
+
+def test_a_shapes_own_synonyms_are_found() -> None:
+    record = Shape("x1", "box", "a plain thing", (0.4, 0.4, 0.4), synonyms=("tea caddy",))
+    assert TextIndex([record]).scores(understand("caddies"))[0] > 0
+
+
+def test_the_index_follows_a_library_that_grows(tmp_path: Path) -> None:
+    store = StoredLibrary(tmp_path, create=True)
+    assert search(store, "sofa") == ()
+    record = Shape("mine", "sofa", "my own settee", (0.9, 1.9, 0.8))
+    store.add(Ingested(record, b"", None, "key"))
+    assert search(store, "couch") == (record,)
