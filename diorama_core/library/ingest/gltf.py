@@ -1,0 +1,271 @@
+"""glTF and GLB: checked, and packed into one GLB that refers to nothing outside itself.
+
+What a hostile or broken file could do (read other files, claim terabytes, turn in circles) is refused here, before a
+general loader sees it. Rules: https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import io
+import json
+import struct
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+from diorama_core.errors import LibraryError
+from diorama_core.library.ingest.limits import Limits
+from diorama_core.library.ingest.references import References, shown
+
+Json = dict[str, Any]
+
+_COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+_ITEMS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
+_NEEDS_DECODER = {
+    "KHR_draco_mesh_compression": "Draco",
+    "EXT_meshopt_compression": "meshopt",
+    "KHR_meshopt_compression": "meshopt",
+}
+_GLB, _JSON, _BIN = 0x46546C67, 0x4E4F534A, 0x004E4942
+
+
+def packed(data: bytes, references: References, limits: Limits) -> bytes:
+    """A GLB with the same content, every reference inside it and every number checked.
+
+    Args:
+        data: A GLB, or the text of a glTF file.
+        references: Reads the buffers and pictures it names; collects warnings.
+        limits: What is refused.
+
+    Raises:
+        LibraryError: with the reason, when the file is malformed, hostile, too large or needs a missing decoder.
+    """
+    document, binary = _container(data, limits)
+    try:
+        _check_asset(document)
+        buffers = [_buffer(row, k, binary, references) for k, row in enumerate(_rows(document, "buffers"))]
+        views = [_view(row, buffers) for row in _rows(document, "bufferViews")]
+        for accessor in _rows(document, "accessors"):
+            _check_accessor(accessor, document, views, limits)
+        _check_nodes(document, limits)
+        return _repacked(document, views, references)
+    except (KeyError, IndexError, TypeError, ValueError, AttributeError, RecursionError) as error:
+        raise LibraryError(f"malformed glTF ({type(error).__name__}: {error})") from error
+
+
+def node_names(glb: bytes) -> tuple[str, ...]:
+    """Names that the author gave to scenes, nodes, meshes and materials, in the file's order."""
+    document, _ = _container(glb, Limits())
+    rows = [row for kind in ("scenes", "nodes", "meshes", "materials") for row in document.get(kind, [])]
+    return tuple(str(row["name"]) for row in rows if isinstance(row, dict) and row.get("name"))
+
+
+def _container(data: bytes, limits: Limits) -> tuple[Json, bytes | None]:
+    """The JSON document and the binary chunk."""
+    text, binary = data, None
+    if data[:4] == struct.pack("<I", _GLB):
+        if len(data) < 20:
+            raise LibraryError("the GLB ends within its header")
+        version, length = struct.unpack_from("<II", data, 4)
+        if version != 2:
+            raise LibraryError(f"GLB version {version} is not supported; save it as glTF 2.0")
+        if length > len(data):
+            raise LibraryError(f"the GLB is cut off: {len(data)} of {length} bytes")
+        chunks = dict(reversed(list(_chunks(data))))
+        if _JSON not in chunks:
+            raise LibraryError("the GLB has no JSON chunk")
+        text, binary = chunks[_JSON], chunks.get(_BIN)
+    if len(text) > limits.json_bytes:
+        raise LibraryError(f"its JSON has {len(text) / 2**20:.0f} MB; the limit is {limits.json_bytes / 2**20:.0f} MB")
+    try:
+        document = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise LibraryError(f"its JSON cannot be read ({str(error)[:80]})") from error
+    if not isinstance(document, dict):
+        raise LibraryError("its JSON is no glTF document")
+    return document, binary
+
+
+def _chunks(data: bytes) -> list[tuple[int, bytes]]:
+    found, at = [], 12
+    while at + 8 <= len(data):
+        length, kind = struct.unpack_from("<II", data, at)
+        if at + 8 + length > len(data):
+            raise LibraryError("a chunk of the GLB is cut off")
+        found.append((kind, data[at + 8 : at + 8 + length]))
+        at += 8 + length
+    return found
+
+
+def _rows(document: Json, name: str) -> list[Json]:
+    rows = document.get(name, [])
+    if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+        raise LibraryError(f"malformed glTF ('{name}' is no list of objects)")
+    return rows
+
+
+def _check_asset(document: Json) -> None:
+    version = str(document.get("asset", {}).get("version", ""))
+    if not version.startswith("2"):
+        raise LibraryError(f"glTF version {shown(version)} is not supported; save it as glTF 2.0")
+    needed = set(document.get("extensionsRequired", []))
+    for name, label in _NEEDS_DECODER.items():
+        if name in needed:
+            raise LibraryError(
+                f"its geometry is compressed with {label}, which is not supported; export it uncompressed"
+            )
+
+
+def _buffer(row: Json, number: int, binary: bytes | None, references: References) -> bytes:
+    length, uri = row["byteLength"], row.get("uri")
+    if uri is None:
+        if number != 0 or binary is None:
+            raise LibraryError("a buffer names no data")
+        data = binary
+    elif uri.startswith("data:"):
+        data = _data_uri(uri)
+    else:
+        data = references.read(uri)
+    if not 0 <= length <= len(data):
+        raise LibraryError(f"a buffer is cut off: {len(data)} of {length} bytes")
+    return data[:length]
+
+
+def _data_uri(uri: str) -> bytes:
+    head, _, body = uri.partition(",")
+    if not head.endswith(";base64"):
+        raise LibraryError("a data address is not base64")
+    try:
+        return base64.b64decode(body, validate=True)
+    except binascii.Error as error:
+        raise LibraryError("a data address is broken base64") from error
+
+
+def _view(row: Json, buffers: list[bytes]) -> bytes:
+    start, length = row.get("byteOffset", 0), row["byteLength"]
+    data = buffers[row["buffer"]]
+    if start < 0 or length < 0 or start + length > len(data):
+        raise LibraryError("a buffer view reaches past its buffer")
+    return data[start : start + length]
+
+
+def _check_accessor(accessor: Json, document: Json, views: list[bytes], limits: Limits) -> None:
+    count = accessor["count"]
+    width = _ITEMS[accessor["type"]] * np.dtype(_COMPONENTS[accessor["componentType"]]).itemsize
+    if not isinstance(count, int) or count < 0 or count > 3 * limits.triangles:
+        raise LibraryError(f"an accessor claims {count} items; the limit is {3 * limits.triangles}")
+    if "bufferView" not in accessor:
+        return
+    row = document["bufferViews"][accessor["bufferView"]]
+    stride = row.get("byteStride", width)
+    if not isinstance(stride, int) or stride < width:
+        raise LibraryError("a buffer view has an impossible stride")
+    start = accessor.get("byteOffset", 0)
+    if start < 0 or (count and start + (count - 1) * stride + width > len(views[accessor["bufferView"]])):
+        raise LibraryError("an accessor reaches past its buffer view")
+
+
+def _check_nodes(document: Json, limits: Limits) -> None:
+    """Nodes form a forest (each has one parent, none is its own ancestor), and what they draw is bounded."""
+    nodes = _rows(document, "nodes")
+    if len(nodes) > limits.nodes:
+        raise LibraryError(f"{len(nodes)} nodes; the limit is {limits.nodes}")
+    parents = [-1] * len(nodes)
+    for number, node in enumerate(nodes):
+        for child in node.get("children", []):
+            if not 0 <= child < len(nodes):
+                raise LibraryError(f"node {number} has a child that does not exist")
+            if parents[child] >= 0:
+                raise LibraryError(f"node {child} has two parents, which glTF forbids")
+            parents[child] = number
+    settled = [False] * len(nodes)
+    for number in range(len(nodes)):
+        trail = [number]
+        while not settled[trail[-1]] and parents[trail[-1]] >= 0:
+            trail.append(parents[trail[-1]])
+            if trail[-1] == number:
+                raise LibraryError(f"node {number} is its own ancestor")
+            if len(trail) > len(nodes):
+                raise LibraryError("nodes refer to one another in a circle")
+        for step in trail:
+            settled[step] = True
+    drawn = sum(_triangles(document["meshes"][n["mesh"]], document) for n in nodes if "mesh" in n)
+    if drawn > limits.triangles:
+        raise LibraryError(f"{drawn} triangles; the limit is {limits.triangles}")
+
+
+def _triangles(mesh: Json, document: Json) -> int:
+    total = 0
+    for primitive in mesh["primitives"]:
+        accessor = primitive.get("indices", primitive["attributes"]["POSITION"])
+        total += document["accessors"][accessor]["count"] // (3 if primitive.get("mode", 4) == 4 else 1)
+    return total
+
+
+def _repacked(document: Json, views: list[bytes], references: References) -> bytes:
+    """The document with one buffer, floats instead of scaled integers, and pictures that can be unpacked."""
+    views = list(views)
+    rows = [dict(row) for row in document.get("bufferViews", [])]
+    for accessor in document.get("accessors", []):
+        if accessor.get("normalized") and accessor["componentType"] != 5126 and "bufferView" in accessor:
+            _unscale(accessor, rows, views)
+    for image in document.get("images", []):
+        data = _image_bytes(image, views, references) or _blank_png()
+        image.clear()
+        image["bufferView"] = len(views)
+        image["mimeType"] = "image/png" if data[:4] == b"\x89PNG" else "image/jpeg"
+        views.append(data)
+        rows.append({})
+    for texture in document.get("textures", []):
+        _use_webp(texture)
+    parts, at = [], 0
+    for row, data in zip(rows, views, strict=True):
+        row |= {"buffer": 0, "byteOffset": at, "byteLength": len(data)}
+        parts.append(data + b"\0" * (-len(data) % 4))
+        at += len(parts[-1])
+    document["bufferViews"], document["buffers"] = rows, [{"byteLength": at}]
+    document.setdefault("accessors", [])
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    body = struct.pack("<II", len(text), _JSON) + text + struct.pack("<II", at, _BIN) + b"".join(parts)
+    return struct.pack("<III", _GLB, 2, 12 + len(body)) + body
+
+
+def _unscale(accessor: Json, rows: list[Json], views: list[bytes]) -> None:
+    """Turn an accessor of scaled integers into one of floats, which every loader reads alike."""
+    kind, items = np.dtype(_COMPONENTS[accessor["componentType"]]), _ITEMS[accessor["type"]]
+    at = accessor["bufferView"]
+    stride = rows[at].get("byteStride", kind.itemsize * items)
+    count, start = accessor["count"], accessor.get("byteOffset", 0)
+    raw = np.ndarray((count, items), kind, views[at], start, (stride, kind.itemsize))
+    scaled = np.maximum(raw.astype("<f4") / np.iinfo(kind).max, -1.0).astype("<f4")
+    accessor |= {"componentType": 5126, "bufferView": len(views), "byteOffset": 0, "normalized": False}
+    views.append(scaled.tobytes())
+    rows.append({})
+
+
+def _image_bytes(image: Json, views: list[bytes], references: References) -> bytes | None:
+    if "bufferView" in image:
+        return references.checked_image(views[image["bufferView"]], str(image.get("name", "a picture inside the file")))
+    uri = image.get("uri", "")
+    if uri.startswith("data:"):
+        return references.checked_image(_data_uri(uri), "a picture inside the file")
+    return references.image(uri)
+
+
+def _use_webp(texture: Json) -> None:
+    """Textures whose picture is named by an extension only: read that picture as if it were named plainly."""
+    extensions = texture.get("extensions", {})
+    for name in ("EXT_texture_webp", "KHR_texture_basisu", "MSFT_texture_dds"):
+        if "source" not in texture and name in extensions:
+            texture["source"] = extensions[name]["source"]
+
+
+def _blank_png() -> bytes:
+    """A white picture: where a texture is left out, the material's plain colour remains."""
+    buffer = io.BytesIO()
+    Image.new("RGB", (1, 1), (255, 255, 255)).save(buffer, "PNG")
+    return buffer.getvalue()

@@ -1,0 +1,165 @@
+"""Files that a model refers to: read only when they lie in the folder that the user named."""
+
+from __future__ import annotations
+
+import io
+import re
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+from urllib.parse import unquote
+
+import trimesh
+from PIL import Image
+
+from diorama_core.errors import LibraryError
+from diorama_core.library.ingest.limits import Limits
+
+_SCHEME = re.compile(r"^[a-zA-Z][a-zA-Z0-9+.-]+:")
+IMAGE_FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "TGA", "TIFF", "GIF")
+IMAGE_SUFFIXES = frozenset({".png", ".jpg", ".jpeg", ".webp", ".bmp", ".tga", ".tif", ".tiff", ".gif"})
+
+
+def read_bytes(path: Path, limits: Limits) -> bytes:
+    """A whole file; raises `LibraryError` when it is too large or cannot be read."""
+    try:
+        size = path.stat().st_size
+        if size > limits.file_bytes:
+            raise LibraryError(
+                f"{path.name} has {size / 2**20:.0f} MB; the limit is {limits.file_bytes / 2**20:.0f} MB"
+            )
+        return path.read_bytes()
+    except OSError as error:
+        raise LibraryError(f"{path.name} cannot be read ({error.strerror})") from error
+
+
+@dataclass
+class References:
+    """Reads what one model refers to, and remembers what had to be left out.
+
+    A name may be relative to the model and may climb, but never out of `root`. A name that leads nowhere is looked for
+    beside the model, because many exporters write the path of the author's own disk.
+    """
+
+    folder: Path
+    """Where the model lies."""
+    root: Path
+    """The folder that the user named; nothing outside is read."""
+    limits: Limits
+    warnings: list[str] = field(default_factory=list)
+
+    def read(self, name: str) -> bytes:
+        """The bytes of a referenced file.
+
+        Raises:
+            LibraryError: when it lies outside the folder, is a web address, is too large or does not exist.
+        """
+        return read_bytes(self._resolved(name), self.limits)
+
+    def image(self, name: str) -> bytes | None:
+        """A referenced picture, or None with a warning when it is missing, unsafe, broken or too large."""
+        try:
+            data = self.read(name)
+        except LibraryError as error:
+            self.warn(f"texture left out: {error}")
+            return None
+        return self.checked_image(data, name)
+
+    def checked_image(self, data: bytes, name: str) -> bytes | None:
+        """The picture when it can be unpacked safely, else None with a warning."""
+        problem = image_problem(data, self.limits)
+        if problem:
+            self.warn(f"texture left out: {shown(name)} {problem}")
+            return None
+        return data
+
+    def warn(self, message: str) -> None:
+        """Remember a repair, once."""
+        if message not in self.warnings:
+            self.warnings.append(message)
+
+    def _resolved(self, name: str) -> Path:
+        plain = unquote(name).replace("\\", "/").strip()
+        base = plain.rsplit("/", 1)[-1]
+        if "\0" in plain or not base or base in (".", ".."):
+            raise LibraryError(f"{shown(name)} is no file name")
+        if re.match(r"^[a-zA-Z][a-zA-Z0-9+.-]+://", plain):
+            raise LibraryError(f"{shown(name)} is a web address; nothing is downloaded")
+        absolute = (
+            plain.startswith("/") or _SCHEME.match(plain) is not None or re.match(r"^[a-zA-Z]:", plain) is not None
+        )
+        inside = None if absolute else self._inside(self.folder / plain)
+        if inside is not None and inside.is_file():
+            return inside
+        beside = self._inside(self.folder / base)
+        if beside is not None and beside.is_file():
+            return beside
+        if absolute or inside is None:
+            raise LibraryError(f"{shown(name)} points outside the folder that was added")
+        raise LibraryError(f"{shown(name)} is missing")
+
+    def _inside(self, path: Path) -> Path | None:
+        """The real path when it stays within the root, links followed."""
+        try:
+            real = path.resolve()
+        except (OSError, RuntimeError):  # a circle of links
+            return None
+        return real if real.is_relative_to(self.root.resolve()) else None
+
+
+class GuardedResolver(trimesh.resolvers.Resolver):
+    """Hands referenced files to trimesh's loaders, through `References`."""
+
+    def __init__(self, references: References) -> None:
+        self._references = references
+
+    def get(self, name: Any) -> bytes:
+        """The file's bytes; raises `KeyError` when it may not or cannot be read."""
+        key = name.decode(errors="replace") if isinstance(name, bytes) else str(name)
+        if Path(key.replace("\\", "/")).suffix.lower() in IMAGE_SUFFIXES:
+            data = self._references.image(key)
+        else:
+            try:
+                data = self._references.read(key)
+            except LibraryError as error:
+                self._references.warn(f"left out: {error}")
+                data = None
+        if data is None:
+            raise KeyError(key)
+        return data
+
+    def write(self, name: str, data: Any) -> None:
+        """Loaders write nothing."""
+        raise NotImplementedError
+
+    def namespaced(self, namespace: str) -> GuardedResolver:
+        """The same files: names are relative to the model."""
+        return self
+
+    def keys(self) -> Iterator[str]:
+        """What can be asked for is not known beforehand."""
+        return iter(())
+
+
+def image_problem(data: bytes, limits: Limits) -> str:
+    """Why a picture cannot be used, read from its header alone; empty when it can."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            with Image.open(io.BytesIO(data), formats=IMAGE_FORMATS) as image:
+                width, height = image.size
+    except Image.DecompressionBombError:
+        return "is a decompression bomb"
+    except Exception as error:  # a broken header may raise anything
+        return f"is no picture that can be read ({type(error).__name__})"
+    if width * height > limits.image_pixels:
+        return f"would unpack to {width} x {height} pixels"
+    return ""
+
+
+def shown(name: str) -> str:
+    """A foreign name, safe and short enough for one line."""
+    plain = "".join(c if c.isprintable() else "?" for c in name)
+    return f"'{plain if len(plain) <= 80 else plain[:77] + '...'}'"
