@@ -12,12 +12,12 @@ from jaxtyping import Float
 from diorama_core.artefacts import Cuboid, DetectedObject, Inputs, ObjectGeometry, RankedShapes
 from diorama_core.geometry.looks import SHARED_LOOKS
 from diorama_core.geometry.observed import Observed, observe_among
+from diorama_core.geometry.palettes import Palette, palette_agreement, palette_of_crop, palette_of_look
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import UNKNOWN
 from diorama_core.progress import Progress
-from diorama_core.retrieval.colours import Palette, palette_agreement, palette_of_crop, palette_of_look
 from diorama_core.retrieval.pools import Pool, Wish, pool_for, size_cost
 from diorama_core.scene.types import Support, yaw_rotation
 

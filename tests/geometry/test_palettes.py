@@ -7,7 +7,7 @@ import pytest
 import trimesh
 
 from diorama_core.geometry.looks import look_of
-from diorama_core.retrieval.colours import NOTHING_KNOWN, palette_agreement, palette_of_crop, palette_of_look
+from diorama_core.geometry.palettes import NOTHING_KNOWN, palette_agreement, palette_of_crop, palette_of_look
 from tests.primitives import material
 
 RED, GREEN = (200, 30, 30), (30, 160, 40)
