@@ -39,6 +39,8 @@ BULK_DENSITY: dict[str, float] = {
     "fireplace": 180, "heater": 110, "fan": 30, "ceiling fan": 14, "air conditioner": 160,
     "glass": 250, "plate": 500, "tray": 200, "jar": 350, "fruit": 300,
     "chandelier": 12, "wall lamp": 60, "candle": 250,
+    "kettle": 150, "toaster": 170, "coffee machine": 220, "blender": 160, "cooking pot": 150, "utensils": 300,
+    "cutting board": 600,
     "toy": 60, "object": 100,
 }  # fmt: skip
 """Kilograms per cubic metre of bounding box: a rough guess for physics, from weighing catalogues' furniture."""

@@ -128,7 +128,7 @@ CATEGORIES: tuple[Category, ...] = (
     _c("laptop", (0.24, 0.34, 0.25), (0.15, 0.12, 0.2), "surface", synonyms="notebook computer, macbook"),
     _c("computer", (0.42, 0.2, 0.45), (0.2, 0.25, 0.2), "surface", synonyms="pc, desktop computer, computer tower, printer, tower"),
     _c("keyboard", (0.03, 0.43, 0.15), (0.3, 0.15, 0.2), "surface", synonyms="computer keyboard"),
-    _c("microwave", (0.3, 0.5, 0.38), (0.12, 0.12, 0.15), "surface", synonyms="microwave oven, toaster oven, toaster, oven toaster"),
+    _c("microwave", (0.3, 0.5, 0.38), (0.12, 0.12, 0.15), "surface", synonyms="microwave oven, toaster oven, oven toaster"),
     _c("pillow", (0.38, 0.48, 0.2), (0.2, 0.2, 0.3), "surface", synonyms="cushion, throw pillow, bolster", soft=True),
     _c("books", (0.15, 0.4, 0.3), (0.5, 0.4, 0.4), "surface", synonyms="book, book stack, stack of books, magazine, papers, paper, pile of books"),
     _c("plant", (0.9, 0.5, 0.5), (0.5, 0.4, 0.4), "floor", synonyms="potted plant, houseplant, pot plant, flower, flowers, tree, pottedplant, succulent", quarter_turns_free=True),
@@ -163,6 +163,13 @@ CATEGORIES: tuple[Category, ...] = (
     _c("chandelier", (0.65, 0.7, 0.7), (0.25, 0.25, 0.25), "ceiling", synonyms="chandeliers, candelabrum lamp", kin="ceiling lamp"),
     _c("wall lamp", (0.26, 0.2, 0.22), (0.4, 0.5, 0.45), "wall", synonyms="sconce, wall light, wall sconce, wall lamps, picture light, vanity light"),
     _c("candle", (0.22, 0.14, 0.12), (0.7, 0.6, 0.4), "surface", synonyms="candles, candlestick, candle holder, candelabra, candleholder, tea light, tealight"),
+    _c("kettle", (0.23, 0.17, 0.24), (0.2, 0.2, 0.15), "surface", synonyms="electric kettle, tea kettle, teakettle, water kettle"),
+    _c("toaster", (0.19, 0.31, 0.18), (0.12, 0.2, 0.2), "surface", synonyms="bread toaster, pop up toaster"),
+    _c("coffee machine", (0.29, 0.18, 0.28), (0.3, 0.35, 0.35), "surface", synonyms="coffee maker, espresso machine, espresso maker, coffeemaker, coffee pot, moka pot, french press"),
+    _c("blender", (0.38, 0.21, 0.25), (0.15, 0.15, 0.4), "surface", synonyms="mixer, food processor, stand mixer, juicer, liquidiser, liquidizer"),
+    _c("cooking pot", (0.13, 0.27, 0.35), (0.5, 0.25, 0.3), "surface", synonyms="pot, pan, saucepan, frying pan, skillet, wok, casserole, dutch oven, stockpot, cookware"),
+    _c("utensils", (0.25, 0.13, 0.18), (0.8, 0.3, 0.2), "surface", synonyms="knife block, cutlery, kitchen utensils, utensil holder, cutlery block, silverware, fork, spoon, knife, scissors"),
+    _c("cutting board", (0.03, 0.35, 0.3), (0.9, 0.3, 0.3), "surface", synonyms="chopping board, breadboard, bread board"),
     UNKNOWN,
 )  # fmt: skip
 

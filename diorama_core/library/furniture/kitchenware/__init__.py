@@ -2,7 +2,17 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture.kitchenware import bottles, bowls, cups, glasses, jars
+from diorama_core.library.furniture.kitchenware import (
+    blenders,
+    bottles,
+    bowls,
+    coffee_machines,
+    cookware,
+    cups,
+    glasses,
+    jars,
+    kettles,
+)
 from diorama_core.library.furniture.model import Design
 
 DESIGNS: tuple[Design, ...] = tuple(
@@ -13,6 +23,10 @@ DESIGNS: tuple[Design, ...] = tuple(
         glasses,
         bottles,
         jars,
+        kettles,
+        coffee_machines,
+        blenders,
+        cookware,
     )
     for design in kind.DESIGNS
 )

@@ -104,6 +104,9 @@ def enamel_mug(size: Size, enamel: Material, rim: Material) -> Parts:
     return of(enamel, body) + of(rim, lip, ear.scaled(x=2.2))
 
 
+COFFEE = m.paint("coffee", "#3d2a20", 0.25)
+
+
 def espresso(size: Size, clay: Material, saucer: Material) -> Parts:
     """A small cup of coffee on a saucer."""
     _, w, h = size
@@ -122,9 +125,6 @@ def espresso(size: Size, clay: Material, saucer: Material) -> Parts:
     )
     coffee = cylinder(r * 0.93, 0.003, 0.001, 28).moved(z=0.84 * h)
     return of(saucer, plate) + of(clay, body, ear) + of(COFFEE, coffee)
-
-
-COFFEE = m.paint("coffee", "#3d2a20", 0.25)
 
 
 DESIGNS: tuple[Design, ...] = (
