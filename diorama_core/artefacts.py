@@ -67,6 +67,10 @@ class Inputs(ArrayValue):
     depth_m: Float32[np.ndarray, "h w"] | None = None
     """Measured depth (z in camera), 0 where missing."""
     intrinsics: Intrinsics | None = None
+    normals_camera: Float32[np.ndarray, "h w 3"] | None = None
+    """Unit normals that came with the depth, toward the camera; zero where unknown."""
+    depth_source: Literal["measured", "network"] = "measured"
+    """Who says how deep it is: a sensor, or a network that looked at the photo."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,6 +159,33 @@ class DepthMap(ArrayValue):
     normals_world: Float32[np.ndarray, "h w 3"]
     """Unit, toward the camera; zero where unknown."""
     source: Literal["measured", "network", "rendered from cuboids and room"]
+
+
+@dataclass(frozen=True, eq=False)
+class DepthPrediction(ArrayValue):
+    """What a network says of a photo's geometry, before the camera's pose is known."""
+
+    depth_m: Float32[np.ndarray, "h w"]
+    """z in camera, 0 where unknown."""
+    normals_camera: Float32[np.ndarray, "h w 3"]
+    """Unit, toward the camera; zero where unknown."""
+    intrinsics: Intrinsics
+
+
+@dataclass(frozen=True)
+class SceneGraph:
+    """What holds up what, and which way things face, as far as it is known."""
+
+    supports: tuple[Support, ...]
+    """One edge per object; parents as in `ObjectGeometry.supports`."""
+    scores: tuple[float, ...]
+    """How sure each edge is, 0 to 1."""
+    facing: tuple[tuple[str, str], ...] = ()
+    """(object id, direction seen from the camera): "toward camera", "away from camera", "left" or "right"."""
+    captions: tuple[tuple[str, str], ...] = ()
+    """(object id, brief description); may hold anything, to be shown escaped."""
+    source: str = ""
+    """Where it comes from, in words shown to the user."""
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,9 @@
 """One protocol per stage; each has one method and returns a frozen artefact.
 
 ```
-Inputs -> camera -> objects -> object geometry -> architecture -> depth -> retrieval -> pose -> Scene -> layout
+(Photo -> recognition -> detection, sight ->)
+Inputs -> camera -> objects -> object geometry (-> graph) -> architecture -> depth
+       -> retrieval -> pose -> Scene -> layout
 ```
 
 With measured depth, camera and geometry read it; from a photo alone they reason from vanishing points, contact
@@ -18,15 +20,45 @@ from diorama_core.artefacts import (
     ArchitectureEstimate,
     CameraEstimate,
     DepthMap,
+    DepthPrediction,
     DetectedObject,
     Inputs,
+    LabelledBox,
     LayoutReport,
     ObjectGeometry,
+    Photo,
     PosedCandidates,
     RankedShapes,
+    SceneGraph,
 )
 from diorama_core.progress import Progress
-from diorama_core.scene.types import Scene
+from diorama_core.scene.types import Intrinsics, Scene
+
+
+class RecognitionStage(Protocol):
+    """What kinds of things are in a photo: words to look for."""
+
+    def recognise(self, photo: Photo, progress: Progress) -> tuple[str, ...]: ...
+
+
+class DetectionStage(Protocol):
+    """Boxes of the things in a photo; `words` are kinds to look for, none where a stage brings its own."""
+
+    def detect(self, photo: Photo, words: tuple[str, ...], progress: Progress) -> tuple[LabelledBox, ...]: ...
+
+
+class SightStage(Protocol):
+    """Depth, normals and intrinsics that a network reads from a photo."""
+
+    def see(self, photo: Photo, intrinsics: Intrinsics | None, progress: Progress) -> DepthPrediction: ...
+
+
+class GraphStage(Protocol):
+    """What holds up what, given where things are."""
+
+    def relate(
+        self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
+    ) -> SceneGraph: ...
 
 
 class CameraStage(Protocol):

@@ -20,7 +20,7 @@ from diorama_app.cli.arguments import (
     size,
     view,
 )
-from diorama_core.errors import InputError, UnavailableError
+from diorama_core.errors import InputError
 
 EXPORT_FORMATS = ("glb",)
 
@@ -79,14 +79,10 @@ def add_build(commands: Any) -> None:
 def _build(a: argparse.Namespace) -> None:
     from diorama_app.building import build_report, library_named, write_arrangements
     from diorama_core.perception.inputs import read_inputs
-    from diorama_core.pipeline.build import embedded_stages
+    from diorama_core.pipeline.profiles import stages_for
     from diorama_core.project.build import build_project
     from diorama_core.project.storage import Project
 
-    if a.profile == "foundation":
-        raise UnavailableError(
-            "the foundation profile needs networks that this version cannot load yet; use --profile embedded"
-        )
     if a.arrangements < 1:
         raise InputError(f"--arrangements {a.arrangements}: ask for at least one")
     read = read_inputs(
@@ -102,8 +98,8 @@ def _build(a: argparse.Namespace) -> None:
     for warning in read.warnings:
         print(f"diorama: note: {warning}", file=sys.stderr)
     library = library_named(a.library)
+    stages = stages_for(a.profile, read.inputs, library, recipe=a.recipe)
     project = Project.create(a.output)
-    stages = embedded_stages(read.inputs, library, recipe=a.recipe)
     with progress_bar() as progress:
         built = build_project(project, read.inputs, library, stages=stages, warnings=read.warnings, progress=progress)
         scenes = write_arrangements(project, built.scene, stages.layout, a.arrangements, progress)
@@ -113,7 +109,8 @@ def _build(a: argparse.Namespace) -> None:
     else:
         print(f"{a.output}: {report['summary']}")
         if not built.objects:
-            print(f"No boxes were given: open it with 'diorama serve {a.output}' and draw boxes around the furniture.")
+            found = "No furniture was found" if stages.detection else "No boxes were given"
+            print(f"{found}: open it with 'diorama serve {a.output}' and draw boxes around the furniture.")
 
 
 def add_optimise(commands: Any) -> None:

@@ -76,7 +76,7 @@ _TYPES = {
 }
 
 
-@dataclass
+@dataclass(eq=False)
 class SessionPool:
     """Graphs by path; each is loaded once, by whoever needs it first."""
 

@@ -7,6 +7,7 @@ the user gave are taken as they are.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -19,7 +20,7 @@ from diorama_core.progress import Progress
 
 _LEAST_SHARE = 0.1
 """A vote that keeps less of the box than this has lost the object."""
-_LOST_CONFIDENCE = 0.1
+LOST_CONFIDENCE = 0.1
 _SEED = 7
 _CORE = 0.12
 """Reach of the middle of a box that is taken to be object, so that a thing of its surroundings' colour is not lost."""
@@ -43,26 +44,9 @@ class EmbeddedMasks:
             Objects with ids such as "night_stand_2", unique mask ids from 1, and masks of the photo's size that are
             never empty.
         """
-        given = _given(inputs)
-        taken = {box for _, box, _ in given}
-        boxed = [box for box in inputs.boxes if box not in taken]
-        segmented = self._segment_boxes(inputs.photo.rgb, boxed, progress)
-        first_free = max((mask_id for mask_id, _, _ in given), default=0) + 1
-        found = [(i, box, mask, 1.0) for i, box, mask in given]
-        found += [
-            (first_free + n, box, mask, confidence)
-            for n, (box, (mask, confidence)) in enumerate(zip(boxed, segmented, strict=True))
-        ]
-        ids = _ids([box.category for _, box, _, _ in found])
-        progress.report(1.0, "Objects outlined")
-        return tuple(
-            DetectedObject(name, box.category, box.label, box.box, mask, mask_id, confidence)
-            for name, (mask_id, box, mask, confidence) in zip(ids, found, strict=True)
-        )
+        return outlined(inputs, self._segment_boxes, progress)
 
-    def _segment_boxes(
-        self, rgb: UInt8[np.ndarray, "h w 3"], boxes: list[LabelledBox], progress: Progress
-    ) -> list[tuple[Bool[np.ndarray, "h w"], float]]:
+    def _segment_boxes(self, rgb: UInt8[np.ndarray, "h w 3"], boxes: list[LabelledBox], progress: Progress) -> Outlined:
         results = []
         with ThreadPoolExecutor(self.workers) as pool:
             jobs = [pool.submit(self.inside_box, rgb, box.box) for box in boxes]
@@ -86,13 +70,13 @@ class EmbeddedMasks:
         votes = [wide.carried(crop, self._grabcut(crop.of(rgb), crop, start)) for crop, start in starts]
         kept = [vote for vote in votes if vote.sum() >= _LEAST_SHARE * wide.inner().sum()]
         if not kept:
-            return _filled(rgb.shape[:2], box), _LOST_CONFIDENCE
+            return filled_box(rgb.shape[:2], box), LOST_CONFIDENCE
         agreed = np.mean(kept, axis=0) >= 0.5
         mask = wide.to_photo(agreed, box)
-        if mask.sum() < _LEAST_SHARE * _filled(rgb.shape[:2], box).sum():
-            return _filled(rgb.shape[:2], box), _LOST_CONFIDENCE
+        if mask.sum() < _LEAST_SHARE * filled_box(rgb.shape[:2], box).sum():
+            return filled_box(rgb.shape[:2], box), LOST_CONFIDENCE
         agreement = float(np.mean([_iou(vote, agreed) for vote in votes]))
-        return mask, max(_LOST_CONFIDENCE, agreement)
+        return mask, max(LOST_CONFIDENCE, agreement)
 
     def _grabcut(
         self, picture: UInt8[np.ndarray, "ch cw 3"], crop: _Crop, rectangle: tuple[int, int, int, int] | None
@@ -114,6 +98,34 @@ class EmbeddedMasks:
         except cv2.error:  # too few different colours to tell object and background apart
             return inner
         return (labels == cv2.GC_FGD) | (labels == cv2.GC_PR_FGD)
+
+
+Outlined = list[tuple[Bool[np.ndarray, "h w"], float]]
+"""A mask and its confidence for every box."""
+
+
+def outlined(
+    inputs: Inputs,
+    segment_boxes: Callable[[UInt8[np.ndarray, "h w 3"], list[LabelledBox], Progress], Outlined],
+    progress: Progress,
+) -> tuple[DetectedObject, ...]:
+    """Objects from the user's own masks, and from boxes that no mask belongs to, outlined by `segment_boxes`."""
+    given = _given(inputs)
+    taken = {box for _, box, _ in given}
+    boxed = [box for box in inputs.boxes if box not in taken]
+    segmented = segment_boxes(inputs.photo.rgb, boxed, progress)
+    first_free = max((mask_id for mask_id, _, _ in given), default=0) + 1
+    found = [(i, box, mask, 1.0) for i, box, mask in given]
+    found += [
+        (first_free + n, box, mask, confidence)
+        for n, (box, (mask, confidence)) in enumerate(zip(boxed, segmented, strict=True))
+    ]
+    ids = _ids([box.category for _, box, _, _ in found])
+    progress.report(1.0, "Objects outlined")
+    return tuple(
+        DetectedObject(name, box.category, box.label, box.box, mask, mask_id, confidence)
+        for name, (mask_id, box, mask, confidence) in zip(ids, found, strict=True)
+    )
 
 
 @dataclass(frozen=True)
@@ -191,7 +203,7 @@ class _Crop:
         photo = np.zeros(self.photo_shape, dtype=bool)
         large = cv2.resize(mask.astype(np.float32), (self.width, self.height), interpolation=cv2.INTER_LINEAR) >= 0.5
         photo[self.y : self.y + self.height, self.x : self.x + self.width] = large
-        return photo & _filled(self.photo_shape, box)
+        return photo & filled_box(self.photo_shape, box)
 
 
 def _given(inputs: Inputs) -> list[tuple[int, LabelledBox, Bool[np.ndarray, "h w"]]]:
@@ -202,7 +214,7 @@ def _given(inputs: Inputs) -> list[tuple[int, LabelledBox, Bool[np.ndarray, "h w
     return [(mask_id, box, mask) for mask_id, box, mask in named if mask.any()]
 
 
-def _filled(shape: tuple[int, ...], box: Box) -> Bool[np.ndarray, "h w"]:
+def filled_box(shape: tuple[int, ...], box: Box) -> Bool[np.ndarray, "h w"]:
     """The box as a mask, at least one pixel large."""
     height, width = shape[:2]
     x1, y1 = min(max(int(np.floor(box[0])), 0), width - 1), min(max(int(np.floor(box[1])), 0), height - 1)

@@ -21,16 +21,19 @@ from diorama_core.artefacts import (
     Inputs,
     LayoutReport,
     ObjectGeometry,
+    SceneGraph,
 )
 from diorama_core.layout.recipes import recipe as layout_recipe
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.camera.estimate import EmbeddedCamera
 from diorama_core.perception.depth import MeasuredDepth, RenderedDepth
+from diorama_core.perception.graph.geometric import GeometricGraph
 from diorama_core.perception.masks import EmbeddedMasks
 from diorama_core.perception.measured import MeasuredGeometry
 from diorama_core.perception.metrology import SingleViewMetrology
 from diorama_core.pipeline.assemble import assemble
 from diorama_core.pipeline.colours import photo_colours, shared_by_sets
+from diorama_core.pipeline.perceive import perceived, with_graph
 from diorama_core.pipeline.runner import Runner, StageRun
 from diorama_core.pose import RenderAndCompare
 from diorama_core.progress import Progress
@@ -38,12 +41,16 @@ from diorama_core.protocols import (
     ArchitectureStage,
     CameraStage,
     DepthStage,
+    DetectionStage,
     GeometryStage,
+    GraphStage,
     LayoutStage,
     ObjectStage,
     PoseStage,
     Preview,
+    RecognitionStage,
     RetrievalStage,
+    SightStage,
 )
 from diorama_core.retrieval import EmbeddedRetrieval
 from diorama_core.scene.edits import set_metrics
@@ -64,6 +71,14 @@ class Stages:
     retrieval: RetrievalStage
     pose: PoseStage
     layout: LayoutStage
+    recognition: RecognitionStage | None = None
+    """Names kinds of things to look for; optional, as are the next three."""
+    detection: DetectionStage | None = None
+    """Finds boxes where the user gave none."""
+    sight: SightStage | None = None
+    """Reads depth from the photo where the user measured none."""
+    graph: GraphStage | None = None
+    """Decides what holds up what; without it the geometry stage does."""
 
 
 @dataclass(frozen=True)
@@ -82,6 +97,8 @@ class Built:
     """None when there was nothing to arrange."""
     textures: Mapping[str, UInt8[np.ndarray, "h w 3"]]
     """The planes' pictures by name."""
+    inputs: Inputs
+    """What the user gave, with the boxes and the depth that networks added."""
     runs: tuple[StageRun, ...]
     """Which stage used what, and how long it took."""
     notes: tuple[str, ...] = ()
@@ -100,6 +117,7 @@ def embedded_stages(inputs: Inputs, library: ShapeLibrary, *, recipe: str = DEFA
         retrieval=EmbeddedRetrieval(library),
         pose=RenderAndCompare(library),
         layout=layout_recipe(recipe, library, depth_measured=measured),
+        graph=GeometricGraph() if measured else None,
     )
 
 
@@ -130,11 +148,17 @@ def build_scene(
     progress = progress or Progress()
     runner = Runner(cache)
 
-    camera = runner.run("camera", s.camera, s.camera.estimate, (inputs,), progress.part(0.0, 0.08))
-    objects = runner.run("objects", s.objects, s.objects.segment, (inputs,), progress.part(0.08, 0.25))
+    inputs = perceived(inputs, s, runner, progress.part(0.0, 0.05))
+    camera = runner.run("camera", s.camera, s.camera.estimate, (inputs,), progress.part(0.05, 0.1))
+    objects = runner.run("objects", s.objects, s.objects.segment, (inputs,), progress.part(0.1, 0.25))
     geometry = runner.run(
-        "geometry", s.geometry, s.geometry.measure, (inputs, camera, objects), progress.part(0.25, 0.4)
+        "geometry", s.geometry, s.geometry.measure, (inputs, camera, objects), progress.part(0.25, 0.38)
     )
+    graph = None
+    if s.graph is not None:
+        found = (inputs, objects, geometry)
+        graph = runner.run("graph", s.graph, s.graph.relate, found, progress.part(0.38, 0.4))
+        geometry = with_graph(geometry, graph)
     room = runner.run(
         "architecture", s.architecture, s.architecture.reconstruct, (inputs, objects, geometry), progress.part(0.4, 0.5)
     )
@@ -169,8 +193,9 @@ def build_scene(
         observed=observed,
         layout=report,
         textures=textures,
+        inputs=inputs,
         runs=tuple(runner.runs),
-        notes=_notes(camera, geometry, room, tuple(r.note for r in shapes), report),
+        notes=_notes(camera, geometry, room, graph, tuple(r.note for r in shapes), report),
     )
 
 
@@ -183,8 +208,11 @@ def _notes(
     camera: CameraEstimate,
     geometry: ObjectGeometry,
     room: ArchitectureEstimate,
+    graph: SceneGraph | None,
     retrieval: tuple[str, ...],
     report: LayoutReport | None,
 ) -> tuple[str, ...]:
-    sources = (f"camera: {camera.source}", f"objects: {geometry.source}", f"room: {room.source}")
+    sources: tuple[str, ...] = (f"camera: {camera.source}", f"objects: {geometry.source}", f"room: {room.source}")
+    if graph is not None:
+        sources = (*sources, f"what stands on what: {graph.source}")
     return (*sources, *(n for n in retrieval if n), *(report.reasons if report else ()))

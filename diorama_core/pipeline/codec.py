@@ -31,6 +31,8 @@ _CLASSES: dict[str, type] = {
         artefacts.Cuboid,
         artefacts.ObjectGeometry,
         artefacts.DepthMap,
+        artefacts.DepthPrediction,
+        artefacts.SceneGraph,
         artefacts.ArchitectureEstimate,
         artefacts.RankedShapes,
         artefacts.PosedCandidates,

@@ -1,0 +1,1 @@
+"""Stages that run downloaded networks: what is in the photo, its outlines, its depth."""

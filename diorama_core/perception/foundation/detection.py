@@ -1,0 +1,93 @@
+"""Boxes of the furniture, found by networks: any class with OWLv2, everyday classes with YOLOX."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from diorama_core.artefacts import LabelledBox, Photo
+from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN, resolve
+from diorama_core.models.boxes import Detections, without_doubles, without_parts_of_same
+from diorama_core.models.owlv2 import Owlv2
+from diorama_core.models.yolox import COCO_CLASSES, Yolox
+from diorama_core.perception.foundation.vocabulary import INDOOR_WORDS
+from diorama_core.progress import Progress
+
+TEMPLATE = "a photo of {}"
+MOST_OBJECTS = 80
+MIN_SIDE_PX = 8.0
+_WORDS = {
+    "couch": "sofa",
+    "potted plant": "plant",
+    "dining table": "table",
+    "tv": "television",
+    "book": "books",
+    "wine glass": "cup",
+}
+"""What YOLOX calls things, in words that a person would choose for what is meant in a room."""
+_IN_ROOM_NAMES = (
+    "bench,chair,couch,potted plant,bed,dining table,toilet,tv,laptop,keyboard,microwave,oven,toaster,sink,"
+    "refrigerator,book,clock,vase,teddy bear,bottle,wine glass,cup,bowl,suitcase"
+)
+_IN_ROOMS = frozenset(_IN_ROOM_NAMES.split(","))
+"""The classes that a scene can hold; people, animals and vehicles are none of the furniture's business."""
+
+
+@dataclass(frozen=True)
+class OpenVocabularyDetection:
+    """OWLv2 with "a photo of CLASS" (paper, supplement A): suppression across classes, then of parts within a class."""
+
+    detector: Owlv2
+    threshold: float = 0.2
+    double_iou: float = 0.8
+    part_share: float = 0.8
+    """A box that lies within another of its class by more than this share of itself goes."""
+
+    def detect(self, photo: Photo, words: tuple[str, ...], progress: Progress) -> tuple[LabelledBox, ...]:
+        """Boxes of everything that the words name (a built-in indoor vocabulary without words), best first.
+
+        Walls, floor and ceiling are the room's and never come back as objects.
+        """
+        asked = tuple(dict.fromkeys(w for w in words or INDOOR_WORDS if w.lower() not in ARCHITECTURE_WORDS))
+        progress.report(0.0, f"Looking for {len(asked)} kinds of things")
+        found = self.detector.detect(photo.rgb, [TEMPLATE.format(w) for w in asked], self.threshold)
+        progress.report(0.9, "Sorting out double boxes")
+        found = without_doubles(found, self.double_iou, across_classes=True)
+        return _labelled(found, asked, self.part_share)
+
+
+@dataclass(frozen=True)
+class EverydayDetection:
+    """YOLOX: a few megabytes, no words needed, 24 classes that belong in rooms."""
+
+    detector: Yolox
+    threshold: float = 0.35
+    part_share: float = 0.8
+
+    def detect(self, photo: Photo, words: tuple[str, ...], progress: Progress) -> tuple[LabelledBox, ...]:
+        """Boxes of the everyday things in the photo, best first; `words` restrict nothing."""
+        progress.report(0.0, "Looking for furniture")
+        found = self.detector.detect(photo.rgb, self.threshold)
+        inside = np.array([COCO_CLASSES[k] in _IN_ROOMS for k in found.labels], dtype=bool)
+        names = tuple(_WORDS.get(name, name) for name in COCO_CLASSES)
+        return _labelled(found.rows(np.flatnonzero(inside)), names, self.part_share)
+
+
+def _labelled(found: Detections, names: tuple[str, ...], part_share: float) -> tuple[LabelledBox, ...]:
+    """One box per thing, in the project's categories."""
+    categories = [resolve(name) for name in names]
+    order = {name: i for i, name in enumerate(dict.fromkeys(r.category.name for r in categories))}
+    kinds = np.array([order[categories[k].category.name] for k in found.labels], dtype=int)
+    alike = Detections(found.boxes, found.scores, kinds)
+    whole = without_parts_of_same(alike, part_share)
+    kept = [i for i in range(len(found)) if any((whole.boxes == found.boxes[i]).all(axis=1))]
+    boxes = []
+    for i in kept:
+        name, resolution = names[found.labels[i]], categories[found.labels[i]]
+        x1, y1, x2, y2 = (float(v) for v in found.boxes[i])
+        if min(x2 - x1, y2 - y1) < MIN_SIDE_PX:
+            continue
+        category = resolution.category.name if resolution.exact else UNKNOWN.name
+        boxes.append(LabelledBox((x1, y1, x2, y2), category, name, float(found.scores[i])))
+    return tuple(boxes[:MOST_OBJECTS])

@@ -1,0 +1,1 @@
+"""What holds up what, from where things are: without asking anybody."""

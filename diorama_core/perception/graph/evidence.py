@@ -1,0 +1,149 @@
+"""What photo, masks, depth and cuboids say about where each object ends and what is just below it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from jaxtyping import Float, Int32
+
+from diorama_core.artefacts import Cuboid, DetectedObject, Inputs, ObjectGeometry
+from diorama_core.geometry.depth_grid import points_camera
+from diorama_core.library.taxonomy import Category, resolve
+from diorama_core.perception.measured.cloud import MIN_POINTS, object_points
+
+_RIM_PX = 0.012
+"""How far below an object's lower rim to look, as a share of the picture's height."""
+_NEARER_M = 0.08
+"""Something this much nearer below the rim hides the object's end."""
+_CONTACT_M = 0.12
+"""Farther than this behind the rim, what is seen below is background, not the carrier."""
+
+
+@dataclass(frozen=True, eq=False)
+class Observed:
+    """One object, as far as the graph is concerned. World frame: floor at z = 0."""
+
+    id: str
+    category: Category
+    bottom_m: float
+    top_m: float
+    footprint: Float[np.ndarray, "2 2"]
+    """Lower and upper corner along the world's x and y."""
+    below: Mapping[str, float]
+    """Share of the lower rim below which another object, or the "floor" (anything of the room), is seen."""
+    hidden_below: float
+    """Share of the lower rim that something nearer hides."""
+    behind_m: float
+    """Distance to the room's surface seen just around the object, along the line of sight; 0 where unknown."""
+
+    @property
+    def below_objects(self) -> float:
+        """Share of the lower rim that ends on other objects."""
+        return 1.0 - self.below.get("floor", 0.0)
+
+
+def observed(inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry) -> tuple[Observed, ...]:
+    """Every object that has a cuboid, in the order given."""
+    cuboids = {c.object_id: c for c in geometry.cuboids}
+    present = [o for o in objects if o.id in cuboids]
+    owners = owner_map(present, (inputs.photo.height, inputs.photo.width))
+    depth = inputs.depth_m
+    camera = geometry.camera
+    world = None
+    if depth is not None:
+        world = points_camera(depth, camera.intrinsics) @ camera.T_world_camera[:3, :3].T + camera.position
+    found = []
+    for index, item in enumerate(present):
+        below, hidden = _below(index, item, present, owners, depth)
+        low, high = _extent(item, cuboids[item.id], world, depth)
+        behind = _behind(index, item, owners, depth)
+        category = resolve(item.category).category
+        found.append(
+            Observed(
+                item.id, category, float(low[2]), float(high[2]), np.stack([low[:2], high[:2]]), below, hidden, behind
+            )
+        )
+    return tuple(found)
+
+
+def owner_map(objects: list[DetectedObject], shape: tuple[int, int]) -> Int32[np.ndarray, "h w"]:
+    """Index of the object at every pixel, -1 for the room; smaller objects lie over larger ones."""
+    owners = np.full(shape, -1, np.int32)
+    for index in sorted(range(len(objects)), key=lambda i: -int(objects[i].mask.sum())):
+        owners[objects[index].mask] = index
+    return owners
+
+
+def _extent(
+    item: DetectedObject, cuboid: Cuboid, world: Float[np.ndarray, "h w 3"] | None, depth_m: np.ndarray | None
+) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+    """Lower and upper corner along the world's axes: of the points themselves where there are some."""
+    corners = cuboid.corners_world
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    if world is None or depth_m is None:
+        return low, high
+    points = object_points(item, world, depth_m)
+    if len(points) < MIN_POINTS:
+        return low, high
+    seen_low, seen_high = np.quantile(points, [0.02, 0.98], axis=0)
+    # The cuboid knows what is hidden sideways; the points know the undersides and tops that are seen.
+    low, high = np.minimum(low, seen_low), np.maximum(high, seen_high)
+    low[2], high[2] = seen_low[2], seen_high[2]
+    return low, high
+
+
+def _below(
+    index: int,
+    item: DetectedObject,
+    objects: list[DetectedObject],
+    owners: Int32[np.ndarray, "h w"],
+    depth_m: np.ndarray | None,
+) -> tuple[dict[str, float], float]:
+    """What is seen under the object's lower rim, and how much of the rim something nearer hides."""
+    mine = owners == index
+    height = mine.shape[0]
+    columns = np.flatnonzero(mine.any(axis=0))
+    if not len(columns):
+        return {}, 1.0
+    lowest = height - 1 - mine[::-1, columns].argmax(axis=0)
+    # Only the part of the rim near the object's own lower end: the underside of a table top is no end.
+    near_end = lowest >= np.quantile(lowest, 0.5) - 0.25 * max(np.ptp(lowest), 1)
+    columns, lowest = columns[near_end], lowest[near_end]
+    step = max(2, round(_RIM_PX * height))
+    under = lowest + step
+    inside = under < height
+    total = len(columns)
+    if not inside.any():
+        return {}, 1.0
+    columns, lowest, under = columns[inside], lowest[inside], under[inside]
+    who = owners[under, columns]
+    nearer = np.zeros(len(who), dtype=bool)
+    farther = np.zeros(len(who), dtype=bool)
+    if depth_m is not None:
+        own = depth_m[np.maximum(lowest - 1, 0), columns]
+        there = depth_m[under, columns]
+        known = (own > 0) & (there > 0)
+        nearer = known & (there < own - _NEARER_M - 0.02 * own) & (who >= 0)
+        farther = known & (there > own + _CONTACT_M + 0.02 * own)
+    hidden = float((nearer.sum() + (total - len(who))) / total)
+    below: dict[str, float] = {}
+    carrying = ~nearer & ~farther
+    for other in np.unique(who[carrying]):
+        name = "floor" if other < 0 else objects[other].id
+        below[name] = float((who[carrying] == other).sum() / total)
+    return below, hidden
+
+
+def _behind(index: int, item: DetectedObject, owners: Int32[np.ndarray, "h w"], depth_m: np.ndarray | None) -> float:
+    """How far behind the object the room is, just around it."""
+    if depth_m is None:
+        return 0.0
+    mine = (owners == index).astype(np.uint8)
+    ring = (cv2.dilate(mine, np.ones((7, 7), np.uint8)) > 0) & (owners < 0) & (depth_m > 0)
+    own = depth_m[(mine > 0) & (depth_m > 0)]
+    if not ring.any() or not len(own):
+        return 0.0
+    return float(max(np.median(depth_m[ring]) - np.quantile(own, 0.9), 0.0))

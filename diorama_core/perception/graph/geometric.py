@@ -1,0 +1,188 @@
+"""The scene graph without a language model: every way to hold an object up competes by cost.
+
+Costs are negative logarithms of likelihoods. They weigh where the object ends and what is seen just below it in the
+photo, the gap between its underside and what could carry it, whether it is above that, how near a wall it is, what
+people put where, and (weakly) what the geometry stage believed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.artefacts import DetectedObject, Inputs, ObjectGeometry, SceneGraph
+from diorama_core.library.taxonomy import UNKNOWN, Category
+from diorama_core.perception.graph.evidence import Observed, observed
+from diorama_core.progress import Progress
+from diorama_core.scene.types import Relation, Support
+
+ROOM_PARTS = ("floor", "wall", "ceiling")
+_PRIOR: dict[str, tuple[float, float, float, float]] = {
+    #          on a thing, floor, wall, ceiling
+    "floor": (3.0, 0.0, 5.0, 12.0),
+    "surface": (0.0, 2.5, 4.0, 9.0),
+    "wall": (2.5, 2.5, 0.0, 6.0),
+    "ceiling": (9.0, 9.0, 5.0, 0.0),
+}
+_UNNAMED_PRIOR = (1.0, 0.5, 2.0, 5.0)
+_NEVER_ON_THINGS = frozenset({"door", "window", "curtain", "radiator", "wardrobe", "bed", "sofa", "bathtub"}).union(
+    ["toilet", "refrigerator", "piano", "kitchen counter", "desk"]
+)
+_ALWAYS_ON_WALL = frozenset({"door", "window"})
+_CARRIES_NOTHING_COST = 5.0
+_LARGER_COST = 4.0
+"""Of lying on something whose footprint is much smaller."""
+_FLOOR_GAP_M, _TOP_GAP_M, _INNER_GAP_M = 0.10, 0.06, 0.10
+"""Usual errors of an underside's height above the floor, a top, a shelf."""
+_MOST_GAP_COST = 8.0
+_BELOW_WEIGHT = 3.0
+"""Of what is seen just below the object."""
+_BELIEF_COST = 1.5
+"""Of contradicting the geometry stage."""
+_RUGS = frozenset({"rug"})
+_OPEN = frozenset({"bookshelf", "shelves", "cabinet", "tv stand", "desk", "wardrobe", "night stand", "sideboard"})
+"""Things are found inside these."""
+
+
+@dataclass(frozen=True)
+class GeometricGraph:
+    """One supporter for every object that has a cuboid, with a score; never a cycle."""
+
+    def relate(
+        self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
+    ) -> SceneGraph:
+        """The graph that explains masks, cuboids and (where there is any) depth best."""
+        progress.report(0.0, "Working out what stands on what")
+        things = observed(inputs, objects, geometry)
+        believed = {s.child: s for s in geometry.supports}
+        options = {t.id: _options(t, things, believed.get(t.id)) for t in things}
+        chosen = _without_cycles(options)
+        edges, scores = [], []
+        for thing in things:
+            parent, cost = chosen[thing.id]
+            relation: Relation = "mounted on" if parent in ("wall", "ceiling") else "placed on"
+            edges.append(Support(thing.id, parent, relation))
+            scores.append(_sureness(cost, options[thing.id], parent))
+        return SceneGraph(tuple(edges), tuple(scores), source="geometry: contact, containment and usual places")
+
+
+Options = tuple[tuple[str, float], ...]
+"""(supporter, cost), cheapest first."""
+
+
+def _options(thing: Observed, things: tuple[Observed, ...], believed: Support | None) -> Options:
+    priors = _priors(thing.category)
+    costs = {
+        "floor": priors[1] + _floor_cost(thing),
+        "wall": priors[2] + _wall_cost(thing),
+        "ceiling": priors[3] + _ceiling_cost(thing),
+    }
+    if thing.category.name not in _NEVER_ON_THINGS:
+        for other in things:
+            if other.id != thing.id:
+                costs[other.id] = priors[0] + _carried_cost(thing, other)
+    if believed is not None:
+        for key in costs:
+            costs[key] += 0.0 if key == believed.parent else _BELIEF_COST
+    return tuple(sorted(costs.items(), key=lambda item: (item[1], item[0])))
+
+
+def _priors(category: Category) -> tuple[float, float, float, float]:
+    if category is UNKNOWN:
+        return _UNNAMED_PRIOR
+    prior = _PRIOR[category.mount]
+    return (9.0, 9.0, 0.0, 9.0) if category.name in _ALWAYS_ON_WALL else prior
+
+
+def _gap_cost(gap_m: float, usual_m: float) -> float:
+    """Square for small gaps, bounded for large ones."""
+    return float(_MOST_GAP_COST * (1.0 - np.exp(-0.5 * (gap_m / usual_m) ** 2 / _MOST_GAP_COST)))
+
+
+def _floor_cost(thing: Observed) -> float:
+    """High for an underside seen in the air, or an object seen below."""
+    gap = max(thing.bottom_m, 0.0)
+    seen = _gap_cost(gap, _FLOOR_GAP_M)
+    lenient = 1.0 - 0.7 * thing.hidden_below
+    return lenient * seen + _BELOW_WEIGHT * (1.0 - thing.below.get("floor", 0.0)) * lenient
+
+
+def _wall_cost(thing: Observed) -> float:
+    on_floor = 2.0 if thing.bottom_m < 0.1 and thing.category.mount != "wall" else 0.0
+    return on_floor + _gap_cost(max(thing.behind_m, 0.0), 0.25) + 0.5 * _BELOW_WEIGHT * thing.below_objects
+
+
+def _ceiling_cost(thing: Observed) -> float:
+    return _gap_cost(max(2.0 - thing.top_m, 0.0), 0.3)
+
+
+def _carried_cost(thing: Observed, other: Observed) -> float:
+    """How badly an object would rest on another's top, seat or shelves."""
+    if other.category.name in _RUGS:
+        return _on_rug_cost(thing, other)
+    cost = 0.0 if other.category.supports_things or other.category is UNKNOWN else _CARRIES_NOTHING_COST
+    levels = [(other.top_m, _TOP_GAP_M, 0.0)]
+    seat = other.category.seat_height_m
+    if seat is not None and seat < other.top_m:
+        levels.append((seat, _INNER_GAP_M, 0.0))
+    if other.category.name in _OPEN and other.bottom_m + 0.05 < thing.bottom_m < other.top_m - 0.05:
+        levels.append((thing.bottom_m, _INNER_GAP_M, 0.8))
+    gap = min(_gap_cost(abs(thing.bottom_m - z), usual) + extra for z, usual, extra in levels)
+    outside = _outside(thing.footprint, other.footprint)
+    area, theirs = (float(np.prod(t.footprint[1] - t.footprint[0])) for t in (thing, other))
+    larger = _LARGER_COST * min(max(np.log(max(area, 1e-4) / max(theirs, 1e-4)), 0.0), 1.0)
+    return float(cost + gap + 5.0 * outside + larger + _BELOW_WEIGHT * (1.0 - thing.below.get(other.id, 0.0)))
+
+
+def _on_rug_cost(thing: Observed, rug: Observed) -> float:
+    """A rug carries what stands within it, at the floor's height."""
+    outside = _outside(thing.footprint, rug.footprint)
+    on_rug = thing.below.get(rug.id, 0.0)
+    return float(_gap_cost(max(thing.bottom_m, 0.0), _FLOOR_GAP_M) - 3.0 + 8.0 * outside + _BELOW_WEIGHT * (1 - on_rug))
+
+
+def _outside(child: Float[np.ndarray, "2 2"], parent: Float[np.ndarray, "2 2"]) -> float:
+    """Share of the child's footprint that is not over the parent's, both along the world's axes."""
+    shared = np.minimum(child[1], parent[1]) - np.maximum(child[0], parent[0])
+    extent = np.maximum(child[1] - child[0], 0.02)
+    return float(1.0 - np.prod(np.clip(shared / extent, 0.0, 1.0)))
+
+
+def _without_cycles(options: dict[str, Options]) -> dict[str, tuple[str, float]]:
+    """The cheapest supporter of each; where supporters lead in a circle, the least certain of them changes."""
+    rank = dict.fromkeys(options, 0)
+    while True:
+        chosen = {key: options[key][rank[key]] for key in options}
+        ring = _ring(chosen)
+        if not ring:
+            return chosen
+        regret = {
+            key: options[key][rank[key] + 1][1] - options[key][rank[key]][1]
+            for key in ring
+            if _has_next(options[key], rank[key])
+        }
+        rank[min(regret, key=lambda key: (regret[key], key))] += 1
+
+
+def _has_next(options: Options, rank: int) -> bool:
+    return rank + 1 < len(options)
+
+
+def _ring(chosen: dict[str, tuple[str, float]]) -> list[str]:
+    """Objects that hold one another up in a circle, if any do."""
+    for start in sorted(chosen):
+        path = [start]
+        while path[-1] in chosen:
+            following = chosen[path[-1]][0]
+            if following in path:
+                return path[path.index(following) :]
+            path.append(following)
+    return []
+
+
+def _sureness(cost: float, options: Options, parent: str) -> float:
+    """The chosen supporter's share of the likelihood of all."""
+    costs = np.array([c for _, c in options])
+    return float(np.exp(-cost) / np.maximum(np.exp(-costs).sum(), 1e-12)) if parent else 0.0

@@ -1,0 +1,40 @@
+"""Finding the JSON object in what a model wrote."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any
+
+_FENCE = re.compile(r"```(?:json)?\s*\n?(.*?)```", re.DOTALL | re.IGNORECASE)
+_MOST_STARTS = 50
+
+
+def json_in(text: str) -> dict[str, Any] | None:
+    """The object that a text is, holds between fences, or holds amid prose; None without any."""
+    for candidate in (text, *(m.group(1) for m in _FENCE.finditer(text))):
+        try:
+            found = json.loads(candidate)
+        except (ValueError, RecursionError):
+            continue
+        if isinstance(found, dict):
+            return found
+    return _amid_prose(text)
+
+
+def _amid_prose(text: str) -> dict[str, Any] | None:
+    """The largest object that begins at some brace."""
+    decoder = json.JSONDecoder()
+    best: tuple[int, dict[str, Any]] | None = None
+    position = -1
+    for _ in range(_MOST_STARTS):
+        position = text.find("{", position + 1)
+        if position < 0:
+            break
+        try:
+            found, end = decoder.raw_decode(text, position)
+        except (ValueError, RecursionError):
+            continue
+        if isinstance(found, dict) and (best is None or end - position > best[0]):
+            best = (end - position, found)
+    return None if best is None else best[1]

@@ -1,0 +1,92 @@
+"""The two kinds of questions that a photo is worth (paper, section 3.1): what is there, and what holds up what."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from diorama_core.artefacts import DetectedObject, Inputs, ObjectGeometry, Photo, SceneGraph
+from diorama_core.library.taxonomy import ARCHITECTURE_WORDS
+from diorama_core.perception.graph.geometric import GeometricGraph
+from diorama_core.perception.graph.repair import repaired
+from diorama_core.perception.language.client import LmmClient, LmmSettings, UnusableReplyError, Usage
+from diorama_core.perception.language.marks import marked, picture_bytes
+from diorama_core.perception.language.replies import RECOGNITION_PROMPT, ClassesReply, GraphReply, graph_prompt
+from diorama_core.perception.language.votes import counted
+from diorama_core.progress import Progress
+
+
+@dataclass(frozen=True)
+class LanguageRecognition:
+    """Asks for the kinds of things in the photo."""
+
+    settings: LmmSettings
+
+    def recognise(self, photo: Photo, progress: Progress) -> tuple[str, ...]:
+        """Singular nouns, without the room's own parts.
+
+        Raises:
+            UnavailableError: when the model cannot be asked or never answers usably.
+        """
+        progress.report(0.0, f"Asking {self.settings.model} what is in the photo")
+        picture = picture_bytes(marked(photo.rgb, (), ()))
+        reply = LmmClient(self.settings).ask(RECOGNITION_PROMPT, [picture], ClassesReply, progress)
+        return tuple(w for w in reply.value.words() if w not in ARCHITECTURE_WORDS)
+
+
+@dataclass(frozen=True)
+class LanguageGraph:
+    """Asks for the scene graph over numbered objects; geometry mends what the replies leave wrong or open."""
+
+    settings: LmmSettings
+    geometric: GeometricGraph = field(default_factory=GeometricGraph)
+
+    def relate(
+        self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
+    ) -> SceneGraph:
+        """One acyclic edge per object that has a cuboid.
+
+        Raises:
+            UnavailableError: when the model cannot be asked at all.
+        """
+        fallback = self.geometric.relate(inputs, objects, geometry, progress.part(0.0, 0.1))
+        if not objects:
+            return fallback
+        marks = {number: o.id for number, o in enumerate(objects, start=1)}
+        room = {len(objects) + 1 + i: name for i, name in enumerate(("floor", "wall", "ceiling"))}
+        picture = picture_bytes(marked(inputs.photo.rgb, [o.mask for o in objects], list(marks)))
+        prompt = graph_prompt([(n, o.label) for n, o in zip(marks, objects, strict=True)], list(room.items()))
+        replies, usage, failed = self._replies(prompt, picture, progress)
+        ballot = counted(replies, marks, room)
+        supports, scores, mended = repaired(ballot.edges, fallback)
+        return SceneGraph(
+            supports=supports,
+            scores=scores,
+            facing=ballot.facing,
+            captions=ballot.captions,
+            source=_told(self.settings, usage, len(replies), failed, mended, len(supports)),
+        )
+
+    def _replies(self, prompt: str, picture: bytes, progress: Progress) -> tuple[list[GraphReply], Usage, int]:
+        """The usable replies, what they took, and how many were not usable."""
+        client, usage, failed = LmmClient(self.settings), Usage(), 0
+        replies: list[GraphReply] = []
+        for vote in range(self.settings.votes):
+            message = f"Asking {self.settings.model} what stands on what ({vote + 1} of {self.settings.votes})"
+            progress.report(0.1 + 0.9 * vote / self.settings.votes, message)
+            try:
+                reply = client.ask(prompt, [picture], GraphReply, progress, vote=vote)
+            except UnusableReplyError:
+                failed += 1
+                continue
+            replies.append(reply.value)
+            usage = usage + reply.usage
+        return replies, usage, failed
+
+
+def _told(settings: LmmSettings, usage: Usage, used: int, failed: int, mended: int, count: int) -> str:
+    if not used:
+        return f"geometry ({settings.model} gave no usable answer in {failed} tries)"
+    said = f"{settings.model}, {used} {'reply' if used == 1 else 'replies'}"
+    if usage.calls:
+        said += f" ({usage.words(settings)})"
+    return f"{said}; {mended} of {count} relations from geometry" if mended else said

@@ -1,0 +1,216 @@
+"""Which implementation takes which stage: the best network that is on this machine, or the embedded way.
+
+`auto` mixes stage by stage and needs nothing; `embedded` uses no network; `foundation` insists on the paper's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Literal, TypeVar
+
+from diorama_core.architecture.from_depth import PlanarRoom
+from diorama_core.artefacts import Inputs, LabelledBox, Photo
+from diorama_core.errors import UnavailableError
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.models.depth import GeometryNetwork, Metric3d, Moge2
+from diorama_core.models.manifest import Network, network
+from diorama_core.models.owlv2 import Owlv2
+from diorama_core.models.segment_anything import BoxSegmenter, Sam2, SlimSam
+from diorama_core.models.store import ModelStore, how_to_get
+from diorama_core.models.yolox import Yolox
+from diorama_core.perception.foundation.detection import EverydayDetection, OpenVocabularyDetection
+from diorama_core.perception.foundation.outlines import PromptedMasks
+from diorama_core.perception.foundation.sight import NetworkCamera, NetworkDepth, NetworkGeometry, NetworkSight
+from diorama_core.perception.graph.geometric import GeometricGraph
+from diorama_core.perception.language.client import LmmSettings
+from diorama_core.perception.language.stages import LanguageGraph, LanguageRecognition
+from diorama_core.pipeline.build import DEFAULT_RECIPE, Stages, embedded_stages
+from diorama_core.pipeline.perceive import detected
+from diorama_core.pipeline.runner import Runner
+from diorama_core.progress import Progress
+from diorama_core.protocols import DetectionStage
+
+Profile = Literal["auto", "embedded", "foundation"]
+
+T = TypeVar("T")
+
+DETECTORS = ("owlv2-large", "owlv2-base", "owlv2-base-int8", "yolox-nano")
+SEGMENTERS = ("sam2.1-large", "sam2.1-base-plus", "sam2.1-tiny", "slimsam")
+DEPTH_NETWORKS = ("moge-2-vitl", "moge-2-vitb", "moge-2-vits", "metric3d-large", "metric3d-small")
+"""Best first."""
+
+
+@dataclass(frozen=True)
+class StageStatus:
+    """What one stage would use now, for people."""
+
+    stage: str
+    implementation: str
+    """In words."""
+    network_id: str | None
+    """The network in use, or the one that would be pulled first; None where no network takes this stage."""
+    present: bool
+    """Whether that network is on this machine."""
+    size_mb: int
+    licence: str
+    advice: str = ""
+    """What to do to get a better implementation; empty where the best one is in use."""
+
+
+def stages_for(
+    profile: Profile,
+    inputs: Inputs,
+    library: ShapeLibrary,
+    *,
+    recipe: str = DEFAULT_RECIPE,
+    store: ModelStore | None = None,
+    lmm: LmmSettings | None = None,
+) -> Stages:
+    """The stages of a profile for what the user gave.
+
+    Args:
+        profile: see the module.
+        inputs: boxes, masks, depth and intrinsics that are given are never replaced by a network's.
+        library: where shapes come from.
+        recipe: of the layout optimiser.
+        store: where networks lie; this machine's by default.
+        lmm: a language model to ask; by default the one that the environment names, if any.
+
+    Raises:
+        UnavailableError: the foundation profile, where a network it needs is not on this machine.
+    """
+    base = embedded_stages(inputs, library, recipe=recipe)
+    if profile == "embedded":
+        return base
+    store = store or ModelStore.default()
+    if profile == "foundation":
+        _insist(inputs, store)
+    return foundation_stages(base, inputs, store, lmm or LmmSettings.from_environment())
+
+
+def foundation_stages(base: Stages, inputs: Inputs, store: ModelStore, lmm: LmmSettings | None) -> Stages:
+    """`base` with every stage replaced for which a network is on this machine."""
+    stages = base
+    if not inputs.boxes and inputs.instances is None:
+        stages = replace(stages, detection=detection_stage(store))
+        if lmm is not None and isinstance(stages.detection, OpenVocabularyDetection):
+            stages = replace(stages, recognition=LanguageRecognition(lmm))
+    segmenter = _best(store, SEGMENTERS, _segmenter)
+    if segmenter is not None:
+        stages = replace(stages, objects=PromptedMasks(segmenter))
+    sight = _best(store, DEPTH_NETWORKS, _depth_network) if inputs.depth_m is None else None
+    if sight is not None:
+        stages = replace(
+            stages,
+            sight=NetworkSight(sight),
+            camera=NetworkCamera(),
+            geometry=NetworkGeometry(),
+            architecture=PlanarRoom(),
+            depth=NetworkDepth(),
+            graph=GeometricGraph(),
+        )
+    return stages if lmm is None else replace(stages, graph=LanguageGraph(lmm))
+
+
+def detection_stage(store: ModelStore) -> DetectionStage | None:
+    """The best detector on this machine, as a stage."""
+    return _best(store, DETECTORS, _detector)
+
+
+def propose_boxes(
+    photo: Photo, *, store: ModelStore | None = None, progress: Progress | None = None
+) -> tuple[LabelledBox, ...] | None:
+    """Boxes for a photo, to be corrected by a person; None where no detector is on this machine.
+
+    Raises:
+        UnavailableError: when a network is damaged.
+        Cancelled: on request.
+    """
+    store = store or ModelStore.default()
+    stage = detection_stage(store)
+    if stage is None:
+        return None
+    lmm = LmmSettings.from_environment()
+    recognition = LanguageRecognition(lmm) if lmm is not None and isinstance(stage, OpenVocabularyDetection) else None
+    return detected(photo, stage, recognition, Runner(None), progress or Progress())
+
+
+def profile_status(*, store: ModelStore | None = None, lmm: LmmSettings | None = None) -> tuple[StageStatus, ...]:
+    """For every stage of the auto profile: what takes it now, and what would take it better."""
+    store = store or ModelStore.default()
+    lmm = lmm or LmmSettings.from_environment()
+    return (
+        _status(store, "detection", DETECTORS, "boxes drawn by you"),
+        _status(store, "outlines", SEGMENTERS, "outlines by colour (GrabCut)"),
+        _status(store, "depth and camera", DEPTH_NETWORKS, "lines, known sizes and the floor"),
+        StageStatus(
+            "support graph",
+            f"language model {lmm.model} at {lmm.base_url}" if lmm else "geometry: contact, containment, usual places",
+            None,
+            True,
+            0,
+            "",
+            "" if lmm else "set DIORAMA_LMM_BASE_URL and DIORAMA_LMM_MODEL to ask a language model",
+        ),
+        StageStatus("retrieval", "category, size, silhouette and colour", None, True, 0, ""),
+        StageStatus("pose", "render and compare", None, True, 0, ""),
+    )
+
+
+def _status(store: ModelStore, stage: str, choices: tuple[str, ...], embedded: str) -> StageStatus:
+    here = next((network(i) for i in choices if store.has(network(i))), None)
+    wanted = network(next(i for i in choices if "default" in network(i).tiers))
+    better = here is None or choices.index(here.id) > choices.index(wanted.id)
+    shown = here or wanted
+    return StageStatus(
+        stage=stage,
+        implementation=here.title if here else embedded,
+        network_id=shown.id,
+        present=here is not None,
+        size_mb=round(shown.size_bytes / 1e6),
+        licence=shown.licence,
+        advice=f"{wanted.title}, {wanted.size_bytes / 1e6:.0f} MB: diorama models pull default" if better else "",
+    )
+
+
+def _insist(inputs: Inputs, store: ModelStore) -> None:
+    needed: list[tuple[str, ...]] = [SEGMENTERS]
+    if not inputs.boxes and inputs.instances is None:
+        needed.append(DETECTORS)
+    if inputs.depth_m is None:
+        needed.append(DEPTH_NETWORKS)
+    for choices in needed:
+        if not any(store.has(network(i)) for i in choices):
+            lite = next(network(i) for i in reversed(choices) if "lite" in network(i).tiers)
+            raise UnavailableError(
+                f"the foundation profile needs {lite.title} or better, which is not on this machine; "
+                f"{how_to_get(lite)} (or use --profile auto)"
+            )
+
+
+def _best(store: ModelStore, choices: tuple[str, ...], make: Callable[[ModelStore, Network], T]) -> T | None:
+    here = next((network(i) for i in choices if store.has(network(i))), None)
+    return None if here is None else make(store, here)
+
+
+def _detector(store: ModelStore, chosen: Network) -> DetectionStage:
+    weights = store.identity(chosen)
+    graph = store.path(chosen, chosen.files[0].path)
+    if chosen.id.startswith("yolox"):
+        return EverydayDetection(Yolox(graph, weights))
+    return OpenVocabularyDetection(Owlv2(graph, store.path(chosen, "tokenizer.json"), weights))
+
+
+def _segmenter(store: ModelStore, chosen: Network) -> BoxSegmenter:
+    weights = store.identity(chosen)
+    encoder, decoder = (
+        store.path(chosen, next(f.path for f in chosen.files if part in f.path and f.path.endswith(".onnx")))
+        for part in ("vision_encoder", "mask_decoder")
+    )
+    return SlimSam(encoder, decoder, weights) if chosen.id == "slimsam" else Sam2(encoder, decoder, weights)
+
+
+def _depth_network(store: ModelStore, chosen: Network) -> GeometryNetwork:
+    graph, weights = store.path(chosen, chosen.files[0].path), store.identity(chosen)
+    return Metric3d(graph, weights) if chosen.id.startswith("metric3d") else Moge2(graph, weights)
