@@ -25,6 +25,8 @@ MAX_SEEN_THROUGH = 0.08
 LOWEST_SLOPE_M = 1.2
 """Slopes whose middle is lower than this belong to furniture."""
 MAX_SLOPES = 4
+ALIKE_M = 0.25
+"""Slopes of about one direction nearer than this are one slope."""
 SNAP_RAD = np.deg2rad(4.0)
 
 
@@ -77,10 +79,14 @@ def _slopes(surface: MeasuredSurface) -> tuple[CeilingPiece, ...]:
             break
         member = free & (surface.normals @ _commonest(surface, free) > GROWTH_COSINE)
         piece, taken = _fitted(surface, member)
-        free &= ~(taken | member if piece is None else taken)
-        if piece is not None:
+        free &= ~(taken | member)
+        if piece is not None and not any(_alike(piece, other) for other in found):
             found.append(piece)
     return tuple(sorted(found, key=lambda p: -p.area_m2))
+
+
+def _alike(a: CeilingPiece, b: CeilingPiece) -> bool:
+    return bool(a.normal @ b.normal > GROWTH_COSINE and abs(a.offset - b.offset) < ALIKE_M)
 
 
 def _commonest(surface: MeasuredSurface, free: Bool[np.ndarray, "n"]) -> Float[np.ndarray, "3"]:

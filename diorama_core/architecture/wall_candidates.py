@@ -20,6 +20,8 @@ AXIS_SHARE = 0.85
 """when at least this share of what lies on the freely turned line lies on the one along the axis too, within"""
 TIGHT_M, TIGHT_PER_NOISE_M = 0.012, 1.0
 """this distance, plus the second times the noise."""
+NARROW_M, NARROW_SHARE, NARROW_SLACK_M = 1.2, 0.6, 0.1
+"""Directions of walls shorter than the first are known less well: less agreement is asked, and more turning allowed."""
 SAME_SHARE = 0.5
 """A candidate more of whose points than this lie on a larger one is that one."""
 OFFSET_BIN_M = 0.05
@@ -65,12 +67,12 @@ def find_walls(surface: MeasuredSurface, top_m: float) -> list[WallCandidate]:
         found += _parallel_walls(surface, upright, normal, top_m)
     kept: list[WallCandidate] = []
     for wall in sorted(found, key=lambda w: -w.area_m2):
-        if not any(_same(surface, wall, other) for other in kept):
+        if not any(same_wall(surface, wall, other) for other in kept):
             kept.append(wall)
     return kept
 
 
-def _same(surface: MeasuredSurface, minor: WallCandidate, major: WallCandidate) -> bool:
+def same_wall(surface: MeasuredSurface, minor: WallCandidate, major: WallCandidate) -> bool:
     """Whether the smaller candidate's points lie on the larger one too."""
     near = np.abs(surface.points[minor.inliers, :2] @ major.normal - major.offset)
     near = near < tolerance_m(surface.depth_m[minor.inliers])
@@ -194,6 +196,7 @@ def fit_line(
         noise: Relative error of the depths.
     """
     offset = float(np.median(points @ normal))
+    core = np.ones(len(points), dtype=bool)
     for _ in range(4):
         residual = np.abs(points @ normal - offset)
         core = residual <= max(2.5 * float(np.median(residual)), 0.005)
@@ -201,21 +204,26 @@ def fit_line(
         turned = np.linalg.eigh(np.cov((points[core] - centre).T, aweights=weights[core]))[1][:, 0]
         normal = turned if turned @ normal > 0 else -turned
         offset = float(centre @ normal)
-    axis = _along_axis(points, weights, normal, noise)
+    length = float(np.ptp(points[core] @ np.array([-normal[1], normal[0]])))
+    axis = _along_axis(points, weights, normal, noise, MAX_SNAP_RAD + float(np.arctan2(NARROW_SLACK_M, length)))
     if axis is None:
         return normal, offset
     tight = TIGHT_M + TIGHT_PER_NOISE_M * noise
     agree, at_axis = (weights[np.abs(points @ n - o) < tight].sum() for n, o in ((normal, offset), axis))
-    return axis if at_axis > AXIS_SHARE * agree else (normal, offset)
+    return axis if at_axis > (AXIS_SHARE if length > NARROW_M else NARROW_SHARE) * agree else (normal, offset)
 
 
 def _along_axis(
-    points: Float[np.ndarray, "n 2"], weights: Float[np.ndarray, "n"], normal: Float[np.ndarray, "2"], noise: float
+    points: Float[np.ndarray, "n 2"],
+    weights: Float[np.ndarray, "n"],
+    normal: Float[np.ndarray, "2"],
+    noise: float,
+    most_rad: float,
 ) -> tuple[Float[np.ndarray, "2"], float] | None:
     """The line along the nearest room axis that most points lie on; none when that is too far turned."""
     heading = float(np.arctan2(normal[1], normal[0]))
     quarter = round(heading / (np.pi / 2)) * (np.pi / 2)
-    if abs(_turn(heading - quarter)) > MAX_SNAP_RAD:
+    if abs(_turn(heading - quarter)) > most_rad:
         return None
     axis = np.round([np.cos(quarter), np.sin(quarter)])
     offsets = points @ axis

@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from diorama_core.architecture.surface import MeasuredSurface
-from diorama_core.architecture.wall_candidates import MIN_RISE_M, WallCandidate, crossings, tolerance_m
+from diorama_core.architecture.wall_candidates import MIN_RISE_M, WallCandidate, crossings, same_wall, tolerance_m
 
 HEADING_BINS = 180
 FULL_EVIDENCE = 0.08
@@ -216,7 +216,8 @@ def _returns(surface: MeasuredSurface, runs: list[Run], headings: _Headings, top
         between = close & behind & before
         for wall in (near.wall, far.wall):
             candidate = _square_to(surface, wall, between)
-            if candidate is not None:
+            known = [*(run.wall for run in runs), *found]
+            if candidate is not None and not any(same_wall(surface, candidate, w) for w in known):
                 found.append(candidate)
     return found
 

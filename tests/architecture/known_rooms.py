@@ -12,7 +12,7 @@ from diorama_core.scene.types import Camera, Plane
 from tests.synthetic_rooms import Shot, cuboid, look, shoot
 
 KINDS = ("box", "l_shape", "slanted", "sloped", "gable", "one_wall", "alcove", "five_walls")
-SIZE = (320, 240)
+SIZE = (640, 480)
 
 
 @dataclass(frozen=True)
