@@ -41,6 +41,8 @@ BULK_DENSITY: dict[str, float] = {
     "chandelier": 12, "wall lamp": 60, "candle": 250,
     "kettle": 150, "toaster": 170, "coffee machine": 220, "blender": 160, "cooking pot": 150, "utensils": 300,
     "cutting board": 600,
+    "mouse": 250, "tablet": 800, "smartphone": 1500, "printer": 180, "speaker": 280, "record player": 150,
+    "telephone": 200, "router": 100, "remote control": 500, "game console": 350,
     "toy": 60, "object": 100,
 }  # fmt: skip
 """Kilograms per cubic metre of bounding box: a rough guess for physics, from weighing catalogues' furniture."""

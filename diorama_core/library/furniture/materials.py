@@ -117,7 +117,7 @@ CONCRETE = Material("concrete", "clay", "#a3a09a", 0.85, 0.0, 0.8)
 CARDBOARD = Material("cardboard", "paper", "#b8946a", 0.9, 0.0, 0.3)
 PAPER = Material("paper", "pages", "#ece6d8", 0.9, 0.0, 0.06)
 SOIL = Material("soil", "speckle", "#4a3a2e", 1.0, 0.0, 0.2)
-GLASS = glass("glass", "#cfdad8", 0.16)
+GLASS = glass("glass", "#a6b8b3", 0.15)
 DARK_GLASS = paint("dark glass", "#24282b", 0.1)
 
 LINEN = fabric("linen", "#d6cbb8")

@@ -72,7 +72,7 @@ def bottle(size: Size, glass: Material, kind: Literal["wine", "water", "spray"],
 
 GREEN_BOTTLE = m.glass("green bottle glass", "#3c4b3a", 0.82)
 AMBER_GLASS = m.glass("amber glass", "#7a4f2c", 0.78)
-CLEAR_BOTTLE = m.glass("bottle glass", "#cfd9d6", 0.2)
+CLEAR_BOTTLE = m.glass("bottle glass", "#a3b5af", 0.18)
 OIL = m.paint("olive oil", "#a89a4e", 0.3)
 MILK = m.paint("milk", "#f1eee4", 0.5)
 WAX = m.paint("red seal", "#7c3f3a", 0.5)
