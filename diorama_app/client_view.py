@@ -19,10 +19,15 @@ BOARD_CENTRE = np.array([0.0, 0.0, 400.0])
 BOARD_HEIGHT_M = 1.0
 BOARD_DISTANCE_M = 1.25
 DEFAULT_FOV_RAD = np.radians(50.0)
+NARROW_FOV_RAD = np.radians(7.0)
+"""Of views along an axis: from far away, lines that are parallel in the room nearly are on the screen."""
 PYRAMID_SCALE = 0.22
 USUAL_ASPECT = 0.93
 """Of the 3D view between the panels in a window of 1280 x 720."""
 BOX_COLOURS = ((47, 111, 214), (214, 84, 47), (38, 150, 96), (160, 80, 200), (200, 150, 20), (20, 150, 170))
+
+TAPE_COLOUR = (200, 60, 110)
+BRAND_COLOUR = (47, 111, 214)
 
 NoticeKind = Literal["info", "good", "bad"]
 OnBox = Callable[[Box], None]
@@ -86,6 +91,8 @@ class ClientView:
         self.through_photo = False
         self._overlay: viser.ImageHandle | None = None
         self._backdrop: viser.ImageHandle | None = None
+        self._tape: list[viser.SceneNodeHandle] = []
+        self._rect: Any = None
 
     @property
     def fov_rad(self) -> float:
@@ -148,6 +155,40 @@ class ClientView:
         length = float(np.linalg.norm(back))
         back = back / length if length > 1e-6 else np.array([-0.5, -0.7, 0.5])
         self.look(target + back * distance_m, target, float(camera.fov))
+
+    def screen_axis(self, side: str) -> tuple[Float[np.ndarray, "3"], bool]:
+        """The level world axis nearest to the screen's "right" (or to "away" from the eye), and if it runs backward."""
+        from diorama_app.viewport import rotation
+
+        R = rotation(np.asarray(self._client.camera.wxyz))
+        right = R[:, 0]
+        # Straight from above, "away" is the screen's up.
+        direction = right if side == "right" else np.cross((0.0, 0.0, 1.0), right)
+        axis = int(np.abs(direction[:2]).argmax())
+        unit = np.zeros(3)
+        unit[axis] = 1.0
+        return unit, bool(direction[axis] < 0)
+
+    def show_measure(self, points: Sequence[tuple[float, float, float]], words: str) -> None:
+        """A tape between measured points; none without points."""
+        for node in self._tape:
+            node.remove()
+        self._tape = []
+        scene = self._client.scene
+        for index, point in enumerate(points):
+            self._tape.append(scene.add_icosphere(f"/tape/{index}", radius=0.025, color=TAPE_COLOUR, position=point))
+        if len(points) == 2:
+            ends = np.array(points)
+            self._tape += [
+                scene.add_line_segments(
+                    "/tape/line", points=ends[None], colors=TAPE_COLOUR, thickness=4.0, thickness_units="screen"
+                ),
+                scene.add_label("/tape/length", words, position=ends.mean(axis=0), anchor="bottom-center"),
+            ]
+
+    def set_dark(self, dark: bool) -> None:
+        """Dark or light panels."""
+        set_theme(self._client.gui, dark=dark)
 
     @property
     def looked_at(self) -> Float[np.ndarray, "3"]:
@@ -260,7 +301,7 @@ class ClientView:
             if box is not None:
                 on_box(box)
 
-        scene.on_rect_select()(selected)
+        self._rect = scene.on_rect_select()(selected)
         self._face_board(board)
 
     def close_board(self) -> None:
@@ -268,7 +309,9 @@ class ClientView:
         if self.board is None:
             return
         self.board = None
-        self._client.scene.remove_rect_select_callback()
+        if self._rect is not None:
+            self._client.scene.remove_rect_select_callback(self._rect)
+            self._rect = None
         for node in (*self._box_nodes, *self._board_nodes):
             node.remove()
         self._board_nodes, self._box_nodes = [], []
@@ -337,15 +380,20 @@ def room_view(scene: Scene, aspect: float = USUAL_ASPECT) -> tuple[Float[np.ndar
     return _far_enough(low, high, back / np.linalg.norm(back), aspect), centre
 
 
-def top_view(scene: Scene, aspect: float = USUAL_ASPECT) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
-    """Straight above the room."""
+def side_view(
+    scene: Scene, back: Float[np.ndarray, "3"], aspect: float = USUAL_ASPECT
+) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+    """A far place in the direction `back` of the room from which all of it is in a narrow view, and its middle."""
     low, high = bounds(scene)
-    back = np.array([0.0, -1e-3, 1.0])
-    return _far_enough(low, high, back / np.linalg.norm(back), aspect), (low + high) / 2
+    return _far_enough(low, high, back / np.linalg.norm(back), aspect, float(NARROW_FOV_RAD)), (low + high) / 2
 
 
 def _far_enough(
-    low: Float[np.ndarray, "3"], high: Float[np.ndarray, "3"], back: Float[np.ndarray, "3"], aspect: float
+    low: Float[np.ndarray, "3"],
+    high: Float[np.ndarray, "3"],
+    back: Float[np.ndarray, "3"],
+    aspect: float,
+    fov_rad: float = float(DEFAULT_FOV_RAD),
 ) -> Float[np.ndarray, "3"]:
     """The nearest place in the direction `back` of a box's centre from which all of the box is in view."""
     centre = (low + high) / 2
@@ -353,7 +401,7 @@ def _far_enough(
     right = np.cross(-back, (0.0, 0.0, 1.0))
     right /= np.linalg.norm(right)
     up = np.cross(right, -back)
-    half = np.tan(DEFAULT_FOV_RAD / 2)
+    half = np.tan(fov_rad / 2)
     needed = np.maximum(np.abs(corners @ right) / (half * max(aspect, 0.2)), np.abs(corners @ up) / half)
     return centre + back * float((needed + corners @ back).max()) * 1.04
 
@@ -375,3 +423,10 @@ def bounds(scene: Scene) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]
         return np.array([-1.0, -1.0, 0.0]), np.array([1.0, 1.0, 1.0])
     cloud = np.concatenate(points)
     return cloud.min(axis=0), cloud.max(axis=0)
+
+
+def set_theme(gui: viser.GuiApi, *, dark: bool) -> None:
+    """The look of the panels."""
+    gui.configure_theme(
+        control_layout="floating", show_logo=False, show_share_button=False, brand_color=BRAND_COLOUR, dark_mode=dark
+    )

@@ -8,7 +8,9 @@ from typing import Any
 
 import viser
 
-Run = Callable[[int | None], None]
+from diorama_app.guest import Guest
+
+Run = Callable[[Guest], None]
 
 
 @dataclass(frozen=True)
@@ -18,7 +20,7 @@ class Command:
     id: str
     label: str
     run: Run
-    """Called on the desk with the id of the browser that asked."""
+    """Called on the desk with whoever asked."""
     hotkey: str | None = None
     modifier: str | None = None
     hint: str = ""
@@ -28,6 +30,8 @@ class Command:
         """The hotkey as people write it."""
         if self.hotkey is None:
             return ""
+        if self.hotkey == "?":
+            return "?"
         named = {"escape": "Esc", "delete": "Del", "backspace": "Backspace", "space": "Space"}
         parts = {"cmd/ctrl": "Ctrl", "shift": "Shift", "alt": "Alt"}
         before = [parts[p] for p in self.modifier.split("+")] if self.modifier else []

@@ -3,25 +3,35 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import viser
 
-from diorama_app.actions import Views, build_commands
+from diorama_app.actions import build_commands
+from diorama_app.client_view import set_theme
+from diorama_app.collisions import Collisions
+from diorama_app.commands import Command
 from diorama_app.example import example_project
 from diorama_app.gestures import Gestures
+from diorama_app.guest import Guest, Panel
 from diorama_app.panels.alternatives import Alternatives
 from diorama_app.panels.compare import Compare
+from diorama_app.panels.help import show_help
 from diorama_app.panels.job import JobStrip
 from diorama_app.panels.library import LibraryPanel
+from diorama_app.panels.measure import Tape
 from diorama_app.panels.optimiser import Optimiser
 from diorama_app.panels.outliner import Outliner
 from diorama_app.panels.photo import PhotoPanel
 from diorama_app.panels.projects import Projects
 from diorama_app.panels.properties import Properties
 from diorama_app.panels.supports import Supports
+from diorama_app.panels.toast import Toasts
 from diorama_app.panels.toolbar import Toolbar
-from diorama_app.room import Panel, Room
+from diorama_app.room import Room
+from diorama_app.views import Views
 from diorama_app.viser_adapter import MAX_UPLOAD_BYTES
 from diorama_core.errors import DioramaError
 from diorama_core.library.record import ShapeLibrary
@@ -42,14 +52,36 @@ class Editor:
         self.server = server
         self.room = Room(server, library, projects_dir)
         self.room.viewport.light(low_graphics=low_graphics)
-        self.gestures = Gestures(self.room)
         self.views = Views(self.room)
-        self.room.on_photo_camera = self.views.photo
-        self.commands = build_commands(self.room, self.gestures, self.views)
-        self.commands.register(server.gui, lambda command, client: self.room.post(client, lambda: command.run(client)))
-        self._lay_out()
+        self._collisions = Collisions(library)
+        self._gestures: dict[int, Gestures] = {}
+        room = self.room
+        room.on_guest = self._lay_out
+        room.on_photo_camera = self.views.photo
+        room.on_pick = lambda object_id, event: self._hand(event, lambda g: g.picked(object_id, event))
+        room.on_drag = lambda object_id, event: self._hand(event, lambda g: g.dragged(object_id, event))
+        self.commands = build_commands(room, self.views, self._cancel, self._help)
+        self.commands.register(server.gui, self._asked)
+        server.gui.set_panel_label("Diorama")
+        set_theme(server.gui, dark=False)
         server.on_client_connect(self._joined)
         server.on_client_disconnect(self._left)
+
+    def _asked(self, command: Command, client_id: int | None) -> None:
+        guest = None if client_id is None else self.room.guests.get(client_id)
+        if guest is not None:
+            guest.post(lambda: command.run(guest))
+
+    def _hand(self, event: Any, act: Callable[[Gestures], None]) -> None:
+        gestures = self._gestures.get(event.client_id)
+        if gestures is not None:
+            act(gestures)
+
+    def _cancel(self, guest: Guest) -> bool:
+        return self._gestures[guest.id].cancel()
+
+    def _help(self, guest: Guest) -> None:
+        show_help(guest, self.commands)
 
     def open_first(self, project: Project | None) -> None:
         """Show a project; without one the bundled example, or at least an empty room that says what to do."""
@@ -92,43 +124,47 @@ class Editor:
         """Save and end everything that runs."""
         self.room.close()
 
-    def _lay_out(self) -> None:
-        gui = self.server.gui
-        gui.configure_theme(
-            control_layout="floating", show_logo=False, show_share_button=False, brand_color=(47, 111, 214)
-        )
-        gui.set_panel_label("Diorama")
+    def _lay_out(self, guest: Guest) -> None:
+        """Make the panels of somebody who came."""
+        gui = guest.client.gui
         gui.main_panel.dock_left()
         gui.main_panel.set_width(LEFT_WIDTH_PX)
-        room = self.room
-        toolbar = Toolbar(gui, room, self.commands, self.gestures)
-        room.job_panel = job_strip = JobStrip(gui, room)
+        gestures = self._gestures[guest.id] = Gestures(guest, self._collisions)
+        toolbar = Toolbar(gui, guest, self.commands)
+        guest.job_panel = job_strip = JobStrip(gui, guest)
         panels: list[Panel] = [
-            self.gestures,
+            gestures,
             toolbar,
             job_strip,
-            Compare(gui, room, self.views),
+            Tape(gui, guest),
+            Compare(gui, guest, self.views),
+            Toasts(gui, guest),
         ]
         left = gui.add_tab_group()
         with left.add_tab("Scene"):
-            panels.append(Outliner(gui, room))
+            panels.append(Outliner(gui, guest))
         with left.add_tab("Photo"):
-            panels.append(PhotoPanel(gui, room, self.views))
+            panels.append(PhotoPanel(gui, guest, self.views))
         with left.add_tab("Arrange"):
-            panels.append(Optimiser(gui, room))
+            guest.curves = optimiser = Optimiser(gui, guest)
+            panels.append(optimiser)
         with left.add_tab("Project"):
-            panels.append(Projects(gui, room, self.commands))
+            panels.append(Projects(gui, guest, self.commands))
         right = gui.add_panel()
         with right.add_tab("Object"):
-            panels += [Properties(gui, room, self.commands), Supports(gui, room), Alternatives(gui, room)]
+            panels += [Properties(gui, guest, self.commands), Supports(gui, guest), Alternatives(gui, guest)]
         with right.add_tab("Library"):
-            panels.append(LibraryPanel(gui, room))
+            panels.append(LibraryPanel(gui, guest))
         right.dock_right()
         right.set_width(RIGHT_WIDTH_PX)
-        room.panels = panels
+        guest.panels = panels
 
     async def _joined(self, client: viser.ClientHandle) -> None:
         self.room.desk.post(lambda: self.room.joined(client))
 
     async def _left(self, client: viser.ClientHandle) -> None:
-        self.room.desk.post(lambda: self.room.left(client))
+        def leave() -> None:
+            self._gestures.pop(client.client_id, None)
+            self.room.left(client)
+
+        self.room.desk.post(leave)

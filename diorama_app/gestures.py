@@ -1,62 +1,194 @@
-"""What a person does with the mouse in the 3D view: pick, drag the gizmo. Preview while it lasts, commit at its end."""
+"""What a person does with the mouse in the 3D view: pick, frame, drag an object, drag the gizmo, click a place.
+
+A drag shows a preview while it lasts and becomes one undo step when it ends; Esc puts everything back.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import viser
 
-from diorama_app.room import Room
+from diorama_app.collisions import Collisions
+from diorama_app.dragging import Slide, snapped_pose
+from diorama_app.guest import GizmoMode, Guest, Measuring, Placing
+from diorama_app.inserting import place_at
+from diorama_app.measuring import measure_at
+from diorama_app.selecting import objects_in
 from diorama_app.viewport import quaternion, rotation
 from diorama_core.scene import edits
+from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Pose, Scene
 
-GizmoMode = Literal["floor", "free"]
 NODE = "/gizmo"
 
 
 @dataclass(frozen=True)
-class Drag:
+class Turn:
     """A gizmo drag under way: where everything was when it began."""
 
     object_id: str
     scene: Scene
 
 
-class Gestures:
-    """Picking and the gizmo of the open room. viser calls in from its event loop; the work is done on the desk."""
+@dataclass
+class Held:
+    """An object dragged by itself, and where it has got to."""
 
-    def __init__(self, room: Room) -> None:
-        self._room = room
-        self._drag: Drag | None = None
+    slide: Slide
+    scene: Scene
+
+
+class Gestures:
+    """Turns one browser's pointer events into document edits. Used from the desk's thread, except where it says so."""
+
+    def __init__(self, guest: Guest, collisions: Collisions) -> None:
+        self._guest = guest
+        self._room = guest.room
+        self._collisions = collisions
+        self._drag: Turn | Held | None = None
         self._gizmo: viser.TransformControlsHandle | None = None
         self._gizmo_key: tuple[str, GizmoMode, float] | None = None
-        self.mode: GizmoMode = "floor"
-        self._last_pick: tuple[int, Any] | None = None
-        room.on_pick = self._picked
+        self._last_pick: tuple[float, float] | None = None
+        scene = guest.client.scene
 
         async def clicked(event: viser.SceneClickEvent) -> None:
             # A click on an object also arrives here, after the object's own event.
-            if self._last_pick != (event.client_id, event.screen_pos):
-                room.post(event.client_id, lambda: room.select(()))
+            ray = np.array(event.ray_origin), np.array(event.ray_direction)
+            on_object = self._last_pick == event.screen_pos
+            guest.post(lambda: self._clicked(*ray, on_object=on_object))
 
-        room.server.scene.on_click()(clicked)
+        async def framed(event: viser.SceneRectSelectEvent) -> None:
+            low, high = event.screen_min, event.screen_max
+            guest.post(lambda: self._framed(low, high))
 
-    def set_mode(self, mode: GizmoMode) -> None:
-        """Which handles the gizmo has: sliding and turning on the floor, or everything."""
-        self.mode = mode
-        self.refresh()
+        scene.on_click()(clicked)
+        scene.on_rect_select(modifier="shift")(framed)
+
+    # -- pointing ---------------------------------------------------------------------------------------------
+
+    def picked(self, object_id: str, event: viser.SceneNodePointerEvent[Any]) -> None:
+        """An object was clicked. Called from viser's event loop."""
+        self._last_pick = event.screen_pos
+        add = event.modifier is not None
+
+        def pick() -> None:
+            if self._guest.doing is not None:
+                return  # the scene's own click says where
+            if add:
+                self._guest.toggle(object_id)
+            else:
+                self._guest.select((object_id,))
+
+        self._guest.post(pick)
+
+    def _clicked(self, origin: np.ndarray, direction: np.ndarray, *, on_object: bool) -> None:
+        doing = self._guest.doing
+        if isinstance(doing, Placing):
+            place_at(self._guest, doing.shape_id, origin, direction)
+        elif isinstance(doing, Measuring):
+            measure_at(self._guest, doing, origin, direction)
+        elif not on_object:
+            self._guest.select(())
+
+    def _framed(self, low: tuple[float, float], high: tuple[float, float]) -> None:
+        guest, camera = self._guest, self._guest.client.camera
+        if guest.view.drawing:
+            return
+        inside = objects_in(
+            self._room.scene,
+            low,
+            high,
+            rotation(np.asarray(camera.wxyz)),
+            np.asarray(camera.position),
+            float(camera.fov),
+            float(camera.aspect),
+        )
+        guest.select((*guest.selection, *inside))
+
+    # -- dragging an object ------------------------------------------------------------------------------------
+
+    def dragged(self, object_id: str, event: viser.SceneNodeDragEvent[Any]) -> None:
+        """An object is dragged. Called from viser's event loop."""
+        phase, inverted = event.phase, event.modifier == "alt"
+        grabbed, hand = np.array(event.start_position), np.array(event.end_position)
+        self._guest.post(
+            lambda: self._slid(object_id, phase, grabbed, hand, inverted),
+            key="slide" if phase == "update" else None,
+        )
+
+    def _slid(self, object_id: str, phase: str, grabbed: np.ndarray, hand: np.ndarray, inverted: bool) -> None:
+        guest, room = self._guest, self._room
+        if phase == "start":
+            if guest.doing is not None or guest.view.drawing or not room.scene.has_object(object_id):
+                return
+            if object_id not in guest.selection:
+                guest.select((object_id,))
+            slide = Slide.begin(room.scene, room.library, object_id, grabbed, guest.selection)
+            self._remove()
+            self._drag = Held(slide, room.scene)
+            return
+        held = self._drag
+        if not isinstance(held, Held):
+            return
+        if phase == "update":
+            eye = np.asarray(guest.client.camera.position, dtype=np.float64)
+            snap = guest.settings.snap != inverted
+            # Until every shape is prepared, things go through each other (and are shown colliding).
+            prepared = room.preparer.ready(o.shape_id for o in held.slide.scene.objects)
+            held.scene, poses = held.slide.to(eye, hand - eye, snap=snap, slide=guest.settings.slide and prepared)
+            self._show(held.slide.scene, poses, held.scene)
+            return
+        self._drag = None
+        self._end_collisions()
+        label = held.slide.item.label
+        if held.scene is held.slide.scene:
+            room.refresh()
+            return
+        start, now = held.slide.scene, held.scene
+        before, after = start.support_of(object_id), now.support_of(object_id)
+        moved = {o.id: o.pose for o in now.objects if o is not start.object(o.id)}
+
+        def apply(scene: Scene) -> Scene:
+            # Onto the scene as it is now: somebody else may have edited it meanwhile.
+            scene = edits.place(scene, {i: p for i, p in moved.items() if scene.has_object(i)})
+            if after is not None and after != before and scene.has_object(object_id):
+                scene = edits.attach(scene, after)
+            return scene
+
+        room.edit(f"move {label}", apply, by=guest)
+
+    def _show(self, start: Scene, poses: Mapping[str, Pose], scene: Scene) -> None:
+        self._room.preview(poses)
+        moving = [i for i in poses if i in {*self._moving()}] or list(poses)
+        pairs = self._collisions.of(scene, moving)
+        if self._guest.marks.collide({i for pair in pairs for i in pair}):
+            self._guest.show_marks()
+
+    def _moving(self) -> Iterable[str]:
+        drag = self._drag
+        if isinstance(drag, Held):
+            item = drag.slide.item
+            return (item.id, *descendants(drag.slide.scene, item.id), *drag.slide.along)
+        return () if drag is None else (drag.object_id, *descendants(drag.scene, drag.object_id))
+
+    def _end_collisions(self) -> None:
+        if self._guest.marks.collide(()):
+            self._guest.show_marks()
+
+    # -- the gizmo --------------------------------------------------------------------------------------------
 
     def refresh(self) -> None:
         """Put the gizmo where the selected object is; take it away when there is none to move."""
-        item = self._room.document.selected
-        if item is None or item.locked or item.hidden:
+        item = self._guest.selected
+        if item is None or item.locked or item.hidden or isinstance(self._drag, Held) or self._guest.doing is not None:
             self._remove()
             return
         scale = float(np.clip(0.62 * max(item.size_m), 0.3, 1.1))
-        key = (item.id, self.mode, round(scale, 2))
+        key = (item.id, self._guest.settings.gizmo, round(scale, 2))
         if self._gizmo is None or self._gizmo_key != key:
             if self._drag is not None:
                 return
@@ -64,71 +196,64 @@ class Gestures:
             self._gizmo = self._add(item.pose, scale)
             self._gizmo_key = key
         elif self._drag is None:
-            self._gizmo.wxyz = self._orientation(item.pose)
+            self._gizmo.wxyz = quaternion(item.pose.R_world_object)
             self._gizmo.position = item.pose.position
 
-    def _orientation(self, pose: Pose) -> np.ndarray:
-        return quaternion(pose.R_world_object)
-
     def _add(self, pose: Pose, scale: float) -> viser.TransformControlsHandle:
-        gizmo = self._room.server.scene.add_transform_controls(
+        gizmo = self._guest.client.scene.add_transform_controls(
             NODE,
             scale=scale,
             line_width=3.0,
-            active_axes=(True, True, self.mode == "free"),
+            active_axes=(True, True, self._guest.settings.gizmo == "free"),
             depth_test=False,
             opacity=0.85,
-            wxyz=self._orientation(pose),
+            wxyz=quaternion(pose.R_world_object),
             position=pose.position,
         )
 
         async def dragged(event: viser.TransformControlsEvent) -> None:
-            wxyz, position = np.array(event.target.wxyz), np.array(event.target.position)
-            client, phase = event.client_id, event.phase
-            key = "gizmo" if phase == "update" else None
-            self._room.post(client, lambda: self._dragged(phase, wxyz, position), key=key)
+            wxyz, position, phase = np.array(event.target.wxyz), np.array(event.target.position), event.phase
+            self._guest.post(lambda: self._turned(phase, wxyz, position), key="gizmo" if phase == "update" else None)
 
         gizmo.on_update(dragged)
         return gizmo
 
     def _remove(self) -> None:
-        if self._gizmo is not None and self._drag is None:
+        if self._gizmo is not None and not isinstance(self._drag, Turn):
             self._gizmo.remove()
             self._gizmo = self._gizmo_key = None
 
-    def _dragged(self, phase: str, wxyz: np.ndarray, position: np.ndarray) -> None:
-        item = self._room.document.selected
+    def _turned(self, phase: str, wxyz: np.ndarray, position: np.ndarray) -> None:
+        item = self._guest.selected
         if self._drag is None:
-            if item is None or phase == "end":
+            if item is None or phase != "start":
                 return
-            self._drag = Drag(item.id, self._room.scene)
+            self._drag = Turn(item.id, self._room.scene)
         drag = self._drag
-        if not drag.scene.has_object(drag.object_id):
-            self._drag = None
+        if not isinstance(drag, Turn):
             return
         start = drag.scene.object(drag.object_id)
         pose = Pose(rotation(wxyz), position, start.pose.scale)
+        if self._guest.settings.snap:
+            pose = snapped_pose(start.pose, pose)
         if phase != "end":
             moved = edits.move(drag.scene, drag.object_id, pose)
-            self._room.preview({o.id: o.pose for o in moved.objects if o is not drag.scene.object(o.id)})
+            poses = {o.id: o.pose for o in moved.objects if o is not drag.scene.object(o.id)}
+            self._show(drag.scene, poses, moved)
             return
         self._drag = None
-        if pose == start.pose:
+        self._end_collisions()
+        if pose == start.pose or not self._room.scene.has_object(drag.object_id):
+            self._room.refresh()
             return
-        self._room.edit(f"move {start.label}", lambda scene: edits.move(scene, drag.object_id, pose))
+        self._room.edit(f"move {start.label}", lambda s: edits.move(s, drag.object_id, pose), by=self._guest)
 
     def cancel(self) -> bool:
-        """Put back what is being dragged; False when nothing is."""
-        if self._drag is None:
+        """Put back what is being dragged, or stop waiting for a click; False when there is nothing to stop."""
+        if self._drag is None and self._guest.doing is None:
             return False
         self._drag = None
+        self._guest.doing = None
+        self._end_collisions()
         self._room.refresh()
-        self.refresh()
         return True
-
-    def _picked(self, object_id: str, event: viser.SceneNodePointerEvent[Any]) -> None:
-        self._last_pick = (event.client_id, event.screen_pos)
-        if event.modifier is None:
-            self._room.post(event.client_id, lambda: self._room.select((object_id,)))
-        else:
-            self._room.post(event.client_id, lambda: self._room.toggle(object_id))

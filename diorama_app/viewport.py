@@ -1,13 +1,13 @@
 """The scene on the page: differences between what is shown and what should be become viser nodes.
 
-Every object is a frame `/objects/<n>` in its pose, with the mesh, outline and name tag as children. Nodes belong to
-the server, so that all browsers see the same and a reload shows it again.
+Every object is a frame `/objects/<n>` in its pose, with the mesh as a child (`marks` adds what each browser sees).
+Nodes belong to the server, so that all browsers see the same and a reload shows it again.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,13 +15,9 @@ import viser
 import viser.transforms as vtf
 from jaxtyping import Float, UInt8
 
+from diorama_app.marks import remove_quietly
 from diorama_app.shapes import ShapeBytes, plane_glb, plane_triangles
-from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, box_corners
-
-SELECTED_COLOUR = (255, 122, 26)
-LOCKED_COLOUR = (120, 130, 150)
-OUTLINE_MARGIN_M = 0.012
-BOX_EDGES = [(a, a | bit) for bit in (1, 2, 4) for a in range(8) if not a & bit]
+from diorama_core.scene.types import Plane, Pose, Scene, SceneObject
 
 Appearance = tuple[str, tuple[float, float, float] | None]
 Pick = Callable[[str, Any], None]
@@ -37,25 +33,25 @@ class _Shown:
     mesh: viser.GlbHandle | None = None
     version: int = 0
     appearance: Appearance | None = None
-    marks: list[viser.SceneNodeHandle] = field(default_factory=list)
-    marked: tuple[Any, ...] = ()
 
 
 class Viewport:
     """What all browsers see. Used from the desk's thread only."""
 
-    def __init__(self, server: viser.ViserServer, shapes: ShapeBytes, *, pick: Pick, later: Later) -> None:
+    def __init__(self, server: viser.ViserServer, shapes: ShapeBytes, *, pick: Pick, drag: Pick, later: Later) -> None:
         """Set up an empty view.
 
         Args:
             server: the page.
             shapes: where GLB bytes come from.
             pick: told (object id, click event) from viser's event loop when an object is clicked.
+            drag: told (object id, drag event) likewise while an object is dragged.
             later: runs a task on the desk a moment later (an old mesh goes when the new one is loaded).
         """
         self._server = server
         self._shapes = shapes
         self._pick = pick
+        self._drag = drag
         self._later = later
         self._objects: dict[str, _Shown] = {}
         self._planes: dict[str, tuple[Plane, viser.SceneNodeHandle]] = {}
@@ -78,16 +74,14 @@ class Viewport:
             )
             scene.add_light_ambient("/lights/around", color=(255, 250, 244), intensity=0.55)
 
-    def show(
-        self, scene: Scene, selection: tuple[str, ...], textures: Mapping[str, UInt8[np.ndarray, "h w 3"]]
-    ) -> None:
-        """Make the page show this scene with this selection, changing only what differs."""
+    def show(self, scene: Scene, textures: Mapping[str, UInt8[np.ndarray, "h w 3"]]) -> None:
+        """Make the page show this scene, changing only what differs."""
         with self._server.atomic():
             self._show_planes(scene, textures)
             for gone in [i for i in self._objects if not scene.has_object(i)]:
                 self._objects.pop(gone).frame.remove()
             for item in scene.objects:
-                self._show_object(item, selected=item.id in selection, last=selection[-1:] == (item.id,))
+                self._show_object(item)
 
     def preview(self, poses: Mapping[str, Pose]) -> None:
         """Put objects into poses that are not part of the document (a drag, a running optimiser)."""
@@ -96,6 +90,12 @@ class Viewport:
                 shown = self._objects.get(object_id)
                 if shown is not None:
                     self._set_pose(shown, pose)
+
+    def preview_item(self, item: SceneObject) -> None:
+        """Show an object as it would be; the next `show` takes it back."""
+        with self._server.atomic():
+            if item.id in self._objects:
+                self._show_object(item)
 
     def node_name(self, object_id: str) -> str | None:
         """The frame that carries an object, for tests and for gizmos."""
@@ -130,7 +130,7 @@ class Viewport:
             receive_shadow=0.25,
         )
 
-    def _show_object(self, item: SceneObject, *, selected: bool, last: bool) -> None:
+    def _show_object(self, item: SceneObject) -> None:
         shown = self._objects.get(item.id)
         if shown is None:
             frame = self._server.scene.add_frame(self._fresh_name("/objects"), show_axes=False)
@@ -140,7 +140,6 @@ class Viewport:
             self._replace_mesh(shown, item)
         self._set_pose(shown, item.pose)
         shown.frame.visible = not item.hidden
-        self._mark(shown, item, selected=selected, last=last)
 
     def _replace_mesh(self, shown: _Shown, item: SceneObject) -> None:
         # A node whose bytes change vanishes until the browser has parsed them, so the old one stays for a moment.
@@ -160,8 +159,14 @@ class Viewport:
         mesh.on_click(clicked)
         for modifier in ("shift", "cmd/ctrl"):
             mesh.on_click(modifier=modifier)(clicked)
+
+        async def dragged(event: viser.SceneNodeDragEvent[Any]) -> None:
+            self._drag(object_id, event)
+
+        for held in (None, "alt"):
+            mesh.on_drag("left", modifier=held)(dragged)
         if old is not None:
-            self._later(lambda: _remove_quietly(old))
+            self._later(lambda: remove_quietly(old))
 
     def _set_pose(self, shown: _Shown, pose: Pose) -> None:
         shown.frame.wxyz = quaternion(pose.R_world_object)
@@ -169,34 +174,6 @@ class Viewport:
         scale = tuple(float(s) for s in pose.scale)
         if shown.mesh is not None and shown.mesh.scale != scale:
             shown.mesh.scale = scale
-
-    def _mark(self, shown: _Shown, item: SceneObject, *, selected: bool, last: bool) -> None:
-        wanted = (item.label, item.locked, last, tuple(item.size_m.round(5))) if selected else ()
-        if wanted == shown.marked:
-            return
-        for mark in shown.marks:
-            _remove_quietly(mark)
-        shown.marks = self._outline(shown, item, last=last) if selected else []
-        shown.marked = wanted
-
-    def _outline(self, shown: _Shown, item: SceneObject, *, last: bool) -> list[viser.SceneNodeHandle]:
-        corners = box_corners(item.size_m + 2 * OUTLINE_MARGIN_M)
-        colour = LOCKED_COLOUR if item.locked else SELECTED_COLOUR
-        lines = self._server.scene.add_line_segments(
-            self._fresh_name(shown.frame.name + "/outline"),
-            points=np.array([[corners[a], corners[b]] for a, b in BOX_EDGES]),
-            colors=colour,
-            thickness=3.0 if last else 2.0,
-            thickness_units="screen",
-        )
-        tag = self._server.scene.add_label(
-            self._fresh_name(shown.frame.name + "/tag"),
-            text=item.label[:40] + (" (locked)" if item.locked else ""),
-            position=(0.0, 0.0, float(item.size_m[2]) / 2 + 0.06),
-            anchor="bottom-center",
-            font_screen_scale=1.0,
-        )
-        return [lines, tag]
 
     def _fresh_name(self, stem: str) -> str:
         self._names += 1
@@ -220,10 +197,3 @@ def reduced(picture: UInt8[np.ndarray, "h w 3"], longest: int) -> UInt8[np.ndarr
     image = Image.fromarray(picture)
     image.thumbnail((longest, longest), Image.Resampling.LANCZOS)
     return np.asarray(image)
-
-
-def _remove_quietly(handle: Any) -> None:
-    try:
-        handle.remove()
-    except Exception:  # its parent went first, and took it along
-        return

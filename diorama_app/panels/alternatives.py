@@ -1,57 +1,126 @@
-"""The selected object's ranked alternatives as pictures; a click swaps."""
+"""Other shapes for the selected object: its ranked alternatives, or the whole library by words; point to preview."""
 
 from __future__ import annotations
 
 import viser
 
-from diorama_app import editing
-from diorama_app.page import Action, LiveHtml, text
+from diorama_app.guest import Guest, SizeMode
+from diorama_app.page import Action, LiveHtml, button, text
+from diorama_app.panels.fields import on_change, show_if, show_value
 from diorama_app.room import Room
+from diorama_app.swapping import SIZE_MODES, alike, preview_swap, swap
+from diorama_app.units import format_size
 from diorama_core.errors import LibraryError
+from diorama_core.library.record import Shape
+from diorama_core.library.search import search
 from diorama_core.scene.types import Candidate, SceneObject
 
 SHOWN = 12
+SIZE_NAMES: dict[SizeMode, str] = {
+    "as found": "As in photo",
+    "same box": "Same box",
+    "in proportion": "In proportion",
+    "catalogue": "Its own",
+}
+SIZE_HINTS: dict[SizeMode, str] = {
+    "as found": "The size the photo says; evenly scaled where it says nothing",
+    "same box": "Stretched to the size of what it replaces",
+    "in proportion": "Scaled evenly to about the size of what it replaces",
+    "catalogue": "The size it has in the library",
+}
 
 
 class Alternatives:
-    """A grid of thumbnails with what they are and how large."""
+    """A search field, how to take size and colour, and a grid of thumbnails."""
 
-    def __init__(self, gui: viser.GuiApi, room: Room) -> None:
-        self._room = room
+    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
+        self._guest = guest
+        self._options = LiveHtml(gui, self._act)
+        self._words = gui.add_text("Swap for", "", visible=False, hint="Any words; empty shows its own alternatives")
+        on_change(self._words, lambda v: guest.post(self.refresh, key="swap search"))
         self._html = LiveHtml(gui, self._act)
+        self._of: str | None = None
 
     def refresh(self) -> None:
         """Draw the alternatives of the selected object."""
-        item = self._room.document.selected
+        item = self._guest.selected
+        show_if(item is not None, self._words)
         if item is None:
+            self._options.show("")
             self._html.show("")
-        elif not item.candidates:
-            self._html.show(
-                "<h4>Alternatives</h4><p class='dim'>None of its own. Find others in the <b>Library</b> tab.</p>"
-            )
-        else:
-            tiles = "".join(self._tile(item, i, c) for i, c in enumerate(item.candidates[:SHOWN]))
-            self._html.show(
-                f'<h4>Alternatives — click to swap <span class="dim">(cm)</span></h4><div class="grid">{tiles}</div>'
-            )
+            return
+        if self._of != item.id:
+            self._of = item.id
+            show_value(self._words, "")
+        self._options.show(self._choices(item))
+        words = self._words.value.strip()
+        self._html.show(self._found(item, words) if words else self._own(item))
 
-    def _tile(self, item: SceneObject, index: int, candidate: Candidate) -> str:
-        current = candidate.shape_id == item.shape_id
-        size = [e * s for e, s in zip(candidate.shape_size_m, candidate.pose.scale, strict=True)]
-        picture = self._room.thumbnails.html(candidate.shape_id)
-        name = text(shape_caption(self._room, candidate.shape_id))
-        about = f"{100 * size[1]:.0f} × {100 * size[0]:.0f} × {100 * size[2]:.0f} "
+    def _choices(self, item: SceneObject) -> str:
+        settings = self._guest.settings
+        sizes = "".join(
+            button(SIZE_NAMES[m], "size", m, title=SIZE_HINTS[m], on=settings.size_mode == m) for m in SIZE_MODES
+        )
+        count = len(alike(self._guest.room.scene, item))
+        same = button(f"All {count} alike", "alike", title="Swap every one of this shape", on=settings.all_alike)
+        keep = button("Keep colour", "keep", title="In the colour of what it replaces", on=settings.keep_colour)
         return (
-            f'<button type="button" class="tile {"on" if current else ""}" data-do="swap" data-arg="{index}" '
-            f'title="{name}&#10;{about} cm (width, depth, height)&#10;score {candidate.score:.2f}">'
-            f"{picture}<b>{name}</b><small>{about}</small>"
-            f"<small>{'in use' if current else f'score {candidate.score:.2f}'}</small></button>"
+            f'<h4>Swap</h4><div class="bar tight">{sizes}</div>'
+            f'<div class="bar tight">{keep}{same if count > 1 else ""}</div>'
+        )
+
+    def _own(self, item: SceneObject) -> str:
+        if not item.candidates:
+            return "<p class='dim'>It has no alternatives of its own. Search for others above.</p>"
+        tiles = "".join(self._candidate(item, c) for c in item.candidates[:SHOWN])
+        unit = "" if self._guest.settings.unit == "ft-in" else f" ({self._guest.settings.unit})"
+        return f'<h4>Alternatives — click to swap <span class="dim">{unit}</span></h4><div class="grid">{tiles}</div>'
+
+    def _found(self, item: SceneObject, words: str) -> str:
+        found = search(self._guest.room.library, words, k=SHOWN)
+        if not found:
+            return f"<p class='dim'>Nothing in the library is like “{text(words)}”. Try a plainer word.</p>"
+        return f'<div class="grid">{"".join(self._shape(item, s) for s in found)}</div>'
+
+    def _candidate(self, item: SceneObject, candidate: Candidate) -> str:
+        size = [e * s for e, s in zip(candidate.shape_size_m, candidate.pose.scale, strict=True)]
+        return self._tile(item, candidate.shape_id, size, f"score {candidate.score:.2f}")
+
+    def _shape(self, item: SceneObject, shape: Shape) -> str:
+        return self._tile(item, shape.id, list(shape.size_m), shape.category)
+
+    def _tile(self, item: SceneObject, shape_id: str, size: list[float], about: str) -> str:
+        current = shape_id == item.shape_id
+        name, key = text(shape_caption(self._guest.room, shape_id)), text(shape_id)
+        shown = format_size(size[1], size[0], size[2], self._guest.settings.unit)
+        return (
+            f'<button type="button" class="tile {"on" if current else ""}" data-do="swap" data-arg="{key}" '
+            f'data-peek="{key}" title="{name}&#10;{text(shown)} (width, depth, height)&#10;{text(about)}">'
+            f"{self._guest.room.thumbnails.html(shape_id)}<b>{name}</b><small>{text(shown)}</small>"
+            f"<small>{'in use' if current else text(about)}</small></button>"
         )
 
     def _act(self, action: Action) -> None:
-        if action.do == "swap" and action.arg.isdigit():
-            room = self._room
-            room.post(action.client_id, lambda: editing.swap_candidate(room, room.need_selected(), int(action.arg)))
+        guest = self._guest
+        if action.do == "swap":
+            guest.post(lambda: swap(guest, guest.need_selected(), action.arg))
+        elif action.do == "peek":
+            guest.post(lambda: self._peek(action.arg), key="peek")
+        elif action.do == "size" and action.arg in SIZE_MODES:
+            guest.post(lambda: guest.change_settings(size_mode=action.arg))
+        elif action.do == "alike":
+            guest.post(lambda: guest.change_settings(all_alike=not guest.settings.all_alike))
+        elif action.do == "keep":
+            guest.post(lambda: guest.change_settings(keep_colour=not guest.settings.keep_colour))
+
+    def _peek(self, shape_id: str) -> None:
+        guest = self._guest
+        if not guest.selection:
+            return
+        if shape_id:
+            preview_swap(guest, guest.need_selected(), shape_id)
+        else:
+            guest.room.refresh()
 
 
 def shape_caption(room: Room, shape_id: str) -> str:

@@ -6,22 +6,22 @@ from collections.abc import Callable
 from typing import Any
 
 
-def on_change(handle: Any, act: Callable[[Any, int], None]) -> None:
-    """Call `act(value, client id)` when a person changes a field; not when the program does."""
+def on_change(handle: Any, act: Callable[[Any], None]) -> None:
+    """Call `act(value)` from the event loop when the person changes a field; not when the program does."""
 
     async def changed(event: Any) -> None:
         if event.client_id is not None:
-            act(event.target.value, event.client_id)
+            act(event.target.value)
 
     handle.on_update(changed)
 
 
-def on_press(handle: Any, act: Callable[[int], None]) -> None:
-    """Call `act(client id)` when a person presses a button."""
+def on_press(handle: Any, act: Callable[[], None]) -> None:
+    """Call `act()` from the event loop when the person presses a button."""
 
     async def pressed(event: Any) -> None:
         if event.client_id is not None:
-            act(event.client_id)
+            act()
 
     handle.on_click(pressed)
 
@@ -32,11 +32,30 @@ def show_value(handle: Any, value: Any) -> None:
         handle.value = value
 
 
+def show_label(handle: Any, label: str) -> None:
+    """Change what a field or a button is called, if it is called something else."""
+    if handle.label != label:
+        handle.label = label
+
+
+def enable(handle: Any, possible: bool) -> None:
+    """Grey out what cannot be used now."""
+    if handle.disabled == possible:
+        handle.disabled = not possible
+
+
 def show_if(visible: bool, *handles: Any) -> None:
     """Show or hide fields, touching only those that differ."""
     for handle in handles:
         if handle.visible != visible:
             handle.visible = visible
+
+
+def show_options(handle: Any, options: tuple[str, ...], value: str) -> None:
+    """Offer these choices in a drop-down, with this one chosen."""
+    if tuple(handle.options) != options:
+        handle.options = options
+    show_value(handle, value if value in options else options[0])
 
 
 def unique_names(names: list[str]) -> list[str]:

@@ -1,45 +1,46 @@
-"""The whole library: search by words, insert, or swap the selected object for what is found."""
+"""The whole library: search by words, insert where one looks, or place by a click in the view."""
 
 from __future__ import annotations
 
 import viser
 
-from diorama_app import editing
+from diorama_app.guest import Guest
+from diorama_app.inserting import insert_shape, start_placing
 from diorama_app.page import Action, LiveHtml, button, text
 from diorama_app.panels.fields import on_change
-from diorama_app.room import Room
+from diorama_app.units import format_size
 from diorama_core.library.record import Shape
 from diorama_core.library.search import search
 
-SHOWN = 18
+SHOWN = 24
 
 
 class LibraryPanel:
     """A search field and a grid of what was found."""
 
-    def __init__(self, gui: viser.GuiApi, room: Room) -> None:
-        self._room = room
+    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
+        self._guest = guest
         self._words = gui.add_text("Search", "", hint="For example: armchair, round table, blue")
-        on_change(self._words, lambda value, client: room.post(client, self.refresh, key="search"))
+        on_change(self._words, lambda v: guest.post(self.refresh, key="search"))
         self._html = LiveHtml(gui, self._act)
 
     def refresh(self) -> None:
         """Draw what was found."""
         words = self._words.value.strip()
         found = self._found(words)
-        selected = self._room.document.selected
+        selected = self._guest.selected
         if not found:
             self._html.show(f"<p class='dim'>Nothing in the library is like “{text(words)}”. Try a plainer word.</p>")
             return
-        swap = f"Swap the selected {selected.label} for it" if selected is not None else ""
-        tiles = "".join(self._tile(shape, swap) for shape in found)
-        advice = "Insert puts it on the floor you look at" + (
-            f", or on the selected {text(selected.label)}." if selected is not None else "."
+        tiles = "".join(self._tile(shape) for shape in found)
+        where = "on the floor you look at" + (f", or on the selected {text(selected.label)}" if selected else "")
+        self._html.show(
+            f'<p class="dim"><b>Insert</b> puts it {where}; <b>Place</b> waits for your click in the view.</p>'
+            f'<div class="grid">{tiles}</div>'
         )
-        self._html.show(f'<p class="dim">{advice}</p><div class="grid">{tiles}</div>')
 
     def _found(self, words: str) -> list[Shape]:
-        library = self._room.library
+        library = self._guest.room.library
         if not words:
             firsts: dict[str, Shape] = {}
             for shape in library.shapes():
@@ -47,26 +48,22 @@ class LibraryPanel:
             return list(firsts.values())
         return list(search(library, words, k=SHOWN))
 
-    def _tile(self, shape: Shape, swap: str) -> str:
+    def _tile(self, shape: Shape) -> str:
         size = shape.size_m
         name = text(shape.caption or shape.category)
+        about = text(format_size(size[1], size[0], size[2], self._guest.settings.unit))
         return (
-            f'<div class="tile" title="{name}&#10;{size[1]:.2f} × {size[0]:.2f} × {size[2]:.2f} m">'
-            f"{self._room.thumbnails.html(shape.id)}<b>{name}</b>"
+            f'<div class="tile" title="{name}&#10;{about}">'
+            f"{self._guest.room.thumbnails.html(shape.id)}<b>{name}</b><small>{about}</small>"
             '<div class="bar" style="margin:4px 0 0 0">'
             + button("Insert", "insert", shape.id, title=f"Insert: {shape.caption}")
-            + (button("Swap", "swap", shape.id, title=swap) if swap else "")
+            + button("Place", "place", shape.id, title="Then click where it should stand")
             + "</div></div>"
         )
 
     def _act(self, action: Action) -> None:
-        room = self._room
-
-        def insert() -> None:
-            view = room.views.get(action.client_id)
-            editing.insert_shape(room, action.arg, None if view is None else view.looked_at)
-
+        guest = self._guest
         if action.do == "insert":
-            room.post(action.client_id, insert)
-        elif action.do == "swap":
-            room.post(action.client_id, lambda: editing.swap_shape(room, room.need_selected(), action.arg))
+            guest.post(lambda: insert_shape(guest, action.arg))
+        elif action.do == "place":
+            guest.post(lambda: start_placing(guest, action.arg))

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import viser
 
-from diorama_app import work
-from diorama_app.page import LiveHtml, text
-from diorama_app.panels.fields import on_press, show_if
-from diorama_app.room import Room
-from diorama_app.work import LayoutRun
+from diorama_app.arrangements import arrangement_count, switch_arrangement
+from diorama_app.guest import Guest
+from diorama_app.layout_run import LayoutRun
+from diorama_app.optimising import optimise, put_back, show_before
+from diorama_app.page import Action, LiveHtml, button, text
+from diorama_app.panels.fields import enable, on_press, show_if
 
 RECIPES = {"Tidy up (feasible)": "feasible", "As in the paper": "paper", "All in one": "all-in-one"}
 COLOURS = ("#2f6fd6", "#d6542f", "#269660", "#a050c8", "#c89614", "#149696", "#7a5a3a", "#808080")
@@ -29,50 +30,89 @@ FIGURES = {
 
 
 class Optimiser:
-    """Recipe, start, curves, report."""
+    """Recipe, what may move, start, curves, report, whole-scene alternatives."""
 
-    def __init__(self, gui: viser.GuiApi, room: Room) -> None:
-        self._room = room
+    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
+        self._guest = guest
         self._gui = gui
         gui.add_markdown("Objects settle on their supports, out of each other and into the room. Locked ones stay.")
         self._recipe = gui.add_dropdown("Recipe", list(RECIPES), hint="How the layout is found")
         self._start = gui.add_button("Optimise layout", hint="One undo step; Cancel puts everything back")
-        on_press(self._start, self._started)
+        self._start_some = gui.add_button(
+            "Optimise selection", color="gray", hint="Only what is selected (and what stands on it) moves"
+        )
+        on_press(self._start, lambda: self._started(some=False))
+        on_press(self._start_some, lambda: self._started(some=True))
+        self._result = LiveHtml(gui, self._act)
         self._folder = gui.add_folder(None)
         self._plot: viser.GuiUplotHandle | None = None
         self._names: tuple[str, ...] = ()
-        self._run: LayoutRun | None = None
         self._report = LiveHtml(gui)
+        self._arrangements = LiveHtml(gui, self._act)
 
     def refresh(self) -> None:
-        """Allow starting when nothing runs; show the last report."""
-        busy = self._room.jobs.status is not None or not self._room.scene.objects
-        if self._start.disabled != busy:
-            self._start.disabled = busy
-        self._report.show("" if self._run is None else _report(self._run))
+        """Allow starting when nothing runs; show the curves and the last report."""
+        room, run = self._guest.room, self._guest.room.layout_run
+        idle = room.jobs.status is None and bool(room.scene.objects)
+        enable(self._start, idle)
+        enable(self._start_some, idle and bool(self._guest.selection))
+        self._draw(run)
+        self._result.show(_choice(run) if run is not None and run.final is not None else "")
+        self._report.show("" if run is None else _report(run))
+        self._arrangements.show(self._others() if idle else "")
 
-    def _started(self, client_id: int) -> None:
-        name = RECIPES[self._recipe.value]
+    def _started(self, *, some: bool) -> None:
+        name, guest = RECIPES[self._recipe.value], self._guest
 
         def start() -> None:
-            self._run = work.optimise(self._room, name, self._show)
+            optimise(guest, name, guest.need_selection() if some else ())
 
-        self._room.post(client_id, start)
+        guest.post(start)
 
-    def _show(self, run: LayoutRun) -> None:
-        self._run = run
-        self._draw(run)
-        self.refresh()
+    def _others(self) -> str:
+        count = arrangement_count(self._guest.room.scene)
+        if count < 2:
+            return ""
+        buttons = "".join(
+            button(str(k + 1), "arrangement", k, title="Every unlocked object in its next best alternative")
+            for k in range(count)
+        )
+        return (
+            '<h4>Arrangements</h4><p class="dim">The whole room in its best, second best… shapes. Lock what you like, '
+            f'switch, and lock more.</p><div class="bar tight">{buttons}</div>'
+        )
 
-    def _draw(self, run: LayoutRun) -> None:
-        if len(run.times_s) < 2:
+    def _act(self, action: Action) -> None:
+        guest, room = self._guest, self._guest.room
+        if action.do == "before":
+            guest.post(lambda: show_before(room, True))
+        elif action.do == "after":
+            guest.post(lambda: show_before(room, False))
+        elif action.do == "back":
+            guest.post(lambda: put_back(guest))
+        elif action.do == "keep":
+            guest.post(self._keep)
+        elif action.do == "arrangement" and action.arg.isdigit():
+            guest.post(lambda: switch_arrangement(guest, int(action.arg)))
+
+    def _keep(self) -> None:
+        room = self._guest.room
+        if room.layout_run is not None and room.layout_run.showing_before:
+            show_before(room, False)
+        room.layout_run = None
+        room.refresh_panels()
+
+    def _draw(self, run: LayoutRun | None) -> None:
+        if run is None or len(run.times_s) < 2:
+            if self._plot is not None:
+                show_if(False, self._plot)
             return
         names = tuple(list(run.costs)[: len(COLOURS)])
         step = max(1, len(run.times_s) // CURVE_POINTS)
         data = tuple(np.asarray(v, dtype=np.float64)[::step] for v in (run.times_s, *(run.costs[n] for n in names)))
         if self._plot is None or names != self._names:
             self._add_plot(names, data)
-        else:
+        elif len(data[0]) != len(self._plot.data[0]) or data[0][-1] != self._plot.data[0][-1]:
             self._plot.data = data
         assert self._plot is not None
         show_if(True, self._plot)
@@ -88,6 +128,17 @@ class Optimiser:
                 data, tuple(series), title="Costs", height=170, scales={"x": viser.uplot.Scale(time=False, auto=True)}
             )
         self._names = names
+
+
+def _choice(run: LayoutRun) -> str:
+    return (
+        '<div class="bar tight">'
+        + button("Before", "before", on=run.showing_before, title="Show where everything was")
+        + button("After", "after", on=not run.showing_before, title="Show where it is now")
+        + button("Keep", "keep", title="Put this comparison away")
+        + button("Put back", "back", title="Take the optimisation back")
+        + "</div>"
+    )
 
 
 def _report(run: LayoutRun) -> str:

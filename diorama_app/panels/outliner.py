@@ -1,15 +1,19 @@
-"""The tree of what stands on what; a click selects, the two small buttons lock and hide."""
+"""The tree of what stands on what: click selects, drag puts a thing on another, buttons lock and hide."""
 
 from __future__ import annotations
 
 import zlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import viser
 
 from diorama_app import editing
-from diorama_app.page import Action, LiveHtml, text
+from diorama_app.checks import UNSURE
+from diorama_app.guest import Guest
+from diorama_app.page import Action, LiveHtml, button, text
 from diorama_app.panels.toolbar import title_bar
-from diorama_app.room import Room
+from diorama_core.errors import EditRefused
 from diorama_core.scene.types import Plane, Scene, SceneObject
 
 EYE = (
@@ -23,85 +27,137 @@ LOCK = (
 STRUCK = '<path d="M4 4l16 16"/>'
 CLOSED, OPEN = "M8 11V8a4 4 0 0 1 8 0v3", "M8 11V8a4 4 0 0 1 7.5-2"
 
+Cursors = Sequence[tuple[str, tuple[int, int, int], tuple[str, ...]]]
+
+
+@dataclass(frozen=True)
+class _Tree:
+    """Everything a row may show."""
+
+    scene: Scene
+    selection: tuple[str, ...]
+    badges: Mapping[str, tuple[str, ...]]
+    others: Cursors = ()
+
 
 class Outliner:
     """Planes and objects, nested by support edges."""
 
-    def __init__(self, gui: viser.GuiApi, room: Room) -> None:
-        self._room = room
+    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
+        self._guest = guest
         self._html = LiveHtml(gui, self._act)
 
     def refresh(self) -> None:
         """Draw the tree of the current scene."""
-        self._html.show(f"<p>{title_bar(self._room)}</p>" + _tree(self._room.scene, self._room.document.selection))
+        guest, room = self._guest, self._guest.room
+        others = [(g.name, g.colour, g.selection) for g in room.guests.values() if g is not guest]
+        self._html.show(f"<p>{title_bar(guest)}</p>" + tree_html(room.scene, guest.selection, room.badges, others))
 
     def _act(self, action: Action) -> None:
-        room = self._room
+        self._guest.post(lambda: self._do(action))
 
-        def do() -> None:
-            if not room.scene.has_object(action.arg):
-                return
-            item = room.scene.object(action.arg)
-            if action.do == "select" and action.add:
-                room.toggle(item.id)
-            elif action.do == "select":
-                room.select((item.id,))
-            elif action.do == "lock":
-                editing.set_locked(room, item.id, not item.locked)
-            elif action.do == "hide":
-                editing.set_hidden(room, item.id, not item.hidden)
-
-        room.post(action.client_id, do)
+    def _do(self, action: Action) -> None:
+        guest, scene = self._guest, self._guest.room.scene
+        if action.do == "drop":
+            child, parent = action.pair
+            if not scene.has_object(child):
+                raise EditRefused("drag a row of the list onto another")
+            editing.attach(guest, child, parent)
+            return
+        if action.do == "wrong":
+            guest.select(guest.room.badges)
+            return
+        if not scene.has_object(action.arg):
+            return
+        item = scene.object(action.arg)
+        if action.do == "select" and action.add:
+            guest.toggle(item.id)
+        elif action.do == "select":
+            guest.select((item.id,))
+        elif action.do == "lock":
+            editing.set_locked(guest, (item.id,), not item.locked)
+        elif action.do == "hide":
+            editing.set_hidden(guest, (item.id,), not item.hidden)
 
 
 def plane_name(scene: Scene, plane: Plane) -> str:
     """What people call a plane: walls are numbered."""
-    same = scene.architecture.by_role(plane.role)
-    number = f" {[p.id for p in same].index(plane.id) + 1}" if len(same) > 1 else ""
-    return plane.role.capitalize() + number
+    return editing.supporter_name(scene, plane.id).capitalize()
 
 
-def _tree(scene: Scene, selection: tuple[str, ...]) -> str:
+def tree_html(
+    scene: Scene,
+    selection: tuple[str, ...],
+    badges: Mapping[str, tuple[str, ...]] | None = None,
+    others: Cursors = (),
+) -> str:
+    """The rows, nested; every name escaped."""
     if not scene.objects and not scene.architecture.planes:
         return '<div class="card">Nothing here yet. Upload a photo of a room in the <b>Photo</b> panel.</div>'
-    parts = []
+    tree = _Tree(scene, selection, badges or {}, others)
+    parts = [_problems(tree)]
     for plane in scene.architecture.planes:
         children = scene.children_of(plane.id)
         if children or plane.role == "floor":
-            parts.append(_plane_row(scene, plane) + _children(scene, children, selection))
+            parts.append(_plane_row(scene, plane) + _children(tree, children))
     loose = [o.id for o in scene.objects if scene.support_of(o.id) is None]
     if loose:
         parts.append('<div class="row" style="cursor:default"><span class="dim name">Held up by nothing</span></div>')
-        parts.append(_children(scene, tuple(loose), selection))
+        parts.append(_children(tree, tuple(loose)))
     if not scene.objects:
         parts.append('<p class="dim">No furniture yet. Insert some from the <b>Library</b>.</p>')
     return "".join(parts)
 
 
-def _children(scene: Scene, ids: tuple[str, ...], selection: tuple[str, ...]) -> str:
+def _problems(tree: _Tree) -> str:
+    count = len(tree.badges)
+    if not count:
+        return ""
+    words = "1 object needs a look" if count == 1 else f"{count} objects need a look"
+    show = button("Select", "wrong", title="Select what collides, floats or is outside the room")
+    style = "padding:5px 9px;margin-bottom:6px"
+    return f'<div class="job card warn" style="{style}"><span class="words">⚠ {words}</span>{show}</div>'
+
+
+def _children(tree: _Tree, ids: tuple[str, ...]) -> str:
     rows = []
     for object_id in ids:
-        item = scene.object(object_id)
-        rows.append(_row(item, item.id in selection) + _children(scene, scene.children_of(object_id), selection))
+        item = tree.scene.object(object_id)
+        rows.append(_row(tree, item) + _children(tree, tree.scene.children_of(object_id)))
     return f'<div class="tree">{"".join(rows)}</div>' if rows else ""
 
 
 def _plane_row(scene: Scene, plane: Plane) -> str:
     name = text(plane_name(scene, plane))
-    return f'<div class="row" style="cursor:default"><span class="name dim">{name}</span></div>'
+    row = f'<div class="row" style="cursor:default" data-drop="{text(plane.id)}">'
+    return f'{row}<span class="name dim">{name}</span></div>'
 
 
-def _row(item: SceneObject, selected: bool) -> str:
+def _row(tree: _Tree, item: SceneObject) -> str:
     hue = zlib.crc32(item.category.encode()) % 360
     key = text(item.id)
+    cursors = "".join(
+        f'<span class="who" style="background:rgb{colour}" title="{text(name)}"></span>'
+        for name, colour, theirs in tree.others
+        if item.id in theirs
+    )
     return (
-        f'<div class="row {"on" if selected else ""} {"off" if item.hidden else ""}" data-do="select" data-arg="{key}">'
+        f'<div class="row {"on" if item.id in tree.selection else ""} {"off" if item.hidden else ""}" '
+        f'data-do="select" data-arg="{key}" data-grab="{key}" data-drop="{key}" draggable="true">'
         f'<span class="dot" style="background:hsl({hue} 45% 58%)"></span>'
-        f'<span class="name" title="{text(item.label)}">{text(item.label)}</span>'
+        f'<span class="name" title="{text(item.label)}">{text(item.label)}</span>{cursors}{_chips(tree, item)}'
         + _tool("lock", key, LOCK % (CLOSED if item.locked else OPEN), "Unlock" if item.locked else "Lock", item.locked)
         + _tool("hide", key, EYE % (STRUCK if item.hidden else ""), "Show" if item.hidden else "Hide", item.hidden)
         + "</div>"
     )
+
+
+def _chips(tree: _Tree, item: SceneObject) -> str:
+    chips = "".join(f'<span class="chip bad">{text(word)}</span>' for word in tree.badges.get(item.id, ()))
+    if item.box_px is not None and item.confidence < UNSURE:
+        sure = f"{100 * item.confidence:.0f}% sure of its place; compare it with the photo"
+        chips += f'<span class="chip" title="{sure}">unsure</span>'
+    return chips
 
 
 def _tool(do: str, key: str, icon: str, title: str, on: bool) -> str:

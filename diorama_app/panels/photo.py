@@ -12,12 +12,12 @@ from jaxtyping import UInt8
 from PIL import Image
 
 from diorama_app import work
-from diorama_app.actions import Views
 from diorama_app.drafts import Draft, boxes_json
+from diorama_app.guest import Guest
 from diorama_app.page import Action, LiveHtml, button, text
-from diorama_app.panels.fields import on_change, on_press, show_if, show_value
-from diorama_app.room import Room
+from diorama_app.panels.fields import enable, on_change, on_press, show_if, show_label, show_value
 from diorama_app.viewport import reduced
+from diorama_app.views import Views
 from diorama_core.artefacts import Box
 from diorama_core.errors import InputError
 from diorama_core.library.taxonomy import CATEGORIES
@@ -30,8 +30,8 @@ UPLOADS = {"photo": "Photo", "depth": "Depth (PNG, NPY)", "boxes": "Boxes (JSON)
 class PhotoPanel:
     """Uploads, the drawing board's controls, the list of boxes, and "Build scene"."""
 
-    def __init__(self, gui: viser.GuiApi, room: Room, views: Views) -> None:
-        self._room, self._views = room, views
+    def __init__(self, gui: viser.GuiApi, guest: Guest, views: Views) -> None:
+        self._guest, self._room, self._views = guest, guest.room, views
         self._picture_of: object = None
         self._picture = ""
         self._invitation = LiveHtml(gui)
@@ -44,18 +44,15 @@ class PhotoPanel:
             self._camera = gui.add_text("Camera", "", hint="fx,fy,cx,cy in pixels of the photo; empty: estimated")
             on_change(self._camera, self._camera_given)
         self._draw = gui.add_button("Draw boxes", color="blue", hint="Mark every piece of furniture with a rectangle")
-        on_press(self._draw, lambda client: room.post(client, lambda: self._toggle_board(client)))
+        on_press(self._draw, lambda: guest.post(self._toggle_board))
         names = [*COMMON, *sorted({c.name for c in CATEGORIES} - {*COMMON, "object"})]
         self._label = gui.add_dropdown("This is a", names, hint="What the next box (or the marked one) is")
         self._other = gui.add_text("or type", "", hint="Any other word; used instead of the list")
-        on_change(self._label, lambda value, client: room.post(client, lambda: self._labelled(value, listed=True)))
-        on_change(
-            self._other,
-            lambda value, client: room.post(client, lambda: self._labelled(value, listed=False), key="word"),
-        )
+        on_change(self._label, lambda value: guest.post(lambda: self._labelled(value, listed=True)))
+        on_change(self._other, lambda value: guest.post(lambda: self._labelled(value, listed=False), key="word"))
         self._list = LiveHtml(gui, self._act)
         self._build = gui.add_button("Build scene", color="green", hint="Makes a scene of the photo and its boxes")
-        on_press(self._build, lambda client: room.post(client, lambda: work.build(room, client)))
+        on_press(self._build, lambda: guest.post(lambda: work.build(guest)))
 
     @property
     def label(self) -> str:
@@ -69,13 +66,8 @@ class PhotoPanel:
         self._invitation.show(self._introduction(draft))
         show_if(has_photo, self._more, self._draw, self._label, self._other, self._build)
         self._list.show(_box_list(draft) if has_photo else "")
-        busy = self._room.jobs.status is not None or not draft.ready
-        if self._build.disabled != busy:
-            self._build.disabled = busy
-        drawing = any(view.drawing for view in self._room.views.values())
-        wanted = "Done drawing" if drawing else "Draw boxes"
-        if self._draw.label != wanted:
-            self._draw.label = wanted
+        enable(self._build, self._room.jobs.status is None and draft.ready)
+        show_label(self._draw, "Done drawing" if self._guest.view.drawing else "Draw boxes")
 
     # -- uploads ----------------------------------------------------------------------------------------------
 
@@ -84,11 +76,11 @@ class PhotoPanel:
 
         async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
             file = event.target.value
-            self._room.post(event.client_id, lambda: self._received(kind, file.name, file.content, event.client_id))
+            self._guest.post(lambda: self._received(kind, file.name, file.content))
 
         handle.on_upload(uploaded)
 
-    def _received(self, kind: str, name: str, content: bytes, client_id: int | None) -> None:
+    def _received(self, kind: str, name: str, content: bytes) -> None:
         draft = self._room.draft
         if kind == "photo":
             files: dict[str, bytes] = {"photo": content}
@@ -101,12 +93,12 @@ class PhotoPanel:
             made = replace(made, boxes=made.inputs.boxes)
         self._room.draft = made
         for warning in made.warnings[:3]:
-            self._room.notice(client_id, warning)
+            self._guest.notice(warning)
         if kind == "photo":
-            self._open_board(client_id)
+            self._open_board()
         else:
             self._redraw_boards()
-            self._room.notice(client_id, f"{UPLOADS[kind]}: {name} is read.", "good")
+            self._guest.notice(f"{UPLOADS[kind]}: {name} is read.", "good")
         self._room.refresh_panels()
 
     def _read(self, files: dict[str, bytes], draft: Draft) -> Draft:
@@ -125,29 +117,28 @@ class PhotoPanel:
         )
         return replace(draft, inputs=read.inputs, warnings=read.warnings, files=files, from_project=False)
 
-    def _camera_given(self, value: str, client_id: int) -> None:
+    def _camera_given(self, value: str) -> None:
         def read() -> None:
             if self._room.draft.photo is not None and (not value.strip() or value.count(",") == 3):
                 self._room.draft = self._read(self._room.draft.files, self._room.draft)
                 self._room.refresh_panels()
 
-        self._room.post(client_id, read, key="camera")
+        self._guest.post(read, key="camera")
 
     # -- the drawing board ------------------------------------------------------------------------------------
 
-    def _toggle_board(self, client_id: int) -> None:
-        if self._views.one(client_id).drawing:
-            self._views.room_view(client_id)
+    def _toggle_board(self) -> None:
+        if self._guest.view.drawing:
+            self._views.room_view(self._guest)
         else:
-            self._open_board(client_id)
+            self._open_board()
         self.refresh()
 
-    def _open_board(self, client_id: int | None) -> None:
+    def _open_board(self) -> None:
         photo = self._room.draft.photo
         if photo is None:
             raise InputError("there is no photo yet; upload one first")
-        room = self._room
-        self._views.one(client_id).open_board(photo.rgb, lambda box: room.post(client_id, lambda: self._drawn(box)))
+        self._guest.view.open_board(photo.rgb, lambda box: self._guest.post(lambda: self._drawn(box)))
         self._redraw_boards()
 
     def _drawn(self, box: Box) -> None:
@@ -168,8 +159,8 @@ class PhotoPanel:
 
     def _redraw_boards(self) -> None:
         draft = self._room.draft
-        for view in self._room.views.values():
-            view.show_boxes(draft.boxes, draft.highlighted)
+        for guest in self._room.guests.values():
+            guest.view.show_boxes(draft.boxes, draft.highlighted)
 
     def _act(self, action: Action) -> None:
         def do() -> None:
@@ -182,7 +173,7 @@ class PhotoPanel:
                 self._change(replace(draft, highlighted=None if draft.highlighted == index else index))
 
         if action.arg.isdigit():
-            self._room.post(action.client_id, do)
+            self._guest.post(do)
 
     # -- words ------------------------------------------------------------------------------------------------
 

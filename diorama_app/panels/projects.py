@@ -1,4 +1,4 @@
-"""Projects and files: what is open, recent ones, save, export."""
+"""Projects and files: what is open, recent ones, save, export, earlier versions."""
 
 from __future__ import annotations
 
@@ -10,12 +10,13 @@ from pathlib import Path
 import viser
 from PIL import Image
 
-from diorama_app import work
+from diorama_app import project_care, work
 from diorama_app.commands import CommandTable
+from diorama_app.guest import Guest
 from diorama_app.page import Action, LiveHtml, button, text
-from diorama_app.panels.fields import on_press
+from diorama_app.panels.fields import enable, on_press
 from diorama_app.room import Room
-from diorama_core.errors import DioramaError, EditRefused
+from diorama_core.errors import EditRefused
 from diorama_core.project.storage import Project
 
 RECENT = 12
@@ -24,42 +25,57 @@ RECENT = 12
 class Projects:
     """Save, export and the list of recent projects."""
 
-    def __init__(self, gui: viser.GuiApi, room: Room, commands: CommandTable) -> None:
-        self._room = room
+    def __init__(self, gui: viser.GuiApi, guest: Guest, commands: CommandTable) -> None:
+        self._guest = guest
         self._pictures: dict[tuple[str, float], str] = {}
-        self._status = LiveHtml(gui)
+        self._status = LiveHtml(gui, self._act)
         self._export = gui.add_button("Download GLB", hint="The whole room, for any 3D program")
-        on_press(self._export, lambda client: room.post(client, lambda: work.export_glb(room, client)))
+        on_press(self._export, lambda: guest.post(lambda: work.export_glb(guest)))
         save = gui.add_button("Save now", color="gray", hint=commands["save"].tooltip)
-        on_press(save, lambda client: room.post(client, lambda: commands["save"].run(client)))
+        on_press(save, lambda: guest.post(lambda: commands["save"].run(guest)))
         self._notes = LiveHtml(gui)
         self._list = LiveHtml(gui, self._act)
-        self._keys = LiveHtml(gui)
-        self._keys.show(_shortcuts(commands))
 
     def refresh(self) -> None:
         """Draw what is open and what else there is."""
-        room = self._room
-        busy = room.jobs.status is not None
-        if self._export.disabled != busy:
-            self._export.disabled = busy
+        room = self._guest.room
+        enable(self._export, room.jobs.status is None)
         if room.project is None:
             self._status.show('<div class="card">No project is open.</div>')
         else:
-            where = "Every change is saved as you make it."
-            self._status.show(f"<p><b>{text(room.project.name)}</b><br><span class='dim'>{where}</span></p>")
+            name = text(room.project.name)
+            earlier = "".join(
+                f'<div class="row"><span class="name">{text(when)}</span>'
+                + button("Go back to it", "version", file)
+                + "</div>"
+                for file, when in project_care.earlier_versions(room.project)
+            )
+            versions = f"<details><summary class='dim'>Earlier versions</summary>{earlier}</details>" if earlier else ""
+            self._status.show(
+                f'<input data-change="rename" value="{name}" aria-label="Project name" title="Type to rename">'
+                f"<p class='dim' style='margin-top:4px'>Every change is saved as you make it.</p>{versions}"
+            )
         notes = "".join(f"<p>{text(note[:1].upper() + note[1:])}.</p>" for note in room.notes[:6])
         self._notes.show(f'<h4>How this scene was made</h4><div class="card">{notes}</div>' if notes else "")
-        rows = "".join(self._row(folder) for folder in recent_projects(room.projects_dir)[:RECENT])
-        self._list.show(f"<h4>Recent projects</h4>{rows}" if rows else "")
+        rows = "".join(self._row(folder) for folder in project_care.recent_projects(room.projects_dir)[:RECENT])
+        undelete = ""
+        if room.binned is not None:
+            gone = text(room.binned.name.rsplit("-", 1)[0])
+            undelete = f'<div class="job card warn"><span class="words">{gone} is in the bin.</span>'
+            undelete += button("Bring back", "unbin") + "</div>"
+        self._list.show(f"<h4>Recent projects</h4>{undelete}{rows}" if rows or undelete else "")
 
     def _row(self, folder: Path) -> str:
-        current = self._room.project is not None and self._room.project.folder.resolve() == folder.resolve()
-        when = time.strftime("%d %b %H:%M", time.localtime(_touched(folder)))
+        room = self._guest.room
+        current = room.project is not None and room.project.folder.resolve() == folder.resolve()
+        when = time.strftime("%d %b %H:%M", time.localtime(project_care.touched(folder)))
+        name = text(project_care.name_of(folder))
         return (
             f'<div class="row {"on" if current else ""}" data-do="open" data-arg="{text(folder.name)}">'
-            f'{self._picture(folder)}<span class="name">{text(_name(folder))}<br><span class="dim">{when}</span></span>'
+            f'{self._picture(folder)}<span class="name">{name}<br><span class="dim">{when}</span></span>'
             + ("" if current else button("Open", "open", folder.name))
+            + button("⧉", "copy", folder.name, title="Duplicate")
+            + ("" if current else button("✕", "bin", folder.name, title="Move to the bin"))
             + "</div>"
         )
 
@@ -73,43 +89,47 @@ class Projects:
         return self._pictures[key]
 
     def _act(self, action: Action) -> None:
-        room = self._room
+        self._guest.post(lambda: self._do(action))
 
-        def open_it() -> None:
+    def _do(self, action: Action) -> None:
+        guest, room = self._guest, self._guest.room
+        if action.do == "rename" and room.project is not None:
+            project_care.rename_project(room.project, action.pair[1])
+            guest.toast(f"This project is now called {room.project.name}", False)
+        elif action.do == "version" and room.project is not None:
+            scene = project_care.earlier_scene(room.project, action.arg)
+            room.textures = {**room.textures, **room.project.textures(scene)}
+            room.commit("go back to an earlier version", scene, by=guest, selection=())
+        elif action.do == "unbin" and room.binned is not None:
+            project_care.out_of_bin(room.binned, room.projects_dir)
+            room.binned = None
+        elif action.do in ("open", "copy", "bin"):
+            self._with_listed(action.do, action.arg)
+        room.refresh_panels()
+
+    def _with_listed(self, do: str, name: str) -> None:
+        guest, room = self._guest, self._guest.room
+        # Only a name that is listed: the page must not reach outside the projects' folder.
+        folder = next((f for f in project_care.recent_projects(room.projects_dir) if f.name == name), None)
+        if folder is None:
+            raise EditRefused("that project is gone")
+        if do == "copy":
+            room.saver.flush()
+            made = project_care.duplicate_project(folder, room.projects_dir)
+            guest.toast(f"Copied as {made.name}", False)
+        elif do == "bin":
+            if _is_open(room, folder):
+                raise EditRefused("that project is open; open another one first")
+            room.binned = project_care.to_bin(folder, room.projects_dir)
+        else:
             if room.jobs.status is not None:
                 raise EditRefused(f"{room.jobs.status.title} is still running; cancel it or wait")
-            # Only a name that is listed: the page must not reach outside the projects' folder.
-            folder = next((f for f in recent_projects(room.projects_dir) if f.name == action.arg), None)
-            if folder is None:
-                raise EditRefused("that project is gone")
-            project = Project.open(folder)
-            room.open_project(project)
-            room.notice(action.client_id, f"Opened {project.name}.", "good")
-
-        if action.do == "open":
-            room.post(action.client_id, open_it)
+            room.open_project(Project.open(folder))
+            room.notice_all(f"Opened {room.project.name if room.project else ''}.", "good")
 
 
-def recent_projects(projects_dir: Path) -> list[Path]:
-    """Folders of projects that have a scene, last touched first."""
-    if not projects_dir.is_dir():
-        return []
-    folders = [f for f in projects_dir.iterdir() if (f / "project.json").exists() and (f / "scene.json").exists()]
-    return sorted(folders, key=_touched, reverse=True)
-
-
-def _touched(folder: Path) -> float:
-    try:
-        return (folder / "scene.json").stat().st_mtime
-    except OSError:
-        return 0.0
-
-
-def _name(folder: Path) -> str:
-    try:
-        return Project.open(folder).name
-    except DioramaError:
-        return folder.name
+def _is_open(room: Room, folder: Path) -> bool:
+    return room.project is not None and room.project.folder.resolve() == folder.resolve()
 
 
 def _small_picture(path: Path) -> str:
@@ -122,10 +142,3 @@ def _small_picture(path: Path) -> str:
         return ""
     uri = base64.b64encode(buffer.getvalue()).decode()
     return f'<img alt="" class="small" src="data:image/jpeg;base64,{uri}">'
-
-
-def _shortcuts(commands: CommandTable) -> str:
-    rows = "".join(
-        f"<tr><td>{text(c.label)}</td><td><kbd>{text(c.keys)}</kbd></td></tr>" for c in commands.all if c.keys
-    )
-    return f"<h4>Keys</h4><table>{rows}<tr><td>All commands</td><td><kbd>Ctrl+K</kbd></td></tr></table>"

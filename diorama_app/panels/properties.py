@@ -1,4 +1,4 @@
-"""The selected object: name, place, turn, size, what it stands on."""
+"""The selected objects: name, place, turn, size, colour; several at once: align and distribute."""
 
 from __future__ import annotations
 
@@ -9,89 +9,162 @@ import viser
 
 from diorama_app import editing
 from diorama_app.commands import CommandTable
+from diorama_app.guest import Guest
 from diorama_app.page import Action, LiveHtml, button, text
-from diorama_app.panels.fields import on_change, show_if, show_value
-from diorama_app.room import Room
+from diorama_app.panels.fields import on_change, show_if, show_label, show_options, show_value
+from diorama_app.panels.toolbar import run_command
+from diorama_app.units import UNITS, format_length, from_unit, in_unit, parse_lengths
+from diorama_core.errors import InputError
 from diorama_core.scene.types import SceneObject
 
 SIZE_ORDER = [1, 0, 2]
 """People say width, depth, height; the object's axes are depth, width, height."""
 
+ALIGN = {
+    "align_left": "Left",
+    "align_centre": "Middle",
+    "align_right": "Right",
+    "align_back": "Far",
+    "align_depth": "Centre",
+    "align_front": "Near",
+}
+
 
 class Properties:
     """Fields of the object selected last."""
 
-    def __init__(self, gui: viser.GuiApi, room: Room, commands: CommandTable) -> None:
-        self._room, self._commands = room, commands
+    def __init__(self, gui: viser.GuiApi, guest: Guest, commands: CommandTable) -> None:
+        self._guest, self._commands = guest, commands
         self._header = LiveHtml(gui, self._act)
         self._name = gui.add_text("Name", "", visible=False)
-        self._place = gui.add_vector3(
-            "Place (m)", (0.0, 0.0, 0.0), step=0.01, visible=False, hint="Middle of its underside: x, y, height"
-        )
+        where, size = "Middle of its underside: x, y, height", "Width, depth, height"
+        self._place = gui.add_vector3("Place (m)", (0.0, 0.0, 0.0), step=0.01, visible=False, hint=where)
+        self._place_words = gui.add_text("Place (ft)", "", visible=False, hint=where)
         self._yaw = gui.add_number(
             "Turn (°)", 0.0, step=1.0, visible=False, hint="Heading of its front about the vertical"
         )
-        self._size = gui.add_vector3("Size (m)", (1.0, 1.0, 1.0), step=0.01, visible=False, hint="Width, depth, height")
-        on_change(
-            self._name, lambda value, client: self._with(client, lambda i: editing.rename(room, i, value), "name")
-        )
-        on_change(
-            self._place,
-            lambda value, client: self._with(
-                client, lambda i: editing.set_base_position(room, i, np.array(value)), "place"
-            ),
-        )
-        on_change(self._yaw, lambda value, client: self._with(client, lambda i: editing.set_yaw(room, i, value), "yaw"))
+        self._size = gui.add_vector3("Size (m)", (1.0, 1.0, 1.0), step=0.01, visible=False, hint=size)
+        self._size_words = gui.add_text("Size (ft)", "", visible=False, hint=size)
+        self._unit = gui.add_dropdown("Unit", list(UNITS), visible=False, hint="Of every length shown")
+        self._colour = gui.add_rgb("Colour", (200, 200, 200), visible=False, hint="Paints its main material")
+        self._own = LiveHtml(gui, self._act)
+        on_change(self._name, lambda v: self._with(lambda i: editing.rename(guest, i, v), "name"))
+        on_change(self._place, lambda v: self._with(lambda i: editing.set_base_position(guest, i, self._m(v)), "place"))
+        on_change(self._place_words, lambda v: self._written(v, "place", editing.set_base_position, None))
+        on_change(self._yaw, lambda v: self._with(lambda i: editing.set_yaw(guest, i, v), "yaw"))
         on_change(
             self._size,
-            lambda value, client: self._with(
-                client, lambda i: editing.set_size(room, i, np.array(value)[SIZE_ORDER]), "size"
+            lambda v: self._with(lambda i: editing.set_size(guest, i, self._m(v)[SIZE_ORDER]), "size"),
+        )
+        on_change(self._size_words, lambda v: self._written(v, "size", editing.set_size, SIZE_ORDER))
+        on_change(self._unit, lambda v: guest.post(lambda: guest.change_settings(unit=v)))
+        on_change(
+            self._colour,
+            lambda v: guest.post(
+                lambda: editing.set_colour(guest, guest.need_selection(), (v[0] / 255, v[1] / 255, v[2] / 255)),
+                key="colour",
             ),
         )
 
     def refresh(self) -> None:
         """Show the selected object, or what to do when there is none."""
-        item = self._room.document.selected
-        show_if(item is not None, self._name, self._place, self._yaw, self._size)
+        item, unit = self._guest.selected, self._guest.settings.unit
+        there, feet = item is not None, unit == "ft-in"
+        show_if(there, self._name, self._yaw, self._unit, self._colour)
+        show_if(there and not feet, self._place, self._size)
+        show_if(there and feet, self._place_words, self._size_words)
         self._header.show(self._advice() if item is None else self._card(item))
+        show_options(self._unit, UNITS, unit)
         if item is None:
+            self._own.show("")
             return
         show_value(self._name, item.label)
-        show_value(self._place, tuple(round(float(v), 3) for v in editing.base_position(item)))
+        base, size = editing.base_position(item), item.size_m[SIZE_ORDER]
+        if feet:
+            self._show_words(self._place_words, base)
+            self._show_words(self._size_words, size)
+        else:
+            show_label(self._place, f"Place ({unit})")
+            show_label(self._size, f"Size ({unit})")
+            show_value(self._place, tuple(in_unit(float(v), unit) for v in base))
+            show_value(self._size, tuple(in_unit(float(v), unit) for v in size))
         show_value(self._yaw, round(float(np.degrees(item.pose.yaw_rad)), 1))
-        show_value(self._size, tuple(round(float(v), 3) for v in item.size_m[SIZE_ORDER]))
+        if item.colour is not None:
+            show_value(self._colour, tuple(round(255 * c) for c in item.colour))
+        own = button("Back to its own colours", "own", title="Takes the paint off")
+        self._own.show(f'<div class="bar tight">{own}</div>' if item.colour is not None else "")
 
-    def _with(self, client_id: int, act: Callable[[str], None], field: str) -> None:
+    def _show_words(self, field: viser.GuiTextHandle, lengths_m: np.ndarray) -> None:
+        try:
+            if np.abs(np.array(parse_lengths(field.value, "ft-in")) - lengths_m).max() < 1e-3:
+                return  # the same length, however it was written
+        except InputError:
+            pass
+        show_value(field, ", ".join(format_length(float(v), "ft-in") for v in lengths_m))
+
+    def _m(self, values: tuple[float, float, float]) -> np.ndarray:
+        return np.array([from_unit(v, self._guest.settings.unit) for v in values])
+
+    def _written(
+        self,
+        words: str,
+        field: str,
+        act: Callable[[Guest, str, np.ndarray], None],
+        order: list[int] | None,
+    ) -> None:
+        try:
+            values = np.array(parse_lengths(words, "ft-in"))
+        except InputError:
+            return  # still being typed
+        self._with(lambda i: act(self._guest, i, values if order is None else values[order]), field)
+
+    def _with(self, act: Callable[[str], None], field: str) -> None:
         """Do something to the object selected now, dropping keystrokes that a newer one of the field overtook."""
-        chosen = self._room.document.selection[-1:]
+        chosen = self._guest.selection[-1:]
         if chosen:
-            self._room.post(client_id, lambda: act(chosen[0]), key=f"{field} {chosen[0]}")
+            self._guest.post(lambda: act(chosen[0]), key=f"{field} {chosen[0]}")
 
     def _advice(self) -> str:
-        if not self._room.scene.objects:
+        if not self._guest.room.scene.objects:
             return '<div class="card">The room is empty. Insert furniture from the <b>Library</b> tab.</div>'
         return (
-            '<div class="card"><b>Click an object</b> in the view or in the list to move it, swap it or '
-            "change its size.<br><span class='dim'>Shift-click selects several; Esc clears.</span></div>"
+            '<div class="card"><b>Click an object</b> in the view or in the list, or <b>drag it</b> to where it should '
+            "be.<br><span class='dim'>Shift-click selects several, Shift-drag frames them, Esc clears.</span></div>"
         )
 
     def _card(self, item: SceneObject) -> str:
-        several = len(self._room.document.selection)
+        several = len(self._guest.selection)
         more = f' <span class="dim">and {several - 1} more</span>' if several > 1 else ""
         evidence = f" · {100 * item.confidence:.0f}% sure" if item.box_px is not None else ""
+        problems = "".join(
+            f' <span class="chip bad">{text(w)}</span>' for w in self._guest.room.badges.get(item.id, ())
+        )
         return (
-            f"<p><b>{text(item.label)}</b>{more}<br><span class='dim'>{text(item.category)}{evidence}"
+            f"<p><b>{text(item.label)}</b>{more}{problems}<br><span class='dim'>{text(item.category)}{evidence}"
             f"{' · locked' if item.locked else ''}{' · hidden' if item.hidden else ''}</span></p>"
-            '<div class="bar">'
+            '<div class="bar tight">'
             + self._command("focus", "Focus")
             + self._command("duplicate", "Duplicate")
+            + self._command("drop", "Drop")
+            + self._command("mirror", "Mirror")
             + self._command("delete", "Delete")
             + "</div>"
+            + (self._together(several) if several > 1 else "")
+        )
+
+    def _together(self, several: int) -> str:
+        align = "".join(self._command(c, label) for c, label in ALIGN.items())
+        spread = self._command("distribute", "Distribute evenly") if several > 2 else ""
+        return f'<h4>Align with {text(self._guest.selected.label)}</h4><div class="bar tight">{align}</div>' + (  # type: ignore[union-attr]
+            f'<div class="bar tight">{spread}</div>' if spread else ""
         )
 
     def _command(self, command_id: str, label: str) -> str:
         return button(label, "run", command_id, title=self._commands[command_id].tooltip)
 
     def _act(self, action: Action) -> None:
-        if action.do == "run" and action.arg in self._commands:
-            self._room.post(action.client_id, lambda: self._commands[action.arg].run(action.client_id))
+        guest = self._guest
+        if action.do == "own":
+            guest.post(lambda: editing.set_colour(guest, guest.need_selection(), None))
+        else:
+            run_command(guest, self._commands, action)

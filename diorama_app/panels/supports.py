@@ -5,55 +5,73 @@ from __future__ import annotations
 import viser
 
 from diorama_app import editing
-from diorama_app.panels.fields import on_change, show_if, show_value, unique_names
+from diorama_app.guest import Guest
+from diorama_app.panels.fields import on_change, show_if, show_options, unique_names
 from diorama_app.panels.outliner import plane_name
-from diorama_app.room import Room
 from diorama_core.scene.types import Scene
 
 NOTHING = "nothing"
+NO_WALL = "no wall"
+LIES, HANGS = "stands or lies on it", "is fastened to it"
 
 
 class Supports:
-    """A drop-down of everything an object could stand on."""
+    """Drop-downs of supporter, relation and wall."""
 
-    def __init__(self, gui: viser.GuiApi, room: Room) -> None:
-        self._room = room
+    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
+        self._guest = guest
         self._ids: dict[str, str] = {}
+        self._walls: dict[str, str] = {}
         self._parent = gui.add_dropdown(
             "Stands on", [NOTHING], visible=False, hint="What holds it up: it moves along with that"
         )
-        on_change(self._parent, self._chosen)
+        self._relation = gui.add_dropdown("and", [LIES, HANGS], visible=False, hint="How it is held")
+        self._wall = gui.add_dropdown("Against", [NO_WALL], visible=False, hint="A wall it also stands against")
+        on_change(self._parent, lambda name: guest.post(lambda: self._chosen(name)))
+        on_change(self._relation, lambda name: guest.post(lambda: self._related(name)))
+        on_change(self._wall, lambda name: guest.post(lambda: self._adhered(name)))
 
     def refresh(self) -> None:
         """Show the supporter of the selected object."""
-        item = self._room.document.selected
+        item, scene = self._guest.selected, self._guest.room.scene
         show_if(item is not None, self._parent)
+        edge = None if item is None else scene.support_of(item.id)
+        show_if(edge is not None, self._relation)
+        standing = edge is not None and edge.relation == "placed on"
+        show_if(standing and bool(scene.architecture.by_role("wall")), self._wall)
         if item is None:
             return
-        scene = self._room.scene
         self._ids = supporters(scene, item.id)
-        edge = scene.support_of(item.id)
         names = {parent: name for name, parent in self._ids.items()}
-        current = names.get(edge.parent, NOTHING) if edge is not None else NOTHING
-        options = (NOTHING, *self._ids)
-        if self._parent.options != options:
-            self._parent.options = options
-        show_value(self._parent, current)
+        show_options(self._parent, (NOTHING, *self._ids), names.get(edge.parent, NOTHING) if edge else NOTHING)
+        show_options(self._relation, (LIES, HANGS), LIES if edge is None or standing else HANGS)
+        self._walls = {plane_name(scene, p): p.id for p in scene.architecture.by_role("wall")}
+        against = edge.adheres_to[0] if edge is not None and edge.adheres_to else None
+        here = next((name for name, wall in self._walls.items() if wall == against), NO_WALL)
+        show_options(self._wall, (NO_WALL, *self._walls), here)
 
-    def _chosen(self, name: str, client_id: int) -> None:
-        room = self._room
+    def _chosen(self, name: str) -> None:
+        guest = self._guest
+        object_id = guest.need_selected()
+        try:
+            if name == NOTHING:
+                editing.detach(guest, object_id)
+            elif name in self._ids:
+                editing.attach(guest, object_id, self._ids[name])
+        finally:
+            self.refresh()  # a refused choice goes back to what holds
 
-        def do() -> None:
-            object_id = room.need_selected()
-            try:
-                if name == NOTHING:
-                    editing.detach(room, object_id)
-                elif name in self._ids:
-                    editing.attach(room, object_id, self._ids[name])
-            finally:
-                self.refresh()  # a refused choice goes back to what holds
+    def _related(self, name: str) -> None:
+        try:
+            editing.set_relation(self._guest, self._guest.need_selected(), name == HANGS)
+        finally:
+            self.refresh()
 
-        room.post(client_id, do)
+    def _adhered(self, name: str) -> None:
+        try:
+            editing.set_adherence(self._guest, self._guest.need_selected(), self._walls.get(name))
+        finally:
+            self.refresh()
 
 
 def supporters(scene: Scene, object_id: str) -> dict[str, str]:

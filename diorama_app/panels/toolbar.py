@@ -1,38 +1,45 @@
-"""The row of buttons above the outliner: undo, redo, views, gizmo modes."""
+"""The rows of buttons above the outliner: undo, redo, views, handles, snapping."""
 
 from __future__ import annotations
 
 import viser
 
 from diorama_app.commands import CommandTable
-from diorama_app.gestures import Gestures
+from diorama_app.guest import Guest
 from diorama_app.page import STYLE, Action, LiveHtml, button, text
-from diorama_app.room import Room
 
 
 class Toolbar:
     """Buttons that run commands by id."""
 
-    def __init__(self, gui: viser.GuiApi, room: Room, commands: CommandTable, gestures: Gestures) -> None:
-        self._room, self._commands, self._gestures = room, commands, gestures
+    def __init__(self, gui: viser.GuiApi, guest: Guest, commands: CommandTable) -> None:
+        self._guest, self._commands = guest, commands
         gui.add_html(STYLE)
         self._html = LiveHtml(gui, self._act)
 
     def refresh(self) -> None:
-        """Draw the buttons as the history allows."""
-        history = self._room.document.history
+        """Draw the buttons as the history allows and the settings say."""
+        room, settings = self._guest.room, self._guest.settings
+        history = room.document.history
         undo = f"Undo: {history.current.label}" if history.can_undo else "Nothing to undo"
         self._html.show(
-            '<div class="bar">'
+            '<div class="bar tight">'
             + self._button("undo", "&#8630; Undo", title=undo, disabled=not history.can_undo)
             + self._button("redo", "&#8631; Redo", disabled=not history.can_redo)
-            + "</div><div class='bar'>"
-            + self._button("view_photo", "Photo view", disabled=self._room.scene.camera is None)
+            + self._button("measure", "Measure", on=self._guest.doing is not None)
+            + self._button("help", "?")
+            + "</div><div class='bar tight'>"
+            + self._button("view_photo", "Photo view", disabled=room.scene.camera is None)
             + self._button("view_room", "Room")
             + self._button("view_top", "Top")
-            + "</div><div class='bar'>"
-            + self._button("gizmo_floor", "Slide &amp; turn", on=self._gestures.mode == "floor")
-            + self._button("gizmo_free", "Free", on=self._gestures.mode == "free")
+            + self._button("view_front", "Front")
+            + self._button("view_left", "Side")
+            + "</div><div class='bar tight'>"
+            + self._button("gizmo_floor", "Move", on=settings.gizmo == "floor")
+            + self._button("gizmo_free", "Free", on=settings.gizmo == "free")
+            + self._button("snap", "Snap", on=settings.snap)
+            + self._button("slide", "No bumps", on=settings.slide)
+            + self._button("names", "Names", on=settings.names)
             + "</div>"
         )
 
@@ -44,17 +51,28 @@ class Toolbar:
         )
 
     def _act(self, action: Action) -> None:
-        if action.do == "run" and action.arg in self._commands:
-            command = self._commands[action.arg]
-
-            def run() -> None:
-                command.run(action.client_id)
-                self.refresh()
-
-            self._room.post(action.client_id, run)
+        run_command(self._guest, self._commands, action)
 
 
-def title_bar(room: Room) -> str:
-    """Name of the project and how many things are in it."""
+def run_command(guest: Guest, commands: CommandTable, action: Action) -> None:
+    """Do what a button with the action "run" asks for."""
+    if action.do == "run" and action.arg in commands:
+        command = commands[action.arg]
+
+        def run() -> None:
+            command.run(guest)
+            guest.refresh()
+
+        guest.post(run)
+
+
+def title_bar(guest: Guest) -> str:
+    """Name of the project, how many things are in it, and who else is here."""
+    room = guest.room
     name = text(room.project.name) if room.project is not None else "No project"
-    return f"<b>{name}</b> <span class='dim'>{len(room.scene.objects)} objects</span>"
+    others = [g for g in room.guests.values() if g is not guest]
+    here = "".join(
+        f' <span class="chip" style="border-color:rgb{g.colour}" title="also here">{text(g.name)}</span>'
+        for g in others[:4]
+    )
+    return f"<b>{name}</b> <span class='dim'>{len(room.scene.objects)} objects</span>{here}"

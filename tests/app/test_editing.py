@@ -10,24 +10,27 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diorama_app import editing
+from diorama_app import editing, swapping
 from diorama_app.client_view import Board, fitting_fov, room_view, screen_rays
 from diorama_app.desk import Desk
-from diorama_app.document import Document
 from diorama_app.drafts import Draft, boxes_json
+from diorama_app.guest import Guest
+from diorama_app.inserting import insert_shape
 from diorama_app.jobs import Jobs, Outcome
+from diorama_app.optimising import untouched
 from diorama_app.panels.fields import unique_names
-from diorama_app.panels.outliner import _tree
+from diorama_app.panels.outliner import tree_html
 from diorama_app.panels.supports import supporters
 from diorama_app.room import Room
 from diorama_app.viser_adapter import Visitors, create_server, stop_server
-from diorama_app.work import fresh_folder, untouched
+from diorama_app.work import fresh_folder
 from diorama_core.artefacts import Inputs
 from diorama_core.errors import DioramaError, EditRefused, InputError
 from diorama_core.perception.inputs import read_inputs
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
 from diorama_core.scene.support import check_scene
+from tests.app.people import join
 from tests.app.small_room import PlainLibrary, furnished_scene, make_project, photo_camera, plain_photo
 
 
@@ -41,57 +44,75 @@ def room(tmp_path: Path) -> Iterator[Room]:
     stop_server(server)
 
 
-def test_undo_restores_scene_and_selection() -> None:
-    document = Document(furnished_scene())
-    document.select(["chair_1"])
-    document.rebase_selection()
-    document.edit("delete", lambda s: edits.remove(s, ["chair_1"]), selection=())
-    assert not document.scene.has_object("chair_1")
-    assert document.undo() == "delete"
-    assert document.selection == ("chair_1",)
-    document.redo()
-    assert document.selection == ()
+@pytest.fixture
+def guest(room: Room) -> Guest:
+    return join(room)
+
+
+def test_undo_restores_scene_and_selection(room: Room, guest: Guest) -> None:
+    guest.select(["chair_1"])
+    editing.delete_selected(guest)
+    assert not room.scene.has_object("chair_1")
+    assert guest.selection == ()
+    room.undo(guest)
+    assert guest.selection == ("chair_1",)
+    assert room.scene.has_object("chair_1")
+    room.redo(guest)
+    assert not room.scene.has_object("chair_1")
     with pytest.raises(EditRefused):
-        document.redo()
+        room.redo(guest)
 
 
-def test_a_refused_edit_changes_nothing(room: Room) -> None:
-    room.edit("lock", lambda s: edits.set_locked(s, "chair_1", True))
+def test_a_selection_is_ones_own_and_the_history_is_everyones(room: Room, guest: Guest) -> None:
+    other = join(room, 1)
+    guest.select(["chair_1"])
+    other.select(["lamp_1", "chair_2"])
+    assert guest.selection == ("chair_1",)
+    editing.delete_selected(other)
+    assert other.selection == ()
+    room.undo(guest)
+    assert room.scene.has_object("lamp_1")
+    assert other.selection == ()
+    editing.delete_selected(guest)
+    assert other.room.scene is guest.room.scene
+
+
+def test_a_refused_edit_changes_nothing(room: Room, guest: Guest) -> None:
+    editing.set_locked(guest, ["chair_1"], True)
     before = room.document.history
-    room.select(["chair_1"])
+    guest.select(["chair_1"])
     with pytest.raises(EditRefused, match="locked"):
-        editing.delete_selected(room)
+        editing.delete_selected(guest)
     assert room.scene is before.current.scene
 
 
-def test_resizing_keeps_the_base_and_lifts_what_stands_on_it(room: Room) -> None:
+def test_resizing_keeps_the_base_and_lifts_what_stands_on_it(room: Room, guest: Guest) -> None:
     lamp = room.scene.object("lamp_1").corners_world[:, 2].min()
-    editing.set_size(room, "table_1", np.array([0.8, 1.4, 1.0]))
+    editing.set_size(guest, "table_1", np.array([0.8, 1.4, 1.0]))
     table = room.scene.object("table_1")
     np.testing.assert_allclose(table.size_m, [0.8, 1.4, 1.0])
     assert table.corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-9)
     assert room.scene.object("lamp_1").corners_world[:, 2].min() == pytest.approx(lamp + 0.26)
     with pytest.raises(EditRefused):
-        editing.set_size(room, "table_1", np.array([0.8, 0.0, 1.0]))
+        editing.set_size(guest, "table_1", np.array([0.8, 0.0, 1.0]))
 
 
-def test_fields_write_place_and_turn(room: Room) -> None:
-    editing.set_base_position(room, "table_1", np.array([0.5, 2.0, 0.1]))
+def test_fields_write_place_and_turn(room: Room, guest: Guest) -> None:
+    editing.set_base_position(guest, "table_1", np.array([0.5, 2.0, 0.1]))
     table, lamp = room.scene.object("table_1"), room.scene.object("lamp_1")
     np.testing.assert_allclose(editing.base_position(table), [0.5, 2.0, 0.1], atol=1e-9)
     assert lamp.corners_world[:, 2].min() == pytest.approx(0.84)
     steps = len(room.document.history.entries)
     for degrees in (10.0, 20.0, 30.0):
-        editing.set_yaw(room, "table_1", degrees)
+        editing.set_yaw(guest, "table_1", degrees)
     assert np.degrees(room.scene.object("table_1").pose.yaw_rad) == pytest.approx(30.0)
     assert len(room.document.history.entries) == steps + 1, "quick nudges are one undo step"
 
 
 @pytest.mark.parametrize("shape_id", ["chair_a", "lamp_a", "table_b"])
-def test_inserted_things_stand_on_the_floor_clear_of_others(room: Room, shape_id: str) -> None:
-    room.select(())
-    editing.insert_shape(room, shape_id, np.array([0.1, 2.2, 0.4]))
-    new = room.scene.object(room.document.selection[0])
+def test_inserted_things_stand_on_the_floor_clear_of_others(room: Room, guest: Guest, shape_id: str) -> None:
+    insert_shape(guest, shape_id)
+    new = room.scene.object(guest.selection[0])
     check_scene(room.scene)
     assert room.scene.support_of(new.id).parent == "floor"
     assert new.corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-9)
@@ -100,16 +121,38 @@ def test_inserted_things_stand_on_the_floor_clear_of_others(room: Room, shape_id
     assert (new.pose.position[:2] < high[:2]).all()
 
 
-def test_a_swap_brings_the_colours_of_its_picture(room: Room) -> None:
-    room.edit("paint", lambda s: edits.recolour(s, "chair_1", (0.1, 0.2, 0.9)))
-    editing.swap_candidate(room, "chair_1", 1)
+def test_a_swap_keeps_the_photos_colour_unless_told_otherwise(room: Room, guest: Guest) -> None:
+    blue = (0.1, 0.2, 0.9)
+    editing.set_colour(guest, ["chair_1"], blue)
+    swapping.swap(guest, "chair_1", "chair_b")
+    assert room.scene.object("chair_1").shape_id == "chair_b"
+    assert room.scene.object("chair_1").colour == blue
+    guest.change_settings(keep_colour=False)
+    swapping.swap(guest, "chair_1", "chair_c")
     assert room.scene.object("chair_1").colour is None
-    editing.undo(room)
-    assert room.scene.object("chair_1").colour == (0.1, 0.2, 0.9)
+    room.undo(guest)
+    assert room.scene.object("chair_1").colour == blue
 
 
-def test_every_commit_is_on_disk_within_a_second(room: Room) -> None:
-    editing.set_yaw(room, "chair_1", 77.0)
+def test_sizes_of_a_swap_and_all_that_are_alike(room: Room, guest: Guest) -> None:
+    editing.set_size(guest, "chair_1", np.array([0.6, 0.6, 1.2]))
+    item = room.scene.object("chair_1")
+    for mode, expected in (("same box", item.size_m), ("catalogue", [0.48, 0.5, 0.95])):
+        candidate = swapping.candidate_for(room.library, item, "chair_c", mode)
+        np.testing.assert_allclose(np.array(candidate.shape_size_m) * candidate.pose.scale, expected)
+    even = swapping.candidate_for(room.library, item, "chair_c", "in proportion").pose.scale
+    assert np.ptp(even) == pytest.approx(0.0)
+    assert np.prod(even * (0.48, 0.5, 0.95)) == pytest.approx(np.prod(item.size_m))
+    swapping.swap(guest, "chair_1", "chair_b")
+    guest.change_settings(all_alike=True)
+    swapping.swap(guest, "chair_1", "chair_c")
+    assert {room.scene.object(i).shape_id for i in ("chair_1", "chair_2")} == {"chair_c"}
+    room.undo(guest)
+    assert {room.scene.object(i).shape_id for i in ("chair_1", "chair_2")} == {"chair_b"}
+
+
+def test_every_commit_is_on_disk_within_a_second(room: Room, guest: Guest) -> None:
+    editing.set_yaw(guest, "chair_1", 77.0)
     until = time.monotonic() + 1.5
     while time.monotonic() < until:
         if abs(np.degrees(room.project.load_scene().object("chair_1").pose.yaw_rad) - 77.0) < 1e-6:
@@ -120,7 +163,7 @@ def test_every_commit_is_on_disk_within_a_second(room: Room) -> None:
 
 def test_names_are_escaped_and_supporters_are_named_apart() -> None:
     scene = edits.rename(furnished_scene(), "chair_1", "<script>alert(1)</script>")
-    assert "<script>" not in _tree(scene, ())
+    assert "<script>" not in tree_html(scene, ())
     assert unique_names(["chair", "chair", "table"]) == ["chair", "chair (2)", "table"]
     assert supporters(scene, "lamp_1")["dining table"] == "table_1"
     assert "lamp_1" not in supporters(scene, "lamp_1").values()
@@ -184,7 +227,7 @@ def test_drawn_boxes_go_back_to_the_files_pixels() -> None:
     photo = plain_photo()
     draft = Draft(Inputs(photo)).with_box((10.0, 20.0, 110.0, 220.0), "couch").with_box((5.0, 5.0, 50.0, 60.0), "chair")
     assert [b.category for b in draft.boxes] == ["sofa", "chair"]
-    assert draft.without_box(0).relabelled(0, "bar stool").boxes[0].category == "stool"
+    assert draft.without_box(0).relabelled(0, "couch").boxes[0].category == "sofa"
     path_bytes = boxes_json(draft.boxes, photo)
     again = read_inputs(_png(photo.rgb), name="p.png", boxes=path_bytes)
     assert [b.box for b in again.inputs.boxes] == [b.box for b in draft.boxes]

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from playwright.sync_api import BrowserContext, Locator, Page, expect
 
+from diorama_app.guest import Guest
 from diorama_app.server import Running
 
 FLAGS = (
@@ -64,6 +65,17 @@ class EditorPage:
     page: Page
     running: Running
     errors: list[str] = field(default_factory=list)
+    guest_id: int = -1
+
+    @property
+    def guest(self) -> Guest:
+        """This tab, as the program knows it."""
+        return self.running.room.guests[self.guest_id]
+
+    @property
+    def selection(self) -> tuple[str, ...]:
+        """What is selected in this tab."""
+        return self.guest.selection
 
     @classmethod
     def open(cls, context: BrowserContext, running: Running) -> EditorPage:
@@ -75,10 +87,12 @@ class EditorPage:
         return made
 
     def load(self) -> None:
-        joined = set(self.running.room.views)
+        joined = set(self.running.room.guests)
         self.page.goto(f"http://127.0.0.1:{self.running.port}/?fixedDpr=1")
         self.settle()
-        self.until(lambda: bool(set(self.running.room.views) - joined))
+        self.until(lambda: bool(set(self.running.room.guests) - joined))
+        self.guest_id = max(self.running.room.guests)
+        self.settle()
         self.dismiss_notices()
 
     def settle(self) -> None:
@@ -122,8 +136,8 @@ class EditorPage:
         return self.page.locator(".dio .row .name").get_by_text(label, exact=True)
 
     def notice(self, words: str) -> None:
-        """A notice with these words is shown."""
-        expect(self.page.locator(".mantine-Notification-root").filter(has_text=words).first).to_be_visible()
+        """A notice or a toast with these words is shown."""
+        expect(self.page.locator(".mantine-Notification-root, .dio-toast").filter(has_text=words).first).to_be_visible()
 
     def place_of(self, world: np.ndarray) -> tuple[float, float]:
         """Where a point of the world is on the page."""

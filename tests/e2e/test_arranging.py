@@ -17,7 +17,7 @@ def scene(editor: EditorPage) -> Scene:
 
 
 def selection(editor: EditorPage) -> tuple[str, ...]:
-    return editor.running.room.document.selection
+    return editor.selection
 
 
 def seat(editor: EditorPage, chair: str = "chair_2") -> np.ndarray:

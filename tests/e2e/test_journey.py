@@ -107,7 +107,6 @@ def _swappable(scene: Scene) -> SceneObject:
 
 def _click_on(editor: EditorPage, item: SceneObject) -> None:
     """Click the object in the view, where it is seen; through the list when something hides it."""
-    document = editor.running.room.document
     editor.page.keyboard.press("r")
     editor.settle()
     x, y = editor.place_of(item.pose.position)
@@ -116,10 +115,10 @@ def _click_on(editor: EditorPage, item: SceneObject) -> None:
         editor.settle()
         editor.page.mouse.click(x, y)
         editor.page.wait_for_timeout(500)
-    if document.selection != (item.id,):
+    if editor.selection != (item.id,):
         editor.tab("Scene")
         editor.page.locator(f'.dio .row[data-arg="{item.id}"] .name').click()
-    editor.until(lambda: document.selection == (item.id,), f"{item.label} is selected")
+    editor.until(lambda: editor.selection == (item.id,), f"{item.label} is selected")
 
 
 def _check_model(path: Path, scene: Scene) -> None:

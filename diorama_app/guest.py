@@ -1,0 +1,164 @@
+"""One browser and the person at it: what is selected there, how they like to work, and their panels.
+
+The document is shared; a selection is a person's own and is shown to the others as a cursor in that person's colour.
+Holds nothing that a reload must not lose.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Literal, Protocol
+
+import viser
+
+from diorama_app.client_view import ClientView, NoticeKind
+from diorama_app.marks import Marks
+from diorama_app.units import Unit
+from diorama_core.errors import EditRefused
+from diorama_core.scene.types import SceneObject
+
+if TYPE_CHECKING:
+    from diorama_app.room import Room
+
+COLOURS = ((38, 150, 96), (160, 80, 200), (20, 130, 190), (200, 60, 110), (150, 120, 20), (90, 100, 120))
+"""Of the others' cursors; one's own selection is orange."""
+
+SizeMode = Literal["as found", "same box", "in proportion", "catalogue"]
+GizmoMode = Literal["floor", "free"]
+
+
+class Panel(Protocol):
+    """A part of the page that shows something of the room."""
+
+    def refresh(self) -> None:
+        """Draw what differs from what is drawn."""
+        ...
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How one person likes to work."""
+
+    unit: Unit = "m"
+    snap: bool = False
+    """Places to the grid, headings to steps; Alt inverts it while dragging."""
+    slide: bool = True
+    """While dragging, slide along what is in the way instead of going through it."""
+    names: bool = False
+    """Name tags on everything."""
+    badges: bool = True
+    """Marks on what collides, floats or is outside the room."""
+    dark: bool = False
+    gizmo: GizmoMode = "floor"
+    size_mode: SizeMode = "as found"
+    """What size a swapped shape takes."""
+    keep_colour: bool = True
+    """Whether a swapped shape takes the colour of what it replaces."""
+    all_alike: bool = False
+    """Whether a swap goes to every object of the same shape."""
+
+
+@dataclass(frozen=True)
+class Placing:
+    """The next click in the view puts a shape there."""
+
+    shape_id: str
+
+
+@dataclass(frozen=True)
+class Measuring:
+    """The next clicks in the view are the ends of a known length."""
+
+    points: tuple[tuple[float, float, float], ...] = ()
+
+
+Doing = Placing | Measuring | None
+"""What the next click means; None: it selects."""
+
+
+class Guest:
+    """Used from the desk's thread only, except where a method says otherwise."""
+
+    def __init__(self, room: Room, client: viser.ClientHandle, number: int) -> None:
+        self.room = room
+        self.client = client
+        self.id = client.client_id
+        self.name = f"Guest {number}"
+        self.colour = COLOURS[(number - 1) % len(COLOURS)]
+        self.view = ClientView(client)
+        self.marks = Marks(client)
+        self.selection: tuple[str, ...] = ()
+        self.settings = Settings()
+        self.doing: Doing = None
+        self.panels: list[Panel] = []
+        self.job_panel: Panel | None = None
+        self.curves: Panel | None = None
+        """What is redrawn while a layout is optimised."""
+        self.toast: Callable[[str, bool], None] = lambda message, undo: None
+        """Shows a line at the foot of the view, with a button that undoes when asked."""
+
+    # -- selection --------------------------------------------------------------------------------------------
+
+    @property
+    def selected(self) -> SceneObject | None:
+        """The object selected last, or None."""
+        return self.room.scene.object(self.selection[-1]) if self.selection else None
+
+    def need_selected(self) -> str:
+        """The object selected last; refuses with advice when there is none."""
+        if not self.selection:
+            raise EditRefused("nothing is selected; click an object first")
+        return self.selection[-1]
+
+    def need_selection(self) -> tuple[str, ...]:
+        """Everything selected; refuses with advice when there is nothing."""
+        self.need_selected()
+        return self.selection
+
+    def select(self, ids: Iterable[str]) -> None:
+        """Select exactly these objects, in this order."""
+        self.selection = tuple(i for i in dict.fromkeys(ids) if self.room.scene.has_object(i))
+        self.room.document.note_selection(self.selection)
+        self.refresh()
+        self.room.refresh_cursors()
+
+    def toggle(self, object_id: str) -> None:
+        """Add an object to the selection, or take it out."""
+        rest = tuple(i for i in self.selection if i != object_id)
+        self.select(rest if object_id in self.selection else (*rest, object_id))
+
+    def drop_missing(self) -> None:
+        """Forget what is no longer there."""
+        self.selection = tuple(i for i in self.selection if self.room.scene.has_object(i))
+
+    # -- page -------------------------------------------------------------------------------------------------
+
+    def change_settings(self, **changes: Any) -> None:
+        """Work differently from now on."""
+        self.settings = replace(self.settings, **changes)
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Bring this browser's own marks and panels in line with the document."""
+        self.show_marks()
+        for panel in self.panels:
+            panel.refresh()
+
+    def show_marks(self) -> None:
+        """Outlines, name tags and the others' cursors."""
+        room = self.room
+        others = [(g.name, g.colour, g.selection) for g in room.guests.values() if g is not self]
+        badges = room.badges if self.settings.badges else {}
+        self.marks.show(room.scene, room.viewport.node_name, self.selection, others, badges, names=self.settings.names)
+
+    def notice(self, message: str, kind: NoticeKind = "info") -> None:
+        """Tell the person something."""
+        if kind == "bad":
+            self.view.notice(message, kind)
+        else:
+            self.toast(message, False)
+
+    def post(self, task: Callable[[], None], *, key: str | None = None) -> None:
+        """Do `task` on the desk; the person is told when it fails. May be called from any thread."""
+        self.room.post(self.id, task, key=None if key is None else f"{self.id} {key}")

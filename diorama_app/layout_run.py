@@ -1,0 +1,50 @@
+"""The curves and the report of one optimisation, as the panels show them."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from diorama_core.artefacts import LayoutReport
+from diorama_core.scene.types import Scene
+
+Costs = Sequence[tuple[str, float]]
+Samples = list[tuple[float, tuple[tuple[str, float], ...]]]
+"""Seconds since the start, and every cost then; only ever appended to."""
+
+
+@dataclass
+class LayoutRun:
+    """One run, while it lasts and after. Used from the desk, except for `going`."""
+
+    recipe: str
+    started_at: float
+    start: Scene
+    only: tuple[str, ...] = ()
+    """Ids that were free to move; everything unlocked when empty."""
+    times_s: list[float] = field(default_factory=list)
+    costs: dict[str, list[float]] = field(default_factory=dict)
+    report: LayoutReport | None = None
+    final: Scene | None = None
+    """What was committed."""
+    showing_before: bool = False
+    going: threading.Event = field(default_factory=threading.Event)
+    """Clear while the run pauses."""
+
+    def __post_init__(self) -> None:
+        self.going.set()
+
+    @property
+    def paused(self) -> bool:
+        """Whether it waits to go on."""
+        return not self.going.is_set()
+
+    def read(self, samples: Samples) -> None:
+        """Take up what the optimiser has written since. A cost that begins later or ends earlier keeps its level."""
+        for at_s, costs in samples[len(self.times_s) :]:
+            self.times_s.append(at_s)
+            for name, value in costs:
+                self.costs.setdefault(name, [float(value)] * (len(self.times_s) - 1)).append(float(value))
+            for values in self.costs.values():
+                values.extend([values[-1]] * (len(self.times_s) - len(values)))

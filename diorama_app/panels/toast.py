@@ -1,0 +1,49 @@
+"""A line at the foot of the view that says what happened, with a button that takes it back; what a click means now."""
+
+from __future__ import annotations
+
+import viser
+
+from diorama_app.guest import Guest, Measuring, Placing
+from diorama_app.page import Action, LiveHtml, button, text
+
+
+class Toasts:
+    """Shows the newest message for a few seconds; stays while the next click has a meaning of its own."""
+
+    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
+        self._guest = guest
+        self._html = LiveHtml(gui, self._act, floating="dio-said")
+        self._doing = LiveHtml(gui, self._act, floating="dio-doing")
+        guest.toast = self.say
+
+    def say(self, message: str, undo: bool) -> None:
+        """Show a message, in place of the one before."""
+        again = button("Undo", "undo") if undo else ""
+        self._html.show(f'<div class="dio-toast"><span>{text(message)}</span>{again}</div>', again=True)
+
+    def refresh(self) -> None:
+        """Say what a click in the view does now."""
+        doing = self._guest.doing
+        words = ""
+        if isinstance(doing, Placing):
+            words = "Click where it should stand: the floor, a table, a wall"
+        elif isinstance(doing, Measuring) and len(doing.points) < 2:
+            words = ("Click the first end", "Click the other end")[len(doing.points)]
+        stop = button("Esc", "stop", title="Stop")
+        self._doing.show(
+            f'<div class="dio-toast stay" style="bottom:64px"><span>{words}</span>{stop}</div>' if words else ""
+        )
+
+    def _act(self, action: Action) -> None:
+        guest = self._guest
+
+        def stop() -> None:
+            guest.doing = None
+            guest.view.show_measure((), "")
+            guest.refresh()
+
+        if action.do == "undo":
+            guest.post(lambda: guest.room.undo(guest))
+        elif action.do == "stop":
+            guest.post(stop)

@@ -1,0 +1,95 @@
+"""Projects as folders in the projects' folder: recent ones, duplicate, rename, the bin, earlier versions."""
+
+from __future__ import annotations
+
+import shutil
+import time
+from pathlib import Path
+
+from diorama_core.errors import DioramaError, ProjectError
+from diorama_core.project.storage import Project
+from diorama_core.scene.schema import scene_from_json
+from diorama_core.scene.types import Scene
+
+BIN = ".bin"
+"""Deleted projects wait here until somebody empties it by hand."""
+
+
+def recent_projects(projects_dir: Path) -> list[Path]:
+    """Folders of projects that have a scene, last touched first."""
+    if not projects_dir.is_dir():
+        return []
+    folders = [f for f in projects_dir.iterdir() if (f / "project.json").exists() and (f / "scene.json").exists()]
+    return sorted(folders, key=touched, reverse=True)
+
+
+def touched(folder: Path) -> float:
+    """When the project's scene was last written."""
+    try:
+        return (folder / "scene.json").stat().st_mtime
+    except OSError:
+        return 0.0
+
+
+def name_of(folder: Path) -> str:
+    """What people call a project."""
+    try:
+        return Project.open(folder).name
+    except DioramaError:
+        return folder.name
+
+
+def rename_project(project: Project, name: str) -> None:
+    """Call a project something else; its folder stays."""
+    words = " ".join(name.split())[:80]
+    if not words:
+        raise ProjectError("a project needs a name; type at least one character")
+    project.update_info(name=words)
+
+
+def duplicate_project(folder: Path, projects_dir: Path) -> Project:
+    """A copy beside it, under the next free name."""
+    number = next(n for n in range(2, 10_000) if not (projects_dir / f"{folder.name}-{n}").exists())
+    target = projects_dir / f"{folder.name}-{number}"
+    try:
+        shutil.copytree(folder, target, ignore=shutil.ignore_patterns("backups", ".*"))
+    except OSError as error:
+        raise ProjectError(f"cannot copy to {target} ({error.strerror}); free some space") from error
+    copy = Project.open(target)
+    rename_project(copy, f"{name_of(folder)} {number}")
+    return copy
+
+
+def to_bin(folder: Path, projects_dir: Path) -> Path:
+    """Move a project's folder into the bin; returns where it lies now."""
+    place = projects_dir / BIN / f"{folder.name}-{time.time_ns() // 1_000_000}"
+    try:
+        place.parent.mkdir(parents=True, exist_ok=True)
+        folder.rename(place)
+    except OSError as error:
+        raise ProjectError(f"cannot move {folder} to the bin ({error.strerror})") from error
+    return place
+
+
+def out_of_bin(place: Path, projects_dir: Path) -> Path:
+    """Put a project from the bin back where it was."""
+    folder = projects_dir / place.name.rsplit("-", 1)[0]
+    if folder.exists():
+        raise ProjectError(f"{folder.name} exists again; rename or delete it first")
+    place.rename(folder)
+    return folder
+
+
+def earlier_versions(project: Project, most: int = 6) -> tuple[tuple[str, str], ...]:
+    """(file name, when, in words) of kept earlier scenes, newest first."""
+    return tuple(
+        (p.name, time.strftime("%d %b %H:%M", time.localtime(p.stat().st_mtime))) for p in project.backups()[:most]
+    )
+
+
+def earlier_scene(project: Project, name: str) -> Scene:
+    """One of the kept earlier scenes."""
+    for path in project.backups():
+        if path.name == name:
+            return scene_from_json(path.read_text())
+    raise ProjectError("that earlier version is gone; choose another")

@@ -1,0 +1,33 @@
+"""Which objects a rectangle on the screen takes in."""
+
+from __future__ import annotations
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.scene.types import Scene
+
+
+def objects_in(
+    scene: Scene,
+    low: tuple[float, float],
+    high: tuple[float, float],
+    R_world_camera: Float[np.ndarray, "3 3"],
+    position: Float[np.ndarray, "3"],
+    fov_rad: float,
+    aspect: float,
+) -> tuple[str, ...]:
+    """Ids of visible objects whose middle is seen inside the rectangle (0 to 1 from the top left).
+
+    The middle, so that a table is not taken for the chair drawn around it, and large things need not fit whole.
+    """
+    half = np.tan(fov_rad / 2)
+    found = []
+    for item in scene.objects:
+        p = R_world_camera.T @ (item.pose.position - position)
+        if item.hidden or p[2] <= 1e-3:
+            continue
+        x, y = 0.5 + p[0] / p[2] / (2 * half * aspect), 0.5 + p[1] / p[2] / (2 * half)
+        if low[0] <= x <= high[0] and low[1] <= y <= high[1]:
+            found.append(item.id)
+    return tuple(found)

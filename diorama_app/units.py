@@ -1,0 +1,102 @@
+"""Lengths as people write them: metres, centimetres, feet and inches."""
+
+from __future__ import annotations
+
+import re
+from typing import Literal
+
+from diorama_core.errors import InputError
+
+Unit = Literal["m", "cm", "ft-in"]
+UNITS: tuple[Unit, ...] = ("m", "cm", "ft-in")
+METRES_PER_INCH = 0.0254
+METRES_PER = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "'": 0.3048, "in": METRES_PER_INCH, '"': METRES_PER_INCH}
+_NUMBER = r"\d+(?:[.,]\d+)?(?:\s+\d+/\d+)?|\d+/\d+"
+_PART = re.compile(rf"\s*({_NUMBER})\s*(mm|cm|m|ft|in|'|\")?", re.IGNORECASE)
+
+
+def parse_length(words: str, unit: Unit) -> float:
+    """Metres of a length such as "1.2", "85 cm", "5' 3 1/2\\"" or "6ft 2in"; a bare number is in `unit`.
+
+    Raises:
+        InputError: it is not a length.
+    """
+    rest = words.strip().replace("′", "'").replace("″", '"').replace("’", "'").replace("”", '"')
+    sign = -1.0 if rest.startswith("-") else 1.0
+    rest = rest.lstrip("+-").strip()
+    total, parts, previous = 0.0, 0, ""
+    while rest:
+        found = _PART.match(rest)
+        if found is None:
+            raise InputError(f"'{words[:30]}' is not a length; write for example 1.2 m, 85 cm or 5' 3\"")
+        name = (found.group(2) or "").lower() or _implied(unit, previous)
+        total += _number(found.group(1)) * METRES_PER[name]
+        previous, rest, parts = name, rest[found.end() :].strip(), parts + 1
+    if not parts:
+        raise InputError("the length is missing; write for example 1.2 m, 85 cm or 5' 3\"")
+    return sign * total
+
+
+def parse_lengths(words: str, unit: Unit, count: int = 3) -> tuple[float, ...]:
+    """Several lengths, apart by commas or semicolons; raises `InputError` when there are not `count`."""
+    parts = [p for p in re.split(r"[;,]", words) if p.strip()]
+    if len(parts) != count:
+        raise InputError(f"'{words[:40]}' is not {count} lengths; write them with commas between")
+    return tuple(parse_length(p, unit) for p in parts)
+
+
+def format_length(metres: float, unit: Unit) -> str:
+    """A length to about a millimetre: "1.25 m", "125 cm", "4' 1 1/4\\""."""
+    if unit == "m":
+        return f"{metres:.3f}".rstrip("0").rstrip(".") + " m"
+    if unit == "cm":
+        return f"{100 * metres:.1f}".removesuffix(".0") + " cm"
+    sixteenths = round(abs(metres) / METRES_PER_INCH * 16)
+    feet, rest = divmod(sixteenths, 12 * 16)
+    inches, fraction = divmod(rest, 16)
+    sign = "-" if metres < 0 and sixteenths else ""
+    return f"{sign}{feet}' {inches}{_fraction(fraction)}\"" if feet else f'{sign}{inches}{_fraction(fraction)}"'
+
+
+def in_unit(metres: float, unit: Unit) -> float:
+    """The number that a field in metres or centimetres shows."""
+    return round(metres, 3) if unit == "m" else round(100 * metres, 1)
+
+
+def from_unit(value: float, unit: Unit) -> float:
+    """Metres of a number in a field in metres or centimetres."""
+    return value if unit == "m" else value / 100
+
+
+def format_size(width: float, depth: float, height: float, unit: Unit) -> str:
+    """Width, depth and height in short."""
+    if unit == "ft-in":
+        return " × ".join(format_length(v, unit) for v in (width, depth, height))
+    if unit == "cm":
+        return f"{100 * width:.0f} × {100 * depth:.0f} × {100 * height:.0f}"
+    return f"{width:.2f} × {depth:.2f} × {height:.2f}"
+
+
+def _implied(unit: Unit, previous: str) -> str:
+    if previous in ("'", "ft"):
+        return "in"
+    return "ft" if unit == "ft-in" else unit
+
+
+def _number(words: str) -> float:
+    total = 0.0
+    for part in words.replace(",", ".").split():
+        top, _, below = part.partition("/")
+        if below and float(below) == 0:
+            raise InputError(f"'{words}' divides by nothing; write a length")
+        total += float(top) / float(below) if below else float(top)
+    return total
+
+
+def _fraction(sixteenths: int) -> str:
+    if not sixteenths:
+        return ""
+    below = 16
+    while sixteenths % 2 == 0:
+        sixteenths, below = sixteenths // 2, below // 2
+    return f" {sixteenths}/{below}"

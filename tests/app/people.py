@@ -1,0 +1,47 @@
+"""A person without a browser: what a connected client offers, answered by the server itself."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import viser
+
+from diorama_app.guest import Guest
+from diorama_app.room import Room
+
+
+class LocalClient:
+    """Stands in for a browser's handle; nodes and panels go to the shared scene of the server."""
+
+    def __init__(self, server: viser.ViserServer, client_id: int) -> None:
+        self.client_id = client_id
+        self.scene, self.gui = server.scene, server.gui
+        self.camera = SimpleNamespace(
+            position=np.array([0.0, -3.0, 2.0]),
+            look_at=np.array([0.1, 2.2, 0.4]),
+            wxyz=np.array([1.0, 0.0, 0.0, 0.0]),
+            up_direction=np.array([0.0, 0.0, 1.0]),
+            fov=0.9,
+            aspect=1.3,
+        )
+        self.told: list[str] = []
+
+    @contextlib.contextmanager
+    def atomic(self) -> Iterator[None]:
+        yield
+
+    def flush(self) -> None:
+        pass
+
+    def add_notification(self, title: str, body: str, **options: Any) -> None:
+        self.told.append(body)
+
+
+def join(room: Room, client_id: int = 0) -> Guest:
+    """Somebody comes into the room."""
+    room.joined(LocalClient(room.server, client_id))  # type: ignore[arg-type]
+    return room.guests[client_id]
