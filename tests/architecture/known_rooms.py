@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
@@ -13,6 +14,8 @@ from tests.synthetic_rooms import Shot, cuboid, look, shoot
 
 KINDS = ("box", "l_shape", "slanted", "sloped", "gable", "one_wall", "alcove", "five_walls")
 SIZE = (640, 480)
+BASELINE_STEPS = 8 * 580 * 0.075
+"""Focal length in pixels times baseline in metres, in eighths of a pixel of disparity."""
 
 
 @dataclass(frozen=True)
@@ -154,19 +157,22 @@ def _hides(camera: Camera, box, points):
     return t < 0.99
 
 
-def quantised(shot: Shot) -> Shot:
-    """Depth in the steps of a structured-light sensor: an eighth of a pixel of disparity."""
+def photographed(kind: str, seed: int, *, things: int = 0, noise: float = 0.0) -> Shot:
+    """A room of a kind with furniture; relative noise comes with a structured-light sensor's steps of depth."""
+    shot = _clean(kind, seed, things)
+    if not noise:
+        return shot
     depth = shot.inputs.depth_m.astype(float)
-    steps = 8 * 580 * 0.075 / np.maximum(depth, 1e-6)
-    coarse = np.where(depth > 0, 8 * 580 * 0.075 / np.maximum(np.round(steps), 1.0), 0.0)
+    depth *= 1.0 + noise * np.random.default_rng(seed).standard_normal(depth.shape)
+    steps = np.round(BASELINE_STEPS / np.maximum(depth, 1e-6))
+    coarse = np.where(depth > 0, BASELINE_STEPS / np.maximum(steps, 1.0), 0.0)
     return replace(shot, inputs=replace(shot.inputs, depth_m=coarse.astype(np.float32)))
 
 
-def photographed(kind: str, seed: int, *, things: int = 0, noise: float = 0.0) -> Shot:
-    """A room of a kind with furniture; noise comes with quantisation."""
+@cache
+def _clean(kind: str, seed: int, things: int) -> Shot:
     planes, camera = known_room(kind, seed)
-    shot = shoot(camera, planes, furniture(planes, camera, seed, things), noise=noise, seed=seed)
-    return quantised(shot) if noise else shot
+    return shoot(camera, planes, furniture(planes, camera, seed, things))
 
 
 def all_rays_hit(planes, camera) -> bool:
