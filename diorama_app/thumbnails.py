@@ -48,7 +48,7 @@ class Thumbnails:
         self._queue.put(None)
 
     def _work(self) -> None:
-        from diorama_core.render.views import thumbnail  # only once pictures are asked for
+        from diorama_core.render.thumbnails import thumbnail  # only once pictures are asked for
 
         told = time.monotonic()
         while not self._stopping:

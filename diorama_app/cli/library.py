@@ -6,6 +6,7 @@ import argparse
 import json
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from diorama_app.cli.arguments import command, progress_bar
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 def add_library(commands: Any) -> None:
     """Declare `diorama library`."""
     p: argparse.ArgumentParser = commands.add_parser("library", help="The shapes that scenes are made of.")
-    actions = p.add_subparsers(dest="action", required=True, metavar="build|list|search")
+    actions = p.add_subparsers(dest="action", required=True, metavar="build|list|search|sheet")
     command(actions, "build", _library_build, "Prepare the built-in shapes once.", "diorama library build")
     lists = command(actions, "list", _library_list, "List the shapes.", "diorama library list --category chair")
     lists.add_argument("--category", help="only this category (synonyms are understood)")
@@ -29,6 +30,17 @@ def add_library(commands: Any) -> None:
     search.add_argument("text", metavar="TEXT")
     search.add_argument("-k", type=int, default=10, help="how many (default: %(default)s)")
     search.add_argument("--json", action="store_true")
+    sheet = command(
+        actions,
+        "sheet",
+        _library_sheet,
+        "Draw all shapes, or those of one category, on one page.",
+        "diorama library sheet --category lamp -o lamps.png",
+    )
+    sheet.add_argument("-o", "--output", type=Path, default=Path("library.png"), help="PNG (default: %(default)s)")
+    sheet.add_argument("--category", help="only this category (synonyms are understood)")
+    sheet.add_argument("--size", type=int, default=240, help="side of one picture in pixels (default: %(default)s)")
+    sheet.add_argument("--columns", type=int, default=6, help="pictures side by side (default: %(default)s)")
 
 
 def _library_build(a: argparse.Namespace) -> None:
@@ -60,6 +72,34 @@ def _library_search(a: argparse.Namespace) -> None:
     if note:
         print(f"diorama: note: {note}", file=sys.stderr)
     _print_shapes(search(library_named("built-in"), a.text, a.k), a.json)
+
+
+def _library_sheet(a: argparse.Namespace) -> None:
+    from diorama_app.building import library_named
+    from diorama_core.library.taxonomy import resolve
+    from diorama_core.render.thumbnails import shape_sheet
+
+    if not (16 <= a.size <= 1024 and 1 <= a.columns <= 40):
+        raise InputError(f"--size {a.size} --columns {a.columns}: give a side of 16 to 1024 and 1 to 40 columns")
+    if a.output.suffix.lower() != ".png":
+        raise InputError(f"-o {a.output}: a sheet is a PNG; end the name with .png")
+    if not a.output.absolute().parent.is_dir():
+        raise InputError(f"-o {a.output}: there is no folder {a.output.parent}; make it first")
+    library = library_named("built-in")
+    if a.category is None:
+        shapes = tuple(sorted(library.shapes(), key=lambda s: s.category))  # stable: siblings side by side
+    else:
+        named = resolve(a.category)
+        if named.note:
+            print(f"diorama: note: {named.note}", file=sys.stderr)
+        shapes = library.in_category(named.category.name)
+    with progress_bar() as progress:
+        page = shape_sheet(library, shapes, a.size, a.columns, progress)
+    try:
+        page.save(a.output)
+    except OSError as error:
+        raise InputError(f"{a.output}: cannot be written ({error.strerror or error}); choose another place") from None
+    print(f"{len(shapes)} shapes on {a.output}")
 
 
 def _print_shapes(shapes: Sequence[Shape], as_json: bool) -> None:

@@ -33,5 +33,13 @@ def contact_sheet(
         image = picture(shape).convert("RGBA").resize((size_px, size_px))
         page.paste(image, (left, top), image)
         x, y, z = shape.size_m
-        draw.text((left + 4, top + size_px + 2), f"{shape.id}  {x:.2f} x {y:.2f} x {z:.2f}", fill=INK)
+        words = f"{shape.id}  {x:.2f} x {y:.2f} x {z:.2f}"
+        draw.text((left + 4, top + size_px + 2), _fitted(draw, words, size_px - 8), fill=INK)
     return page
+
+
+def _fitted(draw: ImageDraw.ImageDraw, words: str, width_px: int) -> str:
+    """The words, or as many of their letters as fit."""
+    while words and draw.textlength(words) > width_px:
+        words = words[:-1]
+    return words.rstrip()

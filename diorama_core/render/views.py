@@ -1,15 +1,12 @@
-"""Views of single shapes: studio pictures and thumbnails with a contact shadow on nothing."""
+"""Views of single shapes: studio pictures with a contact shadow on nothing."""
 
 from __future__ import annotations
 
-import io
-import threading
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
 from jaxtyping import Float, Float32, UInt8
-from PIL import Image
 
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import category
@@ -75,7 +72,7 @@ def render_shape(
     Returns:
         Colours and opacity, not premultiplied, sRGB.
     """
-    shape = _record(library, shape_id)
+    shape = record_of(library, shape_id)
     view = view or usual_view(shape)
     alone = World([Placed(shape_surfaces(library, shape_id), np.eye(4), 0)])
     camera = PinholeView(studio_camera(alone.vertices, view, *size))
@@ -87,28 +84,9 @@ def render_shape(
     return _over(shot, shadow)
 
 
-def thumbnail(library: ShapeLibrary, shape_id: str, size: int = 160) -> bytes:
-    """A square PNG of a shape on a transparent background; made once per content, size and process."""
-    shape = _record(library, shape_id)
-    key = (shape.content_hash or shape.id, size)
-    with _CACHE_LOCK:
-        cached = _CACHE.get(key)
-    if cached is None:
-        buffer = io.BytesIO()
-        Image.fromarray(render_shape(library, shape_id, (size, size))).save(buffer, "PNG", optimize=True)
-        cached = buffer.getvalue()
-        with _CACHE_LOCK:
-            _CACHE[key] = cached
-    return cached
-
-
-def _record(library: ShapeLibrary, shape_id: str) -> Shape:
+def record_of(library: ShapeLibrary, shape_id: str) -> Shape:
     """The shape's record; from the list where it is, because `shape` may have to measure support surfaces first."""
     return next((s for s in library.shapes() if s.id == shape_id), None) or library.shape(shape_id)
-
-
-_CACHE: dict[tuple[str, int], bytes] = {}
-_CACHE_LOCK = threading.Lock()
 
 
 def _shadow(

@@ -1,0 +1,103 @@
+"""Small pictures of shapes, made once: kept in memory and, by content, on disk."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import logging
+import os
+import tempfile
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+
+from PIL import Image
+
+from diorama_core.library.catalogue import default_cache_dir
+from diorama_core.library.kept import Kept
+from diorama_core.library.record import Shape, ShapeLibrary
+from diorama_core.library.sheet import contact_sheet
+from diorama_core.progress import Progress
+from diorama_core.render.views import record_of, render_shape
+
+log = logging.getLogger(__name__)
+
+_KEPT: Kept[bytes] = Kept(2048)
+
+
+def thumbnail(library: ShapeLibrary, shape_id: str, size: int = 160, folder: Path | None = None) -> bytes:
+    """A square PNG of a shape on a transparent background.
+
+    Made once per content, size and renderer; shapes without a content hash are not written to disk.
+
+    Args:
+        library: Where the shape is.
+        shape_id: Which shape; `LibraryError` when unknown.
+        size: Side in pixels.
+        folder: Where pictures are kept; by default `thumbnails` in the cache folder.
+    """
+    shape = record_of(library, shape_id)
+    if not shape.content_hash:
+        return _KEPT.get(f"{id(library)} {shape_id} {size}", lambda: _rendered(library, shape_id, size))
+    name = f"{shape.content_hash}-{_renderer()}-{size}.png"
+    path = (folder or default_cache_dir() / "thumbnails") / name
+    return _KEPT.get(name, lambda: _read(path) or _written(path, _rendered(library, shape_id, size)))
+
+
+def shape_sheet(
+    library: ShapeLibrary,
+    shapes: Sequence[Shape],
+    size: int = 240,
+    columns: int = 6,
+    progress: Progress | None = None,
+) -> Image.Image:
+    """A contact sheet of shapes, their pictures taken from the kept ones or rendered now.
+
+    Args:
+        library: Where the shapes are.
+        shapes: What to show, in order.
+        size: Side of one picture in pixels.
+        columns: Pictures side by side.
+        progress: Reports and cancellation.
+    """
+    progress = progress or Progress()
+    done = 0
+
+    def picture(shape: Shape) -> Image.Image:
+        nonlocal done
+        progress.report(done / len(shapes), f"pictures: {done} of {len(shapes)}")
+        done += 1
+        return Image.open(io.BytesIO(thumbnail(library, shape.id, size)))
+
+    return contact_sheet(shapes, picture, size, columns)
+
+
+def _rendered(library: ShapeLibrary, shape_id: str, size: int) -> bytes:
+    buffer = io.BytesIO()
+    Image.fromarray(render_shape(library, shape_id, (size, size))).save(buffer, "PNG", optimize=True)
+    return buffer.getvalue()
+
+
+def _read(path: Path) -> bytes | None:
+    try:
+        return path.read_bytes()
+    except OSError:
+        return None  # absent, or not to be read: it is rendered again
+
+
+def _written(path: Path, data: bytes) -> bytes:
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as part:
+            part.write(data)
+        os.replace(part.name, path)  # so that no reader ever sees half a file
+    except OSError as error:
+        log.warning("cannot keep pictures in %s (%s); they are rendered again each time", path.parent, error)
+    return data
+
+
+@cache
+def _renderer() -> str:
+    """Hash of the code that renders: a picture is another one when the light is."""
+    sources = sorted(Path(__file__).parent.glob("*.py"))
+    return hashlib.sha256(b"\0".join(s.read_bytes() for s in sources)).hexdigest()[:8]
