@@ -44,6 +44,11 @@ BULK_DENSITY: dict[str, float] = {
     "mouse": 250, "tablet": 800, "smartphone": 1500, "printer": 180, "speaker": 280, "record player": 150,
     "telephone": 200, "router": 100, "remote control": 500, "game console": 350,
     "toy": 60, "object": 100,
+    "rocking chair": 28, "recliner": 48, "bar stool": 50, "high chair": 26, "sectional sofa": 26, "chaise longue": 32,
+    "day bed": 35, "bean bag": 12, "vanity table": 80, "bunk bed": 30, "crib": 32, "changing table": 75,
+    "filing cabinet": 170, "display cabinet": 95, "shoe cabinet": 110, "locker": 90, "pantry cabinet": 90, "chest": 110,
+    "wine rack": 80, "coat rack": 30, "room divider": 25, "wall oven": 165, "range hood": 70, "dryer": 130,
+    "dishwasher": 150, "kitchen island": 110, "wall cabinet": 110, "bar cart": 45,
 }  # fmt: skip
 """Kilograms per cubic metre of bounding box: a rough guess for physics, from weighing catalogues' furniture."""
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from jaxtyping import Float
@@ -21,6 +22,8 @@ _RELATED_FACTOR = 0.6
 _USUAL_FACTOR = 0.92
 _RARE_FACTOR = 0.68
 _NAMED_POOL = 10
+_SPECIAL_POOL = 4
+_SUBSTITUTES = 3
 _UNNAMED_POOL = 30
 _EACH_KIND = 2
 _SAME_SIZE_LOG = 0.4
@@ -50,6 +53,8 @@ RELATED: dict[str, tuple[str, ...]] = {
     "refrigerator": ("wardrobe", "cabinet"),
     "stove": ("washing machine", "kitchen counter", "cabinet"),
     "washing machine": ("stove", "cabinet", "box"),
+    "range hood": ("shelves", "microwave"),
+    "wall cabinet": ("shelves", "cabinet"),
     "kitchen counter": ("sideboard", "cabinet", "table"),
     "sink": ("kitchen counter", "cabinet", "bowl"),
     "toilet": ("stool", "ottoman"),
@@ -89,14 +94,28 @@ RELATED: dict[str, tuple[str, ...]] = {
 
 
 def near_kinds(name: str) -> tuple[str, ...]:
-    """Near kinds of a category, nearest first; of a special kind, its broad category and that one's."""
+    """Near kinds of a category, nearest first.
+
+    A special kind has its broad category and that one's near kinds; a category without a row in `RELATED` those that
+    are found in the same place and are most nearly as large.
+    """
     kin = broad(name)
-    return RELATED.get(name, ()) if kin == name else (kin, *(k for k in RELATED.get(kin, ()) if k != name))
+    if kin != name:
+        return (kin, *(k for k in RELATED.get(kin, ()) if k != name))
+    return RELATED.get(name) or _alike_in_size(name)
 
 
-def own_kinds(name: str) -> tuple[str, ...]:
-    """A category and all the special kinds of it: a stool may turn out to be a bar stool."""
-    return (name, *(c.name for c in CATEGORIES if c.kin == name))
+@cache
+def _alike_in_size(name: str) -> tuple[str, ...]:
+    own = category(name)
+    others = [c for c in CATEGORIES if c.mount == own.mount and c.name not in (name, UNKNOWN.name) and not c.kin]
+    unlike = [float(np.abs(c.priors[0].log_median_xyz - own.priors[0].log_median_xyz).sum()) for c in others]
+    return tuple(others[i].name for i in np.argsort(unlike, kind="stable")[:_SUBSTITUTES])
+
+
+def special_kinds(name: str) -> tuple[str, ...]:
+    """The special kinds of a category: a stool may turn out to be a bar stool."""
+    return tuple(c.name for c in CATEGORIES if c.kin == name)
 
 
 USUAL = frozenset(
@@ -145,8 +164,8 @@ def pool_for(library: ShapeLibrary, wish: Wish) -> Pool:
     """Shapes worth comparing with the picture, at most a dozen or two; nearest sizes where there are more."""
     if wish.category == UNKNOWN.name:
         return Pool(_plausible(library, wish))
-    kinds = [shape for kind in own_kinds(wish.category) for shape in library.in_category(kind)]
-    own = _nearest(_usable(library, kinds, wish), wish.size_m, _NAMED_POOL)
+    own = _nearest(_usable(library, library.in_category(wish.category), wish), wish.size_m, _NAMED_POOL)
+    own = [*own, *_better_fitting_specials(library, wish, own)]
     members = [Pooled(shape, 1.0) for shape in own]
     factor = _RELATED_FACTOR
     for near in near_kinds(wish.category):
@@ -159,6 +178,14 @@ def pool_for(library: ShapeLibrary, wish: Wish) -> Pool:
         return Pool(tuple(members))
     note = f"no {wish.category} among the shapes; the nearest kinds were taken"
     return Pool(tuple(members) or _plausible(library, wish), note)
+
+
+def _better_fitting_specials(library: ShapeLibrary, wish: Wish, own: Sequence[Shape]) -> list[Shape]:
+    """Shapes of the category's special kinds whose size fits better than that of any shape of its own."""
+    best = min((_fit_cost(shape, wish.size_m) for shape in own), default=np.inf)
+    special = [shape for kind in special_kinds(wish.category) for shape in library.in_category(kind)]
+    fitting = [shape for shape in _usable(library, special, wish) if _fit_cost(shape, wish.size_m) < best]
+    return _nearest(fitting, wish.size_m, _SPECIAL_POOL)
 
 
 def _usable(library: ShapeLibrary, shapes: Sequence[Shape], wish: Wish) -> Sequence[Shape]:

@@ -59,6 +59,15 @@ def _leather(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
     return shade(rgb, 0.045 * np.tanh(pores) + 0.02 * noise(rng, (28, 28)))
 
 
+def _velvet(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
+    return shade(rgb, 0.022 * noise(rng, (26, 14)) + 0.018 * noise(rng, (7, 4)) + 0.015 * noise(rng, (0.7, 0.7)))
+
+
+def _boucle(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
+    loops = np.tanh(1.4 * noise(rng, (2.2, 2.2)))
+    return shade(rgb, 0.07 * loops + 0.03 * noise(rng, (0.8, 0.8)) - 0.02)
+
+
 def _clay(rgb: Float[np.ndarray, "3"], rng: np.random.Generator) -> Picture:
     return shade(rgb, 0.03 * noise(rng, (16, 16)) + 0.018 * noise(rng, (1, 1)))
 
@@ -229,6 +238,8 @@ PAINTERS: dict[str, Painter] = {
     "wood": _wood,
     "weave": _weave,
     "leather": _leather,
+    "velvet": _velvet,
+    "boucle": _boucle,
     "clay": _clay,
     "marble": _marble,
     "speckle": _speckle,

@@ -1,8 +1,16 @@
-"""Beds, one module a kind."""
+"""Beds for one, two and the very young, one module a kind."""
 
 from __future__ import annotations
 
-from diorama_core.library.furniture.beds import bunk_beds, framed_beds
+from diorama_core.library.furniture.beds import (
+    bedsteads,
+    bunk_beds,
+    day_beds,
+    framed_beds,
+    nursery,
+    stacked_beds,
+)
 from diorama_core.library.furniture.model import Design
 
-DESIGNS: tuple[Design, ...] = tuple(design for kind in (framed_beds, bunk_beds) for design in kind.DESIGNS)
+KINDS = (framed_beds, bedsteads, bunk_beds, stacked_beds, day_beds, nursery)
+DESIGNS: tuple[Design, ...] = tuple(design for kind in KINDS for design in kind.DESIGNS)

@@ -48,7 +48,7 @@ def bunk_bed(size: Size, wood: Material, duvet: Material) -> Parts:
 DESIGNS: tuple[Design, ...] = (
     Design(
         "bed-bunk",
-        "bed",
+        "bunk bed",
         "pine bunk bed with a ladder",
         (2.06, 1.00, 1.62),
         "rustic",

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture.kitchen import cookers, counters, laundry, microwaves, refrigerators
+from diorama_core.library.furniture.kitchen import (
+    appliances,
+    cookers,
+    counters,
+    islands,
+    laundry,
+    microwaves,
+    refrigerators,
+)
 from diorama_core.library.furniture.model import Design
 
-DESIGNS: tuple[Design, ...] = tuple(
-    design for kind in (refrigerators, cookers, laundry, counters, microwaves) for design in kind.DESIGNS
-)
+KINDS = (refrigerators, cookers, laundry, appliances, counters, islands, microwaves)
+DESIGNS: tuple[Design, ...] = tuple(design for kind in KINDS for design in kind.DESIGNS)

@@ -39,10 +39,11 @@ def stove(size: Size, body: Material, hob: str) -> Parts:
         parts += at(knob(), xf + 0.022, float(y), top - 0.08)
     if back:
         parts += of(body, box((0.04, w, back + 0.03), 0.006).moved(-d / 2 + 0.02, 0, top - 0.03))
-    return parts + _burners(d, w, top, hob)
+    return parts + burners(d, w, top, hob)
 
 
-def _burners(d: float, w: float, top: float, hob: str) -> Parts:
+def burners(d: float, w: float, top: float, hob: str) -> Parts:
+    """Four burners, their foot on the plane z = `top`; `hob` as in `stove`."""
     parts: Parts = []
     for x in (-0.22 * d, 0.17 * d):
         for y in (-0.24 * w, 0.24 * w):

@@ -82,7 +82,7 @@ DESIGNS: tuple[Design, ...] = (
     ),
     Design(
         "washing-machine-dishwasher",
-        "washing machine",
+        "dishwasher",
         "stainless-steel dishwasher",
         (0.60, 0.60, 0.84),
         "modern",

@@ -11,7 +11,7 @@ from diorama_core.library.furniture.seating.stools import pad_stool, round_stool
 DESIGNS: tuple[Design, ...] = (
     Design(
         "stool-bar-walnut",
-        "stool",
+        "bar stool",
         "walnut bar stool with a brass foot ring",
         (0.40, 0.40, 0.75),
         "modern",
@@ -20,7 +20,7 @@ DESIGNS: tuple[Design, ...] = (
     ),
     Design(
         "stool-bar-pad",
-        "stool",
+        "bar stool",
         "bar stool with a grey pad on a steel frame",
         (0.40, 0.42, 0.68),
         "industrial",
@@ -29,7 +29,7 @@ DESIGNS: tuple[Design, ...] = (
     ),
     Design(
         "stool-bar-leather",
-        "stool",
+        "bar stool",
         "tan leather bar stool",
         (0.38, 0.40, 0.76),
         "industrial",
@@ -38,7 +38,7 @@ DESIGNS: tuple[Design, ...] = (
     ),
     Design(
         "stool-swivel",
-        "stool",
+        "bar stool",
         "swivel stool with a black leather seat",
         (0.40, 0.40, 0.72),
         "modern",

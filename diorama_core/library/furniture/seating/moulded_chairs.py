@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
+from jaxtyping import Float
+from scipy.interpolate import PchipInterpolator
 
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, four, of
 from diorama_core.library.furniture.solids import bend, box, rod, slab, tube
+
+
+def eased(v: Float[np.ndarray, "m 1"], at: Sequence[float], values: Sequence[float]) -> Float[np.ndarray, "m 1"]:
+    """A smooth curve through points that never overshoots them."""
+    return np.asarray(PchipInterpolator(at, values)(v))
 
 
 def shell_chair(size: Size, shell: Material, legs: Material, base: str) -> Parts:
@@ -25,12 +33,12 @@ def shell_chair(size: Size, shell: Material, legs: Material, base: str) -> Parts
             (-0.42 * d, 0, 0.66),
             (-0.49 * d, 0, h),
         ],
-        4,
+        5,
     )
     s = np.linspace(0, 1, len(path))[:, None]
     u = np.linspace(-1, 1, 15)[None, :]
-    half = w / 2 * np.interp(s, [0, 0.12, 0.45, 0.72, 0.92, 1], [0.78, 0.94, 1.0, 0.94, 0.84, 0.62])
-    curl = np.interp(s, [0, 0.1, 0.5, 0.8, 1], [0.0, 0.03, 0.085, 0.05, 0.015])
+    half = w / 2 * eased(s, [0, 0.04, 0.12, 0.45, 0.72, 0.9, 0.97, 1], [0.62, 0.8, 0.93, 1.0, 0.94, 0.82, 0.62, 0.34])
+    curl = eased(s, [0, 0.1, 0.5, 0.8, 1], [0.0, 0.03, 0.085, 0.05, 0.015])
     x = path[:, :1] + curl * np.interp(s, [0, 0.4, 0.7, 1], [0, 0.3, 1, 1]) * u**2 * 0.9
     z = path[:, 2:] + curl * np.interp(s, [0, 0.4, 0.7, 1], [0.6, 0.4, 0.0, 0.0]) * u**2
     surface = np.stack([x, half * u, z], axis=-1)

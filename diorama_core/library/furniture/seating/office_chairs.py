@@ -13,18 +13,14 @@ from diorama_core.library.furniture.model import Design, Parts, Size, both_sides
 from diorama_core.library.furniture.solids import Solid, bend, box, cushion, cylinder, rod, slab, tube
 
 
-def office_chair(
-    size: Size, cloth: Material, frame: Material, back: Literal["mesh", "padded", "high"], arms: bool = True
-) -> Parts:
-    """A swivel chair on a five-star base with castors."""
-    d, w, h = size
-    seat_z, r = 0.47, 0.5 * min(d, w) * 0.96
+def castor_star(r: float, spokes: int = 5, foot: float = 0.015) -> list[Solid]:
+    """A base of radius `r` with a castor under the end of every spoke."""
     star: list[Solid] = []
-    for k in range(5):
-        spoke = tube([(0.03, 0, 0.105), (r * 0.6, 0, 0.085), (r - 0.02, 0, 0.07)], [0.026, 0.02, 0.015], 8)
+    for k in range(spokes):
+        spoke = tube([(0.03, 0, 0.105), (r * 0.6, 0, 0.085), (r - 0.02, 0, 0.07)], [0.026, 0.02, foot], 8)
         wheel = cylinder(0.028, 0.02, 0.006, 16).turned("x", 90)
         star += [
-            s.turned("z", 72 * k)
+            s.turned("z", 360.0 / spokes * k)
             for s in (
                 spoke,
                 wheel.moved(r - 0.028, 0.026, 0.028),
@@ -32,6 +28,16 @@ def office_chair(
                 rod((r - 0.025, 0, 0.03), (r - 0.025, 0, 0.08), 0.01),
             )
         ]
+    return star
+
+
+def office_chair(
+    size: Size, cloth: Material, frame: Material, back: Literal["mesh", "padded", "high"], arms: bool = True
+) -> Parts:
+    """A swivel chair on a five-star base with castors."""
+    d, w, h = size
+    seat_z, r = 0.47, 0.5 * min(d, w) * 0.96
+    star = castor_star(r)
     lift = [
         cylinder(0.03, 0.2, 0.004, 16).moved(z=0.09),
         cylinder(0.02, 0.22, 0.003, 16).moved(z=0.22),

@@ -1,8 +1,15 @@
-"""Bookcases, wall shelves and wardrobes, one module a kind."""
+"""Bookcases, wall shelves, wardrobes and hall stands, one module a kind."""
 
 from __future__ import annotations
 
 from diorama_core.library.furniture.model import Design
-from diorama_core.library.furniture.shelving import bookcases, wall_shelves, wardrobes
+from diorama_core.library.furniture.shelving import (
+    bookcases,
+    hall_pieces,
+    racks,
+    wall_shelves,
+    wardrobes,
+)
 
-DESIGNS: tuple[Design, ...] = tuple(design for kind in (bookcases, wardrobes, wall_shelves) for design in kind.DESIGNS)
+KINDS = (bookcases, racks, wardrobes, wall_shelves, hall_pieces)
+DESIGNS: tuple[Design, ...] = tuple(design for kind in KINDS for design in kind.DESIGNS)

@@ -5,17 +5,29 @@ from __future__ import annotations
 from diorama_core.library.furniture.model import Design
 from diorama_core.library.furniture.storage import (
     cabinets,
+    case_pieces,
+    chests,
     display_cabinets,
     dressers,
     filing_cabinets,
     lockers,
     night_stands,
     sideboards,
+    special_cabinets,
     tv_stands,
 )
 
-DESIGNS: tuple[Design, ...] = tuple(
-    design
-    for kind in (filing_cabinets, lockers, display_cabinets, night_stands, dressers, cabinets, sideboards, tv_stands)
-    for design in kind.DESIGNS
+KINDS = (
+    night_stands,
+    dressers,
+    cabinets,
+    case_pieces,
+    filing_cabinets,
+    lockers,
+    display_cabinets,
+    special_cabinets,
+    sideboards,
+    tv_stands,
+    chests,
 )
+DESIGNS: tuple[Design, ...] = tuple(design for kind in KINDS for design in kind.DESIGNS)

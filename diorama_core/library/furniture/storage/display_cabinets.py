@@ -37,7 +37,7 @@ def curio(size: Size, wood: Material, levels: int) -> Parts:
 DESIGNS: tuple[Design, ...] = (
     Design(
         "cabinet-display",
-        "cabinet",
+        "display cabinet",
         "glazed walnut display cabinet",
         (0.42, 0.95, 1.90),
         "classic",

@@ -28,7 +28,7 @@ def filing_cabinet(size: Size, steel: Material, drawers: int) -> Parts:
 DESIGNS: tuple[Design, ...] = (
     Design(
         "cabinet-filing",
-        "cabinet",
+        "filing cabinet",
         "grey steel filing cabinet",
         (0.60, 0.46, 1.02),
         "industrial",
@@ -36,7 +36,7 @@ DESIGNS: tuple[Design, ...] = (
     ),
     Design(
         "cabinet-low-filing",
-        "cabinet",
+        "filing cabinet",
         "white pedestal on castors' plinth",
         (0.55, 0.42, 0.60),
         "minimal",

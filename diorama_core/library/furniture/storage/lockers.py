@@ -36,7 +36,7 @@ def locker(size: Size, body: Material, doors: int) -> Parts:
 DESIGNS: tuple[Design, ...] = (
     Design(
         "cabinet-lockers",
-        "cabinet",
+        "locker",
         "sage steel lockers",
         (0.45, 0.90, 1.80),
         "industrial",

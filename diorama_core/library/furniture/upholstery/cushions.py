@@ -13,9 +13,9 @@ ArmKind = Literal["track", "rolled", "slim", "pillow", "wood", "none"]
 
 def seat_cushion(d: float, w: float, t: float) -> list[Solid]:
     """A boxed seat cushion with piping round its upper and lower edge, standing on z = 0."""
-    pad = cushion((d, w, t), 9, 4.5, 10)
-    crown = cushion((d * 0.93, w * 0.93, 0.05), 5, 2.4, 7).moved(z=t - 0.032)
-    piping = tube(ring_path(superellipse(d * 0.965, w * 0.965, 9, 36), t * 0.87), 0.005, 4, closed=True)
+    pad = cushion((d, w, t), 9, 4.5, 8)
+    crown = cushion((d * 0.93, w * 0.93, 0.05), 5, 2.4, 6).moved(z=t - 0.032)
+    piping = tube(ring_path(superellipse(d * 0.965, w * 0.965, 9, 32), t * 0.87), 0.005, 3, closed=True)
     return [pad, crown, piping]
 
 

@@ -11,7 +11,7 @@ from diorama_core.library.furniture.upholstery.sofas import sofa
 DESIGNS: tuple[Design, ...] = (
     Design(
         "armchair-recliner",
-        "armchair",
+        "recliner",
         "black leather armchair with padded arms",
         (0.95, 0.98, 0.98),
         "modern",

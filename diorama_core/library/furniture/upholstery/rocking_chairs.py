@@ -40,7 +40,7 @@ def rocking_chair(size: Size, wood: Material, cloth: Material) -> Parts:
 DESIGNS: tuple[Design, ...] = (
     Design(
         "armchair-rocking",
-        "armchair",
+        "rocking chair",
         "rocking chair with spindles",
         (0.88, 0.64, 1.04),
         "rustic",

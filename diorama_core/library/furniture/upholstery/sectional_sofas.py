@@ -38,7 +38,7 @@ def corner_sofa(size: Size, cloth: Material, legs: Material) -> Parts:
 DESIGNS: tuple[Design, ...] = (
     Design(
         "sofa-corner",
-        "sofa",
+        "sectional sofa",
         "light grey corner sofa with a chaise",
         (1.60, 2.50, 0.82),
         "modern",
