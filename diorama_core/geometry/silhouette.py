@@ -40,6 +40,14 @@ class PoseBatch:
     def __getitem__(self, chosen: slice | np.ndarray) -> PoseBatch:
         return PoseBatch(self.R[chosen], self.position[chosen], self.scale[chosen])
 
+    def and_also(self, other: PoseBatch) -> PoseBatch:
+        """These poses and then those."""
+        return PoseBatch(
+            np.concatenate([self.R, other.R]),
+            np.concatenate([self.position, other.position]),
+            np.concatenate([self.scale, other.scale]),
+        )
+
     def apply(self, points_object: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "p n 3"]:
         """Shape points in the world under every pose."""
         to_world = self.R * self.scale[:, None, :]

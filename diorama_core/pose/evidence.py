@@ -37,7 +37,7 @@ class MeasuredSurface:
 
     def agreement(self, hits: Hits) -> Float[np.ndarray, "p"]:
         """0 to 1: nearness of depth and of normals over the object's measured cells."""
-        tolerance = 0.04 + 0.02 * self.depth_m
+        tolerance = 0.02 + 0.01 * self.depth_m
         met = np.where(hits.covered, hits.depth_m, 0.0)
         near = np.where(hits.covered, np.exp(-(((met - self.depth_m) / tolerance) ** 2)), 0.0)
         aligned = np.clip(np.einsum("pni,ni->pn", hits.normals_world, self.normals_world), 0.0, 1.0)

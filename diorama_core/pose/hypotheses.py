@@ -55,6 +55,14 @@ class Hypotheses:
     misfit: Float[np.ndarray, "p"]
     """How far the limits keep the shape from filling the cuboid that way round: root mean square of log extents."""
 
+    def and_also(self, other: Hypotheses) -> Hypotheses:
+        """These and then those."""
+        return Hypotheses(
+            self.poses.and_also(other.poses),
+            np.concatenate([self.off_axis_rad, other.off_axis_rad]),
+            np.concatenate([self.misfit, other.misfit]),
+        )
+
 
 def hypotheses_for(
     cuboid: Cuboid, category_name: str, symmetry: SymmetryFold, limits: SizeLimits, anchor: Anchor

@@ -14,6 +14,8 @@ _STRETCH_SHAPED = float(np.log(1.28))
 _STRETCH_BOXY = float(np.log(1.75))
 _THIN_M = 0.08
 _DEGENERATE_M = 1e-3
+_OWN_SIZE_FACTOR = 1.3
+"""Whatever its kind's usual size, a shape may be this much smaller or larger than it was made."""
 
 BOXY = frozenset(
     {
@@ -54,7 +56,13 @@ class SizeLimits:
         """Limits for a shape standing for a thing of a category, by the size prior nearest to what was observed."""
         least, most = _category_range(category_name, observed_m)
         stretch = _STRETCH_BOXY if category_name in BOXY else _STRETCH_SHAPED
-        return cls(np.asarray(shape_size_m, dtype=np.float64), least, most, stretch)
+        own = np.asarray(shape_size_m, dtype=np.float64)
+        return cls(
+            own,
+            np.maximum(np.minimum(least, own / _OWN_SIZE_FACTOR), _DEGENERATE_M),
+            np.maximum(most, own * _OWN_SIZE_FACTOR),
+            stretch,
+        )
 
     def scale_for(self, wanted_m: Float[np.ndarray, "*p 3"]) -> Float[np.ndarray, "*p 3"]:
         """Per-axis scales nearest to giving the shape the wanted size, within the limits."""

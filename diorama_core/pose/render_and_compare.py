@@ -19,7 +19,7 @@ from diorama_core.artefacts import (
 )
 from diorama_core.geometry.looks import SHARED_LOOKS
 from diorama_core.geometry.observed import Observed, observe_among
-from diorama_core.geometry.silhouette import PoseBatch
+from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import category
@@ -28,13 +28,15 @@ from diorama_core.pose.evidence import Evidence, MeasuredSurface
 from diorama_core.pose.facing import facing_of, wall_samples
 from diorama_core.pose.hypotheses import Anchor, anchor_of, hypotheses_for
 from diorama_core.pose.limits import SizeLimits
+from diorama_core.pose.measured import MeasuredObject
 from diorama_core.pose.refine import BoxFit
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Candidate, Pose
 
-_RETRIEVAL_POWER = 1.5
-_POSE_POWER = 0.6
+_POWERS = (1.5, 0.6)
 """How much retrieval and pose say about which shape is best: the picture's outline alone would ignore colours."""
+_POWERS_WITH_DEPTH = (0.7, 1.5)
+"""The same where depth was measured: it tells shapes apart."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +48,8 @@ class _Task:
     anchor: Anchor
     coarse: Evidence
     fine: Evidence
+    measured: MeasuredObject | None
+    """Where depth was measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,12 +78,15 @@ class RenderAndCompare:
     fine_cells: int = 56
     """Resolution at which the best ones are."""
     refined: int = 2
-    """How many hypotheses of each shape are refined."""
+    """How many hypotheses of each shape are refined where only the outline is known."""
+    refined_with_depth: int = 5
+    """How many where depth was measured."""
 
     def __repr__(self) -> str:
         words = "\n".join(f"{s.id} {s.content_hash}" for s in self.library.shapes())
         shapes = hashlib.sha256(words.encode()).hexdigest()[:12]
-        return f"RenderAndCompare({shapes}, {self.coarse_cells}, {self.fine_cells}, {self.refined})"
+        settings = (self.coarse_cells, self.fine_cells, self.refined, self.refined_with_depth)
+        return f"RenderAndCompare({shapes}, {', '.join(map(str, settings))})"
 
     def pose(
         self,
@@ -131,22 +138,24 @@ class RenderAndCompare:
             out_of_wall = anchor.axis_world[:2] if on_wall else None
             facing = facing_of(thing, cuboids[i], cuboids, categories, geometry.camera, walls, out_of_wall, lying)
             coarse, fine = (
-                Evidence(geometry.camera, seen, facing, _surface(depth, seen))
+                Evidence(geometry.camera, seen, facing, measured_surface(depth, seen))
                 for cells in (self.coarse_cells, self.fine_cells)
                 for seen in [observe_among(geometry.camera, things, centres, parents, i, cells)]
             )
-            tasks.append(_Task(thing, cuboids[i], anchor, coarse, fine))
+            measured = MeasuredObject.of(thing.mask, fine, cuboids[i], anchor)
+            tasks.append(_Task(thing, cuboids[i], anchor, coarse, fine, measured))
         return tasks
 
     def _pose_object(
         self, task: _Task, ranked: tuple[tuple[str, float], ...], records: Mapping[str, Shape]
     ) -> tuple[_Posed, ...]:
         best = max(max(score for _, score in ranked), 1e-9)
+        of_retrieval, of_pose = _POWERS if task.measured is None else _POWERS_WITH_DEPTH
         posed = []
         for shape_id, score in ranked:
             found = self._pose_shape(task, records[shape_id])
             liked = float(np.log(max(score / best, 1e-6)))
-            posed.append(replace(found, rank=_RETRIEVAL_POWER * liked + _POSE_POWER * found.rank))
+            posed.append(replace(found, rank=of_retrieval * liked + of_pose * found.rank))
         return tuple(posed)
 
     def _pose_shape(self, task: _Task, shape: Shape) -> _Posed:
@@ -156,23 +165,25 @@ class RenderAndCompare:
         name = task.thing.category
         limits = SizeLimits.of(shape.size_m, name, task.cuboid.size_m)
         tried = hypotheses_for(task.cuboid, name, shape.symmetry, limits, task.anchor)
+        if task.measured is not None:
+            tried = tried.and_also(task.measured.hypotheses(shape.symmetry, limits))
         errors = task.coarse.errors(caster, tried.poses)
         rough = task.coarse.log_scores(errors, tried.poses, tried.off_axis_rad, tried.misfit, limits)
-        best = np.argsort(-rough, kind="stable")[: self.refined]
+        best = np.argsort(-rough, kind="stable")[: self.refined if task.measured is None else self.refined_with_depth]
         start, off_axis, misfit = tried.poses[best], tried.off_axis_rad[best], tried.misfit[best]
-        yaw_sigma = np.deg2rad(9.0 if category(name).quarter_turns_free else 4.0)
-        fit = BoxFit(task.fine.camera, task.fine.seen, task.anchor, limits, float(yaw_sigma))
-        moved = fit.refined(caster, start)
-        both = PoseBatch(
-            np.concatenate([start.R, moved.R]),
-            np.concatenate([start.position, moved.position]),
-            np.concatenate([start.scale, moved.scale]),
-        )
+        moved = self._refined(task, caster, limits, start)
+        both = start.and_also(moved)
         errors = task.fine.errors(caster, both)
         scores = task.fine.log_scores(errors, both, np.tile(off_axis, 2), np.tile(misfit, 2), limits)
         chosen = int(np.argmax(scores))
         pose = Pose(both.R[chosen], both.position[chosen], both.scale[chosen])
         return _Posed(shape, pose, float(errors[chosen]), float(scores[chosen]))
+
+    def _refined(self, task: _Task, caster: ShapeCaster, limits: SizeLimits, start: PoseBatch) -> PoseBatch:
+        if task.measured is not None:
+            return task.measured.fit(limits).refined(caster, start)
+        yaw_sigma = np.deg2rad(9.0 if category(task.thing.category).quarter_turns_free else 4.0)
+        return BoxFit(task.fine.camera, task.fine.seen, task.anchor, limits, float(yaw_sigma)).refined(caster, start)
 
 
 def _candidates(task: _Task, found: tuple[_Posed, ...], ranks: Mapping[str, float]) -> PosedCandidates:
@@ -187,7 +198,7 @@ def _candidates(task: _Task, found: tuple[_Posed, ...], ranks: Mapping[str, floa
     return PosedCandidates(task.thing.id, candidates, task.fine.confidence(best.error, task.cuboid.confidence))
 
 
-def _surface(depth: DepthMap, seen: Observed) -> MeasuredSurface | None:
+def measured_surface(depth: DepthMap, seen: Observed) -> MeasuredSurface | None:
     """Depth and normals under an object's mask; None where depth was only rendered from what is already known."""
     if depth.source == "rendered from cuboids and room":
         return None

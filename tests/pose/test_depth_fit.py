@@ -1,0 +1,141 @@
+"""Shapes fitted to rendered depth with exact truth."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from diorama_core.artefacts import DepthMap
+from diorama_core.geometry.observed import observe_among
+from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
+from diorama_core.pose.depth_fit import DepthFit, Outline, SeenPoints
+from diorama_core.pose.evidence import Evidence
+from diorama_core.pose.facing import Facing
+from diorama_core.pose.hypotheses import anchor_of
+from diorama_core.pose.limits import SizeLimits
+from diorama_core.pose.measured import MeasuredObject
+from diorama_core.pose.render_and_compare import measured_surface
+from diorama_core.scene.types import yaw_rotation
+from tests.pose.rooms import LIBRARY, Room, camera_at, standing, yaw_error_deg
+
+
+def measured(room: Room, index: int = 0, depth: DepthMap | None = None) -> MeasuredObject:
+    """The first thing of a room as depth shows it, with its true cuboid."""
+    thing, cuboid = room.objects[index], room.geometry.cuboids[index]
+    centres = np.array([c.centre for c in room.geometry.cuboids])
+    seen = observe_among(room.camera, room.objects, centres, [None] * len(centres), index, 56)
+    surface = measured_surface(depth or room.depth(True), seen)
+    evidence = Evidence(room.camera, seen, Facing(()), surface)
+    anchor = anchor_of(cuboid, False, room.camera.position[:2] - cuboid.centre[:2])
+    found = MeasuredObject.of(thing.mask, evidence, cuboid, anchor)
+    assert found is not None
+    return found
+
+
+def fit_of(room: Room, **settings) -> tuple[DepthFit, ShapeCaster]:
+    shape = LIBRARY.shape(room.placed[0].shape_id)
+    limits = SizeLimits.of(shape.size_m, shape.category, room.geometry.cuboids[0].size_m)
+    return measured(room, **settings).fit(limits), ShapeCaster(LIBRARY.mesh(shape.id))
+
+
+@settings(max_examples=12, deadline=None)
+@given(
+    st.floats(-180, 180),
+    st.tuples(st.floats(-0.12, 0.12), st.floats(-0.12, 0.12), st.floats(-0.05, 0.05)),
+    st.floats(-14, 14),
+    st.floats(0.88, 1.12),
+)
+def test_a_displaced_chair_finds_back(yaw: float, shift: tuple, turn: float, factor: float) -> None:
+    room = Room(camera_at(), (standing("chair", 0.2, 2.6, yaw),), (0,))
+    fit, caster = fit_of(room)
+    true = room.placed[0].pose
+    start = PoseBatch(
+        (yaw_rotation(np.deg2rad(turn)) @ true.R_world_object)[None],
+        (true.position + shift)[None],
+        true.scale[None] * factor,
+    )
+    found = fit.refined(caster, start)
+    before, after = (float(np.linalg.norm(p.position[0] - true.position)) for p in (start, found))
+    assert after < max(0.3 * before, 0.03)
+    assert yaw_error_deg(replace(true, R_world_object=found.R[0]), true, 1) < 5.0
+    assert np.abs(found.scale[0] / true.scale - 1).max() < 0.1
+
+
+def test_a_stretched_table_is_measured_along_every_axis() -> None:
+    room = Room(camera_at(), (standing("table", 0.0, 3.0, 25.0, (1.1, 0.9, 1.08)),), (0,))
+    fit, caster = fit_of(room)
+    true = room.placed[0].pose
+    found = fit.refined(caster, fit.starts(true.R_world_object[None]))
+    assert np.abs(found.scale[0] / true.scale - 1).max() < 0.05
+    assert np.linalg.norm(found.position[0] - true.position) < 0.03
+
+
+def test_noise_and_holes_in_the_depth_are_survived() -> None:
+    room = Room(camera_at(), (standing("chair", 0.0, 2.6, 40.0),), (0,))
+    exact = room.depth(True)
+    rng = np.random.default_rng(3)
+    noisy = exact.depth_m * (1 + 0.05 * rng.standard_normal(exact.depth_m.shape))
+    noisy[rng.random(noisy.shape) < 0.3] = 0.0
+    fit, caster = fit_of(room, depth=replace(exact, depth_m=noisy.astype(np.float32)))
+    true = room.placed[0].pose
+    found = fit.refined(caster, fit.starts(true.R_world_object[None]))
+    assert np.linalg.norm(found.position[0] - true.position) < 0.06
+    assert np.abs(found.scale[0] / true.scale - 1).max() < 0.12
+
+
+def test_turns_all_around_contain_the_truth() -> None:
+    room = Room(camera_at(), (standing("chair", 0.0, 2.6, 100.0),), (0,))
+    shape = LIBRARY.shape("chair")
+    limits = SizeLimits.of(shape.size_m, shape.category, room.geometry.cuboids[0].size_m)
+    tried = measured(room).hypotheses(shape.symmetry, limits)
+    true = room.placed[0].pose
+    errors = [yaw_error_deg(replace(true, R_world_object=R), true, 1) for R in tried.poses.R]
+    assert len(errors) == 24
+    best = int(np.argmin(errors))
+    assert errors[best] <= 7.6
+    assert np.linalg.norm(tried.poses.position[best] - true.position) < 0.12
+
+
+def test_outlines_know_what_the_border_and_nearer_things_may_hide() -> None:
+    alone = Room(camera_at(), (standing("chair", 0.0, 3.0, 30.0),), (0,))
+    outline = measured(alone).outline
+    assert outline is not None
+    assert outline.known.all()
+    behind = Room(camera_at(), (standing("chair", 0.0, 4.2, 30.0), standing("sofa", 0.0, 2.9, -90.0)), (0, 2))
+    hidden = measured(behind).outline
+    assert hidden is not None
+    assert hidden.upper_end_seen
+    assert not hidden.lower_end_seen
+
+
+def test_outlines_reach_to_the_edges_of_the_pixels() -> None:
+    room = Room(camera_at(), (standing("chair", 0.0, 3.0, 30.0),), (0,))
+    outline = measured(room).outline
+    assert outline is not None
+    rows, columns = np.nonzero(room.objects[0].mask)
+    assert outline.reach_px[0] == pytest.approx(columns.max() + 1)
+    assert outline.reach_px[4] == pytest.approx(rows.max() + 1)
+    assert Outline.of(measured(room).evidence.seen, np.zeros_like(room.objects[0].mask)) is None
+
+
+def test_where_its_foot_is_hidden_a_thing_may_stand_anywhere_below() -> None:
+    seen_foot = Room(camera_at(), (standing("chair", 0.0, 3.0, 30.0),), (0,))
+    hidden_foot = Room(camera_at(), (standing("chair", 0.0, 4.2, 30.0), standing("sofa", 0.0, 2.9, -90.0)), (0, 2))
+    sure, unsure = measured(seen_foot).contact, measured(hidden_foot).contact
+    assert sure.anchor.point_world[2] == pytest.approx(0.0, abs=1e-6)
+    assert unsure.sigma_m > 3 * sure.sigma_m
+
+
+def test_hardly_any_depth_is_no_measurement() -> None:
+    room = Room(camera_at(), (standing("chair", 0.0, 2.6, 40.0),), (0,))
+    whole = measured(room)
+    few = SeenPoints(*(a[:3] for a in (whole.points.directions_world, whole.points.points_world, whole.points.depth_m)))
+    assert len(few.depth_m) == 3
+    mask = np.zeros_like(room.objects[0].mask)
+    assert whole.evidence.surface is not None
+    blind = replace(whole.evidence, surface=replace(whole.evidence.surface, weight=np.zeros(56 * 56)))
+    assert MeasuredObject.of(mask, blind, whole.cuboid, whole.contact.anchor) is None
