@@ -22,6 +22,10 @@ from diorama_core.scene.types import Intrinsics
 
 SAMPLES = 64
 """Points a side from which MoGe-2's camera is recovered."""
+USUAL_FOCAL = 0.8
+"""Focal length over the longer side that cameras have."""
+FOCAL_PRIOR = 1e-8
+"""Decides only where the points do not: a flat wall seen squarely fits every focal length."""
 MOST_PIXELS = 700 * 700
 """Larger pictures are reduced for MoGe-2: its tokens cover no more detail."""
 
@@ -122,7 +126,9 @@ def focal_and_shift(
         return focal, float(((focal * plane - offsets) ** 2).mean())
 
     def cost(log_gap: float) -> float:
-        return best_focal(float(np.exp(log_gap)) - nearest)[1]
+        focal, misfit = best_focal(float(np.exp(log_gap)) - nearest)
+        off_usual = np.log(max(focal, 1e-9) / (USUAL_FOCAL * max(height, width)))
+        return misfit + FOCAL_PRIOR * (max(height, width) * off_usual) ** 2
 
     # The gap between the camera and the nearest point, over many orders of magnitude; a grid finds the valley.
     grid = np.linspace(np.log(1e-3 * spread), np.log(1e3 * spread), 61)

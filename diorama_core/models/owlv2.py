@@ -53,7 +53,7 @@ class Owlv2:
             return Detections(np.zeros((0, 4)), np.zeros(0), np.zeros(0, dtype=int))
         joined = np.concatenate(logits, axis=1)
         labels = joined.argmax(axis=1)
-        scores = 1.0 / (1.0 + np.exp(-joined[np.arange(len(joined)), labels].astype(np.float64)))
+        scores = 1.0 / (1.0 + np.exp(np.minimum(-joined[np.arange(len(joined)), labels].astype(np.float64), 700.0)))
         keep = np.flatnonzero(scores > threshold)
         keep = keep[np.argsort(-scores[keep], kind="stable")]
         corners = np.concatenate([boxes[:, :2] - boxes[:, 2:] / 2, boxes[:, :2] + boxes[:, 2:] / 2], axis=1)

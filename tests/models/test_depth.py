@@ -1,0 +1,141 @@
+"""Cameras and metric depth recovered from synthetic outputs with known answers."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from diorama_core.errors import UnavailableError
+from diorama_core.models.depth import Metric3d, Moge2, recovered
+from diorama_core.models.runtime import SessionPool
+from diorama_core.scene.types import Intrinsics
+from tests.models.tiny_networks import export
+
+HEIGHT, WIDTH = 96, 128
+
+
+def _room(focal: float) -> tuple[np.ndarray, np.ndarray]:
+    """Points and normals of a floor 0.4 m below the camera and a wall 4 m ahead, through pixel centres."""
+    x = (np.arange(WIDTH) + 0.5 - WIDTH / 2) / focal
+    y = (np.arange(HEIGHT) + 0.5 - HEIGHT / 2) / focal
+    rays = np.stack([*np.meshgrid(x, y), np.ones((HEIGHT, WIDTH))], axis=-1)
+    floor = 0.4 / np.maximum(rays[..., 1], 1e-6)
+    depth = np.minimum(floor, 4.0)
+    normals = np.where((floor < 4.0)[..., None], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0])
+    return rays * depth[..., None], normals
+
+
+@given(
+    focal=st.floats(60.0, 300.0),
+    shift=st.floats(-0.9, 5.0),
+    unit=st.floats(0.2, 5.0),
+    flip=st.booleans(),
+)
+@settings(deadline=None, max_examples=30)
+def test_camera_and_metres_come_back_from_affine_points(focal: float, shift: float, unit: float, flip: bool) -> None:
+    points, normals = _room(focal)
+    affine = points / unit
+    affine[..., 2] -= shift * affine[..., 2].min()
+    seen = recovered(affine, -normals if flip else normals, np.ones((HEIGHT, WIDTH)), unit)
+    assert seen.intrinsics.fx == pytest.approx(focal, rel=1e-3)
+    np.testing.assert_allclose(seen.depth_m, points[..., 2], rtol=2e-3)
+    np.testing.assert_allclose(seen.normals_camera, normals, atol=1e-6)
+
+
+def test_noise_and_invalid_pixels_do_little_harm(rng: np.random.Generator) -> None:
+    points, normals = _room(110.0)
+    noisy = points * (1 + 0.01 * rng.normal(size=points.shape))
+    validity = np.ones((HEIGHT, WIDTH))
+    validity[:20, :30] = 0.1
+    noisy[:20, :30] = np.nan
+    noisy[..., 2] -= 0.5
+    seen = recovered(noisy, normals, validity, 1.0)
+    assert seen.intrinsics.fx == pytest.approx(110.0, rel=0.05)
+    assert (seen.depth_m[:20, :30] == 0).all()
+    assert (seen.normals_camera[:20, :30] == 0).all()
+    known = seen.depth_m > 0
+    assert np.median(np.abs(seen.depth_m[known] / points[..., 2][known] - 1)) < 0.05
+
+
+def test_a_given_focal_length_is_kept() -> None:
+    points, normals = _room(110.0)
+    points[..., 2] -= 0.7
+    k = Intrinsics(WIDTH, HEIGHT, 110.0, 110.0, WIDTH / 2, HEIGHT / 2)
+    seen = recovered(points, normals, np.ones((HEIGHT, WIDTH)), 1.0, k)
+    assert seen.intrinsics == k
+    np.testing.assert_allclose(seen.depth_m, points[..., 2] + 0.7, rtol=2e-3)
+
+
+def test_a_flat_wall_leaves_the_focal_length_open_and_gets_a_usual_one() -> None:
+    points = _room(110.0)[0]
+    points *= (4.0 / points[..., 2])[..., None]
+    wall = np.broadcast_to([0.0, 0.0, -1.0], points.shape)
+    seen = recovered(points, wall, np.ones((HEIGHT, WIDTH)), 1.0)
+    assert 0.4 * WIDTH < seen.intrinsics.fx < 1.6 * WIDTH
+
+
+def test_a_picture_without_geometry_is_one_clear_line() -> None:
+    points, normals = _room(110.0)
+    with pytest.raises(UnavailableError, match="embedded"):
+        recovered(points, normals, np.zeros((HEIGHT, WIDTH)), 1.0)
+
+
+class _Moge(torch.nn.Module):
+    """MoGe-2's signature; its points are the room above, whatever the picture."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        points, normals = _room(110.0)
+        points[..., 2] -= 0.5
+        self.register_buffer("points", torch.from_numpy(points / 2.0).float()[None])
+        self.register_buffer("normals", torch.from_numpy(normals).float()[None])
+
+    def forward(self, image: torch.Tensor, num_tokens: torch.Tensor) -> tuple[torch.Tensor, ...]:
+        nothing = 0.0 * image.mean(dim=1)[..., None] + 0.0 * num_tokens.float()
+        valid = (image.mean(dim=1) >= 0).float()
+        return self.points + nothing, self.normals + nothing, valid, torch.full((1,), 2.0) + 0.0 * nothing.sum()
+
+
+def test_moge_end_to_end(tmp_path: Path) -> None:
+    arguments = (torch.zeros(1, 3, HEIGHT, WIDTH), torch.tensor(1800))
+    outputs = ["points", "normal", "mask", "metric_scale"]
+    graph = export(_Moge(), arguments, tmp_path / "moge.onnx", ["image", "num_tokens"], outputs)
+    picture = np.full((HEIGHT, WIDTH, 3), 90, np.uint8)
+    seen = Moge2(graph, pool=SessionPool()).see(picture, None)
+    assert seen.depth_m.shape == (HEIGHT, WIDTH)
+    assert seen.intrinsics.fx == pytest.approx(110.0, rel=1e-3)
+    np.testing.assert_allclose(seen.depth_m, _room(110.0)[0][..., 2], rtol=2e-3)
+
+
+class _Metric(torch.nn.Module):
+    """Metric3D's signature: canonical depth that grows along x, normals toward the camera."""
+
+    def forward(self, pixels: torch.Tensor) -> tuple[torch.Tensor, ...]:
+        column = torch.arange(1064).float()[None, None, None, :].expand(1, 1, 616, 1064)
+        depth = 2.0 + column / 1000 + 0.0 * pixels[:, :1]
+        normal = torch.stack([0.0 * depth[:, 0], 0.0 * depth[:, 0], depth[:, 0]], dim=1)
+        return depth, normal, depth
+
+
+@pytest.mark.parametrize("size", [(300, 500), (500, 300)], ids=["wide", "tall"])
+def test_metric3d_undoes_padding_scale_and_canonical_camera(tmp_path: Path, size: tuple[int, int]) -> None:
+    names = ["predicted_depth", "predicted_normal", "normal_confidence"]
+    graph = export(_Metric(), (torch.zeros(1, 3, 616, 1064),), tmp_path / "metric.onnx", ["pixel_values"], names)
+    height, width = size
+    k = Intrinsics(width, height, 400.0, 400.0, width / 2, height / 2)
+    facade = Metric3d(graph, pool=SessionPool())
+    seen = facade.see(np.full((height, width, 3), 90, np.uint8), k)
+    scale = min(616 / height, 1064 / width)
+    left = (1064 - int(width * scale)) // 2
+    inner = int(width * scale)
+    columns = left + (np.arange(width) + 0.5) * inner / width - 0.5
+    expected = (2.0 + columns / 1000) * (400.0 * inner / width) / 1000.0
+    np.testing.assert_allclose(seen.depth_m, np.broadcast_to(expected, size), rtol=2e-3)
+    np.testing.assert_allclose(seen.normals_camera, np.broadcast_to([0, 0, -1.0], (*size, 3)), atol=1e-6)
+    assert seen.intrinsics == k
+    assert facade.see(np.zeros((height, width, 3), np.uint8), None).intrinsics.horizontal_fov_rad == pytest.approx(1.05)
