@@ -1,0 +1,154 @@
+"""Cameras as people hold them: at eye height, from the side of the room, tilted a little down, never quite level."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import trimesh
+from jaxtyping import Float
+
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.render.raycast import MeshCaster
+from diorama_core.render.slabs import plane_surfaces
+from diorama_core.scene.types import Camera, Intrinsics, Plane, Scene
+
+PROBE_SIZE = (64, 48)
+CANDIDATES = 28
+
+
+@dataclass(frozen=True)
+class Holding:
+    """How people hold a camera; lowest and highest values."""
+
+    height_m: tuple[float, float] = (1.3, 1.65)
+    pitch_rad: tuple[float, float] = (0.1, 0.38)
+    """Downward."""
+    roll_rad: float = 0.015
+    """Standard deviation."""
+    fov_rad: tuple[float, float] = (1.0, 1.25)
+    """Horizontal: phones, from normal to wide."""
+    clearance_m: float = 0.25
+    """From walls; furniture is kept twice as far."""
+
+
+def hold_cameras(
+    scene: Scene,
+    library: ShapeLibrary,
+    seed: int,
+    count: int = 3,
+    size: tuple[int, int] = (640, 480),
+    holding: Holding | None = None,
+) -> tuple[Camera, ...]:
+    """Different views of a room, each the best of some that people might take.
+
+    Views that show many objects, few of them cut off or very close, are preferred.
+
+    Args:
+        scene: A room from `furnished_room`.
+        library: Where its shapes are.
+        seed: Of the candidates.
+        count: How many views.
+        size: Width and height of the pictures.
+        holding: How the camera is held.
+    """
+    rng = np.random.default_rng((seed, 4711))
+    caster = MeshCaster([*_meshes(scene, library), *((_plane_mesh(p), np.eye(4)) for p in scene.architecture.planes)])
+    tried = [_candidate(scene, rng, size, holding or Holding()) for _ in range(CANDIDATES * max(1, count))]
+    scored = sorted(
+        ((_score(scene, caster, c), k) for k, c in enumerate(tried) if c is not None), key=lambda pair: -pair[0]
+    )
+    chosen: list[Camera] = []
+    for least_apart in (1.2, 0.6, 0.2, 0.0):
+        for _, k in scored:
+            camera = tried[k]
+            if camera is not None and len(chosen) < count and all(_apart(camera, c) > least_apart for c in chosen):
+                chosen.append(camera)
+    if len(chosen) < count:
+        raise ValueError(f"no place for {count} cameras was found in the room; it is too full or too small")
+    return tuple(chosen)
+
+
+def _meshes(scene: Scene, library: ShapeLibrary) -> list[tuple[trimesh.Trimesh, Float[np.ndarray, "4 4"]]]:
+    return [(library.mesh(o.shape_id), o.pose.matrix) for o in scene.objects]
+
+
+def _plane_mesh(plane: Plane) -> trimesh.Trimesh:
+    front, _ = plane_surfaces(plane)
+    return trimesh.Trimesh(front.vertices, front.faces, process=False)
+
+
+def _candidate(scene: Scene, rng: np.random.Generator, size: tuple[int, int], how: Holding) -> Camera | None:
+    floor = scene.architecture.floor
+    if floor is None:
+        raise ValueError("a room without a floor cannot be photographed")
+    outline = floor.polygon[:, :2]
+    low, high = outline.min(axis=0), outline.max(axis=0)
+    position = rng.uniform(low, high)
+    target = rng.normal((low + high) / 2, (high - low) / 6)
+    height = rng.uniform(*how.height_m)
+    pitch, fov = rng.uniform(*how.pitch_rad), rng.uniform(*how.fov_rad)
+    roll = rng.normal(0.0, how.roll_rad)
+    if not _inside(position, outline, how.clearance_m) or np.linalg.norm(target - position) < 1.0:
+        return None
+    eye = np.array([*position, height])
+    for item in scene.objects:
+        local = (eye - item.pose.position) @ item.pose.R_world_object
+        if item.category != "rug" and (np.abs(local) < item.size_m / 2 + 2 * how.clearance_m).all():
+            return None
+    yaw = float(np.arctan2(target[1] - position[1], target[0] - position[0]))
+    return Camera(Intrinsics.from_fov(*size, float(fov)), held(eye, yaw, float(pitch), float(roll)))
+
+
+def held(
+    eye: Float[np.ndarray, "3"], yaw_rad: float, pitch_down_rad: float, roll_rad: float = 0.0
+) -> Float[np.ndarray, "4 4"]:
+    """`T_world_camera` of a camera at `eye` looking along `yaw_rad`, tilted down and rolled clockwise."""
+    forward = np.array(
+        [np.cos(yaw_rad) * np.cos(pitch_down_rad), np.sin(yaw_rad) * np.cos(pitch_down_rad), -np.sin(pitch_down_rad)]
+    )
+    right = np.array([np.sin(yaw_rad), -np.cos(yaw_rad), 0.0])
+    down = np.cross(forward, right)
+    c, s = np.cos(roll_rad), np.sin(roll_rad)
+    T = np.eye(4)
+    T[:3, :3] = np.stack([c * right + s * down, c * down - s * right, forward], axis=1)
+    T[:3, 3] = eye
+    return T
+
+
+def _score(scene: Scene, caster: MeshCaster, camera: Camera) -> float:
+    """How much a view shows: objects well inside the picture, not too near, with floor to stand on."""
+    probe = Camera(camera.intrinsics.scaled(*PROBE_SIZE), camera.T_world_camera)
+    seen = caster.buffers(probe)
+    count = len(scene.objects)
+    pixels = np.bincount(seen.instance[seen.instance >= 0].ravel(), minlength=count)[:count]
+    border = np.concatenate([seen.instance[0], seen.instance[-1], seen.instance[:, 0], seen.instance[:, -1]])
+    cut = np.bincount(border[border >= 0], minlength=count)[:count] > 0
+    total = PROBE_SIZE[0] * PROBE_SIZE[1]
+    whole = (pixels >= 4) & ~cut
+    near = float((seen.depth_m < 0.9).mean())
+    biggest = float(pixels.max() / total) if count else 0.0
+    floor = float((seen.instance == count).mean())
+    return float(
+        whole.sum() + 0.3 * (pixels >= 4).sum() - 12 * near - 8 * max(biggest - 0.3, 0.0) + 4 * min(floor, 0.2)
+    )
+
+
+def _apart(a: Camera, b: Camera) -> float:
+    """Distance between two cameras, metres, a metre for every radian of turn."""
+    turn = np.arccos(np.clip(a.T_world_camera[:3, 2] @ b.T_world_camera[:3, 2], -1, 1))
+    return float(np.linalg.norm(a.position - b.position) + turn)
+
+
+def _inside(point: np.ndarray, outline: Float[np.ndarray, "n 2"], margin_m: float) -> bool:
+    """Whether a point is in an outline (counter-clockwise, concave allowed) and `margin_m` from its edges."""
+    inside, count = False, len(outline)
+    for k in range(count):
+        a, b = outline[k], outline[(k + 1) % count]
+        edge = b - a
+        t = np.clip((point - a) @ edge / (edge @ edge), 0, 1)
+        if np.linalg.norm(point - a - t * edge) < margin_m:
+            return False
+        if (a[1] > point[1]) != (b[1] > point[1]) and point[0] < a[0] + edge[0] * (point[1] - a[1]) / edge[1]:
+            inside = not inside
+    return inside

@@ -1,0 +1,152 @@
+"""The empty room: its outline seen from above, its walls, and the planes they make.
+
+Room frame: origin in the middle of the outline's bounding box on the floor, +Z up, x and y along the room's axes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import manifold3d
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.scene.types import Architecture, Plane
+from diorama_core.scene.values import ArrayValue
+
+Outline = Literal["box", "L-shape", "slanted wall"]
+
+
+@dataclass(frozen=True, eq=False)
+class Wall(ArrayValue):
+    """One wall, from its left to its right end as seen from inside the room."""
+
+    id: str
+    start: Float[np.ndarray, "2"]
+    end: Float[np.ndarray, "2"]
+
+    @property
+    def length_m(self) -> float:
+        """From end to end."""
+        return float(np.linalg.norm(self.end - self.start))
+
+    @property
+    def along(self) -> Float[np.ndarray, "2"]:
+        """Unit, from left to right."""
+        return (self.end - self.start) / self.length_m
+
+    @property
+    def inward(self) -> Float[np.ndarray, "2"]:
+        """Unit normal toward the room."""
+        return np.array([self.along[1], -self.along[0]])
+
+    @property
+    def inward_yaw_rad(self) -> float:
+        """Heading of something that stands with its back to the wall."""
+        return float(np.arctan2(self.inward[1], self.inward[0]))
+
+    def point(self, t_m: float, off_m: float = 0.0) -> Float[np.ndarray, "2"]:
+        """The place `t_m` from the left end and `off_m` into the room."""
+        return self.start + self.along * t_m + self.inward * off_m
+
+
+@dataclass(frozen=True, eq=False)
+class RoomPlan(ArrayValue):
+    """Outline and height of a room."""
+
+    outline: Float[np.ndarray, "n 2"]
+    """Corners, counter-clockwise seen from above."""
+    height_m: float
+
+    @cached_property
+    def walls(self) -> tuple[Wall, ...]:
+        """One wall per edge of the outline: `wall_0` from corner 1 to corner 0 and so on."""
+        count = len(self.outline)
+        return tuple(Wall(f"wall_{k}", self.outline[(k + 1) % count], self.outline[k]) for k in range(count))
+
+    @cached_property
+    def _section(self) -> manifold3d.CrossSection:
+        return manifold3d.CrossSection([self.outline])
+
+    def wall(self, wall_id: str) -> Wall:
+        """The wall with this id."""
+        return self.walls[int(wall_id.removeprefix("wall_"))]
+
+    @property
+    def area_m2(self) -> float:
+        """Of the floor."""
+        return float(self._section.area())
+
+    def holds(self, quad: Float[np.ndarray, "4 2"], slack_m2: float = 1e-5) -> bool:
+        """Whether a counter-clockwise footprint lies inside the outline."""
+        return float((manifold3d.CrossSection([quad]) - self._section).area()) <= slack_m2
+
+    def architecture(self, textures: tuple[str | None, str | None, str | None] = (None, None, None)) -> Architecture:
+        """Floor, walls and ceiling; `textures` name the finishes of floor, walls and ceiling."""
+        level = np.concatenate([self.outline, np.zeros((len(self.outline), 1))], axis=1)
+        up = np.array([0.0, 0.0, self.height_m])
+        planes = [Plane("floor", "floor", level, texture=textures[0])]
+        for wall in self.walls:
+            a, b = np.array([*wall.start, 0.0]), np.array([*wall.end, 0.0])
+            planes.append(Plane(wall.id, "wall", np.array([a, b, b + up, a + up]), texture=textures[1]))
+        planes.append(Plane("ceiling", "ceiling", (level + up)[::-1], texture=textures[2]))
+        return Architecture(tuple(planes))
+
+
+def room_plan(
+    rng: np.random.Generator, width_m: tuple[float, float], depth_m: tuple[float, float], outline: Outline = "box"
+) -> RoomPlan:
+    """A room of random size.
+
+    Args:
+        rng: The source of chance.
+        width_m: Least and greatest extent along x.
+        depth_m: Least and greatest extent along y.
+        outline: "box"; "L-shape" (one corner taken out); "slanted wall" (one corner cut off at an angle).
+    """
+    w, d = rng.uniform(*width_m), rng.uniform(*depth_m)
+    x, y = w / 2, d / 2
+    corners = {
+        "box": [[-x, -y], [x, -y], [x, y], [-x, y]],
+        "L-shape": _without_corner(x, y, rng.uniform(0.3, 0.42) * w, rng.uniform(0.3, 0.42) * d),
+        "slanted wall": _cut_corner(x, y, rng.uniform(0.25, 0.4) * w, rng.uniform(0.25, 0.4) * d),
+    }[outline]
+    points = np.array(corners)
+    if outline != "box":
+        turned = points * np.where(rng.random(2) < 0.5, -1.0, 1.0)
+        points = turned if _signed_area(turned) > 0 else turned[::-1]
+    return RoomPlan(points, float(rng.uniform(2.45, 2.85)))
+
+
+def _without_corner(x: float, y: float, a: float, b: float) -> list[list[float]]:
+    return [[-x, -y], [x, -y], [x, y - b], [x - a, y - b], [x - a, y], [-x, y]]
+
+
+def _cut_corner(x: float, y: float, a: float, b: float) -> list[list[float]]:
+    return [[-x, -y], [x, -y], [x, y - b], [x - a, y], [-x, y]]
+
+
+def _signed_area(points: Float[np.ndarray, "n 2"]) -> float:
+    after = np.roll(points, -1, axis=0)
+    return float(0.5 * (points[:, 0] * after[:, 1] - points[:, 1] * after[:, 0]).sum())
+
+
+def footprint(size_m: Float[np.ndarray, "3"], xy: Float[np.ndarray, "2"], yaw_rad: float) -> Float[np.ndarray, "4 2"]:
+    """Corners of a turned rectangle, counter-clockwise seen from above."""
+    c, s = np.cos(yaw_rad), np.sin(yaw_rad)
+    local = 0.5 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * np.asarray(size_m)[:2]
+    return local @ np.array([[c, s], [-s, c]]) + xy
+
+
+def quads_overlap(a: Float[np.ndarray, "4 2"], b: Float[np.ndarray, "4 2"], slack_m: float = 1e-4) -> bool:
+    """Whether two convex outlines share more than `slack_m` in every direction (separating axes)."""
+    for quad in (a, b):
+        edges = np.roll(quad, -1, axis=0) - quad
+        axes = np.stack([edges[:, 1], -edges[:, 0]], axis=1)
+        axes /= np.maximum(np.linalg.norm(axes, axis=1, keepdims=True), 1e-12)
+        pa, pb = a @ axes.T, b @ axes.T
+        if ((pa.max(axis=0) <= pb.min(axis=0) + slack_m) | (pb.max(axis=0) <= pa.min(axis=0) + slack_m)).any():
+            return False
+    return True

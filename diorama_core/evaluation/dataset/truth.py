@@ -1,0 +1,278 @@
+"""Pictures of a furnished room with everything that is true about them.
+
+The picture comes from the renderer's fast path: one ray a pixel, soft shadows from the room's largest window,
+occlusion and one bounce, gathered without noise. Depth, normals and ids are read from the same geometry.
+Everything returned is in the photo's world: origin on the floor below the camera, +Y the room axis that the camera
+faces (`scene.frames`).
+"""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import cv2
+import numpy as np
+import trimesh
+from jaxtyping import Bool, Float, Float32, Int32, UInt8
+
+from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
+from diorama_core.evaluation.dataset.finishes import finish_textures
+from diorama_core.evaluation.dataset.light import room_light
+from diorama_core.geometry.projection import visible_bounds
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.render.filters import as_bytes, tone_mapped
+from diorama_core.render.lighting import Effort
+from diorama_core.render.raycast import MeshCaster, PinholeView
+from diorama_core.render.shading import shoot
+from diorama_core.render.slabs import plane_surfaces
+from diorama_core.render.world import scene_world
+from diorama_core.scene.types import Camera, Plane, Pose, Scene, yaw_rotation
+from diorama_core.scene.values import ArrayValue
+
+FAST = Effort(window_rays=1, sky_rays=2)
+LEAST_PIXELS = 150
+"""Objects with fewer visible pixels (of 640 x 480) are not asked for: no annotator would draw them."""
+LEAST_VISIBLE = 0.15
+"""Nor are objects of which less than this share is visible."""
+
+
+@dataclass(frozen=True, eq=False)
+class TruthView(ArrayValue):
+    """One picture and its truth. Arrays have the picture's size."""
+
+    inputs: Inputs
+    """What a build is given: photo, intrinsics, depth, and mask, box and class of every object asked for."""
+    scene: Scene
+    """The truth, in the photo's world, with the camera. Objects asked for carry `mask_id` and `box_px`."""
+    normals_world: Float32[np.ndarray, "h w 3"]
+    """Unit, toward the camera."""
+    plane_ids: Int32[np.ndarray, "h w"]
+    """Index into `scene.architecture.planes` of the plane seen; -1 where an object stands before it."""
+    room_plane_ids: Int32[np.ndarray, "h w"]
+    """The same with all objects taken away."""
+    room_depth_m: Float32[np.ndarray, "h w"]
+    """Depth of the empty room."""
+    object_ids: Int32[np.ndarray, "h w"]
+    """Index into `scene.objects` of every object seen, however small; -1 on the room itself."""
+    empty_room: UInt8[np.ndarray, "h w 3"]
+    """The same picture with all objects taken away."""
+    amodal_boxes: tuple[Box | None, ...]
+    """For every object the box of its whole outline, hidden parts included, clipped to the picture; None outside."""
+    visible_fraction: Float[np.ndarray, "n"]
+    """For every object the share of its outline within the picture that is visible; 0 for what is hidden."""
+
+    @property
+    def camera(self) -> Camera:
+        """The camera in the photo's world."""
+        if self.scene.camera is None:
+            raise ValueError("a truth view has a camera")
+        return self.scene.camera
+
+    @cached_property
+    def asked(self) -> tuple[int, ...]:
+        """Indices of the objects that are in `inputs.instances`."""
+        return tuple(k for k, o in enumerate(self.scene.objects) if o.mask_id is not None)
+
+
+def render_truth(
+    scene: Scene,
+    camera: Camera,
+    library: ShapeLibrary,
+    size: tuple[int, int] = (640, 480),
+    *,
+    with_empty_room: bool = True,
+    sensor: bool = True,
+) -> TruthView:
+    """Photograph a room and note what is true about the picture.
+
+    Args:
+        scene: A room from `furnished_room`, in any frame with +Z up and the floor at z = 0.
+        camera: Where it is photographed from (`cameras.hold_cameras`), in the same frame.
+        library: Where its shapes are.
+        size: Width and height of the picture.
+        with_empty_room: Whether to make the empty room's picture too; black without.
+        sensor: Whether the picture has a sensor's noise and a lens' fall-off.
+    """
+    camera = Camera(camera.intrinsics.scaled(*size), camera.T_world_camera)
+    scene = in_photo_world(replace(scene, camera=camera))
+    camera = scene.camera or camera
+    buffers = _Casting(scene, library).buffers(camera)
+    asked, boxes = _asked(scene, buffers.object_ids, buffers.visible_fraction, size)
+    objects = tuple(
+        replace(o, mask_id=k + 1, box_px=boxes[k]) if k in boxes else replace(o, mask_id=None, box_px=None)
+        for k, o in enumerate(scene.objects)
+    )
+    scene = replace(scene, objects=objects)
+    rgb = photograph(scene, camera, library, sensor=sensor)
+    bare = replace(scene, objects=(), supports=())
+    empty = photograph(bare, camera, library, sensor=False, lit_as=scene) if with_empty_room else np.zeros_like(rgb)
+    labelled = tuple((k + 1, LabelledBox(boxes[k], objects[k].category, objects[k].label)) for k in sorted(boxes))
+    inputs = Inputs(
+        photo=Photo(rgb, "rendered.png", size),
+        boxes=tuple(b for _, b in labelled),
+        instances=np.where(asked, buffers.object_ids + 1, 0).astype(np.int32),
+        instance_boxes=labelled,
+        depth_m=buffers.depth_m,
+        intrinsics=camera.intrinsics,
+    )
+    return TruthView(
+        inputs=inputs,
+        scene=scene,
+        normals_world=buffers.normals_world,
+        plane_ids=buffers.plane_ids,
+        room_plane_ids=buffers.room_plane_ids,
+        room_depth_m=buffers.room_depth_m,
+        object_ids=buffers.object_ids,
+        empty_room=empty,
+        amodal_boxes=_amodal_boxes(scene, camera, library),
+        visible_fraction=buffers.visible_fraction,
+    )
+
+
+def in_photo_world(scene: Scene) -> Scene:
+    """The same room and camera with the origin on the floor below the camera and +Y the axis it faces."""
+    if scene.camera is None:
+        raise ValueError("the scene needs a camera")
+    forward = scene.camera.T_world_camera[:3, 2]
+    quarter = round(float(np.arctan2(forward[1], forward[0]) / (np.pi / 2)))
+    T = np.eye(4)
+    T[:3, :3] = np.rint(yaw_rotation(np.pi / 2 * (1 - quarter)))
+    T[:3, 3] = -T[:3, :3] @ np.array([*scene.camera.position[:2], 0.0])
+    return moved(scene, T)
+
+
+def moved(scene: Scene, T_to_from: Float[np.ndarray, "4 4"]) -> Scene:
+    """A scene expressed in another frame: `p_to = T_to_from @ p_from`, rigid."""
+    R, t = T_to_from[:3, :3], T_to_from[:3, 3]
+    planes = tuple(replace(p, polygon=p.polygon @ R.T + t) for p in scene.architecture.planes)
+    objects = tuple(
+        replace(o, pose=Pose(R @ o.pose.R_world_object, R @ o.pose.position + t, o.pose.scale)) for o in scene.objects
+    )
+    camera = scene.camera and Camera(scene.camera.intrinsics, T_to_from @ scene.camera.T_world_camera)
+    return replace(scene, camera=camera, objects=objects, architecture=replace(scene.architecture, planes=planes))
+
+
+def photograph(
+    scene: Scene, camera: Camera, library: ShapeLibrary, *, sensor: bool = True, lit_as: Scene | None = None
+) -> UInt8[np.ndarray, "h w 3"]:
+    """The fast path's picture; `lit_as` names another scene whose light falls into this one."""
+    pictures = finish_textures(scene.architecture)
+    named = tuple(replace(p, texture=p.id) for p in scene.architecture.planes)
+    shown = replace(scene, architecture=replace(scene.architecture, planes=named))
+    world = scene_world(shown, library, textures=pictures, photographed=False)
+    planes = frozenset(p.id for p in scene.architecture.planes)
+    glazed = {o.id for o in scene.objects if o.category in ("window", "curtain", "ceiling lamp")}
+    blockers = scene_world(shown, library, without=planes | glazed)
+    light = room_light(lit_as or scene)
+    shot = shoot(world, blockers, PinholeView(camera), light, FAST)
+    linear = shot.radiance / np.maximum(shot.coverage, 1e-3)[..., None]
+    rgb = as_bytes(tone_mapped(linear))
+    return _sensed(rgb, scene) if sensor else rgb
+
+
+def _sensed(rgb: UInt8[np.ndarray, "h w 3"], scene: Scene) -> UInt8[np.ndarray, "h w 3"]:
+    """Noise and the fall-off of a phone's lens; the same scene and camera give the same noise."""
+    h, w = rgb.shape[:2]
+    key = b"" if scene.camera is None else np.round(scene.camera.T_world_camera, 6).tobytes()
+    rng = np.random.default_rng(zlib.crc32(key))
+    y, x = np.mgrid[0:h, 0:w]
+    radius = ((x - w / 2) ** 2 + (y - h / 2) ** 2) / (w**2 / 4)
+    soft = cv2.GaussianBlur(rgb.astype(np.float32), (0, 0), 0.45)
+    return np.clip(soft * (1 - 0.06 * radius)[..., None] + rng.normal(0.0, 1.6, rgb.shape), 0, 255).astype(np.uint8)
+
+
+@dataclass(frozen=True, eq=False)
+class _Seen:
+    depth_m: Float32[np.ndarray, "h w"]
+    normals_world: Float32[np.ndarray, "h w 3"]
+    object_ids: Int32[np.ndarray, "h w"]
+    plane_ids: Int32[np.ndarray, "h w"]
+    room_plane_ids: Int32[np.ndarray, "h w"]
+    room_depth_m: Float32[np.ndarray, "h w"]
+    visible_fraction: Float[np.ndarray, "n"]
+
+
+class _Casting:
+    """The room with and without its objects, and every object alone, ready to be looked at."""
+
+    def __init__(self, scene: Scene, library: ShapeLibrary) -> None:
+        self._scene, self._library = scene, library
+        planes = [(_face(p), np.eye(4)) for p in scene.architecture.planes]
+        self._all = MeshCaster([*((library.mesh(o.shape_id), o.pose.matrix) for o in scene.objects), *planes])
+        self._room = MeshCaster(planes)
+
+    def buffers(self, camera: Camera) -> _Seen:
+        """Everything per pixel, and the visible share of every object."""
+        count = len(self._scene.objects)
+        seen, room = self._all.buffers(camera), self._room.buffers(camera)
+        object_ids = np.where(seen.instance < count, seen.instance, -1).astype(np.int32)
+        return _Seen(
+            depth_m=seen.depth_m,
+            normals_world=seen.normals_world,
+            object_ids=object_ids,
+            plane_ids=np.where(seen.instance >= count, seen.instance - count, -1).astype(np.int32),
+            room_plane_ids=room.instance,
+            room_depth_m=room.depth_m,
+            visible_fraction=self._visible(camera, object_ids),
+        )
+
+    def _visible(self, camera: Camera, object_ids: Int32[np.ndarray, "h w"]) -> Float[np.ndarray, "n"]:
+        """Visible over whole pixels within the picture, by casting each object alone on every third pixel."""
+        share = np.zeros(len(self._scene.objects))
+        k = camera.intrinsics
+        coarse = Camera(k.scaled(max(1, k.width // 3), max(1, k.height // 3)), camera.T_world_camera)
+        pixels = np.bincount(object_ids[object_ids >= 0], minlength=len(share))
+        for index, item in enumerate(self._scene.objects):
+            if pixels[index]:
+                alone = MeshCaster([(self._library.mesh(item.shape_id), item.pose.matrix)]).buffers(coarse)
+                whole = int(alone.silhouette.sum()) * (k.width * k.height) / alone.silhouette.size
+                share[index] = min(1.0, pixels[index] / max(whole, pixels[index] * 1e-3, 1.0))
+        return share
+
+
+def _face(plane: Plane) -> trimesh.Trimesh:
+    front, _ = plane_surfaces(plane)
+    return trimesh.Trimesh(front.vertices, front.faces, process=False)
+
+
+def _asked(
+    scene: Scene, object_ids: Int32[np.ndarray, "h w"], visible: Float[np.ndarray, "n"], size: tuple[int, int]
+) -> tuple[Bool[np.ndarray, "h w"], dict[int, Box]]:
+    """Where the objects are that a person would annotate, and the boxes of their visible parts."""
+    least = LEAST_PIXELS * size[0] * size[1] / (640 * 480)
+    asked = np.zeros(object_ids.shape, dtype=bool)
+    boxes: dict[int, Box] = {}
+    for index in range(len(scene.objects)):
+        mask = object_ids == index
+        if mask.sum() >= least and visible[index] >= LEAST_VISIBLE:
+            rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+            boxes[index] = (float(columns[0]), float(rows[0]), float(columns[-1] + 1), float(rows[-1] + 1))
+            asked |= mask
+    return asked, boxes
+
+
+def _amodal_boxes(scene: Scene, camera: Camera, library: ShapeLibrary) -> tuple[Box | None, ...]:
+    boxes: list[Box | None] = []
+    for item in scene.objects:
+        points = camera.to_camera(item.pose.apply(library.mesh(item.shape_id).vertices))
+        bounds = _bounds(points, camera, item.corners_world)
+        boxes.append(bounds)
+    return tuple(boxes)
+
+
+def _bounds(points_camera: np.ndarray, camera: Camera, corners_world: np.ndarray) -> Box | None:
+    """Box of an outline; from the bounding box where parts are behind the camera."""
+    k = camera.intrinsics
+    if (points_camera[:, 2] > 0.05).all():
+        uv = points_camera[:, :2] / points_camera[:, 2:] * [k.fx, k.fy] + [k.cx, k.cy]
+        low, high = np.clip(uv.min(axis=0), 0, [k.width, k.height]), np.clip(uv.max(axis=0), 0, [k.width, k.height])
+    else:
+        found, visible = visible_bounds(camera.to_camera(corners_world)[None], k)
+        if not visible[0]:
+            return None
+        low, high = found[0][:2], found[0][2:]
+    if (high - low <= 0).any():
+        return None
+    return float(low[0]), float(low[1]), float(high[0]), float(high[1])
