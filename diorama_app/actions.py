@@ -30,6 +30,9 @@ def build_commands(room: Room, views: Views, cancel: Callable[[Guest], bool], sh
     """
 
     def escape(guest: Guest) -> None:
+        if guest.dialog is not None:
+            guest.dialog()
+            return
         stop_measuring(guest)
         if cancel(guest):
             return

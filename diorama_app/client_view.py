@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 import viser
-from jaxtyping import Float, UInt8
+from jaxtyping import Bool, Float, UInt8
 
 from diorama_app.viewport import quaternion, reduced
 from diorama_core.artefacts import Box, LabelledBox
@@ -31,6 +31,7 @@ BRAND_COLOUR = (47, 111, 214)
 
 NoticeKind = Literal["info", "good", "bad"]
 OnBox = Callable[[Box], None]
+OnPoint = Callable[[float, float, bool], None]
 
 
 @dataclass(frozen=True)
@@ -93,6 +94,8 @@ class ClientView:
         self._backdrop: viser.ImageHandle | None = None
         self._tape: list[viser.SceneNodeHandle] = []
         self._rect: Any = None
+        self._points: list[Any] = []
+        self._before_board: tuple[np.ndarray, np.ndarray, float] | None = None
 
     @property
     def fov_rad(self) -> float:
@@ -277,9 +280,19 @@ class ClientView:
         """Whether this browser is at the drawing board."""
         return self.board is not None
 
-    def open_board(self, photo: UInt8[np.ndarray, "h w 3"], on_box: OnBox) -> None:
-        """Show the photo flat and call `on_box` with every rectangle drawn on it (photo pixels)."""
+    def open_board(
+        self, photo: UInt8[np.ndarray, "h w 3"], on_box: OnBox | None, on_point: OnPoint | None = None
+    ) -> None:
+        """Show the photo flat, to draw on or to click on.
+
+        Args:
+            photo: the picture.
+            on_box: told every rectangle drawn on it, in photo pixels.
+            on_point: told every click on it (x, y in photo pixels) and whether it was without Shift.
+        """
         self.close_board()
+        camera = self._client.camera
+        self._before_board = (np.array(camera.position), np.array(camera.look_at), float(camera.fov))
         height, width = photo.shape[:2]
         board = self.board = Board(width, height)
         scene = self._client.scene
@@ -298,11 +311,55 @@ class ClientView:
 
         async def selected(event: viser.SceneRectSelectEvent) -> None:
             box = self._box_of(event)
-            if box is not None:
+            if box is not None and on_box is not None:
                 on_box(box)
 
-        self._rect = scene.on_rect_select()(selected)
+        if on_box is not None:
+            self._rect = scene.on_rect_select()(selected)
+        if on_point is not None:
+            self._listen_for_points(board, on_point)
         self._face_board(board)
+
+    def _listen_for_points(self, board: Board, on_point: OnPoint) -> None:
+        def listener(part: bool) -> Any:
+            async def clicked(event: viser.SceneClickEvent) -> None:
+                x, y = board.to_pixels(np.array(event.ray_origin), np.array(event.ray_direction))
+                if 0 <= x < board.width_px and 0 <= y < board.height_px:
+                    on_point(float(x), float(y), part)
+
+            return clicked
+
+        scene = self._client.scene
+        self._points = [scene.on_click()(listener(True)), scene.on_click(modifier="shift")(listener(False))]
+
+    def show_mask(self, mask: Bool[np.ndarray, "h w"]) -> None:
+        """Lay an outline over the photo on the board."""
+        if self.board is None:
+            return
+        tint = np.zeros((*mask.shape, 4), dtype=np.uint8)
+        tint[mask] = (255, 90, 20, 110)
+        step = max(1, max(mask.shape) // 800)
+        node = self._client.scene.add_image(
+            "/board/mask",
+            np.ascontiguousarray(tint[::step, ::step]),
+            render_width=self.board.width_m,
+            render_height=BOARD_HEIGHT_M,
+            position=BOARD_CENTRE - (0.0, 0.002, 0.0),
+            wxyz=quaternion(np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]])),
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+        if node not in self._board_nodes:
+            self._board_nodes = [n for n in self._board_nodes if n.name != node.name] + [node]
+
+    def leave_board(self) -> None:
+        """Put the photo away and look at the room as before."""
+        if self.board is None:
+            return
+        self.close_board()
+        if self._before_board is not None:
+            position, target, fov = self._before_board
+            self.look(position, target, fov)
 
     def close_board(self) -> None:
         """Put the photo away."""
@@ -312,6 +369,9 @@ class ClientView:
         if self._rect is not None:
             self._client.scene.remove_rect_select_callback(self._rect)
             self._rect = None
+        for listener in self._points:
+            self._client.scene.remove_click_callback(listener)
+        self._points = []
         for node in (*self._box_nodes, *self._board_nodes):
             node.remove()
         self._board_nodes, self._box_nodes = [], []

@@ -18,6 +18,7 @@ from diorama_app.gestures import Gestures
 from diorama_app.guest import Guest, Panel
 from diorama_app.panels.alternatives import Alternatives
 from diorama_app.panels.compare import Compare
+from diorama_app.panels.evidence import Evidence
 from diorama_app.panels.help import show_help
 from diorama_app.panels.job import JobStrip
 from diorama_app.panels.library import LibraryPanel
@@ -152,7 +153,12 @@ class Editor:
             panels.append(Projects(gui, guest, self.commands))
         right = gui.add_panel()
         with right.add_tab("Object"):
-            panels += [Properties(gui, guest, self.commands), Supports(gui, guest), Alternatives(gui, guest)]
+            panels += [
+                Properties(gui, guest, self.commands),
+                Supports(gui, guest),
+                Alternatives(gui, guest),
+                Evidence(gui, guest),
+            ]
         with right.add_tab("Library"):
             panels.append(LibraryPanel(gui, guest))
         right.dock_right()

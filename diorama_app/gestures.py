@@ -87,6 +87,8 @@ class Gestures:
 
     def _clicked(self, origin: np.ndarray, direction: np.ndarray, *, on_object: bool) -> None:
         doing = self._guest.doing
+        if self._guest.view.drawing:
+            return
         if isinstance(doing, Placing):
             place_at(self._guest, doing.shape_id, origin, direction)
         elif isinstance(doing, Measuring):

@@ -95,6 +95,8 @@ class Guest:
         self.job_panel: Panel | None = None
         self.curves: Panel | None = None
         """What is redrawn while a layout is optimised."""
+        self.dialog: Callable[[], None] | None = None
+        """Closes the dialog that is open over the page, if one is."""
         self.toast: Callable[[str, bool], None] = lambda message, undo: None
         """Shows a line at the foot of the view, with a button that undoes when asked."""
 

@@ -107,7 +107,7 @@ class Marks:
             if item.id in theirs:
                 return _Mark(node, size, colour, 2.0, who)  # type: ignore[arg-type]
         if names or problems:
-            return _Mark(node, size, None, 0.0, (name if names else "") + problems)  # type: ignore[arg-type]
+            return _Mark(node, size, None, 0.0, name + problems if names else "⚠")  # type: ignore[arg-type]
         return None
 
     def _draw(self, mark: _Mark) -> list[viser.SceneNodeHandle]:

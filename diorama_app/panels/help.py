@@ -11,11 +11,11 @@ from diorama_app.panels.fields import on_press
 
 MOUSE = (
     ("Select", "Click"),
-    ("Add to the selection", "Shift-click"),
-    ("Select all in a frame", "Shift-drag"),
-    ("Move an object on what holds it up", "Drag it"),
-    ("The same, snapping the other way", "Alt-drag"),
-    ("Turn the view", "Drag beside objects"),
+    ("Select more", "Shift-click"),
+    ("Select in a frame", "Shift-drag"),
+    ("Move a thing", "Drag it"),
+    ("Move, snap inverted", "Alt-drag"),
+    ("Turn the view", "Drag beside"),
     ("Shift the view", "Right-drag"),
     ("All commands", "Ctrl+K"),
 )
@@ -24,16 +24,24 @@ MOUSE = (
 def show_help(guest: Guest, commands: CommandTable) -> None:
     """Open the list over the page."""
     gui: viser.GuiApi = guest.client.gui
+    if guest.dialog is not None:
+        guest.dialog()
+
+    def close() -> None:
+        guest.dialog = None
+        modal.close()
+
     with gui.add_modal("What you can do") as modal:
+        guest.dialog = close
         mouse = "".join(f"<tr><td>{text(a)}</td><td><kbd>{text(b)}</kbd></td></tr>" for a, b in MOUSE)
         keys = "".join(_row(c) for c in commands.all if c.keys)
         rest = ", ".join(text(c.label) for c in commands.all if not c.keys)
+        on_press(gui.add_button("Close"), lambda: guest.post(close))
         gui.add_html(
             f'{STYLE}<div class="dio" style="columns:2;column-gap:24px"><h4>Mouse</h4><table>{mouse}</table>'
             f"<h4>Keys</h4><table>{keys}</table></div>"
             f'<div class="dio dim">Without a key, in the Ctrl+K palette: {rest}.</div>'
         )
-        on_press(gui.add_button("Close"), lambda: guest.post(modal.close))
 
 
 def _row(command: Command) -> str:

@@ -12,6 +12,7 @@ from jaxtyping import UInt8
 from PIL import Image
 
 from diorama_app import work
+from diorama_app.correcting import add_from_photo
 from diorama_app.drafts import Draft, boxes_json
 from diorama_app.guest import Guest
 from diorama_app.page import Action, LiveHtml, button, text
@@ -51,6 +52,10 @@ class PhotoPanel:
         on_change(self._label, lambda value: guest.post(lambda: self._labelled(value, listed=True)))
         on_change(self._other, lambda value: guest.post(lambda: self._labelled(value, listed=False), key="word"))
         self._list = LiveHtml(gui, self._act)
+        self._add = gui.add_button(
+            "Add marked one to the scene", color="blue", hint="Only the marked box is looked at; everything else stays"
+        )
+        on_press(self._add, lambda: guest.post(self._add_marked))
         self._build = gui.add_button("Build scene", color="green", hint="Makes a scene of the photo and its boxes")
         on_press(self._build, lambda: guest.post(lambda: work.build(guest)))
 
@@ -66,6 +71,8 @@ class PhotoPanel:
         self._invitation.show(self._introduction(draft))
         show_if(has_photo, self._more, self._draw, self._label, self._other, self._build)
         self._list.show(_box_list(draft) if has_photo else "")
+        show_if(has_photo and draft.from_project and bool(self._room.scene.objects), self._add)
+        enable(self._add, self._room.jobs.status is None and draft.highlighted is not None)
         enable(self._build, self._room.jobs.status is None and draft.ready)
         show_label(self._draw, "Done drawing" if self._guest.view.drawing else "Draw boxes")
 
@@ -156,6 +163,13 @@ class PhotoPanel:
         self._room.draft = draft
         self._redraw_boards()
         self._room.refresh_panels()
+
+    def _add_marked(self) -> None:
+        draft = self._room.draft
+        if draft.highlighted is None or draft.highlighted >= len(draft.boxes):
+            raise InputError("mark a box in the list first, or draw one around what was missed")
+        box = draft.boxes[draft.highlighted]
+        add_from_photo(self._guest, box.box, box.label)
 
     def _redraw_boards(self) -> None:
         draft = self._room.draft

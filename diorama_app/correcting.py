@@ -1,0 +1,159 @@
+"""What the editor does with the photo's evidence: add what was missed, rename, redraw and re-outline what is there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from diorama_app.guest import Guest
+from diorama_app.looking_again import Found, look_again
+from diorama_app.outlining import Outline
+from diorama_app.placing import seated
+from diorama_core.artefacts import Box, Inputs, LabelledBox
+from diorama_core.errors import EditRefused
+from diorama_core.library.taxonomy import resolve
+from diorama_core.progress import Progress
+from diorama_core.scene import edits
+from diorama_core.scene.types import Scene, SceneObject
+
+
+def add_from_photo(guest: Guest, box: Box, label: str) -> None:
+    """Outline, retrieve, pose and place what a box of the photo shows; nothing else changes."""
+    room = guest.room
+    new_id = edits.fresh_id(room.scene, resolve(label).category.name)
+
+    def put(scene: Scene, found: Found) -> Scene:
+        item = replace(found.item, id=edits.fresh_id(scene, found.item.category))
+        edge = None if found.support is None else replace(found.support, child=item.id)
+        if edge is not None and not (scene.has_object(edge.parent) or scene.has_plane(edge.parent)):
+            edge = None
+        return seated(edits.insert(scene, item, edge), room.library, item.id)
+
+    _look(guest, _labelled(box, label), new_id, f"insert {label} from the photo", put, select_new=True)
+
+
+def rename_class(guest: Guest, object_id: str, label: str) -> None:
+    """Say what an object is: shapes of that kind are retrieved for its box, and the best one stands where it stood."""
+    item = _seen(guest, object_id)
+    words = label.strip()
+    if not words:
+        raise EditRefused("say what it is, for example armchair")
+
+    def put(scene: Scene, found: Found) -> Scene:
+        now = scene.object(object_id)
+        swapped = edits.swap(scene, object_id, found.item.candidates[0], keep_pose=True)
+        return _with_evidence(swapped, object_id, found, colour=now.colour)
+
+    assert item.box_px is not None
+    _look(guest, _labelled(item.box_px, words), object_id, f"{item.label} is a {words}", put)
+
+
+def redraw_box(guest: Guest, object_id: str, box: Box) -> None:
+    """Say where in the photo an object is: it is outlined, retrieved and posed again."""
+    item = guest.room.scene.object(object_id)
+    _look(guest, _labelled(box, item.label), object_id, f"look again at {item.label}", _replaced(guest, object_id))
+
+
+def use_outline(guest: Guest, object_id: str, outline: Outline) -> None:
+    """Say which pixels an object has: it is retrieved and posed again."""
+    item = guest.room.scene.object(object_id)
+    if not outline.mask.any():
+        raise EditRefused("the outline is empty; click on the thing first")
+    box = _labelled(outline.bounds, item.label)
+    label = f"outline of {item.label}"
+    _look(guest, box, object_id, label, _replaced(guest, object_id), outline=outline)
+
+
+def start_outline(guest: Guest, object_id: str) -> Outline:
+    """The present outline of an object, as far as its box tells."""
+    item, inputs = _seen(guest, object_id), _inputs(guest)
+    from diorama_core.perception.masks import EmbeddedMasks
+
+    assert item.box_px is not None
+    mask, _ = EmbeddedMasks().inside_box(inputs.photo.rgb, item.box_px)
+    return Outline(inputs.photo.rgb, item.box_px, mask)
+
+
+def _look(
+    guest: Guest,
+    box: LabelledBox,
+    object_id: str,
+    label: str,
+    put: Callable[[Scene, Found], Scene],
+    *,
+    outline: Outline | None = None,
+    select_new: bool = False,
+) -> None:
+    room = guest.room
+    inputs, scene, project = _inputs(guest), room.scene, room.project
+
+    def work(progress: Progress) -> None:
+        found = look_again(
+            scene,
+            inputs,
+            room.library,
+            box,
+            object_id,
+            mask=None if outline is None else outline.mask,
+            cache=None if project is None else project.stages_folder,
+            progress=progress,
+        )
+
+        def show() -> None:
+            before = {o.id for o in room.scene.objects}
+            room.edit(label, lambda s: put(s, found), by=guest)
+            new = [o.id for o in room.scene.objects if o.id not in before]
+            if select_new and new:
+                guest.view.close_board()
+                guest.select(new)
+
+        guest.post(show)
+
+    room.jobs.start("look", f"Looking at the {box.label}", work)
+
+
+def _replaced(guest: Guest, object_id: str) -> Callable[[Scene, Found], Scene]:
+    def put(scene: Scene, found: Found) -> Scene:
+        best = found.item.candidates[0]
+        changed = edits.swap(scene, object_id, best)
+        changed = _with_evidence(changed, object_id, found, colour=found.item.colour)
+        return seated(changed, guest.room.library, object_id)
+
+    return put
+
+
+def _with_evidence(scene: Scene, object_id: str, found: Found, *, colour: tuple[float, float, float] | None) -> Scene:
+    def renewed(item: SceneObject) -> SceneObject:
+        new = found.item
+        return replace(
+            item,
+            label=new.label,
+            category=new.category,
+            candidates=new.candidates,
+            box_px=new.box_px,
+            confidence=new.confidence,
+            colour=colour,
+        )
+
+    return replace(scene, objects=tuple(renewed(o) if o.id == object_id else o for o in scene.objects))
+
+
+def _labelled(box: Box, label: str) -> LabelledBox:
+    return LabelledBox(box, resolve(label).category.name, label)
+
+
+def _inputs(guest: Guest) -> Inputs:
+    room = guest.room
+    inputs = None if room.project is None else room.project.load_inputs()
+    if inputs is None:
+        raise EditRefused("this project has no photo; upload one in the Photo panel")
+    return inputs
+
+
+def _seen(guest: Guest, object_id: str) -> SceneObject:
+    item = guest.room.scene.object(object_id)
+    if item.box_px is None:
+        raise EditRefused(f"{item.label} was not found in the photo; draw a box around it in the Photo panel instead")
+    if item.locked:
+        raise EditRefused(f"{item.label} is locked; unlock it first")
+    return item
