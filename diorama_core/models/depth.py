@@ -118,7 +118,7 @@ def focal_and_shift(
     if len(chosen) < 16:
         raise UnavailableError("the depth network sees too little of this picture; use --profile embedded")
     nearest = float(chosen[:, 2].min())
-    spread = max(float(np.ptp(chosen[:, 2])), 1e-6)
+    spread = max(float(np.ptp(chosen, axis=0).max()), 1e-6)
 
     def best_focal(shift: float) -> tuple[float, float]:
         plane = chosen[:, :2] / (chosen[:, 2:] + shift)
