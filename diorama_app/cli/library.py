@@ -20,14 +20,28 @@ def add_library(commands: Any) -> None:
     """Declare `diorama library`."""
     p: argparse.ArgumentParser = commands.add_parser("library", help="The shapes that scenes are made of.")
     actions = p.add_subparsers(dest="action", required=True, metavar="build|list|search|sheet")
-    command(actions, "build", _library_build, "Prepare the built-in shapes once.", "diorama library build")
+    build = command(
+        actions, "build", _library_build, "Prepare a library's shapes once.", "diorama library build --library mine"
+    )
+    _add_library_name(build)
+    build.add_argument("--views", action="store_true", help="also what a search by picture compares")
+    build.add_argument("--templates", action="store_true", help="also all pose templates, some 2 MB a shape")
+    build.add_argument("--workers", type=int, metavar="N", help="processes (default: all cores)")
+    build.add_argument("--ray", metavar="ADDRESS", help="work on a Ray cluster: auto, HOST:PORT, or local to start one")
     lists = command(actions, "list", _library_list, "List the shapes.", "diorama library list --category chair")
     lists.add_argument("--category", help="only this category (synonyms are understood)")
+    _add_library_name(lists)
     lists.add_argument("--json", action="store_true")
     search = command(
-        actions, "search", _library_search, "Find shapes by words.", 'diorama library search "wooden armchair"'
+        actions,
+        "search",
+        _library_search,
+        "Find shapes by words, a picture, or both.",
+        'diorama library search "wooden armchair"',
     )
-    search.add_argument("text", metavar="TEXT")
+    search.add_argument("text", metavar="TEXT", nargs="?", default="", help="what it is; may be left out with --image")
+    search.add_argument("--image", type=Path, metavar="FILE", help="a picture of the thing, best cut out")
+    _add_library_name(search)
     search.add_argument("-k", type=int, default=10, help="how many (default: %(default)s)")
     search.add_argument("--json", action="store_true")
     sheet = command(
@@ -43,35 +57,57 @@ def add_library(commands: Any) -> None:
     sheet.add_argument("--columns", type=int, default=6, help="pictures side by side (default: %(default)s)")
 
 
+def _add_library_name(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--library", default="built-in", metavar="NAME", help="one, or several joined by + (default: %(default)s)"
+    )
+
+
 def _library_build(a: argparse.Namespace) -> None:
-    from diorama_core.library.catalogue import default_cache_dir
     from diorama_core.pipeline.prepare import prepare_library
+    from diorama_core.workers import workers
 
     with progress_bar() as progress:
-        count = prepare_library(progress=progress)
-    print(f"{count} shapes ready in {default_cache_dir()}")
+        prepared = prepare_library(
+            a.library, views=a.views, templates=a.templates, pool=workers(a.ray, a.workers), progress=progress
+        )
+    for shape_id, reason in prepared.failures:
+        print(f"diorama: {shape_id}: {reason}", file=sys.stderr)
+    print(f"{prepared.count - len(prepared.failures)} of {prepared.count} shapes of {a.library} are ready")
 
 
 def _library_list(a: argparse.Namespace) -> None:
     from diorama_app.building import library_named
     from diorama_core.library.taxonomy import resolve
 
-    library = library_named("built-in")
+    library = library_named(a.library)
     found = library.shapes() if a.category is None else library.in_category(resolve(a.category).category.name)
     _print_shapes(found, a.json)
 
 
 def _library_search(a: argparse.Namespace) -> None:
     from diorama_app.building import library_named
-    from diorama_core.library.search import search
-    from diorama_core.library.taxonomy import resolve
+    from diorama_core.library.search import find
 
     if a.k < 1:
         raise InputError(f"-k {a.k}: ask for at least one shape")
-    note = resolve(a.text).note
-    if note:
+    if a.image is None and not a.text.strip():
+        raise InputError("say what to look for, in words or with --image FILE")
+    library = library_named(a.library)
+    if a.image is None:
+        found = find(library, a.text, a.k)
+        notes = [found.note]
+    else:
+        from diorama_core.render.crops import read_crop
+        from diorama_core.render.image_search import ImageSearch
+
+        crop = read_crop(a.image)
+        with progress_bar() as progress:
+            found = ImageSearch(library).find(crop, a.text, a.k, progress)
+        notes = [found.note, crop.note]
+    for note in filter(None, notes):
         print(f"diorama: note: {note}", file=sys.stderr)
-    _print_shapes(search(library_named("built-in"), a.text, a.k), a.json)
+    _print_shapes(found.shapes, a.json)
 
 
 def _library_sheet(a: argparse.Namespace) -> None:

@@ -1,57 +1,89 @@
-"""Everything derived from the built-in shapes, made once, so that the first photo does not wait for it."""
+"""Everything derived from a library's shapes, made once, so that the first photo or search does not wait for it."""
 
 from __future__ import annotations
 
-import os
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import partial
-from multiprocessing import get_context
 
+from diorama_core.errors import DioramaError
 from diorama_core.geometry.looks import SHARED_LOOKS
 from diorama_core.layout.parts import parts_of_shape
-from diorama_core.library.catalogue import built_in_library, default_cache_dir
+from diorama_core.library.catalogue import default_cache_dir
+from diorama_core.library.store import BUILT_IN, open_library
 from diorama_core.progress import Progress
+from diorama_core.render.image_search import ImageSearch
+from diorama_core.render.template_cache import TemplateCache
+from diorama_core.workers import Workers, workers
 
 _CHUNK = 12
 
 
-def prepare_library(*, workers: int | None = None, progress: Progress | None = None) -> int:
-    """Make and keep models, support surfaces, outlines and convex parts of every built-in shape.
+@dataclass(frozen=True)
+class Prepared:
+    """What was done, and what could not be."""
 
-    What is kept already costs next to nothing, so this can be run at any time and resumed.
+    count: int
+    """Shapes in the library."""
+    failures: tuple[tuple[str, str], ...] = ()
+    """Ids of shapes that could not be prepared, and why."""
+
+
+def prepare_library(
+    name: str = BUILT_IN,
+    *,
+    views: bool = False,
+    templates: bool = False,
+    pool: Workers | None = None,
+    progress: Progress | None = None,
+) -> Prepared:
+    """Make and keep models, support surfaces, outlines and convex parts of every shape of a library.
+
+    What is kept already costs next to nothing, so this can be run at any time and resumed. A shape that fails never
+    stops the others.
 
     Args:
-        workers: processes; all cores by default.
-        progress: reports and cancellation.
-
-    Returns:
-        How many shapes there are.
+        name: Of the library, as in `open_library`.
+        views: Also what a search by picture compares.
+        templates: Also all pose templates, some two megabytes a shape; else they are made for candidates only.
+        pool: Where the work is done; by default all cores of this machine.
+        progress: Reports and cancellation.
 
     Raises:
-        Cancelled: on request; finished shapes stay kept.
+        Cancelled: on request; what was made stays kept.
+        LibraryError: when there is no such library.
     """
-    progress = progress or Progress()
-    ids = [shape.id for shape in built_in_library().shapes()]
-    chunks = [tuple(ids[i : i + _CHUNK]) for i in range(0, len(ids), _CHUNK)]
+    progress, pool = progress or Progress(), pool or workers()
+    library = open_library(name)
+    shapes = library.shapes()
+    whole = progress.part(0.0, 0.7 if views else 1.0)
+    failures: list[tuple[str, str]] = []
     done = 0
-    with ProcessPoolExecutor(workers or os.cpu_count() or 1, mp_context=get_context("spawn")) as pool:
-        pending = {pool.submit(_prepare, chunk): len(chunk) for chunk in chunks}
-        try:
-            for finished in as_completed(pending):
-                finished.result()
-                done += pending[finished]
-                progress.report(done / len(ids), f"shapes: {done} of {len(ids)}")
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
-    return len(ids)
+    chunks = [tuple(s.id for s in shapes[i : i + _CHUNK]) for i in range(0, len(shapes), _CHUNK)]
+    for finished in pool.map(partial(_prepare, name, templates), chunks):
+        failures += finished.value if finished.value is not None else [(i, str(finished.error)) for i in finished.item]
+        done += len(finished.item)
+        whole.report(done / len(shapes), f"shapes: {done} of {len(shapes)}")
+    if views:
+        broken = {shape_id for shape_id, _ in failures}
+        usable = [s for s in shapes if s.id not in broken]
+        ImageSearch(library).prepared(usable, progress.part(0.7, 1.0), pool, name)
+    return Prepared(len(shapes), tuple(sorted(failures)))
 
 
-def _prepare(shape_ids: tuple[str, ...]) -> None:
-    library = built_in_library()
+def _prepare(name: str, templates: bool, shape_ids: Sequence[str]) -> list[tuple[str, str]]:
+    """Prepare some shapes; returns those that could not be, and why."""
+    library, views = open_library(name), TemplateCache(held=1)
     looks = default_cache_dir() / "looks"
+    failures = []
     for shape_id in shape_ids:
-        shape = library.shape(shape_id)
-        library.glb(shape_id)
-        SHARED_LOOKS.get(shape.content_hash, looks, partial(library.parts, shape_id))
-        parts_of_shape(library, shape)
+        try:
+            shape = library.shape(shape_id)
+            library.glb(shape_id)
+            SHARED_LOOKS.get(shape.content_hash, looks, partial(library.parts, shape_id))
+            parts_of_shape(library, shape)
+            if templates:
+                views.get(library, shape)
+        except DioramaError as error:
+            failures.append((shape_id, str(error)))
+    return failures

@@ -15,6 +15,7 @@ import cv2
 import numpy as np
 from jaxtyping import UInt8, UInt16
 
+from diorama_core.errors import InputError
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.progress import Progress
@@ -36,13 +37,13 @@ class TemplateCache:
     Args:
         folder: Where files are kept; `templates` in the cache folder by default.
         held: Shapes held in memory.
-        limit_bytes: Of all files together.
+        limit_bytes: Of all files together; by default four gigabytes, or `DIORAMA_TEMPLATES_GB`.
     """
 
-    def __init__(self, folder: Path | None = None, *, held: int = 8, limit_bytes: int = 4 * 2**30) -> None:
+    def __init__(self, folder: Path | None = None, *, held: int = 8, limit_bytes: int | None = None) -> None:
         self.folder = folder or default_cache_dir() / "templates"
         self._most_held = held
-        self._limit_bytes = limit_bytes
+        self._limit_bytes = _default_limit() if limit_bytes is None else limit_bytes
         self._held: OrderedDict[str, Templates] = OrderedDict()
         self._lock = threading.Lock()
         self._making: dict[str, threading.Lock] = {}
@@ -125,6 +126,14 @@ class TemplateCache:
                 return
             Path(path).unlink(missing_ok=True)
             excess -= size
+
+
+def _default_limit() -> int:
+    asked = os.environ.get("DIORAMA_TEMPLATES_GB", "4")
+    try:
+        return int(float(asked) * 2**30)
+    except ValueError:
+        raise InputError(f"DIORAMA_TEMPLATES_GB is {asked!r}; give a number of gigabytes") from None
 
 
 def _png(codes: UInt16[np.ndarray, "v h w"]) -> UInt8[np.ndarray, "n"]:

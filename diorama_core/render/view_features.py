@@ -1,0 +1,137 @@
+"""What one picture of a thing looks like, as a few hundred numbers: outline, inner edges and colours.
+
+The same numbers are made of a crop of a photo and of the views of a shape, so that their dot product says how alike
+the two are; no networks are needed. Outline: share of a coarse grid's cells that the thing covers, in a square around
+it. Inner edges: histograms of gradient directions (Dalal and Triggs, 2005) in coarse cells, without the outline itself;
+they tell a chest of drawers from a wardrobe. Colours: main colours, softly assigned to reference colours.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float, Float32, Int, UInt8
+
+from diorama_core.geometry.palettes import Palette
+
+_CELLS = 12
+_EDGE_CELLS = 5
+_DIRECTIONS = 6
+_SIDE = 60
+"""Pixels of the square in which edges are measured: a multiple of `_CELLS` and `_EDGE_CELLS`."""
+_MARGIN = 0.04
+_COLOUR_SPREAD = 22.0
+_GRADIENT_FLOOR = 3.0
+"""Gray levels a pixel below which a gradient is noise."""
+
+
+@dataclass(frozen=True)
+class Weights:
+    """How much each part counts; they add up to 1, so that a thing agrees with itself by 1."""
+
+    outline: float = 0.55
+    edges: float = 0.25
+    colour: float = 0.2
+
+
+WEIGHTS = Weights()
+WIDTH = _CELLS**2 + _EDGE_CELLS**2 * _DIRECTIONS + 27
+"""Numbers in a feature."""
+
+
+def view_feature(
+    gray: UInt8[np.ndarray, "h w"],
+    mask: Bool[np.ndarray, "h w"],
+    colour: Float[np.ndarray, "c"],
+    weights: Weights = WEIGHTS,
+) -> Float32[np.ndarray, "width"] | None:
+    """The feature of one picture of a thing.
+
+    Args:
+        gray: Its brightness.
+        mask: Where it is.
+        colour: `colour_feature` of its main colours.
+        weights: How much each part counts.
+
+    Returns:
+        `WIDTH` numbers of unit length (shorter where colours are not known); None for an empty mask.
+    """
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    if not len(rows):
+        return None
+    box = (columns[0], rows[0], columns[-1] + 1, rows[-1] + 1)
+    covered = _squared(mask.astype(np.float32), box, cv2.BORDER_CONSTANT)
+    brightness = _squared(np.where(mask, gray, gray[mask].mean()).astype(np.float32), box, cv2.BORDER_REPLICATE)
+    parts = (
+        np.sqrt(weights.outline) * _unit(_outline(covered)),
+        np.sqrt(weights.edges) * _unit(_edges(brightness, covered)),
+        np.sqrt(weights.colour) * colour,
+    )
+    return np.concatenate(parts).astype(np.float32)
+
+
+def colour_feature(palette: Palette) -> Float[np.ndarray, "c"]:
+    """Square roots of the shares of a palette near each reference colour: unit length, or zeros when none is known."""
+    if not len(palette.share):
+        return np.zeros(len(_reference_colours()))
+    scale = np.array([0.5, 1.0, 1.0])  # the light is not known, so lightness counts half, as in `palette_agreement`
+    apart = ((palette.lab[:, None] - _reference_colours()) * scale) ** 2
+    near = np.exp(-apart.sum(axis=-1) / (2 * _COLOUR_SPREAD**2)) + 1e-9
+    shares = (palette.share[:, None] * near / near.sum(axis=1, keepdims=True)).sum(axis=0)
+    return np.sqrt(shares / shares.sum())
+
+
+def _squared(
+    picture: Float32[np.ndarray, "h w"], box: tuple[int, int, int, int], border: int
+) -> Float32[np.ndarray, "s s"]:
+    """The square around a box, with a margin, resized; `border` tells what lies outside the picture."""
+    x1, y1, x2, y2 = box
+    half = (0.5 + _MARGIN) * max(x2 - x1, y2 - y1)
+    scale = _SIDE / (2 * half)
+    to_square = np.array([[scale, 0, _SIDE / 2 - scale * (x1 + x2) / 2], [0, scale, _SIDE / 2 - scale * (y1 + y2) / 2]])
+    if scale < 1:  # smooth first, so that thin parts do not fall between the samples
+        picture = cv2.GaussianBlur(picture, (0, 0), 0.4 / scale)
+    return cv2.warpAffine(picture, to_square, (_SIDE, _SIDE), flags=cv2.INTER_LINEAR, borderMode=border)
+
+
+def _outline(covered: Float32[np.ndarray, "s s"]) -> Float[np.ndarray, "n"]:
+    cells = cv2.resize(covered, (_CELLS, _CELLS), interpolation=cv2.INTER_AREA).ravel()
+    return cells - 0.35  # empty cells speak too
+
+
+def _edges(brightness: Float32[np.ndarray, "s s"], covered: Float32[np.ndarray, "s s"]) -> Float[np.ndarray, "n"]:
+    """Gradient directions (a line's both sides alike) by cell, square roots of their magnitudes."""
+    smooth = cv2.GaussianBlur(brightness, (0, 0), 0.8)
+    dx, dy = cv2.Sobel(smooth, cv2.CV_32F, 1, 0, scale=0.25), cv2.Sobel(smooth, cv2.CV_32F, 0, 1, scale=0.25)
+    inside = cv2.erode(covered, np.ones((3, 3), np.uint8)) > 0.9
+    size = np.maximum(np.hypot(dx, dy) - _GRADIENT_FLOOR, 0) * inside
+    used = np.flatnonzero(size)
+    angle = np.arctan2(dy.ravel()[used], dx.ravel()[used]) % np.pi * (_DIRECTIONS / np.pi)
+    low = np.floor(angle).astype(int)
+    share, weight, cell = angle - low, size.ravel()[used], _edge_cell()[used] * _DIRECTIONS
+    histogram = np.bincount(cell + low % _DIRECTIONS, weight * (1 - share), _EDGE_CELLS**2 * _DIRECTIONS)
+    histogram += np.bincount(cell + (low + 1) % _DIRECTIONS, weight * share, _EDGE_CELLS**2 * _DIRECTIONS)
+    return np.sqrt(histogram)
+
+
+@cache
+def _edge_cell() -> Int[np.ndarray, "p"]:
+    """The cell of every pixel of the square."""
+    part = np.arange(_SIDE) * _EDGE_CELLS // _SIDE
+    return (part[:, None] * _EDGE_CELLS + part).ravel()
+
+
+def _unit(values: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
+    length = np.linalg.norm(values)
+    return values / length if length > 1e-9 else values
+
+
+@cache
+def _reference_colours() -> Float[np.ndarray, "27 3"]:
+    """CIE Lab of a coarse grid of sRGB colours."""
+    levels = np.array([0.12, 0.45, 0.85], np.float32)
+    rgb = np.stack(np.meshgrid(levels, levels, levels), axis=-1).reshape(1, 27, 3)
+    return cv2.cvtColor(rgb, cv2.COLOR_RGB2Lab)[0].astype(np.float64)
