@@ -43,6 +43,8 @@ BULK_DENSITY: dict[str, float] = {
     "cutting board": 600,
     "mouse": 250, "tablet": 800, "smartphone": 1500, "printer": 180, "speaker": 280, "record player": 150,
     "telephone": 200, "router": 100, "remote control": 500, "game console": 350,
+    "photo frame": 250, "floor mirror": 70, "vanity mirror": 120, "mantel clock": 400, "grandfather clock": 160,
+    "whiteboard": 90, "bulletin board": 200, "sculpture": 500, "globe": 60,
     "toy": 60, "object": 100,
     "rocking chair": 28, "recliner": 48, "bar stool": 50, "high chair": 26, "sectional sofa": 26, "chaise longue": 32,
     "day bed": 35, "bean bag": 12, "vanity table": 80, "bunk bed": 30, "crib": 32, "changing table": 75,

@@ -157,7 +157,7 @@ DARK_LEAF = Material("dark leaf", "leaf", "#4d6c4a", 0.5, 0.0, 0.15)
 PALE_LEAF = Material("pale leaf", "leaf", "#84986a", 0.6, 0.0, 0.15)
 BARK = wood("bark", "#6a543f", 0.95)
 SCREEN = art("dark screen", "screen", "#15181b", 0.12)
-MIRROR = Material("mirror glass", "mirror", "#c3cccf", 0.04, 0.85, 1.0)
+MIRROR = Material("mirror glass", "mirror", "#c6cfd2", 0.04, 0.5, 1.0)
 PANE = Material("window pane", "sky", "#a9c3d6", 0.06, 0.0, 1.0, glow=0.05)
 
 

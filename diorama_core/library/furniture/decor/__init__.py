@@ -2,7 +2,19 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture.decor import vases
+from diorama_core.library.furniture.decor import boards, clocks, globes, mirrors, pictures, sculptures, vases
 from diorama_core.library.furniture.model import Design
 
-DESIGNS: tuple[Design, ...] = tuple(design for kind in (vases,) for design in kind.DESIGNS)
+DESIGNS: tuple[Design, ...] = tuple(
+    design
+    for kind in (
+        vases,
+        pictures,
+        mirrors,
+        clocks,
+        boards,
+        sculptures,
+        globes,
+    )
+    for design in kind.DESIGNS
+)
