@@ -23,6 +23,11 @@ def library_named(name: str) -> ShapeLibrary:
     return open_library(name)
 
 
+def library_of(project: Project) -> ShapeLibrary:
+    """The library that a project was built with; the built-in one where nothing is noted."""
+    return library_named(str(project.info().get("library", "built-in")))
+
+
 def arrangement(scene: Scene, rank: int) -> Scene:
     """The scene with every object in its `rank`-th alternative (its last where it has fewer), on the same spots."""
     for item in scene.objects:

@@ -103,10 +103,17 @@ def serve(
     open_browser: bool,
     low_graphics: bool,
     token: str | None,
+    library: ShapeLibrary | None = None,
 ) -> None:
     """Run the editor until Ctrl+C."""
     running = start(
-        project=project, projects_dir=projects_dir, host=host, port=port, low_graphics=low_graphics, token=token
+        project=project,
+        projects_dir=projects_dir,
+        host=host,
+        port=port,
+        low_graphics=low_graphics,
+        token=token,
+        library=library,
     )
     print(f"Diorama is at {running.url} (Ctrl+C stops it)", flush=True)
     if open_browser:

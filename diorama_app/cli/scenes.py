@@ -35,13 +35,21 @@ def add_serve(commands: Any) -> None:
     p.add_argument("--no-open", action="store_true", help="do not open a browser window")
     p.add_argument("--low-graphics", action="store_true", help="no shadows or environment light (software WebGL)")
     p.add_argument("--token", metavar="T", help="browsers must give this token: needed for hosts other than this one")
+    p.add_argument("--library", metavar="NAME", help="shape library (default: the project's own, or built-in)")
 
 
 def _serve(a: argparse.Namespace) -> None:
+    from diorama_app.building import library_named, library_of
     from diorama_app.server import serve
+    from diorama_core.project.storage import Project
 
+    if a.library is None and a.project is not None:
+        library = library_of(Project.open(a.project))
+    else:
+        library = library_named(a.library or "built-in")
     serve(
         project=a.project,
+        library=library,
         projects_dir=a.projects or Path.home() / "Diorama",
         host=a.host,
         port=a.port,
@@ -70,7 +78,12 @@ def add_build(commands: Any) -> None:
     p.add_argument("--masks", type=Path, metavar="FILE", help="PNG with one colour or id per object, black is none")
     p.add_argument("--profile", choices=PROFILES, default="auto", help="which networks to use (default: %(default)s)")
     p.add_argument("--arrangements", type=int, default=1, metavar="N", help="scenes with other shapes to write beside")
-    p.add_argument("--library", default="built-in", metavar="NAME", help="shape library (default: %(default)s)")
+    p.add_argument(
+        "--library",
+        default="built-in",
+        metavar="NAME",
+        help="shape library, or several joined by + (default: %(default)s)",
+    )
     p.add_argument("--recipe", choices=RECIPES, default=RECIPES[0], help="layout optimiser (default: %(default)s)")
     p.add_argument("--seed", type=int, default=0, help="seed of random stages (the embedded ones draw nothing)")
     p.add_argument("--json", action="store_true", help="print the result as JSON")
@@ -100,6 +113,7 @@ def _build(a: argparse.Namespace) -> None:
     library = library_named(a.library)
     stages = stages_for(a.profile, read.inputs, library, recipe=a.recipe)
     project = Project.create(a.output)
+    project.update_info(library=a.library)
     with progress_bar() as progress:
         built = build_project(project, read.inputs, library, stages=stages, warnings=read.warnings, progress=progress)
         scenes = write_arrangements(project, built.scene, stages.layout, a.arrangements, progress)
@@ -130,7 +144,7 @@ def add_optimise(commands: Any) -> None:
 def _optimise(a: argparse.Namespace) -> None:
     from dataclasses import asdict
 
-    from diorama_app.building import library_named
+    from diorama_app.building import library_of
     from diorama_core.layout.recipes import recipe
     from diorama_core.scene.edits import set_metrics
 
@@ -138,7 +152,7 @@ def _optimise(a: argparse.Namespace) -> None:
     with progress_bar() as progress:
         inputs = project.load_inputs()
         measured = inputs is not None and inputs.depth_m is not None
-        arrange = recipe(a.recipe, library_named("built-in"), depth_measured=measured)
+        arrange = recipe(a.recipe, library_of(project), depth_measured=measured)
         arranged, report = arrange.optimise(scene, progress)
     project.save_scene(set_metrics(arranged, report.after))
     if a.json:
@@ -167,11 +181,11 @@ def add_export(commands: Any) -> None:
 
 
 def _export(a: argparse.Namespace) -> None:
-    from diorama_app.building import library_named
+    from diorama_app.building import library_of
     from diorama_core.export.gltf import write_glb
 
     project, scene = opened(a.project)
-    write_glb(scene, library_named("built-in"), a.output, textures=project.textures(scene))
+    write_glb(scene, library_of(project), a.output, textures=project.textures(scene))
     print(f"{a.output}: {len(scene.objects)} objects, {len(scene.architecture.planes)} planes")
 
 
@@ -195,13 +209,13 @@ def _picture(a: argparse.Namespace) -> None:
 
     from PIL import Image
 
-    from diorama_app.building import library_named
+    from diorama_app.building import library_of
     from diorama_core.project.files import write_atomically
     from diorama_core.render.picture import picture
 
     project, scene = opened(a.project)
     textures = project.textures(scene)
-    image = picture(scene, library_named("built-in"), view=a.view, size=a.size, textures=textures)
+    image = picture(scene, library_of(project), view=a.view, size=a.size, textures=textures)
     buffer = io.BytesIO()
     kind = {".png": "PNG", ".jpg": "JPEG", ".jpeg": "JPEG"}.get(a.output.suffix.lower())
     if kind is None:
