@@ -27,7 +27,7 @@ class Convention:
     unit: Mapping[float, float] = field(default_factory=dict)
 
 
-GLTF = Convention("glTF", {"+y": 0.97}, {"+z": 0.7}, {1.0: 0.85, 0.01: 0.04, 0.001: 0.03})
+GLTF = Convention("glTF", {"+y": 0.99}, {"+z": 0.7}, {1.0: 0.85, 0.01: 0.04, 0.001: 0.03})
 """The specification: +Y up, +Z front, metres. Ups are nearly always kept, fronts mostly, units often."""
 OBJ = Convention("OBJ", {"+y": 0.65, "+z": 0.3}, {}, {1.0: 0.4, 0.01: 0.3, 0.001: 0.15, 0.0254: 0.1})
 PLY = Convention("PLY", {"+z": 0.5, "+y": 0.4}, {}, {1.0: 0.6, 0.001: 0.2, 0.01: 0.1})

@@ -1,0 +1,254 @@
+"""Which way is up, where is the front, how large is a unit, and what is it: the most probable answer to all at once.
+
+Every combination of a category, one of the 24 orientations and a unit is scored by what the format promises, by how
+well the size fits the category, and by how much the model then looks like known shapes of that category. What the user
+or a data set knows is taken as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import trimesh
+from jaxtyping import Float, Int
+
+from diorama_core.errors import InputError
+from diorama_core.library import taxonomy
+from diorama_core.library.ingest.known_shapes import KnownShapes, relief_features
+from diorama_core.library.ingest.models import Convention
+from diorama_core.library.ingest.relief import Relief, quarter_turns, turned
+from diorama_core.library.record import Assumption, Guess
+
+AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
+UNITS = {1.0: "metres", 0.01: "centimetres", 0.001: "millimetres", 0.0254: "inches", 0.3048: "feet"}
+
+LIKENESS = 60.0
+"""Log-probability lost per unit of mean relief difference to the likest known shapes."""
+MIRRORED = 12.0
+"""Lost per unit of difference between left and right: most things are the same on both sides."""
+PROPORTION = 1.5
+"""Lost per unit of difference in the logarithms of proportions to the known shapes."""
+NOTHING_ALIKE = 0.16
+"""Relief difference taken for categories without known shapes."""
+WORST_SIZE, WORSE_BY = -6.0, 3.0
+"""An odd size costs at most the first, and the second for each unit of its logarithm: some tables are just large."""
+ANY_SCALE = 1e-4
+"""Prior of a unit that is none of the usual ones."""
+LIKELY_OTHER, LIKELY_KNOWN = 0.0, -4.0
+"""Of being no particular category against one it looks like, when it has a name that speaks of none we know."""
+UNNAMED_OTHER, UNNAMED_KNOWN = -2.5, -1.5
+"""The same when it has no name at all."""
+ALIKE = 2
+"""How many of the likest known shapes are asked."""
+
+
+@dataclass(frozen=True)
+class Given:
+    """What is known of a model beforehand, from flags, a table or a data set; None is guessed."""
+
+    up: str | None = None
+    """Axis of the file that points up, such as `+y`."""
+    front: str | None = None
+    unit_m: float | None = None
+    """Metres in one unit of the file."""
+    category: str | None = None
+    caption: str = ""
+    synonyms: tuple[str, ...] = ()
+    source: str = ""
+    licence: str = ""
+    reason: str = "given"
+    """Who says so, for the record."""
+
+    def __post_init__(self) -> None:
+        for name in ("up", "front"):
+            value = getattr(self, name)
+            if value is not None and value not in AXES:
+                raise InputError(f"{name} axis {value!r}: choose one of {', '.join(AXES)}")
+        if self.up is not None and self.front is not None and self.up[1] == self.front[1]:
+            raise InputError(f"up {self.up} and front {self.front} lie along one axis; they must be at right angles")
+        if self.unit_m is not None and not 1e-9 < self.unit_m < 1e9:
+            raise InputError(f"unit {self.unit_m}: give the metres in one unit of the file, such as 0.01")
+        if self.category is not None and not taxonomy.resolve(self.category).exact:
+            raise InputError(f"category {self.category!r} is not known; {taxonomy.resolve(self.category).note}")
+
+    def over(self, other: Given) -> Given:
+        """This, and where it says nothing, the other."""
+        return replace(other, **{k: v for k, v in vars(self).items() if v not in (None, "", ()) and k != "reason"})
+
+
+@dataclass(frozen=True)
+class Frame:
+    """How a file's frame becomes the canonical one."""
+
+    R_shape_file: Int[np.ndarray, "3 3"]
+    unit_m: float
+    category: str
+    guess: Guess
+
+
+def axis_vector(axis: str) -> Int[np.ndarray, "3"]:
+    """`-y` as a vector."""
+    vector = np.zeros(3, dtype=int)
+    vector["xyz".index(axis[1])] = 1 if axis[0] == "+" else -1
+    return vector
+
+
+def axis_name(vector: Int[np.ndarray, "3"]) -> str:
+    """A unit vector along an axis as `-y`."""
+    axis = int(np.abs(vector).argmax())
+    return ("+" if vector[axis] > 0 else "-") + "xyz"[axis]
+
+
+def guess_frame(
+    mesh: trimesh.Trimesh,
+    pictures: Relief,
+    convention: Convention,
+    named: Mapping[str, float] | None,
+    known: KnownShapes,
+    given: Given,
+) -> Frame:
+    """The most probable frame, unit and category of a model.
+
+    Args:
+        mesh: In the file's frame and unit.
+        pictures: Its relief.
+        convention: What its format promises.
+        named: Categories its names speak of, with logarithmic weights; None when it has no telling name at all.
+        known: Shapes to compare it with.
+        given: What need not be guessed.
+
+    """
+    turns = quarter_turns()
+    ups = [axis_name(R[2]) for R in turns]
+    fronts = [axis_name(R[0]) for R in turns]
+    features = np.stack([relief_features(turned(pictures, R)) for R in turns])
+    log_extents = np.log(np.maximum(mesh.extents, 1e-9))[np.abs(turns).argmax(axis=2)]
+    frame = _frame_prior(ups, fronts, convention, given) - MIRRORED * _lopsided(pictures, turns)
+    categories = _candidates(features, named, known, given)
+    units = _unit_prior(convention, given)
+    table = np.full((len(categories), len(turns), len(units) + 1), -np.inf)
+    for row, (name, weight) in enumerate(categories.items()):
+        alike = -LIKENESS * _unlike(features, log_extents, name, known)
+        for column, (unit, prior) in enumerate(units.items()):
+            table[row, :, column] = weight + alike + frame + np.log(prior) + _size_fit(log_extents + np.log(unit), name)
+        if given.unit_m is None:
+            free = _best_scale(log_extents, name)
+            fit = _size_fit(log_extents + free[:, None], name)
+            table[row, :, -1] = weight + alike + frame + np.log(ANY_SCALE) + fit
+    return _chosen(table, list(categories), turns, list(units), log_extents, convention, given, bool(named))
+
+
+def _chosen(
+    table: Float[np.ndarray, "c 24 u"],
+    categories: list[str],
+    turns: Int[np.ndarray, "24 3 3"],
+    units: list[float],
+    log_extents: Float[np.ndarray, "24 3"],
+    convention: Convention,
+    given: Given,
+    named: bool,
+) -> Frame:
+    """The best entry of the table, and how sure each of its answers is."""
+    posterior = np.exp(table - table.max())
+    posterior /= posterior.sum()
+    best = np.unravel_index(int(table.argmax()), table.shape)
+    c, q, u = (int(i) for i in best)
+    same_up = (turns[:, 2] == turns[q, 2]).all(axis=1)
+    up, front = axis_name(turns[q, 2]), axis_name(turns[q, 0])
+    unit = units[u] if u < len(units) else float(np.exp(_best_scale(log_extents[q : q + 1], categories[c])[0]))
+    promised = f"the {convention.name} convention" if convention.up.get(up, 0) > 0.3 else "its shape"
+    usual = u < len(units) and convention.unit.get(unit, 0) > 0.3
+    size_says = "its size" if u < len(units) else f"no usual unit fits: scaled to the usual size of a {categories[c]}"
+    guess = Guess(
+        up=_assumed(up, posterior[:, same_up].sum(), promised, given.up, given),
+        front=_assumed(front, posterior[:, q].sum() / posterior[:, same_up].sum(), "its shape", given.front, given),
+        unit=_assumed(
+            f"{unit:.6g}", posterior[..., u].sum(), promised if usual else size_says, given.unit_m, given
+        ),
+        category=_assumed(
+            categories[c], posterior[c].sum(), "its name" if named else "its looks", given.category, given
+        ),
+    )
+    return Frame(turns[q], unit, categories[c], guess)
+
+
+def _assumed(value: str, confidence: float, reason: str, stated: object, given: Given) -> Assumption:
+    if stated is not None:
+        return Assumption(value, 1.0, given.reason)
+    return Assumption(value, round(float(min(confidence, 0.99)), 3), reason)
+
+
+def _frame_prior(ups: list[str], fronts: list[str], convention: Convention, given: Given) -> Float[np.ndarray, "24"]:
+    up = _axis_prior(convention.up, given.up)
+    front = _axis_prior(convention.front, given.front)
+    return np.array([up[a] + front[b] for a, b in zip(ups, fronts, strict=True)])
+
+
+def _axis_prior(promised: Mapping[str, float], stated: str | None) -> dict[str, float]:
+    """Logarithmic weights of the six axes; what is stated excludes the rest."""
+    if stated is not None:
+        return {a: 0.0 if a == stated else -np.inf for a in AXES}
+    rest = (1.0 - sum(promised.values())) / (len(AXES) - len(promised))
+    return {a: float(np.log(promised.get(a, rest))) for a in AXES}
+
+
+def _unit_prior(convention: Convention, given: Given) -> dict[float, float]:
+    if given.unit_m is not None:
+        return {given.unit_m: 1.0}
+    return {u: convention.unit.get(u, 0.02) for u in (*UNITS, *(u for u in convention.unit if u not in UNITS))}
+
+
+def _candidates(
+    features: Float[np.ndarray, "24 f"], named: Mapping[str, float] | None, known: KnownShapes, given: Given
+) -> dict[str, float]:
+    """Categories worth scoring with their prior: the given one, those named, or those that it looks like."""
+    if given.category is not None:
+        return {taxonomy.resolve(given.category).category.name: 0.0}
+    if named:
+        return dict(named)
+    other, likely = (UNNAMED_OTHER, UNNAMED_KNOWN) if named is None else (LIKELY_OTHER, LIKELY_KNOWN)
+    best: dict[str, float] = {}
+    unlike = np.min([np.abs(known.features - f).mean(axis=1) for f in features], axis=0)
+    for row in np.argsort(unlike, kind="stable")[:40]:
+        best.setdefault(known.categories[row], likely)
+    return {taxonomy.UNKNOWN.name: other, **dict(list(best.items())[:8])}
+
+
+def _unlike(
+    features: Float[np.ndarray, "24 f"], log_extents: Float[np.ndarray, "24 3"], category: str, known: KnownShapes
+) -> Float[np.ndarray, "24"]:
+    """Mean difference to the two likest known shapes of a category, in each orientation."""
+    rows = known.rows_of(category) if category != taxonomy.UNKNOWN.name else np.zeros(0, int)
+    if len(rows) == 0:
+        return np.full(len(features), NOTHING_ALIKE)
+    difference = np.stack([np.abs(known.features[rows] - f).mean(axis=1) for f in features])
+    own = log_extents - log_extents.mean(axis=1, keepdims=True)
+    theirs = known.log_extents[rows] - known.log_extents[rows].mean(axis=1, keepdims=True)
+    difference += PROPORTION / LIKENESS * np.abs(own[:, None] - theirs[None]).mean(axis=2)
+    return np.sort(difference, axis=1)[:, :ALIKE].mean(axis=1)
+
+
+def _lopsided(pictures: Relief, turns: Int[np.ndarray, "24 3 3"]) -> Float[np.ndarray, "24"]:
+    """How much left and right differ in each orientation."""
+    mirrors = [np.diag([-1 if k == axis else 1 for k in range(3)]) for axis in range(3)]
+    along = np.array([np.abs(relief_features(pictures) - relief_features(turned(pictures, m))).mean() for m in mirrors])
+    return along[np.abs(turns[:, 1]).argmax(axis=1)]
+
+
+def _size_fit(log_sizes: Float[np.ndarray, "n 3"], category: str) -> Float[np.ndarray, " n"]:
+    """Log-likelihood of sizes (x, y, z) under a category's priors, up to a constant; the best of its modes."""
+    priors = taxonomy.category(category).priors
+    off = np.stack([log_sizes - p.log_median_xyz for p in priors])
+    sigma = np.stack([np.maximum(p.log_sigma_xyz, 0.12) for p in priors])[:, None]
+    usual = -0.5 * ((off / sigma) ** 2).sum(axis=2)
+    fit = np.maximum(usual, WORST_SIZE - WORSE_BY * np.abs(off).max(axis=2)).max(axis=0)
+    return fit - np.log(sigma).sum(axis=2).min()
+
+
+def _best_scale(log_extents: Float[np.ndarray, "n 3"], category: str) -> Float[np.ndarray, " n"]:
+    """Logarithm of the scale that brings extents nearest to a category's usual size."""
+    prior = taxonomy.category(category).priors[0]
+    weight = 1.0 / np.maximum(prior.log_sigma_xyz, 0.12) ** 2
+    return ((prior.log_median_xyz - log_extents) * weight).sum(axis=1) / weight.sum()

@@ -1,0 +1,90 @@
+"""Reliefs of shapes whose orientation is known: the built-in ones, taken once and kept."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float, Float32
+
+from diorama_core.library.catalogue import built_in_library, default_cache_dir
+from diorama_core.library.ingest.relief import SIDE, relief
+from diorama_core.library.record import ShapeLibrary
+
+log = logging.getLogger(__name__)
+
+_FORMAT = 1
+
+
+@dataclass(frozen=True, eq=False)
+class KnownShapes:
+    """Upright shapes with their fronts along +X, to compare others with."""
+
+    categories: tuple[str, ...]
+    features: Float32[np.ndarray, "shapes f"]
+    """`relief_features` of each."""
+    log_extents: Float[np.ndarray, "shapes 3"]
+
+    def rows_of(self, category: str) -> np.ndarray:
+        """Rows of one category."""
+        return np.flatnonzero(np.array(self.categories) == category)
+
+
+def relief_features(pictures: np.ndarray) -> Float32[np.ndarray, "*n f"]:
+    """A relief as a vector; roots, so that the low relief of handles and panels counts beside deep openings."""
+    return np.sqrt(pictures).reshape(*pictures.shape[:-4], -1).astype(np.float32)
+
+
+def known_shapes(cache_dir: Path | None = None, on_step: Callable[[float], None] = lambda _: None) -> KnownShapes:
+    """The built-in shapes' reliefs: read from the cache, or taken now (a quarter of a minute) and kept there.
+
+    Args:
+        cache_dir: Where they are kept; the user's cache by default.
+        on_step: Told the share that is done.
+    """
+    library = built_in_library()
+    shapes = library.shapes()
+    state = hashlib.sha256(f"{_FORMAT} {SIDE} {[s.content_hash for s in shapes]}".encode()).hexdigest()[:24]
+    path = (cache_dir or default_cache_dir()) / "reliefs" / f"{state}.npz"
+    categories = tuple(s.category for s in shapes)
+    sizes = np.log([s.size_m for s in shapes])
+    kept = _read(path, len(shapes))
+    if kept is None:
+        kept = _taken(library, on_step)
+        _write(path, kept)
+    return KnownShapes(categories, relief_features(kept.astype(np.float32) / 255.0), sizes)
+
+
+def _taken(library: ShapeLibrary, on_step: Callable[[float], None]) -> np.ndarray:
+    shapes = library.shapes()
+    found = np.zeros((len(shapes), 3, 2, SIDE, SIDE), np.uint8)
+    for row, shape in enumerate(shapes):
+        found[row] = np.round(relief(library.mesh(shape.id)) * 255)
+        on_step((row + 1) / len(shapes))
+    return found
+
+
+def _read(path: Path, count: int) -> np.ndarray | None:
+    try:
+        with np.load(path) as stored:
+            found = stored["reliefs"]
+        return found if found.shape == (count, 3, 2, SIDE, SIDE) else None
+    except (OSError, ValueError, KeyError, EOFError):
+        return None
+
+
+def _write(path: Path, found: np.ndarray) -> None:
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, reliefs=found)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        part = path.with_suffix(".part")
+        part.write_bytes(buffer.getvalue())
+        part.replace(path)
+    except OSError as error:
+        log.warning("cannot keep reliefs in %s (%s); they are taken again each time", path.parent, error)

@@ -1,0 +1,160 @@
+"""From a file's scene to sound triangles with plain materials: what cannot be drawn or measured is left out."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import trimesh
+from jaxtyping import Float
+from PIL import Image
+from trimesh.visual.color import ColorVisuals
+from trimesh.visual.material import PBRMaterial
+from trimesh.visual.texture import TextureVisuals
+
+from diorama_core.errors import LibraryError
+from diorama_core.library.ingest.limits import Limits
+
+_FARTHEST = 1e7
+"""Coordinates beyond this (in the file's unit) are noise, not furniture."""
+
+
+@dataclass(frozen=True)
+class Repaired:
+    """Meshes with their transforms applied, in the file's frame and unit."""
+
+    meshes: tuple[trimesh.Trimesh, ...]
+    warnings: tuple[str, ...]
+
+    @property
+    def whole(self) -> trimesh.Trimesh:
+        """Geometry only, one mesh."""
+        counts = np.cumsum([0, *(len(m.vertices) for m in self.meshes)])
+        return trimesh.Trimesh(
+            np.concatenate([m.vertices for m in self.meshes]),
+            np.concatenate([m.faces + c for m, c in zip(self.meshes, counts, strict=False)]),
+            process=False,
+        )
+
+
+def repaired(scene: trimesh.Scene, limits: Limits) -> Repaired:
+    """Sound triangles of a scene.
+
+    Left out, with a warning: points that are not finite and triangles on them, triangles without area, lines and point
+    clouds. Kept as they are: open and non-manifold surfaces (nothing here needs closed solids), with a warning.
+
+    Raises:
+        LibraryError: when no triangle with area is left, or there are too many.
+    """
+    notes: list[str] = []
+    kept = []
+    total = 0
+    looks: dict[int, PBRMaterial] = {}
+    for name, mesh, T in _placed(scene, notes):
+        total += len(mesh.faces)
+        if total > limits.triangles:
+            raise LibraryError(f"more than {limits.triangles} triangles; simplify it first")
+        vertices = trimesh.transform_points(np.asarray(mesh.vertices, dtype=float), T)
+        faces = _sound_faces(vertices, np.asarray(mesh.faces), notes)
+        if np.linalg.det(T[:3, :3]) < 0:
+            faces = faces[:, ::-1]
+        if len(faces):
+            kept.append(_compact(vertices, faces, _visual(mesh, faces, looks, limits), name))
+    if not kept:
+        raise LibraryError("no triangle with area is in it")
+    whole = Repaired(tuple(kept), ())
+    if not (whole.whole.extents > 0).any() or np.sort(whole.whole.extents)[1] < 1e-9:
+        raise LibraryError("it has no extent")
+    notes += _openness(whole.whole)
+    return Repaired(tuple(kept), tuple(dict.fromkeys(notes)))
+
+
+def _placed(scene: trimesh.Scene, notes: list[str]) -> Iterator[tuple[str, trimesh.Trimesh, Float[np.ndarray, "4 4"]]]:
+    for node in scene.graph.nodes_geometry:
+        T, name = scene.graph[node]
+        mesh = scene.geometry[name]
+        if not isinstance(mesh, trimesh.Trimesh):
+            notes.append("lines and points were left out")
+        elif not np.isfinite(T).all():
+            notes.append("a part with a broken transform was left out")
+        else:
+            yield str(name), mesh, np.asarray(T, dtype=float)
+
+
+def _sound_faces(vertices: np.ndarray, faces: np.ndarray, notes: list[str]) -> np.ndarray:
+    """Triangles whose corners exist, are finite and span an area."""
+    inside = ((faces >= 0) & (faces < len(vertices))).all(axis=1)
+    if not inside.all():
+        notes.append(f"{int((~inside).sum())} triangles named points that do not exist; they were left out")
+        faces = faces[inside]
+    usable = np.isfinite(vertices).all(axis=1) & (np.abs(np.nan_to_num(vertices)) < _FARTHEST).all(axis=1)
+    finite = usable[faces].all(axis=1)
+    if not finite.all():
+        notes.append(f"{int((~finite).sum())} triangles had points that are not finite; they were left out")
+        faces = faces[finite]
+    a, b, c = (vertices[faces[:, k]] for k in range(3))
+    return faces[np.linalg.norm(np.cross(b - a, c - a), axis=1) > 0]
+
+
+def _openness(mesh: trimesh.Trimesh) -> list[str]:
+    """What a reader should know of edges that are not shared by exactly two triangles."""
+    keys = np.round((mesh.vertices - mesh.bounds[0]) / mesh.extents.max() * 1e6).astype(np.int64)
+    corner = np.unique(keys, axis=0, return_inverse=True)[1].reshape(-1)[mesh.faces]
+    edges = np.sort(corner[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    counts = np.unique(edges, axis=0, return_counts=True)[1]
+    return ["its surface is not closed and manifold; it is used as it is"] if (counts > 2).any() else []
+
+
+def _compact(vertices: np.ndarray, faces: np.ndarray, visual: Any, name: str) -> trimesh.Trimesh:
+    used, flat = np.unique(faces, return_inverse=True)
+    if isinstance(visual, TextureVisuals) and visual.uv is not None:
+        visual = TextureVisuals(uv=np.nan_to_num(np.asarray(visual.uv)[used]), material=visual.material)
+    elif isinstance(visual, ColorVisuals) and visual.kind == "vertex":
+        visual = ColorVisuals(vertex_colors=visual.vertex_colors[used])
+    return trimesh.Trimesh(
+        vertices[used], flat.reshape(-1, 3), visual=visual, process=False, metadata={"name": name}
+    )
+
+
+def _visual(mesh: trimesh.Trimesh, faces: np.ndarray, looks: dict[int, PBRMaterial], limits: Limits) -> Any:
+    """Colours or a physically based material, whatever the file had."""
+    visual = mesh.visual
+    if isinstance(visual, TextureVisuals):
+        key = id(visual.material)
+        if key not in looks:
+            looks[key] = _material(visual.material, limits)
+        uv = visual.uv if visual.uv is not None and len(visual.uv) == len(mesh.vertices) else None
+        return TextureVisuals(uv=uv if uv is not None else np.zeros((len(mesh.vertices), 2)), material=looks[key])
+    if isinstance(visual, ColorVisuals) and visual.kind == "vertex":
+        return visual
+    colour = visual.main_color if isinstance(visual, ColorVisuals) and visual.kind == "face" else (190, 187, 182, 255)
+    plain = PBRMaterial(baseColorFactor=np.asarray(colour, dtype=np.uint8), metallicFactor=0.0, roughnessFactor=0.8)
+    return TextureVisuals(uv=np.zeros((len(mesh.vertices), 2)), material=plain)
+
+
+def _material(found: Any, limits: Limits) -> PBRMaterial:
+    made = found if isinstance(found, PBRMaterial) else found.to_pbr()
+    for name in ("baseColorTexture", "normalTexture", "metallicRoughnessTexture", "occlusionTexture", "emissiveTexture"):
+        image = getattr(made, name, None)
+        if image is not None:
+            setattr(made, name, _small(image, limits.texture_side_px))
+    return made
+
+
+def _small(image: Image.Image, side_px: int) -> Image.Image | None:
+    """A texture no larger than `side_px`, in a format that every viewer reads; None when its bytes are broken."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            alpha = "A" in image.getbands() or "transparency" in image.info
+            plain = image.convert("RGBA" if alpha else "RGB")
+            plain.thumbnail((side_px, side_px))
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
+        return None
+    opaque = not alpha or plain.getchannel("A").getextrema()[0] == 255
+    plain = plain.convert("RGB") if opaque else plain
+    plain.format = "JPEG" if opaque else "PNG"
+    return plain

@@ -1,0 +1,209 @@
+"""One file becomes one shape: read, repaired, put upright, measured and packed."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from jaxtyping import Float
+from trimesh.visual.texture import TextureVisuals
+
+from diorama_core.errors import LibraryError
+from diorama_core.library import taxonomy
+from diorama_core.library.catalogue import BULK_DENSITY
+from diorama_core.library.ingest.guess import Frame, Given, guess_frame
+from diorama_core.library.ingest.known_shapes import KnownShapes
+from diorama_core.library.ingest.limits import DEFAULT_LIMITS, Limits
+from diorama_core.library.ingest.models import RawModel, read_model
+from diorama_core.library.ingest.names import named_categories, words_of
+from diorama_core.library.ingest.relief import relief, turned
+from diorama_core.library.ingest.repair import Repaired, repaired
+from diorama_core.library.ingest.sink import Ingested
+from diorama_core.library.ingest.symmetry import symmetry_fold
+from diorama_core.library.record import Guess, Shape, ShapeLibrary, usual_contact_faces
+from diorama_core.library.surfaces import support_surfaces
+
+Painter = Callable[[ShapeLibrary, str], bytes]
+"""Makes the PNG thumbnail of one shape of a library; rendering lives above the library."""
+TINY_M, HUGE_M = 1e-3, 50.0
+"""Shapes smaller or larger than this along their longest side are refused: no unit makes furniture of them."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """One model to take in."""
+
+    path: Path
+    root: Path
+    """Nothing outside is read."""
+    id: str
+    key: str
+    """State of the file and settings (`Ingested.source_key`)."""
+    given: Given = Given()
+
+
+@dataclass(frozen=True, eq=False)
+class LoneShape:
+    """A library of one shape. Implements `ShapeLibrary`."""
+
+    record: Shape
+    scene: trimesh.Scene
+    geometry: trimesh.Trimesh
+    packed: bytes
+
+    def shapes(self) -> tuple[Shape, ...]:
+        """The one record."""
+        return (self.record,)
+
+    def shape(self, shape_id: str) -> Shape:
+        """The record; raises `LibraryError` for any other id."""
+        if shape_id != self.record.id:
+            raise LibraryError(f"no shape is called '{shape_id}'; there is only '{self.record.id}'")
+        return self.record
+
+    def in_category(self, category: str) -> tuple[Shape, ...]:
+        """The record when it is of the category."""
+        return self.shapes() if category == self.record.category else ()
+
+    def mesh(self, shape_id: str) -> trimesh.Trimesh:
+        """Geometry only."""
+        self.shape(shape_id)
+        return self.geometry
+
+    def parts(self, shape_id: str) -> trimesh.Scene:
+        """Geometry with materials."""
+        self.shape(shape_id)
+        return self.scene
+
+    def glb(self, shape_id: str) -> bytes:
+        """The packed model."""
+        self.shape(shape_id)
+        return self.packed
+
+
+def ingest_file(
+    source: Source, known: KnownShapes, painter: Painter | None = None, limits: Limits = DEFAULT_LIMITS
+) -> Ingested:
+    """Take in one file.
+
+    Args:
+        source: The file, its id, and what is known of it.
+        known: Shapes to compare it with.
+        painter: Makes the thumbnail; None makes none.
+        limits: What is refused.
+
+    Raises:
+        DioramaError: with the reason, when the file cannot be used.
+    """
+    return ingest_model(read_model(source.path, source.root, limits), source, known, painter, limits)
+
+
+def ingest_model(
+    raw: RawModel,
+    source: Source,
+    known: KnownShapes,
+    painter: Painter | None = None,
+    limits: Limits = DEFAULT_LIMITS,
+) -> Ingested:
+    """Take in a model that was read already; see `ingest_file`."""
+    model = repaired(raw.scene, limits)
+    whole = model.whole
+    pictures = relief(whole)
+    named = named_categories(source.path.stem, _folders(source), raw.names)
+    frame = guess_frame(whole, pictures, raw.convention, named, known, source.given)
+    size = frame.unit_m * whole.extents.max()
+    if not TINY_M <= size <= HUGE_M:
+        raise LibraryError(f"it would be {size:.3g} m large; give its unit")
+    meshes = _canonical(model, frame)
+    fold = symmetry_fold(_whole(meshes), turned(pictures, frame.R_shape_file))
+    record = _record(source, raw, frame, fold)
+    return packed_shape(record, meshes, painter, source.key, (*raw.warnings, *model.warnings))
+
+
+def packed_shape(
+    record: Shape, meshes: Sequence[trimesh.Trimesh], painter: Painter | None, key: str, warnings: tuple[str, ...]
+) -> Ingested:
+    """Measure and pack meshes in the canonical frame; what follows from them replaces what the record says."""
+    scene = trimesh.Scene()
+    for number, mesh in enumerate(meshes):
+        name = f"{number:03d} {mesh.metadata.get('name', '')}"[:60].strip()
+        scene.add_geometry(mesh, node_name=name, geom_name=name)
+    glb = scene.export(file_type="glb", include_normals=True)
+    if not isinstance(glb, bytes):
+        raise LibraryError("the shape could not be written as GLB")
+    whole = _whole(meshes)
+    x, y, z = (float(round(e, 6)) for e in whole.extents)
+    record = replace(
+        record,
+        size_m=(x, y, z),
+        mass_kg=round(max(BULK_DENSITY.get(record.category, 100.0) * x * y * z, 0.01), 2),
+        content_hash=hashlib.sha256(glb).hexdigest()[:24],
+        triangles=len(whole.faces),
+        surfaces=support_surfaces(whole),
+    )
+    picture = None if painter is None else painter(LoneShape(record, scene, whole, glb), record.id)
+    return Ingested(record, glb, picture, key, warnings)
+
+
+def _folders(source: Source) -> list[str]:
+    """Folders between the model and the root, the innermost first."""
+    try:
+        return [p for p in reversed(source.path.parent.relative_to(source.root).parts)]
+    except ValueError:
+        return []
+
+
+def _canonical(model: Repaired, frame: Frame) -> list[trimesh.Trimesh]:
+    """The meshes turned, scaled and centred; one for each material."""
+    R = frame.R_shape_file.astype(float) * frame.unit_m
+    points = np.concatenate([m.vertices for m in model.meshes]) @ R.T
+    centre = (points.min(axis=0) + points.max(axis=0)) / 2
+    groups: dict[int, list[trimesh.Trimesh]] = {}
+    for mesh in model.meshes:
+        textured = isinstance(mesh.visual, TextureVisuals)
+        groups.setdefault(id(mesh.visual.material) if textured else -1 - len(groups), []).append(mesh)
+    return [_joined(group, R, centre) for group in groups.values()]
+
+
+def _joined(group: Sequence[trimesh.Trimesh], R: Float[np.ndarray, "3 3"], centre: np.ndarray) -> trimesh.Trimesh:
+    counts = np.cumsum([0, *(len(m.vertices) for m in group)])
+    visual = group[0].visual
+    if isinstance(visual, TextureVisuals):
+        visual = TextureVisuals(uv=np.concatenate([m.visual.uv for m in group]), material=visual.material)
+    return trimesh.Trimesh(
+        np.concatenate([m.vertices for m in group]) @ R.T - centre,
+        np.concatenate([m.faces + c for m, c in zip(group, counts, strict=False)]),
+        visual=visual,
+        process=False,
+        metadata={"name": group[0].metadata.get("name", "")},
+    )
+
+
+def _whole(meshes: Sequence[trimesh.Trimesh]) -> trimesh.Trimesh:
+    return Repaired(tuple(meshes), ()).whole
+
+
+def _record(source: Source, raw: RawModel, frame: Frame, fold: int) -> Shape:
+    given = source.given
+    words = " ".join(words_of(source.path.stem))
+    return Shape(
+        id=source.id,
+        category=frame.category,
+        caption=given.caption or words or frame.category,
+        size_m=(0.0, 0.0, 0.0),
+        source=given.source or source.path.name,
+        licence=given.licence or "unknown",
+        symmetry=fold,  # type: ignore[arg-type]  # one of the folds, from symmetry_fold
+        synonyms=given.synonyms,
+        contact_faces=usual_contact_faces(taxonomy.category(frame.category).mount),
+        guess=frame.guess,
+    )
+
+
+def confidence(guess: Guess) -> float:
+    """How sure the least sure of the assumptions that matter to placement is."""
+    return min(guess.up.confidence, guess.unit.confidence, guess.category.confidence)
