@@ -7,6 +7,8 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.architecture.colours import object_pixels
+from diorama_core.architecture.empty_room import EmptyRoomFiller
+from diorama_core.architecture.quilting import broad_shading, detail_continued
 from diorama_core.artefacts import DetectedObject, Inputs
 from diorama_core.geometry.casting import cast_planes
 from diorama_core.geometry.planes import plane_rectangle
@@ -17,11 +19,10 @@ PIXELS_PER_M = 150.0
 MIN_SEEN_SHARE = 0.06
 """A plane seen in less of its area keeps its plain colour."""
 MIN_SEEN_PX = 400
+MIN_FLOOR_M2 = 0.15
+"""Except a floor, of which so much is enough to continue its material from."""
 MAX_GRAZING_COSINE = 0.06
 """Where the plane is seen more edge-on than this the photo is smeared and not used."""
-GRAIN_LEAST_PX = 12
-EVEN_LEVELS = 14.0
-"""A patch whose colour varies more than this (of 255) over its breadth is a pattern or a rug, not a grain."""
 FRAME = 0.014
 """Rim of the picture that is not used, as a share of its longer side: undistorted photos have pale frames there."""
 ISLAND_M = 0.22
@@ -31,15 +32,29 @@ ISLAND_SHARE = 0.04
 RIM = 0.008
 """Widening of what hides the room beyond its masks' own margin, as a share of the picture's longer side."""
 SURE_MASK = 0.95
+COLOUR_CELL_LAB = np.array([14.0, 8.0, 8.0])
+"""Colours within about this much are one material in light and shade."""
+EXPECTED_LAB = 8.0
+"""Colours that differ by this from the expected one count less by a factor of e."""
 FOREIGN_SPREADS = 2.5
 FOREIGN_LEAST_LAB = np.array([14.0, 9.0, 9.0])
-"""A floor's texel is foreign when it differs by more than this many typical deviations, and by this much at least."""
-FADE_M = 0.6
-"""Far from what is seen, the picture fades to the plane's plain colour over this length."""
+"""A texel is foreign when it differs by more than this many typical deviations, and by this much at least."""
+FADE_M = 1.2
+"""Far from what is seen, shading fades to the plane's plain colour over this length."""
+FLOOR_SHADING_M, WALL_SHADING_M = 0.10, 0.08
+"""Variation broader than this is light and shade, finer is the material's own."""
+LEAST_TYPICAL = 0.06
+"""Where less than this share of what is seen has about one colour, all of it is continued."""
+FLOOR_DETAIL, WALL_DETAIL = 45.0, 14.0
+"""Detail that deviates by more levels of 255 is no part of the material."""
 
 
 def plane_textures(
-    inputs: Inputs, objects: tuple[DetectedObject, ...], camera: Camera, architecture: Architecture
+    inputs: Inputs,
+    objects: tuple[DetectedObject, ...],
+    camera: Camera,
+    architecture: Architecture,
+    filler: EmptyRoomFiller | None = None,
 ) -> dict[str, UInt8[np.ndarray, "h w 3"]]:
     """RGB pictures of the planes that are seen well enough, by plane id.
 
@@ -50,22 +65,31 @@ def plane_textures(
         objects: What hides the room; their masks are painted out.
         camera: The photo's camera.
         architecture: The room, with its plain colours.
+        filler: Paints what stands in the room out of the photo; without one every plane is continued by itself.
     """
     shape = (inputs.photo.height, inputs.photo.width)
     unsure = [o for o in objects if o.mask_confidence < SURE_MASK]
-    hidden = _grown(object_pixels(shape, objects)) | _boxes(shape, unsure)
+    masked = _grown(object_pixels(shape, objects))
+    hidden = masked | _boxes(shape, unsure)
+    rgb = inputs.photo.rgb
+    if filler is not None and hidden.any():
+        rgb, unsure = filler.fill(rgb, hidden), []
+        masked = hidden = np.zeros(shape, dtype=bool)
     found: dict[str, np.ndarray] = {}
     for plane in architecture.planes:
         points, pixel_m = _texel_points(plane)
-        colours, seen = _seen_colours(inputs.photo.rgb, hidden, camera, architecture.planes, plane, points)
+        # Boxes of things hide nearly all of a floor; there, what an unsure mask left over is told by its colour.
+        behind = masked if plane.role == "floor" else hidden
+        colours, seen = _seen_colours(rgb, behind, camera, architecture.planes, plane, points)
+        weight = _photo_share(points, plane, camera)
+        expected = None if plane.role == "floor" and not unsure else plane.colour
         if unsure and plane.role == "floor":
-            seen &= ~_foreign(colours, seen)
+            seen &= ~_foreign(colours, seen, weight, expected)
         seen = _without_islands(seen, ISLAND_M / pixel_m)
-        if unsure and plane.role == "floor" and not _grain(colours, seen).any():
-            # Patches of an uneven floor between guessed masks look worse than its plain colour.
-            continue
-        if seen.mean() >= MIN_SEEN_SHARE and seen.sum() >= MIN_SEEN_PX:
-            found[plane.id] = completed(colours, seen, plane.colour, FADE_M / pixel_m, grainy=plane.role == "floor")
+        enough_m2 = MIN_FLOOR_M2 if plane.role == "floor" else np.inf
+        if seen.sum() >= MIN_SEEN_PX and (seen.mean() >= MIN_SEEN_SHARE or seen.sum() * pixel_m**2 >= enough_m2):
+            own = _own(colours, seen, weight, expected)
+            found[plane.id] = completed(colours, seen, plane.colour, pixel_m, own, ground=plane.role == "floor")
     return found
 
 
@@ -98,16 +122,57 @@ def _boxes(shape: tuple[int, int], objects: list[DetectedObject]) -> Bool[np.nda
     return covered
 
 
-def _foreign(colours: Float32[np.ndarray, "h w 3"], seen: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
-    """Texels far from what most of a floor looks like: things nobody pointed at, smeared over it."""
-    lab = cv2.cvtColor(colours / 255.0, cv2.COLOR_RGB2LAB)
+def _foreign(
+    colours: Float32[np.ndarray, "h w 3"],
+    seen: Bool[np.ndarray, "h w"],
+    weight: Float[np.ndarray, "h w"],
+    expected: tuple[float, float, float] | None = None,
+) -> Bool[np.ndarray, "h w"]:
+    """Texels unlike the plane's own colour: things nobody pointed at, rugs, posters.
+
+    Its own colour is the one that covers much of the photo and is about what was expected; without an expectation,
+    that covers much and lies far apart: a floor shows on all sides of a rug.
+
+    Args:
+        colours: 0 to 255.
+        seen: Which texels are.
+        weight: How much of the photo each texel covers.
+        expected: About the plane's colour, 0 to 1.
+    """
     if not seen.any():
         return np.zeros(seen.shape, dtype=bool)
-    deviation = np.abs(lab - np.median(lab[seen], axis=0))
-    typical = np.median(deviation[seen], axis=0)
+    lab = cv2.cvtColor(colours / 255.0, cv2.COLOR_RGB2LAB)
+    rows, columns = np.nonzero(seen)
+    every = max(1, len(rows) // 4000)
+    sample = lab[rows[::every], columns[::every]]
+    places = np.stack([rows[::every], columns[::every]], axis=1).astype(np.float64)
+    share = weight[rows[::every], columns[::every]]
+    cells, index = np.unique(np.round(sample / COLOUR_CELL_LAB), axis=0, return_inverse=True)
+    covered = np.bincount(index.ravel(), weights=share)
+    best, own = -1.0, np.median(sample, axis=0)
+    for cell in cells[np.argsort(-covered, kind="stable")][:8]:
+        alike = (np.abs(sample - cell * COLOUR_CELL_LAB) < COLOUR_CELL_LAB).all(axis=1)
+        score = float(share[alike].sum())
+        if expected is None:
+            score *= float(places[alike].var(axis=0).sum()) if alike.sum() > 1 else 0.0
+        else:
+            hoped = cv2.cvtColor(np.array([[expected]], np.float32), cv2.COLOR_RGB2LAB)[0, 0]
+            score *= float(np.exp(-np.linalg.norm(cell * COLOUR_CELL_LAB - hoped) / EXPECTED_LAB))
+        if score > best:
+            best, own = score, np.median(sample[alike], axis=0)
+    deviation = np.abs(lab - own)
+    alike = (deviation < 2.0 * COLOUR_CELL_LAB).all(axis=-1) & seen
+    typical = np.median(deviation[alike if alike.any() else seen], axis=0)
     far = (deviation / np.maximum(FOREIGN_SPREADS * typical, FOREIGN_LEAST_LAB)).max(axis=-1) > 1.0
     compact = cv2.morphologyEx((far & seen).astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
     return cv2.dilate(compact, np.ones((9, 9), np.uint8)).astype(bool)
+
+
+def _photo_share(points: Float[np.ndarray, "h w 3"], plane: Plane, camera: Camera) -> Float[np.ndarray, "h w"]:
+    """How much of the photo each texel covers, up to one factor: it shrinks with distance and with slant."""
+    rays = points - camera.position
+    distance = np.maximum(np.linalg.norm(rays, axis=-1), 0.1)
+    return np.asarray(np.maximum(-(rays @ plane.normal), 0.0) / distance**3)
 
 
 def _texel_points(plane: Plane) -> tuple[Float[np.ndarray, "h w 3"], float]:
@@ -148,51 +213,55 @@ def _seen_colours(
     return colours.astype(np.float32), seen
 
 
+def _own(
+    colours: Float32[np.ndarray, "h w 3"],
+    seen: Bool[np.ndarray, "h w"],
+    weight: Float[np.ndarray, "h w"],
+    expected: tuple[float, float, float] | None,
+) -> Bool[np.ndarray, "h w"]:
+    """What is seen of the plane's own material; all of it where hardly anything has one colour."""
+    own = seen & ~_foreign(colours, seen, weight, expected)
+    return own if own.sum() >= LEAST_TYPICAL * seen.sum() else seen
+
+
 def completed(
     colours: Float32[np.ndarray, "h w 3"],
     seen: Bool[np.ndarray, "h w"],
     plain: tuple[float, float, float],
-    fade_px: float,
+    pixel_m: float,
+    own: Bool[np.ndarray, "h w"],
     *,
-    grainy: bool = False,
+    ground: bool = False,
 ) -> UInt8[np.ndarray, "h w 3"]:
-    """Fills what is not seen smoothly from what is, fading to the plain colour away from it.
+    """The plane's picture: as seen, and where it was not seen, its shading spread smoothly and its detail continued.
 
-    Colours spread through an image pyramid (pull-push, Gortler et al. 1996), which leaves no streaks. With `grainy`
-    the fine detail of the largest seen patch goes on over the rest, as carpets and boards do.
+    Shading spreads through an image pyramid (pull-push, Gortler et al. 1996), which leaves no streaks, and fades to
+    the plain colour; detail is quilted, where enough was seen to copy from.
+
+    Args:
+        colours: 0 to 255, meaningful where seen.
+        seen: Which texels are.
+        plain: The plane's colour, 0 to 1.
+        pixel_m: Size of a texel.
+        own: Which of the seen texels show the plane's material: what may be continued.
+        ground: Whether it is a floor: boards and rugs vary more, and more broadly, than walls.
     """
-    smooth = _pull_push(colours * seen[..., None], seen.astype(np.float32))
+    breadth_m, strongest = (FLOOR_SHADING_M, FLOOR_DETAIL) if ground else (WALL_SHADING_M, WALL_DETAIL)
+    if ground:
+        red, green, blue = (float(c) / 255.0 for c in np.median(colours[own], axis=0))
+        plain = (red, green, blue)
+    shading = broad_shading(colours, own, breadth_m / pixel_m)
+    smooth = _pull_push(shading * own[..., None], own.astype(np.float32))
     distance = cv2.distanceTransform((~seen).astype(np.uint8), cv2.DIST_L2, 5)
-    keep = np.exp(-distance / max(fade_px, 1.0))[..., None]
+    keep = np.exp(-distance * pixel_m / FADE_M)[..., None]
     filled = keep * smooth + (1.0 - keep) * (np.array(plain, np.float32) * 255.0)
-    if grainy:
-        filled = filled + _grain(colours, seen)
+    detail = detail_continued(colours - shading, own, strongest)
+    if detail is not None:
+        filled = filled + detail
     # The first texels inside a mask's border still carry its rim; a soft seam hides the step.
     inner = cv2.erode(seen.astype(np.float32), np.ones((5, 5), np.uint8))
-    weight = cv2.GaussianBlur(inner, (0, 0), 2.0)[..., None] * seen[..., None]
-    return (weight * colours + (1.0 - weight) * filled).clip(0, 255).astype(np.uint8)
-
-
-def _grain(colours: Float32[np.ndarray, "h w 3"], seen: Bool[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w 3"]:
-    """Detail of the largest wholly seen square, mirrored over the plane; zero when that is too small or uneven."""
-    height, width = seen.shape
-    ringed = cv2.copyMakeBorder(seen.astype(np.uint8), 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=0)
-    reach = cv2.distanceTransform(ringed, cv2.DIST_C, 3)[1:-1, 1:-1]
-    row, column = np.unravel_index(int(reach.argmax()), reach.shape)
-    half = int(reach.max()) - 3
-    if half < GRAIN_LEAST_PX:
-        return np.zeros_like(colours)
-    patch = colours[row - half : row + half, column - half : column + half]
-    broad = cv2.GaussianBlur(patch, (0, 0), half / 8.0)
-    detail = patch - broad
-    if broad.std(axis=(0, 1)).max() > EVEN_LEVELS or np.abs(detail).max() > 6.0 * detail.std() + EVEN_LEVELS:
-        return np.zeros_like(colours)
-    mirrored = np.concatenate([detail, detail[::-1]])
-    mirrored = np.concatenate([mirrored, mirrored[:, ::-1]], axis=1)
-    period = 4 * half
-    rows = (np.arange(height) - row + half) % period
-    columns = (np.arange(width) - column + half) % period
-    return mirrored[np.ix_(rows, columns)]
+    mixed = cv2.GaussianBlur(inner, (0, 0), 2.0)[..., None] * seen[..., None]
+    return (mixed * colours + (1.0 - mixed) * filled).clip(0, 255).astype(np.uint8)
 
 
 def _pull_push(
