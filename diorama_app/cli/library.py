@@ -24,6 +24,7 @@ def add_library(commands: Any) -> None:
         actions, "build", _library_build, "Prepare a library's shapes once.", "diorama library build --library mine"
     )
     _add_library_name(build)
+    build.add_argument("--parts", action="store_true", help="also the convex parts that keep shapes apart (minutes)")
     build.add_argument("--views", action="store_true", help="also what a search by picture compares")
     build.add_argument("--templates", action="store_true", help="also all pose templates, some 2 MB a shape")
     build.add_argument("--workers", type=int, metavar="N", help="processes (default: all cores)")
@@ -69,7 +70,12 @@ def _library_build(a: argparse.Namespace) -> None:
 
     with progress_bar() as progress:
         prepared = prepare_library(
-            a.library, views=a.views, templates=a.templates, pool=workers(a.ray, a.workers), progress=progress
+            a.library,
+            parts=a.parts,
+            views=a.views,
+            templates=a.templates,
+            pool=workers(a.ray, a.workers),
+            progress=progress,
         )
     for shape_id, reason in prepared.failures:
         print(f"diorama: {shape_id}: {reason}", file=sys.stderr)

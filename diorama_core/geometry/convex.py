@@ -107,7 +107,7 @@ def simplest_part(points: Float[np.ndarray, "n 3"]) -> ConvexPart:
     if volume < 1e-12 or (high - low).min() < THINNEST_M or volume >= TIGHT * float(np.prod(high - low)):
         return box_part(*_padded(low, high))
     for axis in (2, 0, 1):
-        prism = _prism_about(points, axis)
+        prism = _prism_about(points, axis, volume)
         if prism is not None and volume >= TIGHT * _volume(np.asarray(prism.vertices)):
             return prism
     to_box, extents = _oriented_box(points)
@@ -292,14 +292,19 @@ def _drop_contained(clouds: list[np.ndarray]) -> list[np.ndarray]:
     return kept
 
 
-def _prism_about(points: np.ndarray, axis: int) -> ConvexPart | None:
-    """A prism along one axis whose outline has at most eight sides and contains the points' outline."""
+def _prism_about(points: np.ndarray, axis: int, volume: float) -> ConvexPart | None:
+    """A prism along one axis whose outline has at most eight sides and contains the points' outline.
+
+    None where it cannot be tight about a hull of this volume.
+    """
     u, v = [(1, 2), (2, 0), (0, 1)][axis]
     try:
-        outline = points[:, [u, v]][ConvexHull(points[:, [u, v]]).vertices]
+        flat = ConvexHull(points[:, [u, v]])
     except (QhullError, ValueError):
         return None
-    outline = outer_polygon(outline, 8)
+    if volume < TIGHT * float(flat.volume) * float(np.ptp(points[:, axis])):
+        return None  # an outline of fewer sides only encloses more
+    outline = outer_polygon(points[:, [u, v]][flat.vertices], 8)
     ring = np.zeros((len(outline), 3))
     ring[:, u], ring[:, v] = outline[:, 0], outline[:, 1]
     ring[:, axis] = points[:, axis].min()

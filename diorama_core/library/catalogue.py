@@ -21,7 +21,9 @@ import trimesh
 
 from diorama_core.errors import LibraryError
 from diorama_core.library import furniture
+from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.model import Design, built, mesh_of, scene_of
+from diorama_core.library.furniture.solids import Solid
 from diorama_core.library.record import Shape, SupportSurface
 from diorama_core.library.surfaces import support_surfaces
 
@@ -79,6 +81,7 @@ class BuiltInLibrary:
             raise LibraryError("two built-in designs share an id; give each its own")
         self._records = {d.id: _record(d) for d in designs}
         self._files = _FileCache(cache_dir)
+        self._solids: _Kept[list[tuple[Material, Solid]]] = _Kept(8)
         self._scenes: _Kept[trimesh.Scene] = _Kept(64)
         self._meshes: _Kept[trimesh.Trimesh] = _Kept(256)
         self._glbs: _Kept[bytes] = _Kept(256)
@@ -103,12 +106,12 @@ class BuiltInLibrary:
     def mesh(self, shape_id: str) -> trimesh.Trimesh:
         """Geometry only, one mesh in the canonical frame. Shared: do not change it."""
         self._known(shape_id)
-        return self._meshes.get(shape_id, lambda: mesh_of(built(self._designs[shape_id])))
+        return self._meshes.get(shape_id, lambda: mesh_of(self._built(shape_id)))
 
     def parts(self, shape_id: str) -> trimesh.Scene:
         """Geometry with materials, in the canonical frame. Shared: do not change it."""
         self._known(shape_id)
-        return self._scenes.get(shape_id, lambda: scene_of(built(self._designs[shape_id])))
+        return self._scenes.get(shape_id, lambda: scene_of(self._built(shape_id)))
 
     def glb(self, shape_id: str) -> bytes:
         """`parts` as GLB, +Z up, metres; the same bytes every time."""
@@ -116,6 +119,10 @@ class BuiltInLibrary:
         return self._glbs.get(
             shape_id, lambda: self._files.get(f"{record.content_hash}.glb", lambda: _glb(self.parts(shape_id)))
         )
+
+    def _built(self, shape_id: str) -> list[tuple[Material, Solid]]:
+        """The solids, kept for the moment: who asks for the mesh mostly asks for the materials next."""
+        return self._solids.get(shape_id, lambda: built(self._designs[shape_id]))
 
     def _known(self, shape_id: str) -> Shape:
         record = self._records.get(shape_id)

@@ -9,15 +9,19 @@ dropped, 10th percentile of the free height).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import trimesh
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull
 
 from diorama_core.library.record import SupportSurface
+
+if TYPE_CHECKING:
+    from open3d.t.geometry import RaycastingScene
 
 MINIMUM_UP = 0.9
 """Cosine of the steepest slope that still carries things."""
@@ -25,6 +29,8 @@ STEP_M = 0.008
 """Neighbouring samples of one surface differ in height by no more than this (a seam, a plank's edge)."""
 REACH_M = 0.03
 """Gaps narrower than this (between slats and planks) do not part a surface."""
+WALL_M = 0.025
+"""What rises this far above a shelf between two places on it parts them."""
 MINIMUM_FILL = 0.55
 """A region that fills less of its convex outline than this is a rim or a frame, not a surface."""
 
@@ -57,7 +63,8 @@ def support_surfaces(mesh: trimesh.Trimesh, lattice: int = 72) -> tuple[SupportS
     low, high = mesh.bounds
     extent = high - low
     cell_m = float(max(extent[0], extent[1])) / lattice
-    spots = _spots(mesh, cell_m)
+    caster = _caster(mesh)
+    spots = _spots(mesh, caster, cell_m)
     if len(spots.z) == 0:
         return ()
     blocked_below = float(np.clip(0.1 * extent[2], 0.02, 0.08))
@@ -65,9 +72,10 @@ def support_surfaces(mesh: trimesh.Trimesh, lattice: int = 72) -> tuple[SupportS
     narrowest = 0.1 if max(extent[:2]) > 0.5 else 0.03
     foot = float(low[2]) + (0.04 if extent[2] > 0.3 else 0.0)
     half_footprint = 0.5 * extent[0] * extent[1]
+    low_area = float((spots.z < foot).sum()) * cell_m**2
     found = []
-    for region in _regions(spots):
-        if np.median(spots.z[region]) < foot and len(region) * cell_m**2 < half_footprint:
+    for region in _regions(spots, caster):
+        if np.median(spots.z[region]) < foot and low_area < half_footprint:
             continue  # a base plate, not a surface
         clearance = spots.clearance[region]
         if np.median(clearance) < blocked_below or len(region) * cell_m**2 < minimum_area:
@@ -80,7 +88,15 @@ def support_surfaces(mesh: trimesh.Trimesh, lattice: int = 72) -> tuple[SupportS
     return tuple(sorted(found, key=lambda s: (-round(s.height_m, 3), *np.round(s.polygon.mean(axis=0)[:2], 3))))
 
 
-def _spots(mesh: trimesh.Trimesh, cell: float) -> _Spots:
+def _caster(mesh: trimesh.Trimesh) -> RaycastingScene:
+    import open3d as o3d  # seconds to load, and listing shapes does without it
+
+    scene = o3d.t.geometry.RaycastingScene(nthreads=1)
+    scene.add_triangles(mesh.vertices.astype(np.float32), mesh.faces.astype(np.uint32))
+    return scene
+
+
+def _spots(mesh: trimesh.Trimesh, caster: RaycastingScene, cell: float) -> _Spots:
     """Shoot rays down through the shape and keep the upward faces that lie in free space."""
     low, high = mesh.bounds
     extent = high - low
@@ -90,23 +106,21 @@ def _spots(mesh: trimesh.Trimesh, cell: float) -> _Spots:
     nudge = 0.013 * cell  # off the mesh's own symmetry lines, where rays would graze edges
     x = origin[0] + (i + 0.5) * cell + nudge
     y = origin[1] + (j + 0.5) * cell + 1.7 * nudge
-    ray, z, up = _hits(mesh, x, y, float(high[2]) + 1.0)
+    ray, z, up = _hits(mesh, caster, x, y, float(high[2]) + 1.0)
     depth, above = _depth_and_gap(ray, z, up)
     free = (up >= MINIMUM_UP) & (depth == 0)
     return _Spots(origin, cell, np.stack([i[ray], j[ray]], axis=1)[free], z[free], above[free])
 
 
 def _hits(
-    mesh: trimesh.Trimesh, x: Float[np.ndarray, "r"], y: Float[np.ndarray, "r"], top: float
+    mesh: trimesh.Trimesh, caster: RaycastingScene, x: Float[np.ndarray, "r"], y: Float[np.ndarray, "r"], top: float
 ) -> tuple[Int[np.ndarray, "h"], Float[np.ndarray, "h"], Float[np.ndarray, "h"]]:
     """Every hit of downward rays: ray number, height, and the face normal's z; sorted by ray, then downward."""
-    import open3d as o3d  # seconds to load, and listing shapes does without it
+    import open3d as o3d
 
-    scene = o3d.t.geometry.RaycastingScene(nthreads=1)
-    scene.add_triangles(mesh.vertices.astype(np.float32), mesh.faces.astype(np.uint32))
     rays = np.zeros((len(x), 6), dtype=np.float32)
     rays[:, 0], rays[:, 1], rays[:, 2], rays[:, 5] = x, y, top, -1.0
-    hits = scene.list_intersections(o3d.core.Tensor.from_numpy(rays))
+    hits = caster.list_intersections(o3d.core.Tensor.from_numpy(rays))
     ray, t = hits["ray_ids"].numpy().astype(int), hits["t_hit"].numpy().astype(float)
     up = mesh.face_normals[hits["primitive_ids"].numpy()][:, 2]
     order = np.lexsort((t, ray))
@@ -128,8 +142,8 @@ def _depth_and_gap(
     return np.maximum(depth, 0), above
 
 
-def _regions(spots: _Spots) -> list[Int[np.ndarray, "k"]]:
-    """Spots grown together over neighbouring cells of nearly equal height, then flat patches of one level joined."""
+def _regions(spots: _Spots, caster: RaycastingScene) -> list[Int[np.ndarray, "k"]]:
+    """Spots grown together over neighbouring cells of nearly equal height, as far as nothing stands between them."""
     n = len(spots.z)
     bins = np.round(spots.z / STEP_M).astype(np.int64)
     key = _cell_key(spots.cell[:, 0], spots.cell[:, 1], bins)
@@ -144,9 +158,35 @@ def _regions(spots: _Spots) -> list[Int[np.ndarray, "k"]]:
         found = np.flatnonzero(in_order[at] == wanted)
         pairs.append((found, order[at[found]]))
     a, b = (np.concatenate(side) for side in zip(*pairs, strict=True))
+    passable = ~_walled_off(spots, caster, a, b)
+    a, b = a[passable], b[passable]
     graph = coo_matrix((np.ones(len(a)), (a, b)), shape=(n, n))
     count, label = connected_components(graph, directed=False)
     return [_flat_core(spots, np.flatnonzero(label == k)) for k in range(count)]
+
+
+def _walled_off(
+    spots: _Spots, caster: RaycastingScene, a: Int[np.ndarray, "p"], b: Int[np.ndarray, "p"]
+) -> Bool[np.ndarray, "p"]:
+    """Whether something stands between two spots under a roof: the upright between two compartments of a shelf.
+
+    Only neighbours under one roof are asked: things in the open may reach over what parts them.
+    """
+    import open3d as o3d
+
+    walled = np.zeros(len(a), dtype=bool)
+    roofed = np.flatnonzero(np.isfinite(spots.clearance[a]) & np.isfinite(spots.clearance[b]))
+    if len(roofed) == 0:
+        return walled
+    start, end = (
+        np.column_stack([spots.origin + (spots.cell[k] + 0.5) * spots.cell_m, spots.z[k]])
+        for k in (a[roofed], b[roofed])
+    )
+    level = np.maximum(start[:, 2], end[:, 2]) + WALL_M
+    start[:, 2] = end[:, 2] = level
+    rays = np.hstack([start, end - start]).astype(np.float32)
+    walled[roofed] = caster.test_occlusions(o3d.core.Tensor.from_numpy(rays), tnear=0.0, tfar=1.0).numpy()
+    return walled
 
 
 def _cell_key(i: Int[np.ndarray, "s"], j: Int[np.ndarray, "s"], level: Int[np.ndarray, "s"]) -> Int[np.ndarray, "s"]:

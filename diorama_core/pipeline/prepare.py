@@ -32,18 +32,21 @@ class Prepared:
 def prepare_library(
     name: str = BUILT_IN,
     *,
+    parts: bool = False,
     views: bool = False,
     templates: bool = False,
     pool: Workers | None = None,
     progress: Progress | None = None,
 ) -> Prepared:
-    """Make and keep models, support surfaces, outlines and convex parts of every shape of a library.
+    """Make and keep models, support surfaces and outlines of every shape of a library.
 
     What is kept already costs next to nothing, so this can be run at any time and resumed. A shape that fails never
     stops the others.
 
     Args:
         name: Of the library, as in `open_library`.
+        parts: Also the convex parts that the layout optimiser keeps apart, several times the work of all else; else
+            they are made for a scene's own shapes when they are first needed.
         views: Also what a search by picture compares.
         templates: Also all pose templates, some two megabytes a shape; else they are made for candidates only.
         pool: Where the work is done; by default all cores of this machine.
@@ -60,7 +63,7 @@ def prepare_library(
     failures: list[tuple[str, str]] = []
     done = 0
     chunks = [tuple(s.id for s in shapes[i : i + _CHUNK]) for i in range(0, len(shapes), _CHUNK)]
-    for finished in pool.map(partial(_prepare, name, templates), chunks):
+    for finished in pool.map(partial(_prepare, name, parts, templates), chunks):
         failures += finished.value if finished.value is not None else [(i, str(finished.error)) for i in finished.item]
         done += len(finished.item)
         whole.report(done / len(shapes), f"shapes: {done} of {len(shapes)}")
@@ -71,7 +74,7 @@ def prepare_library(
     return Prepared(len(shapes), tuple(sorted(failures)))
 
 
-def _prepare(name: str, templates: bool, shape_ids: Sequence[str]) -> list[tuple[str, str]]:
+def _prepare(name: str, parts: bool, templates: bool, shape_ids: Sequence[str]) -> list[tuple[str, str]]:
     """Prepare some shapes; returns those that could not be, and why."""
     library, views = open_library(name), TemplateCache(held=1)
     looks = default_cache_dir() / "looks"
@@ -81,7 +84,8 @@ def _prepare(name: str, templates: bool, shape_ids: Sequence[str]) -> list[tuple
             shape = library.shape(shape_id)
             library.glb(shape_id)
             SHARED_LOOKS.get(shape.content_hash, looks, partial(library.parts, shape_id))
-            parts_of_shape(library, shape)
+            if parts:
+                parts_of_shape(library, shape)
             if templates:
                 views.get(library, shape)
         except DioramaError as error:

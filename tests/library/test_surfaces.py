@@ -62,6 +62,31 @@ def test_bookcase_shelves_have_heights_and_clearances() -> None:
     assert [round(s.clearance_m, 2) for s in inside] == [0.38, 0.38, 0.38, 0.46]
 
 
+def test_uprights_part_the_compartments_of_a_shelf() -> None:
+    """0.9 wide with two uprights: three compartments on every level, the lowest on the floor among them."""
+    uprights = [block((0.298, 0.016, 1.7), (0, y, 0.85)) for y in (-0.15, 0.15)]
+    surfaces = support_surfaces(trimesh.util.concatenate([bookcase(), *uprights]))
+    inside = [s for s in surfaces if s.interior]
+    levels = sorted({round(s.height_m, 2) for s in inside})
+    assert levels == [0.02, 0.42, 0.82, 1.22]
+    for level in levels:
+        middles = sorted(float(s.polygon[:, 1].mean()) for s in inside if round(s.height_m, 2) == level)
+        assert middles == pytest.approx([-0.29, 0.0, 0.29], abs=0.03)
+
+
+def test_a_low_edge_on_a_shelf_parts_nothing() -> None:
+    edge = block((0.298, 0.016, 0.014), (0, 0, 0.423))
+    inside = [s for s in support_surfaces(trimesh.util.concatenate([bookcase(), edge])) if s.interior]
+    assert len(inside) == 4
+
+
+def test_a_lamp_stands_on_its_foot_but_nothing_stands_there() -> None:
+    foot = trimesh.creation.cylinder(0.15, 0.02)
+    pole = trimesh.creation.cylinder(0.012, 1.4, transform=trimesh.transformations.translation_matrix((0, 0, 0.7)))
+    shade = trimesh.creation.cylinder(0.22, 0.3, transform=trimesh.transformations.translation_matrix((0, 0, 1.5)))
+    assert all(s.height_m > 1.0 for s in support_surfaces(trimesh.util.concatenate([foot, pole, shade])))
+
+
 def test_overlapping_solids_do_not_make_buried_surfaces() -> None:
     pair = trimesh.util.concatenate([block((0.6, 0.6, 0.4), (0, 0, 0)), block((0.6, 0.6, 0.4), (0, 0, 0.1))])
     (top,) = support_surfaces(pair)

@@ -161,7 +161,7 @@ def bench_day_bed(size: Size, wood: Material, cloth: Material) -> Parts:
     legs = four(leg("splay", d / 2 - 0.12, w / 2 - 0.2, top - thick - 0.05, 0.04, 0.12))
     n = 33
     v, u = np.meshgrid(np.linspace(-1, 1, n), np.linspace(-1, 1, 65), indexing="ij")
-    x, y = -v * (d / 2 - 0.01), u * (w / 2 - 0.01)
+    x, y = v * (d / 2 - 0.01), u * (w / 2 - 0.01)
     wave = np.clip(np.cos(np.pi * x / (d / 4)) * np.cos(np.pi * y / (w / 8)), 0, 1) ** 4
     edge = np.clip((1 - u**20) * (1 - v**12), 0, 1) ** 0.5
     upper = np.stack([x, y, top - 0.045 + (0.045 - 0.018 * wave) * edge], axis=-1)

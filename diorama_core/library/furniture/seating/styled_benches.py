@@ -59,7 +59,7 @@ def buttoned_bench(size: Size, cloth: Material, wood: Material, profile: Leg) ->
     """A deep-buttoned bench for the end of a bed."""
     d, w, h = size
     v, u = np.meshgrid(np.linspace(-1, 1, 21), np.linspace(-1, 1, 61), indexing="ij")
-    x, y = -v * d / 2, u * w / 2
+    x, y = v * d / 2, u * w / 2
     wave = np.clip(np.cos(2 * np.pi * x / (d / 1.5)) * np.cos(2 * np.pi * y / (w / 6)), 0, 1) ** 2
     edge = np.clip((1 - u**14) * (1 - v**8), 0, 1) ** 0.5
     upper = np.stack([x, y, h - 0.09 + (0.09 - 0.03 * wave) * edge], axis=-1)

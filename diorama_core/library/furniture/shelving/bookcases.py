@@ -39,7 +39,7 @@ def bookcase(
     parts += feet(base, d, w, z0, wood)
     for k in range(1, columns):
         parts += of(
-            wood, box((d - 0.014, t, top - z0 - 0.01), 0.002).moved(-0.004, -w / 2 + w * k / columns, z0 + 0.005)
+            wood, box((d - 0.006, t, top - z0 - 0.01), 0.002).moved(-0.001, -w / 2 + w * k / columns, z0 + 0.005)
         )
     if crown:
         parts += of(wood, box((d, w, 0.034), 0.01, 2).moved(z=h - 0.034))
@@ -90,7 +90,7 @@ def cube_shelf(size: Size, wood: Material, rows: int, columns: int) -> Parts:
         for k in range(1, rows)
     ]
     boards += [
-        box((d - 0.01, thin, h - t), 0.002).moved(-0.004, -w / 2 + t + (w - 2 * t) * k / columns, t / 2)
+        box((d - 0.005, thin, h - t), 0.002).moved(-0.001, -w / 2 + t + (w - 2 * t) * k / columns, t / 2)
         for k in range(1, columns)
     ]
     return of(wood, *boards, box((0.006, w - 0.02, h - 0.02), 0.001).moved(-d / 2 + 0.005, 0, 0.01))

@@ -63,7 +63,7 @@ def trunk(size: Size, hide: Material, straps: Material, metal: Material, domed: 
         rings = np.array(
             [
                 np.column_stack([ring[:, 0], np.full(len(ring), y), ring[:, 1] + split + 0.004])
-                for y in ((w - 0.012) / 2, -(w - 0.012) / 2)
+                for y in (-(w - 0.012) / 2, (w - 0.012) / 2)
             ]
         )
         lid = loft(rings, crease_rad=0.6)

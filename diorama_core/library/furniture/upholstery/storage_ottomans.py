@@ -33,9 +33,7 @@ def buttoned_ottoman(size: Size, cloth: Material, wood: Material, profile: Leg, 
     grid = np.linspace(-1, 1, n)
     v, u = np.meshgrid(grid, grid, indexing="ij")
     x, y = (
-        (-v * np.sqrt(1 - u**2 / 2) * d / 2, u * np.sqrt(1 - v**2 / 2) * w / 2)
-        if round_top
-        else (-v * d / 2, u * w / 2)
+        (v * np.sqrt(1 - u**2 / 2) * d / 2, u * np.sqrt(1 - v**2 / 2) * w / 2) if round_top else (v * d / 2, u * w / 2)
     )
     pitch = min(d, w) / 3.2
     wave = 0.5 + 0.5 * np.cos(2 * np.pi * x / pitch) * np.cos(2 * np.pi * y / pitch)
