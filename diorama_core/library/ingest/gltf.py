@@ -114,9 +114,7 @@ def _check_asset(document: Json) -> None:
     needed = set(document.get("extensionsRequired", []))
     for name, label in _NEEDS_DECODER.items():
         if name in needed:
-            raise LibraryError(
-                f"its geometry is compressed with {label}, which is not supported; export it uncompressed"
-            )
+            raise LibraryError(f"its geometry is compressed with {label}, which is not read; export it plain")
 
 
 def _buffer(row: Json, number: int, binary: bytes | None, references: References) -> bytes:

@@ -164,9 +164,7 @@ def _chosen(
     guess = Guess(
         up=_assumed(up, posterior[:, same_up].sum(), promised, given.up, given),
         front=_assumed(front, posterior[:, q].sum() / posterior[:, same_up].sum(), "its shape", given.front, given),
-        unit=_assumed(
-            f"{unit:.6g}", posterior[..., u].sum(), promised if usual else size_says, given.unit_m, given
-        ),
+        unit=_assumed(f"{unit:.6g}", posterior[..., u].sum(), promised if usual else size_says, given.unit_m, given),
         category=_assumed(
             categories[c], posterior[c].sum(), "its name" if named else "its looks", given.category, given
         ),

@@ -1,4 +1,4 @@
-"""What the names in and around a model say it is: `chairDesk_02.glb`, `SM_Sofa_Leather`, `models/night stands/a.obj`."""
+"""What the names in and around a model say it is: `chairDesk_02.glb`, `SM_Sofa_Leather`, `night stands/a.obj`."""
 
 from __future__ import annotations
 
@@ -11,8 +11,44 @@ from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN
 _SAME = {"television": ("tv",), "bed": ("bedside",), "tv": ("television",), "fridge": ("refrigerator",)}
 """Words that stand for one another inside compound names."""
 _EMPTY = frozenset(
-    "the a an of and with model models mesh object obj default normalized untitled scene root node group geometry sm mat "
-    "material lod low high poly final new copy export asset assets glb gltf fbx set".split()
+    [
+        "the",
+        "a",
+        "an",
+        "of",
+        "and",
+        "with",
+        "model",
+        "models",
+        "mesh",
+        "object",
+        "obj",
+        "default",
+        "normalized",
+        "untitled",
+        "scene",
+        "root",
+        "node",
+        "group",
+        "geometry",
+        "sm",
+        "mat",
+        "material",
+        "lod",
+        "low",
+        "high",
+        "poly",
+        "final",
+        "new",
+        "copy",
+        "export",
+        "asset",
+        "assets",
+        "glb",
+        "gltf",
+        "fbx",
+        "set",
+    ]
 )
 MANY_WORDS, ONE_WORD, ELSEWHERE = 0.0, -1.2, -1.0
 """Logarithms of how much less a single word says than a compound, and a folder or a part than the file's own name."""
@@ -20,7 +56,9 @@ MANY_WORDS, ONE_WORD, ELSEWHERE = 0.0, -1.2, -1.0
 
 def words_of(name: str) -> tuple[str, ...]:
     """Plain lower-case words of a name in any usual spelling; numbers and fillers are dropped."""
-    spaced = re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])|(?<=[A-Za-z])(?=\d)|(?<=\d)(?=[A-Za-z])", " ", name)
+    spaced = re.sub(
+        r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])|(?<=[A-Za-z])(?=\d)|(?<=\d)(?=[A-Za-z])", " ", name
+    )
     words = re.findall(r"[^\W\d_]+", spaced.lower())
     return tuple(w for w in words if w not in _EMPTY and len(w) > 1)
 

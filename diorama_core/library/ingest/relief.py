@@ -12,7 +12,7 @@ from functools import cache
 
 import numpy as np
 import trimesh
-from jaxtyping import Float, Float32, Int
+from jaxtyping import Float32, Int
 
 SIDE = 24
 """Rays along each edge of the box."""

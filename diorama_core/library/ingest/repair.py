@@ -114,9 +114,7 @@ def _compact(vertices: np.ndarray, faces: np.ndarray, visual: Any, name: str) ->
         visual = TextureVisuals(uv=np.nan_to_num(np.asarray(visual.uv)[used]), material=visual.material)
     elif isinstance(visual, ColorVisuals) and visual.kind == "vertex":
         visual = ColorVisuals(vertex_colors=visual.vertex_colors[used])
-    return trimesh.Trimesh(
-        vertices[used], flat.reshape(-1, 3), visual=visual, process=False, metadata={"name": name}
-    )
+    return trimesh.Trimesh(vertices[used], flat.reshape(-1, 3), visual=visual, process=False, metadata={"name": name})
 
 
 def _visual(mesh: trimesh.Trimesh, faces: np.ndarray, looks: dict[int, PBRMaterial], limits: Limits) -> Any:
@@ -137,7 +135,13 @@ def _visual(mesh: trimesh.Trimesh, faces: np.ndarray, looks: dict[int, PBRMateri
 
 def _material(found: Any, limits: Limits) -> PBRMaterial:
     made = found if isinstance(found, PBRMaterial) else found.to_pbr()
-    for name in ("baseColorTexture", "normalTexture", "metallicRoughnessTexture", "occlusionTexture", "emissiveTexture"):
+    for name in (
+        "baseColorTexture",
+        "normalTexture",
+        "metallicRoughnessTexture",
+        "occlusionTexture",
+        "emissiveTexture",
+    ):
         image = getattr(made, name, None)
         if image is not None:
             setattr(made, name, _small(image, limits.texture_side_px))
