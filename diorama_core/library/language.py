@@ -78,6 +78,7 @@ _SIZES = {
     "deep": (1, "depth"), "shallow": (-1, "depth"),
 }  # fmt: skip
 
+_WORD = re.compile(r"[a-z0-9]+")
 _METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "": 0.0}
 _NUMBER = r"(\d+(?:\.\d+)?)"
 _DIMENSIONS = re.compile(rf"{_NUMBER}\s*(?:x|×|by)\s*{_NUMBER}\s*(?:x|×|by)\s*{_NUMBER}\s*(mm|cm|m)?\b")
@@ -105,8 +106,10 @@ def normal(word: str) -> str:
 
 def tokens(text: str) -> tuple[str, ...]:
     """All words of a text in their normal form, in order; numbers too."""
-    plain = unicodedata.normalize("NFKD", text.lower()).encode("ascii", "ignore").decode()
-    return tuple(normal(word) for word in re.findall(r"[a-z0-9]+", plain.replace("'s", "")))
+    plain = text.lower()
+    if not plain.isascii():
+        plain = unicodedata.normalize("NFKD", plain).encode("ascii", "ignore").decode()
+    return tuple(map(normal, _WORD.findall(plain.replace("'s", ""))))
 
 
 def broader(word: str) -> tuple[str, ...]:

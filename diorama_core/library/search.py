@@ -76,17 +76,16 @@ class TextIndex:
         self.shapes = tuple(shapes)
         words: dict[str, list[int]] = {}
         categories: dict[str, list[int]] = {}
-        known: dict[str, tuple[str, ...]] = {}
+        phrases: dict[tuple[str, ...], tuple[str, ...]] = {}
         for position, shape in enumerate(self.shapes):
             categories.setdefault(shape.category, []).append(position)
-            for text in (shape.caption, shape.style, shape.id, shape.category, *shape.synonyms):
-                found = known.get(text)
-                if found is None:
-                    found = known[text] = tokens(text)
-                for word in found:
-                    places = words.setdefault(word, [])
-                    if not places or places[-1] != position:
-                        places.append(position)
+            named = (shape.style, shape.category, *shape.synonyms)
+            shared = phrases.get(named)
+            if shared is None:
+                shared = phrases[named] = tuple(w for text in named for w in tokens(text))
+            identified = (w for w in tokens(shape.id) if w.isalpha())  # not the numbers of data sets
+            for word in {*tokens(shape.caption), *identified, *shared}:
+                words.setdefault(word, []).append(position)
         self._words = {word: np.array(places) for word, places in words.items()}
         self._categories = {name: np.array(places) for name, places in categories.items()}
 
@@ -129,7 +128,8 @@ class TextIndex:
             points[self._places(kind)] = CONCEPT_POINTS
         points[self._places(word)] = 1.0
         if not points.any() and len(word) > 3:
-            for near in difflib.get_close_matches(word, list(self._words), n=1, cutoff=_SPELLING_CUTOFF):
+            alike = [w for w in self._words if w[0] == word[0] and abs(len(w) - len(word)) < 3]
+            for near in difflib.get_close_matches(word, alike, n=1, cutoff=_SPELLING_CUTOFF):
                 points[self._places(near)] = SPELLING_POINTS
         return points
 

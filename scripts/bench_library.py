@@ -1,0 +1,250 @@
+"""What the library's parts cost, and how that grows with the number of shapes.
+
+python scripts/bench_library.py [--sizes 1000 10000 60000 100000] [--models DIR] [--built-in] [--index] [--json FILE]
+
+Large libraries are synthetic: random records with captions, and random unit features of 512 numbers. Times are those of
+the wall clock, the best of several for things that are quick; the processor's own seconds stand beside them,
+because a busy machine makes the first longer and not the second.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+import trimesh
+
+from diorama_core.library import taxonomy
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.library.ingest.sink import Ingested
+from diorama_core.library.record import Shape
+from diorama_core.library.search import find
+from diorama_core.library.store import StoredLibrary
+from diorama_core.library.store.features import FeatureMatrix
+from diorama_core.library.store.vectors import LanceIndex
+from diorama_core.render.templates import PAPER_GRID, render_templates
+
+WIDTH = 512
+NEAREST = 50
+WORDS = (
+    "oak walnut pine white black grey blue green brass steel leather linen velvet round square tall low modern rustic "
+    "industrial slatted padded panelled turned tapered ribbed curved folding stacking buttoned glazed drawers legs"
+)
+
+
+@dataclass(frozen=True)
+class Row:
+    """One measured thing."""
+
+    what: str
+    shapes: int
+    seconds: float
+    cpu_seconds: float
+    asked: str = ""
+
+    def line(self) -> str:
+        """For people."""
+        count = f"{self.shapes:,}" if self.shapes else ""
+        return f"{self.what:<46} {count:>9}  {_shown(self.seconds):>10}  {_shown(self.cpu_seconds):>10}  {self.asked}"
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--sizes", type=int, nargs="+", default=[1_000, 10_000, 60_000, 100_000], metavar="N")
+    parser.add_argument("--models", type=Path, metavar="DIR", help="also ingest the models in this folder")
+    parser.add_argument(
+        "--built-in", action="store_true", help="also build the built-in library from nothing (minutes)"
+    )
+    parser.add_argument("--index", action="store_true", help="also make a LanceDB index at the greatest size (minutes)")
+    parser.add_argument("--json", type=Path, metavar="FILE")
+    arguments = parser.parse_args()
+    rows: list[Row] = []
+
+    def show(row: Row) -> None:
+        rows.append(row)
+        sys.stdout.write(row.line() + "\n")
+        sys.stdout.flush()
+
+    sys.stdout.write(f"{'':<46} {'shapes':>9}  {'wall':>10}  {'processor':>10}\n")
+    for measure in (measure_templates, measure_built_in_start):
+        for row in measure():
+            show(row)
+    if arguments.built_in:
+        show(measure_built_in_build())
+    if arguments.models:
+        show(measure_ingestion(arguments.models))
+    for size in sorted(arguments.sizes):
+        with tempfile.TemporaryDirectory() as folder:
+            for row in measure_store(size, Path(folder), index=arguments.index and size == max(arguments.sizes)):
+                show(row)
+    for line in growth(rows):
+        sys.stdout.write(line + "\n")
+    if arguments.json:
+        arguments.json.write_text(json.dumps([asdict(r) for r in rows], indent=1))
+    return 0
+
+
+def measure_templates() -> Iterator[Row]:
+    """One core's views a second, of a ball (which fills its views) and of a thing with about as many triangles."""
+    ball = trimesh.creation.icosphere(subdivisions=5)
+    library = built_in_library()
+    with _cpu() as used:
+        render_templates(ball)
+    rate = len(PAPER_GRID) / used.cpu
+    yield Row(f"180 views, ball of {len(ball.faces):,} triangles: {rate:.0f}/s", 0, used.wall, used.cpu, "60/s a core")
+    sofa = library.mesh("sofa-chesterfield")
+    with _cpu() as used:
+        render_templates(sofa)
+    rate = len(PAPER_GRID) / used.cpu
+    yield Row(f"180 views, sofa of {len(sofa.faces):,} triangles: {rate:.0f}/s", 0, used.wall, used.cpu, "60/s a core")
+
+
+def measure_built_in_start() -> Iterator[Row]:
+    """Opening the built-in library and listing it."""
+    yield _best("built-in library: open and list", len(built_in_library().shapes()), _built_in_listed, "under 1 s")
+
+
+def measure_built_in_build() -> Row:
+    """Preparing every built-in shape in an empty cache, on all cores."""
+    from diorama_core.pipeline.prepare import prepare_library
+
+    before = os.environ.get("DIORAMA_CACHE")
+    with tempfile.TemporaryDirectory() as folder:
+        os.environ["DIORAMA_CACHE"] = folder
+        with _cpu() as used:
+            count = prepare_library().count
+    if before is None:
+        del os.environ["DIORAMA_CACHE"]
+    else:
+        os.environ["DIORAMA_CACHE"] = before
+    return Row("built-in library: built from nothing", count, used.wall, used.cpu, "under 60 s on two cores")
+
+
+def measure_ingestion(models: Path) -> Row:
+    """Bringing in a folder of models, with surfaces and thumbnails."""
+    from diorama_app.cli import main as diorama
+
+    with tempfile.TemporaryDirectory() as folder, _cpu() as used:
+        status = diorama(["library", "add", str(models), "--name", f"{folder}/models"])
+        count = len(StoredLibrary(Path(folder) / "models"))
+    return Row(f"ingestion (exit status {status})", count, used.wall, used.cpu, "128 models under 3 minutes")
+
+
+def measure_store(size: int, folder: Path, *, index: bool) -> Iterator[Row]:
+    """A synthetic library of a size: written, opened, read, searched by words and by features."""
+    with _cpu() as used:
+        write_synthetic(StoredLibrary(folder / "library", create=True), size)
+    yield Row("records: written", size, used.wall, used.cpu)
+    yield _best("records: library opened and listed", size, lambda: StoredLibrary(folder / "library").shapes(), "1 s")
+    library = StoredLibrary(folder / "library")
+    library.shapes()
+    yield _best("records: one with its surfaces", size, lambda: library.shape(f"synthetic-{size // 2:07d}"))
+    with _cpu() as used:
+        find(library, "first words")
+    yield Row("words: first search (index made)", size, used.wall, used.cpu)
+    yield _best("words: 'small rustic oak table'", size, lambda: find(library, "small rustic oak table", NEAREST))
+    values = synthetic_features(size)
+    with _cpu() as used:
+        FeatureMatrix(folder / "features", WIDTH).append([f"h{i}" for i in range(size)], values)
+    yield Row("features: written", size, used.wall, used.cpu)
+    yield _best("features: opened", size, lambda: FeatureMatrix(folder / "features", WIDTH))
+    matrix = FeatureMatrix(folder / "features", WIDTH)
+    query = values[size // 3, 0] + 0.02 * np.random.default_rng(1).standard_normal(WIDTH)
+    yield _best(f"features: nearest {NEAREST}, exactly", size, lambda: matrix.top(query, NEAREST), "30 ms at 60,000")
+    if index:
+        yield from measure_index(matrix, query)
+
+
+def measure_index(matrix: FeatureMatrix, query: np.ndarray) -> Iterator[Row]:
+    """The LanceDB index of a matrix: made, and asked."""
+    with _cpu() as used:
+        made = LanceIndex(matrix)
+    yield Row("LanceDB index: made", len(matrix), used.wall, used.cpu)
+    yield _best(f"LanceDB index: nearest {NEAREST}", len(matrix), lambda: made.top(query, NEAREST))
+
+
+def write_synthetic(library: StoredLibrary, size: int, batch: int = 5_000) -> None:
+    """Fill a library with random records that share one small model."""
+    rng = np.random.default_rng(0)
+    glb = trimesh.Scene(trimesh.creation.box()).export(file_type="glb")
+    categories, words = [c.name for c in taxonomy.CATEGORIES], WORDS.split()
+    for start in range(0, size, batch):
+        numbers = range(start, min(start + batch, size))
+        library.add_all(_synthetic(i, categories, words, rng, glb) for i in numbers)
+
+
+def _synthetic(number: int, categories: list[str], words: list[str], rng: np.random.Generator, glb: bytes) -> Ingested:
+    category = categories[rng.integers(len(categories))]
+    caption = " ".join([*(words[w] for w in rng.integers(len(words), size=3)), category])
+    x, y, z = (float(v) for v in np.round(rng.uniform(0.2, 2.0, 3), 3))
+    record = Shape(
+        f"synthetic-{number:07d}", category, caption, (x, y, z), source="synthetic", content_hash=f"h{number}"
+    )
+    return Ingested(record, glb, None, f"source {number}")
+
+
+def synthetic_features(size: int) -> np.ndarray:
+    """Random unit rows around some thousand centres, as embeddings of kinds of things lie."""
+    rng = np.random.default_rng(0)
+    centres = rng.standard_normal((1_000, WIDTH), dtype=np.float32)
+    values = np.empty((size, 1, WIDTH), np.float16)
+    for start in range(0, size, 10_000):
+        count = min(10_000, size - start)
+        part = centres[rng.integers(1_000, size=count)] + 0.8 * rng.standard_normal((count, WIDTH), dtype=np.float32)
+        values[start : start + count, 0] = part / np.linalg.norm(part, axis=1, keepdims=True)
+    return values
+
+
+def growth(rows: list[Row]) -> Iterator[str]:
+    """How many times longer each thing takes at the greatest size than at the least."""
+    names = dict.fromkeys(r.what for r in rows)
+    for name in names:
+        same = sorted((r for r in rows if r.what == name and r.shapes), key=lambda r: r.shapes)
+        if len(same) > 1:
+            first, last = same[0], same[-1]
+            more, longer = last.shapes / first.shapes, last.cpu_seconds / max(first.cpu_seconds, 1e-9)
+            yield f"{name}: {longer:.1f} times the processor time for {more:.0f} times the shapes"
+
+
+@dataclass
+class _Used:
+    wall: float = 0.0
+    cpu: float = 0.0
+
+
+@contextmanager
+def _cpu() -> Iterator[_Used]:
+    used, wall, cpu = _Used(), time.perf_counter(), time.process_time()
+    yield used
+    used.wall, used.cpu = time.perf_counter() - wall, time.process_time() - cpu
+
+
+def _best(what: str, shapes: int, call: Callable[[], object], asked: str = "", times: int = 7) -> Row:
+    """The best of several calls."""
+    best = _Used(np.inf, np.inf)
+    for _ in range(times):
+        with _cpu() as used:
+            call()
+        best = _Used(min(best.wall, used.wall), min(best.cpu, used.cpu))
+    return Row(what, shapes, best.wall, best.cpu, asked)
+
+
+def _built_in_listed() -> object:
+    return built_in_library().shapes()
+
+
+def _shown(seconds: float) -> str:
+    return f"{1000 * seconds:.2f} ms" if seconds < 1 else f"{seconds:.2f} s"
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
