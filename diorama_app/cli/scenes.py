@@ -6,7 +6,7 @@ import argparse
 import json
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from diorama_app.cli.arguments import (
     PROFILES,
@@ -21,6 +21,10 @@ from diorama_app.cli.arguments import (
     view,
 )
 from diorama_core.errors import InputError
+
+if TYPE_CHECKING:
+    from diorama_core.project.storage import Project
+    from diorama_core.scene.types import Scene
 
 EXPORT_FORMATS = ("glb",)
 
@@ -200,7 +204,13 @@ def add_picture(commands: Any) -> None:
     )
     p.add_argument("project", type=Path, metavar="PROJECT")
     p.add_argument("-o", "--output", type=Path, required=True, metavar="FILE.png")
-    p.add_argument("--view", type=view, default="photo", metavar="photo|top|front|orbit:DEG", help="(default: photo)")
+    p.add_argument(
+        "--view",
+        type=view,
+        default="photo",
+        metavar="photo|planes|top|front|orbit:DEG",
+        help="planes: floor, walls and ceiling drawn over the photo (default: photo)",
+    )
     p.add_argument("--size", type=size, metavar="WxH", help="in pixels (default: the photo's, at most 1024 wide)")
 
 
@@ -214,8 +224,11 @@ def _picture(a: argparse.Namespace) -> None:
     from diorama_core.render.picture import picture
 
     project, scene = opened(a.project)
-    textures = project.textures(scene)
-    image = picture(scene, library_of(project), view=a.view, size=a.size, textures=textures)
+    if a.view == "planes":
+        image = _planes_picture(project, scene, a.size)
+    else:
+        textures = project.textures(scene)
+        image = picture(scene, library_of(project), view=a.view, size=a.size, textures=textures)
     buffer = io.BytesIO()
     kind = {".png": "PNG", ".jpg": "JPEG", ".jpeg": "JPEG"}.get(a.output.suffix.lower())
     if kind is None:
@@ -223,3 +236,16 @@ def _picture(a: argparse.Namespace) -> None:
     Image.fromarray(image).save(buffer, kind)
     write_atomically(a.output, buffer.getvalue())
     print(f"{a.output}: {image.shape[1]}x{image.shape[0]}")
+
+
+def _planes_picture(project: Project, scene: Scene, size: tuple[int, int] | None) -> Any:
+    """The photo with the room's planes drawn over it."""
+    import cv2
+
+    from diorama_core.render.planes_over_photo import planes_over_photo
+
+    photo = project.photo()
+    if photo is None or scene.camera is None:
+        raise InputError(f"{project.folder} has no photo to draw over; choose another --view, such as top")
+    rgb = photo.rgb if size is None else cv2.resize(photo.rgb, size, interpolation=cv2.INTER_AREA)
+    return planes_over_photo(rgb, scene.architecture.planes, scene.camera)

@@ -69,13 +69,14 @@ def _name(picture: UInt8[np.ndarray, "h w 3"], seen: np.ndarray, plane: Plane, c
     """A plane's name and distance in the middle of what is seen of it, where there is room for that."""
     room = cv2.distanceTransform(np.pad(seen.astype(np.uint8), 1), cv2.DIST_L2, 5)[1:-1, 1:-1]
     row, column = np.unravel_index(int(room.argmax()), room.shape)
-    scale = 0.42 * line
+    scale = 0.5 * line
     away = abs(float(camera.position @ plane.normal) - plane.offset)
     text = f"{plane.id} {away:.2f} m" + (" (guess)" if plane.confidence < _UNSURE else "")
     (width, height), _ = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, scale, line)
     if room[row, column] < height:
         return
     left = int(np.clip(column - width / 2, 2, max(2, picture.shape[1] - width - 2)))
-    for colour, thickness in (((0, 0, 0), line + 2), ((255, 255, 255), line)):
-        place = (left, int(row + height / 2))
-        cv2.putText(picture, text, place, cv2.FONT_HERSHEY_SIMPLEX, scale, colour, thickness, cv2.LINE_AA)
+    shadow = [((dx, dy), (0, 0, 0)) for dx in (-line, line) for dy in (-line, line)]
+    for (dx, dy), colour in (*shadow, ((0, 0), (255, 255, 255))):
+        place = (left + dx, int(row + height / 2) + dy)
+        cv2.putText(picture, text, place, cv2.FONT_HERSHEY_SIMPLEX, scale, colour, line, cv2.LINE_AA)
