@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from diorama_app.cli.arguments import command, progress_bar
+from diorama_app.cli.library_add import add_adding
 from diorama_core.errors import InputError
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 def add_library(commands: Any) -> None:
     """Declare `diorama library`."""
     p: argparse.ArgumentParser = commands.add_parser("library", help="The shapes that scenes are made of.")
-    actions = p.add_subparsers(dest="action", required=True, metavar="build|list|search|sheet")
+    actions = p.add_subparsers(dest="action", required=True, metavar="build|add|list|search|info|sheet")
     build = command(
         actions, "build", _library_build, "Prepare a library's shapes once.", "diorama library build --library mine"
     )
@@ -29,6 +30,7 @@ def add_library(commands: Any) -> None:
     build.add_argument("--templates", action="store_true", help="also all pose templates, some 2 MB a shape")
     build.add_argument("--workers", type=int, metavar="N", help="processes (default: all cores)")
     build.add_argument("--ray", metavar="ADDRESS", help="work on a Ray cluster: auto, HOST:PORT, or local to start one")
+    add_adding(actions)
     lists = command(actions, "list", _library_list, "List the shapes.", "diorama library list --category chair")
     lists.add_argument("--category", help="only this category (synonyms are understood)")
     _add_library_name(lists)
@@ -54,6 +56,7 @@ def add_library(commands: Any) -> None:
     )
     sheet.add_argument("-o", "--output", type=Path, default=Path("library.png"), help="PNG (default: %(default)s)")
     sheet.add_argument("--category", help="only this category (synonyms are understood)")
+    _add_library_name(sheet)
     sheet.add_argument("--size", type=int, default=240, help="side of one picture in pixels (default: %(default)s)")
     sheet.add_argument("--columns", type=int, default=6, help="pictures side by side (default: %(default)s)")
 
@@ -127,7 +130,7 @@ def _library_sheet(a: argparse.Namespace) -> None:
         raise InputError(f"-o {a.output}: a sheet is a PNG; end the name with .png")
     if not a.output.absolute().parent.is_dir():
         raise InputError(f"-o {a.output}: there is no folder {a.output.parent}; make it first")
-    library = library_named("built-in")
+    library = library_named(a.library)
     if a.category is None:
         shapes = tuple(sorted(library.shapes(), key=lambda s: s.category))  # stable: siblings side by side
     else:

@@ -109,7 +109,7 @@ class References:
         return real if real.is_relative_to(self.root.resolve()) else None
 
 
-class GuardedResolver(trimesh.resolvers.Resolver):
+class GuardedResolver(trimesh.resolvers.Resolver):  # type: ignore[misc]  # untyped base
     """Hands referenced files to trimesh's loaders, through `References`."""
 
     def __init__(self, references: References) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -43,7 +43,7 @@ class Source:
     id: str
     key: str
     """State of the file and settings (`Ingested.source_key`)."""
-    given: Given = Given()
+    given: Given = field(default_factory=Given)
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,7 +152,7 @@ def packed_shape(
 def _folders(source: Source) -> list[str]:
     """Folders between the model and the root, the innermost first."""
     try:
-        return [p for p in reversed(source.path.parent.relative_to(source.root).parts)]
+        return list(reversed(source.path.parent.relative_to(source.root).parts))
     except ValueError:
         return []
 

@@ -1,0 +1,154 @@
+"""Commands about one's own models: `diorama library add` and `diorama library info`."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from dataclasses import asdict
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from diorama_app.cli.arguments import command, positive, progress_bar
+from diorama_core.errors import InputError
+
+if TYPE_CHECKING:
+    from diorama_core.library.ingest.adding import Added
+    from diorama_core.library.record import Shape
+
+AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "inch": 0.0254, "ft": 0.3048}
+DATASETS = ("auto", "none", "objaverse-lvis", "shapenetcore", "hssd", "3d-future", "abo")
+SHOWN = 20
+"""Lines of each kind in the report; `--json` has all."""
+
+
+def add_adding(actions: Any) -> None:
+    """Declare `diorama library add` and `diorama library info`."""
+    p = command(
+        actions,
+        "add",
+        _add,
+        "Take a folder of models into a library: GLB, glTF, OBJ with MTL, PLY, STL; FBX with 'diorama[fbx]'.",
+        "diorama library add ~/models --name mine",
+    )
+    p.add_argument("folder", type=Path, metavar="DIR", help="searched with all folders in it; links are not followed")
+    p.add_argument("--name", metavar="NAME", help="the library to add to (default: the folder's own name)")
+    p.add_argument("--up", choices=AXES, help="axis of the files that points up (default: guessed)")
+    p.add_argument("--front", choices=AXES, help="axis of the files that the front looks along (default: guessed)")
+    p.add_argument("--unit", type=unit, metavar="m|cm|mm|in|ft|METRES", help="unit of the files (default: guessed)")
+    p.add_argument("--category", help="what all of them are, such as chair (default: guessed)")
+    p.add_argument("--table", type=Path, metavar="CSV", help="columns file and any of up,front,unit,category,caption")
+    p.add_argument("--dataset", choices=DATASETS, default="auto", help="layout of the folder (default: %(default)s)")
+    p.add_argument("--ray", metavar="ADDRESS", help="work on a Ray cluster: auto, HOST:PORT, or local to start one")
+    p.add_argument("--workers", type=int, metavar="N", help="processes (default: all cores)")
+    p.add_argument("--json", action="store_true", help="print the report as JSON")
+    p.epilog = f"{p.epilog}\n\nWhat was guessed is shown by 'diorama library info ID --library NAME'."
+    info = command(
+        actions, "info", _info, "Show what is known of a shape.", "diorama library info chair --library mine"
+    )
+    info.add_argument("id", metavar="ID")
+    info.add_argument("--library", default="built-in", metavar="NAME", help="(default: %(default)s)")
+    info.add_argument("--json", action="store_true")
+
+
+def unit(text: str) -> float:
+    """Metres in a unit: a name, or a number of metres."""
+    return UNITS[text.lower()] if text.lower() in UNITS else positive(text)
+
+
+def _add(a: argparse.Namespace) -> None:
+    from diorama_core.library.datasets import as_sources, dataset_named, recognised
+    from diorama_core.library.ingest.adding import add_models, model_files, read_table, sources
+    from diorama_core.library.ingest.guess import Given
+    from diorama_core.library.store import create_library
+    from diorama_core.render.thumbnails import thumbnail
+    from diorama_core.workers import workers
+
+    folder = a.folder.expanduser().absolute()
+    given = Given(a.up, a.front, a.unit, a.category)
+    paths, skipped = model_files(folder)
+    dataset = recognised(folder) if a.dataset == "auto" else None if a.dataset == "none" else dataset_named(a.dataset)
+    if dataset is not None and a.table is None:
+        print(f"diorama: read as a copy of {dataset.name}", file=sys.stderr)
+        found = as_sources(dataset, folder, given)
+    else:
+        table = read_table(a.table) if a.table is not None else {}
+        absent = sorted(set(table) - {p.relative_to(folder).as_posix() for p in paths})
+        if absent:
+            raise InputError(f"{a.table}: there is no model {absent[0]!r} in {folder}; paths are relative to it")
+        found = sources(folder, paths, given, table)
+    if not found:
+        raise InputError(f"{folder}: no model lies there; GLB, glTF, OBJ, PLY, STL and FBX are read")
+    name = a.name or folder.name.lower().replace(" ", "-")
+    pool = workers(a.ray, a.workers)
+    library = create_library(name)
+    with progress_bar() as progress:
+        report = add_models(
+            found, library, pool, painter=partial(thumbnail, size=160), skipped=skipped, progress=progress
+        )
+    if a.json:
+        print(json.dumps(_as_json(report, name), default=str))
+    else:
+        _print_report(report, name)
+    if report.failed and not report.added and not report.kept:
+        raise InputError(f"none of {len(report.failed)} models could be used; the reasons are above")
+
+
+def _as_json(report: Added, name: str) -> dict[str, Any]:
+    return {"library": name, **asdict(report)}
+
+
+def _print_report(report: Added, name: str) -> None:
+    for title, lines in (
+        ("not supported", [f"{t.path}: {t.reason}" for t in report.skipped]),
+        ("repaired", [f"{shape_id}: {'; '.join(notes)}" for shape_id, notes in report.repaired]),
+        ("unsure how it stands or what it is", list(report.unsure)),
+        ("refused", [f"{t.path}: {t.reason}" for t in report.failed]),
+    ):
+        for line in lines[:SHOWN]:
+            print(f"{title}: {line}", file=sys.stderr)
+        if len(lines) > SHOWN:
+            print(f"{title}: and {len(lines) - SHOWN} more", file=sys.stderr)
+    before = f", {report.kept} were there already" if report.kept else ""
+    refused = f", {len(report.failed)} refused" if report.failed else ""
+    print(f"{name}: {len(report.added)} shapes added{before}{refused}")
+    if report.added:
+        print(f"Use them: diorama build PHOTO -o ROOM --library {name} (or --library {name}+built-in)")
+
+
+def _info(a: argparse.Namespace) -> None:
+    from diorama_app.building import library_named
+    from diorama_core.library.record import shape_to_json
+
+    shape = library_named(a.library).shape(a.id)
+    print(shape_to_json(shape) if a.json else _described(shape))
+
+
+def _described(shape: Shape) -> str:
+    depth, width, height = shape.size_m
+    turns = {1: "none", 2: "half a turn", 4: "quarter turns", 36: "round"}[shape.symmetry]
+    rows = [
+        ("id", shape.id),
+        ("category", shape.category),
+        ("caption", shape.caption),
+        ("size", f"{width:.3f} wide x {depth:.3f} deep x {height:.3f} high, metres"),
+        ("source", f"{shape.source} ({shape.licence})"),
+        ("symmetry", turns),
+        ("touches", " or ".join(shape.contact_faces)),
+        ("mass", f"about {shape.mass_kg:g} kg"),
+    ]
+    rows += [("also called", ", ".join(shape.synonyms))] if shape.synonyms else []
+    rows += [("triangles", str(shape.triangles))] if shape.triangles else []
+    for number, surface in enumerate(shape.surfaces, 1):
+        above = "open above" if surface.clearance_m == float("inf") else f"{surface.clearance_m:.2f} m free above"
+        inside = ", inside" if surface.interior else ""
+        rows.append((f"surface {number}", f"{surface.height_m + height / 2:.3f} m above its foot, {above}{inside}"))
+    if shape.guess is not None:
+        for name in ("up", "front", "unit", "category"):
+            said = getattr(shape.guess, name)
+            value = f"{said.value} m" if name == "unit" else said.value
+            rows.append((f"assumed {name}", f"{value} ({said.confidence:.0%}, from {said.reason})"))
+    width_of_names = max(len(name) for name, _ in rows)
+    return "\n".join(f"{name:<{width_of_names}}  {value}" for name, value in rows)

@@ -1,0 +1,10 @@
+"""Published data sets of shapes, read from a local copy in the layout in which they are distributed.
+
+Nothing is downloaded, and each licence stays what it is. A data set says which files are its models, what they are and
+how they stand; taking them in is the same as for anyone's own models.
+"""
+
+from diorama_core.library.datasets.layout import Dataset, Entry, as_sources
+from diorama_core.library.datasets.published import DATASETS, dataset_named, recognised
+
+__all__ = ["DATASETS", "Dataset", "Entry", "as_sources", "dataset_named", "recognised"]
