@@ -47,6 +47,8 @@ BULK_DENSITY: dict[str, float] = {
     "telephone": 200, "router": 100, "remote control": 500, "game console": 350,
     "photo frame": 250, "floor mirror": 70, "vanity mirror": 120, "mantel clock": 400, "grandfather clock": 160,
     "whiteboard": 90, "bulletin board": 200, "sculpture": 500, "globe": 60,
+    "blinds": 60, "bath mat": 200, "blanket": 80, "towel": 120, "shower": 60, "toilet brush": 150,
+    "toilet paper": 120, "soap dispenser": 250, "bathroom scale": 800,
     "toy": 60, "object": 100,
     "rocking chair": 28, "recliner": 48, "bar stool": 50, "high chair": 26, "sectional sofa": 26, "chaise longue": 32,
     "day bed": 35, "bean bag": 12, "vanity table": 80, "bunk bed": 30, "crib": 32, "changing table": 75,
