@@ -15,13 +15,16 @@ import numpy as np
 import trimesh
 from jaxtyping import Float, Float32
 
+from diorama_core.errors import InputError
 from diorama_core.geometry.looks import SHARED_LOOKS, Look
 from diorama_core.geometry.palettes import palette_of_crop, palette_of_look
 from diorama_core.library.catalogue import default_cache_dir
+from diorama_core.library.naming import understand
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.search import Found, find
 from diorama_core.library.store import BUILT_IN, StoredLibrary, open_library
 from diorama_core.library.store.features import FeatureMatrix
+from diorama_core.library.store.vectors import vector_index
 from diorama_core.progress import Progress
 from diorama_core.render.crops import Crop
 from diorama_core.render.templates import TemplateGrid, render_templates
@@ -34,6 +37,8 @@ SEARCH_GRID = TemplateGrid(
 """Views as photos of rooms have them: rarely from high above, sometimes from below (lamps), little perspective."""
 _VERSION = "1"
 _BATCH = 32
+_STALE = 4
+"""Features are made anew when there are so many times more of them than shapes."""
 _WORDS_FIRST = 50
 """Shapes that the words choose and the picture orders (the paper's 50)."""
 
@@ -59,29 +64,41 @@ class ImageSearch:
                 all shapes are compared.
             k: How many.
             progress: Reports and cancellation while features are made.
+
+        Raises:
+            InputError: when the picture's mask is empty.
         """
-        worded = find(self.library, text, _WORDS_FIRST)
-        by_words = dict(zip(worded.shapes, worded.scores, strict=True)) if text.strip() else {}
-        shapes = tuple(by_words) or self.library.shapes()
-        matrix = self.prepared(shapes, progress)
-        query = crop_feature(crop)
-        if query is None or not len(matrix):
-            return Found((), (), worded.wish, worded.note)
-        alike = matrix.scores(query)
-        best_words = max(by_words.values(), default=0.0)
-        ranked = []
-        for order, shape in enumerate(shapes):
+        if text.strip():
+            worded = find(self.library, text, _WORDS_FIRST)
+            if worded.shapes:
+                return self._among(worded, crop, k, progress)
+            found = self._all(crop, k, progress)
+            return Found(found.shapes, found.scores, worded.wish, worded.note)
+        return self._all(crop, k, progress)
+
+    def _among(self, worded: Found, crop: Crop, k: int, progress: Progress | None) -> Found:
+        """What words found, ordered by words and picture alike."""
+        matrix = self.prepared(worded.shapes, progress)
+        alike = matrix.scores(_query(crop))
+        scores = []
+        for shape, by_words in zip(worded.shapes, worded.scores, strict=True):
             place = matrix.position(_key(shape))
-            if place is None:
-                continue
-            score = float(alike[place])
-            if best_words > 0:
-                score = 0.5 * (score + by_words[shape] / best_words)
-            ranked.append((-score, order))
-        ranked = sorted(ranked)[:k]
-        return Found(
-            tuple(shapes[i] for _, i in ranked), tuple(-s for s, _ in ranked), worded.wish, worded.note if text else ""
-        )
+            by_picture = 0.0 if place is None else float(alike[place])
+            scores.append(0.5 * (by_picture + by_words / worded.scores[0]))
+        order = np.argsort(-np.array(scores), kind="stable")[:k]
+        shapes = tuple(worded.shapes[i] for i in order)
+        return Found(shapes, tuple(scores[i] for i in order), worded.wish, worded.note)
+
+    def _all(self, crop: Crop, k: int, progress: Progress | None) -> Found:
+        """The whole library by the picture alone."""
+        by_key: dict[str, list[Shape]] = {}
+        for shape in self.library.shapes():
+            by_key.setdefault(_key(shape), []).append(shape)
+        matrix = self.prepared(self.library.shapes(), progress)
+        stale = len(matrix.missing_from(by_key))
+        near = vector_index(matrix).top(_query(crop), k + stale)
+        found = [(shape, n.score) for n in near for shape in by_key.get(n.key, ())][:k]
+        return Found(tuple(shape for shape, _ in found), tuple(score for _, score in found), understand(""))
 
     def prepared(
         self,
@@ -101,6 +118,8 @@ class ImageSearch:
         progress = progress or Progress()
         matrix = FeatureMatrix(self._folder(), WIDTH, len(SEARCH_GRID))
         by_key = {_key(s): s.id for s in shapes}
+        if len(matrix) > _STALE * max(len(self.library.shapes()), 100):
+            matrix.clear()  # nearly all of shapes that are no more
         missing = [(key, by_key[key]) for key in matrix.missing(by_key)]
         batches = [missing[i : i + _BATCH] for i in range(0, len(missing), _BATCH)]
         if workers is None:
@@ -122,10 +141,12 @@ class ImageSearch:
         return own / "features" / f"views-{_VERSION}"
 
 
-def crop_feature(crop: Crop) -> Float32[np.ndarray, "width"] | None:
-    """The feature of a picture; None when it shows nothing."""
+def _query(crop: Crop) -> Float32[np.ndarray, "width"]:
     colour = colour_feature(palette_of_crop(crop.rgb, crop.mask))
-    return view_feature(crop.gray, crop.mask, colour)
+    feature = view_feature(crop.gray, crop.mask, colour)
+    if feature is None:
+        raise InputError("the picture shows nothing to look for; give one of a thing")
+    return feature
 
 
 def shape_features(look: Look) -> Float32[np.ndarray, "views width"]:

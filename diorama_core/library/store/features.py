@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Sequence
+import shutil
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,6 +22,8 @@ from diorama_core.errors import LibraryError
 _RESCORED = 4
 """How many times the wanted rows are scored again in full precision."""
 SEARCH_THREADS = 2
+INDEX_FOLDER = "index"
+"""Where an index of the features is kept, beside them (`store.vectors`)."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +72,10 @@ class FeatureMatrix:
         """The keys without features, each once, in order."""
         return [key for key in dict.fromkeys(keys) if key not in self._positions]
 
+    def missing_from(self, keys: Container[str]) -> list[str]:
+        """The keys with features that are not among these, in order."""
+        return [key for key in self.keys if key not in keys]
+
     def append(self, keys: Sequence[str], values: Float[np.ndarray, "n rows width"]) -> None:
         """Add the features of new keys.
 
@@ -88,6 +95,17 @@ class FeatureMatrix:
             _write_at(self._values_path, len(self.keys) * self._key_bytes, half.tobytes())
             known_bytes = sum(len(key.encode()) + 1 for key in self.keys)
             _write_at(self._keys_path, known_bytes, "".join(f"{key}\n" for key in keys).encode())
+        except OSError as error:
+            raise LibraryError(f"features cannot be written in {self.folder} ({error.strerror})") from error
+        self._load()
+
+    def clear(self) -> None:
+        """Drop all features, and the index of them."""
+        try:
+            for path in (self._keys_path, self._values_path):
+                path.unlink()  # not cut short: others may still have it mapped
+                path.touch()
+            shutil.rmtree(self.folder / INDEX_FOLDER, ignore_errors=True)
         except OSError as error:
             raise LibraryError(f"features cannot be written in {self.folder} ({error.strerror})") from error
         self._load()

@@ -15,12 +15,12 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.errors import LibraryError, UnavailableError
-from diorama_core.library.store.features import FeatureMatrix, Near
+from diorama_core.library.store.features import INDEX_FOLDER, FeatureMatrix, Near
 
 log = logging.getLogger(__name__)
 
-INDEX_FROM_ROWS = 1_000_000
-"""Rows above which an index is used, where LanceDB is installed."""
+INDEX_FROM = 1_000_000
+"""Shapes from which on an index is used, where LanceDB is installed."""
 _BATCH = 20_000
 
 
@@ -32,12 +32,12 @@ class VectorIndex(Protocol):
         ...
 
 
-def vector_index(matrix: FeatureMatrix, *, index_from_rows: int = INDEX_FROM_ROWS) -> VectorIndex:
+def vector_index(matrix: FeatureMatrix, *, index_from: int = INDEX_FROM) -> VectorIndex:
     """The matrix itself, or a LanceDB index of it where it is large; the index is made or renewed when it is behind.
 
     Without LanceDB a large matrix is still searched exactly, only slower, which is logged.
     """
-    if len(matrix) * matrix.rows < index_from_rows:
+    if len(matrix) < index_from:
         return matrix
     if importlib.util.find_spec("lancedb") is None:
         log.info("%d features are compared one by one; pip install 'diorama[vector]' makes an index", len(matrix))
@@ -61,7 +61,7 @@ class LanceIndex:
     """
 
     def __init__(self, matrix: FeatureMatrix, *, probes: int | None = None) -> None:
-        os.environ.setdefault("LANCE_LOG", "error")  # its warnings are about its own inner workings
+        os.environ.setdefault("LANCEDB_LOG", "error")  # its warnings are about its own inner workings
         try:
             import lancedb
             import lancedb.index
@@ -88,7 +88,7 @@ class LanceIndex:
 
     def _up_to_date(self, lancedb: Any) -> Any:
         """The table with all rows of the matrix, indexed."""
-        database = lancedb.connect(str(self._matrix.folder / "lance"))
+        database = lancedb.connect(str(self._matrix.folder / INDEX_FOLDER))
         count = len(self._matrix) * self._matrix.rows
         if "features" in database.list_tables().tables:
             table = database.open_table("features")

@@ -78,6 +78,15 @@ def test_an_interrupted_append_is_undone(tmp_path: Path, rng: np.random.Generato
     assert FeatureMatrix(tmp_path, 8).keys == tuple(names(4))
 
 
+def test_a_cleared_matrix_starts_again(tmp_path: Path, rng: np.random.Generator) -> None:
+    matrix = FeatureMatrix(tmp_path, 8)
+    matrix.append(names(4), unit_rows(rng, 4, 8))
+    matrix.clear()
+    assert len(matrix) == 0
+    matrix.append(["a"], unit_rows(rng, 1, 8))
+    assert FeatureMatrix(tmp_path, 8).keys == ("a",)
+
+
 def test_wrong_features_are_refused(tmp_path: Path, rng: np.random.Generator) -> None:
     matrix = FeatureMatrix(tmp_path, 8)
     matrix.append(["a"], unit_rows(rng, 1, 8))
@@ -107,7 +116,7 @@ def test_the_index_finds_what_a_plain_comparison_finds(tmp_path: Path, rng: np.r
     matrix.append(names(1000), values[:1000])
     LanceIndex(matrix)
     matrix.append(names(500, 1000), values[1000:])
-    index = vector_index(matrix, index_from_rows=1000)
+    index = vector_index(matrix, index_from=1000)
     assert isinstance(index, LanceIndex)
     recall = []
     for i in range(0, 1500, 100):
