@@ -14,6 +14,7 @@ from diorama_app.cli.doctor import add_doctor
 from diorama_app.cli.library import add_library
 from diorama_app.cli.models import add_models
 from diorama_app.cli.scenes import add_build, add_export, add_optimise, add_picture, add_serve
+from diorama_app.cli.text import add_text
 from diorama_core.errors import Cancelled, DioramaError
 
 
@@ -58,6 +59,7 @@ def _parser() -> argparse.ArgumentParser:
         add_optimise,
         add_export,
         add_picture,
+        add_text,
         add_library,
         add_models,
         add_bench,

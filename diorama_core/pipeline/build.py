@@ -27,6 +27,7 @@ from diorama_core.layout.recipes import recipe as layout_recipe
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.camera.estimate import EmbeddedCamera
 from diorama_core.perception.depth import MeasuredDepth, RenderedDepth
+from diorama_core.perception.foundation.sight import reworded
 from diorama_core.perception.graph.geometric import GeometricGraph
 from diorama_core.perception.masks import EmbeddedMasks
 from diorama_core.perception.measured import MeasuredGeometry
@@ -183,6 +184,7 @@ def build_scene(
         runner.runs.append(StageRun("layout", repr(s.layout), report.seconds, cached=False))
         scene = set_metrics(scene, report.after)
     progress.report(1.0, "done")
+    network = inputs.depth_source == "network"
     return Built(
         scene=scene,
         camera=camera,
@@ -195,7 +197,7 @@ def build_scene(
         textures=textures,
         inputs=inputs,
         runs=tuple(runner.runs),
-        notes=_notes(camera, geometry, room, graph, tuple(r.note for r in shapes), report),
+        notes=_notes(network, camera, geometry, room, graph, tuple(r.note for r in shapes), report),
     )
 
 
@@ -205,6 +207,7 @@ def _textured(scene: Scene, textures: Mapping[str, object]) -> Scene:
 
 
 def _notes(
+    network: bool,
     camera: CameraEstimate,
     geometry: ObjectGeometry,
     room: ArchitectureEstimate,
@@ -213,6 +216,8 @@ def _notes(
     report: LayoutReport | None,
 ) -> tuple[str, ...]:
     sources: tuple[str, ...] = (f"camera: {camera.source}", f"objects: {geometry.source}", f"room: {room.source}")
+    if network:
+        sources = tuple(reworded(s) for s in sources)
     if graph is not None:
         sources = (*sources, f"what stands on what: {graph.source}")
     return (*sources, *(n for n in retrieval if n), *(report.reasons if report else ()))

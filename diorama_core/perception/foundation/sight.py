@@ -58,7 +58,7 @@ class NetworkCamera:
         """The readings of one photo, best first."""
         found = self.reader.estimate(inputs, progress)
         given = "focal length given", "focal length from the network"
-        return replace(found, source=_reworded(found.source.replace(*given)))
+        return replace(found, source=reworded(found.source.replace(*given)))
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class NetworkGeometry:
     ) -> ObjectGeometry:
         """The posed camera, a cuboid for every object, and what stands on what."""
         found = self.reader.measure(inputs, camera, objects, progress)
-        return replace(found, source=_reworded(found.source))
+        return replace(found, source=reworded(found.source))
 
 
 @dataclass(frozen=True)
@@ -103,6 +103,6 @@ class NetworkDepth:
         return DepthMap(depth, normals, "network")
 
 
-def _reworded(words: str) -> str:
+def reworded(words: str) -> str:
     """What the readers of measured depth say, of depth that nobody measured."""
-    return words.replace("measured depth", "depth read from the photo").replace("measured ", "")
+    return words.replace("measured depth", "depth read from the photo").replace("measured", "seen")
