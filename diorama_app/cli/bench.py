@@ -5,32 +5,101 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from diorama_app.cli.arguments import command, progress_bar
 from diorama_core.errors import InputError
 
 
+class _Bench(Protocol):
+    """What every bench returns."""
+
+    def tables(self) -> Any: ...
+
+    def to_json(self) -> dict[str, object]: ...
+
+
+TABLES = (
+    ("architecture", 20, "The empty room: planes against the truth."),
+    ("retrieval", 20, "Shapes for objects, offered and never offered."),
+    ("pose", 6, "Poses with true and estimated depth, groups, ablations."),
+    ("layout", 40, "The layout recipes against each other."),
+    ("system", 20, "Pictures to scenes, end to end."),
+    ("speed", 1, "Time and memory against size, and against the committed figures."),
+)
+
+
 def add_bench(commands: Any) -> None:
     """Declare `diorama bench`."""
-    p: argparse.ArgumentParser = commands.add_parser("bench", help="Measure the stages on generated rooms.")
-    tables = p.add_subparsers(dest="table", required=True, metavar="layout")
-    layout = command(
-        tables, "layout", _bench_layout, "The layout recipes against each other.", "diorama bench layout --scenes 40"
-    )
-    layout.add_argument("--scenes", type=int, default=40, metavar="N", help="generated rooms (default: %(default)s)")
-    layout.add_argument("--seed", type=int, default=0, metavar="S", help="of the rooms (default: %(default)s)")
-    layout.add_argument("--json", type=Path, metavar="FILE", help="write the results as JSON too")
+    p: argparse.ArgumentParser = commands.add_parser("bench", help="Measure the stages on rooms of known truth.")
+    tables = p.add_subparsers(dest="table", required=True, metavar="|".join(name for name, _, _ in TABLES))
+    runs = {"layout": _bench_layout, "speed": _bench_speed}
+    for name, scenes, summary in TABLES:
+        one = command(tables, name, runs.get(name, _bench_rooms), summary, f"diorama bench {name} --scenes {scenes}")
+        one.add_argument("--scenes", type=int, default=scenes, metavar="N", help="rooms (default: %(default)s)")
+        one.add_argument("--seed", type=int, default=0, metavar="S", help="of the rooms (default: %(default)s)")
+        one.add_argument("--json", type=Path, metavar="FILE", help="write the results as JSON too")
+        if name == "system":
+            one.add_argument("--physics", action="store_true", help="measure drift under gravity too (needs MuJoCo)")
+        if name == "speed":
+            one.add_argument("--keep", type=Path, metavar="FILE", help="write the figures as a regression file")
 
 
 def _bench_layout(a: argparse.Namespace) -> None:
     from diorama_core.evaluation.layout_bench import run
-    from diorama_core.project.files import write_atomically
 
-    if a.scenes < 1:
-        raise InputError(f"--scenes {a.scenes}: ask for at least one")
+    _check(a)
     with progress_bar() as progress:
         bench = run(scenes=a.scenes, seed=a.seed, progress=progress)
-    if a.json:
-        write_atomically(a.json, json.dumps(bench.to_json(), indent=1).encode())
+    _write(a.json, bench.to_json())
     print(bench.to_markdown())
+
+
+def _bench_rooms(a: argparse.Namespace) -> None:
+    """Architecture, retrieval, pose or the whole system on rendered rooms."""
+    from diorama_core.evaluation import architecture_bench, pose_bench, retrieval_bench, system_bench
+    from diorama_core.library.catalogue import built_in_library
+
+    _check(a)
+    library = built_in_library()
+    with progress_bar() as progress:
+        bench: _Bench
+        if a.table == "architecture":
+            bench = architecture_bench.run(library, a.scenes, a.seed, progress)
+        elif a.table == "retrieval":
+            bench = retrieval_bench.run(library, a.scenes, a.seed, progress)
+        elif a.table == "pose":
+            bench = pose_bench.run(library, a.scenes, a.seed, progress)
+        else:
+            bench = system_bench.run(library, a.scenes, a.seed, progress, physics=a.physics)
+    _show(bench, a.json)
+
+
+def _bench_speed(a: argparse.Namespace) -> None:
+    from diorama_core.evaluation.speed_bench import regression_file, run
+    from diorama_core.library.catalogue import built_in_library
+    from diorama_core.project.files import write_atomically
+
+    _check(a)
+    with progress_bar() as progress:
+        bench = run(built_in_library(), a.seed, progress)
+    if a.keep:
+        write_atomically(a.keep, regression_file(bench))
+    _show(bench, a.json)
+
+
+def _check(a: argparse.Namespace) -> None:
+    if a.scenes < 1:
+        raise InputError(f"--scenes {a.scenes}: ask for at least one")
+
+
+def _show(bench: _Bench, path: Path | None) -> None:
+    _write(path, bench.to_json())
+    print("\n".join(table.to_markdown() for table in bench.tables()))
+
+
+def _write(path: Path | None, document: dict[str, object]) -> None:
+    from diorama_core.project.files import write_atomically
+
+    if path:
+        write_atomically(path, json.dumps(document, indent=1).encode())

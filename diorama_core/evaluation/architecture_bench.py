@@ -1,0 +1,124 @@
+"""The empty room from rendered pictures: with true depth and masks, and from the picture alone."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from diorama_core.artefacts import Inputs
+from diorama_core.errors import Cancelled
+from diorama_core.evaluation import paper
+from diorama_core.evaluation.architecture_metrics import ArchitectureScores, architecture_scores
+from diorama_core.evaluation.cases import recipe, views_of
+from diorama_core.evaluation.dataset.artefacts import photo_only
+from diorama_core.evaluation.dataset.truth import TruthView
+from diorama_core.evaluation.tables import Column, Row, Table, paper_rows
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.pipeline.build import embedded_stages
+from diorama_core.progress import Progress
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class RoomResult:
+    """One reconstructed room; None where the stage failed."""
+
+    case: str
+    scores: ArchitectureScores | None
+    seconds: float
+
+
+@dataclass(frozen=True)
+class ArchitectureBench:
+    """Results by what was given."""
+
+    seed: int
+    results: tuple[tuple[str, tuple[RoomResult, ...]], ...]
+
+    def tables(self) -> tuple[Table, ...]:
+        """The paper's architecture table."""
+        return (architecture_table(self.results),)
+
+    def to_json(self) -> dict[str, object]:
+        """Tables and every case."""
+        cases = {name: [asdict(r) for r in rows] for name, rows in self.results}
+        return {
+            "bench": "architecture",
+            "seed": self.seed,
+            "tables": [t.to_json() for t in self.tables()],
+            "cases": cases,
+        }
+
+
+def run(library: ShapeLibrary, scenes: int = 20, seed: int = 0, progress: Progress | None = None) -> ArchitectureBench:
+    """Reconstruct every room twice."""
+    progress = progress or Progress()
+    measured, alone = [], []
+    cases = recipe(scenes, 1, seed)
+    for k, (case, view) in enumerate(views_of(cases, library)):
+        progress.report(k / len(cases), case.name)
+        measured.append(_room(case.name, view, view.inputs, library))
+        alone.append(_room(case.name, view, photo_only(view), library))
+    return ArchitectureBench(seed, (("true masks and depth", tuple(measured)), ("picture and boxes", tuple(alone))))
+
+
+def _room(case: str, view: TruthView, inputs: Inputs, library: ShapeLibrary) -> RoomResult:
+    stages, quiet = embedded_stages(inputs, library), Progress()
+    begun = time.process_time()
+    try:
+        camera = stages.camera.estimate(inputs, quiet)
+        objects = stages.objects.segment(inputs, quiet)
+        geometry = stages.geometry.measure(inputs, camera, objects, quiet)
+        begun = time.process_time()
+        room = stages.architecture.reconstruct(inputs, objects, geometry, quiet)
+        spent = time.process_time() - begun
+        scores = architecture_scores(
+            room.architecture.planes, view.scene.architecture.planes, view.camera, found_camera=geometry.camera
+        )
+        return RoomResult(case, scores, spent)
+    except Cancelled:
+        raise
+    except Exception as error:  # whatever goes wrong, the room counts as failed
+        log.warning("%s failed: %s", case, error)
+        return RoomResult(case, None, time.process_time() - begun)
+
+
+def architecture_table(results: Sequence[tuple[str, Sequence[RoomResult]]]) -> Table:
+    """IoU, pixel and edge error, depth error, centred chamfer and time (paper, table 3)."""
+    columns = (
+        Column("success", ".2f", "↑"), Column("IoU", ".1f", "↑"), Column("PE", ".1f", "↓"), Column("EE", ".1f", "↓"),
+        Column("RMSE m", ".2f", "↓"), Column("CDb", ".3f", "↓"), Column("time s", ".2f", "↓"),
+    )  # fmt: skip
+    rows = []
+    for name, rooms in results:
+        done = [r.scores for r in rooms if r.scores is not None]
+        count = max(len(rooms), 1)
+        rows.append(
+            Row(
+                name,
+                (
+                    len(done) / count,
+                    100 * sum(s.iou for s in done) / count,
+                    100 * (sum(s.pixel_error for s in done) + len(rooms) - len(done)) / count,
+                    _mean([s.edge_error_px for s in done]),
+                    _mean([s.depth_rmse_m for s in done]),
+                    _mean([s.cdb_m for s in done]),
+                    _mean([r.seconds for r in rooms]),
+                ),
+            )
+        )
+    note = (
+        f"{len(results[0][1]) if results else 0} rooms. IoU and PE in percent of pixels, a failed room counting as "
+        "0 and 100; EE in pixels; EE, RMSE and CDb over the rooms that succeeded. Time: processor seconds of the stage."
+    )
+    return Table("Architecture", columns, (*rows, *paper_rows(paper.ARCHITECTURE)), note)
+
+
+def _mean(values: Sequence[float]) -> float | None:
+    finite = [v for v in values if np.isfinite(v)]
+    return float(np.mean(finite)) if finite else None

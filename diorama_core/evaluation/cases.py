@@ -1,0 +1,58 @@
+"""The benchmark's recipe: which rooms, photographed from where. Seeded, so nothing but this needs to be shipped."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from diorama_core.evaluation.dataset import ROOM_KINDS, RoomKind, TruthView, furnished_room, hold_cameras, render_truth
+from diorama_core.library.record import ShapeLibrary
+
+VIEWS = 3
+STANDARD_SCENES = 60
+LEAST_ASKED = 4
+"""Views that show fewer objects are passed over for the next one of the room."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """One picture of the benchmark, by name."""
+
+    seed: int
+    kind: RoomKind
+    view: int = 0
+
+    @property
+    def name(self) -> str:
+        """`living-3-0`."""
+        return f"{self.kind}-{self.seed}-{self.view}"
+
+
+def recipe(scenes: int = STANDARD_SCENES, views: int = VIEWS, seed: int = 0) -> tuple[Case, ...]:
+    """The benchmark's cases: kinds of rooms in turn, `views` pictures of each room.
+
+    The standard benchmark is `recipe()`: 60 rooms of 9 kinds, 180 pictures.
+    """
+    return tuple(
+        Case(seed + k, ROOM_KINDS[k % len(ROOM_KINDS)], view) for k in range(scenes) for view in range(max(1, views))
+    )
+
+
+def photographed(
+    case: Case, library: ShapeLibrary, *, size: tuple[int, int] = (640, 480), with_empty_room: bool = False
+) -> TruthView:
+    """Furnish and photograph one case."""
+    scene = furnished_room(case.seed, case.kind, library)
+    cameras = hold_cameras(scene, library, case.seed, max(VIEWS, case.view + 1), size)
+    return render_truth(scene, cameras[case.view], library, size, with_empty_room=with_empty_room)
+
+
+def views_of(cases: tuple[Case, ...], library: ShapeLibrary) -> Iterator[tuple[Case, TruthView]]:
+    """The pictures one after another; a room without enough objects in view gives its next view."""
+    for case in cases:
+        view = photographed(case, library)
+        for later in range(case.view + 1, VIEWS):
+            if len(view.asked) >= LEAST_ASKED:
+                break
+            view = photographed(Case(case.seed, case.kind, later), library)
+        yield case, view
