@@ -139,6 +139,9 @@ def _placed(thing: Thing, place: str, target: str) -> Thing:
 
 def _phrase(phrase: str) -> tuple[Thing | None, list[str]]:
     """A noun phrase: count, looks, noun."""
+    left, of, _ = phrase.partition(" of ")
+    if of and (head := _phrase(left))[0] is not None:
+        return head  # "a vase of flowers" is a vase; "a pair of chairs" goes on below
     words = [w for w in re.findall(r"[a-z0-9'-]+", phrase) if w not in _FILLER]
     count = 1
     while words and (words[0] in _NUMBERS or words[0].isdigit()):
