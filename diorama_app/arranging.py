@@ -21,7 +21,7 @@ def align(scene: Scene, ids: Sequence[str], axis: Float[np.ndarray, "3"], anchor
     """Bring the low ends, middles or high ends of objects (along a level world axis) in line with the last one's."""
     chosen = _movable(scene, ids, least=2)
     spans = {i: _span(scene, i, axis) for i in chosen}
-    target = _at(spans[ids[-1]], anchor)
+    target = _at(_span(scene, ids[-1], axis), anchor)
     for i in chosen:
         scene = _shift(scene, i, axis, target - _at(spans[i], anchor))
     return scene

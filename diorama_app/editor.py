@@ -32,6 +32,7 @@ from diorama_app.panels.supports import Supports
 from diorama_app.panels.toast import Toasts
 from diorama_app.panels.toolbar import Toolbar
 from diorama_app.room import Room
+from diorama_app.shelf import Shelf
 from diorama_app.views import Views
 from diorama_app.viser_adapter import MAX_UPLOAD_BYTES
 from diorama_core.errors import DioramaError
@@ -51,6 +52,7 @@ class Editor:
         self, server: viser.ViserServer, library: ShapeLibrary, projects_dir: Path, *, low_graphics: bool
     ) -> None:
         self.server = server
+        library = Shelf(library)
         self.room = Room(server, library, projects_dir)
         self.room.viewport.light(low_graphics=low_graphics)
         self.views = Views(self.room)

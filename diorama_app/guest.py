@@ -122,7 +122,6 @@ class Guest:
         """Select exactly these objects, in this order."""
         self.selection = tuple(i for i in dict.fromkeys(ids) if self.room.scene.has_object(i))
         self.room.document.note_selection(self.selection)
-        self.refresh()
         self.room.refresh_cursors()
 
     def toggle(self, object_id: str) -> None:

@@ -19,7 +19,7 @@ from diorama_core.pipeline.build import embedded_stages
 from diorama_core.pipeline.colours import photo_colours
 from diorama_core.pipeline.runner import Runner
 from diorama_core.progress import Progress
-from diorama_core.scene.types import Camera, Candidate, Plane, Pose, Scene, SceneObject, Support
+from diorama_core.scene.types import Camera, Candidate, Plane, Pose, Scene, SceneObject, Support, yaw_rotation
 
 NEW_ID = "looked_at_again"
 
@@ -51,8 +51,10 @@ class _Similarity:
         return cls(R, scene.position - scale * R @ measured.position, scale)
 
     def pose(self, pose: Pose) -> Pose:
-        u, _, vt = np.linalg.svd(self.R @ pose.R_world_object)
-        return Pose(u @ vt, self.scale * self.R @ pose.position + self.t, pose.scale * self.scale)
+        """The pose in the scene; where the scene's camera was tilted since, things stay upright all the same."""
+        level = yaw_rotation(float(np.arctan2(self.R[1, 0], self.R[0, 0])))
+        position = self.scale * self.R @ pose.position + self.t
+        return Pose(level @ pose.R_world_object, position, pose.scale * self.scale)
 
 
 def look_again(

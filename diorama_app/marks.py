@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -141,6 +142,8 @@ class Marks:
 def remove_quietly(handle: Any) -> None:
     """Remove a node that may have gone with its parent."""
     try:
-        handle.remove()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            handle.remove()
     except Exception:  # its parent went first, and took it along
         return

@@ -38,7 +38,7 @@ STYLE = """
   color: var(--ink); border-radius: 6px; padding: 4px 9px; }
 .dio button { cursor: pointer; }
 .dio input { width: 100%; min-width: 0; }
-.dio button:hover:not(:disabled) { background: var(--hover); border-color: #9db7e0; }
+.dio button:hover:not(:disabled):not(.on) { background: var(--hover); border-color: #9db7e0; }
 .dio button:focus-visible, .dio input:focus-visible, .dio [tabindex]:focus-visible {
   outline: 2px solid var(--accent); outline-offset: 1px; }
 .dio button:disabled { opacity: .4; cursor: default; }

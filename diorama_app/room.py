@@ -45,7 +45,7 @@ class Room:
 
     def __init__(self, server: viser.ViserServer, library: ShapeLibrary, projects_dir: Path) -> None:
         self.server = server
-        self.library = library
+        self.library: ShapeLibrary = library
         self.projects_dir = projects_dir
         self.document = Document()
         self.draft = Draft()
@@ -181,7 +181,7 @@ class Room:
     def refresh_cursors(self) -> None:
         """Redraw what everyone sees of the others' selections."""
         for guest in self.guests.values():
-            guest.show_marks()
+            guest.refresh()
 
     # -- projects ---------------------------------------------------------------------------------------------
 

@@ -74,7 +74,7 @@ def format_size(width: float, depth: float, height: float, unit: Unit) -> str:
         return " × ".join(format_length(v, unit) for v in (width, depth, height))
     if unit == "cm":
         return f"{100 * width:.0f} × {100 * depth:.0f} × {100 * height:.0f}"
-    return f"{width:.2f} × {depth:.2f} × {height:.2f}"
+    return f"{width:.2f}×{depth:.2f}×{height:.2f}"
 
 
 def _implied(unit: Unit, previous: str) -> str:

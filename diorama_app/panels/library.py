@@ -5,6 +5,7 @@ from __future__ import annotations
 import viser
 
 from diorama_app.guest import Guest
+from diorama_app.importing import import_model
 from diorama_app.inserting import insert_shape, start_placing
 from diorama_app.page import Action, LiveHtml, button, text
 from diorama_app.panels.fields import on_change
@@ -23,6 +24,15 @@ class LibraryPanel:
         self._words = gui.add_text("Search", "", hint="For example: armchair, round table, blue")
         on_change(self._words, lambda v: guest.post(self.refresh, key="search"))
         self._html = LiveHtml(gui, self._act)
+        upload = gui.add_upload_button(
+            "Add a model file", hint="GLB, OBJ, PLY, STL or FBX; then click where it should stand"
+        )
+
+        async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
+            file = event.target.value
+            guest.post(lambda: import_model(guest, file.name, file.content))
+
+        upload.on_upload(uploaded)
 
     def refresh(self) -> None:
         """Draw what was found."""

@@ -13,7 +13,7 @@ from PIL import Image
 
 from diorama_app import work
 from diorama_app.correcting import add_from_photo
-from diorama_app.drafts import Draft, boxes_json
+from diorama_app.drafts import Draft, boxes_json, can_find_furniture
 from diorama_app.guest import Guest
 from diorama_app.page import Action, LiveHtml, button, text
 from diorama_app.panels.fields import enable, on_change, on_press, show_if, show_label, show_value
@@ -202,7 +202,11 @@ class PhotoPanel:
         state = (
             ("1 box" if len(draft.boxes) == 1 else f"{len(draft.boxes)} boxes")
             if draft.boxes
-            else "<b>Draw a box around each piece of furniture.</b>"
+            else (
+                "<b>Build the scene: the furniture is found by itself. Or draw boxes.</b>"
+                if can_find_furniture()
+                else "<b>Draw a box around each piece of furniture.</b>"
+            )
         )
         extras = [n for n, there in _extras(draft).items() if there]
         extra = f" · with {', '.join(extras)}" if extras else ""

@@ -132,8 +132,8 @@ class EditorPage:
     def tab(self, name: str) -> None:
         self.page.get_by_role("tab", name=name, exact=True).click()
 
-    def row(self, label: str) -> Locator:
-        return self.page.locator(".dio .row .name").get_by_text(label, exact=True)
+    def row(self, label: str, *, exact: bool = True) -> Locator:
+        return self.page.locator(".dio .row .name").get_by_text(label, exact=exact)
 
     def notice(self, words: str) -> None:
         """A notice or a toast with these words is shown."""

@@ -1,20 +1,22 @@
-"""One Chromium per run, one server per test."""
+"""One Chromium per run, one server and tab per module; pictures of every test's end are kept in `test-artefacts`."""
 
 from __future__ import annotations
 
-import os
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
+from diorama_app.guest import Settings
 from diorama_app.server import Running, start
 from diorama_core.library.record import ShapeLibrary
 from tests.app.small_room import PlainLibrary, make_project
 from tests.e2e.browser import FLAGS, SIZE, EditorPage, chromium
 
 playwright = pytest.importorskip("playwright.sync_api", reason="the browser tests need playwright (extra 'dev')")
+
+ARTEFACTS = Path(__file__).resolve().parents[2] / "test-artefacts" / "screens"
 
 StartServer = Callable[..., Running]
 
@@ -61,11 +63,16 @@ def serve(tmp_path: Path) -> Iterator[StartServer]:
         one.stop()
 
 
-@pytest.fixture
-def furnished(serve: StartServer, tmp_path: Path) -> Running:
-    """A server on the small furnished room, with plain shapes."""
-    project = make_project(tmp_path / "projects" / "demo")
-    return serve(project.folder, PlainLibrary())
+@pytest.fixture(scope="module")
+def shared_page(context, tmp_path_factory: pytest.TempPathFactory) -> Iterator[EditorPage]:
+    """One server and one tab for all tests of a module: starting them is most of a test's time."""
+    projects = tmp_path_factory.mktemp("shared") / "projects"
+    project = make_project(projects / "demo")
+    running = start(project=project.folder, projects_dir=projects, low_graphics=True, library=PlainLibrary())
+    page = EditorPage.open(context, running)
+    yield page
+    page.page.close()
+    running.stop()
 
 
 @pytest.fixture
@@ -79,16 +86,42 @@ def visit(context, request: pytest.FixtureRequest) -> Iterator[Callable[[Running
 
     yield open_page
     errors = [error for page in pages for error in page.errors]
-    folder = os.environ.get("DIORAMA_SCREENSHOTS")
     for index, page in enumerate(pages):
-        if folder:
-            Path(folder).mkdir(parents=True, exist_ok=True)
-            page.page.screenshot(path=str(Path(folder) / f"{request.node.name}-{index}.png"))
+        keep_picture(page, f"{request.node.name}-{index}")
         page.page.close()
     assert not errors, errors
 
 
 @pytest.fixture
-def editor(furnished: Running, visit: Callable[[Running], EditorPage]) -> EditorPage:
-    """The furnished room in a browser."""
-    return visit(furnished)
+def editor(shared_page: EditorPage, tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[EditorPage]:
+    """The furnished room in a browser, as somebody finds it who has just come."""
+    room = shared_page.running.room
+    project = make_project(tmp_path / "projects" / "demo")
+
+    def begin() -> None:
+        room.projects_dir = tmp_path / "projects"
+        room.clip = room.binned = None
+        guest = shared_page.guest
+        guest.view.close_board()
+        guest.settings = Settings()
+        room.open_project(project)
+
+    room.jobs.wait(10.0)
+    room.desk.post(begin)
+    assert room.desk.wait()
+    shared_page.dismiss_notices()
+    for tab in ("Scene", "Object"):
+        shared_page.tab(tab)
+    shared_page.settle()
+    yield shared_page
+    keep_picture(shared_page, request.node.name)
+    errors, shared_page.errors = shared_page.errors, []
+    room.jobs.cancel()
+    shared_page.page.keyboard.press("Escape")
+    assert not errors, errors
+
+
+def keep_picture(page: EditorPage, name: str) -> None:
+    """Keep what is on the screen, for people to look at."""
+    ARTEFACTS.mkdir(parents=True, exist_ok=True)
+    page.page.screenshot(path=str(ARTEFACTS / f"{name}.png"))

@@ -1,0 +1,331 @@
+"""Measure the editor as a person feels it, in a real Chromium on a room of sixty objects.
+
+    python scripts/bench_editor.py [--objects 60] [--library built-in|plain] [--only swap,drag,...]
+
+Run it on a quiet machine: everything (server, browser, software WebGL) shares its cores. Prints one line a figure:
+what was measured, the median and worst, and what is asked.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from playwright.sync_api import BrowserContext, sync_playwright
+
+from diorama_app.server import Running, start
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.project.storage import Project
+from diorama_core.scene import edits
+from diorama_core.scene.types import Architecture, Candidate, Pose, Scene, SceneObject, Support
+from tests.app.small_room import PlainLibrary, photo_camera, room_planes
+from tests.e2e.browser import FLAGS, EditorPage, chromium
+
+ROUNDS = 12
+STAMP = """([name, value]) => new Promise((done) => {
+    const look = () => {
+        const n = window.__viserMutable.nodeRefFromName[name];
+        if (n && Math.abs(n.position.x - value) < 1e-3) requestAnimationFrame(() => done(Date.now()));
+        else requestAnimationFrame(look);
+    };
+    look();
+})"""
+MESH = """([name, least]) => new Promise((done) => {
+    const look = () => {
+        for (const k of Object.keys(window.__viserMutable.nodeRefFromName)) {
+            if (k.startsWith(name + '/v') && parseInt(k.slice(name.length + 2)) >= least) {
+                let meshes = 0;
+                const n = window.__viserMutable.nodeRefFromName[k];
+                if (n) n.traverse((o) => { if (o.isMesh || o.isInstancedMesh) meshes += 1; });
+                if (meshes > 0) { requestAnimationFrame(() => done(Date.now())); return; }
+            }
+        }
+        requestAnimationFrame(look);
+    };
+    look();
+})"""
+WATCH = """(name) => {
+    window.__frames = [];
+    let last = null;
+    const look = () => {
+        const n = window.__viserMutable.nodeRefFromName[name];
+        if (n && n.position.x !== last) { last = n.position.x; window.__frames.push([Date.now(), last]); }
+        requestAnimationFrame(look);
+    };
+    look();
+}"""
+TORN = """([a, b]) => {
+    window.__torn = 0; window.__seen = 0;
+    let last = null;
+    const look = () => {
+        const refs = window.__viserMutable.nodeRefFromName, p = refs[a], q = refs[b];
+        if (p && q) {
+            const now = p.position.x;
+            if (now !== last) {
+                window.__seen += 1;
+                if (Math.abs((q.position.x - p.position.x) - window.__gap) > 1e-4) window.__torn += 1;
+                last = now;
+            }
+        }
+        requestAnimationFrame(look);
+    };
+    const refs = window.__viserMutable.nodeRefFromName;
+    window.__gap = refs[b].position.x - refs[a].position.x;
+    look();
+}"""
+
+
+def furnished(library: ShapeLibrary, count: int) -> Scene:
+    """A large room with `count` objects on a grid, a third of them standing on others."""
+    shapes = [s for s in library.shapes() if s.category in ("chair", "table", "lamp", "armchair", "sofa", "vase")]
+    by_category: dict[str, list] = {}
+    for shape in shapes:
+        by_category.setdefault(shape.category, []).append(shape)
+    tables = by_category["table"]
+    small = by_category.get("vase") or by_category["lamp"]
+    others = [s for name, of_one in by_category.items() if name not in ("table", "vase") for s in of_one]
+    objects: list[SceneObject] = []
+    supports: list[Support] = []
+    columns = 8
+
+    def add(name: str, shape, position: tuple[float, float, float], parent: str) -> None:
+        pose = Pose.upright((position[0], position[1], position[2] + shape.size_m[2] / 2))
+        rivals = [shape, *(r for r in by_category[shape.category] if r.id != shape.id)][:6]
+        candidates = tuple(Candidate(r.id, r.size_m, 0.9 - 0.1 * i, pose) for i, r in enumerate(rivals))
+        objects.append(SceneObject(name, name, shape.category, shape.id, shape.size_m, pose, candidates))
+        supports.append(Support(name, parent))
+
+    spot = 0
+    while len(objects) < count:
+        x, y = 1.9 * (spot % columns) - 6.6, 1.9 * (spot // columns) + 0.8
+        if spot % 2 == 0 and len(objects) + 1 < count:
+            table = library.shape(tables[spot // 2 % len(tables)].id)
+            add(f"table_{spot}", table, (x, y, 0.0), "floor")
+            add(f"small_{spot}", small[spot // 2 % len(small)], (x, y, table.size_m[2]), f"table_{spot}")
+        else:
+            add(f"other_{spot}", others[spot % len(others)], (x, y, 0.0), "floor")
+        spot += 1
+    planes = room_planes(width=18.0, depth=16.0, height=2.7)
+    return Scene(photo_camera(), Architecture(planes), tuple(objects), tuple(supports))
+
+
+def line(what: str, milliseconds: list[float], asked: str) -> None:
+    values = np.sort(np.asarray(milliseconds))
+    print(
+        f"{what:34s} median {np.median(values):7.0f} ms   worst {values[-1]:7.0f} ms   "
+        f"n {len(values):3d}   asked {asked}",
+        flush=True,
+    )
+
+
+class Bench:
+    """One server, one project, as many tabs as a figure needs."""
+
+    def __init__(self, context: BrowserContext, running: Running) -> None:
+        self.context, self.running, self.room = context, running, running.room
+        self.page = self._open()
+
+    def _open(self) -> EditorPage:
+        return EditorPage.open(self.context, self.running)
+
+    def load(self) -> None:
+        """A tab that opens, until every object's mesh is there and a frame was drawn."""
+        taken = []
+        for _ in range(3):
+            page = self.context.new_page()
+            begun = time.monotonic()
+            page.goto(f"http://127.0.0.1:{self.running.port}/?fixedDpr=1", wait_until="commit")
+            last = self.room.viewport.node_name(self.room.scene.objects[-1].id)
+            page.wait_for_function("window.__viserMutable && window.__viserMutable.nodeRefFromName", polling=20)
+            page.evaluate(MESH, [last, 1])
+            page.get_by_text(f"{len(self.room.scene.objects)} objects").wait_for()
+            taken.append(1000 * (time.monotonic() - begun))
+            page.close()
+        line("page to usable scene", taken, "< 4000")
+
+    def swap(self) -> None:
+        """From the click on an alternative to its mesh on the screen."""
+        taken = []
+        page, guest = self.page.page, self.page.guest
+        items = [o for o in self.room.scene.objects if len({c.shape_id for c in o.candidates}) > 1][:ROUNDS]
+        for item in items:
+            self._do(lambda i=item: guest.select((i.id,)))
+            self.page.settle()
+            node = self.room.viewport.node_name(item.id)
+            version = 1 + max(
+                int(n.rsplit("/v", 1)[1])
+                for n in page.evaluate("Object.keys(window.__viserMutable.nodeRefFromName)")
+                if n.startswith(f"{node}/v") and n.rsplit("/v", 1)[1].isdigit()
+            )
+            other = next(c.shape_id for c in item.candidates if c.shape_id != item.shape_id)
+            self.room.shapes.glb(other, item.colour)
+            tile = page.locator(f'.dio .tile[data-do="swap"][data-arg="{other}"]').first
+            tile.scroll_into_view_if_needed()
+            begun = page.evaluate("(e) => { const t = Date.now(); e.click(); return t; }", tile.element_handle())
+            taken.append(page.evaluate(MESH, [node, version]) - begun)
+        line("swap to visible", taken, "< 300")
+
+    def undo(self) -> None:
+        """From Ctrl+Z to the frame that shows it."""
+        taken, page = [], self.page.page
+        item = self.room.scene.objects[0]
+        node = self.room.viewport.node_name(item.id)
+        page.mouse.move(640, 400)
+        for k in range(ROUNDS):
+            x0 = float(self.room.scene.object(item.id).pose.position[0])
+            pose = self.room.scene.object(item.id).pose.moved((0.1 + 0.01 * k, 0.0, 0.0))
+            self._do(lambda p=pose: self.room.edit("move", lambda s: edits.move(s, item.id, p), by=self.page.guest))
+            page.evaluate(STAMP, [node, float(pose.position[0])])
+            self.page.settle()
+            begun = page.evaluate(
+                "() => { const t = Date.now(); document.body.dispatchEvent(new KeyboardEvent('keydown', "
+                "{key: 'z', code: 'KeyZ', ctrlKey: true, bubbles: true})); return t; }"
+            )
+            taken.append(page.evaluate(STAMP, [node, x0]) - begun)
+        line("undo", taken, "< 150")
+
+    def drag(self) -> None:
+        """From a mouse move to the frame in which the object has followed."""
+        page = self.page.page
+        self._do(lambda: self.page.guest.select(()))
+        self.page.guest.view.look(np.array([0.0, -7.0, 7.0]), np.array([0.0, 3.0, 0.0]))
+        self.page.settle()
+        item = next(o for o in self.room.scene.objects if o.id.startswith("other"))
+        self.page.until(lambda: self.room.preparer.ready(o.shape_id for o in self.room.scene.objects), seconds=600)
+        node = self.room.viewport.node_name(item.id)
+        x, y = self.page.place_of(item.pose.position)
+        page.mouse.move(x, y)
+        self.page.settle()
+        page.mouse.down()
+        page.mouse.move(x + 12, y)
+        page.wait_for_timeout(400)
+        taken = []
+        for k in range(30):
+            page.evaluate(WATCH, node)
+            page.wait_for_timeout(60)
+            begun = page.evaluate("() => { window.__frames.length = 0; return Date.now(); }")
+            page.mouse.move(x + 12 + 6 * (1 + k % 10), y)
+            page.wait_for_function("window.__frames.length > 0", polling=5)
+            taken.append(page.evaluate("window.__frames[0][0]") - begun)
+        page.mouse.up()
+        line("drag: move to moved frame", taken, "median < 120")
+
+    def optimiser(self) -> None:
+        """Pictures a second while the published recipe runs, and how many show one object moved without another."""
+        page = self.page.page
+        lifted = {
+            o.id: o.pose.moved((0.05, 0.0, 0.08)) for o in self.room.scene.objects if not o.id.startswith("small")
+        }
+        self._do(lambda: self.room.edit("lift", lambda s: edits.place(s, lifted)))
+        table = next(o for o in self.room.scene.objects if o.id.startswith("table"))
+        node = self.room.viewport.node_name(table.id)
+        self.page.settle()
+        page.evaluate(WATCH, node)
+        from diorama_app.optimising import optimise
+
+        self._do(lambda: optimise(self.page.guest, "paper"))
+        deadline = time.monotonic() + 300
+        while self.room.jobs.status is not None and time.monotonic() < deadline:
+            page.wait_for_timeout(200)
+        stamps = np.array([t for t, _ in page.evaluate("window.__frames")], dtype=float)
+        gaps = np.diff(stamps)
+        gaps = gaps[gaps < 2000]
+        rate = 1000.0 / float(np.median(gaps)) if len(gaps) else 0.0
+        print(f"{'optimiser preview':34s} {rate:7.1f} pictures/s   n {len(stamps)}   asked >= 10", flush=True)
+        self._tearing()
+
+    def _tearing(self) -> None:
+        """Two objects moved together twenty times a second: frames in which only one has moved."""
+        page, items = self.page.page, self.room.scene.objects
+        a, b = items[0], items[-1]
+        page.evaluate(TORN, [self.room.viewport.node_name(a.id), self.room.viewport.node_name(b.id)])
+        for k in range(100):
+            shift = 0.3 * np.sin(k / 5)
+            poses = {o.id: o.pose.moved((shift, 0.0, 0.0)) for o in items}
+            self.room.desk.post(lambda p=poses: self.room.preview(p), key="preview")
+            page.wait_for_timeout(50)
+        torn, seen = page.evaluate("[window.__torn, window.__seen]")
+        self._do(self.room.refresh)
+        print(f"{'torn frames':34s} {torn:7d} of {seen}   asked 0", flush=True)
+
+    def four(self) -> None:
+        """Four browsers on one project: from one person's edit to the last one's frame."""
+        tabs = [self.page, *(self._open() for _ in range(3))]
+        item = self.room.scene.objects[0]
+        node = self.room.viewport.node_name(item.id)
+        taken = []
+        for k in range(ROUNDS):
+            pose = self.room.scene.object(item.id).pose.moved((0.05 + 0.01 * k, 0.0, 0.0))
+            for tab in tabs:
+                tab.page.evaluate(
+                    "([n, v]) => { window.__at = null; const look = () => { const r = "
+                    "window.__viserMutable.nodeRefFromName[n]; if (r && Math.abs(r.position.x - v) < 1e-3) "
+                    "requestAnimationFrame(() => { window.__at = Date.now(); }); "
+                    "else requestAnimationFrame(look); }; look(); }",
+                    [node, float(pose.position[0])],
+                )
+            begun = time.time() * 1000
+            guest = tabs[k % 4].guest
+            guest.post(lambda p=pose, g=guest: self.room.edit("move", lambda s: edits.move(s, item.id, p), by=g))
+            for tab in tabs:
+                tab.page.wait_for_function("window.__at !== null", polling=10)
+            taken.append(max(tab.page.evaluate("window.__at") for tab in tabs) - begun)
+        for tab in tabs[1:]:
+            tab.page.close()
+        line("four browsers in step", taken, "< 300")
+
+    def _do(self, task: Callable[[], object]) -> None:
+        self.room.desk.post(task)  # type: ignore[arg-type]
+        self.room.desk.wait(60.0)
+
+
+FIGURES = ("load", "swap", "undo", "drag", "optimiser", "four")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])  # type: ignore[union-attr]
+    parser.add_argument("--objects", type=int, default=60)
+    parser.add_argument("--library", choices=("built-in", "plain"), default="built-in")
+    parser.add_argument("--only", default=",".join(FIGURES))
+    options = parser.parse_args()
+    if options.library == "plain":
+        library: ShapeLibrary = PlainLibrary()
+    else:
+        from diorama_core.library.catalogue import built_in_library
+
+        library = built_in_library()
+    folder = Path(tempfile.mkdtemp(prefix="bench-editor-"))
+    project = Project.create(folder / "projects" / "bench", name="bench")
+    project.save_scene(furnished(library, options.objects))
+    running = start(project=project.folder, projects_dir=folder / "projects", low_graphics=True, library=library)
+    try:
+        with sync_playwright() as driver:
+            context = driver.chromium.launch_persistent_context(
+                str(folder / "browser"),
+                executable_path=chromium(),
+                headless=True,
+                viewport={"width": 1280, "height": 720},
+                device_scale_factor=1,
+                args=list(FLAGS),
+            )
+            print(f"{options.objects} objects, {options.library} shapes, software WebGL", flush=True)
+            bench = Bench(context, running)
+            for name in options.only.split(","):
+                getattr(bench, name)()
+            context.close()
+    finally:
+        running.stop()
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+if __name__ == "__main__":
+    main()
