@@ -10,6 +10,7 @@ from diorama_core.library.furniture.carcass import door_front
 from diorama_core.library.furniture.fittings import at, bar_handle, knob
 from diorama_core.library.furniture.kitchen.cookers import burners, stove
 from diorama_core.library.furniture.kitchen.laundry import washing_machine
+from diorama_core.library.furniture.kitchen.microwaves import microwave
 from diorama_core.library.furniture.kitchen.refrigerators import refrigerator
 from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
@@ -317,6 +318,8 @@ DESIGNS: tuple[Design, ...] = (
     design("stove", "range-red", "red range cooker", (0.64, 0.90, 0.98), "classic", range_cooker, enamel=RED_ENAMEL, trim=m.BRASS, doors=2),
     design("stove", "range-steel", "professional steel range", (0.70, 0.92, 1.00), "industrial", stove, body=m.STAINLESS, hob="gas"),
     design("stove", "plain-white", "plain white cooker with a glass hob", (0.60, 0.60, 0.90), "minimal", stove, body=m.WHITE, hob="glass"),
+    design("microwave", "professional", "steel microwave with a drop handle", (0.42, 0.54, 0.33), "industrial", microwave, body=m.CHARCOAL),
+    design("microwave", "cream-oven", "cream countertop oven with knobs", (0.36, 0.46, 0.28), "rustic", microwave, body=CREAM_ENAMEL, kind="oven"),
     design("wall oven", "steel-single", "stainless-steel built-in oven", (0.56, 0.595, 0.595), "modern", wall_oven, front=m.STAINLESS, cavities=1),
     design("wall oven", "black-double", "black glass double oven", (0.57, 0.595, 0.89), "minimal", wall_oven, front=BLACK_ENAMEL, cavities=2, knobs=False),
     design("wall oven", "cream-single", "cream built-in oven with brass handle", (0.56, 0.595, 0.60), "classic", wall_oven, front=CREAM_ENAMEL, cavities=1, trim=m.BRASS),

@@ -200,5 +200,8 @@ DESIGNS: tuple[Design, ...] = (
     design("table", "fluted-oak", "oval smoked-oak table on fluted columns", (1.00, 2.20, 0.75), "modern", plinth_table, 2, top=s.SMOKED_OAK, base=s.SMOKED_OAK),
     design("table", "factory-long", "long reclaimed-wood table on steel hoops", (0.95, 2.40, 0.77), "industrial", trestle_table, 2, top=m.RECLAIMED, frame=m.BLACK_STEEL, kind="box"),
     design("table", "farm-whitewash", "farmhouse table with whitewashed legs", (0.90, 1.90, 0.78), "rustic", leg_table, 2, top=m.OAK, legs=m.WHITEWASH, shape="turned", apron=0.1),
+    design("table", "bar-round", "high round walnut table on cast iron", (0.70, 0.70, 1.05), "industrial", cast_base_table, 4, top=m.WALNUT, iron=m.BLACK_STEEL),
+    design("table", "counter-birch", "counter-height birch table", (0.75, 1.40, 0.90), "minimal", leg_table, 2, top=m.BIRCH, legs=m.BIRCH, shape="square", apron=0.07),
+    design("table", "child-pine", "low pine table for children", (0.55, 0.75, 0.50), "rustic", leg_table, 2, top=m.PINE, legs=m.PINE, shape="taper", apron=0.06),
     design("table", "round-smoked", "round smoked-oak table on a drum", (1.30, 1.30, 0.75), "modern", pedestal_table, 4, top=s.SMOKED_OAK, foot=s.SMOKED_OAK, kind="drum"),
 )  # fmt: skip
