@@ -98,7 +98,7 @@ class LocalWorkers:
                     pool.shutdown(wait=False, cancel_futures=True)
                     pool = self._pool(self.count)
                     yield from (self._alone(function, item) for item in suspects)
-                for future in finished & running.keys():
+                for future in [f for f in running if f in finished]:  # in their own order
                     yield _done(running.pop(future), future)
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
@@ -123,6 +123,11 @@ def _done(item: Item, future: Future[Result]) -> Done[Item, Result]:
     if isinstance(error, Exception):
         return Done(item, None, error)
     return Done(item, future.result())
+
+
+def _call(function: Callable[[Item], Result], item: Item) -> Result:
+    """Ray takes plain functions only, and callers also bring partial ones."""
+    return function(item)
 
 
 class RayWorkers:
@@ -163,12 +168,13 @@ class RayWorkers:
     def map(self, function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Done[Item, Result]]:
         """See `Workers.map`."""
         ray = self._ray
-        remote = ray.remote(function).options(max_retries=0)
+        remote = ray.remote(_call).options(max_retries=0)
+        shared = ray.put(function)  # it may carry much, such as a library's records
         waiting, running = iter(items), dict[Any, Item]()
         try:
             while True:
                 for item in islice(waiting, self.count * _AHEAD - len(running)):
-                    running[remote.remote(item)] = item
+                    running[remote.remote(shared, item)] = item
                 if not running:
                     return
                 finished, _ = ray.wait(list(running), num_returns=1)

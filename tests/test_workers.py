@@ -2,11 +2,16 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from functools import partial
 
 import pytest
 
 from diorama_core.errors import InputError, LibraryError
 from diorama_core.workers import LocalWorkers, RayWorkers, WorkerDied, Workers, workers
+
+
+def power(number: int, exponent: int) -> int:
+    return number**exponent
 
 
 def square_or_fail(number: int) -> int:
@@ -36,6 +41,8 @@ def _check(pool: Workers) -> None:
     with pytest.raises(LibraryError):
         answers[3].unwrap()
     assert answers[4].unwrap() == 16
+    cubes = pool.map(partial(power, exponent=3), [1, 2, 3])
+    assert sorted(done.unwrap() for done in cubes) == [1, 8, 27]
 
 
 def test_failures_and_killed_processes_cost_only_their_own_piece() -> None:
