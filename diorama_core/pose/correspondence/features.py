@@ -1,0 +1,67 @@
+"""Patch features of views: what makes two patches look like the same place of a thing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from jaxtyping import Float32
+
+from diorama_core.pose.correspondence.crops import PATCHES, View, pooled
+
+
+class PatchFeatures(Protocol):
+    """Features of the 16 x 16 patches of every view, of unit length."""
+
+    def encode(self, view: View) -> Float32[np.ndarray, "v p d"]:
+        """Unit vectors, row by row of patches; zero where there is nothing of the object."""
+        ...
+
+
+@dataclass(frozen=True)
+class GeometricFeatures:
+    """Features that need no network: the normals in and around a patch, and where on the outline it lies.
+
+    A patch is told by the mean normals of itself and of its neighbours, by how much of each the object covers, and by
+    its place between the object's edges, left to right and top to bottom.
+    """
+
+    place_weight: float = 1.2
+
+    def encode(self, view: View) -> Float32[np.ndarray, "v p d"]:
+        """Unit vectors; zero for patches that the object does not reach."""
+        normals = pooled(view.normals * view.mask[..., None])
+        cover = view.patch_cover[..., None].astype(np.float32)
+        near = _with_neighbours(np.concatenate([normals, cover], axis=-1))
+        place = self.place_weight * _place(view)
+        features = np.concatenate([normals * 1.5, 0.5 * near, place], axis=-1) * (cover > 0)
+        length = np.linalg.norm(features, axis=-1, keepdims=True)
+        return np.asarray(features / np.maximum(length, 1e-6), dtype=np.float32)
+
+
+def _with_neighbours(values: Float32[np.ndarray, "v p c"]) -> Float32[np.ndarray, "v p m"]:
+    """The values of the four neighbours two patches away."""
+    v, _, c = values.shape
+    grid = np.pad(values.reshape(v, PATCHES, PATCHES, c), ((0, 0), (2, 2), (2, 2), (0, 0)))
+    around = [
+        grid[:, 2 + dy : 2 + dy + PATCHES, 2 + dx : 2 + dx + PATCHES] for dx, dy in ((-2, 0), (2, 0), (0, -2), (0, 2))
+    ]
+    return np.concatenate(around, axis=-1).reshape(v, PATCHES**2, 4 * c)
+
+
+def _place(view: View) -> Float32[np.ndarray, "v p 4"]:
+    """Sine and cosine of the place between the object's edges: a quarter turn from one edge to the other."""
+    inside = view.foreground.reshape(-1, PATCHES, PATCHES)
+    steps = np.arange(PATCHES)
+    parts = []
+    for axis in (1, 2):
+        filled = inside.any(axis=axis)
+        first = np.where(filled.any(axis=1), filled.argmax(axis=1), 0)
+        last = np.where(filled.any(axis=1), PATCHES - 1 - filled[:, ::-1].argmax(axis=1), PATCHES - 1)
+        share = (steps - first[:, None]) / np.maximum(last - first, 1)[:, None]
+        angle = np.clip(share, 0.0, 1.0) * (np.pi / 2)
+        wave = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        wide = np.broadcast_to(wave[:, None] if axis == 1 else wave[:, :, None], (len(inside), PATCHES, PATCHES, 2))
+        parts.append(wide.reshape(len(inside), PATCHES**2, 2))
+    return np.concatenate(parts, axis=-1).astype(np.float32)
