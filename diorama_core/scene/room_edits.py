@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from diorama_core.errors import EditRefused
 from diorama_core.scene.support import descendants
@@ -62,22 +62,20 @@ def set_ceiling_height(scene: Scene, height_m: float) -> Scene:
     upper = scene.architecture.by_role("ceiling") or scene.architecture.by_role("wall")
     if not upper:
         raise EditRefused("the room has neither a ceiling nor walls; there is nothing to raise or lower")
-    floor_m = floor_height(scene)
-    rise = height_m - (max(float(p.polygon[:, 2].max()) for p in upper) - floor_m)
+    ceilings = scene.architecture.by_role("ceiling")
+    rise = height_m - (max(float(p.polygon[:, 2].max()) for p in upper) - floor_height(scene))
 
     def raised(plane: Plane) -> Plane:
         if plane.role == "floor":
             return plane
-        top = (
-            plane.polygon[:, 2] > _waist(plane, floor_m) if plane.role == "wall" else np.ones(len(plane.polygon), bool)
-        )
         polygon = plane.polygon.copy()
+        top = _at_top(plane, ceilings) if plane.role == "wall" else np.ones(len(polygon), dtype=bool)
         polygon[top, 2] += rise
         return replace(plane, polygon=polygon)
 
     planes = tuple(_sound(p, raised(p)) for p in scene.architecture.planes)
-    ceilings = {p.id for p in scene.architecture.by_role("ceiling")}
-    return _carry(_with_planes(scene, planes), _fastened(scene, ceilings), np.array([0.0, 0.0, rise]))
+    held = _fastened(scene, {p.id for p in ceilings})
+    return _carry(_with_planes(scene, planes), held, np.array([0.0, 0.0, rise]))
 
 
 def rescale(scene: Scene, factor: float) -> Scene:
@@ -178,16 +176,19 @@ def _with_plane_moved(planes: tuple[Plane, ...], moved: Plane, distance_m: float
     return tuple(_sound(p, adjusted(p)) for p in planes)
 
 
-def _on_plane(points: Points, plane: Plane) -> np.ndarray:
+def _on_plane(points: Points, plane: Plane) -> Bool[np.ndarray, "n"]:
     """Which points lie on a plane, within the bounds of its polygon."""
     near = np.abs(points @ plane.normal - plane.offset) < JOINED_M
     low, high = plane.polygon.min(axis=0) - JOINED_M, plane.polygon.max(axis=0) + JOINED_M
     return np.asarray(near & ((points >= low) & (points <= high)).all(axis=1))
 
 
-def _waist(plane: Plane, floor_m: float) -> float:
-    """Height above which a wall's corners belong to its top."""
-    return 0.5 * (floor_m + float(plane.polygon[:, 2].max()))
+def _at_top(wall: Plane, ceilings: tuple[Plane, ...]) -> Bool[np.ndarray, "n"]:
+    """Which corners of a wall end it above, at a ceiling or at its highest; those of its openings do not."""
+    top = wall.polygon[:, 2] > float(wall.polygon[:, 2].max()) - JOINED_M
+    for ceiling in ceilings:
+        top |= np.abs(wall.polygon @ ceiling.normal - ceiling.offset) < JOINED_M
+    return np.asarray(top)
 
 
 def _sound(before: Plane, after: Plane) -> Plane:
