@@ -9,6 +9,7 @@ import re
 import signal
 import sys
 import threading
+import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -204,13 +205,17 @@ def _time_limit(seconds: float) -> Iterator[None]:
         yield
         return
 
+    end = time.monotonic() + seconds
+
     def stop(number: int, frame: FrameType | None) -> None:
         raise LibraryError(f"it took longer than {seconds:.0f} s")
 
     before = signal.signal(signal.SIGALRM, stop)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+    signal.setitimer(signal.ITIMER_REAL, seconds, 1.0)  # again and again: a loader may swallow what it is told
     try:
         yield
+        if time.monotonic() > end:
+            stop(0, None)
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)

@@ -75,7 +75,9 @@ class Given:
 
     def over(self, other: Given) -> Given:
         """This, and where it says nothing, the other."""
-        return replace(other, **{k: v for k, v in vars(self).items() if v not in (None, "", ()) and k != "reason"})
+        stated = {k: v for k, v in vars(self).items() if v not in (None, "", ()) and k != "reason"}
+        speakers = [g.reason for g in (self, other) if (g.up or g.front or g.unit_m or g.category) is not None]
+        return replace(other, **stated, reason=" and ".join(dict.fromkeys(speakers)) or self.reason)
 
 
 @dataclass(frozen=True)

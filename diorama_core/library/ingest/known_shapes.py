@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,11 +14,13 @@ from jaxtyping import Float, Float32
 
 from diorama_core.library.catalogue import built_in_library, default_cache_dir
 from diorama_core.library.ingest.relief import SIDE, relief
-from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.record import Shape, ShapeLibrary
 
 log = logging.getLogger(__name__)
 
-_FORMAT = 1
+_FORMAT = 3
+EACH = 6
+"""Shapes of one category that are kept, evenly spread over it: more hardly tell more."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,28 +42,41 @@ def relief_features(pictures: np.ndarray) -> Float32[np.ndarray, "*n f"]:
     return np.sqrt(pictures).reshape(*pictures.shape[:-4], -1).astype(np.float32)
 
 
-def known_shapes(cache_dir: Path | None = None, on_step: Callable[[float], None] = lambda _: None) -> KnownShapes:
-    """The built-in shapes' reliefs: read from the cache, or taken now (a quarter of a minute) and kept there.
+def known_shapes(
+    cache_dir: Path | None = None,
+    on_step: Callable[[float], None] = lambda _: None,
+    library: ShapeLibrary | None = None,
+) -> KnownShapes:
+    """Reliefs of shapes: read from the cache, or taken now (half a minute for the built-in ones) and kept there.
 
     Args:
         cache_dir: Where they are kept; the user's cache by default.
         on_step: Told the share that is done.
+        library: Whose shapes; the built-in ones by default.
     """
-    library = built_in_library()
-    shapes = library.shapes()
+    library = library or built_in_library()
+    shapes = _spread(library.shapes())
     state = hashlib.sha256(f"{_FORMAT} {SIDE} {[s.content_hash for s in shapes]}".encode()).hexdigest()[:24]
     path = (cache_dir or default_cache_dir()) / "reliefs" / f"{state}.npz"
     categories = tuple(s.category for s in shapes)
     sizes = np.log([s.size_m for s in shapes])
     kept = _read(path, len(shapes))
     if kept is None:
-        kept = _taken(library, on_step)
+        kept = _taken(library, shapes, on_step)
         _write(path, kept)
     return KnownShapes(categories, relief_features(kept.astype(np.float32) / 255.0), sizes)
 
 
-def _taken(library: ShapeLibrary, on_step: Callable[[float], None]) -> np.ndarray:
-    shapes = library.shapes()
+def _spread(shapes: Sequence[Shape]) -> list[Shape]:
+    """At most `EACH` of every category."""
+    kinds: dict[str, list[Shape]] = {}
+    for shape in shapes:
+        kinds.setdefault(shape.category, []).append(shape)
+    rows = (np.linspace(0, len(kind) - 1, min(len(kind), EACH)).round().astype(int) for kind in kinds.values())
+    return [kind[row] for kind, some in zip(kinds.values(), rows, strict=True) for row in some]
+
+
+def _taken(library: ShapeLibrary, shapes: Sequence[Shape], on_step: Callable[[float], None]) -> np.ndarray:
     found = np.zeros((len(shapes), 3, 2, SIDE, SIDE), np.uint8)
     for row, shape in enumerate(shapes):
         found[row] = np.round(relief(library.mesh(shape.id)) * 255)
