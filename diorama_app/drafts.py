@@ -8,6 +8,8 @@ from dataclasses import dataclass, field, replace
 from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
 from diorama_core.errors import InputError
 from diorama_core.library.taxonomy import resolve
+from diorama_core.models.manifest import NETWORKS
+from diorama_core.models.store import ModelStore
 
 
 @dataclass(frozen=True)
@@ -35,7 +37,9 @@ class Draft:
     @property
     def ready(self) -> bool:
         """Whether a scene with objects can be built."""
-        return self.inputs is not None and (bool(self.boxes) or self.inputs.instances is not None)
+        if self.inputs is None:
+            return False
+        return bool(self.boxes) or self.inputs.instances is not None or can_find_furniture()
 
     def with_box(self, box: Box, label: str) -> Draft:
         """A box more, highlighted."""
@@ -65,6 +69,12 @@ class Draft:
         assert self.inputs is not None
         by_box = {b.box: b for b in self.boxes}
         return tuple((i, by_box.get(b.box, b)) for i, b in self.inputs.instance_boxes)
+
+
+def can_find_furniture() -> bool:
+    """Whether a network that finds furniture is on this machine, so that nobody needs to draw boxes."""
+    store = ModelStore.default()
+    return any(store.has(n) for n in NETWORKS if n.role == "detection")
 
 
 def boxes_json(boxes: tuple[LabelledBox, ...], photo: Photo) -> bytes:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from diorama_core.artefacts import Inputs
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.build import Built, Stages, build_scene
+from diorama_core.pipeline.profiles import stages_for
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
 from diorama_core.protocols import Preview
@@ -24,11 +26,17 @@ def build_project(
 ) -> Built:
     """Build the scene of `inputs` in the project's folder and save inputs, scene, textures and what was used.
 
+    Without `stages`, the auto profile chooses them. Boxes that a network found are saved with the inputs, so that
+    people can correct them like their own.
+
     The inputs are saved first and stage results as they come, so an interrupted build resumes. The scene is
     replaced only when the build succeeded.
     """
     project.save_inputs(inputs, warnings)
+    stages = stages or stages_for("auto", inputs, library)
     built = build_scene(inputs, library, stages=stages, cache=project.stages_folder, progress=progress, preview=preview)
+    if built.inputs.boxes != inputs.boxes:
+        project.save_inputs(replace(inputs, boxes=built.inputs.boxes), warnings)
     project.save_textures(built.textures)
     project.save_scene(built.scene)
     project.save_stage_runs(built.runs)
