@@ -42,7 +42,6 @@ class Marks:
         self._client = client
         self._shown: dict[str, tuple[_Mark, list[viser.SceneNodeHandle]]] = {}
         self._colliding: frozenset[str] = frozenset()
-        self._names = 0
 
     def show(
         self,
@@ -113,13 +112,12 @@ class Marks:
 
     def _draw(self, mark: _Mark) -> list[viser.SceneNodeHandle]:
         scene, made = self._client.scene, []
-        self._names += 1
         if mark.colour is not None:
             for margin, colour in ((OUTLINE_MARGIN_M, mark.colour), (SECOND_LINE_M, (40, 24, 12))):
                 corners = box_corners(np.asarray(mark.size_m) + 2 * margin)
                 made.append(
                     scene.add_line_segments(
-                        f"{mark.node}/mark{self._names}/{'outer' if colour is mark.colour else 'inner'}",
+                        f"{mark.node}/mark/{'outer' if colour is mark.colour else 'inner'}",
                         points=np.array([[corners[a], corners[b]] for a, b in BOX_EDGES]),
                         colors=colour,
                         thickness=mark.thickness if colour is mark.colour else 1.0,
@@ -129,7 +127,7 @@ class Marks:
         if mark.tag:
             made.append(
                 scene.add_label(
-                    f"{mark.node}/mark{self._names}/tag",
+                    f"{mark.node}/mark/tag",
                     text=mark.tag.strip(),
                     position=(0.0, 0.0, mark.size_m[2] / 2 + 0.06),
                     anchor="bottom-center",

@@ -19,6 +19,9 @@ from diorama_app.marks import remove_quietly
 from diorama_app.shapes import ShapeBytes, plane_glb, plane_triangles
 from diorama_core.scene.types import Plane, Pose, Scene, SceneObject
 
+MESH_NAMES = 8
+"""An object's meshes take turns among so many names, so that what is on its way out keeps its own."""
+
 Appearance = tuple[str, tuple[float, float, float] | None]
 Pick = Callable[[str, Any], None]
 Later = Callable[[Callable[[], None]], None]
@@ -55,7 +58,6 @@ class Viewport:
         self._later = later
         self._objects: dict[str, _Shown] = {}
         self._planes: dict[str, tuple[Plane, viser.SceneNodeHandle]] = {}
-        self._names = 0
 
     def light(self, *, low_graphics: bool) -> None:
         """Soft light from all sides; shadows and an environment where the browser can afford them."""
@@ -96,6 +98,11 @@ class Viewport:
         with self._server.atomic():
             if item.id in self._objects:
                 self._show_object(item)
+
+    def mesh_name(self, object_id: str) -> str | None:
+        """The node of an object's present mesh."""
+        shown = self._objects.get(object_id)
+        return None if shown is None or shown.mesh is None else shown.mesh.name
 
     def node_name(self, object_id: str) -> str | None:
         """The frame that carries an object, for tests and for gizmos."""
@@ -145,7 +152,7 @@ class Viewport:
         # A node whose bytes change vanishes until the browser has parsed them, so the old one stays for a moment.
         data = self._shapes.glb(item.shape_id, item.colour)
         old = shown.mesh
-        shown.version += 1
+        shown.version = (shown.version + 1) % MESH_NAMES
         mesh = self._server.scene.add_glb(
             f"{shown.frame.name}/v{shown.version}", data, scale=tuple(float(s) for s in item.pose.scale)
         )
@@ -176,8 +183,9 @@ class Viewport:
             shown.mesh.scale = scale
 
     def _fresh_name(self, stem: str) -> str:
-        self._names += 1
-        return f"{stem}/{self._names}"
+        """A name not in use. Names are used again: the server keeps a few messages for every name there ever was."""
+        taken = {h.name for _, h in self._planes.values()} | {s.frame.name for s in self._objects.values()}
+        return next(name for n in range(1, len(taken) + 2) if (name := f"{stem}/{n}") not in taken)
 
 
 def quaternion(R: Float[np.ndarray, "3 3"]) -> Float[np.ndarray, "4"]:
