@@ -5,7 +5,6 @@ from __future__ import annotations
 from diorama_core.library.furniture import (
     bathroom,
     beds,
-    books,
     climate,
     containers,
     decor,
@@ -15,11 +14,11 @@ from diorama_core.library.furniture import (
     leisure,
     lighting,
     openings,
+    plain,
     plants,
     seating,
     shelving,
     storage,
-    sundries,
     tables,
     textiles,
     upholstery,
@@ -42,10 +41,9 @@ FAMILIES = (
     plants,
     kitchenware,
     decor,
-    books,
     containers,
     openings,
-    sundries,
+    plain,
     climate,
 )
 

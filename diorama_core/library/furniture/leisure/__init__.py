@@ -2,7 +2,17 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture.leisure import pianos
+from diorama_core.library.furniture.leisure import books, instruments, pianos, sports, toys
 from diorama_core.library.furniture.model import Design
 
-DESIGNS: tuple[Design, ...] = tuple(design for kind in (pianos,) for design in kind.DESIGNS)
+DESIGNS: tuple[Design, ...] = tuple(
+    design
+    for kind in (
+        pianos,
+        instruments,
+        sports,
+        books,
+        toys,
+    )
+    for design in kind.DESIGNS
+)

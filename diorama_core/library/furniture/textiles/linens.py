@@ -133,7 +133,7 @@ def draped(size: Size, cloth: Material, fringe: Material | None = None) -> Parts
     v, u = np.meshgrid(np.linspace(-1, 1, n), np.linspace(-1, 1, k), indexing="ij")
     ridge = 0.34 + 0.22 * np.sin(5.2 * u + 1.6 * v) + 0.16 * np.sin(9 * u - 3.1 * v + 1) + 0.14 * np.cos(4 * v + 2 * u)
     rim = (1 - np.abs(v) ** 6) * (1 - np.abs(u) ** 8)
-    z = h * np.clip(0.10 + 0.95 * (ridge / 0.86) ** 1.7, 0.1, 1.0) * np.clip(rim, 0.0, 1) ** 0.5
+    z = h * np.clip(0.10 + 0.95 * np.maximum(ridge / 0.86, 0.0) ** 1.7, 0.1, 1.0) * np.clip(rim, 0.0, 1) ** 0.5
     x = v * d / 2 * (1 - 0.05 * np.sin(3 * u + 1)) * (0.94 if fringe else 1.0)
     y = u * w / 2 * (1 - 0.05 * np.sin(4 * v))
     top = np.stack([x, y, np.maximum(z, 0.012)], axis=-1)

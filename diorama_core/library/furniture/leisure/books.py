@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Builder, Design, Parts, Size, both_sides, of, turned
+from diorama_core.library.furniture.model import (
+    Design,
+    Parts,
+    Size,
+    both_sides,
+    design,
+    of,
+    turned,
+)
 from diorama_core.library.furniture.solids import (
     box,
+    cylinder,
     prism,
     shell,
     superellipse,
 )
-from diorama_core.library.record import SymmetryFold
 
 COVERS = tuple(
     m.Material(f"book cover {k}", "leather", c, 0.7, 0.0, 0.3)
@@ -115,42 +121,65 @@ def magazines(size: Size) -> Parts:
     return parts
 
 
-def _d(
-    category: str, name: str, caption: str, size: Size, style: str, build: Builder, symmetry: SymmetryFold = 1
-) -> Design:
-    return Design(f"{category.replace(' ', '-')}-{name}", category, caption, size, style, build, symmetry)
+def between_ends(size: Size, seed: int, ends: Material) -> Parts:
+    """A row of books between two blocks."""
+    d, w, h = size
+    block = min(0.05, 0.14 * w)
+    parts = book_row((d, w - 2 * block - 0.004, h), seed, leaning=False)
+    return parts + of(ends, *(box((d * 0.9, block, 0.62 * h), 0.006, 2).moved(0, s * (w - block) / 2) for s in (1, -1)))
+
+
+def file_row(size: Size, tones: tuple[Material, ...]) -> Parts:
+    """Ring binders in a row, their spines toward +X."""
+    d, w, h = size
+    n = max(int(w / 0.075), 2)
+    each = w / n
+    parts: Parts = []
+    for k in range(n):
+        y = -w / 2 + each * (k + 0.5)
+        parts += of(tones[k % len(tones)], box((d, each - 0.003, h), 0.004).moved(0, y))
+        parts += of(m.PORCELAIN, box((0.002, each * 0.62, h * 0.4), 0.0008).moved(d / 2, y, h * 0.42)) + of(
+            m.STEEL, cylinder(0.013, 0.004, 0.001, 18).turned("y", 90).moved(d / 2 - 0.002, y, h * 0.16)
+        )
+    return parts
+
+
+def newspaper(size: Size) -> Parts:
+    """A folded newspaper."""
+    d, w, h = size
+    sheets = [
+        box((d * (1 - 0.012 * k), w * (1 - 0.01 * (k % 2)), h / 5 * 0.96), 0.0016).moved(
+            0.002 * (-1) ** k, 0.0, k * h / 5
+        )
+        for k in range(5)
+    ]
+    lines = [
+        box((0.004, w * 0.26, 0.0004), 0.0001).moved(x * d, y * w, h - 0.0002)
+        for x in np.linspace(-0.36, 0.18, 8)
+        for y in (-0.32, 0.0, 0.32)
+    ]
+    head = [
+        box((0.03, w * 0.8, 0.0004), 0.0001).moved(d * 0.38, 0, h - 0.0002),
+        box((d * 0.2, w * 0.4, 0.0005), 0.0001).moved(d * 0.02, -w * 0.22, h - 0.0002),
+    ]
+    return of(NEWSPRINT, *sheets) + of(m.CHARCOAL, *lines, *head)
+
+
+NEWSPRINT = m.Material("newsprint", "paper", "#d9d4c8", 0.95, 0.0, 0.3)
 
 
 DESIGNS: tuple[Design, ...] = (
-    _d(
-        "books",
-        "stack-small",
-        "stack of three books",
-        (0.17, 0.24, 0.09),
-        "classic",
-        partial(book_stack, count=3, seed=1),
-    ),
-    _d(
-        "books", "stack-tall", "tall stack of books", (0.20, 0.28, 0.22), "modern", partial(book_stack, count=7, seed=4)
-    ),
-    _d(
-        "books",
-        "stack-large",
-        "stack of large picture books",
-        (0.25, 0.33, 0.13),
-        "minimal",
-        partial(book_stack, count=4, seed=9),
-    ),
-    _d("books", "row", "row of books", (0.19, 0.42, 0.26), "classic", partial(book_row, seed=3)),
-    _d(
-        "books",
-        "row-long",
-        "long row of books",
-        (0.18, 0.72, 0.25),
-        "classic",
-        partial(book_row, seed=8, leaning=False),
-    ),
-    _d("books", "open", "open book", (0.24, 0.34, 0.035), "minimal", partial(open_book, cover=COVERS[1])),
-    _d("books", "single", "single book", (0.15, 0.22, 0.03), "minimal", partial(book_stack, count=1, seed=6)),
-    _d("books", "magazines", "pile of magazines", (0.24, 0.31, 0.05), "modern", magazines),
-)
+    design("books", "stack-small", "stack of three books", (0.17, 0.24, 0.09), "classic", book_stack, count=3, seed=1),
+    design("books", "stack-tall", "tall stack of books", (0.20, 0.28, 0.22), "modern", book_stack, count=7, seed=4),
+    design("books", "stack-large", "stack of large picture books", (0.25, 0.33, 0.13), "minimal", book_stack, count=4, seed=9),
+    design("books", "row", "row of books", (0.19, 0.42, 0.26), "classic", book_row, seed=3),
+    design("books", "row-long", "long row of books", (0.18, 0.72, 0.25), "classic", book_row, seed=8, leaning=False),
+    design("books", "open", "open book", (0.24, 0.34, 0.035), "minimal", open_book, cover=COVERS[1]),
+    design("books", "single", "single book", (0.15, 0.22, 0.03), "minimal", book_stack, count=1, seed=6),
+    design("books", "magazines", "pile of magazines", (0.24, 0.31, 0.05), "modern", magazines),
+    design("books", "ends-marble", "row of books between marble blocks", (0.19, 0.46, 0.25), "modern", between_ends, seed=5, ends=m.MARBLE),
+    design("books", "ends-oak", "row of books between oak blocks", (0.18, 0.36, 0.23), "rustic", between_ends, seed=12, ends=m.OAK),
+    design("books", "binders", "row of ring binders", (0.28, 0.45, 0.32), "industrial", file_row, tones=(m.NAVY, m.GREY, m.CHARCOAL)),
+    design("books", "stack-five", "stack of five novels", (0.14, 0.21, 0.14), "rustic", book_stack, count=5, seed=15),
+    design("books", "newspaper", "folded newspaper", (0.30, 0.38, 0.016), "classic", newspaper),
+)  # fmt: skip
