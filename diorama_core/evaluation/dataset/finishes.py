@@ -7,6 +7,7 @@ gives the same picture. Nothing is read from files.
 from __future__ import annotations
 
 import zlib
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -68,16 +69,21 @@ def finish_textures(architecture: Architecture) -> dict[str, UInt8[np.ndarray, "
 def finish_picture(plane: Plane) -> UInt8[np.ndarray, "h w 3"]:
     """The picture of one plane's finish."""
     assert plane.texture is not None
-    _, style, colour, seed = plane.texture.split(":")
-    extent = plane_rectangle(plane)[2]
-    scale = min(TEXELS_PER_M, LARGEST_TEXELS / extent.max())
-    width, height = (max(8, round(float(e) * scale)) for e in extent)
-    rng = np.random.default_rng((int(seed), zlib.crc32(f"{plane.role}{plane.id}".encode())))
+    u, v = (round(float(e), 4) for e in plane_rectangle(plane)[2])
+    return _picture(plane.texture, plane.role, plane.id, u, v)
+
+
+@lru_cache(maxsize=24)
+def _picture(name: str, role: str, plane_id: str, width_m: float, height_m: float) -> UInt8[np.ndarray, "h w 3"]:
+    _, style, colour, seed = name.split(":")
+    scale = min(TEXELS_PER_M, LARGEST_TEXELS / max(width_m, height_m))
+    width, height = (max(8, round(e * scale)) for e in (width_m, height_m))
+    rng = np.random.default_rng((int(seed), zlib.crc32(f"{role}{plane_id}".encode())))
     paint = {
         "planks": _planks, "parquet": _parquet, "tiles": _tiles, "checker": _checker, "carpet": _carpet,
         "paint": _paint, "paper": _paper, "brick": _brick, "panelled": _panelled,
     }[style]  # fmt: skip
-    picture = paint(height, width, scale, np.array(COLOURS[colour]), rng, plane.role)
+    picture = paint(height, width, scale, np.array(COLOURS[colour]), rng, role)
     return np.clip(np.rint(picture * 255), 0, 255).astype(np.uint8)
 
 

@@ -32,7 +32,7 @@ def _daylight(window: SceneObject, size: np.ndarray) -> Lighting:
     return Lighting(
         window_centre=window.pose.position + R[:, 0] * 0.12,
         window_edges=np.stack([R[:, 1] * window.size_m[1] / 2, R[:, 2] * window.size_m[2] / 2]),
-        window_irradiance=np.array([0.85, 0.83, 0.8]),
+        window_irradiance=np.array([0.72, 0.7, 0.67]),
         reference_m=0.55 * float(np.linalg.norm(size[:2])),
         sky=np.array([0.56, 0.55, 0.53]),
         ground=np.array([0.38, 0.36, 0.34]),
