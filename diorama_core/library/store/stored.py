@@ -84,6 +84,10 @@ class StoredLibrary:
         """What was repaired or left out when the shape was taken in."""
         return self._row(shape_id).warnings
 
+    def source_key(self, shape_id: str) -> str:
+        """Names the state of the file that a shape came from; a corrected shape keeps it."""
+        return self._row(shape_id).source_key
+
     def source_keys(self) -> frozenset[str]:
         """The source key of everything kept: what a resumed run need not read again."""
         return self._records.source_keys()
