@@ -9,6 +9,7 @@ from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.architecture.ceilings import CeilingPiece
+from diorama_core.architecture.openings import Opening, with_openings
 from diorama_core.architecture.wall_sequence import BEHIND_CAMERA_M, WallPiece
 from diorama_core.geometry.planes import clip_polygon
 from diorama_core.scene.types import Camera, Plane
@@ -26,6 +27,7 @@ def room_planes(
     camera: Camera,
     top_m: float,
     floor_confidence: float,
+    openings: tuple[tuple[Opening, ...], ...] = (),
 ) -> tuple[Plane, ...]:
     """Floor, walls and ceilings as planes that share their corners.
 
@@ -35,14 +37,16 @@ def room_planes(
         camera: The photo's.
         top_m: Where walls end under no ceiling.
         floor_confidence: Of the floor.
+        openings: Doorways and windows of each wall.
     """
     ground = floor_outline(pieces, camera)
     base = np.concatenate([ground, np.zeros((len(ground), 1))], axis=1)
     planes = [Plane("floor", "floor", base, confidence=floor_confidence)]
     bounds = _bounds(ceilings, top_m)
-    for piece in pieces:
+    for piece, cut in zip(pieces, openings or ((),) * len(pieces), strict=True):
         polygon = wall_polygon(piece, bounds)
         if len(polygon) >= 3:
+            polygon = with_openings(polygon, cut)
             sure = GUESS_CONFIDENCE if piece.candidate is None else max(0.3, 0.95 - piece.candidate.seen_through)
             planes.append(Plane(f"wall_{len(planes)}", "wall", polygon, confidence=sure))
     polygons = [p for p in (_ceiling_polygon(c, ceilings, bounds, base) for c in ceilings) if len(p) >= 3]

@@ -9,6 +9,7 @@ import numpy as np
 from diorama_core.architecture.ceilings import CeilingPiece, find_ceilings
 from diorama_core.architecture.closed_room import GUESS_CONFIDENCE, room_planes
 from diorama_core.architecture.colours import coloured, object_pixels
+from diorama_core.architecture.openings import Opening, find_openings
 from diorama_core.architecture.supports import resolve_supports
 from diorama_core.architecture.surface import MeasuredSurface, measured_surface
 from diorama_core.architecture.wall_candidates import find_walls, tolerance_m
@@ -53,7 +54,9 @@ class PlanarRoom:
         guessed = not pieces
         pieces = pieces or (_guessed_wall(surface, geometry.camera),)
         floor_seen = _share(surface, 0.0, 1.0) > MIN_FLAT_SHARE
-        planes = room_planes(pieces, ceilings, geometry.camera, top_m, 0.95 if floor_seen else GUESS_CONFIDENCE)
+        openings = tuple(find_openings(surface, p, top_m) if not _sloped(ceilings) else () for p in pieces)
+        sure = 0.95 if floor_seen else GUESS_CONFIDENCE
+        planes = room_planes(pieces, ceilings, geometry.camera, top_m, sure, openings)
         planes = coloured(planes, inputs.photo.rgb, geometry.camera, objects)
         architecture = Architecture(planes)
         progress.report(1.0, "The room is closed")
@@ -61,7 +64,7 @@ class PlanarRoom:
             architecture=architecture,
             supports=resolve_supports(geometry, architecture),
             confidence=float(np.mean([p.confidence for p in architecture.planes])),
-            source=_source(pieces, guessed, floor_seen, ceilings),
+            source=_source(pieces, guessed, floor_seen, ceilings, openings),
         )
 
 
@@ -103,7 +106,17 @@ def _guessed_wall(surface: MeasuredSurface, camera: Camera) -> WallPiece:
     return WallPiece(np.array([origin[0] + span[0] - 0.3, y]), np.array([origin[0] + span[1] + 0.3, y]), None)
 
 
-def _source(pieces: tuple[WallPiece, ...], guessed: bool, floor_seen: bool, ceilings: tuple[CeilingPiece, ...]) -> str:
+def _sloped(ceilings: tuple[CeilingPiece, ...]) -> bool:
+    return any(not c.is_flat for c in ceilings)
+
+
+def _source(
+    pieces: tuple[WallPiece, ...],
+    guessed: bool,
+    floor_seen: bool,
+    ceilings: tuple[CeilingPiece, ...],
+    openings: tuple[tuple[Opening, ...], ...],
+) -> str:
     seen = sum(p.candidate is not None for p in pieces)
     walls = "no wall was measured; one is assumed behind everything seen" if guessed else f"{seen} walls measured"
     assumed = "" if guessed or seen == len(pieces) else f" and {len(pieces) - seen} assumed to close the room"
@@ -111,4 +124,8 @@ def _source(pieces: tuple[WallPiece, ...], guessed: bool, floor_seen: bool, ceil
     slopes = sum(not c.is_flat for c in ceilings)
     overhead = [f"ceiling at {-c.offset:.2f} m" for c in ceilings if c.is_flat]
     overhead += [f"{slopes} sloped ceiling{'s' * (slopes > 1)}"] * bool(slopes)
-    return f"planes of the measured depth: {floor}, {walls}{assumed}, {' and '.join(overhead) or 'ceiling not seen'}"
+    above = " and ".join(overhead) or "ceiling not seen"
+    doors, cut = sum(o.is_doorway for wall in openings for o in wall), sum(len(wall) for wall in openings)
+    counted = ((doors, "doorway"), (cut - doors, "window"))
+    through = "".join(f", {n} {name}{'s' * (n > 1)}" for n, name in counted if n)
+    return f"planes of the measured depth: {floor}, {walls}{assumed}, {above}{through}"

@@ -31,7 +31,7 @@ MIN_AREA_M2 = 0.15
 MIN_POINTS = 120
 MIN_RISE_M = 0.4
 """A wall's points span at least this height."""
-MAX_SEEN_THROUGH = 0.35
+MAX_SEEN_THROUGH = 0.5
 """A wall of which a larger share is seen through is furniture: windows and doorways stay below."""
 
 

@@ -121,7 +121,9 @@ def _wall_costs(
     margin = 0.10 + 2.0 * tolerance_m(surface.depth_m)
     beyond = (share > 0) & (rest > margin) & (crossing[:, 2] > 0.05) & (crossing[:, 2] < top_m - 0.05)
     lintel = _lintel_heights(surface, on, headings)
-    doorway = beyond & (rest > MIN_DOORWAY_DEPTH_M) & (crossing[:, 2] < lintel[headings.of_point])
+    below = beyond & (crossing[:, 2] < lintel[headings.of_point])
+    deep = _count(below & (rest > MIN_DOORWAY_DEPTH_M), headings) > 0.5 * _count(below, headings)
+    doorway = below & deep[headings.of_point]
     evidence = _count(on | doorway, headings) / (FULL_EVIDENCE * headings.rows_px)
     conflict = _count(beyond & ~doorway, headings) / (FULL_CONFLICT * headings.rows_px)
     costs = 1.0 - np.minimum(evidence, 1.0) + CONFLICT_COST * np.minimum(conflict, 1.0)
