@@ -190,10 +190,14 @@ def _known() -> KnownShapes:
 
 @cache
 def _bound_memory(most: int) -> None:
-    """Let this process have no more address space than `most`, where the system can do that."""
+    """Let this process take no more than `most` of address space besides what it has, where the system can do that.
+
+    What it has may be much: Ray's workers map the memory that they share.
+    """
     if sys.platform == "linux" and threading.current_thread() is threading.main_thread():
         import resource
 
+        most += int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
         _, hard = resource.getrlimit(resource.RLIMIT_AS)
         resource.setrlimit(resource.RLIMIT_AS, (most if hard < 0 else min(most, hard), hard))
 
