@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Bool, UInt8
 
 from diorama_core.artefacts import DetectedObject
+from diorama_core.library.taxonomy import with_kin
 
 KEEP_THEIR_OWN = frozenset(
     {
@@ -17,7 +18,7 @@ KEEP_THEIR_OWN = frozenset(
     }
 )
 """Categories whose look is not one colour of one main material."""
-SETS = frozenset({"chair", "office chair", "stool"})
+SETS = with_kin("chair", "office chair", "stool")
 """Categories whose equal shapes in one room are a set."""
 _BIN = 20.0
 _FEWEST_PIXELS = 60

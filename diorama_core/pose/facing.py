@@ -13,10 +13,11 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import Cuboid, DepthMap, DetectedObject
+from diorama_core.library.taxonomy import broad, with_kin
 from diorama_core.scene.types import Camera
 
-_TABLES = frozenset({"table", "desk", "coffee table", "side table", "kitchen counter", "piano", "console table"})
-_AT_TABLES = frozenset({"chair", "office chair", "stool", "bench", "armchair", "sofa"})
+_TABLES = with_kin("table", "desk", "coffee table", "side table", "kitchen counter", "piano", "console table")
+_AT_TABLES = with_kin("chair", "office chair", "stool", "bench", "armchair", "sofa")
 _TOWARD_VIEWER = frozenset({"monitor", "television", "laptop", "picture", "mirror", "clock", "keyboard", "microwave"})
 _NO_FRONT = frozenset(
     {
@@ -118,7 +119,7 @@ def facing_of(
     table = _nearest_table(thing.category, cuboid, cuboids, categories)
     if table is not None:
         return Facing(((1.2, _axis_toward(cuboid, table.centre[:2] - cuboid.centre[:2])), (0.1, toward_camera)))
-    wishes = [(_TOWARD_CAMERA.get(thing.category, 2.0), toward_camera)]
+    wishes = [(_TOWARD_CAMERA.get(broad(thing.category), 2.0), toward_camera)]
     wishes += [(weight, direction) for weight, direction in _away_from_walls(cuboid, walls) if weight > 0.05]
     wishes += _away_from_pillows(cuboid, pillows)
     middle = np.mean([c.centre[:2] for c in cuboids], axis=0) - cuboid.centre[:2]
@@ -170,7 +171,7 @@ def _nearest_table(
     """The table that a seat is drawn up to, if one is near enough."""
     if category not in _AT_TABLES:
         return None
-    lounge = category in ("sofa", "armchair")
+    lounge = broad(category) in ("sofa", "armchair")
     wanted = frozenset({"coffee table"}) if lounge else _TABLES
     reach = _DRAWN_UP_COFFEE_M if lounge else _DRAWN_UP_M
     near = [

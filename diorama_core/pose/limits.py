@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.library.taxonomy import UNKNOWN, SizePrior, category
+from diorama_core.library.taxonomy import UNKNOWN, SizePrior, category, with_kin
 
 _SIGMAS = 2.3
 _STRETCH_SHAPED = float(np.log(1.28))
@@ -17,14 +17,12 @@ _DEGENERATE_M = 1e-3
 _OWN_SIZE_FACTOR = 1.3
 """Whatever its kind's usual size, a shape may be this much smaller or larger than it was made."""
 
-BOXY = frozenset(
-    {
-        *("bench", "table", "desk", "coffee table", "side table", "console table", "kitchen counter", "bed", "sofa"),
-        *("ottoman", "night stand", "dresser", "cabinet", "sideboard", "tv stand", "bookshelf", "wardrobe", "shelves"),
-        *("refrigerator", "stove", "washing machine", "microwave", "sink", "bathtub", "piano", "radiator"),
-        *("television", "monitor", "computer", "keyboard", "books", "box", "rug", "object"),
-        *("picture", "mirror", "curtain", "window", "door"),
-    }
+BOXY = with_kin(
+    *("bench", "table", "desk", "coffee table", "side table", "console table", "kitchen counter", "bed", "sofa"),
+    *("ottoman", "night stand", "dresser", "cabinet", "sideboard", "tv stand", "bookshelf", "wardrobe", "shelves"),
+    *("refrigerator", "stove", "washing machine", "microwave", "sink", "bathtub", "piano", "radiator"),
+    *("television", "monitor", "computer", "keyboard", "books", "box", "rug", "object"),
+    *("picture", "mirror", "curtain", "window", "door"),
 )
 """Categories that come in all proportions; the others keep theirs more strictly."""
 

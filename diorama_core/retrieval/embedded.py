@@ -16,7 +16,7 @@ from diorama_core.geometry.palettes import Palette, palette_agreement, palette_o
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.library.taxonomy import UNKNOWN
+from diorama_core.library.taxonomy import UNKNOWN, with_kin
 from diorama_core.progress import Progress
 from diorama_core.retrieval.pools import Pool, Wish, pool_for, size_cost
 from diorama_core.scene.types import Support, yaw_rotation
@@ -24,7 +24,7 @@ from diorama_core.scene.types import Support, yaw_rotation
 _SIMILAR_LOG_SIZE = 0.45
 _SIMILAR_LOG_SIZE_OF_SEATS = 0.8
 """Seats in one room are usually of a set, so that different sizes are rather errors of measurement."""
-_SEATS = frozenset({"chair", "office chair", "stool", "armchair"})
+_SEATS = with_kin("chair", "office chair", "stool", "armchair")
 _UNNAMED_OUTLINE, _UNNAMED_SIZE = 3.0, 0.5
 """How much more the outline, and how much less the guessed size, of a thing without a name counts."""
 _OWN_EVIDENCE = 0.4

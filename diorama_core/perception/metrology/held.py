@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.library.taxonomy import UNKNOWN
+from diorama_core.library.taxonomy import UNKNOWN, with_kin
 from diorama_core.perception.metrology.evidence import Evidence
 from diorama_core.perception.metrology.priors import (
     SizeMode,
@@ -28,9 +28,10 @@ _BACK_COST = 2.5
 """Of lying on a backrest or headboard."""
 _ABOVE_PARENT = 0.5
 """Share of a thing's width that must lie within its supporter's box."""
-AGAINST_WALLS = frozenset(
-    ["bed", "dresser", "cabinet", "sideboard", "console table", "tv stand", "bookshelf", "wardrobe", "refrigerator"]
-).union(["stove", "night stand", "kitchen counter", "washing machine", "toilet", "piano"])
+AGAINST_WALLS = with_kin(
+    *("bed", "dresser", "cabinet", "sideboard", "console table", "tv stand", "bookshelf", "wardrobe", "refrigerator"),
+    *("stove", "night stand", "kitchen counter", "washing machine", "toilet", "piano"),
+) - {"kitchen island", "bar cart"}
 """Categories whose backs stand at walls."""
 _SEATS_WITHOUT_SUPPORT_FLAG_COST = 2.0
 _FLAT_M = 0.2
@@ -40,7 +41,7 @@ _BACK_SHARE = {("bed", "pillow"): 0.45}
 _SEAT_THINGS = frozenset({"pillow", "toy", "books", "laptop", "basket", "box"})
 _ODD_ON_SEAT_COST = 2.0
 """Of anything else lying on a seat or a bed."""
-_SHELVED = frozenset({"bookshelf", "shelves", "tv stand", "cabinet", "desk"})
+_SHELVED = with_kin("bookshelf", "shelves", "tv stand", "cabinet", "desk")
 _USUAL_MIDDLE_M = {
     "picture": 1.5,
     "mirror": 1.45,

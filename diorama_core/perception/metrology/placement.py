@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.geometry.projection import cuboid_corners
-from diorama_core.library.taxonomy import UNKNOWN, Category
+from diorama_core.library.taxonomy import UNKNOWN, Category, with_kin
 from diorama_core.perception.metrology.arrangement import arrange, distinct
 from diorama_core.perception.metrology.evidence import Evidence
 from diorama_core.perception.metrology.floor import place_on_floor, solve_all
@@ -42,8 +42,8 @@ _SCREEN_ON_WALL_COST, _SCREEN_ON_FLOOR_COST = 3.0, 12.0
 _BESIDE_ITS_SUPPORTER_COST = 20.0
 """For a thing on the floor, or on a wall, that belongs on something its box rests in."""
 _FIXED_TO_WALLS = frozenset({"door", "window", "curtain", "radiator"})
-_LARGE = _FIXED_TO_WALLS | frozenset(
-    ("sofa", "bed", "wardrobe", "table", "desk", "bathtub", "piano", "dresser", "bookshelf", "refrigerator", "rug")
+_LARGE = _FIXED_TO_WALLS | with_kin(
+    *("sofa", "bed", "wardrobe", "table", "desk", "bathtub", "piano", "dresser", "bookshelf", "refrigerator", "rug")
 )
 """Things that never stand on others."""
 _SURE_COST = 12.0

@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from diorama_core.artefacts import DetectedObject
+from diorama_core.library.taxonomy import with_kin
 from diorama_core.perception.metrology.problem import Cuboids, Problems, View, corners_camera
 
 DIAGONALS: Float[np.ndarray, "4 2"] = np.array([[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]])
@@ -21,10 +22,10 @@ _BEYOND_SIGMA_GUESSED = 0.12
 """The same for masks that are not the user's own."""
 _EMPTY_SIGMA_SOLID = 0.13
 _EMPTY_SIGMA = 0.35
-_SOLID = frozenset(
-    ["dresser", "cabinet", "sideboard", "night stand", "wardrobe", "refrigerator", "stove", "washing machine"]
-).union(
-    ["tv stand", "bookshelf", "box", "picture", "mirror", "door", "window", "television", "kitchen counter", "ottoman"]
+_SOLID = with_kin(
+    *("dresser", "cabinet", "sideboard", "night stand", "wardrobe", "refrigerator", "stove", "washing machine"),
+    *("tv stand", "bookshelf", "box", "picture", "mirror", "door", "window", "television", "kitchen counter"),
+    "ottoman",
 )
 """Categories whose things fill their cuboids."""
 _LEAST_CONFIDENCE = 0.5
