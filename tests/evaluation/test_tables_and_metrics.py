@@ -1,0 +1,233 @@
+"""Metrics on hand-made cases with known answers; tables that carry the paper's rows and count failures."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diorama_core.artefacts import Inputs, Photo
+from diorama_core.evaluation import paper
+from diorama_core.evaluation.architecture_bench import RoomResult, architecture_table
+from diorama_core.evaluation.architecture_metrics import architecture_scores
+from diorama_core.evaluation.cases import STANDARD_SCENES, recipe
+from diorama_core.evaluation.dataset.truth import TruthView, in_photo_world, moved
+from diorama_core.evaluation.pose_bench import (
+    GroupCounts,
+    ablation_table,
+    all_in_one_table,
+    category_table,
+    groups_table,
+    pose_table,
+    retrievals_table,
+    with_true_architecture,
+    with_true_graph,
+)
+from diorama_core.evaluation.retrieval_bench import ObjectResult, recall_table, retrieval_table
+from diorama_core.evaluation.rooms import box_library, generate_room, room_box
+from diorama_core.evaluation.scene_metrics import SceneScores, scene_scores, without_unasked
+from diorama_core.evaluation.shape_metrics import chamfer, shape_distance
+from diorama_core.evaluation.speed_bench import (
+    Series,
+    committed_figures,
+    growth_exponent,
+    regression_table,
+    search_by_library,
+    speed_table,
+)
+from diorama_core.evaluation.system_bench import CaseResult, scene_table, system_table
+from diorama_core.scene.types import Camera, Intrinsics, Scene, yaw_rotation
+
+SIZE = (80, 60)
+
+
+@pytest.fixture(scope="module")
+def library():
+    return box_library()
+
+
+@pytest.fixture(scope="module")
+def view(library) -> TruthView:
+    """Two boxes on a floor and a lamp on one of them, by hand; every object's box is its number."""
+    room = generate_room(3, 8).truth
+    objects = tuple(
+        replace(o, mask_id=k + 1, box_px=(10.0 * k, 0.0, 10.0 * k + 9, 9.0)) for k, o in enumerate(room.objects)
+    )
+    T = np.eye(4)
+    T[:3, :3] = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0.0]])
+    T[:3, 3] = [0, -2, 1.5]
+    scene = replace(room, objects=objects, camera=Camera(Intrinsics.from_fov(*SIZE, 1.2), T))
+    ids = np.full((SIZE[1], SIZE[0]), -1, np.int32)
+    blank = np.zeros((SIZE[1], SIZE[0]), np.float32)
+    photo = Photo(np.zeros((SIZE[1], SIZE[0], 3), np.uint8), "x.png", SIZE)
+    return TruthView(
+        Inputs(photo), scene, np.zeros((*blank.shape, 3), np.float32), ids, ids, blank, ids, photo.rgb,
+        tuple(None for _ in objects), np.ones(len(objects)),
+    )  # fmt: skip
+
+
+def test_the_truth_scores_full_marks(view, library):
+    scores = scene_scores(view, without_unasked(view), library)
+    assert scores.found == scores.asked == 8
+    assert scores.pairs.acc == scores.every.acc == scores.own.acc == 1
+    assert scores.relation == 1
+    assert scores.structure == 1
+    assert scores.shape_distance == 0
+    assert scores.supported == 1
+    assert scores.out_of_bounds == 0
+
+
+def test_another_frame_changes_nothing(view, library):
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = yaw_rotation(0.7), [1, 2, 0]
+    scores = scene_scores(view, moved(without_unasked(view), T), library)
+    assert scores.own.acc == 1
+    assert scores.out_of_bounds == 0
+
+
+def test_missing_moved_and_floating_objects_count(view, library):
+    truth = without_unasked(view)
+    first, *rest = truth.objects
+    lifted = replace(rest[0], pose=rest[0].pose.moved([0, 0, 0.5]))
+    left = {o.id for o in (lifted, *rest[1:])}
+    edges = tuple(s for s in truth.supports if s.child in left and (s.parent in left or truth.has_plane(s.parent)))
+    scores = scene_scores(view, replace(truth, objects=(lifted, *rest[1:]), supports=edges), library)
+    assert scores.found == 7
+    assert scores.own.acc == pytest.approx(6 / 8)
+    assert scores.every.acc == 0
+    assert scores.relation < 1
+    assert scores.supported < 1
+    outside = replace(first, pose=first.pose.moved([20, 0, 0]))
+    far = scene_scores(view, replace(truth, objects=(outside, *rest)), library)
+    assert far.out_of_bounds == pytest.approx(1 / 8)
+
+
+def test_an_empty_scene_is_a_failure_not_a_crash(view, library):
+    scores = scene_scores(view, Scene(camera=view.camera), library)
+    assert scores.found == 0
+    assert scores.pairs.acc == 0
+    assert SceneScores.failed(8).own.count == 8
+
+
+def test_the_photo_world_is_below_the_camera(view):
+    turned = np.eye(4)
+    turned[:3, :3], turned[:3, 3] = yaw_rotation(np.pi), [3, 1, 0]
+    scene = in_photo_world(moved(view.scene, turned))
+    assert np.allclose(scene.camera.position[:2], 0)
+    assert np.allclose(scene.camera.T_world_camera[:3, 2], [0, 1, 0], atol=1e-9)
+
+
+def test_truth_put_into_a_prediction(view):
+    scene = without_unasked(view)
+    lost = replace(scene, supports=())
+    assert with_true_graph(view, lost).supports == scene.supports or {
+        (s.child, s.parent) for s in with_true_graph(view, lost).supports
+    } == {(s.child, s.parent) for s in scene.supports}
+    smaller = replace(scene, architecture=room_box(3.0, 3.0))
+    assert with_true_architecture(view, smaller).architecture == view.scene.architecture
+
+
+def test_chamfer_of_known_points():
+    a = np.array([[0.0, 0, 0], [1, 0, 0]])
+    assert chamfer(a, a) == 0
+    assert chamfer(a, a + np.array([0, 0.1, 0])) == pytest.approx(0.02)
+    assert chamfer(a, a[:1]) == pytest.approx(0.5)
+
+
+def test_shapes_of_a_kind_are_nearer_than_others(library):
+    tables = [s.id for s in library.in_category("table")]
+    lamp = library.in_category("lamp")[0].id
+    assert shape_distance(library, tables[0], tables[0]) == 0
+    near, far = shape_distance(library, tables[0], tables[1]), shape_distance(library, tables[0], lamp)
+    assert 0 < near < far
+    assert shape_distance(library, lamp, tables[0]) == pytest.approx(far)
+
+
+def test_growth_exponents():
+    assert growth_exponent([(1, 2.0), (10, 200.0), (100, 20000.0)]) == pytest.approx(2.0)
+    assert growth_exponent([(1, 2.0)]) == 0
+    series = search_by_library(0, (200, 400))
+    assert [q for q, _ in series.points] == [200, 400]
+
+
+def test_regressions_show():
+    table = regression_table({"a": 5.0, "b": 1.0, "eager over x": 10.0}, {"a": 1.0, "b": 1.0, "eager over x": 100.0})
+    assert {r.name: r.values[-1] for r in table.rows} == {"a": "slower", "b": "", "eager over x": "slower"}
+    assert isinstance(committed_figures(), dict)
+
+
+def test_the_recipe_is_long_enough_and_names_are_unique():
+    cases = recipe()
+    assert len(cases) >= 180
+    assert STANDARD_SCENES >= 60
+    assert len({c.name for c in cases}) == len(cases)
+    assert recipe(2, 1, 5) == recipe(4, 1, 5)[:2]
+
+
+def _tables():
+    failed = SceneScores.failed(4)
+    result = CaseResult("living-0-0", failed, 1.0, 1.0, "DioramaError: nothing")
+    item = ObjectResult("living-0-0", "a", "chair", ("furniture", "complete"), 5.0, 4.0, 9.0, 8.0, 2)
+    room = room_box(4.0, 4.0).planes
+    view = Camera(Intrinsics.from_fov(*SIZE, 1.2), moved_camera())
+    scores = architecture_scores(room, room, view)
+    counts = (
+        ("furniture", GroupCounts(3, 0.5, 0.6, 0.7, 0.4, 0.3)),
+        ("category: chair", GroupCounts(3, 0, 0, 0, 0, 0.5)),
+    )
+    rooms = [("none", [failed]), ("O, P, S, R", [failed]), ("all-in-one", [failed]), ("feasible", [failed])]
+    return {
+        "system": system_table([("true masks and depth", [result])]),
+        "scenes": scene_table([("true masks and depth", [result])]),
+        "architecture": architecture_table([("d", [RoomResult("a", scores, 0.1), RoomResult("b", None, 0.1)])]),
+        "retrieval": retrieval_table([item]),
+        "recall": recall_table([item]),
+        "pose": pose_table("Pose", [failed], paper.POSE_TRUE_DEPTH),
+        "groups": groups_table(counts),
+        "retrievals": retrievals_table([(1, [failed], [failed])]),
+        "ablation": ablation_table(rooms),
+        "all": all_in_one_table(rooms),
+        "category": category_table(counts),
+        "speed": speed_table([Series("x", "objects", ((1, 0.1), (10, 1.0)))], "objects"),
+    }
+
+
+def moved_camera() -> np.ndarray:
+    T = np.eye(4)
+    T[:3, :3] = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0.0]])
+    T[:3, 3] = [0, -1, 1.4]
+    return T
+
+
+WITHOUT_PAPER = ("scenes", "recall", "speed")
+
+
+TABLES = (
+    "ablation", "all", "architecture", "category", "groups", "pose", "recall", "retrieval", "retrievals", "scenes",
+    "speed", "system",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_tables_stand_beside_the_papers(name):
+    table = _tables()[name]
+    text = table.to_markdown()
+    assert ("other dataset" in text) == (name not in WITHOUT_PAPER)
+    rows = [line for line in text.splitlines() if line.startswith("|")]
+    assert len({line.count("|") for line in rows}) == 1
+    assert json.loads(json.dumps(table.to_json()))["rows"]
+
+
+def test_failures_are_counted():
+    tables = _tables()
+    assert tables["system"].row("true masks and depth, mean over pairs")["failed"] == 1
+    assert tables["system"].row("true masks and depth, mean over pairs")["Acc"] == 0
+    row = tables["architecture"].row("d")
+    assert row["success"] == 0.5
+    assert row["IoU"] == pytest.approx(50, abs=1)
+    assert row["PE"] == pytest.approx(50, abs=1)
+    assert tables["retrieval"].row("embedded, first")["furniture OOD"] == 9
+    assert tables["recall"].row("all")["first five"] == 1
+    assert tables["category"].row("embedded, true depth and shapes")["chair"] == 50
