@@ -28,6 +28,7 @@ from diorama_app.panels.outliner import Outliner
 from diorama_app.panels.photo import PhotoPanel
 from diorama_app.panels.projects import Projects
 from diorama_app.panels.properties import Properties
+from diorama_app.panels.room_size import RoomSize
 from diorama_app.panels.supports import Supports
 from diorama_app.panels.toast import Toasts
 from diorama_app.panels.toolbar import Toolbar
@@ -145,7 +146,7 @@ class Editor:
         ]
         left = gui.add_tab_group()
         with left.add_tab("Scene"):
-            panels.append(Outliner(gui, guest))
+            panels += [Outliner(gui, guest), RoomSize(gui, guest)]
         with left.add_tab("Photo"):
             panels.append(PhotoPanel(gui, guest, self.views))
         with left.add_tab("Arrange"):

@@ -15,6 +15,8 @@ SEED_SHARE = 0.035
 MARGIN = 0.25
 LONGEST_PX = 320
 ROUNDS = 4
+LIKE = 14
+"""Neighbouring pixels within so much of a click's colour probably belong together with it."""
 _SEED = 7
 
 
@@ -51,7 +53,11 @@ class Outline:
         labels[0, :] = labels[-1, :] = labels[:, 0] = labels[:, -1] = cv2.GC_BGD
         radius = max(2, round(SEED_SHARE * float(np.hypot(x2 - x1, y2 - y1)) * scale))
         for x, y, part in self.clicks:
-            centre = (round((x - left) * scale), round((y - top) * scale))
+            centre = (
+                min(max(round((x - left) * scale), 0), size[0] - 1),
+                min(max(round((y - top) * scale), 0), size[1] - 1),
+            )
+            labels[_like(small, centre)] = cv2.GC_PR_FGD if part else cv2.GC_PR_BGD
             cv2.circle(labels, centre, radius, int(cv2.GC_FGD if part else cv2.GC_BGD), -1)
         hopeful = (labels == cv2.GC_FGD) | (labels == cv2.GC_PR_FGD)
         if hopeful.any() and not hopeful.all():
@@ -70,3 +76,13 @@ class Outline:
         if not len(rows):
             return self.box
         return float(columns[0]), float(rows[0]), float(columns[-1] + 1), float(rows[-1] + 1)
+
+
+def _like(picture: UInt8[np.ndarray, "h w 3"], seed: tuple[int, int]) -> Bool[np.ndarray, "h w"]:
+    """The connected surface of a click's colour."""
+    height, width = picture.shape[:2]
+    found = np.zeros((height + 2, width + 2), dtype=np.uint8)
+    reach = (LIKE, LIKE, LIKE)
+    flags = 4 | cv2.FLOODFILL_MASK_ONLY | cv2.FLOODFILL_FIXED_RANGE | (1 << 8)
+    cv2.floodFill(cv2.GaussianBlur(picture, (3, 3), 0), found, seed, (0, 0, 0), reach, reach, flags)
+    return found[1:-1, 1:-1] > 0

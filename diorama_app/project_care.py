@@ -55,6 +55,7 @@ def duplicate_project(folder: Path, projects_dir: Path) -> Project:
         shutil.copytree(folder, target, ignore=shutil.ignore_patterns("backups", ".*"))
     except OSError as error:
         raise ProjectError(f"cannot copy to {target} ({error.strerror}); free some space") from error
+    (target / "scene.json").touch()
     copy = Project.open(target)
     rename_project(copy, f"{name_of(folder)} {number}")
     return copy

@@ -19,6 +19,7 @@ from diorama_app.page import Action, LiveHtml, button, text
 from diorama_app.panels.fields import enable, on_change, on_press, show_if, show_label, show_value
 from diorama_app.viewport import reduced
 from diorama_app.views import Views
+from diorama_app.viser_adapter import component_uuid
 from diorama_core.artefacts import Box
 from diorama_core.errors import InputError
 from diorama_core.library.taxonomy import CATEGORIES
@@ -35,8 +36,8 @@ class PhotoPanel:
         self._guest, self._room, self._views = guest, guest.room, views
         self._picture_of: object = None
         self._picture = ""
-        self._invitation = LiveHtml(gui)
-        self._upload(gui, "photo", "Upload a photo", "image/*")
+        self._invitation = LiveHtml(gui, self._act)
+        self._photo_button = self._upload(gui, "photo", "Upload a photo", "image/*")
         self._more = gui.add_folder("More about this photo", expand_by_default=False)
         with self._more:
             self._upload(gui, "boxes", "Add boxes (JSON)", ".json,application/json")
@@ -78,7 +79,7 @@ class PhotoPanel:
 
     # -- uploads ----------------------------------------------------------------------------------------------
 
-    def _upload(self, gui: viser.GuiApi, kind: str, label: str, mime_type: str) -> None:
+    def _upload(self, gui: viser.GuiApi, kind: str, label: str, mime_type: str) -> str:
         handle = gui.add_upload_button(label, mime_type=mime_type)
 
         async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
@@ -86,6 +87,7 @@ class PhotoPanel:
             self._guest.post(lambda: self._received(kind, file.name, file.content))
 
         handle.on_upload(uploaded)
+        return component_uuid(handle)
 
     def _received(self, kind: str, name: str, content: bytes) -> None:
         draft = self._room.draft
@@ -194,8 +196,9 @@ class PhotoPanel:
     def _introduction(self, draft: Draft) -> str:
         if draft.photo is None:
             return (
-                '<div class="card"><b>Start with a photo of a room.</b><br><span class="dim">Then mark the furniture '
-                "with boxes, and it becomes a scene you can edit.</span></div>"
+                f'<div class="drop" data-file="{self._photo_button}"><b>Start with a photo of a room.</b><br>'
+                '<span class="dim">Drop it here or upload it. Then mark the furniture with boxes, and it becomes a '
+                "scene you can edit.</span></div>"
             )
         if self._picture_of is not draft.photo:
             self._picture_of, self._picture = draft.photo, _jpeg_uri(draft.photo.rgb)
@@ -211,7 +214,8 @@ class PhotoPanel:
         extras = [n for n, there in _extras(draft).items() if there]
         extra = f" · with {', '.join(extras)}" if extras else ""
         return (
-            f'<img class="photo" alt="the photo" src="{self._picture}">'
+            f'<img class="photo" alt="the photo" src="{self._picture}" data-file="{self._photo_button}" '
+            'title="Drop another photo here to start anew">'
             f'<p style="margin-top:6px">{text(draft.photo.name)}<br><span class="dim">{state}{extra}</span></p>'
         )
 

@@ -20,6 +20,7 @@ from diorama_app.jobs import Jobs, Outcome
 from diorama_app.optimising import untouched
 from diorama_app.panels.fields import unique_names
 from diorama_app.panels.outliner import tree_html
+from diorama_app.panels.room_size import RoomSize
 from diorama_app.panels.supports import supporters
 from diorama_app.room import Room
 from diorama_app.viser_adapter import Visitors, create_server, stop_server
@@ -150,6 +151,21 @@ def test_sizes_of_a_swap_and_all_that_are_alike(room: Room, guest: Guest) -> Non
     assert {room.scene.object(i).shape_id for i in ("chair_1", "chair_2")} == {"chair_c"}
     room.undo(guest)
     assert {room.scene.object(i).shape_id for i in ("chair_1", "chair_2")} == {"chair_b"}
+
+
+def test_the_room_is_made_higher_and_a_wall_is_moved_with_what_hangs_on_it(room: Room, guest: Guest) -> None:
+    panel = RoomSize(room.server.gui, guest)
+    panel._do("height", "", "3 m")
+    assert room.scene.plane("ceiling").polygon[:, 2] == pytest.approx(3.0)
+    picture = room.scene.object("picture_1").pose.position[1]
+    guest.change_settings(unit="cm")
+    panel._do("wall", "wall_3", "40")
+    assert room.scene.object("picture_1").pose.position[1] == pytest.approx(picture + 0.4)
+    room.undo(guest)
+    assert room.scene.object("picture_1").pose.position[1] == pytest.approx(picture)
+    panel.refresh()
+    with pytest.raises(InputError, match="not a length"):
+        panel._do("height", "", "tall")
 
 
 def test_every_commit_is_on_disk_within_a_second(room: Room, guest: Guest) -> None:

@@ -1,0 +1,57 @@
+"""The room itself: how high it is, and its walls moved in or out; what is fastened to them follows."""
+
+from __future__ import annotations
+
+import viser
+
+from diorama_app.editing import supporter_name
+from diorama_app.guest import Guest
+from diorama_app.page import Action, LiveHtml, text
+from diorama_app.units import format_length, parse_length
+from diorama_core.scene.room_edits import ceiling_height, move_plane, set_ceiling_height
+
+
+class RoomSize:
+    """A folded list of lengths below the tree."""
+
+    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
+        self._guest = guest
+        self._html = LiveHtml(gui, self._act)
+
+    def refresh(self) -> None:
+        """Draw the height of the room and a field for every wall."""
+        scene, unit = self._guest.room.scene, self._guest.settings.unit
+        walls = scene.architecture.by_role("wall")
+        height = ceiling_height(scene)
+        if height is None:
+            self._html.show("")
+            return
+        rows = _row("Height", "height", "", format_length(height, unit), "How high the room is")
+        rows += "".join(
+            _row(supporter_name(scene, w.id).capitalize(), "wall", w.id, "", "Move it outward by this; minus is inward")
+            for w in walls
+        )
+        self._html.show(f'<details><summary class="dim">Room</summary><table>{rows}</table></details>')
+
+    def _act(self, action: Action) -> None:
+        self._guest.post(lambda: self._do(action.do, *action.pair))
+
+    def _do(self, what: str, plane_id: str, words: str) -> None:
+        guest = self._guest
+        if what not in ("height", "wall") or not words.strip():
+            return
+        length = parse_length(words, guest.settings.unit)
+        shown = format_length(length, guest.settings.unit)
+        if what == "height":
+            guest.room.edit(f"room {shown} high", lambda s: set_ceiling_height(s, length), by=guest)
+        elif guest.room.scene.has_plane(plane_id):
+            name = supporter_name(guest.room.scene, plane_id)
+            guest.room.edit(f"move {name} by {shown}", lambda s: move_plane(s, plane_id, length), by=guest)
+
+
+def _row(name: str, do: str, arg: str, value: str, hint: str) -> str:
+    empty = "" if value else 'placeholder="move by…"'
+    return (
+        f"<tr><td>{text(name)}</td><td><input data-change={do} data-arg='{text(arg)}' value='{text(value)}' {empty} "
+        f"aria-label='{text(name)}' title='{text(hint)}' style='width:110px'></td></tr>"
+    )
