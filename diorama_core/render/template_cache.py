@@ -113,6 +113,7 @@ class TemplateCache:
             self._make_room(len(data.getvalue()))
             with tempfile.NamedTemporaryFile(dir=self.folder, delete=False) as part:
                 part.write(data.getvalue())
+            os.chmod(part.name, 0o644)  # the folder may be a cluster's
             os.replace(part.name, self.folder / name)  # so that no reader ever sees half a file
         except OSError as error:
             log.warning("cannot keep templates in %s (%s); they are rendered again each time", self.folder, error)

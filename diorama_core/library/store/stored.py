@@ -158,6 +158,7 @@ class StoredLibrary:
                 part.write(glb)
                 part.flush()
                 os.fsync(part.fileno())
+            os.chmod(part.name, 0o644)  # a temporary file is its owner's only, a library may be shared
             os.replace(part.name, path)
         except OSError as error:
             raise LibraryError(f"the library cannot be written in {self.folder} ({error.strerror})") from error
