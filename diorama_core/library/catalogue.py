@@ -51,6 +51,7 @@ BULK_DENSITY: dict[str, float] = {
     "toilet paper": 120, "soap dispenser": 250, "bathroom scale": 800,
     "laundry basket": 35, "suitcase": 120, "backpack": 60, "handbag": 70, "umbrella stand": 60, "guitar": 25,
     "drum": 90, "bicycle": 14, "exercise machine": 60, "yoga mat": 30, "dumbbells": 900, "exercise ball": 8,
+    "hanging plant": 20,
     "toy": 60, "object": 100,
     "rocking chair": 28, "recliner": 48, "bar stool": 50, "high chair": 26, "sectional sofa": 26, "chaise longue": 32,
     "day bed": 35, "bean bag": 12, "vanity table": 80, "bunk bed": 30, "crib": 32, "changing table": 75,

@@ -238,6 +238,7 @@ CATEGORIES: tuple[Category, ...] = (
     _c("yoga mat", (0.1, 0.62, 1.2), (0.3, 0.1, 1.0), synonyms="exercise mat, gym mat, fitness mat"),
     _c("dumbbells", (0.16, 0.4, 0.23), (0.7, 0.6, 0.4), synonyms="dumbbell, dumb bell, weights, kettlebell, barbell, weight rack"),
     _c("exercise ball", (0.6, 0.6, 0.6), (0.12, 0.12, 0.12), synonyms="gym ball, yoga ball, fitness ball, swiss ball"),
+    _c("hanging plant", (0.95, 0.42, 0.42), (0.2, 0.2, 0.2), "ceiling", synonyms="hanging basket, hanging planter, hanging pot", kin="plant"),
     UNKNOWN,
 )  # fmt: skip
 
