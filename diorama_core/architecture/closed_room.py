@@ -109,7 +109,11 @@ def floor_outline(pieces: tuple[WallPiece, ...], camera: Camera) -> Float[np.nda
     right, left = max(float(chain[-1][0]), x + BESIDE_CAMERA_M), min(float(chain[0][0]), x - BESIDE_CAMERA_M)
     corners = _distinct([*chain, np.array([right, behind]), np.array([left, behind])])
     outline = np.array(corners)[::-1]
-    return outline if is_simple(outline) else _hull(outline)
+    if is_simple(outline):
+        return outline
+    seen = tuple(p for p in pieces if p.candidate is not None)
+    # Assumed pieces may cross each other behind narrow walls; without them the outline is cut short there.
+    return floor_outline(seen, camera) if 0 < len(seen) < len(pieces) else _hull(outline)
 
 
 def _distinct(points: list[Float[np.ndarray, "2"]]) -> list[Float[np.ndarray, "2"]]:

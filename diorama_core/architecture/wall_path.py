@@ -24,7 +24,7 @@ FULL_CONFLICT = 0.05
 CONFLICT_COST = 2.5
 UNKNOWN_COST = 0.9
 """Of a heading in which no wall is taken to lead; one in which a wall leads unseen costs 1."""
-CORNER_COST, OPEN_END_COST, INTO_UNKNOWN_COST = 0.6, 3.0, 1.5
+CORNER_COST, OPEN_END_COST, INTO_UNKNOWN_COST = 1.0, 4.0, 2.0
 CORNER_BINS = 2.5
 """Two walls meet at a heading when their corner lies within this many headings of it."""
 MEET_M, MEET_PER_M = 0.06, 0.02
