@@ -103,7 +103,7 @@ def _as_json(report: Added, name: str) -> dict[str, Any]:
 def _print_report(report: Added, name: str) -> None:
     for title, lines in (
         ("not supported", [f"{t.path}: {t.reason}" for t in report.skipped]),
-        ("repaired", [f"{shape_id}: {'; '.join(notes)}" for shape_id, notes in report.repaired]),
+        ("repaired", _by_note(report)),
         ("unsure how it stands or what it is", list(report.unsure)),
         ("refused", [f"{t.path}: {t.reason}" for t in report.failed]),
     ):
@@ -116,6 +116,18 @@ def _print_report(report: Added, name: str) -> None:
     print(f"{name}: {len(report.added)} shapes added{before}{refused}")
     if report.added:
         print(f"Use them: diorama build PHOTO -o ROOM --library {name} (or --library {name}+built-in)")
+
+
+def _by_note(report: Added) -> list[str]:
+    """Each note once, with the shapes that it is about."""
+    shapes: dict[str, list[str]] = {}
+    for shape_id, notes in report.repaired:
+        for note in notes:
+            shapes.setdefault(note, []).append(shape_id)
+    return [
+        f"{note} ({', '.join(ids[:3])}{f' and {len(ids) - 3} more' if len(ids) > 3 else ''})"
+        for note, ids in sorted(shapes.items())
+    ]
 
 
 def _info(a: argparse.Namespace) -> None:
