@@ -15,7 +15,7 @@ from PIL import Image
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.sheet import contact_sheet
 from diorama_core.library.taxonomy import CATEGORIES
-from diorama_core.render.views import thumbnail
+from diorama_core.render.thumbnails import thumbnail
 
 
 def main() -> int:
