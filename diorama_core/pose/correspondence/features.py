@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from jaxtyping import Float32
+from jaxtyping import Bool, Float32
 
 from diorama_core.pose.correspondence.crops import PATCHES, View, pooled
 
@@ -52,13 +52,14 @@ def _with_neighbours(values: Float32[np.ndarray, "v p c"]) -> Float32[np.ndarray
 
 def _place(view: View) -> Float32[np.ndarray, "v p 4"]:
     """Sine and cosine of the place between the object's edges: a quarter turn from one edge to the other."""
-    inside = view.foreground.reshape(-1, PATCHES, PATCHES)
+    inside: Bool[np.ndarray, "v n n"] = view.foreground.reshape(-1, PATCHES, PATCHES)
     steps = np.arange(PATCHES)
     parts = []
     for axis in (1, 2):
-        filled = inside.any(axis=axis)
-        first = np.where(filled.any(axis=1), filled.argmax(axis=1), 0)
-        last = np.where(filled.any(axis=1), PATCHES - 1 - filled[:, ::-1].argmax(axis=1), PATCHES - 1)
+        filled = inside.sum(axis=axis) > 0
+        some = filled.sum(axis=1) > 0
+        first = np.where(some, filled.argmax(axis=1), 0)
+        last = np.where(some, PATCHES - 1 - filled[:, ::-1].argmax(axis=1), PATCHES - 1)
         share = (steps - first[:, None]) / np.maximum(last - first, 1)[:, None]
         angle = np.clip(share, 0.0, 1.0) * (np.pi / 2)
         wave = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
