@@ -18,6 +18,8 @@ _RIM_PX = 0.012
 """How far below an object's lower rim to look, as a share of the picture's height."""
 _NEARER_M = 0.08
 """Something this much nearer below the rim hides the object's end."""
+_LEVEL_M = 0.12
+"""Two seen points whose heights differ by less are at one level."""
 _CONTACT_M = 0.12
 """Farther than this behind the rim, what is seen below is background, not the carrier."""
 
@@ -57,7 +59,7 @@ def observed(inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: Obje
         world = points_camera(depth, camera.intrinsics) @ camera.T_world_camera[:3, :3].T + camera.position
     found = []
     for index, item in enumerate(present):
-        below, hidden = _below(index, item, present, owners, depth)
+        below, hidden = _below(index, item, present, owners, depth, world)
         low, high = _extent(item, cuboids[item.id], world, depth)
         behind = _behind(index, item, owners, depth)
         category = resolve(item.category).category
@@ -101,6 +103,7 @@ def _below(
     objects: list[DetectedObject],
     owners: Int32[np.ndarray, "h w"],
     depth_m: np.ndarray | None,
+    world: Float[np.ndarray, "h w 3"] | None,
 ) -> tuple[dict[str, float], float]:
     """What is seen under the object's lower rim, and how much of the rim something nearer hides."""
     mine = owners == index
@@ -127,6 +130,9 @@ def _below(
         there = depth_m[under, columns]
         known = (own > 0) & (there > 0)
         nearer = known & (there < own - _NEARER_M - 0.02 * own) & (who >= 0)
+        if world is not None:  # the front edge of what carries it is nearer too, but as high as the object ends
+            level = np.abs(world[under, columns, 2] - world[np.maximum(lowest - 1, 0), columns, 2]) < _LEVEL_M
+            nearer &= ~level
         farther = known & (there > own + _CONTACT_M + 0.02 * own)
     hidden = float((nearer.sum() + (total - len(who))) / total)
     below: dict[str, float] = {}
