@@ -26,7 +26,7 @@ UNITS = {1.0: "metres", 0.01: "centimetres", 0.001: "millimetres", 0.0254: "inch
 
 LIKENESS = 60.0
 """Log-probability lost per unit of mean relief difference to the likest known shapes."""
-MIRRORED = 12.0
+MIRRORED = 6.0
 """Lost per unit of difference between left and right: most things are the same on both sides."""
 PROPORTION = 1.5
 """Lost per unit of difference in the logarithms of proportions to the known shapes."""
@@ -40,7 +40,7 @@ LIKELY_OTHER, LIKELY_KNOWN = 0.0, -4.0
 """Of being no particular category against one it looks like, when it has a name that speaks of none we know."""
 UNNAMED_OTHER, UNNAMED_KNOWN = -2.5, -1.5
 """The same when it has no name at all."""
-ALIKE = 2
+ALIKE = 1
 """How many of the likest known shapes are asked."""
 
 
@@ -219,7 +219,7 @@ def _candidates(
 def _unlike(
     features: Float[np.ndarray, "24 f"], log_extents: Float[np.ndarray, "24 3"], category: str, known: KnownShapes
 ) -> Float[np.ndarray, "24"]:
-    """Mean difference to the two likest known shapes of a category, in each orientation."""
+    """Mean difference to the likest known shapes of a category, in each orientation."""
     rows = known.rows_of(category) if category != taxonomy.UNKNOWN.name else np.zeros(0, int)
     if len(rows) == 0:
         return np.full(len(features), NOTHING_ALIKE)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 from functools import cache
+from typing import Any
 
 import numpy as np
 import trimesh
@@ -29,7 +30,7 @@ def relief(mesh: trimesh.Trimesh) -> Relief:
 
     low, high = mesh.bounds
     unit = (np.asarray(mesh.vertices) - low) / np.maximum(high - low, 1e-12)
-    scene = o3d.t.geometry.RaycastingScene(nthreads=1)
+    scene: Any = o3d.t.geometry.RaycastingScene(nthreads=1)  # takes arrays, unlike its stubs say
     scene.add_triangles(unit.astype(np.float32), np.asarray(mesh.faces, dtype=np.uint32))
     hits = scene.cast_rays(o3d.core.Tensor.from_numpy(_rays()))["t_hit"].numpy()
     return np.clip(hits - 0.5, 0.0, 1.0).reshape(3, 2, SIDE, SIDE)
