@@ -61,7 +61,10 @@ class DuoduoClip:
     def shape(self, views: Sequence[UInt8[np.ndarray, "h w 3"]]) -> Float32[np.ndarray, "512"]:
         """The shape that the views show; the order of the views does not matter, one is enough (a photo's crop)."""
         session = self.pool.get(self.graph)
-        pixels = np.concatenate([clip_pixels(v) for v in views])[None]
+        count = next(iter(session.inputs.values())).shape[1]
+        # A graph for a fixed number of views sees given ones again: attention over copies is that over the originals.
+        shown = [views[k % len(views)] for k in range(count)] if isinstance(count, int) else views
+        pixels = np.concatenate([clip_pixels(v) for v in shown])[None]
         return unit(next(iter(session.run({next(iter(session.inputs)): pixels}).values())))[0]
 
 

@@ -1,0 +1,77 @@
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from diorama_app.cli import main
+
+
+@pytest.fixture(autouse=True)
+def _own_store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("DIORAMA_MODELS", str(tmp_path / "models"))
+    for name in ("DIORAMA_IMAGE_BASE_URL", "DIORAMA_LMM_BASE_URL"):
+        monkeypatch.delenv(name, raising=False)
+
+
+def test_networks_are_listed_with_size_and_licence(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["models", "list", "--json"]) == 0
+    rows = {r["id"]: r for r in json.loads(capsys.readouterr().out)}
+    assert rows["yolox-nano"]["licence"] == "Apache-2.0"
+    assert rows["sam2.1-large"]["size_mb"] > 900
+    assert not any(r["here"] for r in rows.values())
+
+
+def test_path_and_verify_without_networks(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["models", "path"]) == 0
+    assert capsys.readouterr().out.strip() == str(tmp_path / "models")
+    assert main(["models", "verify"]) == 0
+    assert "pull" in capsys.readouterr().out
+
+
+def test_files_fetched_elsewhere_and_damage_found(
+    shared: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["models", "pull", "--from", str(shared / "models")]) == 0
+    assert main(["models", "verify"]) == 0
+    graph = tmp_path / "models" / "yolox-nano" / "yolox_nano.onnx"
+    data = bytearray(graph.read_bytes())
+    data[1000] ^= 1
+    graph.write_bytes(bytes(data))
+    assert main(["models", "verify"]) == 1
+    assert "yolox-nano" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["models", "pull", "everything"],
+        ["models", "pull", "duoduoclip", "--yes"],
+        ["models", "pull", "lite"],
+        ["models", "pull", "--from", "nowhere"],
+        ["text", "", "-o", "p"],
+    ],
+    ids=["unknown", "own copy", "licence not accepted", "no folder", "no text"],
+)
+def test_failures_are_one_clear_line(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(arguments) == 1
+    lines = [x for x in capsys.readouterr().err.splitlines() if x.startswith("diorama:")]
+    assert len(lines) == 1
+
+
+def test_an_unreachable_language_model_leaves_the_project_as_it_was(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from tests.cli.room_photo import write_room
+
+    photo, boxes = write_room(tmp_path)
+    arguments = ["build", str(photo), "--boxes", str(boxes), "-o", str(tmp_path / "room")]
+    assert main(arguments) == 0
+    before = (tmp_path / "room" / "scene.json").read_bytes()
+    monkeypatch.setenv("DIORAMA_LMM_BASE_URL", "http://127.0.0.1:9/v1")
+    monkeypatch.setenv("DIORAMA_LMM_MODEL", "m")
+    capsys.readouterr()
+    assert main(arguments) == 1
+    assert "cannot be reached" in capsys.readouterr().err
+    assert (tmp_path / "room" / "scene.json").read_bytes() == before
