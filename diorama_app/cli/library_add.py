@@ -35,8 +35,8 @@ def add_adding(actions: Any) -> None:
     )
     p.add_argument("folder", type=Path, metavar="DIR", help="searched with all folders in it; links are not followed")
     p.add_argument("--name", metavar="NAME", help="the library to add to (default: the folder's own name)")
-    p.add_argument("--up", choices=AXES, help="axis of the files that points up (default: guessed)")
-    p.add_argument("--front", choices=AXES, help="axis of the files that the front looks along (default: guessed)")
+    p.add_argument("--up", type=axis, metavar="AXIS", help="axis of the files that points up: x, y, z, or --up=-z")
+    p.add_argument("--front", type=axis, metavar="AXIS", help="axis that the front looks along: z, or --front=-y")
     p.add_argument("--unit", type=unit, metavar="m|cm|mm|in|ft|METRES", help="unit of the files (default: guessed)")
     p.add_argument("--category", help="what all of them are, such as chair (default: guessed)")
     p.add_argument("--table", type=Path, metavar="CSV", help="columns file and any of up,front,unit,category,caption")
@@ -51,6 +51,14 @@ def add_adding(actions: Any) -> None:
     info.add_argument("id", metavar="ID")
     info.add_argument("--library", default="built-in", metavar="NAME", help="(default: %(default)s)")
     info.add_argument("--json", action="store_true")
+
+
+def axis(text: str) -> str:
+    """`y`, `+y` or `-y`."""
+    name = text.lower() if text[:1] in "+-" else f"+{text.lower()}"
+    if name not in AXES:
+        raise argparse.ArgumentTypeError(f"{text!r} is no axis; write x, y or z, or a minus as in --front=-y")
+    return name
 
 
 def unit(text: str) -> float:

@@ -8,7 +8,7 @@ import pytest
 import trimesh
 
 from diorama_app.cli import main
-from diorama_app.cli.library_add import unit
+from diorama_app.cli.library_add import axis, unit
 from diorama_core.library.store import open_library
 
 
@@ -30,13 +30,16 @@ def test_bad_folders_and_tables_are_one_clear_line(tmp_path: Path, capsys: pytes
     assert "is no folder" in one_line(capsys, ["library", "add", str(tmp_path / "nowhere")])
     assert "no model lies there" in one_line(capsys, ["library", "add", str(empty)])
     assert "no model of abo" in one_line(capsys, ["library", "add", str(empty), "--dataset", "abo"])
-    assert "right angles" in one_line(capsys, ["library", "add", str(empty), "--up", "+y", "--front", "-y"])
+    assert "right angles" in one_line(capsys, ["library", "add", str(empty), "--up", "y", "--front=-y"])
     facts = tmp_path / "facts.csv"
     facts.write_text("file,up\ngone.glb,+y\n")
     assert "there is no model 'gone.glb'" in one_line(capsys, ["library", "add", str(empty), "--table", str(facts)])
 
 
-def test_units_have_names() -> None:
+def test_axes_and_units_have_names() -> None:
+    assert [axis(a) for a in ("y", "+Z", "-x")] == ["+y", "+z", "-x"]
+    with pytest.raises(argparse.ArgumentTypeError, match="no axis"):
+        axis("up")
     assert [unit(u) for u in ("m", "CM", "mm", "in", "0.5")] == [1.0, 0.01, 0.001, 0.0254, 0.5]
     with pytest.raises(argparse.ArgumentTypeError):
         unit("-1")
