@@ -270,5 +270,5 @@ DESIGNS: tuple[Design, ...] = (
     design("photo frame", "silver", "photograph in a silver frame", (0.11, 0.19, 0.24), "classic", photo_frame, bar=m.CHROME, image=PORTRAIT_TWO, mount=0.0),
     design("photo frame", "black", "landscape photograph in a black frame", (0.09, 0.23, 0.18), "minimal", photo_frame, bar=m.BLACK_WOOD, image=HILLS),
     design("photo frame", "rustic", "photograph in a reclaimed frame", (0.10, 0.20, 0.25), "rustic", photo_frame, bar=m.RECLAIMED, image=WARM_HILLS, mount=0.0),
-    design("photo frame", "twin", "two photographs in hinged brass frames", (0.10, 0.32, 0.20), "classic", twin_frame, bar=m.BRASS, images=(PORTRAIT, PORTRAIT_TWO)),
+    design("photo frame", "twin", "two photographs in hinged brass frames", (0.055, 0.32, 0.20), "classic", twin_frame, bar=m.BRASS, images=(PORTRAIT, PORTRAIT_TWO)),
 )  # fmt: skip

@@ -176,7 +176,7 @@ def olive_tree(size: Size, pot_of: Material, green: Material) -> Parts:
                 heading = a + s * (0.7 + 0.3 * rng.random())
                 blades.append(
                     arching_leaf(
-                        point, heading, 0.10 * h * rng.uniform(0.7, 1.0), 0.02, 0.02 + 0.02 * (i % 3), 0.03, 0.5, 4
+                        point, heading, 0.10 * h * rng.uniform(0.7, 1.0), 0.036, 0.02 + 0.02 * (i % 3), 0.03, 0.5, 4
                     )
                 )
     return parts + of(m.BARK, *twigs) + of(green, *blades)

@@ -1,0 +1,127 @@
+"""The families of household things: how many, how heavy, in which styles, and that glass is glass."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections import Counter, defaultdict
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.library.furniture import (
+    bathroom,
+    climate,
+    containers,
+    decor,
+    electronics,
+    kitchenware,
+    leisure,
+    lighting,
+    openings,
+    plants,
+    textiles,
+)
+from diorama_core.library.furniture import materials as m
+from diorama_core.library.furniture.materials import Material, pbr, picture_bytes
+from diorama_core.library.furniture.model import Design, built
+from diorama_core.library.furniture.prints import PRINTS
+from diorama_core.library.taxonomy import resolve
+from diorama_core.render.appearance import shape_surfaces
+from diorama_core.render.world import Placed, World
+
+FAMILIES = (
+    lighting, climate, bathroom, electronics, leisure, textiles, plants, kitchenware, decor, containers, openings,
+)  # fmt: skip
+DESIGNS: tuple[Design, ...] = tuple(design for family in FAMILIES for design in family.DESIGNS)
+STYLES = {"modern", "classic", "industrial", "rustic", "minimal"}
+SAMPLE = DESIGNS[::9]
+
+
+def test_there_are_many_in_every_style() -> None:
+    assert len(DESIGNS) >= 300
+    styles = Counter(design.style for design in DESIGNS)
+    assert set(styles) == STYLES
+    assert min(styles.values()) >= 50
+
+
+def test_every_category_can_be_swapped_across_styles() -> None:
+    styles: dict[str, set[str]] = defaultdict(set)
+    for design in DESIGNS:
+        styles[design.category].add(design.style)
+    assert all(len(found) >= 2 for found in styles.values()), {c for c, found in styles.items() if len(found) < 2}
+
+
+@pytest.mark.parametrize(
+    ("word", "category"),
+    [
+        ("sconce", "wall lamp"), ("wine glasses", "glass"), ("frying pan", "cooking pot"),
+        ("aircon", "air conditioner"),
+        ("telly remote", "remote control"), ("rucksack", "backpack"), ("corkboard", "bulletin board"),
+        ("blackboard", "whiteboard"), ("longcase clock", "grandfather clock"), ("cell phone", "smartphone"),
+        ("exercise bike", "exercise machine"), ("loo brush", "toilet brush"),
+        ("duvet", "blanket"), ("purse", "handbag"),
+        ("teapot kettle", "kettle"), ("hamper", "laundry basket"), ("bike", "bicycle"), ("loudspeakers", "speaker"),
+    ],
+    ids=lambda value: value,
+)  # fmt: skip
+def test_people_find_them_by_their_words(word: str, category: str) -> None:
+    assert resolve(word).category.name == category
+
+
+def test_triangles_stay_within_the_budget() -> None:
+    counts = [sum(len(solid.faces) for _, solid in built(design)) for design in SAMPLE]
+    assert np.median(counts) < 4_000
+    assert max(counts) < 30_000
+
+
+@pytest.mark.parametrize("design", DESIGNS[4::9], ids=lambda d: d.id)
+def test_solids_are_finite_and_hardly_stretched(design: Design) -> None:
+    points = np.concatenate([part.solid.vertices for part in design.build(design.size_m)])
+    assert np.isfinite(points).all()
+    stretch = np.asarray(design.size_m) / np.ptp(points, axis=0)
+    assert (stretch > 0.6).all()
+    assert (stretch < 1.7).all()
+
+
+@pytest.mark.parametrize("design", DESIGNS[::60], ids=lambda d: d.id)
+def test_building_again_gives_the_same(design: Design) -> None:
+    first, second = built(design), built(design)
+    assert [material for material, _ in first] == [material for material, _ in second]
+    for (_, a), (_, b) in zip(first, second, strict=True):
+        assert a.vertices.tobytes() == b.vertices.tobytes()
+        assert a.uv.tobytes() == b.uv.tobytes()
+
+
+@pytest.mark.parametrize("kind", sorted(PRINTS))
+def test_prints_are_small_and_the_same_every_time(kind: str) -> None:
+    material = Material(f"test {kind}", kind, "#6d7f83")
+    first = picture_bytes(material)
+    picture_bytes.cache_clear()
+    assert picture_bytes(material) == first
+    assert len(first) < 45_000
+
+
+def test_glass_is_blended_and_lamps_shine_in_gltf(tmp_path: Path) -> None:
+    library = built_in_library(tmp_path)
+    tumbler, lamp = _materials(library.glb("cup-tumbler")), _materials(library.glb("lamp-globe"))
+    assert tumbler["glass"]["alphaMode"] == "BLEND"
+    assert tumbler["glass"]["pbrMetallicRoughness"]["baseColorFactor"][3] == pytest.approx(m.GLASS.alpha, abs=0.01)
+    assert min(lamp["warm lampshade"]["emissiveFactor"]) > 0.05
+    assert pbr(m.OAK).alphaMode in (None, "OPAQUE")
+
+
+def _materials(glb: bytes) -> dict[str, dict]:  # type: ignore[type-arg]
+    length = struct.unpack("<I", glb[12:16])[0]
+    return {material["name"]: material for material in json.loads(glb[20 : 20 + length])["materials"]}
+
+
+def test_light_passes_through_glass_but_not_through_clay(tmp_path: Path) -> None:
+    library = built_in_library(tmp_path)
+    across = np.array([[-1.0, 0.0, 0.02, 2.0, 0.0, 0.0]], dtype=np.float32)
+    for shape_id, blocked in (("cup-tumbler", False), ("cup-beaker", True)):
+        world = World([Placed(shape_surfaces(library, shape_id), np.eye(4), 0)])
+        assert world.caster.first_hits(across).found.all()
+        assert bool(world.shadow_caster.occluded(across, far=1.0)[0]) is blocked
