@@ -17,12 +17,12 @@ from diorama_core.scene.types import Camera, Plane
 class EmptyRoomFiller(Protocol):
     """Paints a part of a photo out, as LaMa and MI-GAN do (PlainRecon's first step)."""
 
-    def fill(self, rgb: UInt8[np.ndarray, "h w 3"], hidden: Bool[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h w 3"]:
-        """The photo with the room's surfaces where `hidden` is true, and unchanged elsewhere.
+    def fill(self, rgb: UInt8[np.ndarray, "h w 3"], hole: Bool[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h w 3"]:
+        """The photo with the room's surfaces where `hole` is true, and unchanged elsewhere.
 
         Args:
             rgb: The photo, sRGB.
-            hidden: Pixels of what stands in the room, with their margin.
+            hole: Pixels of what stands in the room, with their margin.
         """
         ...
 

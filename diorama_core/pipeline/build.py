@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import UInt8
 
+from diorama_core.architecture.empty_room import EmptyRoomFiller
 from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.architecture.hanging import hung_up
 from diorama_core.architecture.room_box import RoomBox
@@ -80,6 +81,8 @@ class Stages:
     """Reads depth from the photo where the user measured none."""
     graph: GraphStage | None = None
     """Decides what holds up what; without it the geometry stage does."""
+    filler: EmptyRoomFiller | None = None
+    """Paints furniture out of the photo for the planes' pictures; without it each plane is continued by itself."""
 
 
 @dataclass(frozen=True)
@@ -171,7 +174,7 @@ def build_scene(
     posed = runner.run(
         "pose", s.pose, s.pose.pose, (inputs, objects, geometry, depth, shapes), progress.part(0.65, 0.85)
     )
-    textures = plane_textures(inputs, objects, geometry.camera, room.architecture)
+    textures = plane_textures(inputs, objects, geometry.camera, room.architecture, s.filler)
     shape_of = {p.object_id: p.candidates[0].shape_id for p in posed if p.candidates}
     colours = shared_by_sets(photo_colours(inputs.photo.rgb, objects), objects, shape_of)
     observed = _textured(assemble(objects, geometry, room, posed, library, colours), textures)

@@ -9,11 +9,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal, TypeVar
 
+from diorama_core.architecture.empty_room import EmptyRoomFiller
 from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.errors import UnavailableError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.models.depth import GeometryNetwork, Metric3d, Moge2
+from diorama_core.models.inpainting import Lama, Migan
 from diorama_core.models.manifest import Network, network
 from diorama_core.models.owlv2 import Owlv2
 from diorama_core.models.segment_anything import BoxSegmenter, Sam2, SlimSam
@@ -38,6 +40,7 @@ T = TypeVar("T")
 DETECTORS = ("owlv2-large", "owlv2-base", "owlv2-base-int8", "yolox-nano")
 SEGMENTERS = ("sam2.1-large", "sam2.1-base-plus", "sam2.1-tiny", "slimsam")
 DEPTH_NETWORKS = ("moge-2-vitl", "moge-2-vitb", "moge-2-vits", "metric3d-large", "metric3d-small")
+INPAINTERS = ("lama", "migan")
 """Best first."""
 
 
@@ -99,6 +102,7 @@ def foundation_stages(base: Stages, inputs: Inputs, store: ModelStore, lmm: LmmS
     segmenter = _best(store, SEGMENTERS, _segmenter)
     if segmenter is not None:
         stages = replace(stages, objects=PromptedMasks(segmenter))
+    stages = replace(stages, filler=_best(store, INPAINTERS, _inpainter))
     sight = _best(store, DEPTH_NETWORKS, _depth_network) if inputs.depth_m is None else None
     if sight is not None:
         stages = replace(
@@ -209,6 +213,11 @@ def _segmenter(store: ModelStore, chosen: Network) -> BoxSegmenter:
         for part in ("vision_encoder", "mask_decoder")
     )
     return SlimSam(encoder, decoder, weights) if chosen.id == "slimsam" else Sam2(encoder, decoder, weights)
+
+
+def _inpainter(store: ModelStore, chosen: Network) -> EmptyRoomFiller:
+    graph, weights = store.path(chosen, chosen.files[0].path), store.identity(chosen)
+    return Lama(graph, weights) if chosen.id == "lama" else Migan(graph, weights)
 
 
 def _depth_network(store: ModelStore, chosen: Network) -> GeometryNetwork:

@@ -118,8 +118,8 @@ def test_textures_are_deterministic(shot, textures):
 class _Blue:
     """A filler that paints everything hidden blue."""
 
-    def fill(self, rgb, hidden):
-        return np.where(hidden[..., None], np.uint8([20, 40, 230]), rgb)
+    def fill(self, rgb, hole):
+        return np.where(hole[..., None], np.uint8([20, 40, 230]), rgb)
 
 
 def test_a_filler_paints_what_furniture_hides(shot):
