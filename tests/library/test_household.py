@@ -113,7 +113,7 @@ def test_glass_is_blended_and_lamps_shine_in_gltf(tmp_path: Path) -> None:
     assert pbr(m.OAK).alphaMode in (None, "OPAQUE")
 
 
-def _materials(glb: bytes) -> dict[str, dict]:  # type: ignore[type-arg]
+def _materials(glb: bytes) -> dict[str, dict]:
     length = struct.unpack("<I", glb[12:16])[0]
     return {material["name"]: material for material in json.loads(glb[20 : 20 + length])["materials"]}
 

@@ -20,7 +20,6 @@ from diorama_core.library.furniture.solids import (
 GRILLE = Material("steel grille", "mesh", "#9b9d9e", 0.5, 0.3, 0.06)
 
 
-
 def oil_heater(size: Size, body: Material) -> Parts:
     """A finned oil radiator on wheels, its long side along x."""
     d, w, h = size

@@ -17,6 +17,7 @@ from diorama_core.library.furniture.model import (
     of,
 )
 from diorama_core.library.furniture.solids import (
+    Solid,
     bend,
     box,
     loft,
@@ -102,7 +103,8 @@ def rope_basket(size: Size, rope: Material, band: Material) -> Parts:
     d, w, h = size
     n = max(int(h * 0.86 / 0.022), 6)
     step = h * 0.86 / n
-    lower, upper = [], []
+    lower: list[Solid] = []
+    upper: list[Solid] = []
     for k in range(n):
         s = 0.9 + 0.1 * np.sin(np.pi * min((k + 0.5) / n, 1.0) * 0.75)
         coil = tube(

@@ -229,19 +229,10 @@ def handbag(size: Size, hide: Material, metal: Material, kind: str = "frame") ->
             metal, *both_sides(ball(0.022, 5).moved(0, 0.385 * w, body_h * 0.84))
         )
     top = 0.74 if kind == "frame" else 1.08
-    rows = [
-        (1.0, 1.0, 0.0),
-        (1.0, 1.0, 0.012),
-        (0.86, 0.985, 0.5),
-        (0.4 if kind == "frame" else 0.7, 0.94 if kind == "frame" else 1.04, 1.0),
-    ]
-    rings = [
-        ring_path(
-            rounded_rectangle(d * a, w * b * (0.92 if kind == "tote" else 1.0), 0.018, 4),
-            body_h * z if z != 0.012 else 0.012,
-        )
-        for a, b, z in rows
-    ]
+    mouth = (0.4, 0.94) if kind == "frame" else (0.7, 1.04)
+    wide = 0.92 if kind == "tote" else 1.0
+    outlines = ((1.0, 1.0, 0.0), (1.0, 1.0, 0.012), (0.86, 0.985, 0.5 * body_h), (*mouth, body_h))
+    rings = [ring_path(rounded_rectangle(d * a, w * b * wide, 0.018, 4), z) for a, b, z in outlines]
     bag = loft(np.array(rings), crease_rad=np.deg2rad(50))
     x = d * 0.2 * top
     grips = [
