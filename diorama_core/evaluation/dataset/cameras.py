@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import trimesh
 from jaxtyping import Float
 
+from diorama_core.errors import SceneError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.render.raycast import MeshCaster
 from diorama_core.render.slabs import plane_surfaces
@@ -51,10 +52,18 @@ def hold_cameras(
         count: How many views.
         size: Width and height of the pictures.
         holding: How the camera is held.
+
+    Raises:
+        SceneError: when nobody could stand in the room.
     """
     rng = np.random.default_rng((seed, 4711))
     caster = MeshCaster([*_meshes(scene, library), *((_plane_mesh(p), np.eye(4)) for p in scene.architecture.planes)])
-    tried = [_candidate(scene, rng, size, holding or Holding()) for _ in range(CANDIDATES * max(1, count))]
+    how, tried = holding or Holding(), list[Camera | None]()
+    for closer in (1.0, 0.6, 0.3, 0.1):  # a full or narrow room lets nobody stand well clear of things
+        nearer = replace(how, clearance_m=closer * how.clearance_m)
+        tried += [_candidate(scene, rng, size, nearer) for _ in range(CANDIDATES * max(1, count))]
+        if sum(c is not None for c in tried) >= 2 * count:
+            break
     scored = sorted(
         ((_score(scene, caster, c), k) for k, c in enumerate(tried) if c is not None), key=lambda pair: -pair[0]
     )
@@ -65,7 +74,7 @@ def hold_cameras(
             if camera is not None and len(chosen) < count and all(_apart(camera, c) > least_apart for c in chosen):
                 chosen.append(camera)
     if len(chosen) < count:
-        raise ValueError(f"no place for {count} cameras was found in the room; it is too full or too small")
+        raise SceneError(f"no place for {count} cameras was found in the room; it is too full or too small")
     return tuple(chosen)
 
 

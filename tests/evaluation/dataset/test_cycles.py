@@ -1,0 +1,39 @@
+"""The photo-real path: refuses clearly without Blender's module, and renders a tiny picture with it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from importlib.util import find_spec
+
+import pytest
+
+from diorama_core.errors import SceneError, UnavailableError
+from diorama_core.evaluation.dataset import furnished_room, hold_cameras, in_photo_world
+from diorama_core.evaluation.dataset.cycles import cycles_picture
+from diorama_core.library.catalogue import built_in_library
+
+
+@pytest.fixture(scope="module")
+def scene():
+    library = built_in_library()
+    room = furnished_room(1, "corridor", library, clutter=0)
+    return in_photo_world(replace(room, camera=hold_cameras(room, library, 1, 1, (48, 36))[0]))
+
+
+@pytest.mark.skipif(find_spec("bpy") is not None, reason="Blender's module is installed")
+def test_says_what_to_install(scene):
+    with pytest.raises(UnavailableError, match=r"diorama\[cycles\]"):
+        cycles_picture(scene, built_in_library())
+
+
+def test_needs_a_camera(scene):
+    with pytest.raises(SceneError, match="no camera"):
+        cycles_picture(replace(scene, camera=None), built_in_library())
+
+
+@pytest.mark.skipif(find_spec("bpy") is None, reason="needs Blender's module: pip install 'diorama[cycles]'")
+def test_renders_a_tiny_picture(scene):
+    picture = cycles_picture(scene, built_in_library(), samples=2)
+    assert picture.shape == (36, 48, 3)
+    assert 20 < picture.mean() < 240
+    assert picture.std() > 5
