@@ -53,7 +53,7 @@ def _taken_in(shelf: Shelf, name: str, content: bytes, progress: Progress) -> st
         report = add_models(found, library, workers(None, 1), progress=progress)
         if report.failed:
             raise InputError(f"{name}: {report.failed[0].reason}")
-        return report.added[0] if report.added else found[0].shape_id
+        return report.added[0] if report.added else found[0].id
 
 
 def _note_library(project: Project) -> None:

@@ -20,11 +20,11 @@ import platformdirs
 import trimesh
 
 from diorama_core.errors import LibraryError
-from diorama_core.library import furniture
+from diorama_core.library import furniture, taxonomy
 from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.model import Design, built, mesh_of, scene_of
 from diorama_core.library.furniture.solids import Solid
-from diorama_core.library.record import Shape, SupportSurface
+from diorama_core.library.record import Shape, SupportSurface, usual_contact_faces
 from diorama_core.library.surfaces import support_surfaces
 
 log = logging.getLogger(__name__)
@@ -195,6 +195,7 @@ class _FileCache:
 
 
 def _record(design: Design) -> Shape:
+    kind = taxonomy.category(design.category)
     return Shape(
         id=design.id,
         category=design.category,
@@ -202,6 +203,8 @@ def _record(design: Design) -> Shape:
         size_m=design.size_m,
         style=design.style,
         symmetry=design.symmetry,
+        synonyms=kind.synonyms,
+        contact_faces=usual_contact_faces(kind.mount),
         mass_kg=_mass_guess(design),
         content_hash=_content_hash(design),
     )

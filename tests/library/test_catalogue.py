@@ -191,3 +191,12 @@ def test_closed_cabinets_have_no_reachable_inside(library: BuiltInLibrary) -> No
 def test_surfaces_survive_the_cache(tmp_path: Path) -> None:
     first = built_in_library(tmp_path).shape("tv-stand-oak-open")
     assert built_in_library(tmp_path).shape("tv-stand-oak-open") == first
+
+
+def test_records_know_other_names_and_the_faces_that_touch() -> None:
+    library = built_in_library()
+    by_category = {s.category: s for s in library.shapes()}
+    assert "settee" in by_category["sofa"].synonyms or "couch" in by_category["sofa"].synonyms
+    assert by_category["clock"].contact_faces[0] == "back"
+    assert by_category["ceiling lamp"].contact_faces == ("top",)
+    assert by_category["table"].contact_faces == ("bottom",)
