@@ -119,8 +119,11 @@ _HOVER = html.escape(
 )
 _LEAVE = html.escape("if(window.__dioPeek){window.__dioPeek='';clearTimeout(window.__dioWait);S('peek','',event)}")
 _GRAB = html.escape(
-    "const t=event.target.closest('[data-grab]');if(t)event.dataTransfer.setData('text',t.dataset.grab)"
+    "const t=event.target.closest('[data-grab]');"
+    "if(t){event.dataTransfer.setData('text',t.dataset.grab);S('grab',t.dataset.grab,event)}"
 )
+_RELEASE = html.escape("if(event.dataTransfer.dropEffect==='none')S('release','',event)")
+"""Only where nothing took it: of two events at once the page sends the later one."""
 _OVER = html.escape(
     "const z=event.target.closest('[data-file]');if(z){event.preventDefault();z.classList.add('over')}"
     "const t=event.target.closest('[data-drop]');"
@@ -191,6 +194,7 @@ class LiveHtml:
                 "mouseover": _HOVER,
                 "mouseleave": _LEAVE,
                 "dragstart": _GRAB,
+                "dragend": _RELEASE,
                 "dragover": _OVER,
                 "drop": _DROP,
             }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -27,6 +28,9 @@ LOCK = (
 STRUCK = '<path d="M4 4l16 16"/>'
 CLOSED, OPEN = "M8 11V8a4 4 0 0 1 8 0v3", "M8 11V8a4 4 0 0 1 7.5-2"
 
+LONGEST_DRAG_S = 15.0
+"""The list is drawn again after this long, in case a browser left in the middle of a drag."""
+
 Cursors = Sequence[tuple[str, tuple[int, int, int], tuple[str, ...]]]
 
 
@@ -46,9 +50,12 @@ class Outliner:
     def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
         self._guest = guest
         self._html = LiveHtml(gui, self._act)
+        self._held_until = 0.0
 
     def refresh(self) -> None:
-        """Draw the tree of the current scene."""
+        """Draw the tree of the current scene; not while a row is being dragged, which would let go of it."""
+        if time.monotonic() < self._held_until:
+            return
         guest, room = self._guest, self._guest.room
         others = [(g.name, g.colour, g.selection) for g in room.guests.values() if g is not guest]
         self._html.show(f"<p>{title_bar(guest)}</p>" + tree_html(room.scene, guest.selection, room.badges, others))
@@ -58,6 +65,14 @@ class Outliner:
 
     def _do(self, action: Action) -> None:
         guest, scene = self._guest, self._guest.room.scene
+        if action.do == "grab":
+            self._held_until = time.monotonic() + LONGEST_DRAG_S
+            return
+        if action.do in ("drop", "release"):
+            self._held_until = 0.0
+        if action.do == "release":
+            self.refresh()
+            return
         if action.do == "drop":
             child, parent = action.pair
             if not scene.has_object(child):

@@ -133,7 +133,7 @@ class EditorPage:
         self.page.get_by_role("tab", name=name, exact=True).click()
 
     def row(self, label: str, *, exact: bool = True) -> Locator:
-        return self.page.locator(".dio .row .name").get_by_text(label, exact=exact)
+        return self.page.locator(".dio .row[data-grab] .name").get_by_text(label, exact=exact)
 
     def notice(self, words: str) -> None:
         """A notice or a toast with these words is shown."""

@@ -159,12 +159,12 @@ def test_a_shape_is_clicked_onto_the_table_and_lengths_are_measured_and_rescaled
 
 
 def test_supports_are_dragged_in_the_list_and_refused_with_the_reason(editor: EditorPage) -> None:
-    editor.page.locator('.dio .row[data-arg="lamp_1"]').drag_to(editor.page.locator('.dio .row[data-drop="floor"]'))
+    _drag_row(editor, "lamp_1", "floor")
     editor.until(lambda: scene(editor).support_of("lamp_1").parent == "floor", "onto the floor")
     assert scene(editor).object("lamp_1").corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-6)
-    editor.page.locator('.dio .row[data-arg="lamp_1"]').drag_to(editor.page.locator('.dio .row[data-arg="table_1"]'))
+    _drag_row(editor, "lamp_1", "table_1")
     editor.until(lambda: scene(editor).support_of("lamp_1").parent == "table_1", "back onto the table")
-    editor.page.locator('.dio .row[data-arg="table_1"]').drag_to(editor.page.locator('.dio .row[data-arg="lamp_1"]'))
+    _drag_row(editor, "table_1", "lamp_1")
     editor.notice("already holds up")
     assert scene(editor).support_of("table_1").parent == "floor"
     editor.row("chair <b>by the window</b>").click()
@@ -291,3 +291,11 @@ def test_what_was_missed_is_added_from_the_photo_and_renamed(editor: EditorPage)
     label = f"outline of {room.scene.object(new.id).label}"
     editor.until(lambda: room.document.history.current.label == label, "looked at again", seconds=90)
     assert not editor.guest.view.drawing
+
+
+def _drag_row(editor: EditorPage, child: str, parent: str) -> None:
+    assert editor.running.room.checker.wait()
+    editor.running.room.desk.wait()
+    editor.settle()
+    row = editor.page.locator(f'.dio .row[data-grab="{child}"]')
+    row.drag_to(editor.page.locator(f'.dio .row[data-drop="{parent}"]'))
