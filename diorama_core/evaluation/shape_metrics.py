@@ -32,7 +32,7 @@ def chamfer(a: Float[np.ndarray, "n 3"], b: Float[np.ndarray, "m 3"]) -> float:
     """Two-way chamfer distance: mean squared distance to the nearest point, one way plus the other."""
     there, _ = cKDTree(b).query(a)
     back, _ = cKDTree(a).query(b)
-    return float((there**2).mean() + (back**2).mean())
+    return float(np.mean(np.square(there)) + np.mean(np.square(back)))
 
 
 def shape_distance(library: ShapeLibrary, a: str, b: str) -> float:

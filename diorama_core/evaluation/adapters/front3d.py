@@ -37,7 +37,8 @@ def read_front3d(path: Path, room: str) -> Scene:
         raise InputError(f"{path}: there is no room '{room}'; it has {', '.join(rooms_of(path))}")
     furniture = {f["uid"]: f for f in house["furniture"] if f.get("valid", True) and f.get("size") is not None}
     meshes = {m["uid"]: m for m in house["mesh"]}
-    objects, planes = [], []
+    objects: list[SceneObject] = []
+    planes: list[Plane] = []
     for child in record["children"]:
         if child["ref"] in furniture:
             objects.append(_object(child, furniture[child["ref"]], len(objects)))

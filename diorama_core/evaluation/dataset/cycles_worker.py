@@ -15,8 +15,8 @@ def render(job: dict[str, Any]) -> None:
         job: `glb`, `png`, `width`, `height`, `samples`, `seed`, and `lights` as rectangles in the world of the scene
             file: `matrix` (4 x 4, local -z is where it shines), `width_m`, `height_m`, `watts`.
     """
-    import bpy
-    from mathutils import Matrix
+    import bpy  # type: ignore[import-not-found,unused-ignore]
+    from mathutils import Matrix  # type: ignore[import-not-found,unused-ignore]
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.import_scene.gltf(filepath=job["glb"])
