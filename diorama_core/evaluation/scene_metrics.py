@@ -70,11 +70,11 @@ class SceneScores:
     @classmethod
     def failed(cls, asked: int) -> SceneScores:
         """Nothing came out."""
-        wrong = [
-            Alignment(r, asked, 0.0, 0.0, 0.0, 0.0)
-            for r in ("mean over pairs", "against every other object", "object-focus")
-        ]
-        return cls(asked, 0, *wrong, None, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, None, 0.0)
+        pairs, every, own = (
+            Alignment(reading, asked, 0.0, 0.0, 0.0, 0.0)
+            for reading in ("mean over pairs", "against every other object", "object-focus")
+        )
+        return cls(asked, 0, pairs, every, own, None, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, None, 0.0)
 
 
 def scene_scores(view: TruthView, scene: Scene, library: ShapeLibrary, *, physics: bool = False) -> SceneScores:

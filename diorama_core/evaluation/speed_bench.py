@@ -9,9 +9,11 @@ import resource
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from importlib import resources
 
 import numpy as np
+from jaxtyping import Float32, Int
 
 from diorama_core.errors import InputError
 from diorama_core.evaluation.cases import Case, photographed
@@ -130,7 +132,7 @@ def layout_by_objects(seed: int, objects: Sequence[int]) -> list[Series]:
         points = []
         for count in objects:
             scene = generate_room(seed + 500, count).observed
-            points.append((float(count), least_time(lambda s=scene, t=stage: t.optimise(s, Progress()), 2)))
+            points.append((float(count), least_time(partial(stage.optimise, scene, Progress()), 2)))
         found.append(Series(f"layout {name}", "objects", tuple(points)))
     return found
 
@@ -142,8 +144,12 @@ def search_by_library(seed: int, libraries: Sequence[int]) -> Series:
     for count in libraries:
         features = rng.standard_normal((count, FEATURES), dtype=np.float32)
         query = rng.standard_normal(FEATURES, dtype=np.float32)
-        points.append((float(count), least_time(lambda f=features, q=query: np.argpartition(f @ q, -50)[-50:], 3)))
+        points.append((float(count), least_time(partial(_best_fifty, features, query), 3)))
     return Series("search by features", "shapes", tuple(points))
+
+
+def _best_fifty(features: Float32[np.ndarray, "n d"], query: Float32[np.ndarray, " d"]) -> Int[np.ndarray, " 50"]:
+    return np.argpartition(features @ query, -50)[-50:]
 
 
 def least_time(work: Callable[[], object], repeats: int) -> float:
