@@ -9,6 +9,7 @@ from diorama_app.clipboard import copied, pasted
 from diorama_app.commands import Command, CommandTable
 from diorama_app.guest import Guest
 from diorama_app.measuring import start_measuring, stop_measuring
+from diorama_app.networks import find_furniture
 from diorama_app.placing import seated
 from diorama_app.room import Room
 from diorama_app.views import Views
@@ -57,6 +58,7 @@ def build_commands(room: Room, views: Views, cancel: Callable[[Guest], bool], sh
         *_ways(),
         Command("save", "Save", save, "S", "cmd/ctrl", "Save now (every change is saved anyway)"),
         Command("measure", "Measure", start_measuring, "M", None, "Measure between two clicks; rescale by it"),
+        Command("find_furniture", "Find furniture", find_furniture, None, None, "Box the photo's furniture by network"),
         Command("help", "What you can do", show_help, "?", "shift", "Every command with its key"),
         Command("escape", "Clear selection", escape, "escape", None, "Stop what is under way, or select nothing"),
     )

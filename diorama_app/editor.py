@@ -23,6 +23,7 @@ from diorama_app.panels.help import show_help
 from diorama_app.panels.job import JobStrip
 from diorama_app.panels.library import LibraryPanel
 from diorama_app.panels.measure import Tape
+from diorama_app.panels.networks import Networks
 from diorama_app.panels.optimiser import Optimiser
 from diorama_app.panels.outliner import Outliner
 from diorama_app.panels.photo import PhotoPanel
@@ -148,12 +149,12 @@ class Editor:
         with left.add_tab("Scene"):
             panels += [Outliner(gui, guest), RoomSize(gui, guest)]
         with left.add_tab("Photo"):
-            panels.append(PhotoPanel(gui, guest, self.views))
+            panels.append(PhotoPanel(gui, guest, self.views, self.commands))
         with left.add_tab("Arrange"):
             guest.curves = optimiser = Optimiser(gui, guest)
             panels.append(optimiser)
         with left.add_tab("Project"):
-            panels.append(Projects(gui, guest, self.commands))
+            panels += [Projects(gui, guest, self.commands), Networks(gui, guest)]
         right = gui.add_panel()
         with right.add_tab("Object"):
             panels += [

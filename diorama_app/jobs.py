@@ -13,7 +13,7 @@ from diorama_core.progress import CancelToken, Progress, ProgressEvent
 
 log = logging.getLogger(__name__)
 
-JobKind = Literal["build", "optimise", "export", "look", "import"]
+JobKind = Literal["build", "optimise", "export", "look", "import", "text", "pull", "find"]
 
 
 @dataclass(frozen=True)

@@ -39,12 +39,22 @@ def build(guest: Guest) -> None:
         assert project is not None
         room.saver.flush()
         built = build_project(project, inputs, room.library, warnings=draft.warnings, progress=progress)
-        guest.post(lambda: _built(room, draft, project, built.scene, own=own))
+        guest.post(lambda: show_built(room, draft, project, built.scene, own=own))
 
     room.jobs.start("build", "Building the scene", work)
 
 
-def _built(room: Room, draft: Draft, project: Project, scene: Scene, *, own: bool) -> None:
+def show_built(room: Room, draft: Draft, project: Project, scene: Scene, *, own: bool, message: str = "") -> None:
+    """Show everyone what a build made.
+
+    Args:
+        room: where.
+        draft: what was handed in when the build began; a newer one is kept.
+        project: where the scene lies.
+        scene: what was built.
+        own: whether it was built in the open project, as one undo step there.
+        message: what to say instead of the number of objects.
+    """
     newer = room.draft if room.draft is not draft else None
     if newer is None:
         for guest in room.guests.values():
@@ -61,7 +71,7 @@ def _built(room: Room, draft: Draft, project: Project, scene: Scene, *, own: boo
     if newer is not None:
         room.draft = newer  # what somebody handed in meanwhile is not lost
         room.refresh_panels()
-    room.notice_all(f"The scene has {len(scene.objects)} objects. Click one to change it.", "good")
+    room.notice_all(message or f"The scene has {len(scene.objects)} objects. Click one to change it.", "good")
 
 
 def fresh_folder(projects_dir: Path, name: str) -> Path:

@@ -12,9 +12,12 @@ from jaxtyping import UInt8
 from PIL import Image
 
 from diorama_app import work
+from diorama_app.commands import CommandTable
 from diorama_app.correcting import add_from_photo
+from diorama_app.describing import describe_room, how_pictures_come
 from diorama_app.drafts import Draft, boxes_json, can_find_furniture
 from diorama_app.guest import Guest
+from diorama_app.networks import NO_DETECTOR
 from diorama_app.page import Action, LiveHtml, button, text
 from diorama_app.panels.fields import enable, on_change, on_press, show_if, show_label, show_value
 from diorama_app.viewport import reduced
@@ -32,12 +35,17 @@ UPLOADS = {"photo": "Photo", "depth": "Depth (PNG, NPY)", "boxes": "Boxes (JSON)
 class PhotoPanel:
     """Uploads, the drawing board's controls, the list of boxes, and "Build scene"."""
 
-    def __init__(self, gui: viser.GuiApi, guest: Guest, views: Views) -> None:
+    def __init__(self, gui: viser.GuiApi, guest: Guest, views: Views, commands: CommandTable) -> None:
         self._guest, self._room, self._views = guest, guest.room, views
         self._picture_of: object = None
         self._picture = ""
         self._invitation = LiveHtml(gui, self._act)
         self._photo_button = self._upload(gui, "photo", "Upload a photo", "image/*")
+        self._words = gui.add_text("Describe a room", "", hint="For example: a bedroom with a double bed and two lamps")
+        self._describe = gui.add_button("Make this room", color="green", hint="A project of its own, made from words")
+        on_change(self._words, lambda _: guest.post(self.refresh, key="words"))
+        on_press(self._describe, lambda: guest.post(lambda: describe_room(guest, self._words.value)))
+        self._drawn_by = LiveHtml(gui)
         self._more = gui.add_folder("More about this photo", expand_by_default=False)
         with self._more:
             self._upload(gui, "boxes", "Add boxes (JSON)", ".json,application/json")
@@ -47,6 +55,10 @@ class PhotoPanel:
             on_change(self._camera, self._camera_given)
         self._draw = gui.add_button("Draw boxes", color="blue", hint="Mark every piece of furniture with a rectangle")
         on_press(self._draw, lambda: guest.post(self._toggle_board))
+        self._find = gui.add_button("Find furniture", hint=commands["find_furniture"].tooltip)
+        on_press(self._find, lambda: guest.post(lambda: commands["find_furniture"].run(guest)))
+        self._no_detector = LiveHtml(gui)
+        guest.open_board = self._open_board
         names = [*COMMON, *sorted({c.name for c in CATEGORIES} - {*COMMON, "object"})]
         self._label = gui.add_dropdown("This is a", names, hint="What the next box (or the marked one) is")
         self._other = gui.add_text("or type", "", hint="Any other word; used instead of the list")
@@ -70,7 +82,12 @@ class PhotoPanel:
         draft = self._room.draft
         has_photo = draft.photo is not None
         self._invitation.show(self._introduction(draft))
-        show_if(has_photo, self._more, self._draw, self._label, self._other, self._build)
+        show_if(has_photo, self._more, self._draw, self._find, self._label, self._other, self._build)
+        self._drawn_by.show(f'<p class="dim">{text(how_pictures_come())}</p>' if self._words.value.strip() else "")
+        enable(self._describe, self._room.jobs.status is None and bool(self._words.value.strip()))
+        finds = can_find_furniture()
+        enable(self._find, self._room.jobs.status is None and finds)
+        self._no_detector.show(f'<p class="dim">{text(NO_DETECTOR)}</p>' if has_photo and not finds else "")
         self._list.show(_box_list(draft) if has_photo else "")
         show_if(has_photo and draft.from_project and bool(self._room.scene.objects), self._add)
         enable(self._add, self._room.jobs.status is None and draft.highlighted is not None)

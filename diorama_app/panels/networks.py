@@ -1,0 +1,105 @@
+"""What each stage uses now, and a way to get the networks that do it better."""
+
+from __future__ import annotations
+
+import viser
+
+from diorama_app.guest import Guest
+from diorama_app.networks import get_networks, missing_networks
+from diorama_app.page import LiveHtml, text
+from diorama_app.panels.fields import enable, on_change, on_press, show_if, show_value
+from diorama_core.errors import DioramaError
+from diorama_core.models.manifest import Network, networks_of
+from diorama_core.models.store import ModelStore
+from diorama_core.pipeline.profiles import StageStatus, profile_status
+
+SETS = {
+    "lite: fine on a laptop": "lite",
+    "default: better": "default",
+    "paper: as published": "paper",
+}
+
+
+class Networks:
+    """The list of stages, the choice of a set with its licences, and "Get networks"."""
+
+    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
+        self._guest = guest
+        with gui.add_folder("Networks", expand_by_default=False):
+            self._stages = LiveHtml(gui)
+            self._choice = gui.add_dropdown("Set", tuple(SETS), hint="Which networks to get; all are optional")
+            self._offer = LiveHtml(gui)
+            self._accept = gui.add_checkbox("I accept these licences", False)
+            self._get = gui.add_button("Get networks", color="blue", hint="Fetches what is missing; can be stopped")
+        on_change(self._choice, lambda _: guest.post(self._chosen))
+        on_change(self._accept, lambda _: guest.post(self.refresh))
+        on_press(self._get, lambda: guest.post(self._start))
+
+    def refresh(self) -> None:
+        """Draw what is here and what the chosen set would add."""
+        store = ModelStore.default()
+        self._stages.show(_stages_html())
+        missing, unknown = self._missing(store), self._unknown(store)
+        self._offer.show(_offer_html(missing, store))
+        show_if(bool(unknown), self._accept)
+        show_if(bool(missing), self._get)
+        enable(self._get, self._guest.room.jobs.status is None and (not unknown or self._accept.value))
+
+    def _networks(self) -> tuple[Network, ...]:
+        return networks_of(SETS[self._choice.value])
+
+    def _missing(self, store: ModelStore) -> tuple[Network, ...]:
+        return missing_networks(store, self._networks())
+
+    def _unknown(self, store: ModelStore) -> frozenset[str]:
+        """Ids of what would be fetched under licences that nobody accepted on this machine yet."""
+        return frozenset(n.id for n in self._missing(store)) - store.accepted_licences()
+
+    def _chosen(self) -> None:
+        show_value(self._accept, False)  # another set has other licences
+        self.refresh()
+
+    def _start(self) -> None:
+        accepted = self._unknown(ModelStore.default()) if self._accept.value else frozenset[str]()
+        get_networks(self._guest, self._networks(), accepted)
+
+
+def _stages_html() -> str:
+    try:
+        stages = profile_status()
+    except DioramaError as error:
+        return f'<p class="bad">{text(error)}</p>'
+    return "<h4>What each stage uses now</h4>" + "".join(_stage_html(s) for s in stages)
+
+
+def _stage_html(stage: StageStatus) -> str:
+    name = text(stage.stage[:1].upper() + stage.stage[1:])
+    if stage.network_id is None:
+        about = ""
+    elif stage.present:
+        about = f"a network on this machine, {_size(stage.size_mb)}, {text(stage.licence)}"
+    else:
+        about = "no network on this machine"
+    advice = text(stage.advice.split(": diorama models pull")[0])
+    better = f"better: {advice}" if stage.network_id is not None and advice else advice
+    small = " · ".join(part for part in (about, better) if part)
+    small = small[:1].upper() + small[1:]
+    return f'<p><b>{name}</b>: {text(stage.implementation)}<br><span class="dim">{small}</span></p>'
+
+
+def _offer_html(missing: tuple[Network, ...], store: ModelStore) -> str:
+    if not missing:
+        return '<p class="dim">All of this set is on this machine.</p>'
+    total = sum(n.size_bytes for n in missing) / 1e6
+    rows = "".join(
+        f"<tr><td>{text(n.title)}</td><td style='white-space:nowrap'>{_size(n.size_bytes / 1e6)}<br>"
+        f'<span class="dim">{text(n.licence)}</span></td></tr>'
+        for n in missing
+    )
+    known = all(n.id in store.accepted_licences() for n in missing)
+    words = "Their licences were accepted on this machine." if known else "Their licences are accepted once."
+    return f'<div class="card"><b>{_size(total)} to fetch.</b> {words}<table>{rows}</table></div>'
+
+
+def _size(megabytes: float) -> str:
+    return f"{megabytes / 1000:.1f} GB" if megabytes >= 1000 else f"{megabytes:.0f} MB"
