@@ -52,15 +52,10 @@ class SizeLimits:
     @classmethod
     def of(cls, shape_size_m: tuple[float, float, float], category_name: str, observed_m: np.ndarray) -> SizeLimits:
         """Limits for a shape standing for a thing of a category, by the size prior nearest to what was observed."""
-        least, most = _category_range(category_name, observed_m)
-        stretch = _STRETCH_BOXY if category_name in BOXY else _STRETCH_SHAPED
         own = np.asarray(shape_size_m, dtype=np.float64)
-        return cls(
-            own,
-            np.maximum(np.minimum(least, own / _OWN_SIZE_FACTOR), _DEGENERATE_M),
-            np.maximum(most, own * _OWN_SIZE_FACTOR),
-            stretch,
-        )
+        least, most = _category_range(category_name, observed_m, own)
+        stretch = _STRETCH_BOXY if category_name in BOXY else _STRETCH_SHAPED
+        return cls(own, least, most, stretch)
 
     def scale_for(self, wanted_m: Float[np.ndarray, "*p 3"]) -> Float[np.ndarray, "*p 3"]:
         """Per-axis scales nearest to giving the shape the wanted size, within the limits."""
@@ -83,12 +78,14 @@ class SizeLimits:
         return np.log(scale[..., shaped]).std(axis=-1)
 
 
-def _category_range(category_name: str, observed_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _category_range(category_name: str, observed_m: np.ndarray, own_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     if category_name == UNKNOWN.name:
         return np.full(3, 0.02), np.full(3, 4.0)
     prior = _nearest_prior(category(category_name).priors, np.log(np.clip(observed_m, 1e-3, 10.0)))
     least = np.exp(prior.log_median_xyz - _SIGMAS * prior.log_sigma_xyz)
     most = np.exp(prior.log_median_xyz + _SIGMAS * prior.log_sigma_xyz)
+    least = np.maximum(np.minimum(least, own_m / _OWN_SIZE_FACTOR), _DEGENERATE_M)
+    most = np.maximum(most, own_m * _OWN_SIZE_FACTOR)
     if category_name in _HARD_LIMITS_M:
         axis, low, high = _HARD_LIMITS_M[category_name]
         least[axis], most[axis] = max(least[axis], low), min(most[axis], high)
