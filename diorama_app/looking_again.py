@@ -15,8 +15,9 @@ from jaxtyping import Bool, Float
 from diorama_core.artefacts import DetectedObject, Inputs, LabelledBox, ObjectGeometry
 from diorama_core.errors import InputError
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.pipeline.build import embedded_stages
 from diorama_core.pipeline.colours import photo_colours
+from diorama_core.pipeline.perceive import perceived
+from diorama_core.pipeline.profiles import stages_for
 from diorama_core.pipeline.runner import Runner
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Camera, Candidate, Plane, Pose, Scene, SceneObject, Support, yaw_rotation
@@ -87,8 +88,9 @@ def look_again(
     if scene.camera is None:
         raise InputError("this scene has no photo camera; build it from the photo first")
     progress = progress or Progress()
-    stages, runner = embedded_stages(inputs, library), Runner(cache)
-    camera = runner.run("camera", stages.camera, stages.camera.estimate, (inputs,), progress.part(0.0, 0.1))
+    stages, runner = stages_for("auto", inputs, library), Runner(cache)
+    inputs = perceived(inputs, stages, runner, progress.part(0.0, 0.05))
+    camera = runner.run("camera", stages.camera, stages.camera.estimate, (inputs,), progress.part(0.05, 0.1))
     known = runner.run("objects", stages.objects, stages.objects.segment, (inputs,), progress.part(0.1, 0.4))
     geometry = runner.run(
         "geometry", stages.geometry, stages.geometry.measure, (inputs, camera, known), progress.part(0.4, 0.5)
