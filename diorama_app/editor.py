@@ -26,6 +26,7 @@ from diorama_app.panels.measure import Tape
 from diorama_app.panels.networks import Networks
 from diorama_app.panels.optimiser import Optimiser
 from diorama_app.panels.outliner import Outliner
+from diorama_app.panels.own_model import OwnModel
 from diorama_app.panels.photo import PhotoPanel
 from diorama_app.panels.projects import Projects
 from diorama_app.panels.properties import Properties
@@ -161,6 +162,7 @@ class Editor:
                 Properties(gui, guest, self.commands),
                 Supports(gui, guest),
                 Alternatives(gui, guest),
+                OwnModel(gui, guest),
                 Evidence(gui, guest),
             ]
         with right.add_tab("Library"):

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import tempfile
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from diorama_app.guest import Guest
 from diorama_app.inserting import start_placing
+from diorama_app.room import Room
 from diorama_app.shelf import OWN, Shelf
+from diorama_app.swapping import candidate_for, swapped
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
+from diorama_core.scene.types import Scene
 
 
 def import_model(guest: Guest, name: str, content: bytes) -> None:
@@ -54,6 +58,72 @@ def _taken_in(shelf: Shelf, name: str, content: bytes, progress: Progress) -> st
         if report.failed:
             raise InputError(f"{name}: {report.failed[0].reason}")
         return report.added[0] if report.added else found[0].id
+
+
+@dataclass(frozen=True)
+class Fix:
+    """One way in which a model was taken wrongly, and the change that mends it."""
+
+    name: str
+    hint: str
+    up: str = "+z"
+    """Axis of the shape as it stands that ought to point up."""
+    front: str | None = None
+    """Axis of the shape as it stands that ought to be the front."""
+    scale: float = 1.0
+
+
+FIXES: dict[str, Fix] = {
+    "left": Fix("Front is left", "Its left side is really its front", front="+y"),
+    "back": Fix("Front is back", "Its back is really its front", front="-x"),
+    "tip": Fix("Tip over", "What is its back now ought to be on top", up="-x", front="+z"),
+    "roll": Fix("Roll over", "What is its left side now ought to be on top", up="+y", front="+x"),
+    "flip": Fix("Upside down", "What is at the bottom now ought to be on top", up="-z", front="+x"),
+    "metres": Fix("x 100", "Its sizes were meant in metres, not centimetres", scale=100.0),
+    "centimetres": Fix("/ 100", "Its sizes were meant in centimetres, not metres", scale=0.01),
+    "inches": Fix("x 2.54", "Its sizes were meant in inches, not centimetres", scale=2.54),
+}
+"""The corrections that a person can choose from."""
+
+
+def is_own_model(room: Room, shape_id: str) -> bool:
+    """Whether a shape is one that somebody uploaded, so that it may be corrected."""
+    shelf = room.library
+    return isinstance(shelf, Shelf) and shelf.has_own(shape_id)
+
+
+def correct_model(guest: Guest, object_id: str, fix: Fix | None = None, *, category: str | None = None) -> None:
+    """Take a model of one's own as it was meant, and show the object in it, in the size it then has.
+
+    The corrected model gets an id of its own: undo leads back to the one before.
+
+    Raises:
+        EditRefused: when the shape is not one of one's own.
+        InputError: when the category is unknown.
+    """
+    from diorama_core.library.ingest.correct import corrected
+
+    room = guest.room
+    item, shelf = room.scene.object(object_id), room.library
+    if not isinstance(shelf, Shelf) or not shelf.has_own(item.shape_id):
+        raise EditRefused("only models of your own can be corrected; upload one under Library")
+    own, change = shelf.own(), fix or Fix("", "")
+    found = corrected(own, item.shape_id, up=change.up, front=change.front, scale=change.scale, category=category)
+    stem = item.shape_id.partition("~")[0]
+    record = replace(
+        found.record, id=f"{stem}~{found.record.content_hash[:6]}-{found.record.category.replace(' ', '-')}"
+    )
+    own.add(replace(found, record=record))
+    what = change.name.lower() if fix is not None else record.category
+
+    def take(scene: Scene) -> Scene:
+        return swapped(scene, item, candidate_for(room.library, item, record.id, "catalogue"), keep_colour=True)
+
+    try:
+        room.edit(f"correct the model ({what})", take, by=guest)
+    except EditRefused:
+        own.remove([record.id])
+        raise
 
 
 def _note_library(project: Project) -> None:

@@ -36,6 +36,11 @@ class Shelf:
                     self._library = CombinedLibrary([self._library, self._own])
             return self._own
 
+    def has_own(self, shape_id: str) -> bool:
+        """Whether a shape is one of the uploads."""
+        known = self._own is not None or OWN in stored_libraries()
+        return known and any(shape.id == shape_id for shape in self.own().shapes())
+
     def shapes(self) -> tuple[Shape, ...]:
         """All records, in a stable order."""
         return self._library.shapes()

@@ -1,0 +1,50 @@
+"""Putting right what was guessed of a model of one's own: how it stands, how large it is, what it is."""
+
+from __future__ import annotations
+
+import viser
+
+from diorama_app.guest import Guest
+from diorama_app.importing import FIXES, correct_model, is_own_model
+from diorama_app.page import Action, LiveHtml, button, text
+from diorama_core.library.record import Shape
+
+
+class OwnModel:
+    """Shown for objects whose shape somebody brought along."""
+
+    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
+        self._guest = guest
+        self._html = LiveHtml(gui, self._act)
+
+    def refresh(self) -> None:
+        """Draw what was guessed about the selected object's model, and ways to correct it."""
+        item = self._guest.selected
+        if item is None or not is_own_model(self._guest.room, item.shape_id):
+            self._html.show("")
+            return
+        shape = self._guest.room.library.shape(item.shape_id)
+        fixes = "".join(button(fix.name, "fix", name, title=fix.hint) for name, fix in FIXES.items())
+        self._html.show(
+            f'<h4>Your model</h4><div class="dim">{text(_guessed(shape))}</div>'
+            f'<div class="bar tight">{fixes}</div>'
+            '<div style="display:flex;gap:4px;margin-bottom:4px">'
+            f'<input data-change="is" aria-label="What the model is" value="{text(shape.category)}" '
+            'title="Say what the model is and press Enter"></div>'
+        )
+
+    def _act(self, action: Action) -> None:
+        guest = self._guest
+        if action.do == "fix" and action.arg in FIXES:
+            guest.post(lambda: correct_model(guest, guest.need_selected(), FIXES[action.arg]))
+        elif action.do == "is":
+            guest.post(lambda: correct_model(guest, guest.need_selected(), category=action.pair[1]))
+
+
+def _guessed(shape: Shape) -> str:
+    """What was taken for granted, in words."""
+    if shape.guess is None:
+        return f"Taken for a {shape.category}."
+    sure = round(100 * min(shape.guess.up.confidence, shape.guess.front.confidence))
+    unit = shape.guess.unit.value
+    return f"Taken for a {shape.category}, one unit {unit} m, {sure} % sure how it stands. Correct it here."
