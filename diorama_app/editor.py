@@ -161,8 +161,8 @@ class Editor:
             panels += [
                 Properties(gui, guest, self.commands),
                 Supports(gui, guest),
-                Alternatives(gui, guest),
                 OwnModel(gui, guest),
+                Alternatives(gui, guest),
                 Evidence(gui, guest),
             ]
         with right.add_tab("Library"):

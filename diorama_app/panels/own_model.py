@@ -44,7 +44,7 @@ class OwnModel:
 def _guessed(shape: Shape) -> str:
     """What was taken for granted, in words."""
     if shape.guess is None:
-        return f"Taken for a {shape.category}."
+        return f"Taken for: {shape.category}."
     sure = round(100 * min(shape.guess.up.confidence, shape.guess.front.confidence))
     unit = shape.guess.unit.value
-    return f"Taken for a {shape.category}, one unit {unit} m, {sure} % sure how it stands. Correct it here."
+    return f"Taken for: {shape.category}; one unit is {unit} m; {sure} % sure how it stands. Correct it here."

@@ -7,13 +7,10 @@ import json
 import logging
 import os
 import tempfile
-import threading
-from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import Generic, TypeVar
 
 import numpy as np
 import platformdirs
@@ -24,6 +21,7 @@ from diorama_core.library import furniture, taxonomy
 from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.model import Design, built, mesh_of, scene_of
 from diorama_core.library.furniture.solids import Solid
+from diorama_core.library.kept import Kept
 from diorama_core.library.record import Shape, SupportSurface, usual_contact_faces
 from diorama_core.library.surfaces import support_surfaces
 
@@ -61,8 +59,6 @@ BULK_DENSITY: dict[str, float] = {
 }  # fmt: skip
 """Kilograms per cubic metre of bounding box: a rough guess for physics, from weighing catalogues' furniture."""
 
-Value = TypeVar("Value")
-
 
 def default_cache_dir() -> Path:
     """Where derived files live: `DIORAMA_CACHE` when set, else the user's cache folder."""
@@ -86,11 +82,11 @@ class BuiltInLibrary:
             raise LibraryError("two built-in designs share an id; give each its own")
         self._records = {d.id: _record(d) for d in designs}
         self._files = _FileCache(cache_dir)
-        self._solids: _Kept[list[tuple[Material, Solid]]] = _Kept(8)
-        self._scenes: _Kept[trimesh.Scene] = _Kept(64)
-        self._meshes: _Kept[trimesh.Trimesh] = _Kept(256)
-        self._glbs: _Kept[bytes] = _Kept(256)
-        self._surfaces: _Kept[tuple[SupportSurface, ...]] = _Kept(4096)
+        self._solids: Kept[list[tuple[Material, Solid]]] = Kept(8)
+        self._scenes: Kept[trimesh.Scene] = Kept(64)
+        self._meshes: Kept[trimesh.Trimesh] = Kept(256)
+        self._glbs: Kept[bytes] = Kept(256)
+        self._surfaces: Kept[tuple[SupportSurface, ...]] = Kept(4096)
 
     def __repr__(self) -> str:
         return f"BuiltInLibrary({len(self._records)} shapes)"
@@ -140,35 +136,6 @@ class BuiltInLibrary:
             return _surfaces_to_json(support_surfaces(self.mesh(record.id)))
 
         return _surfaces_from_json(self._files.get(f"{record.content_hash}.surfaces.json", measure))
-
-
-class _Kept(Generic[Value]):
-    """The most recently used values by name; each is made once, by one thread."""
-
-    def __init__(self, size: int) -> None:
-        self._size = size
-        self._values: OrderedDict[str, Value] = OrderedDict()
-        self._making: dict[str, threading.Lock] = {}
-        self._lock = threading.Lock()
-
-    def get(self, name: str, make: Callable[[], Value]) -> Value:
-        """The value kept under `name`, made now if there is none."""
-        with self._lock:
-            if name in self._values:
-                self._values.move_to_end(name)
-                return self._values[name]
-            making = self._making.setdefault(name, threading.Lock())
-        with making:
-            with self._lock:
-                if name in self._values:
-                    return self._values[name]
-            value = make()
-            with self._lock:
-                self._values[name] = value
-                while len(self._values) > self._size:
-                    self._values.popitem(last=False)
-                self._making.pop(name, None)
-            return value
 
 
 class _FileCache:
