@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.pipeline.build import Built
 from diorama_core.progress import Progress
 from diorama_core.project.files import write_atomically
 from diorama_core.project.storage import Project
@@ -14,6 +13,9 @@ from diorama_core.protocols import LayoutStage
 from diorama_core.scene import edits
 from diorama_core.scene.schema import scene_to_json
 from diorama_core.scene.types import Scene
+
+if TYPE_CHECKING:
+    from diorama_core.pipeline.build import Built  # the whole pipeline; opening a project does without it
 
 
 def library_named(name: str) -> ShapeLibrary:
