@@ -12,7 +12,7 @@ from diorama_app.guest import Guest
 from diorama_core.errors import EditRefused
 from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
-from diorama_core.scene.types import Pose, Scene, SceneObject, Support, yaw_rotation
+from diorama_core.scene.types import Finish, Pose, Scene, SceneObject, Support, yaw_rotation
 
 NUDGE_MERGE = "fields"
 BESIDE_M = 0.08
@@ -69,6 +69,17 @@ def set_colour(guest: Guest, ids: Iterable[str], colour: tuple[float, float, flo
         lambda s: _fold(s, chosen, lambda scene, i: edits.recolour(scene, i, colour)),
         by=guest,
         merge_key=f"{NUDGE_MERGE} colour {' '.join(chosen)}",
+    )
+
+
+def set_finish(guest: Guest, ids: Iterable[str], finish: Finish | None) -> None:
+    """Make objects matt, glossy..., or give back the shape's own finish with None."""
+    chosen = tuple(ids)
+    names = names_of(guest.room.scene, chosen)
+    guest.room.edit(
+        f"{finish} {names}" if finish is not None else f"own finish of {names}",
+        lambda s: _fold(s, chosen, lambda scene, i: edits.refinish(scene, i, finish)),
+        by=guest,
     )
 
 

@@ -15,7 +15,7 @@ from trimesh.visual.material import PBRMaterial
 from diorama_core.geometry.planes import plane_axes, plane_uv
 from diorama_core.library.paint import painted
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.scene.types import Plane
+from diorama_core.scene.types import Finish, Plane
 
 Colour = tuple[float, float, float]
 KEPT = 256
@@ -23,21 +23,22 @@ KEPT = 256
 
 
 class ShapeBytes:
-    """GLB bytes of library shapes, in their own colours or another; +Z up, metres. Safe between threads."""
+    """GLB bytes of library shapes, in their own colours or others; +Z up, metres. Safe between threads."""
 
     def __init__(self, library: ShapeLibrary) -> None:
         self._library = library
-        self._kept: OrderedDict[tuple[str, Colour | None], bytes] = OrderedDict()
+        self._kept: OrderedDict[tuple[str, Colour | None, Finish | None], bytes] = OrderedDict()
         self._lock = threading.Lock()
 
-    def glb(self, shape_id: str, colour: Colour | None = None) -> bytes:
-        """The shape's GLB; with `colour` (sRGB 0 to 1) on its main material."""
-        key = (shape_id, colour)
+    def glb(self, shape_id: str, colour: Colour | None = None, finish: Finish | None = None) -> bytes:
+        """The shape's GLB; with `colour` (sRGB 0 to 1) and `finish` on its main material."""
+        key = (shape_id, colour, finish)
         with self._lock:
             if key in self._kept:
                 self._kept.move_to_end(key)
                 return self._kept[key]
-        data = self._library.glb(shape_id) if colour is None else _painted_glb(self._library.parts(shape_id), colour)
+        own = colour is None and finish is None
+        data = self._library.glb(shape_id) if own else _painted_glb(self._library.parts(shape_id), colour, finish)
         with self._lock:
             self._kept[key] = data
             while len(self._kept) > KEPT:
@@ -45,8 +46,8 @@ class ShapeBytes:
         return data
 
 
-def _painted_glb(parts: trimesh.Scene, colour: Colour) -> bytes:
-    return bytes(painted(parts, colour).export(file_type="glb"))
+def _painted_glb(parts: trimesh.Scene, colour: Colour | None, finish: Finish | None) -> bytes:
+    return bytes(painted(parts, colour, finish).export(file_type="glb"))
 
 
 def plane_triangles(plane: Plane) -> Int32[np.ndarray, "m 3"]:

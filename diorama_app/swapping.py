@@ -40,7 +40,7 @@ def candidate_for(library: ShapeLibrary, item: SceneObject, shape_id: str, mode:
 def swapped(scene: Scene, item: SceneObject, candidate: Candidate, *, keep_colour: bool) -> Scene:
     """The scene with an object in another shape, on the same spot."""
     changed = edits.swap(scene, item.id, candidate, keep_pose=True)
-    return changed if keep_colour else edits.recolour(changed, item.id, None)
+    return changed if keep_colour else edits.refinish(edits.recolour(changed, item.id, None), item.id, None)
 
 
 def swap(guest: Guest, object_id: str, shape_id: str) -> None:

@@ -17,12 +17,12 @@ from jaxtyping import Float, UInt8
 
 from diorama_app.marks import remove_quietly
 from diorama_app.shapes import ShapeBytes, plane_glb, plane_triangles
-from diorama_core.scene.types import Plane, Pose, Scene, SceneObject
+from diorama_core.scene.types import Finish, Plane, Pose, Scene, SceneObject
 
 MESH_NAMES = 8
 """An object's meshes take turns among so many names, so that what is on its way out keeps its own."""
 
-Appearance = tuple[str, tuple[float, float, float] | None]
+Appearance = tuple[str, tuple[float, float, float] | None, Finish | None]
 Pick = Callable[[str, Any], None]
 Later = Callable[[Callable[[], None]], None]
 
@@ -143,21 +143,21 @@ class Viewport:
             frame = self._server.scene.add_frame(self._fresh_name("/objects"), show_axes=False)
             shown = self._objects[item.id] = _Shown(frame, item)
         shown.item = item
-        if shown.appearance != (item.shape_id, item.colour):
+        if shown.appearance != (item.shape_id, item.colour, item.finish):
             self._replace_mesh(shown, item)
         self._set_pose(shown, item.pose)
         shown.frame.visible = not item.hidden
 
     def _replace_mesh(self, shown: _Shown, item: SceneObject) -> None:
         # A node whose bytes change vanishes until the browser has parsed them, so the old one stays for a moment.
-        data = self._shapes.glb(item.shape_id, item.colour)
+        data = self._shapes.glb(item.shape_id, item.colour, item.finish)
         old = shown.mesh
         shown.version = (shown.version + 1) % MESH_NAMES
         mesh = self._server.scene.add_glb(
             f"{shown.frame.name}/v{shown.version}", data, scale=tuple(float(s) for s in item.pose.scale)
         )
         shown.mesh = mesh
-        shown.appearance = (item.shape_id, item.colour)
+        shown.appearance = (item.shape_id, item.colour, item.finish)
         object_id = item.id
 
         async def clicked(event: viser.SceneNodePointerEvent[Any]) -> None:

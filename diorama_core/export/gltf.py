@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 from diorama_core.export.files import write_whole
 from diorama_core.export.gltf_document import GltfDocument
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.render.appearance import Colour, shape_surfaces
+from diorama_core.render.appearance import Paint, shape_surfaces
 from diorama_core.render.slabs import plane_surfaces
 from diorama_core.scene.types import Camera, Plane, Scene, SceneObject, Support
 
@@ -48,7 +48,7 @@ def glb_bytes(scene: Scene, library: ShapeLibrary, *, textures: Textures | None 
     document = GltfDocument(generator="Diorama")
     names = _Names()
     children = [_plane_node(document, plane, textures or {}, names) for plane in scene.architecture.planes]
-    meshes: dict[tuple[str, Colour | None], int] = {}
+    meshes: dict[tuple[str, Paint], int] = {}
     for item in scene.objects:
         if not item.hidden:
             mesh = _shape_mesh(document, library, item, meshes)
@@ -89,11 +89,11 @@ def _plane_node(document: GltfDocument, plane: Plane, textures: Textures, names:
 
 
 def _shape_mesh(
-    document: GltfDocument, library: ShapeLibrary, item: SceneObject, meshes: dict[tuple[str, Colour | None], int]
+    document: GltfDocument, library: ShapeLibrary, item: SceneObject, meshes: dict[tuple[str, Paint], int]
 ) -> int:
-    key = (item.shape_id, item.colour)
+    key = (item.shape_id, (item.colour, item.finish))
     if key not in meshes:
-        meshes[key] = document.add_mesh(item.shape_id, shape_surfaces(library, item.shape_id, item.colour))
+        meshes[key] = document.add_mesh(item.shape_id, shape_surfaces(library, item.shape_id, *key[1]))
     return meshes[key]
 
 

@@ -1,4 +1,4 @@
-"""A shape in another colour: one definition for pictures, exports and the browser."""
+"""A shape in another colour or finish: one definition for pictures, exports and the browser."""
 
 from __future__ import annotations
 
@@ -8,14 +8,22 @@ from jaxtyping import UInt8
 from PIL import Image
 from trimesh.visual.material import PBRMaterial
 
+from diorama_core.scene.types import Finish
+
 Colour = tuple[float, float, float]
 """sRGB, 0 to 1."""
 _DETAIL_MEAN = 0.8
 """Mean lightness of a texture turned into detail: leaves room for lighter threads and fibres."""
+_METALLIC_ROUGHNESS: dict[Finish, tuple[float, float]] = {
+    "matt": (0.0, 0.95),
+    "satin": (0.0, 0.45),
+    "gloss": (0.0, 0.12),
+    "metal": (1.0, 0.3),
+}
 
 
-def painted(parts: trimesh.Scene, colour: Colour) -> trimesh.Scene:
-    """The shape with its main material, the one that covers most area, in `colour`.
+def painted(parts: trimesh.Scene, colour: Colour | None, finish: Finish | None = None) -> trimesh.Scene:
+    """The shape with its main material, the one that covers most area, in `colour` and `finish` (None: its own).
 
     The texture stays as light and dark detail, so wood keeps its grain and cloth its weave; legs, handles and screens
     keep their own material: a blue sofa still stands on wooden feet.
@@ -27,9 +35,10 @@ def painted(parts: trimesh.Scene, colour: Colour) -> trimesh.Scene:
         if _material_key(mesh) != main or main is None:
             continue
         if main == _PLAIN:
-            mesh.visual = trimesh.visual.TextureVisuals(material=_in_colour(PBRMaterial(roughnessFactor=0.7), colour))
+            plain = PBRMaterial(baseColorFactor=mesh.visual.main_color, metallicFactor=0.0, roughnessFactor=0.7)
+            mesh.visual = trimesh.visual.TextureVisuals(material=_overridden(plain, colour, finish))
             continue
-        new = new or _in_colour(_pbr(mesh), colour)
+        new = new or _overridden(_pbr(mesh), colour, finish)
         mesh.visual = trimesh.visual.TextureVisuals(uv=mesh.visual.uv, material=new)
     return scene
 
@@ -56,6 +65,15 @@ def _main_material(scene: trimesh.Scene) -> str | None:
 def _pbr(mesh: trimesh.Trimesh) -> PBRMaterial:
     material = mesh.visual.material
     return material if isinstance(material, PBRMaterial) else material.to_pbr()
+
+
+def _overridden(source: PBRMaterial, colour: Colour | None, finish: Finish | None) -> PBRMaterial:
+    coloured = source.copy() if colour is None else _in_colour(source, colour)
+    if finish is not None:
+        coloured.name = f"{coloured.name or 'material'} {finish}"
+        coloured.metallicFactor, coloured.roughnessFactor = _METALLIC_ROUGHNESS[finish]
+        coloured.metallicRoughnessTexture = None  # it would be multiplied onto both
+    return coloured
 
 
 def _in_colour(source: PBRMaterial, colour: Colour) -> PBRMaterial:

@@ -19,6 +19,7 @@ from trimesh.visual.material import PBRMaterial
 from diorama_core.library.paint import painted
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.render.raycast import face_normals, unit
+from diorama_core.scene.types import Finish
 
 Colour = tuple[float, float, float]
 CREASE_RAD = np.radians(38.0)
@@ -65,15 +66,18 @@ class Surface:
         return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
 
 
-def shape_surfaces(library: ShapeLibrary, shape_id: str, colour_srgb: Colour | None = None) -> tuple[Surface, ...]:
+def shape_surfaces(
+    library: ShapeLibrary, shape_id: str, colour_srgb: Colour | None = None, finish: Finish | None = None
+) -> tuple[Surface, ...]:
     """A shape's surfaces in its canonical frame, in a stable order.
 
     Args:
         library: Where the shape is.
         shape_id: Which shape; `LibraryError` when unknown.
         colour_srgb: Override of the main material's colour; see `library.paint.painted`.
+        finish: Override of how it throws light back, likewise.
     """
-    return _kept_surfaces(library.parts(shape_id), colour_srgb)
+    return _kept_surfaces(library.parts(shape_id), (colour_srgb, finish))
 
 
 def srgb_to_linear(colour: Float[np.ndarray, "*n"]) -> Float[np.ndarray, "*n"]:
@@ -86,20 +90,22 @@ def linear_to_srgb(light: Float[np.ndarray, "*n"]) -> Float[np.ndarray, "*n"]:
     return np.where(light <= 0.0031308, light * 12.92, 1.055 * np.maximum(light, 1e-9) ** (1 / 2.4) - 0.055)
 
 
-_KEPT: OrderedDict[tuple[int, Colour | None], tuple[trimesh.Scene, tuple[Surface, ...]]] = OrderedDict()
+Paint = tuple[Colour | None, Finish | None]
+
+_KEPT: OrderedDict[tuple[int, Paint], tuple[trimesh.Scene, tuple[Surface, ...]]] = OrderedDict()
 _KEPT_LOCK = threading.Lock()
 _KEPT_SHAPES = 128
 
 
-def _kept_surfaces(parts: trimesh.Scene, colour: Colour | None) -> tuple[Surface, ...]:
+def _kept_surfaces(parts: trimesh.Scene, paint: Paint) -> tuple[Surface, ...]:
     """The surfaces of a scene of parts, read once while the same scene object keeps being asked for."""
-    key = (id(parts), colour)
+    key = (id(parts), paint)
     with _KEPT_LOCK:
         kept = _KEPT.get(key)
         if kept is not None:
             _KEPT.move_to_end(key)
             return kept[1]
-    shown = parts if colour is None else painted(parts, colour)
+    shown = parts if paint == (None, None) else painted(parts, *paint)
     surfaces = tuple(s for s in _read_parts(shown) if len(s.faces))
     with _KEPT_LOCK:
         _KEPT[key] = (parts, surfaces)  # holding the scene keeps its id from being given to another

@@ -131,7 +131,8 @@ def scene_world(
     placed: list[Placed] = []
     for index, item in enumerate(scene.objects):
         if not item.hidden and item.id not in without:
-            placed.append(Placed(shape_surfaces(library, item.shape_id, item.colour), item.pose.matrix, index))
+            surfaces = shape_surfaces(library, item.shape_id, item.colour, item.finish)
+            placed.append(Placed(surfaces, item.pose.matrix, index))
     for index, plane in enumerate(scene.architecture.planes, start=len(scene.objects)):
         if plane.id not in without:
             picture = (textures or {}).get(plane.texture) if plane.texture else None

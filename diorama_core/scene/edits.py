@@ -26,12 +26,12 @@ from diorama_core.scene.room_edits import (
     set_plane_look,
 )
 from diorama_core.scene.support import check_edge, descendants
-from diorama_core.scene.types import Candidate, Plane, Pose, Scene, SceneObject, Support
+from diorama_core.scene.types import Candidate, Finish, Plane, Pose, Scene, SceneObject, Support
 
 __all__ = [
     "attach", "ceiling_height", "detach", "duplicate", "edge_length_m", "floor_height", "fresh_id", "insert", "move",
-    "move_plane", "place", "recolour", "remove", "rename", "rescale", "rescale_by_edge", "rescale_to_length",
-    "set_ceiling_height", "set_hidden", "set_locked", "set_metrics", "set_plane_look", "set_planes", "swap",
+    "move_plane", "place", "recolour", "refinish", "remove", "rename", "rescale", "rescale_by_edge",
+    "rescale_to_length", "set_ceiling_height", "set_hidden", "set_locked", "set_metrics", "set_plane_look", "set_planes", "swap",
 ]  # fmt: skip
 
 SMALLEST_SIZE_M = 1e-3
@@ -161,6 +161,12 @@ def recolour(scene: Scene, object_id: str, colour: tuple[float, float, float] | 
     _unlocked(scene, object_id)
     clipped = None if colour is None else tuple(float(np.clip(c, 0.0, 1.0)) for c in colour)
     return _with(scene, object_id, colour=clipped)
+
+
+def refinish(scene: Scene, object_id: str, finish: Finish | None) -> Scene:
+    """Override how the main material throws light back, or give back the shape's own with None."""
+    _unlocked(scene, object_id)
+    return _with(scene, object_id, finish=finish)
 
 
 def set_metrics(scene: Scene, metrics: Mapping[str, float]) -> Scene:

@@ -21,6 +21,7 @@ from diorama_core.scene.types import (
     Camera,
     Candidate,
     FaceName,
+    Finish,
     Intrinsics,
     Plane,
     PlaneRole,
@@ -111,6 +112,7 @@ class _ObjectFile(_Model):
     locked: bool
     hidden: bool
     colour: Vec3 | None
+    finish: Finish | None = None
 
 
 class _SceneFile(_Model):
@@ -231,6 +233,7 @@ def _object_to_file(item: SceneObject, support: Support | None) -> dict[str, Any
         "locked": item.locked,
         "hidden": item.hidden,
         "colour": None if item.colour is None else _numbers(item.colour),
+        "finish": item.finish,
     }
 
 
@@ -306,6 +309,7 @@ def _object_from_file(file: _ObjectFile) -> SceneObject:
         locked=file.locked,
         hidden=file.hidden,
         colour=file.colour,
+        finish=file.finish,
     )
 
 

@@ -19,6 +19,7 @@ from diorama_core.scene.values import ArrayValue, frozen_array
 PlaneRole = Literal["floor", "ceiling", "wall"]
 Relation = Literal["placed on", "mounted on"]
 FaceName = Literal["bottom", "top", "front", "back", "left", "right"]
+Finish = Literal["matt", "satin", "gloss", "metal"]
 
 
 @dataclass(frozen=True)
@@ -260,7 +261,9 @@ class SceneObject:
     locked: bool = False
     hidden: bool = False
     colour: tuple[float, float, float] | None = None
-    """Override of the material's colour, sRGB 0 to 1."""
+    """Override of the main material's colour, sRGB 0 to 1."""
+    finish: Finish | None = None
+    """Override of how the main material throws light back; its own when None."""
 
     @property
     def size_m(self) -> Float[np.ndarray, "3"]:

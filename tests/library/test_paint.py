@@ -50,3 +50,23 @@ def test_the_painted_colour_averages_to_the_asked_one() -> None:
     material = painted(_scene(), (0.5, 0.5, 0.5)).geometry["body"].visual.material
     linear = (np.asarray(material.baseColorTexture) / 255.0) ** 2.2 * (material.baseColorFactor[0] / 255)
     assert abs(linear.mean() ** (1 / 2.2) - 0.5) < 0.05
+
+
+def test_a_finish_changes_how_light_is_thrown_back_and_nothing_else() -> None:
+    before = _scene().geometry["body"].visual.material
+    material = painted(_scene(), None, "metal").geometry["body"].visual.material
+    assert (material.metallicFactor, material.roughnessFactor) == (1.0, 0.3)
+    assert material.metallicRoughnessTexture is None
+    assert (np.asarray(material.baseColorTexture) == np.asarray(before.baseColorTexture)).all()
+    both = painted(_scene(), (0.1, 0.2, 0.8), "matt").geometry
+    assert both["body"].visual.material.roughnessFactor == 0.95
+    assert both["foot"].visual.material.name == "oak"
+
+
+def test_a_finish_alone_keeps_the_colour_of_faces() -> None:
+    box = trimesh.creation.box((1, 1, 1))
+    box.visual.face_colors = (200, 30, 40, 255)
+    mesh = next(iter(painted(trimesh.Scene(box), None, "gloss").geometry.values()))
+    red, green, _, _ = mesh.visual.material.baseColorFactor
+    assert red > 4 * green
+    assert mesh.visual.material.roughnessFactor == 0.12

@@ -65,6 +65,7 @@ def objects(draw: st.DrawFn, object_id: str) -> SceneObject:
         confidence=draw(st.floats(0, 1)),
         hidden=draw(st.booleans()),
         colour=draw(st.none() | colours),
+        finish=draw(st.sampled_from([None, "matt", "satin", "gloss", "metal"])),
     )
 
 
