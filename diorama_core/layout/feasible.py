@@ -16,6 +16,7 @@ from diorama_core.layout.relocate import relocate
 from diorama_core.layout.report import measure
 from diorama_core.layout.separate import Program, Separation, build_program, separate
 from diorama_core.layout.structure import Structure, exact_structure
+from diorama_core.layout.weights import AS_IT_IS, Weights
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.protocols import Preview
@@ -51,6 +52,8 @@ class FeasibleRecipe:
     adherence_m: float = 0.0
     """Faces parallel to a wall and nearer than this are set against it, besides those whose support edge says so. Above
     0 a second run may change a layout: the first can bring things near walls."""
+    weights: Weights = AS_IT_IS
+    """Of the costs in `weights.DEFAULT_COSTS`."""
 
     def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
         """Returns the scene with every free object's pose made feasible, and what was achieved.
@@ -82,6 +85,11 @@ class FeasibleRecipe:
         settled = edits.place(scene, problem.poses(structure.R, p, structure.scale))
         return edits.set_metrics(settled, after), report
 
+    @property
+    def _across(self) -> float:
+        """Cost of moving across the viewing ray relative to along it, as weighted; 1 is indifferent."""
+        return 1.0 + (self.evidence - 1.0) * self.weights.outline
+
     def _watcher(
         self, scene: Scene, program: Program, progress: Progress, preview: Preview | None
     ) -> Callable[[np.ndarray, float], None]:
@@ -94,20 +102,22 @@ class FeasibleRecipe:
             progress.report(turn / (self.rounds + 1), "taking collisions away")
             if preview is not None:
                 poses = problem.poses(structure.R, structure.p + program.moves(y), structure.scale)
-                preview(edits.place(scene, poses), [("overlap_m", max(depth, 0.0))])
+                moved = np.linalg.norm(structure.p + program.moves(y) - problem.p, axis=1)
+                costs = (("overlap_m", max(depth, 0.0)), ("moved_m", float(moved.mean())))
+                preview(edits.place(scene, poses), costs)
 
         return check
 
     def _rays(self, problem: Problem, camera: Camera | None) -> Float[np.ndarray, "n 3"] | None:
-        if camera is None or self.evidence <= 1.0:
+        if camera is None or self._across <= 1.0:
             return None
         away = problem.p - camera.position
         return away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-9)
 
     def _evidence(self, problem: Problem, camera: Camera | None) -> PhotoEvidence | None:
-        if camera is None or self.evidence <= 1.0:
+        if camera is None or self._across <= 1.0:
             return None
-        return photo_evidence(problem, camera, depth_weight=self.depth_weight)
+        return photo_evidence(problem, camera, depth_weight=self.depth_weight * self.weights.distance)
 
     def _weights(self, problem: Problem, structure: Structure, camera: Camera | None) -> Float[np.ndarray, "n 2 2"]:
         """What a move costs: things that hold up much move less; moves across the viewing ray cost more."""
@@ -117,7 +127,7 @@ class FeasibleRecipe:
         if rays is not None:
             for i in range(problem.count):
                 along = structure.basis[i].T @ rays[i]
-                weights[i] = self.evidence * np.eye(2) - (self.evidence - 1.0) * np.outer(along, along)
+                weights[i] = self._across * np.eye(2) - (self._across - 1.0) * np.outer(along, along)
         return weights * load[:, None, None]
 
 

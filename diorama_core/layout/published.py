@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -17,6 +17,7 @@ from diorama_core.layout.problem import Problem, build_problem
 from diorama_core.layout.report import measure
 from diorama_core.layout.staged import Edges, Report, Schedule, State
 from diorama_core.layout.volumes import Volumes
+from diorama_core.layout.weights import AS_IT_IS, Weights
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.protocols import Preview
@@ -39,6 +40,7 @@ class PaperRecipe:
     """How many of the four stages to run, for the ablation."""
     adherence_m: float = 0.1
     """Objects on the floor nearer to a wall than this are drawn to it."""
+    weights: Weights = AS_IT_IS
 
     def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
         """Run the stages; raises `Cancelled` when asked to stop."""
@@ -49,7 +51,7 @@ class PaperRecipe:
         stages = (staged.orientation_stage, staged.placement_stage, staged.space_stage, staged.refinement_stage)
         for stage in stages[: self.stages]:
             if problem.count:
-                stage(problem, state, self.schedule, report)
+                stage(problem, state, self.schedule, report, weights=self.weights)
         return _finished("paper", scene, problem, state, begun)
 
 
@@ -63,6 +65,7 @@ class AllInOneRecipe:
     schedule: Schedule = TOGETHER
     adherence_m: float = 0.1
     """Objects on the floor nearer to a wall than this are drawn to it."""
+    weights: Weights = AS_IT_IS
 
     def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
         """Run the steps; raises `Cancelled` when asked to stop."""
@@ -72,7 +75,7 @@ class AllInOneRecipe:
         if problem.count:
             report = _reporter(scene, problem, progress, preview, self.schedule.steps)
             with one_thread():
-                _all_at_once(problem, state, self.schedule, report)
+                _all_at_once(problem, state, self.schedule, self.weights, report)
         return _finished("all-in-one", scene, problem, state, begun)
 
 
@@ -90,7 +93,7 @@ def one_thread() -> Iterator[None]:
 def _reporter(scene: Scene, problem: Problem, progress: Progress, preview: Preview | None, total: int) -> Report:
     done = 0
 
-    def report(stage: str, step: int, state: State, cost: float) -> None:
+    def report(stage: str, step: int, state: State, terms: Mapping[str, float]) -> None:
         nonlocal done
         done += 1
         progress.check()
@@ -98,7 +101,7 @@ def _reporter(scene: Scene, problem: Problem, progress: Progress, preview: Previ
             progress.report(done / total, f"{stage}, step {step + 1}")
             if preview is not None:
                 poses = problem.poses(staged.orthonormal(state.R), state.p, state.scale)
-                preview(edits.place(scene, poses), [(stage, cost)])
+                preview(edits.place(scene, poses), tuple(terms.items()))
 
     return report
 
@@ -111,30 +114,31 @@ def _finished(name: str, scene: Scene, problem: Problem, state: State, begun: fl
     return edits.set_metrics(placed, after), report
 
 
-def _all_at_once(problem: Problem, state: State, schedule: Schedule, report: Report) -> None:
+def _all_at_once(problem: Problem, state: State, schedule: Schedule, weights: Weights, report: Report) -> None:
     """Steps on every parameter by the sum of all costs; rotations on their manifold."""
-    terms = _Terms(problem, state)
+    terms = _Terms(problem, state, weights)
     free = torch.tensor(problem.free, dtype=torch.float64)[:, None]
     velocity = [torch.zeros(problem.count, 3, dtype=torch.float64) for _ in range(3)]
     for step, rate in enumerate(schedule.rates()):
         turn = torch.zeros(problem.count, 3, dtype=torch.float64, requires_grad=True)
         p = torch.tensor(state.p, requires_grad=True)
         scale = torch.tensor(state.scale, requires_grad=True)
-        value = terms.total(turn, p, scale, state)
-        slopes = torch.autograd.grad(value, [turn, p, scale], allow_unused=True)
+        values = terms.at(turn, p, scale, state)
+        slopes = torch.autograd.grad(torch.stack(list(values.values())).sum(), [turn, p, scale], allow_unused=True)
         for k, slope in enumerate(slopes):
             velocity[k] = schedule.momentum * velocity[k] + (0.0 if slope is None else slope * free)
         state.R = np.matmul(staged.rotations(-schedule.rate * rate * velocity[0].numpy()), state.R)
         state.p = state.p - schedule.rate * rate * velocity[1].numpy()
         state.scale = np.maximum(state.scale - schedule.scale_rate * rate * velocity[2].numpy(), 0.05)
-        report("all terms", step, state, float(value.detach()))
+        report("all terms", step, state, {name: float(v.detach()) for name, v in values.items()})
     state.R = staged.orthonormal(state.R)
 
 
 class _Terms:
-    """The sum of all costs as a function of every pose."""
+    """All costs as a function of every pose."""
 
-    def __init__(self, problem: Problem, state: State) -> None:
+    def __init__(self, problem: Problem, state: State, weights: Weights) -> None:
+        self.weights = weights
         self.problem, self.edges = problem, Edges.of(problem)
         self.observed = torch.tensor(problem.p)
         self.front = torch.tensor(problem.R[:, :, 0])
@@ -148,8 +152,8 @@ class _Terms:
         if len(self.held):
             self.template = torch.tensor(staged.contact_templates(problem, self.held)[0])
 
-    def total(self, turn: torch.Tensor, p: torch.Tensor, scale: torch.Tensor, state: State) -> torch.Tensor:
-        """3 e_align + e_sem + 5 e_place + e_rel + e_vol + e_col, adherence included in the first and third."""
+    def at(self, turn: torch.Tensor, p: torch.Tensor, scale: torch.Tensor, state: State) -> Mapping[str, torch.Tensor]:
+        """3 e_align, e_sem, 5 e_place, e_rel, e_vol and e_col, weighted; adherence is part of the first and third."""
         x, y, z = turn.T
         zero = torch.zeros_like(x)
         K = torch.stack([zero, -z, y, z, zero, -x, -y, x, zero], dim=1).reshape(-1, 3, 3)
@@ -164,10 +168,15 @@ class _Terms:
         half = self.contact * self.size[self.child] * scale[self.child] / 2
         centre = p[self.child] + torch.einsum("eij,ej->ei", R[self.child], half)
         inward = -torch.einsum("eij,ej->ei", R[self.child], self.contact)
-        value = 3.0 * costs.e_align(inward, normal) + costs.e_sem(R[:, :, 0], self.front)
-        value = value + 5.0 * costs.e_place(centre, point, normal)
-        value = value + costs.e_rel(p, self.observed, self.relations)
-        return value + self._space(R, p, scale, state) + self._overlap(p, state)
+        w = self.weights
+        return {
+            "align": 3.0 * w.align * costs.e_align(inward, normal),
+            "heading": w.heading * costs.e_sem(R[:, :, 0], self.front),
+            "place": 5.0 * w.place * costs.e_place(centre, point, normal),
+            "neighbours": w.neighbours * costs.e_rel(p, self.observed, self.relations),
+            "volume": w.volume * self._space(R, p, scale, state),
+            "collision": w.collision * self._overlap(p, state),
+        }
 
     def _space(self, R: torch.Tensor, p: torch.Tensor, scale: torch.Tensor, state: State) -> torch.Tensor:
         if not len(self.held):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from diorama_core.errors import InputError
 from diorama_core.layout.feasible import MEASURED_WEIGHT, REASONED_WEIGHT, FeasibleRecipe
+from diorama_core.layout.weights import AS_IT_IS, Weights
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.protocols import LayoutStage
 
@@ -12,7 +13,12 @@ NAMES = ("feasible", "paper", "all-in-one")
 
 
 def recipe(
-    name: str, library: ShapeLibrary, only: frozenset[str] | None = None, *, depth_measured: bool = False
+    name: str,
+    library: ShapeLibrary,
+    only: frozenset[str] | None = None,
+    *,
+    depth_measured: bool = False,
+    weights: Weights = AS_IT_IS,
 ) -> LayoutStage:
     """The recipe of this name.
 
@@ -22,17 +28,19 @@ def recipe(
         library: where shapes come from.
         only: ids free to move; everything else is constant.
         depth_measured: the observed distances were measured, not reasoned: the default recipe then keeps to them.
+        weights: factors on what each cost counts; those a recipe does not know make no difference to it.
 
     Raises:
         InputError: when there is no such recipe.
     """
     if name == "feasible":
-        return FeasibleRecipe(library, only, depth_weight=MEASURED_WEIGHT if depth_measured else REASONED_WEIGHT)
+        depth_weight = MEASURED_WEIGHT if depth_measured else REASONED_WEIGHT
+        return FeasibleRecipe(library, only, depth_weight=depth_weight, weights=weights)
     # torch takes two seconds to load, and the default recipe does without it.
     from diorama_core.layout.published import AllInOneRecipe, PaperRecipe
 
     if name == "paper":
-        return PaperRecipe(library, only)
+        return PaperRecipe(library, only, weights=weights)
     if name == "all-in-one":
-        return AllInOneRecipe(library, only)
+        return AllInOneRecipe(library, only, weights=weights)
     raise InputError(f"there is no layout recipe {name!r}; choose one of {', '.join(NAMES)}")

@@ -6,7 +6,7 @@ every 50 steps; weights 3, 1 / 5, 1 / 1 / 5, 1. Rotations step on their manifold
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +16,7 @@ from diorama_core.geometry.cross import cross
 from diorama_core.layout import gradients
 from diorama_core.layout.problem import Problem
 from diorama_core.layout.volumes import Volumes
+from diorama_core.layout.weights import AS_IT_IS, Weights
 
 
 @dataclass(frozen=True)
@@ -45,8 +46,8 @@ class State:
     scale: Float[np.ndarray, "n 3"]
 
 
-Report = Callable[[str, int, State, float], None]
-"""Called every step: stage, step, layout, cost. May raise to cancel."""
+Report = Callable[[str, int, State, Mapping[str, float]], None]
+"""Called every step: stage, step, layout, and what each cost adds. May raise to cancel."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +103,9 @@ class Edges:
         return to_child, to_holder
 
 
-def orientation_stage(problem: Problem, state: State, schedule: Schedule, report: Report) -> None:
+def orientation_stage(
+    problem: Problem, state: State, schedule: Schedule, report: Report, *, weights: Weights = AS_IT_IS
+) -> None:
     """Stage 1: turn objects until contact faces are parallel to their supports. 3 e_align + e_sem."""
     edges = Edges.of(problem)
     to_child, to_holder = edges.scatter(problem.count)
@@ -116,16 +119,20 @@ def orientation_stage(problem: Problem, state: State, schedule: Schedule, report
         owner = np.where(on_object[:, None, None], state.R[edges.holder], np.eye(3))
         normal = np.einsum("eij,ej->ei", owner, edges.normal)
         value, slope = gradients.align(face, normal)
-        slope = 3.0 * edges.weight[:, None] * slope
+        slope = 3.0 * weights.align * edges.weight[:, None] * slope
         kept, turn = gradients.semantic(state.R[:, :, 0], front)
-        gradient = to_child @ cross(face, slope) - to_holder @ cross(normal, slope) + cross(state.R[:, :, 0], turn)
+        gradient = to_child @ cross(face, slope) - to_holder @ cross(normal, slope)
+        gradient += weights.heading * cross(state.R[:, :, 0], turn)
         velocity = schedule.momentum * velocity + gradient * free
         state.R = np.matmul(rotations(-schedule.rate * rate * velocity), state.R)
-        report("orientation", step, state, 3.0 * value + kept)
+        terms = {"align": 3.0 * weights.align * value, "heading": weights.heading * kept}
+        report("orientation", step, state, terms)
     state.R = orthonormal(state.R)
 
 
-def placement_stage(problem: Problem, state: State, schedule: Schedule, report: Report) -> None:
+def placement_stage(
+    problem: Problem, state: State, schedule: Schedule, report: Report, *, weights: Weights = AS_IT_IS
+) -> None:
     """Stage 2: move objects onto their supports, keeping their neighbours' relative positions. 5 e_place + e_rel."""
     cost = Placement.of(problem, state)
     links = gradients.incidence(problem.relations, problem.count)
@@ -134,12 +141,16 @@ def placement_stage(problem: Problem, state: State, schedule: Schedule, report: 
     for step, rate in enumerate(schedule.rates()):
         value, gradient = cost.of_positions(state.p)
         kept, back = gradients.relative(state.p - start, problem.relations, links)
-        velocity = schedule.momentum * velocity + (5.0 * gradient + back) * free
+        slope = 5.0 * weights.place * gradient + weights.neighbours * back
+        velocity = schedule.momentum * velocity + slope * free
         state.p = state.p - schedule.rate * rate * velocity
-        report("placement", step, state, 5.0 * value + kept)
+        terms = {"place": 5.0 * weights.place * value, "neighbours": weights.neighbours * kept}
+        report("placement", step, state, terms)
 
 
-def space_stage(problem: Problem, state: State, schedule: Schedule, report: Report) -> None:
+def space_stage(
+    problem: Problem, state: State, schedule: Schedule, report: Report, *, weights: Weights = AS_IT_IS
+) -> None:
     """Stage 3: move and shrink objects until they are inside their supporting volumes. e_vol.
 
     A supporter's own pose bounds the volume but is not moved by it.
@@ -162,15 +173,22 @@ def space_stage(problem: Problem, state: State, schedule: Schedule, report: Repo
         top = (here.normal * p).sum(axis=1) - here.level + (tilt * scale).sum(axis=1)
         value, at_corners, at_top = gradients.volume(corners, top, here.outward, here.offset, here.clearance)
         to_scale = (np.matmul(at_corners, R) * template).sum(axis=1) + at_top[:, None] * tilt
-        v_p = schedule.momentum * v_p + (at_corners.sum(axis=1) + at_top[:, None] * here.normal) * free
-        v_s = schedule.momentum * v_s + to_scale * free
+        to_place = at_corners.sum(axis=1) + at_top[:, None] * here.normal
+        v_p = schedule.momentum * v_p + weights.volume * to_place * free
+        v_s = schedule.momentum * v_s + weights.volume * to_scale * free
         state.p[held] = p - schedule.rate * rate * v_p
         state.scale[held] = np.maximum(scale - schedule.scale_rate * rate * v_s, 0.05)
-        report("space", step, state, value)
+        report("space", step, state, {"volume": weights.volume * value})
 
 
 def refinement_stage(
-    problem: Problem, state: State, schedule: Schedule, report: Report, *, near_m: float = 0.1
+    problem: Problem,
+    state: State,
+    schedule: Schedule,
+    report: Report,
+    *,
+    weights: Weights = AS_IT_IS,
+    near_m: float = 0.1,
 ) -> None:
     """Stage 4: placement again, and no boxes overlapping. 5 e_place + e_col; walls are obstacles."""
     cost = Placement.of(problem, state)
@@ -188,9 +206,11 @@ def refinement_stage(
             seen = state.p.copy()
         value, gradient = cost.of_positions(state.p)
         overlap, away = boxes.collision(centre, links)
-        velocity = schedule.momentum * velocity + (5.0 * gradient + away[:n]) * free
+        slope = 5.0 * weights.place * gradient + weights.collision * away[:n]
+        velocity = schedule.momentum * velocity + slope * free
         state.p = state.p - schedule.rate * rate * velocity
-        report("refinement", step, state, 5.0 * value + overlap)
+        terms = {"place": 5.0 * weights.place * value, "collision": weights.collision * overlap}
+        report("refinement", step, state, terms)
 
 
 @dataclass(frozen=True, eq=False)

@@ -31,7 +31,8 @@ from diorama_core.scene.types import Candidate, Finish, Plane, Pose, Scene, Scen
 __all__ = [
     "attach", "ceiling_height", "detach", "duplicate", "edge_length_m", "floor_height", "fresh_id", "insert", "move",
     "move_plane", "place", "recolour", "refinish", "remove", "rename", "rescale", "rescale_by_edge",
-    "rescale_to_length", "set_ceiling_height", "set_hidden", "set_locked", "set_metrics", "set_plane_look", "set_planes", "swap",
+    "rescale_to_length", "set_ceiling_height", "set_hidden", "set_locked", "set_metrics", "set_plane_look",
+    "set_planes", "swap",
 ]  # fmt: skip
 
 SMALLEST_SIZE_M = 1e-3
