@@ -17,6 +17,7 @@ PATCHES = 16
 """Patches along each side of a view."""
 FILL = 0.72
 """Share of the crop's side that the object's box takes, as the templates' shapes do on average."""
+_LARGE_PX = 200
 _SURE_COVER = 0.4
 """A patch belongs to the object when at least this share of it does."""
 
@@ -27,8 +28,8 @@ class View(ArrayValue):
 
     gray: UInt8[np.ndarray, "v h h"]
     mask: Bool[np.ndarray, "v h h"]
-    normals: Float32[np.ndarray, "v h h 3"]
-    """Camera frame, toward the viewer; zero where unknown."""
+    normals: Float32[np.ndarray, "v g g 3"]
+    """Camera frame, toward the viewer; zero where unknown and off the object; as large as the pictures or smaller."""
 
     @cached_property
     def patch_cover(self) -> Float[np.ndarray, "v p"]:
@@ -70,9 +71,10 @@ def patch_pixels(size_px: int) -> Int[np.ndarray, "p 2"]:
 
 
 def template_view(templates: Templates) -> View:
-    """All views of a shape, at half their size: patches are means over many pixels."""
-    normals = np.stack([templates.normals_camera(k)[::2, ::2] for k in range(len(templates))])
-    return View(templates.gray[:, ::2, ::2], templates.mask[:, ::2, ::2], normals.astype(np.float32))
+    """All views of a shape; the normals of large ones at half their size, as patches are means over many pixels."""
+    step = 2 if templates.grid.size_px >= _LARGE_PX else 1
+    normals = np.stack([templates.normals_camera(k)[::step, ::step] for k in range(len(templates))])
+    return View(templates.gray, templates.mask, normals.astype(np.float32))
 
 
 def crop_object(

@@ -8,11 +8,19 @@ from typing import Protocol
 import numpy as np
 from jaxtyping import Bool, Float32
 
+from diorama_core.models.features import PATCH, Dinov2
 from diorama_core.pose.correspondence.crops import PATCHES, View, pooled
+
+_VIEWS_AT_ONCE = 12
 
 
 class PatchFeatures(Protocol):
     """Features of the 16 x 16 patches of every view, of unit length."""
+
+    @property
+    def weights(self) -> str | None:
+        """Which weights make them; None for those that are cheaper to make than to keep."""
+        ...
 
     def encode(self, view: View) -> Float32[np.ndarray, "v p d"]:
         """Unit vectors, row by row of patches; zero where there is nothing of the object."""
@@ -29,13 +37,41 @@ class GeometricFeatures:
 
     place_weight: float = 1.2
 
+    @property
+    def weights(self) -> str | None:
+        """They need none."""
+        return None
+
     def encode(self, view: View) -> Float32[np.ndarray, "v p d"]:
         """Unit vectors; zero for patches that the object does not reach."""
-        normals = pooled(view.normals * view.mask[..., None])
+        normals = pooled(view.normals)
         cover = view.patch_cover[..., None].astype(np.float32)
         near = _with_neighbours(np.concatenate([normals, cover], axis=-1))
         place = self.place_weight * _place(view)
         features = np.concatenate([normals * 1.5, 0.5 * near, place], axis=-1) * (cover > 0)
+        length = np.linalg.norm(features, axis=-1, keepdims=True)
+        return np.asarray(features / np.maximum(length, 1e-6), dtype=np.float32)
+
+
+@dataclass(frozen=True)
+class NetworkFeatures:
+    """DINOv2's, of the gray pictures (paper: the large network's block 17)."""
+
+    network: Dinov2
+
+    @property
+    def weights(self) -> str | None:
+        """The network's, and which block of it."""
+        return f"{self.network.weights}-{'last' if self.network.block is None else self.network.block}"
+
+    def encode(self, view: View) -> Float32[np.ndarray, "v p d"]:
+        """Unit vectors; zero for patches that the object does not reach."""
+        pictures = [np.repeat(gray[..., None], 3, axis=-1) for gray in view.gray]
+        side = PATCHES * PATCH
+        made = [
+            self.network.batch(pictures[k : k + _VIEWS_AT_ONCE], side) for k in range(0, len(pictures), _VIEWS_AT_ONCE)
+        ]
+        features = np.concatenate(made).reshape(len(pictures), PATCHES**2, -1) * (view.patch_cover[..., None] > 0)
         length = np.linalg.norm(features, axis=-1, keepdims=True)
         return np.asarray(features / np.maximum(length, 1e-6), dtype=np.float32)
 

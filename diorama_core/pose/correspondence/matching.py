@@ -30,6 +30,10 @@ class Matches:
     similarity: Float[np.ndarray, "v k"]
     count: Int[np.ndarray, " v"]
 
+    def of_views(self, views: slice) -> Matches:
+        """Those of some of the views."""
+        return Matches(self.query[views], self.template[views], self.similarity[views], self.count[views])
+
     @property
     def mean_similarity(self) -> Float[np.ndarray, " v"]:
         """Over each view's matches; 0 without any."""
