@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from diorama_core.scene.types import Scene
 
 EXPORT_FORMATS = ("glb",)
+ROOMS = ("closed", "plainrecon")
 
 
 def add_serve(commands: Any) -> None:
@@ -89,6 +91,12 @@ def add_build(commands: Any) -> None:
         help="shape library, or several joined by + (default: %(default)s)",
     )
     p.add_argument("--recipe", choices=RECIPES, default=RECIPES[0], help="layout optimiser (default: %(default)s)")
+    p.add_argument(
+        "--room",
+        choices=ROOMS,
+        default=ROOMS[0],
+        help="how planes are found in depth; plainrecon: as published, floor and walls only (default: %(default)s)",
+    )
     p.add_argument("--seed", type=int, default=0, help="seed of random stages (the embedded ones draw nothing)")
     p.add_argument("--json", action="store_true", help="print the result as JSON")
 
@@ -116,6 +124,12 @@ def _build(a: argparse.Namespace) -> None:
         print(f"diorama: note: {warning}", file=sys.stderr)
     library = library_named(a.library)
     stages = stages_for(a.profile, read.inputs, library, recipe=a.recipe)
+    if a.room == "plainrecon":
+        from diorama_core.architecture.plainrecon import PlainRecon
+
+        if read.inputs.depth_m is None and stages.sight is None:
+            raise InputError("--room plainrecon reads depth: add --depth FILE or a profile with a depth network")
+        stages = replace(stages, architecture=PlainRecon())
     project = Project.create(a.output)
     project.update_info(library=a.library)
     with progress_bar() as progress:

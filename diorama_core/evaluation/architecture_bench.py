@@ -1,14 +1,16 @@
-"""The empty room from rendered pictures: with true depth and masks, and from the picture alone."""
+"""The empty room from rendered pictures: with true and noisy depth, as published, and from the picture alone."""
 
 from __future__ import annotations
 
 import logging
 import time
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
+from jaxtyping import Float32
 
+from diorama_core.architecture.plainrecon import PlainRecon
 from diorama_core.artefacts import Inputs
 from diorama_core.errors import Cancelled
 from diorama_core.evaluation import paper
@@ -20,6 +22,12 @@ from diorama_core.evaluation.tables import Column, Row, Table, paper_rows
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.build import embedded_stages
 from diorama_core.progress import Progress
+from diorama_core.protocols import ArchitectureStage
+
+DEPTH_NOISE = 0.02
+"""Relative, per pixel."""
+BASELINE_STEPS = 8 * 580 * 0.075
+"""A structured-light sensor's focal length in pixels times its baseline in metres, in eighths of a pixel."""
 
 log = logging.getLogger(__name__)
 
@@ -56,26 +64,53 @@ class ArchitectureBench:
 
 
 def run(library: ShapeLibrary, scenes: int = 20, seed: int = 0, progress: Progress | None = None) -> ArchitectureBench:
-    """Reconstruct every room twice."""
+    """Reconstruct every room from what each row of the table is given."""
     progress = progress or Progress()
-    measured, alone = [], []
+    results: dict[str, list[RoomResult]] = {}
     cases = recipe(scenes, 1, seed)
     for k, (case, view) in enumerate(views_of(cases, library)):
         progress.report(k / len(cases), case.name)
-        measured.append(_room(case.name, view, view.inputs, library))
-        alone.append(_room(case.name, view, photo_only(view), library))
-    return ArchitectureBench(seed, (("true masks and depth", tuple(measured)), ("picture and boxes", tuple(alone))))
+        noisy = replace(view.inputs, depth_m=sensed(view.inputs.depth_m, case.seed))
+        rows: tuple[tuple[str, Inputs, ArchitectureStage | None], ...] = (
+            ("true masks and depth", view.inputs, None),
+            ("true masks, depth with 2 % noise", noisy, None),
+            ("PlainRecon as published, true masks and depth", view.inputs, PlainRecon()),
+            ("PlainRecon as published, true masks, depth with 2 % noise", noisy, PlainRecon()),
+            ("PlainRecon as published, depth of the empty room", _emptied(view), PlainRecon()),
+            ("picture and boxes", photo_only(view), None),
+        )
+        for name, inputs, stage in rows:
+            results.setdefault(name, []).append(_room(case.name, view, inputs, library, stage))
+    return ArchitectureBench(seed, tuple((name, tuple(rooms)) for name, rooms in results.items()))
 
 
-def _room(case: str, view: TruthView, inputs: Inputs, library: ShapeLibrary) -> RoomResult:
+def sensed(depth_m: Float32[np.ndarray, "h w"] | None, seed: int) -> Float32[np.ndarray, "h w"]:
+    """True depth as a sensor would give it: relative noise at every pixel, and steps of disparity."""
+    if depth_m is None:
+        raise ValueError("there is no depth to add noise to")
+    noise = np.random.default_rng(seed).standard_normal(depth_m.shape)
+    depth = depth_m.astype(np.float64) * (1.0 + DEPTH_NOISE * noise)
+    steps = np.round(BASELINE_STEPS / np.maximum(depth, 1e-6))
+    return np.where(depth_m > 0, BASELINE_STEPS / np.maximum(steps, 1.0), 0.0).astype(np.float32)
+
+
+def _emptied(view: TruthView) -> Inputs:
+    """What perfect inpainting and a perfect depth network would give PlainRecon: the room without its objects."""
+    return replace(view.inputs, depth_m=view.room_depth_m, instances=None, instance_boxes=(), boxes=())
+
+
+def _room(
+    case: str, view: TruthView, inputs: Inputs, library: ShapeLibrary, stage: ArchitectureStage | None
+) -> RoomResult:
     stages, quiet = embedded_stages(inputs, library), Progress()
+    stage = stage or stages.architecture
     begun = time.process_time()
     try:
         camera = stages.camera.estimate(inputs, quiet)
         objects = stages.objects.segment(inputs, quiet)
         geometry = stages.geometry.measure(inputs, camera, objects, quiet)
         begun = time.process_time()
-        room = stages.architecture.reconstruct(inputs, objects, geometry, quiet)
+        room = stage.reconstruct(inputs, objects, geometry, quiet)
         spent = time.process_time() - begun
         scores = architecture_scores(
             room.architecture.planes, view.scene.architecture.planes, view.camera, found_camera=geometry.camera

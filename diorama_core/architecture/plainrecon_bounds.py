@@ -1,0 +1,108 @@
+"""Bounds of planar pieces as published: smallest rectangles, walls upright, corners joined (Diorama, supplement)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import cv2
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.geometry.planes import ransac_plane
+
+PLANE_M, TRIALS = 0.05, 1000
+SNAP_M = 0.3
+"""Corners of walls nearer to the floor than this are set on it."""
+JOIN_M = 0.6
+"""Walls are joined where each has two corners within this of their common line; the publication names no bound."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """A rectangle in space, later with moved corners."""
+
+    normal: Float[np.ndarray, "3"]
+    """Unit, into the room."""
+    offset: float
+    corners: Float[np.ndarray, "4 3"]
+
+
+def fitted_sheet(points: Float[np.ndarray, "n 3"], eye: Float[np.ndarray, "3"]) -> Sheet:
+    """The plane through most of the points, and the smallest rectangle on it that holds those (rotating calipers)."""
+    normal, offset, agree = ransac_plane(points, PLANE_M, trials=TRIALS)
+    if float(normal @ eye) < offset:
+        normal, offset = -normal, -offset
+    axes = _axes(normal)
+    flat = (points[agree] @ axes).astype(np.float32)
+    corners = cv2.boxPoints(cv2.minAreaRect(flat)).astype(np.float64)
+    return Sheet(normal, float(offset), corners @ axes.T + offset * normal)
+
+
+def upright(wall: Sheet, floor: Sheet) -> Sheet:
+    """The wall turned about the line where it meets the floor until it is square to the floor."""
+    line = np.cross(floor.normal, wall.normal)
+    length = float(np.linalg.norm(line))
+    if length < 1e-6:
+        return wall
+    normal = np.cross(line / length, floor.normal)
+    normal = normal if normal @ wall.normal > 0 else -normal
+    rows = np.stack([wall.normal, floor.normal, line / length])
+    foot = np.linalg.solve(rows, np.array([wall.offset, floor.offset, 0.0]))
+    offset = float(normal @ foot)
+    return Sheet(normal, offset, _onto(wall.corners, normal, offset))
+
+
+def joined(floor: Sheet, walls: list[Sheet]) -> list[Sheet]:
+    """Walls with feet on the floor and, where two come near their common line, with shared corners on it."""
+    walls = [_on_floor(w, floor) for w in walls]
+    for i, j in combinations(range(len(walls)), 2):
+        walls[i], walls[j] = _meeting(walls[i], walls[j])
+    return walls
+
+
+def _on_floor(wall: Sheet, floor: Sheet) -> Sheet:
+    height = wall.corners @ floor.normal - floor.offset
+    drop = np.where(np.abs(height) < SNAP_M, height, 0.0)
+    return replace(wall, corners=wall.corners - drop[:, None] * floor.normal)
+
+
+def _meeting(a: Sheet, b: Sheet) -> tuple[Sheet, Sheet]:
+    """Two walls with their nearest corners on the line where they meet; unchanged when that is out of reach."""
+    line = np.cross(a.normal, b.normal)
+    length = float(np.linalg.norm(line))
+    if length < 0.17:
+        return a, b
+    line /= length
+    point = np.linalg.solve(np.stack([a.normal, b.normal, line]), np.array([a.offset, b.offset, 0.0]))
+    first, second = (_nearest_two(s.corners, point, line) for s in (a, b))
+    if first is None or second is None:
+        return a, b
+    corners_a, corners_b = a.corners.copy(), b.corners.copy()
+    on_line = point + ((a.corners[first] - point) @ line)[:, None] * line
+    along = on_line @ line
+    wanted = b.corners[second] @ line
+    corners_a[first] = on_line
+    # Lower corner to lower corner, upper to upper.
+    corners_b[second[np.argsort(wanted)]] = on_line[np.argsort(along)]
+    return replace(a, corners=corners_a), replace(b, corners=corners_b)
+
+
+def _nearest_two(
+    corners: Float[np.ndarray, "4 3"], point: Float[np.ndarray, "3"], line: Float[np.ndarray, "3"]
+) -> np.ndarray | None:
+    offset = corners - point
+    distance = np.linalg.norm(offset - (offset @ line)[:, None] * line, axis=1)
+    two = np.argsort(distance, kind="stable")[:2]
+    return two if distance[two].max() < JOIN_M else None
+
+
+def _onto(points: Float[np.ndarray, "n 3"], normal: Float[np.ndarray, "3"], offset: float) -> Float[np.ndarray, "n 3"]:
+    return points - (points @ normal - offset)[:, None] * normal
+
+
+def _axes(normal: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 2"]:
+    helper = np.eye(3)[int(np.abs(normal).argmin())]
+    u = np.cross(helper, normal)
+    u /= np.linalg.norm(u)
+    return np.stack([u, np.cross(normal, u)], axis=1)
