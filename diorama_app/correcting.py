@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from diorama_app.guest import Guest
-from diorama_app.looking_again import Found, look_again
-from diorama_app.outlining import Outline
 from diorama_app.placing import seated
 from diorama_core.artefacts import Box, Inputs, LabelledBox
 from diorama_core.errors import EditRefused
@@ -15,6 +14,10 @@ from diorama_core.library.taxonomy import resolve
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene, SceneObject
+
+if TYPE_CHECKING:
+    from diorama_app.looking_again import Found  # the whole pipeline; opening a project does without it
+    from diorama_app.outlining import Outline
 
 
 def add_from_photo(guest: Guest, box: Box, label: str) -> None:
@@ -67,6 +70,7 @@ def use_outline(guest: Guest, object_id: str, outline: Outline) -> None:
 def start_outline(guest: Guest, object_id: str) -> Outline:
     """The present outline of an object, as far as its box tells."""
     item, inputs = _seen(guest, object_id), _inputs(guest)
+    from diorama_app.outlining import Outline
     from diorama_core.perception.masks import EmbeddedMasks
 
     assert item.box_px is not None
@@ -88,6 +92,8 @@ def _look(
     inputs, scene, project = _inputs(guest), room.scene, room.project
 
     def work(progress: Progress) -> None:
+        from diorama_app.looking_again import look_again
+
         found = look_again(
             scene,
             inputs,

@@ -7,13 +7,14 @@ from diorama_app.work import fresh_folder, show_built
 from diorama_core.errors import DioramaError, InputError
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
-from diorama_core.text.pictures import ImageSettings, picture_of
 
 COMPOSED = "No image endpoint is set up: the room is composed from the library, photographed and rebuilt."
 
 
 def how_pictures_come() -> str:
     """One sentence on who makes the picture of a described room."""
+    from diorama_core.text.pictures import ImageSettings  # the room grammar; opening a project does without it
+
     try:
         endpoint = ImageSettings.from_environment()
     except DioramaError as error:
@@ -23,6 +24,8 @@ def how_pictures_come() -> str:
 
 def describe_room(guest: Guest, words: str) -> None:
     """Make a project of a description, in the background, and open it."""
+    from diorama_core.text.pictures import ImageSettings, picture_of
+
     room, draft = guest.room, guest.room.draft
     said = " ".join(words.split())
     if not said:

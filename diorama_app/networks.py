@@ -11,7 +11,6 @@ from diorama_core.errors import EditRefused, InputError
 from diorama_core.models.manifest import Network
 from diorama_core.models.pull import pull
 from diorama_core.models.store import ModelStore
-from diorama_core.pipeline.profiles import propose_boxes
 from diorama_core.progress import Progress
 
 NO_DETECTOR = "Finding furniture needs a network: get “lite” under Project, Networks."
@@ -56,6 +55,8 @@ def find_furniture(guest: Guest) -> None:
         raise InputError("there is no photo yet; upload one first")
 
     def work(progress: Progress) -> None:
+        from diorama_core.pipeline.profiles import propose_boxes  # the whole pipeline; opening a project does without
+
         found = propose_boxes(photo, progress=progress)
         if found is None:
             raise InputError(NO_DETECTOR)

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import viser
 
 from diorama_app.correcting import redraw_box, rename_class, start_outline, use_outline
 from diorama_app.guest import Guest
-from diorama_app.outlining import Outline
 from diorama_app.page import Action, LiveHtml, button, text
 from diorama_core.artefacts import Box, LabelledBox
 from diorama_core.errors import EditRefused
+
+if TYPE_CHECKING:
+    from diorama_app.outlining import Outline
 
 
 class Evidence:

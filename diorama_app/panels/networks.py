@@ -11,7 +11,7 @@ from diorama_app.panels.fields import enable, on_change, on_press, show_if, show
 from diorama_core.errors import DioramaError
 from diorama_core.models.manifest import Network, networks_of
 from diorama_core.models.store import ModelStore
-from diorama_core.pipeline.profiles import StageStatus, profile_status
+from diorama_core.pipeline.choices import StageStatus, profile_status
 
 SETS = {
     "lite: fine on a laptop": "lite",

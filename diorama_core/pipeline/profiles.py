@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal, TypeVar
 
 from diorama_core.architecture.empty_room import EmptyRoomFiller
@@ -28,6 +28,7 @@ from diorama_core.perception.graph.geometric import GeometricGraph
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.perception.language.stages import LanguageGraph, LanguageRecognition
 from diorama_core.pipeline.build import DEFAULT_RECIPE, Stages, embedded_stages
+from diorama_core.pipeline.choices import DEPTH_NETWORKS, DETECTORS, INPAINTERS, SEGMENTERS
 from diorama_core.pipeline.perceive import detected
 from diorama_core.pipeline.runner import Runner
 from diorama_core.progress import Progress
@@ -36,29 +37,6 @@ from diorama_core.protocols import DetectionStage
 Profile = Literal["auto", "embedded", "foundation"]
 
 T = TypeVar("T")
-
-DETECTORS = ("owlv2-large", "owlv2-base", "owlv2-base-int8", "yolox-nano")
-SEGMENTERS = ("sam2.1-large", "sam2.1-base-plus", "sam2.1-tiny", "slimsam")
-DEPTH_NETWORKS = ("moge-2-vitl", "moge-2-vitb", "moge-2-vits", "metric3d-large", "metric3d-small")
-INPAINTERS = ("lama", "migan")
-"""Best first."""
-
-
-@dataclass(frozen=True)
-class StageStatus:
-    """What one stage would use now, for people."""
-
-    stage: str
-    implementation: str
-    """In words."""
-    network_id: str | None
-    """The network in use, or the one that would be pulled first; None where no network takes this stage."""
-    present: bool
-    """Whether that network is on this machine."""
-    size_mb: int
-    licence: str
-    advice: str = ""
-    """What to do to get a better implementation; empty where the best one is in use."""
 
 
 def stages_for(
@@ -138,44 +116,6 @@ def propose_boxes(
     lmm = LmmSettings.from_environment()
     recognition = LanguageRecognition(lmm) if lmm is not None and isinstance(stage, OpenVocabularyDetection) else None
     return detected(photo, stage, recognition, Runner(None), progress or Progress())
-
-
-def profile_status(*, store: ModelStore | None = None, lmm: LmmSettings | None = None) -> tuple[StageStatus, ...]:
-    """For every stage of the auto profile: what takes it now, and what would take it better."""
-    store = store or ModelStore.default()
-    lmm = lmm or LmmSettings.from_environment()
-    return (
-        _status(store, "detection", DETECTORS, "boxes drawn by you"),
-        _status(store, "outlines", SEGMENTERS, "outlines by colour (GrabCut)"),
-        _status(store, "depth and camera", DEPTH_NETWORKS, "lines, known sizes and the floor"),
-        StageStatus(
-            "support graph",
-            f"language model {lmm.model} at {lmm.base_url}" if lmm else "geometry: contact, containment, usual places",
-            None,
-            True,
-            0,
-            "",
-            "" if lmm else "set DIORAMA_LMM_BASE_URL and DIORAMA_LMM_MODEL to ask a language model",
-        ),
-        StageStatus("retrieval", "category, size, silhouette and colour", None, True, 0, ""),
-        StageStatus("pose", "render and compare", None, True, 0, ""),
-    )
-
-
-def _status(store: ModelStore, stage: str, choices: tuple[str, ...], embedded: str) -> StageStatus:
-    here = next((network(i) for i in choices if store.has(network(i))), None)
-    wanted = network(next(i for i in choices if "default" in network(i).tiers))
-    better = here is None or choices.index(here.id) > choices.index(wanted.id)
-    shown = here or wanted
-    return StageStatus(
-        stage=stage,
-        implementation=here.title if here else embedded,
-        network_id=shown.id,
-        present=here is not None,
-        size_mb=round(shown.size_bytes / 1e6),
-        licence=shown.licence,
-        advice=f"{wanted.title}, {wanted.size_bytes / 1e6:.0f} MB: diorama models pull default" if better else "",
-    )
 
 
 def _insist(inputs: Inputs, store: ModelStore) -> None:

@@ -17,7 +17,8 @@ from diorama_core.models.manifest import network
 from diorama_core.models.store import FileRecord, Installed, ModelStore, sha256_of, write_json
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.pipeline.build import Built, Stages, build_scene
-from diorama_core.pipeline.profiles import profile_status, propose_boxes, stages_for
+from diorama_core.pipeline.choices import profile_status
+from diorama_core.pipeline.profiles import propose_boxes, stages_for
 from diorama_core.progress import Progress
 from tests.models import tiny_networks
 from tests.models.test_depth import HEIGHT, WIDTH, _Moge

@@ -1,0 +1,73 @@
+"""Which networks could take a stage, best first, and what each stage would use now.
+
+Light to load: neither a network's runtime nor the pipeline is needed to say what there is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from diorama_core.models.manifest import network
+from diorama_core.models.store import ModelStore
+from diorama_core.perception.language.client import LmmSettings
+
+DETECTORS = ("owlv2-large", "owlv2-base", "owlv2-base-int8", "yolox-nano")
+SEGMENTERS = ("sam2.1-large", "sam2.1-base-plus", "sam2.1-tiny", "slimsam")
+DEPTH_NETWORKS = ("moge-2-vitl", "moge-2-vitb", "moge-2-vits", "metric3d-large", "metric3d-small")
+INPAINTERS = ("lama", "migan")
+"""Best first."""
+
+
+@dataclass(frozen=True)
+class StageStatus:
+    """What one stage would use now, for people."""
+
+    stage: str
+    implementation: str
+    """In words."""
+    network_id: str | None
+    """The network in use, or the one that would be pulled first; None where no network takes this stage."""
+    present: bool
+    """Whether that network is on this machine."""
+    size_mb: int
+    licence: str
+    advice: str = ""
+    """What to do to get a better implementation; empty where the best one is in use."""
+
+
+def profile_status(*, store: ModelStore | None = None, lmm: LmmSettings | None = None) -> tuple[StageStatus, ...]:
+    """For every stage of the auto profile: what takes it now, and what would take it better."""
+    store = store or ModelStore.default()
+    lmm = lmm or LmmSettings.from_environment()
+    return (
+        _status(store, "detection", DETECTORS, "boxes drawn by you"),
+        _status(store, "outlines", SEGMENTERS, "outlines by colour (GrabCut)"),
+        _status(store, "depth and camera", DEPTH_NETWORKS, "lines, known sizes and the floor"),
+        StageStatus(
+            "support graph",
+            f"language model {lmm.model} at {lmm.base_url}" if lmm else "geometry: contact, containment, usual places",
+            None,
+            True,
+            0,
+            "",
+            "" if lmm else "set DIORAMA_LMM_BASE_URL and DIORAMA_LMM_MODEL to ask a language model",
+        ),
+        StageStatus("retrieval", "category, size, silhouette and colour", None, True, 0, ""),
+        StageStatus("pose", "render and compare", None, True, 0, ""),
+    )
+
+
+def _status(store: ModelStore, stage: str, choices: tuple[str, ...], embedded: str) -> StageStatus:
+    here = next((network(i) for i in choices if store.has(network(i))), None)
+    wanted = network(next(i for i in choices if "default" in network(i).tiers))
+    better = here is None or choices.index(here.id) > choices.index(wanted.id)
+    shown = here or wanted
+    return StageStatus(
+        stage=stage,
+        implementation=here.title if here else embedded,
+        network_id=shown.id,
+        present=here is not None,
+        size_mb=round(shown.size_bytes / 1e6),
+        licence=shown.licence,
+        advice=f"{wanted.title}, {wanted.size_bytes / 1e6:.0f} MB: diorama models pull default" if better else "",
+    )
