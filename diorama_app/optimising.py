@@ -14,6 +14,7 @@ from diorama_app.layout_run import Costs, LayoutRun, Samples
 from diorama_app.room import Room
 from diorama_core.artefacts import LayoutReport
 from diorama_core.errors import EditRefused
+from diorama_core.layout.weights import AS_IT_IS, Weights
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene
@@ -30,7 +31,7 @@ GLIDE_BELOW = 10
 PAUSE_LOOK_S = 0.05
 
 
-def optimise(guest: Guest, recipe_name: str, only: tuple[str, ...] = ()) -> LayoutRun:
+def optimise(guest: Guest, recipe_name: str, only: tuple[str, ...] = (), weights: Weights = AS_IT_IS) -> LayoutRun:
     """Optimise the layout of everything unlocked, or of `only` these and what they hold up; one undo step."""
     room = guest.room
     start = room.scene
@@ -55,7 +56,7 @@ def optimise(guest: Guest, recipe_name: str, only: tuple[str, ...] = ()) -> Layo
                 progress.check()
 
         try:
-            stage = recipe(recipe_name, room.library, frozenset(only) if only else None)
+            stage = recipe(recipe_name, room.library, frozenset(only) if only else None, weights=weights)
             final, report = stage.optimise(start, progress, preview)
         except BaseException:
             room.desk.post(room.refresh)  # cancelled or failed: everything goes back to the document

@@ -7,13 +7,27 @@ import logging
 import queue
 import threading
 import time
+from collections import OrderedDict
 from collections.abc import Callable
 
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.scene.types import Finish
 
 log = logging.getLogger(__name__)
 
+Paint = tuple[tuple[float, float, float] | None, Finish | None]
+"""Overrides of colour (sRGB, 0 to 1) and finish."""
+
+OWN: Paint = (None, None)
+Picture = tuple[str, Paint]
+"""Shape, and how it is painted."""
+
 SIDE_PX = 112
+KEPT = 1024
+"""The oldest pictures are forgotten beyond so many; who asks again gets them again."""
+
+PAINTED_WAIT_S = 0.1
+"""Pictures in another colour are not urgent: what a person does just now goes before them."""
 TELL_EVERY_S = 0.25
 BLANK = '<span class="blank"></span>'
 
@@ -24,23 +38,28 @@ class Thumbnails:
     def __init__(self, library: ShapeLibrary, on_ready: Callable[[], None]) -> None:
         self._library = library
         self._on_ready = on_ready
-        self._images: dict[str, str] = {}
-        self._asked: set[str] = set()
-        self._queue: queue.LifoQueue[str | None] = queue.LifoQueue()
+        self._images: OrderedDict[Picture, str] = OrderedDict()
+        self._asked: set[Picture] = set()
+        self._queue: queue.LifoQueue[Picture | None] = queue.LifoQueue()
         self._stopping = False
         self._thread: threading.Thread | None = None
 
-    def html(self, shape_id: str) -> str:
-        """HTML of the shape's picture. Called from the desk."""
-        if shape_id in self._images:
-            return self._images[shape_id]
-        if shape_id not in self._asked:
-            self._asked.add(shape_id)
-            self._queue.put(shape_id)
+    def html(self, shape_id: str, paint: Paint = OWN) -> str:
+        """HTML of the shape's picture, painted or in its own colours. Called from the desk.
+
+        While a painted one is made, the shape's own is shown where that is there.
+        """
+        picture = (shape_id, paint)
+        known = self._images.get(picture)
+        if known is not None:
+            return known
+        if picture not in self._asked:
+            self._asked.add(picture)
+            self._queue.put(picture)
             if self._thread is None:
                 self._thread = threading.Thread(target=self._work, daemon=True, name="thumbnails")
                 self._thread.start()
-        return BLANK
+        return self._images.get((shape_id, OWN), BLANK)
 
     def stop(self) -> None:
         """End the thread."""
@@ -52,16 +71,21 @@ class Thumbnails:
 
         told = time.monotonic()
         while not self._stopping:
-            shape_id = self._queue.get()
-            if shape_id is None:
+            asked = self._queue.get()
+            if asked is None:
                 return
+            shape_id, paint = asked
+            if paint != OWN:
+                time.sleep(PAINTED_WAIT_S)
             try:
-                picture = thumbnail(self._library, shape_id, size=SIDE_PX)
+                picture = thumbnail(self._library, shape_id, size=SIDE_PX, paint=paint)
             except Exception:
                 log.exception("no thumbnail of %s", shape_id)
-                self._images[shape_id] = BLANK
+                self._images[asked] = BLANK
                 continue
-            self._images[shape_id] = f'<img alt="" src="{_data_uri(picture)}">'
+            while len(self._images) >= KEPT:
+                self._asked.discard(self._images.popitem(last=False)[0])
+            self._images[asked] = f'<img alt="" src="{_data_uri(picture)}">'
             if time.monotonic() - told > TELL_EVERY_S or self._queue.empty():
                 told = time.monotonic()
                 self._on_ready()

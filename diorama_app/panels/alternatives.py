@@ -9,6 +9,7 @@ from diorama_app.page import Action, LiveHtml, button, text
 from diorama_app.panels.fields import on_change, show_if, show_value
 from diorama_app.room import Room
 from diorama_app.swapping import SIZE_MODES, alike, preview_swap, swap
+from diorama_app.thumbnails import Paint
 from diorama_app.units import format_size
 from diorama_core.errors import LibraryError
 from diorama_core.library.record import Shape
@@ -96,9 +97,12 @@ class Alternatives:
         return (
             f'<button type="button" class="tile {"on" if current else ""}" data-do="swap" data-arg="{key}" '
             f'data-peek="{key}" title="{name}&#10;{text(shown)} (width, depth, height)&#10;{text(about)}">'
-            f"{self._guest.room.thumbnails.html(shape_id)}<b>{name}</b><small>{text(shown)}</small>"
+            f"{self._guest.room.thumbnails.html(shape_id, self._paint(item))}<b>{name}</b><small>{text(shown)}</small>"
             f"<small>{'in use' if current else text(about)}</small></button>"
         )
+
+    def _paint(self, item: SceneObject) -> Paint:
+        return (item.colour, item.finish) if self._guest.settings.keep_colour else (None, None)
 
     def _act(self, action: Action) -> None:
         guest = self._guest

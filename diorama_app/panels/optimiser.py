@@ -5,16 +5,18 @@ from __future__ import annotations
 import numpy as np
 import viser
 
-from diorama_app.arrangements import arrangement_count, switch_arrangement
+from diorama_app.arrangements import arrangement_count, is_arranged, switch_arrangement
 from diorama_app.guest import Guest
 from diorama_app.layout_run import LayoutRun
 from diorama_app.optimising import optimise, put_back, show_before
 from diorama_app.page import Action, LiveHtml, button, text
-from diorama_app.panels.fields import enable, on_press, show_if
+from diorama_app.panels.fields import enable, on_change, on_press, show_if, show_value
+from diorama_core.layout.weights import Weights, weighted_costs
 
 RECIPES = {"Tidy up (feasible)": "feasible", "As in the paper": "paper", "All in one": "all-in-one"}
 COLOURS = ("#2f6fd6", "#d6542f", "#269660", "#a050c8", "#c89614", "#149696", "#7a5a3a", "#808080")
 CURVE_POINTS = 240
+ORDINALS = ("best", "second best", "third best", "fourth best", "fifth best")
 SHARES = frozenset({"orientation", "placement", "structure", "in_support"})
 FIGURES = {
     "orientation": "Upright on their support",
@@ -26,7 +28,32 @@ FIGURES = {
     "overlapping_pairs": "Overlapping pairs",
     "moved_m": "Moved, mean",
     "moved_most_m": "Moved, most",
+    "box_overlap_m": "Overlap of boxes, mean",
 }
+WEIGHTS = {
+    "outline": ("As in the photo", "Things stay where they are seen in the photo"),
+    "distance": ("As far away", "Things stay as far from the camera as they were found"),
+    "align": ("Upright", "Things stand straight on what holds them"),
+    "heading": ("Facing", "Fronts keep the direction seen in the photo"),
+    "place": ("Touching", "Things touch what holds them"),
+    "neighbours": ("Neighbours", "Things near each other keep their arrangement"),
+    "volume": ("Within support", "Things stay over, and below, what bounds their support"),
+    "collision": ("Apart", "Things do not overlap"),
+}
+"""Label and hint of the weight of each cost."""
+COSTS = {
+    **{name: label for name, (label, _) in WEIGHTS.items()},
+    "overlap_m": "Overlap (m)",
+    "moved_m": "Moved (m)",
+    "e_align": "Upright",
+    "e_sem": "Facing",
+    "e_place": "Touching",
+    "e_rel": "Neighbours",
+    "e_vol": "Within support",
+    "e_col": "Apart",
+}
+"""What the curves and the table of costs call them."""
+LEAST_COST = 1e-6
 
 
 class Optimiser:
@@ -37,6 +64,16 @@ class Optimiser:
         self._gui = gui
         gui.add_markdown("Objects settle on their supports, out of each other and into the room. Locked ones stay.")
         self._recipe = gui.add_dropdown("Recipe", list(RECIPES), hint="How the layout is found")
+        on_change(self._recipe, lambda _: guest.post(self.refresh, key="recipe"))
+        self._weights: dict[str, viser.GuiSliderHandle[float]] = {}
+        with gui.add_folder("Weights", expand_by_default=False):
+            for name, (label, hint) in WEIGHTS.items():
+                self._weights[name] = gui.add_slider(
+                    label, 0.0, 3.0, 0.1, 1.0, hint=f"{hint}; 1 is the recipe as it is"
+                )
+                on_change(self._weights[name], lambda _: guest.post(self.refresh, key="weights"))
+            self._even = gui.add_button("All back to 1", color="gray", hint="The recipe as it is")
+        on_press(self._even, lambda: guest.post(self._evened))
         self._start = gui.add_button("Optimise layout", hint="One undo step; Cancel puts everything back")
         self._start_some = gui.add_button(
             "Optimise selection", color="gray", hint="Only what is selected (and what stands on it) moves"
@@ -54,6 +91,10 @@ class Optimiser:
         """Allow starting when nothing runs; show the curves and the last report."""
         room, run = self._guest.room, self._guest.room.layout_run
         idle = room.jobs.status is None and bool(room.scene.objects)
+        used = weighted_costs(RECIPES[self._recipe.value])
+        for name, slider in self._weights.items():
+            show_if(name in used, slider)
+        enable(self._even, any(slider.value != 1.0 for slider in self._weights.values()))
         enable(self._start, idle)
         enable(self._start_some, idle and bool(self._guest.selection))
         self._draw(run)
@@ -65,7 +106,8 @@ class Optimiser:
         name, guest = RECIPES[self._recipe.value], self._guest
 
         def start() -> None:
-            optimise(guest, name, guest.need_selection() if some else ())
+            weights = Weights(**{cost: self._weights[cost].value for cost in weighted_costs(name)})
+            optimise(guest, name, guest.need_selection() if some else (), weights)
 
         guest.post(start)
 
@@ -73,14 +115,25 @@ class Optimiser:
         count = arrangement_count(self._guest.room.scene)
         if count < 2:
             return ""
-        buttons = "".join(
-            button(str(k + 1), "arrangement", k, title="Every unlocked object in its next best alternative")
-            for k in range(count)
+        scene, chosen = self._guest.room.scene, self._guest.selection
+        whole = "".join(
+            button(str(k + 1), "arrangement", k, title=f"Every unlocked object in its {ORDINALS[k]} shape", on=on)
+            for k, on in enumerate(is_arranged(scene, k) for k in range(count))
         )
+        some = "".join(
+            button(str(k + 1), "mix", k, title=f"Only what is selected in its {ORDINALS[k]} shape", on=on)
+            for k, on in enumerate(is_arranged(scene, k, chosen) for k in range(count))
+        )
+        mixed = f'<p class="dim">Only what is selected:</p><div class="bar tight">{some}</div>' if chosen else ""
         return (
-            '<h4>Arrangements</h4><p class="dim">The whole room in its best, second best… shapes. Lock what you like, '
-            f'switch, and lock more.</p><div class="bar tight">{buttons}</div>'
+            '<h4>Arrangements</h4><p class="dim">The whole room in its best, second best… shapes; what is locked '
+            f'stays. To mix, select some objects.</p><div class="bar tight">{whole}</div>{mixed}'
         )
+
+    def _evened(self) -> None:
+        for slider in self._weights.values():
+            show_value(slider, 1.0)
+        self.refresh()
 
     def _act(self, action: Action) -> None:
         guest, room = self._guest, self._guest.room
@@ -94,6 +147,8 @@ class Optimiser:
             guest.post(self._keep)
         elif action.do == "arrangement" and action.arg.isdigit():
             guest.post(lambda: switch_arrangement(guest, int(action.arg)))
+        elif action.do == "mix" and action.arg.isdigit():
+            guest.post(lambda: switch_arrangement(guest, int(action.arg), guest.need_selection()))
 
     def _keep(self) -> None:
         room = self._guest.room
@@ -122,7 +177,7 @@ class Optimiser:
             self._plot.remove()
         series = [viser.uplot.Series(label="s")]
         for name, colour in zip(names, COLOURS, strict=False):
-            series.append(viser.uplot.Series(label=name, stroke=colour, width=2))
+            series.append(viser.uplot.Series(label=COSTS.get(name, name), stroke=colour, width=2))
         with self._folder:
             self._plot = self._gui.add_uplot(
                 data, tuple(series), title="Costs", height=170, scales={"x": viser.uplot.Scale(time=False, auto=True)}
@@ -146,14 +201,16 @@ def _report(run: LayoutRun) -> str:
     if report is None:
         return ""
     names = [n for n in dict.fromkeys([*report.before, *report.after]) if n in report.after]
-    rows = "".join(_row(name, report.before.get(name), report.after[name]) for name in names)
+    figures = "".join(_row(n, report.before.get(n), report.after[n]) for n in names if n in FIGURES)
+    costs = "".join(_row(n, report.before.get(n), report.after[n]) for n in names if n not in FIGURES)
     reasons = "".join(f"<p>{text(reason)}</p>" for reason in report.reasons)
     why = f'<div class="card warn" style="margin-top:6px">{reasons}</div>' if reasons else ""
-    return f"<h4>Before → after ({report.seconds:.1f} s)</h4><table>{rows}</table>{why}"
+    table = f"<h4>Before → after ({report.seconds:.1f} s)</h4><table>{figures}</table>{why}"
+    return table + (f"<details><summary class='dim'>Costs</summary><table>{costs}</table></details>" if costs else "")
 
 
 def _row(name: str, before: float | None, after: float) -> str:
-    label = FIGURES.get(name, name.removesuffix("_m").replace("_", " "))
+    label = FIGURES.get(name) or COSTS.get(name, name.removesuffix("_m").replace("_", " "))
     first = "–" if before is None else _figure(name, before)
     return f"<tr><td>{text(label)}</td><td>{first} → {_figure(name, after)}</td></tr>"
 
@@ -161,4 +218,6 @@ def _row(name: str, before: float | None, after: float) -> str:
 def _figure(name: str, value: float) -> str:
     if name in SHARES:
         return f"{100 * value:.0f}%"
-    return f"{100 * value:.1f} cm" if name.endswith("_m") else f"{value:.3g}"
+    if name.endswith("_m"):
+        return f"{100 * value:.1f} cm"
+    return f"{value:.3g}" if abs(value) >= LEAST_COST else "0"

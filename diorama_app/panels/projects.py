@@ -20,6 +20,10 @@ from diorama_core.errors import EditRefused
 from diorama_core.project.storage import Project
 
 RECENT = 12
+COPY = (
+    '<svg width="14" height="14" viewBox="0 0 24 24" fill="none" stroke="currentColor" stroke-width="2" '
+    'style="display:block"><rect x="8" y="8" width="12" height="12" rx="2"/><path d="M16 4H6a2 2 0 0 0-2 2v10"/></svg>'
+)
 
 
 class Projects:
@@ -74,7 +78,7 @@ class Projects:
             f'<div class="row {"on" if current else ""}" data-do="open" data-arg="{text(folder.name)}">'
             f'{self._picture(folder)}<span class="name">{name}<br><span class="dim">{when}</span></span>'
             + ("" if current else button("Open", "open", folder.name))
-            + button("⧉", "copy", folder.name, title="Duplicate")
+            + button(COPY, "copy", folder.name, title="Duplicate")
             + ("" if current else button("✕", "bin", folder.name, title="Move to the bin"))
             + "</div>"
         )

@@ -15,10 +15,19 @@ from diorama_app.panels.fields import on_change, show_if, show_label, show_optio
 from diorama_app.panels.toolbar import run_command
 from diorama_app.units import UNITS, format_length, from_unit, in_unit, parse_lengths
 from diorama_core.errors import InputError
-from diorama_core.scene.types import SceneObject
+from diorama_core.scene.types import Finish, SceneObject
 
 SIZE_ORDER = [1, 0, 2]
 """People say width, depth, height; the object's axes are depth, width, height."""
+
+FINISHES: dict[Finish | None, tuple[str, str]] = {
+    None: ("Own", "The finish the shape came with"),
+    "matt": ("Matt", "No highlights: chalk, felt"),
+    "satin": ("Satin", "Soft highlights: lacquered wood, leather"),
+    "gloss": ("Gloss", "Sharp highlights: porcelain, varnish"),
+    "metal": ("Metal", "Brushed metal in its colour"),
+}
+"""Label and hint of every finish."""
 
 ALIGN = {
     "align_left": "Left",
@@ -91,8 +100,7 @@ class Properties:
         show_value(self._yaw, round(float(np.degrees(item.pose.yaw_rad)), 1))
         if item.colour is not None:
             show_value(self._colour, tuple(round(255 * c) for c in item.colour))
-        own = button("Back to its own colours", "own", title="Takes the paint off")
-        self._own.show(f'<div class="bar tight">{own}</div>' if item.colour is not None else "")
+        self._own.show(_surface(item))
 
     def _show_words(self, field: viser.GuiTextHandle, lengths_m: np.ndarray) -> None:
         try:
@@ -166,5 +174,19 @@ class Properties:
         guest = self._guest
         if action.do == "own":
             guest.post(lambda: editing.set_colour(guest, guest.need_selection(), None))
+        elif action.do == "finish":
+            finish = next((f for f in FINISHES if f == action.arg), None)
+            guest.post(lambda: editing.set_finish(guest, guest.need_selection(), finish))
         else:
             run_command(guest, self._commands, action)
+
+
+def _surface(item: SceneObject) -> str:
+    """Buttons for the finish of its main material, and one that takes the paint off."""
+    finishes = "".join(
+        button(label, "finish", finish or "", title=hint, on=item.finish == finish)
+        for finish, (label, hint) in FINISHES.items()
+    )
+    own = button("Back to its own colours", "own", title="Takes the paint off") if item.colour is not None else ""
+    paint = f'<div class="bar tight">{own}</div>' if own else ""
+    return f'{paint}<div class="bar tight">{finishes}</div>'

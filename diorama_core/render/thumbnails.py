@@ -18,6 +18,7 @@ from diorama_core.library.kept import Kept
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.sheet import contact_sheet
 from diorama_core.progress import Progress
+from diorama_core.render.appearance import Paint
 from diorama_core.render.views import record_of, render_shape
 
 log = logging.getLogger(__name__)
@@ -25,7 +26,14 @@ log = logging.getLogger(__name__)
 _KEPT: Kept[bytes] = Kept(2048)
 
 
-def thumbnail(library: ShapeLibrary, shape_id: str, size: int = 160, folder: Path | None = None) -> bytes:
+def thumbnail(
+    library: ShapeLibrary,
+    shape_id: str,
+    size: int = 160,
+    folder: Path | None = None,
+    *,
+    paint: Paint = (None, None),
+) -> bytes:
     """A square PNG of a shape on a transparent background.
 
     Made once per content, size and renderer; shapes without a content hash are not written to disk.
@@ -35,10 +43,11 @@ def thumbnail(library: ShapeLibrary, shape_id: str, size: int = 160, folder: Pat
         shape_id: Which shape; `LibraryError` when unknown.
         size: Side in pixels.
         folder: Where pictures are kept; by default `thumbnails` in the cache folder.
+        paint: Overrides of the main material: colour (sRGB) and finish; painted pictures are kept in memory only.
     """
     shape = record_of(library, shape_id)
-    if not shape.content_hash:
-        return _KEPT.get(f"{id(library)} {shape_id} {size}", lambda: _rendered(library, shape_id, size))
+    if not shape.content_hash or paint != (None, None):
+        return _KEPT.get(f"{id(library)} {shape_id} {size} {paint}", lambda: _rendered(library, shape_id, size, paint))
     name = f"{shape.content_hash}-{_renderer()}-{size}.png"
     path = (folder or default_cache_dir() / "thumbnails") / name
     return _KEPT.get(name, lambda: _read(path) or _written(path, _rendered(library, shape_id, size)))
@@ -72,9 +81,9 @@ def shape_sheet(
     return contact_sheet(shapes, picture, size, columns)
 
 
-def _rendered(library: ShapeLibrary, shape_id: str, size: int) -> bytes:
+def _rendered(library: ShapeLibrary, shape_id: str, size: int, paint: Paint = (None, None)) -> bytes:
     buffer = io.BytesIO()
-    Image.fromarray(render_shape(library, shape_id, (size, size))).save(buffer, "PNG", optimize=True)
+    Image.fromarray(render_shape(library, shape_id, (size, size), paint=paint)).save(buffer, "PNG", optimize=True)
     return buffer.getvalue()
 
 

@@ -10,7 +10,7 @@ from jaxtyping import Float, Float32, UInt8
 
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import category
-from diorama_core.render.appearance import shape_surfaces
+from diorama_core.render.appearance import Paint, shape_surfaces
 from diorama_core.render.filters import as_bytes, tone_mapped
 from diorama_core.render.lighting import TILE, Effort, Lighting, irradiance, studio
 from diorama_core.render.picture import framing_camera
@@ -59,6 +59,7 @@ def render_shape(
     size: tuple[int, int] = (320, 320),
     view: StudioView | None = None,
     effort: Effort = STUDIO_EFFORT,
+    paint: Paint = (None, None),
 ) -> UInt8[np.ndarray, "h w 4"]:
     """A shape in soft studio light on a transparent background, with the shadow it would cast where it stands.
 
@@ -68,13 +69,14 @@ def render_shape(
         size: Width and height in pixels.
         view: Where the viewer stands; None takes the shape's usual view.
         effort: Rays per pixel.
+        paint: Overrides of the main material: colour (sRGB) and finish.
 
     Returns:
         Colours and opacity, not premultiplied, sRGB.
     """
     shape = record_of(library, shape_id)
     view = view or usual_view(shape)
-    alone = World([Placed(shape_surfaces(library, shape_id), np.eye(4), 0)])
+    alone = World([Placed(shape_surfaces(library, shape_id, *paint), np.eye(4), 0)])
     camera = PinholeView(studio_camera(alone.vertices, view, *size))
     half = 0.5 * np.asarray(shape.size_m)
     light = studio(np.stack([-half, half]), -camera.camera.T_world_camera[:3, 2])
