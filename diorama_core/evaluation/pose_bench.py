@@ -1,30 +1,54 @@
-"""Poses and the optimiser on rendered rooms: true shapes given, with true and with estimated depth; the ablations."""
+"""Poses and the optimiser on rendered rooms: our solver beside the published ones, groups, shape counts, ablations."""
 
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
-from diorama_core.artefacts import Inputs
+from diorama_core.artefacts import RankedShapes
 from diorama_core.errors import Cancelled
 from diorama_core.evaluation import paper
 from diorama_core.evaluation.cases import recipe, views_of
-from diorama_core.evaluation.dataset.artefacts import LeaveAsIs, TrueShapes, true_supports
+from diorama_core.evaluation.dataset.artefacts import LeaveAsIs, true_supports
 from diorama_core.evaluation.dataset.truth import TruthView
-from diorama_core.evaluation.pose_metrics import Alignment, object_alignment, pair_checks, pooled
-from diorama_core.evaluation.retrieval_bench import GROUPS, object_groups
-from diorama_core.evaluation.scene_metrics import SceneScores, as_placed, in_true_world, matched, scene_scores
-from diorama_core.evaluation.tables import Column, Row, Table, paper_rows
+from diorama_core.evaluation.pose_comparison import (
+    BASELINES,
+    COMPARED_SHAPES,
+    CONDITIONS,
+    ESTIMATED_DEPTH,
+    GIVEN,
+    OURS,
+    TRUE_DEPTH,
+    PoseScores,
+    Seen,
+    SideBySide,
+    inputs_with,
+    pose_scores,
+    see,
+    shapes_of,
+)
+from diorama_core.evaluation.pose_metrics import object_alignment, pair_checks
+from diorama_core.evaluation.pose_tables import (
+    GroupCounts,
+    ablation_table,
+    all_in_one_table,
+    category_table,
+    comparison_table,
+    groups_table,
+    retrievals_table,
+)
+from diorama_core.evaluation.retrieval_bench import object_groups
+from diorama_core.evaluation.scene_metrics import as_placed, in_true_world, matched
+from diorama_core.evaluation.tables import Table
 from diorama_core.layout.published import AllInOneRecipe, PaperRecipe
 from diorama_core.layout.recipes import recipe as layout_recipe
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.pipeline.build import Stages, build_scene, embedded_stages
 from diorama_core.progress import Progress
 from diorama_core.protocols import LayoutStage
-from diorama_core.retrieval import EmbeddedRetrieval
 from diorama_core.scene.types import Scene, Support
 
 log = logging.getLogger(__name__)
@@ -32,18 +56,9 @@ log = logging.getLogger(__name__)
 RETRIEVALS = (1, 4, 8)
 CATEGORY_NAMES = {"trash can": "bin", "television": "display", "monitor": "display", "desk": "table"}
 """Scan2CAD's names of categories, where they differ."""
+_PUBLISHED = {(TRUE_DEPTH, GIVEN): paper.POSE_TRUE_DEPTH, (ESTIMATED_DEPTH, GIVEN): paper.POSE_ESTIMATED_DEPTH}
 
-
-@dataclass(frozen=True)
-class GroupCounts:
-    """Right answers of one group of objects: pairs with every other object, averaged, and the object itself."""
-
-    instances: int
-    r: float
-    t: float
-    s: float
-    every: float
-    own: float
+Result = TypeVar("Result")
 
 
 @dataclass(frozen=True)
@@ -51,19 +66,21 @@ class PoseBench:
     """Named results; every list has one entry per room."""
 
     seed: int
-    poses: tuple[tuple[str, tuple[SceneScores, ...]], ...]
-    """"true depth" and "estimated depth", true shapes given."""
-    retrievals: tuple[tuple[int, tuple[SceneScores, ...], tuple[SceneScores, ...]], ...]
+    compared: tuple[tuple[str, str, tuple[tuple[str, tuple[PoseScores, ...]], ...]], ...]
+    """(depth, shapes, solvers by name)."""
+    retrievals: tuple[tuple[int, tuple[PoseScores, ...], tuple[PoseScores, ...]], ...]
     """(shapes kept, with true depth, with estimated depth)."""
-    ablation: tuple[tuple[str, tuple[SceneScores, ...]], ...]
+    ablation: tuple[tuple[str, tuple[PoseScores, ...]], ...]
     groups: tuple[tuple[str, GroupCounts], ...]
     """With true depth and true shapes, by group and by "category: ..."."""
 
     def tables(self) -> tuple[Table, ...]:
-        """The paper's pose, group, retrieval-count, ablation and category tables."""
+        """The solvers under every condition, then the paper's group, retrieval-count, ablation and category tables."""
         return (
-            pose_table("Pose, true depth", dict(self.poses)["true depth"], paper.POSE_TRUE_DEPTH),
-            pose_table("Pose, estimated depth", dict(self.poses)["estimated depth"], paper.POSE_ESTIMATED_DEPTH),
+            *(
+                comparison_table(f"Pose, {depth}, {shapes}", solvers, _PUBLISHED.get((depth, shapes)))
+                for depth, shapes, solvers in self.compared
+            ),
             groups_table(self.groups),
             retrievals_table(self.retrievals),
             ablation_table(self.ablation),
@@ -73,53 +90,110 @@ class PoseBench:
 
     def to_json(self) -> dict[str, object]:
         """Tables and every room."""
+        compared = {
+            f"{depth}, {shapes}: {name}": [asdict(s) for s in rows]
+            for depth, shapes, solvers in self.compared
+            for name, rows in solvers
+        }
         return {
             "bench": "pose",
             "seed": self.seed,
             "tables": [t.to_json() for t in self.tables()],
-            "rooms": {name: [asdict(s) for s in rows] for name, rows in (*self.poses, *self.ablation)},
+            "rooms": compared | {name: [asdict(s) for s in rows] for name, rows in self.ablation},
         }
 
 
+class _Tally:
+    """Results of the rooms so far."""
+
+    def __init__(self) -> None:
+        solvers = (OURS, *BASELINES)
+        self.compared: dict[tuple[str, str], dict[str, list[PoseScores]]] = {
+            condition: {name: [] for name in solvers} for condition in CONDITIONS
+        }
+        self.kept: dict[str, dict[int, list[PoseScores]]] = {
+            depth: {k: [] for k in RETRIEVALS} for depth in (TRUE_DEPTH, ESTIMATED_DEPTH)
+        }
+        self.ablation: dict[str, list[PoseScores]] = {}
+        self.groups: dict[str, list[tuple[float, ...]]] = {}
+
+    def finished(self, seed: int) -> PoseBench:
+        """All of them."""
+        true, estimated = self.kept[TRUE_DEPTH], self.kept[ESTIMATED_DEPTH]
+        kept = tuple((k, tuple(true[k]), tuple(estimated[k])) for k in RETRIEVALS)
+        return PoseBench(
+            seed,
+            tuple(
+                (*condition, tuple((name, tuple(rows)) for name, rows in solvers.items()))
+                for condition, solvers in self.compared.items()
+            ),
+            kept,
+            tuple((name, tuple(rows)) for name, rows in self.ablation.items()),
+            tuple((name, _counted(rows)) for name, rows in sorted(self.groups.items())),
+        )
+
+
 def run(library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progress | None = None) -> PoseBench:
-    """Pose every room with true and estimated depth, with few and many retrieved shapes, and arrange it every way."""
+    """Pose every room by every solver, with few and many retrieved shapes, and arrange it every way.
+
+    What cannot be done counts as a room in which everything is wrong.
+    """
     progress = progress or Progress()
-    poses: dict[str, list[SceneScores]] = {"true depth": [], "estimated depth": []}
-    kept: dict[int, tuple[list[SceneScores], list[SceneScores]]] = {k: ([], []) for k in RETRIEVALS}
-    ablation: dict[str, list[SceneScores]] = {}
-    groups: dict[str, list[tuple[float, ...]]] = {}
+    tally = _Tally()
+    solvers = SideBySide.embedded(library)
     cases = recipe(scenes, 1, seed)
     for number, (case, view) in enumerate(views_of(cases, library)):
         step = progress.part(number / len(cases), (number + 1) / len(cases))
-        for turn, name in enumerate(poses):
-            step.report(0.15 * turn, f"{case.name}: true shapes, {name}")
-            inputs = view.inputs if name == "true depth" else replace(view.inputs, depth_m=None)
-            observed = _observed(view, inputs, library, TrueShapes.of(view))
-            poses[name].append(_scores(view, observed, library))
-            if name == "true depth":
-                _count_groups(view, observed, library, groups)
-                _arrange(view, observed, library, ablation, step)
-            for k in RETRIEVALS:
-                step.report(0.4 + 0.1 * turn, f"{case.name}: {k} shapes kept, {name}")
-                scene = _observed(view, inputs, library, EmbeddedRetrieval(library, keep=k))
-                kept[k][turn].append(_scores(view, scene, library))
+        _one_room(view, solvers, tally, step, case.name)
     progress.report(1.0, "done")
-    return PoseBench(
-        seed,
-        tuple((name, tuple(rows)) for name, rows in poses.items()),
-        tuple((k, tuple(a), tuple(b)) for k, (a, b) in kept.items()),
-        tuple((name, tuple(rows)) for name, rows in ablation.items()),
-        tuple((name, _counted(rows)) for name, rows in sorted(groups.items())),
-    )
+    return tally.finished(seed)
 
 
-def _observed(
-    view: TruthView, inputs: Inputs, library: ShapeLibrary, retrieval: TrueShapes | EmbeddedRetrieval
-) -> Scene | None:
-    """The scene before any layout, or None when a stage failed."""
-    stages: Stages = replace(embedded_stages(inputs, library), retrieval=retrieval, layout=LeaveAsIs())
+def _one_room(view: TruthView, solvers: SideBySide, tally: _Tally, progress: Progress, name: str) -> None:
+    library = solvers.library
+    depths = tuple(dict.fromkeys(depth for depth, _ in CONDITIONS))
+    progress.report(0.0, f"{name}: perception")
+    seen = {d: _tried(see, inputs_with(view, d), library) for d in depths}
+    retrieved = {d: _retrieved(solvers, seen[d]) for d in tally.kept}
+    for turn, (depth, shapes) in enumerate(CONDITIONS):
+        progress.report(0.1 + 0.1 * turn, f"{name}: {depth}, {shapes}")
+        scenes = _scenes(view, solvers, seen[depth], retrieved.get(depth), shapes)
+        for solver, rows in tally.compared[depth, shapes].items():
+            rows.append(pose_scores(view, scenes.get(solver), library))
+        if (depth, shapes) == (TRUE_DEPTH, GIVEN):
+            _count_groups(view, scenes.get(OURS), library, tally.groups)
+            _arrange(view, scenes.get(OURS), library, tally.ablation, progress)
+    for depth, by_count in tally.kept.items():
+        for k, rows in by_count.items():
+            progress.report(0.8, f"{name}: {k} shapes kept, {depth}")
+            first = _firsts(retrieved[depth], k)
+            at_hand = seen[depth]
+            scene = None if at_hand is None or first is None else _tried(solvers.our_scene, at_hand, first)
+            rows.append(pose_scores(view, scene, library))
+
+
+def _retrieved(solvers: SideBySide, seen: Seen | None) -> tuple[RankedShapes, ...] | None:
+    """One more shape of every object than any table keeps."""
+    return None if seen is None else _tried(solvers.retrieved, seen, max(RETRIEVALS) + 1)
+
+
+def _firsts(retrieved: tuple[RankedShapes, ...] | None, count: int) -> tuple[RankedShapes, ...] | None:
+    return None if retrieved is None else tuple(replace(r, ranked=r.ranked[:count]) for r in retrieved)
+
+
+def _scenes(
+    view: TruthView, solvers: SideBySide, seen: Seen | None, retrieved: tuple[RankedShapes, ...] | None, shapes: str
+) -> Mapping[str, Scene]:
+    if seen is None or (retrieved is None and shapes != GIVEN):
+        return {}
+    chosen = shapes_of(solvers.given(view, seen), retrieved or (), shapes, COMPARED_SHAPES)
+    return _tried(solvers.scenes, seen, chosen) or {}
+
+
+def _tried(work: Callable[..., Result], *given: object) -> Result | None:
+    """The result, or None when a stage failed."""
     try:
-        return build_scene(inputs, library, stages=stages).observed
+        return work(*given)
     except Cancelled:
         raise
     except Exception as error:  # whatever goes wrong, the room counts as failed
@@ -127,15 +201,11 @@ def _observed(
         return None
 
 
-def _scores(view: TruthView, scene: Scene | None, library: ShapeLibrary) -> SceneScores:
-    return SceneScores.failed(len(view.asked)) if scene is None else scene_scores(view, scene, library)
-
-
 def _arrange(
     view: TruthView,
     observed: Scene | None,
     library: ShapeLibrary,
-    ablation: dict[str, list[SceneScores]],
+    ablation: dict[str, list[PoseScores]],
     progress: Progress,
 ) -> None:
     """Every row of the optimiser's ablation for one room."""
@@ -153,8 +223,8 @@ def _arrange(
     ]
     for name, stage, scene in rows:
         progress.report(0.3, f"layout: {name}")
-        arranged = None if scene is None else stage.optimise(scene, Progress())[0]
-        ablation.setdefault(name, []).append(_scores(view, arranged, library))
+        arranged = None if scene is None else _tried(stage.optimise, scene, Progress())
+        ablation.setdefault(name, []).append(pose_scores(view, None if arranged is None else arranged[0], library))
 
 
 def with_true_graph(view: TruthView, scene: Scene) -> Scene:
@@ -229,83 +299,3 @@ def _count_groups(
 def _counted(rows: Sequence[tuple[float, ...]]) -> GroupCounts:
     r, t, s, every, own = (float(x) for x in np.mean(rows, axis=0))
     return GroupCounts(len(rows), r, t, s, every, own)
-
-
-def pose_table(title: str, rooms: Sequence[SceneScores], published: paper.Rows) -> Table:
-    """Alignment, collision and relations before any layout (paper, table 5 and supplement)."""
-    columns = (
-        Column("rAcc", better="↑"), Column("tAcc", better="↑"), Column("sAcc", better="↑"), Column("Acc", better="↑"),
-        Column("collision cm", ".2f", "↓"), Column("relation", better="↑"),
-    )  # fmt: skip
-    collision, relation = _mean([s.box_overlap_cm for s in rooms]), _mean([s.relation for s in rooms])
-    rows = [
-        Row(f"embedded, {a.reading}", (*_shares(a), collision, relation))
-        for a in (pooled([s.pairs for s in rooms]), pooled([s.every for s in rooms]))
-    ]
-    note = f"{len(rooms)} rooms, true shapes, classes and masks; collision as overlap of bounding boxes per object."
-    return Table(title, columns, (*rows, *paper_rows(published)), note)
-
-
-def groups_table(groups: Sequence[tuple[str, GroupCounts]]) -> Table:
-    """Alignment by group of objects (paper, supplement)."""
-    columns = (Column("instances", "d"), *(Column(n, better="↑") for n in ("rAcc", "tAcc", "sAcc", "Acc")))
-    known = dict(groups)
-    rows = [Row(g, (c.instances, c.r, c.t, c.s, c.every)) for g in GROUPS if (c := known.get(g))]
-    return Table("Groups, true depth, mean over pairs", columns, (*rows, *paper_rows(paper.GROUPS)))
-
-
-def retrievals_table(
-    retrievals: Sequence[tuple[int, Sequence[SceneScores], Sequence[SceneScores]]],
-) -> Table:
-    """Alignment against the number of retrieved shapes (paper, supplement)."""
-    names = [f"{n} {d}" for d in ("true depth", "estimated") for n in ("rAcc", "tAcc", "sAcc", "Acc")]
-    rows = [
-        Row(str(k), (*_shares(pooled([s.pairs for s in a])), *_shares(pooled([s.pairs for s in b]))))
-        for k, a, b in retrievals
-    ]
-    columns = tuple(Column(n, better="↑") for n in names)
-    return Table("Shapes retrieved, mean over pairs", columns, (*rows, *paper_rows(paper.RETRIEVALS)))
-
-
-def ablation_table(ablation: Sequence[tuple[str, Sequence[SceneScores]]]) -> Table:
-    """Collision and structure by what of the optimiser runs (paper, table 6)."""
-    return _layout_table("Optimiser ablation", [(n, r) for n, r in ablation if n != "all-in-one"], paper.ABLATION)
-
-
-def all_in_one_table(ablation: Sequence[tuple[str, Sequence[SceneScores]]]) -> Table:
-    """All costs at once against stage by stage (paper, supplement)."""
-    names = {"all-in-one": "all-in-one", "O, P, S, R": "stage-wise", "feasible": "feasible"}
-    rows = [(names[n], r) for n, r in ablation if n in names]
-    return _layout_table("All-in-one against stage-wise", rows, paper.ALL_IN_ONE)
-
-
-def _layout_table(title: str, rows: Sequence[tuple[str, Sequence[SceneScores]]], published: paper.Rows) -> Table:
-    columns = (
-        Column("collision cm", ".2f", "↓"), Column("orientation", better="↑"), Column("placement", better="↑"),
-        Column("overall", better="↑"),
-    )  # fmt: skip
-    keys = ("box_overlap_cm", "orientation", "placement", "structure")
-    ours = [Row(name, tuple(_mean([getattr(s, k) for s in rooms]) for k in keys)) for name, rooms in rows]
-    return Table(title, columns, (*ours, *paper_rows(published)))
-
-
-def category_table(groups: Sequence[tuple[str, GroupCounts]]) -> Table:
-    """Percent of objects aligned with their own truth, by Scan2CAD's categories (paper, supplement)."""
-    known = dict(groups)
-    counts = [known.get(f"category: {c}") for c in paper.CATEGORIES]
-    present = [c for c in counts if c is not None]
-    total = sum(c.instances for c in present)
-    each = [None if c is None else 100 * c.own for c in counts]
-    mean = _mean([v for v in each if v is not None])
-    instances = 100 * sum(c.own * c.instances for c in present) / total if total else None
-    columns = tuple(Column(c, ".1f", "↑") for c in (*paper.CATEGORIES, "class mean", "instance mean"))
-    rows = (Row("embedded, true depth and shapes", (*each, mean, instances)), *paper_rows(paper.BY_CATEGORY))
-    return Table("Alignment by category (20 cm, 20 degrees, 20 %)", columns, rows)
-
-
-def _shares(a: Alignment) -> tuple[float, float, float, float]:
-    return a.r_acc, a.t_acc, a.s_acc, a.acc
-
-
-def _mean(values: Sequence[float]) -> float | None:
-    return float(np.mean(values)) if values else None

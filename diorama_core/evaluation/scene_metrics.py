@@ -6,14 +6,17 @@ of the estimated camera counts. Objects that are asked for and absent are wrong 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from jaxtyping import Float
+from scipy.spatial import cKDTree
 
 from diorama_core.evaluation.dataset.artefacts import true_supports
 from diorama_core.evaluation.dataset.truth import TruthView, moved
 from diorama_core.evaluation.pose_metrics import Alignment, Placed, object_alignment, scene_alignment
-from diorama_core.evaluation.shape_metrics import shape_distance
+from diorama_core.evaluation.shape_metrics import shape_distance, shape_points
 from diorama_core.geometry.casting import in_polygon
 from diorama_core.geometry.projection import box_iou
 from diorama_core.layout.exact import drift, mesh_overlap_m3, stable_share
@@ -21,7 +24,7 @@ from diorama_core.layout.problem import build_problem
 from diorama_core.layout.report import measure
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.render.raycast import Caster, MeshCaster
-from diorama_core.scene.types import Scene, SceneObject
+from diorama_core.scene.types import Camera, Scene, SceneObject
 
 SAME_BOX = 0.5
 """Boxes that overlap less than this are of different objects."""
@@ -31,6 +34,10 @@ PROBE_M = 0.05
 """Supporters are looked for from this far above an object's foot."""
 INSIDE_SHARE = 0.99
 """SceneEval: an object with less of its footprint over the floor is out of bounds."""
+NEAR_M = 0.1
+"""Surfaces within this of one another agree (F-score@0.1)."""
+OBJECT_POINTS = 400
+"""Points that stand for the surface of an object."""
 
 
 @dataclass(frozen=True)
@@ -54,18 +61,25 @@ class SceneScores:
     placement: float
     structure: float
     """The layout report's shares (1 degree, 0.1 cm, both)."""
-    box_overlap_cm: float
-    """Overlap of bounding boxes per object."""
-    mesh_overlap_l: float
-    """Volume in litres shared by meshes of objects that do not hold each other up."""
+    box_overlap_cm: float | None
+    """Overlap of bounding boxes per object; None without any."""
+    mesh_overlap_l: float | None
+    """Volume in litres shared by meshes of objects that do not hold each other up; None without any."""
     supported: float
     """SceneEval: share of found objects within 1 cm of their supporter."""
     out_of_bounds: float
-    """SceneEval: share of found objects with a part of their footprint not over the floor."""
+    """SceneEval: share of found objects with a part of their footprint not over the scene's own floor."""
     stable: float | None
     """Share that stays put under gravity; None when not asked for."""
+    drift_cm: float | None
+    """Mean distance that objects move in two seconds of gravity; None when not asked for."""
     image_iou: float
     """Mean intersection over union of rendered and true masks over the objects asked for; absent ones are 0."""
+    chamfer_cm: float | None
+    """Mean distance from the surfaces of either scene to the nearest of the other, both ways averaged; None without
+    any."""
+    f_score: float
+    """Of the surfaces of both scenes, within `NEAR_M`."""
 
     @classmethod
     def failed(cls, asked: int) -> SceneScores:
@@ -74,7 +88,11 @@ class SceneScores:
             Alignment(reading, asked, 0.0, 0.0, 0.0, 0.0)
             for reading in ("mean over pairs", "against every other object", "object-focus")
         )
-        return cls(asked, 0, pairs, every, own, None, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, None, 0.0)
+        return cls(
+            asked, 0, pairs, every, own, None, relation=0.0, orientation=0.0, placement=0.0, structure=0.0,
+            box_overlap_cm=None, mesh_overlap_l=None, supported=0.0, out_of_bounds=1.0, stable=None, drift_cm=None,
+            image_iou=0.0, chamfer_cm=None, f_score=0.0,
+        )  # fmt: skip
 
 
 def scene_scores(view: TruthView, scene: Scene, library: ShapeLibrary, *, physics: bool = False) -> SceneScores:
@@ -86,15 +104,19 @@ def scene_scores(view: TruthView, scene: Scene, library: ShapeLibrary, *, physic
         library: Where the shapes of both are.
         physics: Whether to switch on gravity (seconds a scene; needs MuJoCo).
     """
-    scene = in_true_world(scene, view)
     truth = [view.scene.objects[k] for k in view.asked]
+    if not scene.objects:
+        return SceneScores.failed(len(truth))
+    scene = in_true_world(scene, view)
     match = matched(truth, scene)
     placed = [None if m is None else as_placed(m) for m in match]
     true = [as_placed(t, library.shape(t.shape_id).symmetry) for t in truth]
     pairs, every = scene_alignment(true, placed)
     known = [m for m in match if m is not None]
     distances = [shape_distance(library, t.shape_id, m.shape_id) for t, m in zip(truth, match) if m is not None]
-    layout = _layout(scene, library)
+    layout = structure_of(scene, library)
+    moved_by = drift(scene, library) if physics else None
+    chamfer_m, f_score = surface_agreement(scene_points(scene.objects, library), scene_points(truth, library))
     return SceneScores(
         asked=len(truth),
         found=len(known),
@@ -107,11 +129,14 @@ def scene_scores(view: TruthView, scene: Scene, library: ShapeLibrary, *, physic
         placement=layout["placement"],
         structure=layout["structure"],
         box_overlap_cm=100 * layout["box_overlap_m"],
-        mesh_overlap_l=1000 * mesh_overlap_m3(scene, library) if scene.objects else 0.0,
+        mesh_overlap_l=1000 * mesh_overlap_m3(scene, library),
         supported=supported_share(scene, library),
-        out_of_bounds=out_of_bounds_share(scene, view),
-        stable=stable_share(drift(scene, library)) if physics and scene.objects else None,
+        out_of_bounds=out_of_bounds_share(scene),
+        stable=None if moved_by is None else stable_share(moved_by),
+        drift_cm=None if moved_by is None else 100 * float(np.mean([d for d, _ in moved_by.values()])),
         image_iou=image_iou(view, scene, match, library),
+        chamfer_cm=100 * chamfer_m,
+        f_score=f_score,
     )
 
 
@@ -157,14 +182,12 @@ def relation_accuracy(view: TruthView, scene: Scene, match: list[SceneObject | N
 
 def supported_share(scene: Scene, library: ShapeLibrary) -> float:
     """SceneEval's support: share of objects whose lowest point (or back) is within 1 cm of what the graph says."""
-    if not scene.objects:
-        return 0.0
     good = 0
     for item in scene.objects:
         edge = scene.support_of(item.id)
         if edge is not None:
             good += _gap(item, edge.parent, scene, library) <= SUPPORT_M
-    return good / len(scene.objects)
+    return good / max(len(scene.objects), 1)
 
 
 def _gap(item: SceneObject, parent: str, scene: Scene, library: ShapeLibrary) -> float:
@@ -183,11 +206,11 @@ def _gap(item: SceneObject, parent: str, scene: Scene, library: ShapeLibrary) ->
     return float(np.abs(caster.first_hits(rays).distance - PROBE_M).min())
 
 
-def out_of_bounds_share(scene: Scene, view: TruthView, samples: int = 12) -> float:
-    """SceneEval's out-of-bounds rate: objects with under 99 % of their footprint's samples over the true floor."""
-    floor = view.scene.architecture.floor
+def out_of_bounds_share(scene: Scene, samples: int = 12) -> float:
+    """SceneEval's out-of-bounds rate: objects with under 99 % of their footprint's samples over the scene's floor."""
+    floor = scene.architecture.floor
     if floor is None or not scene.objects:
-        return 0.0
+        return 1.0
     steps = (np.arange(samples) + 0.5) / samples - 0.5
     grid = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
     out = 0
@@ -199,12 +222,17 @@ def out_of_bounds_share(scene: Scene, view: TruthView, samples: int = 12) -> flo
 
 
 def image_iou(view: TruthView, scene: Scene, match: list[SceneObject | None], library: ShapeLibrary) -> float:
-    """Mean mask agreement of the objects asked for when the prediction is seen by the true camera, hiding included."""
+    """Mean mask agreement of the objects asked for when the prediction is seen by its own camera, hiding included.
+
+    Its own, because that is the picture its user sees; an error of the camera counts in every metric in space.
+    """
     if not view.asked:
         return 1.0
+    own = scene.camera or view.camera
+    size = view.camera.intrinsics.width, view.camera.intrinsics.height
     items = [o for o in scene.objects if not o.hidden]
     caster = MeshCaster([(library.mesh(o.shape_id), o.pose.matrix) for o in items])
-    seen = caster.buffers(view.camera).instance
+    seen = caster.buffers(Camera(own.intrinsics.scaled(*size), own.T_world_camera)).instance
     index = {o.id: k for k, o in enumerate(items)}
     total = 0.0
     for k, found in zip(view.asked, match):
@@ -215,7 +243,32 @@ def image_iou(view: TruthView, scene: Scene, match: list[SceneObject | None], li
     return total / len(view.asked)
 
 
-def _layout(scene: Scene, library: ShapeLibrary) -> dict[str, float]:
+def scene_points(
+    objects: Sequence[SceneObject], library: ShapeLibrary, count: int = OBJECT_POINTS
+) -> Float[np.ndarray, "n 3"]:
+    """Points on the surfaces of objects in the world, as many on each."""
+    points = [np.zeros((0, 3))]
+    for item in objects:
+        low, high = library.mesh(item.shape_id).bounds
+        local = shape_points(library, item.shape_id, count) * (high - low).max() + (low + high) / 2
+        points.append(item.pose.apply(local))
+    return np.concatenate(points)
+
+
+def surface_agreement(
+    found: Float[np.ndarray, "n 3"], true: Float[np.ndarray, "m 3"], near_m: float = NEAR_M
+) -> tuple[float, float]:
+    """Mean distance to the other points, both ways averaged, and the F-score: the harmonic mean of the shares of
+    either side's points that have one of the other side within `near_m`.
+    """
+    there, back = cKDTree(true).query(found)[0], cKDTree(found).query(true)[0]
+    precision, recall = float((there <= near_m).mean()), float((back <= near_m).mean())
+    both = precision + recall
+    return 0.5 * float(there.mean() + back.mean()), 2 * precision * recall / both if both else 0.0
+
+
+def structure_of(scene: Scene, library: ShapeLibrary) -> dict[str, float]:
+    """The layout report's shares and overlaps of a scene as it is; all 0 for an empty one."""
     if not scene.objects:
         return {"orientation": 0.0, "placement": 0.0, "structure": 0.0, "box_overlap_m": 0.0}
     problem = build_problem(scene, library)

@@ -14,16 +14,16 @@ from diorama_core.evaluation.architecture_bench import RoomResult, architecture_
 from diorama_core.evaluation.architecture_metrics import architecture_scores
 from diorama_core.evaluation.cases import STANDARD_SCENES, recipe
 from diorama_core.evaluation.dataset.truth import TruthView, in_photo_world, moved
-from diorama_core.evaluation.pose_bench import (
+from diorama_core.evaluation.pose_bench import with_true_architecture, with_true_graph
+from diorama_core.evaluation.pose_comparison import PoseScores
+from diorama_core.evaluation.pose_tables import (
     GroupCounts,
     ablation_table,
     all_in_one_table,
     category_table,
+    comparison_table,
     groups_table,
-    pose_table,
     retrievals_table,
-    with_true_architecture,
-    with_true_graph,
 )
 from diorama_core.evaluation.retrieval_bench import ObjectResult, recall_table, retrieval_table
 from diorama_core.evaluation.rooms import box_library, generate_room, room_box
@@ -167,8 +167,8 @@ def test_the_recipe_is_long_enough_and_names_are_unique():
 
 
 def _tables():
-    failed = SceneScores.failed(4)
-    result = CaseResult("living-0-0", failed, 1.0, 1.0, "DioramaError: nothing")
+    failed = PoseScores.failed(4)
+    result = CaseResult("living-0-0", SceneScores.failed(4), 1.0, 1.0, "DioramaError: nothing")
     item = ObjectResult("living-0-0", "a", "chair", ("furniture", "complete"), 5.0, 4.0, 9.0, 8.0, 2)
     room = room_box(4.0, 4.0).planes
     view = Camera(Intrinsics.from_fov(*SIZE, 1.2), moved_camera())
@@ -184,7 +184,7 @@ def _tables():
         "architecture": architecture_table([("d", [RoomResult("a", scores, 0.1), RoomResult("b", None, 0.1)])]),
         "retrieval": retrieval_table([item]),
         "recall": recall_table([item]),
-        "pose": pose_table("Pose", [failed], paper.POSE_TRUE_DEPTH),
+        "pose": comparison_table("Pose", [("ours", [failed])], paper.POSE_TRUE_DEPTH),
         "groups": groups_table(counts),
         "retrievals": retrievals_table([(1, [failed], [failed])]),
         "ablation": ablation_table(rooms),
