@@ -1,57 +1,129 @@
-"""Makes `duoduoclip/visual.onnx` from your own copy of DuoduoCLIP: its code and a checkpoint.
+"""Makes `duoduoclip/visual.onnx` from your own copy of a DuoduoCLIP checkpoint (Lee et al. 2025).
 
-    python scripts/convert_duoduoclip.py --source DuoduoCLIP --checkpoint Four_1to6F.ckpt -o converted
+    python scripts/convert_duoduoclip.py Four_1to6F_bs1600_LT6.ckpt -o converted
     diorama models pull --from converted
 
-Needs the packages that their code needs (lightning, hydra, omegaconf, torchvision). The text tower is OpenCLIP B-32's.
+The shape tower is rebuilt from the checkpoint's own weights: a vision transformer whose later layers attend over the
+patches of all views together, and whose class tokens are averaged over the views. The text tower is OpenCLIP B-32's.
 """
 
 from __future__ import annotations
 
 import argparse
 import sys
+import warnings
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import torch
+from torch.nn import functional
+
+HEAD = 64
+"""Channels of an attention head in every CLIP transformer."""
+SIDE = 224
+PREFIXES = ("duoduoclip.visual.", "visual.")
+SETTINGS = ("model", "network", "layers_threshold")
 
 
 class ShapeTower(torch.nn.Module):
     """Normalised views [1, V, 3, 224, 224] of one shape to its vector [1, 512]."""
 
-    def __init__(self, network: torch.nn.Module, views: int) -> None:
+    def __init__(self, weights: Mapping[str, torch.Tensor], alone: int) -> None:
+        """`weights` by their names below `visual.`; the first `alone` layers see each view by itself."""
         super().__init__()
-        self.clip = network.duoduoclip
-        layers, threshold = self.clip.visual.transformer.layers, network.layers_threshold
-        self.frames = [1] * threshold + [views] * (layers - threshold) + [views]
+        for name, value in weights.items():
+            self.register_buffer(name.replace(".", "__"), value.float())
+        self.layers = 1 + max(int(n.split(".")[2]) for n in weights if n.startswith("transformer.resblocks."))
+        self.alone = alone
+
+    def _w(self, name: str) -> torch.Tensor:
+        return self.get_buffer(name.replace(".", "__"))
+
+    def _norm(self, x: torch.Tensor, name: str) -> torch.Tensor:
+        weight = self._w(f"{name}.weight")
+        return functional.layer_norm(x, (weight.numel(),), weight, self._w(f"{name}.bias"))
+
+    def _attended(self, x: torch.Tensor, layer: str) -> torch.Tensor:
+        """Self-attention among the tokens [batch, tokens, width] of each row of the batch."""
+        width = x.shape[-1]
+        mixed = functional.linear(x, self._w(f"{layer}.attn.in_proj_weight"), self._w(f"{layer}.attn.in_proj_bias"))
+        q, k, v = (part.unflatten(-1, (width // HEAD, HEAD)).transpose(1, 2) for part in mixed.chunk(3, dim=-1))
+        share = torch.softmax(q @ k.transpose(-1, -2) * HEAD**-0.5, dim=-1)
+        joined = (share @ v).transpose(1, 2).flatten(-2)
+        return functional.linear(
+            joined, self._w(f"{layer}.attn.out_proj.weight"), self._w(f"{layer}.attn.out_proj.bias")
+        )
+
+    def _widened(self, x: torch.Tensor, layer: str) -> torch.Tensor:
+        inner = functional.gelu(
+            functional.linear(x, self._w(f"{layer}.mlp.c_fc.weight"), self._w(f"{layer}.mlp.c_fc.bias"))
+        )
+        return functional.linear(inner, self._w(f"{layer}.mlp.c_proj.weight"), self._w(f"{layer}.mlp.c_proj.bias"))
 
     def forward(self, views: torch.Tensor) -> torch.Tensor:
-        return self.clip.encode_image(views[0], num_frames=self.frames)
+        kernel = self._w("conv1.weight")
+        patches = functional.conv2d(views[0], kernel, stride=kernel.shape[-1]).flatten(2).transpose(1, 2)
+        token = self._w("class_embedding").expand(patches.shape[0], 1, -1)
+        x = self._norm(torch.cat([token, patches], dim=1) + self._w("positional_embedding"), "ln_pre")
+        tokens, width = self._w("positional_embedding").shape
+        for index in range(self.layers):
+            layer = f"transformer.resblocks.{index}"
+            # Every token of every view in one row, or one row per view.
+            x = x.reshape(-1, tokens, width) if index < self.alone else x.reshape(1, -1, width)
+            x = x + self._attended(self._norm(x, f"{layer}.ln_1"), layer)
+            x = x + self._widened(self._norm(x, f"{layer}.ln_2"), layer)
+        seen = self._norm(x.reshape(-1, tokens, width)[:, 0], "ln_post")
+        return seen.mean(dim=0, keepdim=True) @ self._w("proj")
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--source", type=Path, required=True, help="clone of their repository")
-    parser.add_argument("--checkpoint", type=Path, required=True)
-    parser.add_argument("--views", type=int, default=12, help="views of a shape (fewer given ones are repeated)")
-    parser.add_argument("-o", "--output", type=Path, required=True)
-    a = parser.parse_args()
-    sys.path.insert(0, str(a.source.resolve()))
-    from src.model.duoduoclip import DuoduoCLIP
+def read_checkpoint(path: Path, trusted: bool) -> dict[str, Any]:
+    """A checkpoint, without running code that it may carry unless it is trusted."""
+    try:
+        return torch.load(path, map_location="cpu", weights_only=not trusted)
+    except Exception as error:
+        words = " ".join(str(error).split())[:120]
+        advice = "is it the right file?" if trusted else "add --trust if you know where it comes from (it may run code)"
+        sys.exit(f"{path}: cannot be read ({words}); {advice}")
 
-    network = DuoduoCLIP.load_from_checkpoint(str(a.checkpoint), map_location="cpu").eval().float()
-    target = a.output / "duoduoclip" / "visual.onnx"
+
+def shape_tower(saved: Mapping[str, Any]) -> ShapeTower:
+    """The tower of a checkpoint that Lightning wrote, or of a plain dictionary of weights."""
+    state = saved.get("state_dict", saved)
+    prefix = next((p for p in PREFIXES if f"{p}conv1.weight" in state), None)
+    if prefix is None:
+        sys.exit("this is no DuoduoCLIP checkpoint: it holds no duoduoclip.visual.conv1.weight")
+    weights = {name.removeprefix(prefix): value for name, value in state.items() if name.startswith(prefix)}
+    settings: Any = saved.get("hyper_parameters", {})
+    for key in SETTINGS:
+        settings = settings.get(key, {}) if isinstance(settings, Mapping) else {}
+    return ShapeTower(weights, settings if isinstance(settings, int) else 0).eval()
+
+
+def write_tower(tower: ShapeTower, target: Path) -> None:
     target.parent.mkdir(parents=True, exist_ok=True)
-    views = torch.zeros(1, a.views, 3, 224, 224)
-    with torch.no_grad():
+    with torch.no_grad(), warnings.catch_warnings():
+        warnings.simplefilter("ignore")
         torch.onnx.export(
-            ShapeTower(network, a.views).eval(),
-            (views,),
+            tower,
+            (torch.zeros(1, 3, 3, SIDE, SIDE),),
             str(target),
             input_names=["views"],
             output_names=["embedding"],
+            dynamic_axes={"views": {1: "v"}},
             opset_version=17,
             dynamo=False,
         )
+
+
+def main(arguments: list[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("checkpoint", type=Path)
+    parser.add_argument("-o", "--output", type=Path, required=True)
+    parser.add_argument("--trust", action="store_true", help="read a checkpoint that may run code")
+    a = parser.parse_args(arguments)
+    target = a.output / "duoduoclip" / "visual.onnx"
+    write_tower(shape_tower(read_checkpoint(a.checkpoint, a.trust)), target)
     print(target)
 
 

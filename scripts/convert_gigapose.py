@@ -1,79 +1,123 @@
-"""Makes `gigapose-scale/*.onnx` from your own copy of GigaPose: its code and a checkpoint.
+"""Makes `gigapose-scale/*.onnx` from your own copy of a GigaPose checkpoint (Nguyen et al. 2024).
 
-    python scripts/convert_gigapose.py --source gigapose --checkpoint gigaPose_v1.ckpt -o converted
+    python scripts/convert_gigapose.py gigaPose_v1.ckpt -o converted
     diorama models pull --from converted
 
-Only the second network (scale and in-plane angle of matching patches) is taken; the features of the first are DINOv2's.
+Only the second network (relative scale and in-plane angle of matching patches) is taken; it is rebuilt from the
+checkpoint's own weights. The features of the first one are DINOv2's.
 """
 
 from __future__ import annotations
 
 import argparse
 import sys
+import warnings
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import torch
+from torch.nn import functional
 
-DESCRIPTOR, HIDDEN = 256, 256
-BACKBONE = {
-    "n_heads": 0,
-    "input_dim": 3,
-    "input_size": 256,
-    "initial_dim": 128,
-    "block_dims": [128, 192, 256, 512],
-    "descriptor_size": DESCRIPTOR,
-}
-"""As in their configs/model/ist_net/resnet.yaml."""
+SIDE, INNER_SIDE = 224, 256
+"""Of the crops, and of what the backbone enlarges them to."""
+STAGES = (1, 2, 2, 2)
+"""Strides of the residual stages, two blocks each, after a first convolution of stride 2."""
 
 
-class Regressor(torch.nn.Module):
+class Weights(torch.nn.Module):
+    """The weights below one name of a checkpoint, and the layers that use them."""
+
+    def __init__(self, weights: Mapping[str, torch.Tensor]) -> None:
+        super().__init__()
+        for name, value in weights.items():
+            self.register_buffer(name.replace(".", "__"), value.float())
+
+    def _w(self, name: str) -> torch.Tensor:
+        return self.get_buffer(name.replace(".", "__"))
+
+    def _has(self, name: str) -> bool:
+        return hasattr(self, name.replace(".", "__"))
+
+
+class Backbone(Weights):
+    """Crops [b, 3, 224, 224], ImageNet statistics, to features [b, 256, 16, 16]."""
+
+    def _normed(self, x: torch.Tensor, name: str) -> torch.Tensor:
+        mean, variance = self._w(f"{name}.running_mean"), self._w(f"{name}.running_var")
+        return functional.batch_norm(x, mean, variance, self._w(f"{name}.weight"), self._w(f"{name}.bias"))
+
+    def _block(self, x: torch.Tensor, name: str, stride: int) -> torch.Tensor:
+        y = functional.relu(
+            self._normed(functional.conv2d(x, self._w(f"{name}.conv1.weight"), stride=stride, padding=1), f"{name}.bn1")
+        )
+        y = self._normed(functional.conv2d(y, self._w(f"{name}.conv2.weight"), padding=1), f"{name}.bn2")
+        if self._has(f"{name}.downsample.0.weight"):
+            x = functional.conv2d(x, self._w(f"{name}.downsample.0.weight"), stride=stride)
+            x = self._normed(x, f"{name}.downsample.1")
+        return functional.relu(x + y)
+
+    def forward(self, image: torch.Tensor) -> torch.Tensor:
+        x = functional.interpolate(image, (INNER_SIDE, INNER_SIDE), mode="bilinear", align_corners=True)
+        x = functional.relu(self._normed(functional.conv2d(x, self._w("conv1.weight"), stride=2, padding=3), "bn1"))
+        for stage, stride in enumerate(STAGES, start=1):
+            x = self._block(x, f"layer{stage}.0", stride)
+            x = self._block(x, f"layer{stage}.1", 1)
+        return functional.conv2d(x, self._w("layer4_outconv.weight"))
+
+
+class Regressor(Weights):
     """Features [n, 512] of matching patches (photo's first) to scale [n, 1] and unit (cos, sin) [n, 2]."""
 
-    def __init__(self, network: torch.nn.Module) -> None:
-        super().__init__()
-        self.scale, self.inplane = network.scale_predictor, network.inplane_predictor
+    def _mlp(self, x: torch.Tensor, name: str) -> torch.Tensor:
+        for layer in (0, 2, 4):
+            x = functional.linear(x, self._w(f"{name}.{layer}.weight"), self._w(f"{name}.{layer}.bias"))
+            x = functional.relu(x) if layer < 4 else x
+        return x
 
     def forward(self, pairs: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
-        return self.scale(pairs), torch.nn.functional.normalize(self.inplane(pairs), dim=1)
+        turned = torch.tanh(self._mlp(pairs, "inplane_predictor"))
+        return self._mlp(pairs, "scale_predictor"), functional.normalize(turned, dim=1)
 
 
-def _part(state: dict[str, torch.Tensor], name: str) -> dict[str, torch.Tensor]:
+def read_checkpoint(path: Path, trusted: bool) -> dict[str, Any]:
+    """A checkpoint, without running code that it may carry unless it is trusted."""
+    try:
+        return torch.load(path, map_location="cpu", weights_only=not trusted)
+    except Exception as error:
+        words = " ".join(str(error).split())[:120]
+        advice = "is it the right file?" if trusted else "add --trust if you know where it comes from (it may run code)"
+        sys.exit(f"{path}: cannot be read ({words}); {advice}")
+
+
+def part(saved: Mapping[str, Any], name: str) -> dict[str, torch.Tensor]:
     """The weights below `ist_net.<name>.`, wherever the checkpoint keeps them."""
-    mark = f"ist_net.{name}."
-    return {key.split(mark, 1)[1]: value for key, value in state.items() if mark in key}
+    state, mark = saved.get("state_dict", saved), f"ist_net.{name}."
+    found = {key.split(mark, 1)[1]: value for key, value in state.items() if mark in key}
+    if not found:
+        sys.exit(f"this is no GigaPose checkpoint: it holds nothing below {mark}")
+    return {key: value for key, value in found.items() if not key.endswith("num_batches_tracked")}
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--source", type=Path, required=True, help="clone of their repository")
-    parser.add_argument("--checkpoint", type=Path, required=True)
-    parser.add_argument("-o", "--output", type=Path, required=True)
-    a = parser.parse_args()
-    sys.path.insert(0, str(a.source.resolve()))
-    from src.models.network.ist_net import Regressor as TheirRegressor
-    from src.models.network.resnet import ResNet
-
-    saved = torch.load(a.checkpoint, map_location="cpu", weights_only=False)
-    state = saved.get("state_dict", saved)
-    backbone = ResNet(BACKBONE).eval()
-    backbone.load_state_dict(_part(state, "backbone"))
-    regressor = TheirRegressor(DESCRIPTOR, HIDDEN, use_tanh_act=True, normalize_output=True).eval()
-    regressor.load_state_dict(_part(state, "regressor"))
-    folder = a.output / "gigapose-scale"
+def write_networks(saved: Mapping[str, Any], folder: Path) -> None:
+    backbone, regressor = Backbone(part(saved, "backbone")).eval(), Regressor(part(saved, "regressor")).eval()
+    channels = regressor.get_buffer("scale_predictor__0__weight").shape[1]
     folder.mkdir(parents=True, exist_ok=True)
-    with torch.no_grad():
+    with torch.no_grad(), warnings.catch_warnings():
+        warnings.simplefilter("ignore")
         torch.onnx.export(
             backbone,
-            (torch.zeros(1, 3, 224, 224),),
+            (torch.zeros(1, 3, SIDE, SIDE),),
             str(folder / "features.onnx"),
             input_names=["image"],
             output_names=["features"],
+            dynamic_axes={"image": {0: "b"}, "features": {0: "b"}},
             opset_version=17,
             dynamo=False,
         )
         torch.onnx.export(
-            Regressor(regressor).eval(),
-            (torch.zeros(4, 2 * DESCRIPTOR),),
+            regressor,
+            (torch.zeros(4, channels),),
             str(folder / "regressor.onnx"),
             input_names=["pairs"],
             output_names=["scale", "inplane"],
@@ -81,6 +125,16 @@ def main() -> None:
             opset_version=17,
             dynamo=False,
         )
+
+
+def main(arguments: list[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("checkpoint", type=Path)
+    parser.add_argument("-o", "--output", type=Path, required=True)
+    parser.add_argument("--trust", action="store_true", help="read a checkpoint that may run code")
+    a = parser.parse_args(arguments)
+    folder = a.output / "gigapose-scale"
+    write_networks(read_checkpoint(a.checkpoint, a.trust), folder)
     print(folder)
 
 

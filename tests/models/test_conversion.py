@@ -1,0 +1,189 @@
+"""The scripts that convert users' own checkpoints, on small random ones with the published names of weights.
+
+The networks here are written as their authors describe them, with torch's own modules; the scripts rebuild them from
+the weights alone.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+from collections import OrderedDict
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+import torch
+from torch import nn
+
+from diorama_core.models.clip import DuoduoClip, clip_pixels
+from diorama_core.models.gigapose import GigaPoseScale
+from diorama_core.models.manifest import network
+from diorama_core.models.runtime import SessionPool
+from diorama_core.models.store import ModelStore
+
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
+WIDTH, LAYERS, ALONE = 128, 4, 2
+
+
+def _script(name: str) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(name, SCRIPTS / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def _shaken(network_: nn.Module) -> nn.Module:
+    """Random everywhere, running statistics included, so that no weight can be forgotten unnoticed."""
+    generator = torch.Generator().manual_seed(0)
+    with torch.no_grad():
+        for name, value in network_.state_dict().items():
+            if value.dtype.is_floating_point:
+                random = torch.randn(value.shape, generator=generator)
+                fan = max(1, value[0].numel()) if value.dim() > 1 else 25
+                value.copy_(
+                    random.abs() + 0.5 if "running_var" in name else random / fan**0.5 + (value.dim() == 1) * 0.5
+                )
+    return network_.eval()
+
+
+class _Block(nn.Module):
+    def __init__(self) -> None:
+        super().__init__()
+        self.ln_1, self.attn, self.ln_2 = nn.LayerNorm(WIDTH), nn.MultiheadAttention(WIDTH, 2), nn.LayerNorm(WIDTH)
+        inner = {"c_fc": nn.Linear(WIDTH, 4 * WIDTH), "gelu": nn.GELU(), "c_proj": nn.Linear(4 * WIDTH, WIDTH)}
+        self.mlp = nn.Sequential(OrderedDict(inner))
+
+    def forward(self, x: torch.Tensor, frames: int) -> torch.Tensor:
+        """Tokens first [tokens, shapes x frames, width]; attention joins the frames of each shape."""
+        tokens, rows, width = x.shape
+        q = self.ln_1(x).reshape(tokens, rows // frames, frames, width).permute(0, 2, 1, 3)
+        q = q.reshape(tokens * frames, rows // frames, width)
+        seen = self.attn(q, q, q, need_weights=False)[0]
+        x = x + seen.reshape(tokens, frames, rows // frames, width).permute(0, 2, 1, 3).reshape(tokens, rows, width)
+        return x + self.mlp(self.ln_2(x))
+
+
+class _Visual(nn.Module):
+    """The many-view vision transformer of DuoduoCLIP."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.conv1 = nn.Conv2d(3, WIDTH, 32, stride=32, bias=False)
+        self.class_embedding = nn.Parameter(torch.zeros(WIDTH))
+        self.positional_embedding = nn.Parameter(torch.zeros(50, WIDTH))
+        self.ln_pre, self.ln_post = nn.LayerNorm(WIDTH), nn.LayerNorm(WIDTH)
+        self.transformer = nn.Module()
+        self.transformer.resblocks = nn.ModuleList(_Block() for _ in range(LAYERS))
+        self.proj = nn.Parameter(torch.zeros(WIDTH, 512))
+
+    def forward(self, views: torch.Tensor, alone: int) -> torch.Tensor:
+        x = self.conv1(views).flatten(2).permute(0, 2, 1)
+        x = torch.cat([self.class_embedding.expand(len(x), 1, -1), x], dim=1) + self.positional_embedding
+        x = self.ln_pre(x).permute(1, 0, 2)
+        for index, block in enumerate(self.transformer.resblocks):
+            x = block(x, 1 if index < alone else len(views))
+        return self.ln_post(x.permute(1, 0, 2))[:, 0].mean(dim=0, keepdim=True) @ self.proj
+
+
+@pytest.mark.parametrize("alone", [0, ALONE], ids=["all layers joined", "early layers alone"])
+def test_duoduoclips_shape_tower_is_rebuilt_from_a_checkpoint(
+    tmp_path: Path, rng: np.random.Generator, alone: int
+) -> None:
+    visual = _shaken(_Visual())
+    state = {f"duoduoclip.visual.{k}": v for k, v in visual.state_dict().items()}
+    state["duoduoclip.token_embedding.weight"] = torch.zeros(3, 4)  # the text tower's, which is not taken
+    settings = {"model": {"network": {"layers_threshold": alone, "base_name": "ViT-B-32"}}}
+    torch.save({"state_dict": state, "hyper_parameters": settings, "epoch": 3}, tmp_path / "own.ckpt")
+    _script("convert_duoduoclip").main([str(tmp_path / "own.ckpt"), "-o", str(tmp_path / "made")])
+    store = ModelStore(tmp_path / "store")
+    assert store.add_folder(tmp_path / "made") == ("duoduoclip",)
+    facade = DuoduoClip(store.path(network("duoduoclip"), "visual.onnx"), pool=SessionPool())
+    for count in (1, 2, 5):
+        views = [rng.integers(0, 255, (224, 224, 3)).astype(np.uint8) for _ in range(count)]
+        with torch.no_grad():
+            expected = visual(torch.from_numpy(np.concatenate([clip_pixels(v) for v in views])), alone)[0].numpy()
+        np.testing.assert_allclose(facade.shape(views), expected / np.linalg.norm(expected), atol=1e-4)
+
+
+class _Residual(nn.Module):
+    def __init__(self, before: int, after: int, stride: int) -> None:
+        super().__init__()
+        self.conv1 = nn.Conv2d(before, after, 3, stride=stride, padding=1, bias=False)
+        self.conv2 = nn.Conv2d(after, after, 3, padding=1, bias=False)
+        self.bn1, self.bn2 = nn.BatchNorm2d(after), nn.BatchNorm2d(after)
+        shortcut = nn.Sequential(nn.Conv2d(before, after, 1, stride=stride, bias=False), nn.BatchNorm2d(after))
+        self.downsample = None if stride == 1 else shortcut
+
+    def forward(self, x: torch.Tensor) -> torch.Tensor:
+        y = self.bn2(self.conv2(torch.relu(self.bn1(self.conv1(x)))))
+        return torch.relu(y + (x if self.downsample is None else self.downsample(x)))
+
+
+class _Backbone(nn.Module):
+    """GigaPose's residual network, narrower."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.conv1, self.bn1 = nn.Conv2d(3, 8, 7, stride=2, padding=3, bias=False), nn.BatchNorm2d(8)
+        sizes = ((8, 8, 1), (8, 12, 2), (12, 16, 2), (16, 24, 2))
+        for index, (before, after, stride) in enumerate(sizes, start=1):
+            blocks = _Residual(before, after, stride), _Residual(after, after, 1)
+            setattr(self, f"layer{index}", nn.Sequential(*blocks))
+        self.layer4_outconv = nn.Conv2d(24, 6, 1, bias=False)
+
+    def forward(self, x: torch.Tensor) -> torch.Tensor:
+        x = nn.functional.interpolate(x, (256, 256), mode="bilinear", align_corners=True)
+        x = torch.relu(self.bn1(self.conv1(x)))
+        return self.layer4_outconv(self.layer4(self.layer3(self.layer2(self.layer1(x)))))
+
+
+class _Regressor(nn.Module):
+    def __init__(self) -> None:
+        super().__init__()
+
+        def layers(out: int) -> list[nn.Module]:
+            return [nn.Linear(12, 16), nn.ReLU(), nn.Linear(16, 8), nn.ReLU(), nn.Linear(8, out)]
+
+        self.scale_predictor, self.inplane_predictor = nn.Sequential(*layers(1)), nn.Sequential(*layers(2), nn.Tanh())
+
+
+def test_gigaposes_scale_network_is_rebuilt_from_a_checkpoint(tmp_path: Path, rng: np.random.Generator) -> None:
+    backbone, regressor = _shaken(_Backbone()), _shaken(_Regressor())
+    state = {f"ist_net.backbone.{k}": v for k, v in backbone.state_dict().items()}
+    state |= {f"ist_net.regressor.{k}": v for k, v in regressor.state_dict().items()}
+    state["ae_net.dinov2.cls_token"] = torch.zeros(1)  # the first network's, which is not taken
+    torch.save({"state_dict": state}, tmp_path / "own.ckpt")
+    _script("convert_gigapose").main([str(tmp_path / "own.ckpt"), "-o", str(tmp_path / "made")])
+    store = ModelStore(tmp_path / "store")
+    assert store.add_folder(tmp_path / "made") == ("gigapose-scale",)
+    graphs = (store.path(network("gigapose-scale"), name) for name in ("features.onnx", "regressor.onnx"))
+    facade = GigaPoseScale(*graphs, pool=SessionPool())
+    crops = [rng.integers(0, 255, (224, 224, 3)).astype(np.uint8) for _ in range(2)]
+    mean, std = np.array([0.485, 0.456, 0.406]), np.array([0.229, 0.224, 0.225])
+    pixels = torch.from_numpy(np.stack([((c / 255 - mean) / std).transpose(2, 0, 1) for c in crops])).float()
+    template, photo = facade.maps(crops)
+    with torch.no_grad():
+        expected = backbone(pixels)
+        np.testing.assert_allclose(np.stack([template, photo]), expected.numpy(), atol=1e-4)
+        pairs = torch.cat([expected[1, :, 8, 7], expected[0, :, 4, 3]])[None]
+        scale, turn = regressor.scale_predictor(pairs)[0, 0], regressor.inplane_predictor(pairs)[0]
+    found = facade.turns(template, photo, np.array([[3, 4]]), np.array([[7, 8]]))
+    assert found.scale[0] == pytest.approx(float(scale), abs=1e-4)
+    assert found.angle_rad[0] == pytest.approx(float(torch.atan2(turn[1], turn[0])), abs=1e-4)
+
+
+@pytest.mark.parametrize("script", ["convert_duoduoclip", "convert_gigapose"])
+@pytest.mark.parametrize("damage", ["absent", "no checkpoint", "another network"])
+def test_checkpoints_that_cannot_be_used_are_one_clear_line(tmp_path: Path, script: str, damage: str) -> None:
+    path = tmp_path / "own.ckpt"
+    if damage == "no checkpoint":
+        path.write_bytes(b"<html>sign in</html>")
+    elif damage == "another network":
+        torch.save({"state_dict": {"layer.weight": torch.zeros(2)}}, path)
+    with pytest.raises(SystemExit) as error:
+        _script(script).main([str(path), "-o", str(tmp_path / "made")])
+    assert len(str(error.value.code).splitlines()) == 1
+    assert not (tmp_path / "made").exists()
