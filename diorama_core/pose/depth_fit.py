@@ -30,7 +30,6 @@ _WHOLE_CELL = 0.9
 _LOOSENESS = (4.0, 3.0, 2.0, 1.5, 1.0, 1.0, 1.0, 1.0)
 """Of every iteration: how many times wider than measured the tolerances are taken, so that far starts are drawn in."""
 _DAMPING = 0.01
-_THIN_M = 0.1
 _MOST_SHIFT = 0.6
 """A fit moves a pose by at most this share of its largest extent: farther ones lost hold of the object."""
 _GRAZING = 0.15
@@ -163,7 +162,7 @@ class DepthFit:
         bottom = self.contact.anchor.point_world[2]
         height = np.maximum(high[:, 2] - bottom, spans[:, 2]) if stands and sure else spans[:, 2]
         growth = np.clip(height / own[2], 0.5, 2.0) if whole else np.ones(len(rotations))
-        wanted = np.where(own > _THIN_M, np.maximum(own * growth[:, None], spans), own)
+        wanted = np.where(self.limits.thin, own, np.maximum(own * growth[:, None], spans))
         scale = self.limits.scale_for(wanted)
         size = scale * own
         from_high = eye > 0.5 * (low + high)
@@ -276,7 +275,7 @@ class DepthFit:
         J[:, 0, :3], J[:, 0, 4:] = axis, -lever
         J[:, 0], r[:, 0] = J[:, 0] / sigma, gap / sigma
         logs = np.log(poses.scale)
-        centring = (np.eye(3) - 1 / 3) / np.where(own > _THIN_M, _SHAPE_SIGMA, _THIN_SHAPE_SIGMA)[:, None]
+        centring = (np.eye(3) - 1 / 3) / np.where(self.limits.thin, _THIN_SHAPE_SIGMA, _SHAPE_SIGMA)[:, None]
         J[:, 1:4, 4:], r[:, 1:4] = centring, logs @ centring.T
         J[:, 4, 4:], r[:, 4] = 1 / (3 * _SIZE_SIGMA), logs.mean(axis=1) / _SIZE_SIGMA
         J[:, 5, 3], r[:, 5] = 1 / self.yaw_sigma_rad, x[:, 3] / self.yaw_sigma_rad

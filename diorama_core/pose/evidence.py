@@ -10,39 +10,24 @@ from jaxtyping import Float
 from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.projection import box_iou
 from diorama_core.geometry.silhouette import Hits, PoseBatch, ShapeCaster
+from diorama_core.geometry.window import soft_iou
 from diorama_core.pose.facing import Facing
 from diorama_core.pose.limits import SizeLimits
+from diorama_core.pose.surface import MeasuredSurface
 from diorama_core.scene.types import Camera
 
 _SILHOUETTE_WEIGHT = 0.7
 _BOX_WEIGHT = 0.5
+_SILHOUETTE_WEIGHT_WITH_DEPTH = 0.7
 _DEPTH_WEIGHT = 0.7
-_NORMALS_SHARE = 0.4
+_STRENGTH_WITH_DEPTH = 2.0
+"""How much more than an outline alone measured depth says against what things usually do."""
 _NOISE_FLOOR = 0.03
 """Error below which two poses are not told apart: the resolution of the silhouettes."""
 _FACING_STRENGTH = 0.7
 _STRETCH_SIGMA = 0.3
 _MISFIT_SIGMA = 0.2
 _OFF_AXIS_SIGMA_RAD = float(np.deg2rad(35.0))
-
-
-@dataclass(frozen=True, eq=False)
-class MeasuredSurface:
-    """Measured depth and normals under the cells of an object's window, where they belong to the object."""
-
-    depth_m: Float[np.ndarray, "n"]
-    normals_world: Float[np.ndarray, "n 3"]
-    weight: Float[np.ndarray, "n"]
-    """0 where nothing was measured or the cell is not the object's."""
-
-    def agreement(self, hits: Hits) -> Float[np.ndarray, "p"]:
-        """0 to 1: nearness of depth and of normals over the object's measured cells."""
-        tolerance = 0.02 + 0.01 * self.depth_m
-        met = np.where(hits.covered, hits.depth_m, 0.0)
-        near = np.where(hits.covered, np.exp(-(((met - self.depth_m) / tolerance) ** 2)), 0.0)
-        aligned = np.clip(np.einsum("pni,ni->pn", hits.normals_world, self.normals_world), 0.0, 1.0)
-        score = (1 - _NORMALS_SHARE) * near + _NORMALS_SHARE * aligned
-        return (score * self.weight).sum(axis=1) / max(float(self.weight.sum()), 1e-9)
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,14 +43,23 @@ class Evidence:
     def errors(self, caster: ShapeCaster, poses: PoseBatch) -> Float[np.ndarray, "p"]:
         """0 (agrees entirely) to 1: weighted disagreement of silhouette, box, depth and normals."""
         hits = caster.cast(self.seen.origin_world, self.seen.directions_world, poses)
-        weights = [_SILHOUETTE_WEIGHT * self.seen.mask_trust, _BOX_WEIGHT]
-        boxes = box_iou(caster.bounds_px(self.camera, poses), np.asarray(self.seen.box))
-        terms = [self.seen.agreement(hits.covered), np.nan_to_num(boxes)]
         if self.surface is not None:
-            weights.append(_DEPTH_WEIGHT)
-            terms.append(self.surface.agreement(hits))
+            weights = [_SILHOUETTE_WEIGHT_WITH_DEPTH * (0.3 + 0.7 * self.seen.mask_trust), _DEPTH_WEIGHT]
+            terms = [self._outline_with_depth(self.surface, hits), self.surface.agreement(hits)]
+        else:
+            weights = [_SILHOUETTE_WEIGHT * self.seen.mask_trust, _BOX_WEIGHT]
+            boxes = box_iou(caster.bounds_px(self.camera, poses), np.asarray(self.seen.box))
+            terms = [self.seen.agreement(hits.covered), np.nan_to_num(boxes)]
         agreement = sum(w * t for w, t in zip(weights, terms, strict=True)) / sum(weights)
         return np.clip(1.0 - np.nan_to_num(agreement), 0.0, 1.0)
+
+    def _outline_with_depth(self, surface: MeasuredSurface, hits: Hits) -> Float[np.ndarray, "p"]:
+        """Intersection over union with the mask where nothing that was measured is in front of the shape."""
+        k = self.camera.intrinsics
+        inside = self.seen.window.inside(k.width, k.height).astype(np.float64)
+        before = np.where(surface.known, inside, self.seen.weight)
+        weight = np.where(surface.hides(hits), 0.0, before)
+        return soft_iou(self.seen.covered, hits.covered.astype(np.float64), weight)
 
     def log_scores(
         self,
@@ -84,7 +78,8 @@ class Evidence:
         cost = cost + 0.5 * (limits.stretch(poses.scale) / _STRETCH_SIGMA) ** 2
         cost = cost + 0.5 * (misfit / _MISFIT_SIGMA) ** 2
         cost = cost + 0.5 * (off_axis_rad / _OFF_AXIS_SIGMA_RAD) ** 2
-        return -np.log(errors + _NOISE_FLOOR) - cost
+        strength = 1.0 if self.surface is None else _STRENGTH_WITH_DEPTH
+        return -strength * np.log(errors + _NOISE_FLOOR) - cost
 
     def confidence(self, error: float, cuboid_confidence: float) -> float:
         """0 to 1: lower for cut, hidden, tiny or badly masked objects and for poses that fit badly."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from diorama_core.library.taxonomy import UNKNOWN, SizePrior, category, with_kin
 
@@ -13,6 +13,8 @@ _SIGMAS = 2.3
 _STRETCH_SHAPED = float(np.log(1.28))
 _STRETCH_BOXY = float(np.log(1.75))
 _THIN_M = 0.08
+_THIN_SHARE = 0.1
+"""Of the largest extent: frames, panels and rugs come in any thickness."""
 _DEGENERATE_M = 1e-3
 _OWN_SIZE_FACTOR = 1.3
 """Whatever its kind's usual size, a shape may be this much smaller or larger than it was made."""
@@ -57,12 +59,17 @@ class SizeLimits:
         stretch = _STRETCH_BOXY if category_name in BOXY else _STRETCH_SHAPED
         return cls(own, least, most, stretch)
 
+    @property
+    def thin(self) -> Bool[np.ndarray, "3"]:
+        """Axes along which things of this shape come in any thickness."""
+        return self.shape_size_m <= max(_THIN_M, _THIN_SHARE * float(self.shape_size_m.max()))
+
     def scale_for(self, wanted_m: Float[np.ndarray, "*p 3"]) -> Float[np.ndarray, "*p 3"]:
         """Per-axis scales nearest to giving the shape the wanted size, within the limits."""
         free = self.shape_size_m > _DEGENERATE_M
         wanted = np.clip(np.nan_to_num(wanted_m, nan=1.0), self.least_m, self.most_m)
         log_scale = np.log(wanted / np.maximum(self.shape_size_m, _DEGENERATE_M))
-        shaped = free & (self.shape_size_m > _THIN_M)
+        shaped = free & ~self.thin
         if not shaped.any():
             shaped = free if free.any() else np.ones(3, dtype=bool)
         centre = log_scale[..., shaped].mean(axis=-1, keepdims=True)
@@ -72,7 +79,7 @@ class SizeLimits:
 
     def stretch(self, scale: Float[np.ndarray, "*p 3"]) -> Float[np.ndarray, "*p"]:
         """How unevenly the scales stretch the shape: root mean square of log deviations, thin axes left out."""
-        shaped = self.shape_size_m > _THIN_M
+        shaped = ~self.thin
         if not shaped.any():
             return np.zeros(np.shape(scale)[:-1])
         return np.log(scale[..., shaped]).std(axis=-1)

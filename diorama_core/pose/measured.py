@@ -32,16 +32,24 @@ class MeasuredObject:
 
     @classmethod
     def of(
-        cls, mask: Bool[np.ndarray, "h w"], evidence: Evidence, cuboid: Cuboid, anchor: Anchor
+        cls, mask: Bool[np.ndarray, "h w"], evidence: Evidence, cuboid: Cuboid, anchor: Anchor, on_floor: bool
     ) -> MeasuredObject | None:
-        """What can be used of the depth under a mask; None where hardly any was measured."""
+        """What can be used of the depth under a mask; None where hardly any was measured.
+
+        Args:
+            mask: the object's visible pixels.
+            evidence: what is known of it.
+            cuboid: its box.
+            anchor: the face of the box that touches what holds it.
+            on_floor: whether that is the floor, whose height is known even where the object hides it.
+        """
         if evidence.surface is None:
             return None
         points = SeenPoints.of(evidence.seen, evidence.surface.depth_m, evidence.surface.weight)
         if len(points.depth_m) < FEWEST_RAYS:
             return None
         outline = Outline.of(evidence.seen, mask)
-        return cls(evidence, cuboid, _contact(anchor, points, outline), points, outline)
+        return cls(evidence, cuboid, _contact(anchor, on_floor, points, outline), points, outline)
 
     def fit(self, limits: SizeLimits) -> DepthFit:
         """The fit of a shape with these limits."""
@@ -57,13 +65,13 @@ class MeasuredObject:
         return Hypotheses(poses, np.abs(quarter), np.zeros(count))
 
 
-def _contact(anchor: Anchor, points: SeenPoints, outline: Outline | None) -> Contact:
+def _contact(anchor: Anchor, on_floor: bool, points: SeenPoints, outline: Outline | None) -> Contact:
     """Where the object stands: where the cuboid ends, unless its own lower end is seen elsewhere or is hidden."""
     if anchor.axis_world[2] < 0.5 or outline is None or len(points.depth_m) < 12:
         return Contact(anchor, SURE_CONTACT_M)
     lowest = float(np.quantile(points.points_world[:, 2], 0.01))
     gap = lowest - float(anchor.point_world[2])
-    if abs(gap) < _FLOATS_M:
+    if abs(gap) < _FLOATS_M or (on_floor and not outline.lower_end_seen):
         return Contact(anchor, SURE_CONTACT_M)
     seen = replace(anchor, point_world=np.array([*anchor.point_world[:2], lowest]))
     if outline.lower_end_seen or gap < 0:

@@ -18,18 +18,19 @@ from diorama_core.artefacts import (
     RankedShapes,
 )
 from diorama_core.geometry.looks import SHARED_LOOKS
-from diorama_core.geometry.observed import Observed, observe_among
+from diorama_core.geometry.observed import observe_among
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import category
 from diorama_core.pose.agree import agreed_ranks
-from diorama_core.pose.evidence import Evidence, MeasuredSurface
+from diorama_core.pose.evidence import Evidence
 from diorama_core.pose.facing import facing_of, wall_samples
 from diorama_core.pose.hypotheses import Anchor, anchor_of, hypotheses_for
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.measured import MeasuredObject
 from diorama_core.pose.refine import BoxFit
+from diorama_core.pose.surface import measured_surface, noise_of
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Candidate, Pose
 
@@ -128,21 +129,22 @@ class RenderAndCompare:
         parents = [positions.get(parent_of.get(o.id, "")) for o in things]
         categories = {o.id: o.category for o in things}
         walls = wall_samples(depth, geometry.camera, things)
+        noise = noise_of(depth)
         tasks = []
         for i, thing in enumerate(things):
             if thing.id not in wanted:
                 continue
-            on_wall = parent_of.get(thing.id) == "wall"
+            on_wall = parent_of.get(thing.id) == "wall" and category(thing.category).mount != "floor"
             lying = [cuboids[j] for j, parent in enumerate(parents) if parent == i and things[j].category == "pillow"]
             anchor = anchor_of(cuboids[i], on_wall, geometry.camera.position[:2] - cuboids[i].centre[:2])
             out_of_wall = anchor.axis_world[:2] if on_wall else None
             facing = facing_of(thing, cuboids[i], cuboids, categories, geometry.camera, walls, out_of_wall, lying)
             coarse, fine = (
-                Evidence(geometry.camera, seen, facing, measured_surface(depth, seen))
+                Evidence(geometry.camera, seen, facing, measured_surface(depth, seen, thing.mask, noise))
                 for cells in (self.coarse_cells, self.fine_cells)
                 for seen in [observe_among(geometry.camera, things, centres, parents, i, cells)]
             )
-            measured = MeasuredObject.of(thing.mask, fine, cuboids[i], anchor)
+            measured = MeasuredObject.of(thing.mask, fine, cuboids[i], anchor, parent_of.get(thing.id) == "floor")
             tasks.append(_Task(thing, cuboids[i], anchor, coarse, fine, measured))
         return tasks
 
@@ -196,16 +198,3 @@ def _candidates(task: _Task, found: tuple[_Posed, ...], ranks: Mapping[str, floa
         for p in ordered
     )
     return PosedCandidates(task.thing.id, candidates, task.fine.confidence(best.error, task.cuboid.confidence))
-
-
-def measured_surface(depth: DepthMap, seen: Observed) -> MeasuredSurface | None:
-    """Depth and normals under an object's mask; None where depth was only rendered from what is already known."""
-    if depth.source == "rendered from cuboids and room":
-        return None
-    metres = seen.window.sample(depth.depth_m).astype(np.float64)
-    normals = np.nan_to_num(seen.window.sample(depth.normals_world).astype(np.float64))
-    known = np.isfinite(metres) & (metres > 0)
-    weight = seen.covered * seen.weight * known
-    if weight.sum() < 4.0:
-        return None
-    return MeasuredSurface(np.where(known, metres, 1.0), normals, weight)

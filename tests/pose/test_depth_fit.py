@@ -18,7 +18,7 @@ from diorama_core.pose.facing import Facing
 from diorama_core.pose.hypotheses import anchor_of
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.measured import MeasuredObject
-from diorama_core.pose.render_and_compare import measured_surface
+from diorama_core.pose.surface import measured_surface, noise_of
 from diorama_core.scene.types import yaw_rotation
 from tests.pose.rooms import LIBRARY, Room, camera_at, standing, yaw_error_deg
 
@@ -28,10 +28,11 @@ def measured(room: Room, index: int = 0, depth: DepthMap | None = None) -> Measu
     thing, cuboid = room.objects[index], room.geometry.cuboids[index]
     centres = np.array([c.centre for c in room.geometry.cuboids])
     seen = observe_among(room.camera, room.objects, centres, [None] * len(centres), index, 56)
-    surface = measured_surface(depth or room.depth(True), seen)
+    depth = depth or room.depth(True)
+    surface = measured_surface(depth, seen, thing.mask, noise_of(depth))
     evidence = Evidence(room.camera, seen, Facing(()), surface)
     anchor = anchor_of(cuboid, False, room.camera.position[:2] - cuboid.centre[:2])
-    found = MeasuredObject.of(thing.mask, evidence, cuboid, anchor)
+    found = MeasuredObject.of(thing.mask, evidence, cuboid, anchor, on_floor=False)
     assert found is not None
     return found
 
@@ -138,4 +139,4 @@ def test_hardly_any_depth_is_no_measurement() -> None:
     mask = np.zeros_like(room.objects[0].mask)
     assert whole.evidence.surface is not None
     blind = replace(whole.evidence, surface=replace(whole.evidence.surface, weight=np.zeros(56 * 56)))
-    assert MeasuredObject.of(mask, blind, whole.cuboid, whole.contact.anchor) is None
+    assert MeasuredObject.of(mask, blind, whole.cuboid, whole.contact.anchor, on_floor=False) is None

@@ -19,7 +19,7 @@ def test_scales_are_finite_positive_and_evenly_stretched(shape, observed, name) 
     scale = limits.scale_for(np.array(observed))
     assert np.isfinite(scale).all()
     assert (scale > 0).all()
-    thick = np.array(shape) > 0.08
+    thick = ~limits.thin
     if thick.any():
         logs = np.log(scale[thick])
         assert np.ptp(logs) <= 2 * limits.stretch_log + 1e-9
