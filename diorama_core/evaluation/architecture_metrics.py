@@ -24,6 +24,8 @@ VISIBLE_SHARE = 0.01
 """A plane that covers less of the picture than this is neither asked for nor held against a result."""
 SAMPLE_M = 0.05
 """Spacing of the points that stand for a plane in space."""
+SAME_DEPTH = 0.02
+"""A point is seen when nothing lies before it by more than this share of its distance."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +53,12 @@ class ArchitectureScores:
     depth_rmse_m: float
     """Of the layouts' depths, where both have one."""
     cdb_m: float
-    """Chamfer distance between the planes in space after both are centred on their bounding boxes."""
+    """Chamfer distance between all planes in space after both rooms are centred on their bounding boxes.
+
+    What lies behind the camera counts: a room without its fourth wall is far from one with it.
+    """
+    cdb_seen_m: float
+    """The same of what the picture shows of either room; 0 for a perfect reading of the picture."""
     recall: float
     """Share of the visible true planes that were found, within the given tolerances."""
     precision: float
@@ -93,6 +100,10 @@ def architecture_scores(
         edge_error_px=edge_error(a.labels, b.labels) * b.step,
         depth_rmse_m=depth_rmse(a.depth_m, b.depth_m),
         cdb_m=centred_chamfer(plane_points(aligned), plane_points(true)),
+        cdb_seen_m=centred_chamfer(
+            _moved(seen_points(found, found_camera or camera), found_camera or camera, camera),
+            seen_points(true, camera),
+        ),
         recall=planes.recall,
         precision=planes.precision,
         angle_deg=max((m.angle_deg for m in planes.matches), default=0.0),
@@ -185,6 +196,25 @@ def plane_points(planes: tuple[Plane, ...], spacing_m: float = SAMPLE_M) -> Floa
     return np.concatenate(points)
 
 
+def seen_points(planes: tuple[Plane, ...], camera: Camera, spacing_m: float = SAMPLE_M) -> Float[np.ndarray, "n 3"]:
+    """Those of the points spread over planes that are in the picture and have no other plane before them."""
+    points = plane_points(planes, spacing_m)
+    local, k = camera.to_camera(points), camera.intrinsics
+    ahead = local[:, 2] > 1e-6
+    points, local = points[ahead], local[ahead]
+    uv = local[:, :2] / local[:, 2:] * [k.fx, k.fy] + [k.cx, k.cy]
+    inside = ((uv >= 0) & (uv < [k.width, k.height])).all(axis=1)
+    points = points[inside]
+    first, _ = cast_planes(camera.position, points - camera.position, planes)  # a ray reaches its own point at 1
+    return points[first >= 1.0 - SAME_DEPTH]
+
+
+def _moved(points: Float[np.ndarray, "n 3"], from_camera: Camera, to_camera: Camera) -> Float[np.ndarray, "n 3"]:
+    """Points that lie to the second camera as they did to the first."""
+    T = to_camera.T_world_camera @ from_camera.T_camera_world
+    return points @ T[:3, :3].T + T[:3, 3]
+
+
 def centred_chamfer(found: Float[np.ndarray, "n 3"], true: Float[np.ndarray, "m 3"]) -> float:
     """Sum of both mean nearest distances after each set is moved to the centre of its bounding box (CDb).
 
@@ -270,7 +300,5 @@ def _visible(planes: tuple[Plane, ...], camera: Camera) -> list[tuple[Plane, Flo
 
 def _in_world_of(plane: Plane, from_camera: Camera, to_camera: Camera) -> Plane:
     """A plane moved so that it lies to the second camera as it did to the first."""
-    T = to_camera.T_world_camera @ from_camera.T_camera_world
-    return Plane(
-        plane.id, plane.role, plane.polygon @ T[:3, :3].T + T[:3, 3], plane.thickness, confidence=plane.confidence
-    )
+    polygon = _moved(plane.polygon, from_camera, to_camera)
+    return Plane(plane.id, plane.role, polygon, plane.thickness, confidence=plane.confidence)

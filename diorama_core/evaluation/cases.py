@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from diorama_core.evaluation.dataset import ROOM_KINDS, RoomKind, TruthView, furnished_room, hold_cameras, render_truth
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.scene.types import Scene
 
 VIEWS = 3
 STANDARD_SCENES = 60
@@ -38,11 +39,21 @@ def recipe(scenes: int = STANDARD_SCENES, views: int = VIEWS, seed: int = 0) -> 
     )
 
 
+def furnished(case: Case, library: ShapeLibrary) -> Scene:
+    """The room of a case, in the finishes and styles that are kept for tests."""
+    return furnished_room(case.seed, case.kind, library, split="test")
+
+
 def photographed(
-    case: Case, library: ShapeLibrary, *, size: tuple[int, int] = (640, 480), with_empty_room: bool = False
+    case: Case,
+    library: ShapeLibrary,
+    *,
+    scene: Scene | None = None,
+    size: tuple[int, int] = (640, 480),
+    with_empty_room: bool = False,
 ) -> TruthView:
-    """Furnish and photograph one case."""
-    scene = furnished_room(case.seed, case.kind, library)
+    """Photograph one case, furnished first unless its room is given."""
+    scene = scene or furnished(case, library)
     cameras = hold_cameras(scene, library, case.seed, max(VIEWS, case.view + 1), size)
     return render_truth(scene, cameras[case.view], library, size, with_empty_room=with_empty_room)
 

@@ -16,6 +16,7 @@ from diorama_core.evaluation.architecture_metrics import (
     match_planes,
     pixel_error,
     plane_points,
+    seen_points,
     segment_iou,
     segment_pairs,
 )
@@ -113,6 +114,34 @@ def test_a_room_against_itself():
     assert (scores.iou, scores.pixel_error, scores.edge_error_px, scores.recall, scores.precision) == (1, 0, 0, 1, 1)
     assert scores.depth_rmse_m == pytest.approx(0.0, abs=1e-9)
     assert scores.cdb_m == pytest.approx(0.0, abs=1e-9)
+
+
+def test_only_what_the_picture_shows_counts_as_seen():
+    near, far = wall("near", (-1, 3), (0, 3), 2.0), wall("far", (-1, 6), (1, 6), 2.0)
+    points = seen_points((near, far), look(0, 0, height_m=1.0))
+    # Of the far wall the near one hides its left half, which it covers twice over from here; all else is in view.
+    assert np.isclose(points[:, 1], 3).sum() == 20 * 40
+    rest = points[np.isclose(points[:, 1], 6)]
+    assert rest[:, 0].min() > 0
+    assert len(rest) == 20 * 40
+    assert not len(seen_points((wall("behind", (1, -2), (-1, -2), 2.0),), look(0, 0)))
+
+
+def test_rooms_that_differ_behind_the_camera_look_alike():
+    fourth = (*ROOM, wall("fourth", (2, -5), (-2, -5), 2.6))
+    longer = (*box_room(-2.0, 2.0, 4.0, 2.6, y0=-5.0), fourth[-1])
+    scores = architecture_scores(ROOM, longer, look(0, 5))
+    assert scores.cdb_seen_m == pytest.approx(0.0, abs=1e-3)
+    # Centred, the boxes of 7 and 9 metres leave each back wall a metre from its like, and one wall without any.
+    assert scores.cdb_m > 0.25
+
+
+def test_the_seen_part_of_a_taller_wall():
+    truth, found = wall("w", (-1, 5), (1, 5), 2.0), wall("w", (-1, 5), (1, 5), 2.4)
+    scores = architecture_scores((found,), (truth,), look(0, 0, height_m=1.0))
+    # 0.2 m stand out above and below after centring; their 8 rows lie 0.025 to 0.175 m from the nearest row.
+    rows = np.array([0.025, 0.075, 0.125, 0.175])
+    assert scores.cdb_seen_m == pytest.approx(2 * (rows + 0.0).sum() / 48, abs=0.03)
 
 
 def test_a_far_wall_ten_centimetres_off():

@@ -16,6 +16,8 @@ from diorama_core.scene.types import Camera, Intrinsics, Plane, Scene
 
 PROBE_SIZE = (64, 48)
 CANDIDATES = 28
+UNDER_CEILING_M = 0.2
+"""Nobody holds a camera nearer to a sloping ceiling."""
 
 
 @dataclass(frozen=True)
@@ -101,6 +103,8 @@ def _candidate(scene: Scene, rng: np.random.Generator, size: tuple[int, int], ho
     if not _inside(position, outline, how.clearance_m) or np.linalg.norm(target - position) < 1.0:
         return None
     eye = np.array([*position, height])
+    if any(p.normal @ eye - p.offset < UNDER_CEILING_M for p in scene.architecture.by_role("ceiling")):
+        return None
     for item in scene.objects:
         local = (eye - item.pose.position) @ item.pose.R_world_object
         if item.category != "rug" and (np.abs(local) < item.size_m / 2 + 2 * how.clearance_m).all():

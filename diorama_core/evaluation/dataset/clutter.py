@@ -25,32 +25,43 @@ class Habit:
 
 
 HABITS: dict[str, Habit] = {
-    "coffee table": Habit(("books", "bowl", "cup", "vase", "plant", "books"), 4, 0.4),
-    "side table": Habit(("lamp", "lamp", "books", "cup", "vase", "plant"), 2, 0.75),
-    "night stand": Habit(("lamp", "lamp", "books", "cup", "clock"), 3, 0.7),
-    "console table": Habit(("lamp", "vase", "bowl", "books", "plant"), 3, 0.8),
-    "sideboard": Habit(("lamp", "vase", "books", "bowl", "plant", "bottle"), 4, 0.7),
-    "dresser": Habit(("lamp", "vase", "books", "box", "plant", "clock", "toy"), 4, 0.6),
-    "cabinet": Habit(("vase", "books", "box", "plant", "basket"), 3, 0.5),
-    "tv stand": Habit(("books", "vase", "plant", "box"), 2, 0.35),
-    "table": Habit(("bowl", "cup", "bottle", "vase", "books", "laptop", "bowl", "cup"), 6, 0.5),
-    "desk": Habit(("books", "cup", "lamp", "plant", "laptop", "bottle"), 4, 0.6),
-    "bookshelf": Habit(("books", "books", "books", "vase", "box", "plant", "toy", "bowl", "basket"), 3, 0.4),
-    "shelves": Habit(("books", "books", "vase", "plant", "cup", "bowl", "bottle"), 3, 0.35),
-    "kitchen counter": Habit(("microwave", "bowl", "bottle", "cup", "plant", "bowl", "bottle"), 5, 0.45),
+    "coffee table": Habit(("books", "tray", "cup", "vase", "plant", "remote control", "candle", "tablet"), 4, 0.4),
+    "side table": Habit(("lamp", "lamp", "books", "cup", "vase", "plant", "photo frame", "telephone"), 2, 0.75),
+    "night stand": Habit(("lamp", "lamp", "books", "cup", "clock", "glass", "smartphone", "photo frame"), 3, 0.7),
+    "console table": Habit(("lamp", "vase", "bowl", "books", "plant", "photo frame", "tray", "telephone"), 3, 0.8),
+    "sideboard": Habit(("lamp", "vase", "books", "tray", "plant", "bottle", "record player", "sculpture"), 4, 0.7),
+    "dresser": Habit(("lamp", "vase", "books", "box", "plant", "vanity mirror", "toy", "photo frame"), 4, 0.6),
+    "cabinet": Habit(("vase", "books", "box", "plant", "basket", "mantel clock", "globe", "sculpture"), 3, 0.5),
+    "display cabinet": Habit(("vase", "plate", "glass", "bowl", "sculpture"), 3, 0.3),
+    "filing cabinet": Habit(("printer", "books", "box", "plant"), 2, 0.5),
+    "tv stand": Habit(("books", "vase", "plant", "box", "game console", "speaker", "router"), 2, 0.35),
+    "table": Habit(("tray", "cup", "bottle", "vase", "books", "plate", "bowl", "glass", "fruit", "candle"), 6, 0.5),
+    "desk": Habit(("books", "cup", "lamp", "plant", "laptop", "bottle", "telephone", "printer", "photo frame"), 4, 0.6),
+    "bookshelf": Habit(("books", "books", "books", "vase", "box", "plant", "toy", "globe", "basket"), 3, 0.4),
+    "shelves": Habit(("books", "books", "vase", "plant", "cup", "jar", "bottle", "candle", "photo frame"), 3, 0.35),
+    "kitchen counter": Habit(
+        ("microwave", "kettle", "toaster", "coffee machine", "bowl", "bottle", "cutting board", "jar", "cooking pot",
+         "utensils", "tray", "blender", "fruit"), 5, 0.45,
+    ),
     "refrigerator": Habit(("box", "basket", "bowl"), 1, 0.35),
-    "washing machine": Habit(("basket", "bottle", "box"), 2, 0.4),
-    "bench": Habit(("books", "basket"), 1, 0.3),
-    "ottoman": Habit(("books", "bowl"), 1, 0.12),
+    "washing machine": Habit(("basket", "bottle", "box", "towel"), 2, 0.4),
+    "bench": Habit(("books", "basket", "handbag", "blanket"), 1, 0.35),
+    "ottoman": Habit(("books", "tray"), 1, 0.12),
+    "chest": Habit(("books", "box", "blanket", "tray"), 2, 0.4),
     "box": Habit(("books", "box"), 1, 0.3),
-    "piano": Habit(("books", "lamp", "vase"), 2, 0.5),
-    "bowl": Habit(("cup", "cup", "bottle"), 2, 0.3),
-}
-"""By the category that carries. Trays are bowls: only their flat ones have a surface."""
+    "piano": Habit(("books", "lamp", "vase", "photo frame"), 2, 0.5),
+    "tray": Habit(("cup", "cup", "glass", "bottle", "candle", "bowl"), 3, 0.3),
+    "books": Habit(("books", "cup", "remote control", "candle"), 1, 0.12),
+    "plate": Habit(("fruit", "cup"), 1, 0.12),
+}  # fmt: skip
+"""By the category that carries."""
 
-ALONG_THE_BACK = ("lamp", "vase", "plant", "basket", "box", "microwave", "clock")
+ALONG_THE_BACK = (
+    "lamp", "vase", "plant", "basket", "box", "microwave", "clock", "photo frame", "vanity mirror", "speaker",
+    "coffee machine", "printer", "record player", "sculpture", "router",
+)  # fmt: skip
 """Things that stand at the back of a surface; the rest lies anywhere."""
-NEVER_AT_ANGLES = ("microwave", "computer", "box", "clock")
+NEVER_AT_ANGLES = ("microwave", "computer", "box", "clock", "coffee machine", "printer", "record player")
 
 
 def scatter(f: Furnisher, parents: Sequence[str], budget: int) -> int:
@@ -99,7 +110,7 @@ def _leave(f: Furnisher, parent: str, index: int, habit: Habit) -> str | None:
 
     kind = habit.things[int(f.rng.integers(len(habit.things)))]
     item = f.pick(kind, where=fits)
-    if item is None or item.category == carrier.category == "bowl":
+    if item is None:
         return None
     half = item.size_m[:2] / 2 + 0.006
     for _ in range(6):
@@ -128,6 +139,9 @@ def equip_desk(f: Furnisher, desk: str) -> None:
             keyboard = f.pick("keyboard")
             if keyboard:
                 on_top(f, desk, keyboard, np.array([0.45, side * 1.1]), float(f.rng.normal(0, 0.06)))
+            mouse = f.pick("mouse")
+            if mouse:
+                on_top(f, desk, mouse, np.array([0.45, side * 1.1 + 0.42]), float(f.rng.normal(0, 0.2)))
     else:
         laptop = f.pick("laptop")
         if laptop:

@@ -13,6 +13,7 @@ import cv2
 import numpy as np
 from jaxtyping import Float, UInt8
 
+from diorama_core.evaluation.dataset.splits import Split, share_out
 from diorama_core.geometry.planes import plane_rectangle
 from diorama_core.scene.types import Architecture, Plane
 
@@ -42,20 +43,53 @@ COLOURS: dict[str, tuple[float, float, float]] = {
     "blush": (0.90, 0.79, 0.75), "ochre": (0.85, 0.72, 0.47),
 }  # fmt: skip
 
+TEXTURE_VALIDATION = 0.2
+"""Share of finishes and room styles that are for validation; there are few of them."""
 WET_ROOMS = ("bathroom", "kitchen", "lab")
 
 
-def choose_finishes(rng: np.random.Generator, kind: str) -> tuple[str, str, str]:
-    """Names of the finishes of floor, walls and ceiling that suit a kind of room."""
+def choose_finishes(rng: np.random.Generator, kind: str, split: Split | None = None) -> tuple[str, str, str]:
+    """Names of the finishes of floor, walls and ceiling that suit a kind of room.
+
+    Args:
+        rng: The source of chance.
+        kind: What the room is for.
+        split: Only room styles and colours of this split; any by default.
+    """
+    styles = room_styles(kind, split)
+    pair = styles[int(rng.integers(len(styles)))]
+    chosen = []
+    for part, style in zip(("floor", "wall"), pair):
+        colours = colours_of(part, style, split)
+        chosen.append(f"{part}:{style}:{colours[int(rng.integers(len(colours)))]}:{int(rng.integers(1000))}")
+    return chosen[0], chosen[1], f"ceiling:paint:white:{int(rng.integers(1000))}"
+
+
+def room_styles(kind: str, split: Split | None = None) -> tuple[tuple[str, str], ...]:
+    """What floors and walls go together in a kind of room, (floor, wall), likelier pairs repeated."""
     wet = kind in WET_ROOMS
     floors = ("tiles", "checker", "planks") if wet else ("planks", "planks", "parquet", "carpet", "tiles")
     walls = ("tiles", "paint") if kind == "bathroom" else ("paint", "paint", "paint", "paper", "panelled", "brick")
-    chosen = []
-    for part, options, table in (("floor", floors, FLOORS), ("wall", walls, WALLS)):
-        style = options[int(rng.integers(len(options)))]
-        colour = table[style][int(rng.integers(len(table[style])))]
-        chosen.append(f"{part}:{style}:{colour}:{int(rng.integers(1000))}")
-    return chosen[0], chosen[1], f"ceiling:paint:white:{int(rng.integers(1000))}"
+    pairs = tuple((f, w) for f in floors for w in walls)
+    if split is None:
+        return pairs
+    possible = {p for p in pairs if colours_of("floor", p[0], split) and colours_of("wall", p[1], split)}
+    splits = _style_splits()
+    return tuple(p for p in pairs if p in possible and splits[" on ".join(p)] == split)
+
+
+def colours_of(part: str, style: str, split: Split | None = None) -> tuple[str, ...]:
+    """Colours that a style of floor or wall comes in; within a split, only its own."""
+    colours = (FLOORS if part == "floor" else WALLS)[style]
+    if split is None:
+        return colours
+    splits = share_out((f"{part}:{style}:{c}" for c in colours), TEXTURE_VALIDATION)
+    return tuple(c for c in colours if splits[f"{part}:{style}:{c}"] == split)
+
+
+@lru_cache(maxsize=1)
+def _style_splits() -> dict[str, Split]:
+    return share_out((f"{f} on {w}" for f in FLOORS for w in WALLS), TEXTURE_VALIDATION)
 
 
 def finish_textures(architecture: Architecture) -> dict[str, UInt8[np.ndarray, "h w 3"]]:

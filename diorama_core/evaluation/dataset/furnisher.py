@@ -135,8 +135,7 @@ class Furnisher:
             return None
         parent, base = self._ground(quad)
         pose = self._upright(item, xy, base, yaw_rad)
-        ignored = {parent}
-        if self.bodies.hit_by(item, pose, ignore=ignored):
+        if not self._under_roof(item, pose) or self.bodies.hit_by(item, pose, ignore={parent}):
             return None
         placed = self._put(
             item, pose, Support("", parent, "placed on", 0 if parent != "floor" else None, "bottom", adheres_to)
@@ -200,7 +199,7 @@ class Furnisher:
         """Back against a wall, centred `t_m` from its left end and `centre_z_m` above the floor."""
         half = item.size_m[1] / 2
         low, high = centre_z_m - item.size_m[2] / 2, centre_z_m + item.size_m[2] / 2
-        if t_m - half < 0.03 or t_m + half > wall.length_m - 0.03 or low < -1e-6 or high > self.plan.height_m - 0.02:
+        if t_m - half < 0.03 or t_m + half > wall.length_m - 0.03 or low < -1e-6:
             return None
         rectangle = np.array([t_m - half - 0.06, low - 0.04, t_m + half + 0.06, high + 0.04])
         if any(_rectangles_overlap(rectangle, other) for other in self._hung.get(wall.id, [])):
@@ -208,14 +207,15 @@ class Furnisher:
         xy = wall.point(t_m, item.size_m[0] / 2 + off_m)
         pose = Pose.upright([*xy, centre_z_m], wall.inward_yaw_rad, item.scale)
         outward = np.array([*wall.inward, 0.0]) * 1e-3
-        if self.bodies.hit_by(item, pose, lift=outward):
+        if not self._under_roof(item, pose) or self.bodies.hit_by(item, pose, lift=outward):
             return None
         self._hung.setdefault(wall.id, []).append(rectangle)
         return self._put(item, pose, Support("", wall.id, "mounted on", None, "back"))
 
     def hang_from_ceiling(self, item: Item, xy: Float[np.ndarray, "2"], yaw_rad: float = 0.0) -> str | None:
-        """Top against the ceiling."""
-        if not self.plan.holds(footprint(item.size_m, xy, yaw_rad)):
+        """Top against the level part of the ceiling."""
+        quad = footprint(item.size_m, xy, yaw_rad)
+        if not self.plan.holds(quad) or (self.plan.roof_m(quad) < self.plan.height_m).any():
             return None
         z = self.plan.height_m - item.size_m[2] / 2
         if z - item.size_m[2] / 2 < 1.5:
@@ -253,7 +253,7 @@ class Furnisher:
             return None
         centre = parent.pose.R_world_object @ np.array([*xy_local, height + item.size_m[2] / 2]) + parent.pose.position
         pose = Pose.upright(centre, parent.pose.yaw_rad + turn_rad, item.scale)
-        if centre[2] + item.size_m[2] / 2 > self.plan.height_m - 0.02:
+        if not self._under_roof(item, pose):
             return None
         if not self.plan.holds(footprint(item.size_m, centre[:2], pose.yaw_rad)) or self.bodies.hit_by(item, pose):
             return None
@@ -282,6 +282,11 @@ class Furnisher:
 
     def _upright(self, item: Item, xy: Float[np.ndarray, "2"], base_m: float, yaw_rad: float) -> Pose:
         return Pose.upright([xy[0], xy[1], base_m + item.size_m[2] / 2], yaw_rad, item.scale)
+
+    def _under_roof(self, item: Item, pose: Pose) -> bool:
+        half = item.size_m / 2
+        signs = np.array([[(k >> axis & 1) * 2.0 - 1.0 for axis in range(3)] for k in range(8)])
+        return self.plan.under_roof((signs * half) @ pose.R_world_object.T + pose.position)
 
     def _front(self, item: Item, xy: np.ndarray, yaw_rad: float, free_m: float) -> Float[np.ndarray, "4 2"]:
         ahead = np.array([np.cos(yaw_rad), np.sin(yaw_rad)]) * (item.size_m[0] + free_m) / 2

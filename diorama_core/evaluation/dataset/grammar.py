@@ -20,6 +20,7 @@ from diorama_core.evaluation.dataset.finishes import choose_finishes
 from diorama_core.evaluation.dataset.furnisher import Furnisher
 from diorama_core.evaluation.dataset.openings import add_door, add_window
 from diorama_core.evaluation.dataset.plan import Outline, room_plan
+from diorama_core.evaluation.dataset.splits import Split
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.support import check_scene
@@ -36,7 +37,7 @@ class Recipe:
     width_m: tuple[float, float]
     depth_m: tuple[float, float]
     furnish: Callable[[Furnisher], None]
-    outlines: tuple[Outline, ...] = ("box", "box", "box", "L-shape", "slanted wall")
+    outlines: tuple[Outline, ...] = ("box", "box", "L-shape", "slanted wall")
     windows: tuple[int, int] = (1, 2)
     clutter: tuple[int, int] = (4, 20)
 
@@ -48,6 +49,7 @@ def furnished_room(
     *,
     outline: Outline | None = None,
     clutter: int | None = None,
+    split: Split | None = None,
 ) -> Scene:
     """A furnished room with its architecture and support graph: the truth that pictures are made of.
 
@@ -61,6 +63,7 @@ def furnished_room(
         library: Where shapes come from; the built-in one by default.
         outline: The floor's outline; None leaves it to chance.
         clutter: How many small things to try to place; None leaves it to chance.
+        split: Whose finishes and room styles are used (shapes are the given library's); all by default.
     """
     library = library or built_in_library()
     rng = np.random.default_rng((seed, zlib.crc32(kind.encode())))
@@ -75,7 +78,7 @@ def furnished_room(
     carriers = [o.id for o in f.objects if o.category not in ("sofa", "armchair", "chair", "bed", "rug", "stool")]
     scatter(f, carriers, budget)
     scene = Scene(
-        architecture=plan.architecture(choose_finishes(rng, kind)),
+        architecture=plan.architecture(choose_finishes(rng, kind, split)),
         objects=tuple(f.objects),
         supports=tuple(f.supports),
     )
@@ -92,11 +95,22 @@ def _windows(f: Furnisher, count: int) -> None:
 def _living(f: Furnisher) -> None:
     sofa = groups.seating(f)
     if f.plan.area_m2 > 20 and f.chance(0.6):
-        groups.dining(f)
+        groups.dining(f, rug=f.chance(0.3))
     groups.storage(
-        f, int(f.rng.integers(1, 4)), "bookshelf", "bookshelf", "sideboard", "cabinet", "console table", "piano"
+        f, int(f.rng.integers(1, 4)), "bookshelf", "bookshelf", "sideboard", "cabinet", "console table", "piano",
+        "display cabinet", "chest",
+    )  # fmt: skip
+    groups.corner_things(
+        f,
+        int(f.rng.integers(1, 4)),
+        "plant",
+        "plant",
+        "floor lamp",
+        "basket",
+        "grandfather clock",
+        "guitar",
+        "bean bag",
     )
-    groups.corner_things(f, int(f.rng.integers(1, 4)), "plant", "plant", "floor lamp", "basket")
     groups.pictures(f, int(f.rng.integers(1, 4)))
     groups.ceiling_light(f)
     if sofa:
@@ -108,13 +122,15 @@ def _living(f: Furnisher) -> None:
 def _bedroom(f: Furnisher) -> None:
     groups.sleeping(f)
     groups.storage(f, int(f.rng.integers(1, 3)), "wardrobe")
-    groups.storage(f, int(f.rng.integers(1, 3)), "dresser", "bookshelf", "cabinet")
+    groups.storage(f, int(f.rng.integers(1, 3)), "dresser", "bookshelf", "cabinet", "chest")
     if f.plan.area_m2 > 14 and f.chance(0.5):
         desk = groups.workplace(f)
         if desk:
             equip_desk(f, desk)
     _over_all(f, "dresser", "mirror", "picture")
-    groups.corner_things(f, int(f.rng.integers(1, 3)), "plant", "basket", "floor lamp", "armchair")
+    groups.corner_things(
+        f, int(f.rng.integers(1, 3)), "plant", "basket", "floor lamp", "armchair", "laundry basket", "floor mirror"
+    )
     groups.pictures(f, int(f.rng.integers(0, 3)))
     groups.ceiling_light(f)
 
@@ -126,9 +142,9 @@ def _office(f: Furnisher) -> None:
             equip_desk(f, desk)
     if f.plan.area_m2 > 22 and f.chance(0.6):
         groups.dining(f)
-    groups.storage(f, int(f.rng.integers(1, 4)), "bookshelf", "cabinet", "cabinet")
-    groups.corner_things(f, int(f.rng.integers(1, 3)), "plant", "trash can", "box")
-    groups.pictures(f, int(f.rng.integers(1, 3)), "picture", "clock")
+    groups.storage(f, int(f.rng.integers(1, 4)), "bookshelf", "cabinet", "filing cabinet")
+    groups.corner_things(f, int(f.rng.integers(1, 3)), "plant", "trash can", "box", "fan")
+    groups.pictures(f, int(f.rng.integers(1, 3)), "picture", "clock", "whiteboard", "bulletin board")
     groups.ceiling_light(f)
 
 
@@ -137,7 +153,7 @@ def _study(f: Furnisher) -> None:
     if desk:
         equip_desk(f, desk)
     groups.storage(f, int(f.rng.integers(2, 4)), "bookshelf")
-    armchair = f.pick("armchair")
+    armchair = f.pick("armchair", "recliner", "rocking chair")
     if armchair and f.against_wall(armchair, gap_m=0.15, free_front_m=0.4):
         groups.corner_things(f, 1, "floor lamp")
     _rug_in_the_middle(f)
@@ -154,7 +170,7 @@ def _kitchen(f: Furnisher) -> None:
             _shelves_above(f, row)
             break
     if f.chance(0.5):
-        groups.storage(f, 1, "washing machine", "cabinet")
+        groups.storage(f, 1, "washing machine", "cabinet", "pantry cabinet", "wine rack")
     groups.dining(f)
     groups.corner_things(f, int(f.rng.integers(1, 3)), "trash can", "plant", "basket")
     groups.pictures(f, int(f.rng.integers(1, 3)), "picture", "clock")
@@ -162,8 +178,8 @@ def _kitchen(f: Furnisher) -> None:
 
 
 def _dining(f: Furnisher) -> None:
-    groups.dining(f, np.zeros(2))
-    groups.storage(f, int(f.rng.integers(1, 3)), "sideboard", "cabinet", "dresser")
+    groups.dining(f, np.zeros(2), rug=f.chance(0.5))
+    groups.storage(f, int(f.rng.integers(1, 3)), "sideboard", "cabinet", "dresser", "display cabinet", "bar cart")
     _over_all(f, "sideboard", "picture", "mirror")
     groups.corner_things(f, int(f.rng.integers(1, 3)), "plant", "floor lamp")
     groups.pictures(f, int(f.rng.integers(1, 4)))
@@ -200,10 +216,12 @@ def _bathroom(f: Furnisher) -> None:
     if toilet:
         f.against_wall(toilet, free_front_m=0.45)
     groups.storage(f, int(f.rng.integers(0, 2)), "washing machine", "cabinet")
-    mat = f.pick("rug", where=lambda s: s.size_m[0] < 1.0)
+    mat = f.pick("rug", "bath mat", where=lambda s: s.size_m[0] < 1.0)
     if mat:
         f.anywhere(mat)
-    groups.corner_things(f, int(f.rng.integers(1, 3)), "basket", "trash can", "plant", "stool")
+    groups.corner_things(
+        f, int(f.rng.integers(1, 4)), "basket", "trash can", "plant", "stool", "laundry basket", "bathroom scale"
+    )
     towels = f.pick("radiator", where=lambda s: s.size_m[2] > 0.9)
     if towels and f.chance(0.6):
         wall = f.plan.walls[int(f.rng.integers(len(f.plan.walls)))]
@@ -217,11 +235,13 @@ def _bathroom(f: Furnisher) -> None:
 def _corridor(f: Furnisher) -> None:
     add_door(f)
     add_door(f)
-    groups.storage(f, int(f.rng.integers(2, 4)), "console table", "bench", "cabinet", "dresser", "bookshelf")
+    groups.storage(f, int(f.rng.integers(2, 4)), "console table", "bench", "cabinet", "shoe cabinet", "bookshelf")
     _over_all(f, "console table", "mirror", "picture")
     _over_all(f, "dresser", "mirror", "picture")
     _rug_in_the_middle(f)
-    groups.corner_things(f, int(f.rng.integers(1, 4)), "plant", "box", "basket", "floor lamp")
+    groups.corner_things(
+        f, int(f.rng.integers(1, 4)), "plant", "box", "basket", "floor lamp", "coat rack", "umbrella stand"
+    )
     groups.pictures(f, int(f.rng.integers(2, 5)))
     groups.ceiling_light(f)
 
@@ -257,14 +277,16 @@ def _shelves_above(f: Furnisher, row: list[str]) -> None:
                 groups.wall_shelf(f, at[0], at[1], 1.45)
 
 
+SLEPT_IN: tuple[Outline, ...] = ("box", "box", "L-shape", "slanted wall", "attic")
+"""Outlines of rooms that are found under roofs too."""
 RECIPES: dict[RoomKind, Recipe] = {
-    "living": Recipe((4.2, 6.2), (3.8, 5.4), _living, clutter=(6, 26)),
-    "bedroom": Recipe((3.4, 5.0), (3.4, 4.6), _bedroom, clutter=(5, 18)),
-    "office": Recipe((4.0, 6.5), (3.8, 5.5), _office, clutter=(6, 26)),
-    "kitchen": Recipe((3.6, 5.4), (3.4, 4.8), _kitchen, clutter=(6, 22)),
-    "dining": Recipe((3.8, 5.4), (3.6, 4.8), _dining, clutter=(4, 18)),
-    "study": Recipe((3.0, 4.4), (3.0, 4.2), _study, clutter=(8, 28)),
-    "lab": Recipe((4.8, 7.0), (4.2, 6.0), _lab, clutter=(8, 30)),
+    "living": Recipe((4.2, 6.2), (3.8, 5.4), _living, clutter=(8, 40)),
+    "bedroom": Recipe((3.4, 5.0), (3.4, 4.6), _bedroom, SLEPT_IN, clutter=(5, 18)),
+    "office": Recipe((4.0, 6.5), (3.8, 5.5), _office, SLEPT_IN, clutter=(8, 40)),
+    "kitchen": Recipe((3.6, 5.4), (3.4, 4.8), _kitchen, clutter=(8, 30)),
+    "dining": Recipe((3.8, 5.4), (3.6, 4.8), _dining, clutter=(6, 24)),
+    "study": Recipe((3.0, 4.4), (3.0, 4.2), _study, SLEPT_IN, clutter=(8, 34)),
+    "lab": Recipe((4.8, 7.0), (4.2, 6.0), _lab, clutter=(8, 36)),
     "bathroom": Recipe((2.4, 3.4), (2.6, 3.6), _bathroom, ("box", "box", "slanted wall"), (0, 1), (3, 10)),
     "corridor": Recipe((1.9, 2.4), (4.5, 7.0), _corridor, ("box", "box", "L-shape"), (0, 1), (3, 12)),
 }

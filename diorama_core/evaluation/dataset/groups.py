@@ -253,12 +253,12 @@ def _within(t: float, item: Item, wall: Wall) -> bool:
 
 
 def dining(f: Furnisher, xy: Float[np.ndarray, "2"] | None = None, *, rug: bool = False) -> str | None:
-    """A table with chairs drawn up to it, all of one kind, each facing it, and a lamp above."""
+    """A table, perhaps on a rug, with chairs drawn up to it, all of one kind, each facing it, and a lamp above."""
     for _ in range(4):
         item = f.pick("table", where=lambda s: 0.65 < s.size_m[2] < 0.85)
         if item is None:
             return None
-        table = _table_with_room(f, item, xy)
+        table = _table_with_room(f, item, xy, rug=rug)
         if table:
             break
     else:
@@ -270,8 +270,8 @@ def dining(f: Furnisher, xy: Float[np.ndarray, "2"] | None = None, *, rug: bool 
     return table
 
 
-def _table_with_room(f: Furnisher, item: Item, xy: Float[np.ndarray, "2"] | None) -> str | None:
-    """The table where there is space to sit around it."""
+def _table_with_room(f: Furnisher, item: Item, xy: Float[np.ndarray, "2"] | None, *, rug: bool) -> str | None:
+    """The table where there is space to sit around it, on a rug that carries all of it if there is such a one."""
     low, high = f.plan.outline.min(axis=0), f.plan.outline.max(axis=0)
     for attempt in range(24):
         yaw = float(f.rng.integers(2)) * np.pi / 2
@@ -283,6 +283,10 @@ def _table_with_room(f: Furnisher, item: Item, xy: Float[np.ndarray, "2"] | None
         sx, sy, sz = item.scale
         roomy = Item(item.shape, (sx * (1 + 1 / item.size_m[0]), sy * (1 + 1 / item.size_m[1]), sz))
         if f.is_free(roomy, spot, yaw):
+            below = f.pick("rug", where=lambda s: bool((np.sort(s.size_m[:2]) > np.sort(item.size_m[:2]) + 0.2).all()))
+            if rug and below:
+                lengthwise = (below.size_m[0] > below.size_m[1]) == (item.size_m[0] > item.size_m[1])
+                f.stand(below, spot, yaw + np.pi / 2 * (not lengthwise))
             placed = f.stand(item, spot, yaw)
             if placed:
                 return placed
@@ -427,5 +431,4 @@ def ceiling_light(f: Furnisher) -> str | None:
     if any(o.category == "ceiling lamp" for o in f.objects):
         return None
     item = f.pick("ceiling lamp", where=lambda s: s.size_m[2] < f.plan.height_m - 2.0)
-    middle = 0.5 * (f.plan.outline.min(axis=0) + f.plan.outline.max(axis=0))
-    return f.hang_from_ceiling(item, middle) if item else None
+    return f.hang_from_ceiling(item, f.plan.middle) if item else None

@@ -1,6 +1,7 @@
 """The empty room: its outline seen from above, its walls, and the planes they make.
 
 Room frame: origin in the middle of the outline's bounding box on the floor, +Z up, x and y along the room's axes.
+An attic's ceiling slopes down to a low wall on one side.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from jaxtyping import Float
 from diorama_core.scene.types import Architecture, Plane
 from diorama_core.scene.values import ArrayValue
 
-Outline = Literal["box", "L-shape", "slanted wall"]
+Outline = Literal["box", "L-shape", "slanted wall", "attic"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,12 +54,25 @@ class Wall(ArrayValue):
 
 
 @dataclass(frozen=True, eq=False)
+class Slope(ArrayValue):
+    """A sloping part of a rectangular room's ceiling."""
+
+    wall: int
+    """Number of the low wall that it comes down to."""
+    low_m: float
+    """That wall's height."""
+    run_m: float
+    """How far from the low wall, measured on the floor, the ceiling is level."""
+
+
+@dataclass(frozen=True, eq=False)
 class RoomPlan(ArrayValue):
     """Outline and height of a room."""
 
     outline: Float[np.ndarray, "n 2"]
     """Corners, counter-clockwise seen from above."""
     height_m: float
+    slope: Slope | None = None
 
     @cached_property
     def walls(self) -> tuple[Wall, ...]:
@@ -69,6 +83,12 @@ class RoomPlan(ArrayValue):
     @cached_property
     def _section(self) -> manifold3d.CrossSection:
         return manifold3d.CrossSection([self.outline])
+
+    @property
+    def middle(self) -> Float[np.ndarray, "2"]:
+        """The place below the middle of the level ceiling's bounding box."""
+        level = self._ceilings()[0]
+        return np.asarray(0.5 * (level.min(axis=0) + level.max(axis=0)))
 
     def wall(self, wall_id: str) -> Wall:
         """The wall with this id."""
@@ -83,16 +103,60 @@ class RoomPlan(ArrayValue):
         """Whether a counter-clockwise footprint lies inside the outline."""
         return float((manifold3d.CrossSection([quad]) - self._section).area()) <= slack_m2
 
+    def roof_m(self, xy: Float[np.ndarray, "*n 2"]) -> Float[np.ndarray, "*n"]:
+        """Height of the ceiling above places on the floor."""
+        level = np.full(np.shape(xy)[:-1], self.height_m)
+        if self.slope is None:
+            return level
+        low = self.walls[self.slope.wall]
+        off = (xy - low.start) @ low.inward
+        rise = (self.height_m - self.slope.low_m) / self.slope.run_m
+        return np.minimum(level, self.slope.low_m + rise * off)
+
+    def under_roof(self, corners_m: Float[np.ndarray, "n 3"], gap_m: float = 0.02) -> bool:
+        """Whether a convex body with these corners leaves a gap below the ceiling."""
+        return bool((corners_m[:, 2] <= self.roof_m(corners_m[:, :2]) - gap_m).all())
+
     def architecture(self, textures: tuple[str | None, str | None, str | None] = (None, None, None)) -> Architecture:
         """Floor, walls and ceiling; `textures` name the finishes of floor, walls and ceiling."""
-        level = np.concatenate([self.outline, np.zeros((len(self.outline), 1))], axis=1)
-        up = np.array([0.0, 0.0, self.height_m])
-        planes = [Plane("floor", "floor", level, texture=textures[0])]
+        planes = [Plane("floor", "floor", _at(self.outline, 0.0), texture=textures[0])]
         for wall in self.walls:
-            a, b = np.array([*wall.start, 0.0]), np.array([*wall.end, 0.0])
-            planes.append(Plane(wall.id, "wall", np.array([a, b, b + up, a + up]), texture=textures[1]))
-        planes.append(Plane("ceiling", "ceiling", (level + up)[::-1], texture=textures[2]))
+            top = self._top_of(wall)
+            corners = np.concatenate([_at(np.stack([wall.start, wall.end]), 0.0), _at(top, self.roof_m(top))])
+            planes.append(Plane(wall.id, "wall", corners, texture=textures[1]))
+        planes += [
+            Plane("ceiling" if k == 0 else "sloping_ceiling", "ceiling", _at(part, self.roof_m(part))[::-1],
+                  texture=textures[2])
+            for k, part in enumerate(self._ceilings())
+        ]  # fmt: skip
         return Architecture(tuple(planes))
+
+    def _top_of(self, wall: Wall) -> Float[np.ndarray, "n 2"]:
+        """Places on the floor below the upper corners of a wall, from its right to its left end."""
+        ends = np.stack([wall.end, wall.start])
+        if self.slope is None:
+            return ends
+        low = self.walls[self.slope.wall]
+        offs = (ends - low.start) @ low.inward
+        if not offs.min() < self.slope.run_m < offs.max():
+            return ends
+        t = (self.slope.run_m - offs[0]) / (offs[1] - offs[0])
+        return np.stack([ends[0], ends[0] + t * (ends[1] - ends[0]), ends[1]])
+
+    def _ceilings(self) -> tuple[Float[np.ndarray, "n 2"], ...]:
+        """Places on the floor below the corners of the level and the sloping part, counter-clockwise from above."""
+        if self.slope is None:
+            return (self.outline,)
+        low = self.walls[self.slope.wall]
+        count, k = len(self.outline), self.slope.wall
+        a, b = self.outline[k], self.outline[(k + 1) % count]
+        far_b, far_a = self.outline[(k + 2) % count], self.outline[(k + 3) % count]
+        ridge_a, ridge_b = a + self.slope.run_m * low.inward, b + self.slope.run_m * low.inward
+        return np.stack([ridge_a, ridge_b, far_b, far_a]), np.stack([a, b, ridge_b, ridge_a])
+
+
+def _at(xy: Float[np.ndarray, "n 2"], height_m: float | Float[np.ndarray, "n"]) -> Float[np.ndarray, "n 3"]:
+    return np.column_stack([xy, np.broadcast_to(height_m, len(xy))])
 
 
 def room_plan(
@@ -104,12 +168,18 @@ def room_plan(
         rng: The source of chance.
         width_m: Least and greatest extent along x.
         depth_m: Least and greatest extent along y.
-        outline: "box"; "L-shape" (one corner taken out); "slanted wall" (one corner cut off at an angle).
+        outline: "box"; "L-shape" (one corner taken out); "slanted wall" (one corner cut off at an angle); "attic" (a
+            rectangle whose ceiling slopes down to one of its long walls).
     """
     w, d = rng.uniform(*width_m), rng.uniform(*depth_m)
     x, y = w / 2, d / 2
+    rectangle = [[-x, -y], [x, -y], [x, y], [-x, y]]
+    if outline == "attic":
+        long_side = int(d > w) + 2 * int(rng.integers(2))
+        slope = Slope(long_side, float(rng.uniform(0.9, 1.4)), float(rng.uniform(0.35, 0.5) * min(w, d)))
+        return RoomPlan(np.array(rectangle), float(rng.uniform(2.45, 2.85)), slope)
     corners = {
-        "box": [[-x, -y], [x, -y], [x, y], [-x, y]],
+        "box": rectangle,
         "L-shape": _without_corner(x, y, rng.uniform(0.3, 0.42) * w, rng.uniform(0.3, 0.42) * d),
         "slanted wall": _cut_corner(x, y, rng.uniform(0.25, 0.4) * w, rng.uniform(0.25, 0.4) * d),
     }[outline]

@@ -1,8 +1,12 @@
-"""Libraries cut into train, validation and test shapes, so that tests can ask for shapes that were never offered."""
+"""What is trained on, checked and tested: shapes, finishes and room styles share nothing across the three.
+
+Libraries are cut into train, validation and test shapes, so that tests can ask for shapes that were never offered.
+"""
 
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
@@ -67,14 +71,18 @@ def split_of(library: ShapeLibrary) -> dict[str, Split]:
     by_category: dict[str, list[str]] = {}
     for shape in library.shapes():
         by_category.setdefault(shape.category, []).append(shape.id)
-    splits: dict[str, Split] = {}
-    for ids in by_category.values():
-        ordered = sorted(ids, key=lambda i: hashlib.sha256(i.encode()).digest())
-        tests = round(TEST_SHARE * len(ids)) or int(len(ids) > 1)
-        checks = round(VALIDATION_SHARE * len(ids))
-        for rank, shape_id in enumerate(ordered):
-            splits[shape_id] = "test" if rank < tests else "validation" if rank < tests + checks else "train"
-    return splits
+    return {name: split for ids in by_category.values() for name, split in share_out(ids).items()}
+
+
+def share_out(names: Iterable[str], validation: float = VALIDATION_SHARE) -> dict[str, Split]:
+    """For every name its split, by the order of the names' hashes; of two or more names at least one is tested."""
+    ordered = sorted(names, key=lambda n: hashlib.sha256(n.encode()).digest())
+    tests = round(TEST_SHARE * len(ordered)) or int(len(ordered) > 1)
+    checks = round(validation * len(ordered))
+    return {
+        name: "test" if rank < tests else "validation" if rank < tests + checks else "train"
+        for rank, name in enumerate(ordered)
+    }
 
 
 def split_library(library: ShapeLibrary, *wanted: Split) -> Subset:
