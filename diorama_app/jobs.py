@@ -8,12 +8,15 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from diorama_app.warming import load_open3d
 from diorama_core.errors import Cancelled, DioramaError, EditRefused
 from diorama_core.progress import CancelToken, Progress, ProgressEvent
 
 log = logging.getLogger(__name__)
 
 JobKind = Literal["build", "optimise", "export", "look", "import", "text", "pull", "find"]
+PERCEIVING: frozenset[JobKind] = frozenset({"build", "look", "text"})
+"""Kinds that run the pipeline, which needs Open3D."""
 
 
 @dataclass(frozen=True)
@@ -90,6 +93,8 @@ class Jobs:
         assert status is not None
         outcome = Outcome(status.kind)
         try:
+            if status.kind in PERCEIVING:
+                load_open3d()
             work(progress)
         except Cancelled:
             outcome = Outcome(status.kind, cancelled=True)

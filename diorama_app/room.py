@@ -27,6 +27,7 @@ from diorama_app.layout_run import LayoutRun
 from diorama_app.preparing import Preparer
 from diorama_app.saver import Saver
 from diorama_app.shapes import ShapeBytes
+from diorama_app.shelf import Records
 from diorama_app.thumbnails import Thumbnails
 from diorama_app.viewport import Viewport
 from diorama_core.artefacts import Photo
@@ -73,7 +74,8 @@ class Room:
         self.shapes = ShapeBytes(library)
         self.preparer = Preparer(library)
         self.checker = Checker(library, lambda found: self.desk.post(lambda: self._badged(found)))
-        self.thumbnails = Thumbnails(library, on_ready=lambda: self.desk.post(self.refresh_panels, key="panels"))
+        self.records = Records(library)
+        self.thumbnails = Thumbnails(library, self.records)
         self.viewport = Viewport(server, self.shapes, pick=self._picked, drag=self._dragged, later=self._later)
         self.on_photo_camera: Callable[[Guest], None] | None = None
         self.on_pick: Callable[[str, viser.SceneNodePointerEvent], None] | None = None

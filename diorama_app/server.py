@@ -13,6 +13,7 @@ import viser
 from diorama_app.editor import Editor
 from diorama_app.room import Room
 from diorama_app.viser_adapter import ANY_HOST, Visitors, create_server, stop_server
+from diorama_app.warming import warm_up
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.project.storage import Project
 
@@ -25,6 +26,8 @@ class Running:
     editor: Editor
     url: str
     """Where to open it, token included."""
+    stopped: threading.Event
+    """Set when it has been stopped."""
 
     @property
     def room(self) -> Room:
@@ -38,6 +41,7 @@ class Running:
 
     def stop(self) -> None:
         """Save, end jobs, close the port."""
+        self.stopped.set()
         self.editor.close()
         stop_server(self.server)
 
@@ -67,31 +71,37 @@ def start(
         InputError: the port is taken.
         ProjectError, SceneError: the project cannot be opened.
     """
-    import open3d  # noqa: F401  # its import fails when another thread imports anything meanwhile
-
     if library is None:
         from diorama_core.library.catalogue import built_in_library
 
         library = built_in_library()
     opened = None if project is None else Project.open(project)
-    rejected: list[Editor] = []
+    made: list[Editor] = []
 
     def too_large(client_id: int, name: str, size: int) -> None:
-        for editor in rejected:
+        for editor in made:
             editor.refuse_upload(client_id, name, size)
 
-    server = create_server(host=host, port=port, label="Diorama", visitors=Visitors(host, token), too_large=too_large)
+    server = create_server(
+        host=host,
+        port=port,
+        label="Diorama",
+        visitors=Visitors(host, token),
+        too_large=too_large,
+        pictures=lambda name: made[0].room.thumbnails.png(name),
+    )
     try:
         editor = Editor(server, library, projects_dir, low_graphics=low_graphics)
-        rejected.append(editor)
+        made.append(editor)
         editor.open_first(opened)
     except BaseException:
         stop_server(server)
         raise
-    threading.Thread(target=_warm_up, daemon=True, name="warm up").start()
+    stopped = threading.Event()
+    threading.Thread(target=warm_up, args=(stopped,), daemon=True, name="warm up").start()
     shown_host = "127.0.0.1" if host in ANY_HOST else host
     address = f"http://{f'[{shown_host}]' if ':' in shown_host else shown_host}:{server.get_port()}/"
-    return Running(server, editor, address if token is None else f"{address}?token={token}")
+    return Running(server, editor, address if token is None else f"{address}?token={token}", stopped)
 
 
 def serve(
@@ -127,8 +137,3 @@ def serve(
         print("Saving and stopping.", flush=True)
     finally:
         running.stop()
-
-
-def _warm_up() -> None:
-    """Load what the first build or optimisation needs, so that it starts at once."""
-    import diorama_core.project.build  # noqa: F401  # loading it is the whole work of this thread

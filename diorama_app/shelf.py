@@ -6,6 +6,7 @@ import threading
 
 import trimesh
 
+from diorama_core.errors import LibraryError
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.store import CombinedLibrary, StoredLibrary, create_library, open_library, stored_libraries
 
@@ -69,3 +70,25 @@ class Shelf:
         """The picture that came with the shape, where its library keeps one."""
         kept = getattr(self._library, "thumbnail", None)
         return None if kept is None else kept(shape_id)
+
+
+class Records:
+    """A library's records as it lists them, by id: `ShapeLibrary.shape` may have to measure support surfaces first.
+
+    Safe between threads.
+    """
+
+    def __init__(self, library: ShapeLibrary) -> None:
+        self._library = library
+        self._known: tuple[tuple[Shape, ...], dict[str, Shape]] = ((), {})
+
+    def shape(self, shape_id: str) -> Shape:
+        """The record without support surfaces; raises `LibraryError` when unknown."""
+        listed, by_id = self._known
+        shapes = self._library.shapes()
+        if shapes is not listed and shapes != listed:
+            by_id = {s.id: s for s in shapes}
+            self._known = (shapes, by_id)
+        if shape_id not in by_id:
+            raise LibraryError(f"no shape is called '{shape_id}'")
+        return by_id[shape_id]

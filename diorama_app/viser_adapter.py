@@ -6,6 +6,7 @@ origin and (optionally) visitors without a token, never opens a public tunnel, c
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import functools
 import hmac
@@ -13,7 +14,8 @@ import http
 import io
 import socket
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Awaitable, Callable, Iterator
+from concurrent.futures import Future
 from dataclasses import dataclass
 from http.cookies import SimpleCookie
 from typing import Any
@@ -23,6 +25,7 @@ import viser
 import websockets.asyncio.server
 from viser import _messages
 from websockets.asyncio.server import ServerConnection
+from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
 from diorama_core.errors import InputError
@@ -33,8 +36,13 @@ ANY_HOST = frozenset({"", "0.0.0.0", "::"})
 MAX_UPLOAD_BYTES = 128 * 1024 * 1024
 MAX_UPLOADS_IN_FLIGHT = 8
 
+PICTURES = "pictures/"
+"""Addresses below this one are pictures."""
+
 HttpHandler = Callable[[ServerConnection, Request], Response | None]
+Answer = Callable[[ServerConnection, Request], Response | Awaitable[Response] | None]
 TooLarge = Callable[[int, str, int], None]
+Pictures = Callable[[str], "Future[bytes | None]"]
 
 
 @dataclass(frozen=True)
@@ -76,7 +84,13 @@ class Visitors:
 
 
 def create_server(
-    *, host: str, port: int, label: str, visitors: Visitors, too_large: TooLarge | None = None
+    *,
+    host: str,
+    port: int,
+    label: str,
+    visitors: Visitors,
+    too_large: TooLarge | None = None,
+    pictures: Pictures | None = None,
 ) -> viser.ViserServer:
     """A hardened viser server.
 
@@ -86,12 +100,14 @@ def create_server(
         label: shown above the panels.
         visitors: who may talk to it.
         too_large: told (client id, file name, bytes) of every upload that was refused.
+        pictures: asked for a PNG when a page wants `pictures/<name>`. The browser fetches what it shows and nothing
+            else, beside the websocket on which the scene comes.
 
     Raises:
         InputError: the port is taken or the address is not this machine's.
     """
     _check_port(host, port)
-    with _guarded_serve(visitors), contextlib.redirect_stdout(io.StringIO()):
+    with _guarded_serve(visitors, pictures), contextlib.redirect_stdout(io.StringIO()):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=False)
     server.request_share_url = _no_share_url
     _cap_uploads(server, too_large)
@@ -138,13 +154,13 @@ def _check_port(host: str, port: int) -> None:
 
 
 @contextlib.contextmanager
-def _guarded_serve(visitors: Visitors) -> Iterator[None]:
+def _guarded_serve(visitors: Visitors, pictures: Pictures | None) -> Iterator[None]:
     """While it lasts, websocket servers are started with the visitors' check in front."""
     original = websockets.asyncio.server.serve
 
     @functools.wraps(original)
     def serve(*args: Any, process_request: HttpHandler | None = None, **kwargs: Any) -> Any:
-        return original(*args, process_request=_checked(process_request, visitors), **kwargs)
+        return original(*args, process_request=_checked(process_request, visitors, pictures), **kwargs)
 
     websockets.asyncio.server.serve = serve  # type: ignore[assignment, misc]
     try:
@@ -153,17 +169,35 @@ def _guarded_serve(visitors: Visitors) -> Iterator[None]:
         websockets.asyncio.server.serve = original  # type: ignore[misc]
 
 
-def _checked(handler: HttpHandler | None, visitors: Visitors) -> HttpHandler:
-    def process_request(connection: ServerConnection, request: Request) -> Response | None:
+def _checked(handler: HttpHandler | None, visitors: Visitors, pictures: Pictures | None) -> Answer:
+    def process_request(connection: ServerConnection, request: Request) -> Response | Awaitable[Response] | None:
         refusal = visitors.refusal(request)
         if refusal is not None:
             return connection.respond(http.HTTPStatus.FORBIDDEN, f"Refused: {refusal}.\n")
+        name = urlsplit(request.path).path.removeprefix(f"/{PICTURES}")
+        if pictures is not None and f"/{PICTURES}{name}" == urlsplit(request.path).path:
+            return _picture(pictures(name))
         response = handler(connection, request) if handler is not None else None
         if response is not None:
             _add_headers(response, remember=visitors.token if visitors.brings_token(request) else None)
         return response
 
     return process_request
+
+
+async def _picture(asked: Future[bytes | None]) -> Response:
+    png = await asyncio.wrap_future(asked)
+    if png is None:
+        return Response(http.HTTPStatus.NOT_FOUND, "Not Found", Headers({"Content-Length": "0", "Connection": "close"}))
+    headers = {
+        "Content-Type": "image/png",
+        "Content-Length": str(len(png)),
+        "Cache-Control": "private, max-age=3600",
+        "Connection": "close",
+    }
+    response = Response(http.HTTPStatus.OK, "OK", Headers(headers), png)
+    _add_headers(response, remember=None)
+    return response
 
 
 def _add_headers(response: Response, *, remember: str | None) -> None:

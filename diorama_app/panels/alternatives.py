@@ -130,7 +130,7 @@ class Alternatives:
 def shape_caption(room: Room, shape_id: str) -> str:
     """What people call a shape; its category at the least."""
     try:
-        shape = room.library.shape(shape_id)
+        shape = room.records.shape(shape_id)
     except LibraryError:
         return "missing shape"
     return shape.caption or shape.category

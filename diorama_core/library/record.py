@@ -166,3 +166,8 @@ def _surface_from(row: Mapping[str, Any]) -> SupportSurface:
 
 def _guess_from(row: Mapping[str, Any]) -> Guess:
     return Guess(**{name: Assumption(**cast("dict[str, Any]", value)) for name, value in row.items()})
+
+
+def record_of(library: ShapeLibrary, shape_id: str) -> Shape:
+    """The shape's record; from the list where it is, because `shape` may have to measure support surfaces first."""
+    return next((s for s in library.shapes() if s.id == shape_id), None) or library.shape(shape_id)

@@ -10,16 +10,18 @@ import tempfile
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from PIL import Image
 
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.kept import Kept
-from diorama_core.library.record import Shape, ShapeLibrary
+from diorama_core.library.record import Shape, ShapeLibrary, record_of
 from diorama_core.library.sheet import contact_sheet
 from diorama_core.progress import Progress
-from diorama_core.render.appearance import Paint
-from diorama_core.render.views import record_of, render_shape
+
+if TYPE_CHECKING:
+    from diorama_core.render.appearance import Paint
 
 log = logging.getLogger(__name__)
 
@@ -82,6 +84,8 @@ def shape_sheet(
 
 
 def _rendered(library: ShapeLibrary, shape_id: str, size: int, paint: Paint = (None, None)) -> bytes:
+    from diorama_core.render.views import render_shape  # a second to load, and pictures that are kept do without
+
     buffer = io.BytesIO()
     Image.fromarray(render_shape(library, shape_id, (size, size), paint=paint)).save(buffer, "PNG", optimize=True)
     return buffer.getvalue()

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from jaxtyping import Float, Float32, UInt8
 
-from diorama_core.library.record import Shape, ShapeLibrary
+from diorama_core.library.record import Shape, ShapeLibrary, record_of
 from diorama_core.library.taxonomy import category
 from diorama_core.render.appearance import Paint, shape_surfaces
 from diorama_core.render.filters import as_bytes, tone_mapped
@@ -84,11 +84,6 @@ def render_shape(
     hung = category(shape.category).mount in ("wall", "ceiling")
     shadow = np.zeros(shot.coverage.shape, np.float32) if hung else _shadow(shape, alone, light, camera, effort)
     return _over(shot, shadow)
-
-
-def record_of(library: ShapeLibrary, shape_id: str) -> Shape:
-    """The shape's record; from the list where it is, because `shape` may have to measure support surfaces first."""
-    return next((s for s in library.shapes() if s.id == shape_id), None) or library.shape(shape_id)
 
 
 def _shadow(

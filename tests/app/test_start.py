@@ -21,3 +21,28 @@ def test_the_server_starts_without_the_pipeline_and_the_networks() -> None:
     code = f"import sys, diorama_app.server; print(*[m for m in {HEAVY!r} if m in sys.modules])"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
     assert loaded == []
+
+
+def test_open3d_loads_while_other_threads_load_modules() -> None:
+    script = """
+import sys, types
+from diorama_app.warming import load_open3d
+
+def meanwhile(frame, event, arg):
+    def at_each_line(frame, event, arg):
+        if len(added) < 3:
+            added.append(name := f"added_meanwhile_{len(added)}")
+            sys.modules[name] = types.ModuleType(name)
+        return at_each_line
+    return at_each_line if frame.f_code.co_name == "_insert_pybind_names" else None
+
+added = []
+sys.settrace(meanwhile)
+load_open3d()
+sys.settrace(None)
+from open3d.t.geometry import RaycastingScene
+RaycastingScene()
+print(len(added))
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert int(done.stdout) > 0

@@ -7,6 +7,7 @@ import time
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
+from concurrent.futures import Future
 
 import pytest
 import viser
@@ -141,3 +142,21 @@ def test_stopping_returns_at_once(server: viser.ViserServer) -> None:
     began = time.monotonic()
     stop_server(server)
     assert time.monotonic() - began < 0.5
+
+
+def test_pictures_are_served_beside_the_page_to_those_who_may_see_it() -> None:
+    def picture(name: str) -> Future[bytes | None]:
+        asked: Future[bytes | None] = Future()
+        asked.set_result(b"\x89PNG" if name == "chair.png" else None)
+        return asked
+
+    made = create_server(
+        host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1", "s3cret"), pictures=picture
+    )
+    status, headers = fetch(made, "/pictures/chair.png?token=s3cret")
+    assert (status, headers["Content-Type"]) == (200, "image/png")
+    assert headers["X-Content-Type-Options"] == "nosniff"
+    assert fetch(made, "/pictures/none.png?token=s3cret")[0] == 404
+    assert fetch(made, "/pictures/chair.png")[0] == 403
+    assert fetch(made, "/?token=s3cret")[0] == 200
+    stop_server(made)
