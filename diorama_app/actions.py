@@ -10,6 +10,7 @@ from diorama_app.commands import Command, CommandTable
 from diorama_app.guest import Guest
 from diorama_app.measuring import start_measuring, stop_measuring
 from diorama_app.networks import find_furniture
+from diorama_app.photo_outlines import PhotoOutlines
 from diorama_app.placing import seated
 from diorama_app.room import Room
 from diorama_app.views import Views
@@ -20,12 +21,15 @@ TURN_DEG = 15.0
 Do = Callable[[Guest], None]
 
 
-def build_commands(room: Room, views: Views, cancel: Callable[[Guest], bool], show_help: Do) -> CommandTable:
+def build_commands(
+    room: Room, views: Views, outlines: PhotoOutlines, cancel: Callable[[Guest], bool], show_help: Do
+) -> CommandTable:
     """Every command of the editor.
 
     Args:
         room: what they act on.
         views: where cameras go.
+        outlines: what the photo shows of the things found in it.
         cancel: stops what a person's hand is doing, and says whether it did.
         show_help: opens the list of commands.
     """
@@ -55,6 +59,7 @@ def build_commands(room: Room, views: Views, cancel: Callable[[Guest], bool], sh
         *_objects(room),
         *_several(room),
         *_views(views),
+        *_overlays(views, outlines),
         *_ways(),
         Command("save", "Save", save, "S", "cmd/ctrl", "Save now (every change is saved anyway)"),
         Command("measure", "Measure", start_measuring, "M", None, "Measure between two clicks; rescale by it"),
@@ -195,6 +200,24 @@ def _views(views: Views) -> tuple[Command, ...]:
     )
 
 
+def _overlays(views: Views, outlines: PhotoOutlines) -> tuple[Command, ...]:
+    def masks(guest: Guest) -> None:
+        wanted = not guest.settings.masks
+        if wanted:
+            outlines.find(guest)
+            if not guest.view.through_photo:
+                views.photo(guest)
+        guest.change_settings(masks=wanted)
+
+    def planes(guest: Guest) -> None:
+        guest.change_settings(planes=not guest.settings.planes)
+
+    return (
+        Command("masks", "Outlines", masks, "O", None, "What was found in the photo, outlined over it"),
+        Command("planes", "Planes", planes, "Y", None, "Edges and names of floor, walls and ceiling"),
+    )
+
+
 def _ways() -> tuple[Command, ...]:
     def switch(name: str) -> Do:
         return lambda g: g.change_settings(**{name: not getattr(g.settings, name)})
@@ -207,11 +230,19 @@ def _ways() -> tuple[Command, ...]:
         guest.view.set_dark(guest.settings.dark)
 
     return (
-        Command("gizmo_floor", "Slide and turn", gizmo("floor"), "1", None, "Handles that move on the floor"),
-        Command("gizmo_free", "Move freely", gizmo("free"), "2", None, "Handles that move and turn any way"),
+        Command("gizmo_floor", "Move", gizmo("floor"), "1", None, "Handles that move on the floor"),
+        Command("gizmo_free", "Free", gizmo("free"), "2", None, "Handles that move and turn any way"),
+        Command("gizmo_size", "Size", gizmo("size"), "3", None, "Handles that stretch; the corner keeps proportions"),
         Command("snap", "Snap", switch("snap"), "N", None, "Keep to 5 cm, 15° and walls; Alt inverts it in a drag"),
-        Command("slide", "Slide around things", switch("slide"), "C", None, "Drags do not go through things"),
-        Command("names", "Name tags", switch("names"), "B", None, "Names on everything"),
-        Command("badges", "Warnings in the view", switch("badges"), None, None, "What collides, floats or is outside"),
+        Command("slide", "No bumps", switch("slide"), "C", None, "Drags do not go through things"),
+        Command("names", "Names", switch("names"), "B", None, "Names on everything"),
+        Command(
+            "badges",
+            "Warnings",
+            switch("badges"),
+            None,
+            None,
+            "⚠ collides, floats or is outside; ? is unsure",
+        ),
         Command("theme", "Dark or light", theme, None, None, "Colours of the panels"),
     )

@@ -20,7 +20,6 @@ log = logging.getLogger(__name__)
 
 FLOATING_M = 0.03
 OUTSIDE_M = 0.06
-UNSURE = 0.35
 COLLIDES, FLOATS, OUTSIDE = "collides", "floats", "outside"
 
 Problems = Mapping[str, tuple[str, ...]]

@@ -12,7 +12,7 @@ from jaxtyping import Bool, Float, UInt8
 
 from diorama_app.viewport import quaternion, reduced
 from diorama_core.artefacts import Box, LabelledBox
-from diorama_core.scene.types import Camera, Scene, box_corners
+from diorama_core.scene.types import Camera, Plane, Scene, box_corners
 
 BOARD_CENTRE = np.array([0.0, 0.0, 400.0])
 """The photo stands here, far above the room, while boxes are drawn on it."""
@@ -26,6 +26,10 @@ USUAL_ASPECT = 0.93
 """Of the 3D view between the panels in a window of 1280 x 720."""
 BOX_COLOURS = ((47, 111, 214), (214, 84, 47), (38, 150, 96), (160, 80, 200), (200, 150, 20), (20, 150, 170))
 
+EVIDENCE_DEPTH_M = 0.11
+"""Just in front of the photo that is laid over the model."""
+PLANE_COLOURS = {"floor": (190, 120, 30), "wall": (30, 110, 220), "ceiling": (120, 80, 190)}
+PLANE_LIFT_M = 0.01
 TAPE_COLOUR = (200, 60, 110)
 BRAND_COLOUR = (47, 111, 214)
 
@@ -92,6 +96,8 @@ class ClientView:
         self.through_photo = False
         self._overlay: viser.ImageHandle | None = None
         self._backdrop: viser.ImageHandle | None = None
+        self._evidence: viser.ImageHandle | None = None
+        self._planes: list[viser.SceneNodeHandle] = []
         self._tape: list[viser.SceneNodeHandle] = []
         self._rect: Any = None
         self._points: list[Any] = []
@@ -128,6 +134,7 @@ class ClientView:
     ) -> None:
         """Look from a place at a point, upright."""
         self.through_photo = False
+        self.show_evidence(None, None)
         self._show_pyramid()
         camera = self._client.camera
         with self._client.atomic():
@@ -255,6 +262,34 @@ class ClientView:
             small = reduced(photo, 800)
             alpha = np.full((*small.shape[:2], 1), round(255 * opacity), dtype=np.uint8)
             self._overlay = self._add_picture("/photo_overlay", camera, np.concatenate([small, alpha], axis=2), 0.12)
+
+    def show_evidence(self, camera: Camera | None, picture: UInt8[np.ndarray, "h w 4"] | None) -> None:
+        """A transparent picture over everything that is seen through the photo's camera; none without one."""
+        if self._evidence is not None:
+            self._evidence.remove()
+            self._evidence = None
+        if camera is not None and picture is not None:
+            self._evidence = self._add_picture("/photo_evidence", camera, picture, EVIDENCE_DEPTH_M)
+
+    def show_planes(self, planes: Sequence[tuple[str, Plane]]) -> None:
+        """The edges of planes, each with its name; none without planes."""
+        for node in self._planes:
+            node.remove()
+        self._planes = []
+        scene = self._client.scene
+        for number, (name, plane) in enumerate(planes):
+            ends = plane.polygon + PLANE_LIFT_M * plane.normal
+            colour = PLANE_COLOURS[plane.role]
+            self._planes += [
+                scene.add_line_segments(
+                    f"/planes/{number}/edges",
+                    points=np.stack([ends, np.roll(ends, -1, axis=0)], axis=1),
+                    colors=colour,
+                    thickness=3.0,
+                    thickness_units="screen",
+                ),
+                scene.add_label(f"/planes/{number}/name", name, position=plane.centre + PLANE_LIFT_M * plane.normal),
+            ]
 
     def _add_picture(
         self, name: str, camera: Camera, picture: UInt8[np.ndarray, "h w c"], depth_m: float

@@ -26,6 +26,7 @@ from diorama_app.panels.measure import Tape
 from diorama_app.panels.networks import Networks
 from diorama_app.panels.optimiser import Optimiser
 from diorama_app.panels.outliner import Outliner
+from diorama_app.panels.overlays import Overlays
 from diorama_app.panels.own_model import OwnModel
 from diorama_app.panels.photo import PhotoPanel
 from diorama_app.panels.projects import Projects
@@ -34,6 +35,7 @@ from diorama_app.panels.room_size import RoomSize
 from diorama_app.panels.supports import Supports
 from diorama_app.panels.toast import Toasts
 from diorama_app.panels.toolbar import Toolbar
+from diorama_app.photo_outlines import PhotoOutlines
 from diorama_app.room import Room
 from diorama_app.shelf import Shelf
 from diorama_app.views import Views
@@ -66,7 +68,8 @@ class Editor:
         room.on_photo_camera = self.views.photo
         room.on_pick = lambda object_id, event: self._hand(event, lambda g: g.picked(object_id, event))
         room.on_drag = lambda object_id, event: self._hand(event, lambda g: g.dragged(object_id, event))
-        self.commands = build_commands(room, self.views, self._cancel, self._help)
+        self._outlines = PhotoOutlines(room)
+        self.commands = build_commands(room, self.views, self._outlines, self._cancel, self._help)
         self.commands.register(server.gui, self._asked)
         server.gui.set_panel_label("Diorama")
         set_theme(server.gui, dark=False)
@@ -144,6 +147,7 @@ class Editor:
             job_strip,
             Tape(gui, guest),
             Compare(gui, guest, self.views),
+            Overlays(guest, self._outlines),
             Toasts(gui, guest),
         ]
         left = gui.add_tab_group()

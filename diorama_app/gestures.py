@@ -18,6 +18,8 @@ from diorama_app.guest import GizmoMode, Guest, Measuring, Placing
 from diorama_app.inserting import place_at
 from diorama_app.measuring import measure_at
 from diorama_app.selecting import objects_in
+from diorama_app.size_handles import SizeHandles
+from diorama_app.stretching import changed_poses
 from diorama_app.viewport import quaternion, rotation
 from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
@@ -53,6 +55,7 @@ class Gestures:
         self._gizmo: viser.TransformControlsHandle | None = None
         self._gizmo_key: tuple[str, GizmoMode, float] | None = None
         self._last_pick: tuple[float, float] | None = None
+        self._handles = SizeHandles(guest, self._resizing, self._end_collisions)
         scene = guest.client.scene
 
         async def clicked(event: viser.SceneClickEvent) -> None:
@@ -131,6 +134,7 @@ class Gestures:
                 guest.select((object_id,))
             slide = Slide.begin(room.scene, room.library, object_id, grabbed, guest.selection)
             self._remove()
+            self._handles.show(None)
             self._drag = Held(slide, room.scene)
             return
         held = self._drag
@@ -170,6 +174,12 @@ class Gestures:
         if self._guest.marks.collide({i for pair in pairs for i in pair}):
             self._guest.show_marks()
 
+    def _resizing(self, start: Scene, now: Scene) -> None:
+        poses = changed_poses(start, now)
+        self._room.preview(poses)
+        self._guest.marks.collide({i for pair in self._collisions.of(now, list(poses)) for i in pair})
+        self._guest.show_marks(now)
+
     def _moving(self) -> Iterable[str]:
         drag = self._drag
         if isinstance(drag, Held):
@@ -187,6 +197,11 @@ class Gestures:
         """Put the gizmo where the selected object is; take it away when there is none to move."""
         item = self._guest.selected
         if item is None or item.locked or item.hidden or isinstance(self._drag, Held) or self._guest.doing is not None:
+            item = None
+        sizing = self._guest.settings.gizmo == "size"
+        if not self._handles.pulling:
+            self._handles.show(item if sizing else None)
+        if item is None or sizing:
             self._remove()
             return
         scale = float(np.clip(0.62 * max(item.size_m), 0.3, 1.1))
@@ -252,7 +267,7 @@ class Gestures:
 
     def cancel(self) -> bool:
         """Put back what is being dragged, or stop waiting for a click; False when there is nothing to stop."""
-        if self._drag is None and self._guest.doing is None:
+        if not self._handles.cancel() and self._drag is None and self._guest.doing is None:
             return False
         self._drag = None
         self._guest.doing = None

@@ -16,7 +16,7 @@ from diorama_app.client_view import ClientView, NoticeKind
 from diorama_app.marks import Marks
 from diorama_app.units import Unit
 from diorama_core.errors import EditRefused
-from diorama_core.scene.types import SceneObject
+from diorama_core.scene.types import Scene, SceneObject
 
 if TYPE_CHECKING:
     from diorama_app.room import Room
@@ -25,7 +25,7 @@ COLOURS = ((38, 150, 96), (160, 80, 200), (20, 130, 190), (200, 60, 110), (150, 
 """Of the others' cursors; one's own selection is orange."""
 
 SizeMode = Literal["as found", "same box", "in proportion", "catalogue"]
-GizmoMode = Literal["floor", "free"]
+GizmoMode = Literal["floor", "free", "size"]
 
 
 class Panel(Protocol):
@@ -48,7 +48,11 @@ class Settings:
     names: bool = False
     """Name tags on everything."""
     badges: bool = True
-    """Marks on what collides, floats or is outside the room."""
+    """Marks on what collides, floats, is outside the room or unsure."""
+    masks: bool = False
+    """The outlines of what was found, over the photo."""
+    planes: bool = False
+    """The edges of floor, walls and ceiling, with their names."""
     dark: bool = False
     gizmo: GizmoMode = "floor"
     size_mode: SizeMode = "as found"
@@ -148,12 +152,20 @@ class Guest:
         for panel in self.panels:
             panel.refresh()
 
-    def show_marks(self) -> None:
-        """Outlines, name tags and the others' cursors."""
+    def show_marks(self, scene: Scene | None = None) -> None:
+        """Outlines, name tags and the others' cursors; around a preview where one is given."""
         room = self.room
         others = [(g.name, g.colour, g.selection) for g in room.guests.values() if g is not self]
         badges = room.badges if self.settings.badges else {}
-        self.marks.show(room.scene, room.viewport.node_name, self.selection, others, badges, names=self.settings.names)
+        self.marks.show(
+            scene or room.scene,
+            room.viewport.node_name,
+            self.selection,
+            others,
+            badges,
+            names=self.settings.names,
+            unsure=self.settings.badges,
+        )
 
     def notice(self, message: str, kind: NoticeKind = "info") -> None:
         """Tell the person something."""

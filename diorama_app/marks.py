@@ -16,6 +16,8 @@ SELECTED_COLOUR = (255, 122, 26)
 LOCKED_COLOUR = (120, 130, 150)
 COLLIDING_COLOUR = (224, 44, 44)
 OUTLINE_MARGIN_M = 0.012
+UNSURE = 0.35
+"""Below this confidence a place is worth comparing with the photo."""
 SECOND_LINE_M = 0.006
 """A dark line just inside the bright one keeps the outline visible on any colour."""
 BOX_EDGES = [(a, a | bit) for bit in (1, 2, 4) for a in range(8) if not a & bit]
@@ -52,6 +54,7 @@ class Marks:
         badges: Mapping[str, Sequence[str]],
         *,
         names: bool,
+        unsure: bool = False,
     ) -> None:
         """Draw what differs from what is drawn.
 
@@ -62,13 +65,15 @@ class Marks:
             others: name, colour and selection of everyone else.
             badges: what is wrong with an object, in a word or two each.
             names: whether everything has a name tag.
+            unsure: whether what the photo hardly supports has a question mark.
         """
         wanted: dict[str, _Mark] = {}
         for item in scene.objects:
             node = node_name(item.id)
             if node is None or item.hidden:
                 continue
-            mark = self._mark(item, node, selection, others, badges.get(item.id, ()), names=names)
+            doubt = " ?" if unsure and is_unsure(item) else ""
+            mark = self._mark(item, node, selection, others, badges.get(item.id, ()), names=names, doubt=doubt)
             if mark is not None:
                 wanted[item.id] = mark
         with self._client.atomic():
@@ -94,10 +99,11 @@ class Marks:
         badges: Sequence[str],
         *,
         names: bool,
+        doubt: str,
     ) -> _Mark | None:
         size = tuple(float(s) for s in item.size_m.round(5))
         name = item.label[:40] + (" (locked)" if item.locked else "")
-        problems = "".join(f" ⚠ {badge}" for badge in badges)
+        problems = "".join(f" ⚠ {badge}" for badge in badges) + doubt
         if item.id in self._colliding:
             return _Mark(node, size, COLLIDING_COLOUR, 3.5, name if item.id in selection else "")  # type: ignore[arg-type]
         if item.id in selection:
@@ -107,7 +113,8 @@ class Marks:
             if item.id in theirs:
                 return _Mark(node, size, colour, 2.0, who)  # type: ignore[arg-type]
         if names or problems:
-            return _Mark(node, size, None, 0.0, name + problems if names else "⚠")  # type: ignore[arg-type]
+            short = ("⚠" if badges else "") + doubt
+            return _Mark(node, size, None, 0.0, name + problems if names else short)  # type: ignore[arg-type]
         return None
 
     def _draw(self, mark: _Mark) -> list[viser.SceneNodeHandle]:
@@ -135,6 +142,11 @@ class Marks:
                 )
             )
         return made
+
+
+def is_unsure(item: SceneObject) -> bool:
+    """Whether the photo hardly supports where an object is."""
+    return item.box_px is not None and item.confidence < UNSURE
 
 
 def remove_quietly(handle: Any) -> None:

@@ -39,6 +39,7 @@ class Views:
         guest.view.look_through(camera, middle)
         if self._room.photo is not None:
             guest.view.show_backdrop(camera, self._room.photo.rgb, 2.0 * far)
+        guest.refresh()
 
     def overlay(self, guest: Guest, opacity: float) -> None:
         """Lay the photo over the model, as much as wanted."""

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import viser
 
 from diorama_app import editing
-from diorama_app.checks import UNSURE
 from diorama_app.guest import Guest
+from diorama_app.marks import is_unsure
 from diorama_app.page import Action, LiveHtml, button, text
 from diorama_app.panels.toolbar import title_bar
 from diorama_core.errors import EditRefused
@@ -169,7 +169,7 @@ def _row(tree: _Tree, item: SceneObject) -> str:
 
 def _chips(tree: _Tree, item: SceneObject) -> str:
     chips = "".join(f'<span class="chip bad">{text(word)}</span>' for word in tree.badges.get(item.id, ()))
-    if item.box_px is not None and item.confidence < UNSURE:
+    if is_unsure(item):
         sure = f"{100 * item.confidence:.0f}% sure of its place; compare it with the photo"
         chips += f'<span class="chip" title="{sure}">unsure</span>'
     return chips

@@ -26,7 +26,7 @@ class Toolbar:
             '<div class="bar tight">'
             + self._button("undo", "&#8630; Undo", title=undo, disabled=not history.can_undo)
             + self._button("redo", "&#8631; Redo", disabled=not history.can_redo)
-            + self._button("measure", "Measure", on=self._guest.doing is not None)
+            + self._button("measure", on=self._guest.doing is not None)
             + self._button("help", "?")
             + "</div><div class='bar tight'>"
             + self._button("view_photo", "Photo view", disabled=room.scene.camera is None)
@@ -35,19 +35,31 @@ class Toolbar:
             + self._button("view_front", "Front")
             + self._button("view_left", "Side")
             + "</div><div class='bar tight'>"
-            + self._button("gizmo_floor", "Move", on=settings.gizmo == "floor")
-            + self._button("gizmo_free", "Free", on=settings.gizmo == "free")
-            + self._button("snap", "Snap", on=settings.snap)
-            + self._button("slide", "No bumps", on=settings.slide)
-            + self._button("names", "Names", on=settings.names)
+            + self._button("gizmo_floor", on=settings.gizmo == "floor")
+            + self._button("gizmo_free", on=settings.gizmo == "free")
+            + self._button("gizmo_size", on=settings.gizmo == "size")
+            + self._button("snap", on=settings.snap)
+            + self._button("slide", on=settings.slide)
+            + "</div><div class='bar tight'>"
+            + self._button("names", on=settings.names)
+            + self._button("badges", on=settings.badges)
+            + self._button("masks", on=settings.masks, disabled=room.photo is None)
+            + self._button("planes", on=settings.planes)
             + "</div>"
         )
 
-    def _button(self, command_id: str, label: str, *, title: str = "", on: bool = False, disabled: bool = False) -> str:
+    def _button(
+        self, command_id: str, label: str = "", *, title: str = "", on: bool = False, disabled: bool = False
+    ) -> str:
         command = self._commands[command_id]
         keys = f" ({command.keys})" if command.keys else ""
         return button(
-            label, "run", command_id, title=(title + keys) if title else command.tooltip, on=on, disabled=disabled
+            label or command.label,
+            "run",
+            command_id,
+            title=(title + keys) if title else command.tooltip,
+            on=on,
+            disabled=disabled,
         )
 
     def _act(self, action: Action) -> None:

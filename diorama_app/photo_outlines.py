@@ -1,0 +1,50 @@
+"""The outlines of what was found in the open project's photo, worked out once when somebody wants to see them."""
+
+from __future__ import annotations
+
+from diorama_app.guest import Guest
+from diorama_app.room import Room
+from diorama_core.artefacts import DetectedObject, Photo
+from diorama_core.errors import EditRefused
+from diorama_core.progress import Progress
+
+
+class PhotoOutlines:
+    """Used from the desk's thread only."""
+
+    def __init__(self, room: Room) -> None:
+        self._room = room
+        self._photo: Photo | None = None
+        self._found: tuple[DetectedObject, ...] = ()
+
+    @property
+    def found(self) -> tuple[DetectedObject, ...] | None:
+        """What was outlined in the photo that is open; None while that is not known."""
+        return self._found if self._photo is not None and self._photo is self._room.photo else None
+
+    def find(self, guest: Guest) -> None:
+        """Outline what is in the photo as the build did, from the project's saved results where they are."""
+        room = self._room
+        if self.found is not None:
+            return
+        photo, project = room.photo, room.project
+        inputs = None if project is None else project.load_inputs()
+        if photo is None or project is None or inputs is None:
+            raise EditRefused("this scene has no photo; upload one in the Photo panel")
+
+        def work(progress: Progress) -> None:
+            from diorama_core.pipeline.perceive import perceived
+            from diorama_core.pipeline.profiles import stages_for
+            from diorama_core.pipeline.runner import Runner
+
+            stages, runner = stages_for("auto", inputs, room.library), Runner(project.stages_folder)
+            seen = perceived(inputs, stages, runner, progress.part(0.0, 0.2))
+            found = runner.run("objects", stages.objects, stages.objects.segment, (seen,), progress.part(0.2, 1.0))
+
+            def keep() -> None:
+                self._photo, self._found = photo, found
+                room.refresh_panels()
+
+            guest.post(keep)
+
+        room.jobs.start("look", "Outlining what is in the photo", work)

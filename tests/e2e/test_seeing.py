@@ -1,0 +1,105 @@
+"""Point 1: what was read from the photo over it, the room's edges, marks for what is wrong or unsure."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from playwright.sync_api import expect
+
+from diorama_core.scene import edits
+from diorama_core.scene.types import Scene
+from tests.e2e.browser import EditorPage
+
+pytestmark = pytest.mark.browser
+
+BOX = (240.0, 200.0, 440.0, 420.0)
+"""Of the brown thing in the small room's photo."""
+
+
+THERE = "window.__viserMutable.nodeRefFromName['/photo_evidence']"
+GONE = f"!{THERE}"
+EDGES = "Object.entries(window.__viserMutable.nodeRefFromName).filter(([n, o]) => o && /planes.*edges/.test(n)).length"
+
+
+def seen_in_photo(scene: Scene) -> Scene:
+    """The table was found where the photo is brown, its place hardly supported."""
+
+    def found(item):
+        return replace(item, box_px=BOX, confidence=0.2) if item.id == "table_1" else item
+
+    return replace(scene, objects=tuple(found(o) for o in scene.objects))
+
+
+def nodes(editor: EditorPage) -> list[str]:
+    return editor.page.evaluate(
+        "Object.entries(window.__viserMutable.nodeRefFromName).filter(([n, o]) => o).map(([n, o]) => n)"
+    )
+
+
+def test_outlines_lie_over_the_photo_and_the_selected_one_is_orange(editor: EditorPage) -> None:
+    room = editor.running.room
+    room.desk.post(lambda: room.edit("found", seen_in_photo))
+    editor.until(lambda: room.scene.object("table_1").box_px == BOX)
+    editor.button("Outlines").click()
+    editor.until(lambda: room.jobs.status is None and editor.guest.settings.masks, "outlined", seconds=60)
+    assert editor.guest.view.through_photo, "outlines are seen through the photo's camera"
+    editor.page.wait_for_function(THERE)
+    camera = room.scene.camera
+    assert camera is not None
+    inside = camera.position + camera.rays(np.array([300.0, 380.0])) * 0.11
+    editor.settle()
+    plain = editor.mean_colour(inside)
+    editor.row("dining table").click()
+    editor.until(lambda: editor.selection == ("table_1",))
+    editor.settle()
+    editor.page.wait_for_timeout(300)
+    orange = editor.mean_colour(inside)
+    assert np.abs(orange - plain).max() > 12, "the tint of the selected outline differs"
+    assert orange[0] > orange[2] + 40, "and is orange"
+    editor.page.keyboard.press("o")
+    editor.page.wait_for_function(GONE)
+    editor.page.keyboard.press("o")
+    editor.page.wait_for_function(THERE)
+    editor.page.keyboard.press("r")
+    editor.page.wait_for_function(GONE)
+
+
+def test_planes_show_their_edges_and_follow_a_moved_wall(editor: EditorPage) -> None:
+    editor.button("Planes").click()
+    count = len(editor.running.room.scene.architecture.planes)
+    editor.page.wait_for_function(f"{EDGES} == {count}")
+    editor.page.keyboard.press("p")
+    editor.until(lambda: editor.guest.view.through_photo)
+    editor.page.wait_for_function(THERE)
+    editor.page.keyboard.press("y")
+    editor.page.wait_for_function(f"{EDGES} == 0 && {GONE}")
+
+
+def test_what_floats_and_what_is_unsure_is_marked_in_the_view_and_in_the_list(editor: EditorPage) -> None:
+    room = editor.running.room
+    lifted = room.scene.object("chair_1").pose.moved((0.0, 0.0, 0.4))
+    room.desk.post(lambda: room.edit("found", lambda s: edits.move(seen_in_photo(s), "chair_1", lifted)))
+    editor.until(lambda: room.badges.get("chair_1") == ("floats",), "it floats")
+    expect(editor.page.locator('.dio .row[data-arg="chair_1"] .chip')).to_have_text("floats")
+    expect(editor.page.locator('.dio .row[data-arg="table_1"] .chip')).to_have_text("unsure")
+    table, chair = (str(room.viewport.node_name(i)) for i in ("table_1", "chair_1"))
+    for name, sign in ((table, "?"), (chair, "⚠")):
+        editor.page.wait_for_function(f"!!window.__viserMutable.nodeRefFromName['{name}/mark/tag']")
+        assert editor.guest.client.scene._handle_from_node_name[f"{name}/mark/tag"].text == sign
+    editor.button("Warnings").click()
+    editor.until(lambda: not editor.guest.settings.badges)
+    editor.settle()
+    assert not any(n.startswith(f"{table}/mark") for n in nodes(editor))
+
+
+def test_walls_between_the_eye_and_the_room_are_not_in_the_way(editor: EditorPage) -> None:
+    room = editor.running.room
+    editor.page.keyboard.press("4")
+    editor.until(lambda: editor.guest.view.fov_rad < 0.2, "from the front, outside the room")
+    editor.settle()
+    chair = room.scene.object("chair_1")
+    assert editor.guest.client.camera.position[1] < -5.0, "the eye is behind the front wall"
+    editor.click_world(chair.pose.apply(np.array([0.0, 0.0, 0.045])))
+    editor.until(lambda: editor.selection == ("chair_1",), "seen and clicked through the wall")
