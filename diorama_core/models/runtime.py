@@ -5,6 +5,7 @@ CUDA is used where onnxruntime offers it, else the processor. DIORAMA_DEVICE=cpu
 
 from __future__ import annotations
 
+import logging
 import os
 import threading
 from collections.abc import Mapping
@@ -15,6 +16,8 @@ from typing import Any
 import numpy as np
 
 from diorama_core.errors import UnavailableError
+
+_LOG = logging.getLogger(__name__)
 
 MOST_THREADS = 16
 """More threads than this slow these networks down."""
@@ -58,7 +61,8 @@ class Session:
             values = self._raw.run(None, converted)
         except Exception as error:
             reason = " ".join(str(error).split())[:200]
-            raise UnavailableError(f"{self.info.path}: the network failed ({reason}); see `diorama doctor`") from error
+            advice = "try DIORAMA_DEVICE=cpu" if self.info.device == "cuda" else "see `diorama doctor`"
+            raise UnavailableError(f"{self.info.path}: the network failed ({reason}); {advice}") from error
         return {
             name: v.astype(np.float32) if v.dtype == np.float16 else v
             for name, v in zip(self.outputs, values, strict=True)
@@ -114,9 +118,15 @@ SHARED_SESSIONS = SessionPool()
 
 
 def thread_count() -> int:
-    """Threads of one network: the cores this process may use, at most `MOST_THREADS`."""
-    stated = os.environ.get("DIORAMA_THREADS", "")
-    if stated.isdigit() and int(stated) > 0:
+    """Threads of one network: the cores this process may use, at most `MOST_THREADS`.
+
+    Raises:
+        UnavailableError: when DIORAMA_THREADS is no number.
+    """
+    stated = os.environ.get("DIORAMA_THREADS", "").strip()
+    if stated:
+        if not (stated.isdigit() and int(stated) > 0):
+            raise UnavailableError(f"DIORAMA_THREADS={stated[:40]!r} is no number of threads; correct or unset it")
         return int(stated)
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     return max(1, min(cores, MOST_THREADS))
@@ -144,7 +154,7 @@ def _load(path: Path) -> Session:
     options.log_severity_level = 3
     before = _resident_bytes()
     try:
-        raw = onnxruntime.InferenceSession(str(path), options, providers=providers())
+        raw = _session(path, options)
     except Exception as error:
         reason = " ".join(str(error).split())[:160]
         raise UnavailableError(f"{path}: cannot be loaded ({reason}); run: diorama models verify") from error
@@ -152,6 +162,22 @@ def _load(path: Path) -> Session:
     files = sum(p.stat().st_size for p in (path, path.with_name(path.name + "_data")) if p.exists())
     device = "cuda" if raw.get_providers()[0].startswith("CUDA") else "cpu"
     return Session(raw, LoadedNetwork(path, device, grown if grown > 0 else files))
+
+
+def _session(path: Path, options: Any) -> Any:
+    """On a graphics card where there is one; on the processor where the card cannot be used after all."""
+    import onnxruntime
+
+    wanted = providers()
+    try:
+        return onnxruntime.InferenceSession(str(path), options, providers=wanted)
+    except Exception as error:
+        if len(wanted) == 1:
+            raise
+        raw = onnxruntime.InferenceSession(str(path), options, providers=wanted[-1:])
+        reason = " ".join(str(error).split())[:120]
+        _LOG.warning("%s: the graphics card cannot be used (%s); DIORAMA_DEVICE=cpu avoids the try", path.name, reason)
+        return raw
 
 
 def _resident_bytes() -> int:

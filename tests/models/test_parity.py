@@ -196,6 +196,19 @@ def test_birefnet_gives_the_same_probabilities_and_looks_twice(tmp_path: Path, p
     np.testing.assert_array_equal(mask, first | (facade.probability(painted) > 0.5))
 
 
+def test_mvanet_gives_the_same_probabilities(tmp_path: Path, photo: np.ndarray) -> None:
+    """Its authors' prediction: stretched to 1024, ImageNet statistics, the last output's sigmoid, stretched back."""
+    network, graph = tiny_networks.mvanet(tmp_path / "model.onnx")
+    with torch.no_grad():
+        stretched = np.asarray(Image.fromarray(photo).resize((1024, 1024), Image.Resampling.BILINEAR)) / 255.0
+        pixels = (stretched - [0.485, 0.456, 0.406]) / [0.229, 0.224, 0.225]
+        logits = network(torch.from_numpy(pixels.transpose(2, 0, 1)[None]).float())
+        expected = torch.nn.functional.interpolate(logits.sigmoid(), photo.shape[:2], mode="bilinear")[0, 0].numpy()
+    found = Foreground(graph, "mvanet", SessionPool()).probability(photo)
+    np.testing.assert_allclose(found, expected, atol=1e-4)
+    assert np.ptp(expected) > 0.1
+
+
 def test_lama_fills_the_hole_and_nothing_else(tmp_path: Path, photo: np.ndarray) -> None:
     network, graph = tiny_networks.lama(tmp_path / "model.onnx")
     hole = np.zeros(photo.shape[:2], dtype=bool)

@@ -333,6 +333,29 @@ def birefnet(path: Path) -> tuple[torch.nn.Module, Path]:
     return network, export(network, (torch.zeros(1, 3, 1024, 1024),), path, ["input_image"], ["output_image"])
 
 
+class _Patches(torch.nn.Module):
+    """Looks at the whole and at its four quarters, and joins them, as MVANet does."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.whole = torch.nn.Conv2d(3, 1, 4, stride=4)
+        self.part = torch.nn.Conv2d(3, 1, 2, stride=2)
+
+    def forward(self, picture: torch.Tensor) -> torch.Tensor:
+        left, right = picture.chunk(2, dim=3)
+        quarters = torch.cat([*left.chunk(2, dim=2), *right.chunk(2, dim=2)])
+        near = self.part(quarters)
+        joined = torch.cat([torch.cat([near[:1], near[1:2]], dim=2), torch.cat([near[2:3], near[3:]], dim=2)], dim=3)
+        both = torch.nn.functional.interpolate(self.whole(picture), scale_factor=2.0, mode="bilinear") + joined
+        return torch.nn.functional.interpolate(both, scale_factor=2.0, mode="bilinear") * 4.0
+
+
+def mvanet(path: Path) -> tuple[torch.nn.Module, Path]:
+    torch.manual_seed(8)
+    network = _Patches().eval()
+    return network, export(network, (torch.zeros(1, 3, 1024, 1024),), path, ["input"], ["output"])
+
+
 def lama(path: Path) -> tuple[torch.nn.Module, Path]:
     torch.manual_seed(7)
     network = _Convolution(4, 3, 255.0).eval()
