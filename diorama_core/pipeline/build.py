@@ -154,7 +154,9 @@ def build_scene(
 
     inputs = perceived(inputs, s, runner, progress.part(0.0, 0.05))
     camera = runner.run("camera", s.camera, s.camera.estimate, (inputs,), progress.part(0.05, 0.1))
-    objects = runner.run("objects", s.objects, s.objects.segment, (inputs,), progress.part(0.1, 0.25))
+    # Outlines do not depend on the camera: correcting its field of view must not look for them again.
+    seen = replace(inputs, intrinsics=None)
+    objects = runner.run("objects", s.objects, s.objects.segment, (seen,), progress.part(0.1, 0.25))
     geometry = runner.run(
         "geometry", s.geometry, s.geometry.measure, (inputs, camera, objects), progress.part(0.25, 0.38)
     )
