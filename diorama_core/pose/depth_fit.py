@@ -145,8 +145,8 @@ class DepthFit:
     limits: SizeLimits
     yaw_sigma_rad: float = _YAW_SIGMA_RAD
 
-    def starts(self, rotations: Float[np.ndarray, "p 3 3"]) -> PoseBatch:
-        """Poses with these rotations whose near faces touch what was measured.
+    def starts(self, rotations: Float[np.ndarray, "p 3 3"], far: tuple[bool, bool] = (False, False)) -> PoseBatch:
+        """Poses with these rotations whose near faces (or far ones, along x or y) touch what was measured.
 
         The height decides the size where all of it is seen; then width and depth follow the shape's own proportions,
         and are stretched to hold what was measured.
@@ -165,7 +165,7 @@ class DepthFit:
         wanted = np.where(self.limits.thin, own, np.maximum(own * growth[:, None], spans))
         scale = self.limits.scale_for(wanted)
         size = scale * own
-        from_high = eye > 0.5 * (low + high)
+        from_high = (eye > 0.5 * (low + high)) ^ np.array([*far, False])
         centre = np.where(from_high, high - size / 2, low + size / 2)
         position = np.einsum("pij,pj->pi", rotations, centre)
         if sure:

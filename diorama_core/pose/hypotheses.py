@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from diorama_core.artefacts import Cuboid
 from diorama_core.geometry.silhouette import PoseBatch
@@ -16,6 +16,8 @@ from diorama_core.scene.types import yaw_rotation
 
 _FINE_STEP_RAD = np.deg2rad(15.0)
 _THIN_M = 0.1
+_SAME_TURN_RAD = np.deg2rad(20.0)
+_SAME_PLACE = 0.15
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,3 +91,29 @@ def hypotheses_for(
     thick = np.maximum(cuboid.size_m.min(), _THIN_M)
     misfit = np.sqrt((np.log(np.maximum(sizes, thick) / np.maximum(wanted, thick)) ** 2).mean(axis=1))
     return Hypotheses(PoseBatch(R, position, scale), np.abs(off_axis), misfit)
+
+
+def unlike_best(
+    poses: PoseBatch,
+    scores: Float[np.ndarray, "p"],
+    symmetry: SymmetryFold,
+    shape_size_m: Float[np.ndarray, "3"],
+    count: int,
+) -> Int[np.ndarray, "k"]:
+    """Indices of up to `count` good poses, best first, none nearly the same as a better one.
+
+    Neighbours of one good pose are all drawn to the same optimum; another mode may be the right one.
+    """
+    order = np.argsort(-scores, kind="stable")
+    yaw = np.arctan2(poses.R[:, 1, 0], poses.R[:, 0, 0])
+    reach = _SAME_PLACE * (poses.scale * shape_size_m).max(axis=1)
+    fold = 2 * np.pi / symmetry
+    kept: list[int] = []
+    for index in order:
+        turn = np.abs(np.mod(yaw[kept] - yaw[index] + fold / 2, fold) - fold / 2)
+        away = np.linalg.norm(poses.position[kept] - poses.position[index], axis=1)
+        if not ((turn < _SAME_TURN_RAD) & (away < reach[index])).any():
+            kept.append(int(index))
+        if len(kept) == count:
+            break
+    return np.array(kept)

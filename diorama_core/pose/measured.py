@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Bool
 
 from diorama_core.artefacts import Cuboid
+from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.record import SymmetryFold
 from diorama_core.pose.depth_fit import FEWEST_RAYS, SURE_CONTACT_M, Contact, DepthFit, Outline, SeenPoints
 from diorama_core.pose.evidence import Evidence
@@ -16,6 +17,7 @@ from diorama_core.pose.limits import SizeLimits
 from diorama_core.scene.types import yaw_rotation
 
 _TURNS = 24
+_ALL_WAYS = ((False, False), (True, False), (False, True), (True, True))
 _FLOATS_M = 0.05
 """A lower end that is seen this far from where the cuboid ends tells where the object stands."""
 
@@ -56,13 +58,31 @@ class MeasuredObject:
         return DepthFit(self.evidence.camera, self.evidence.seen, self.points, self.outline, self.contact, limits)
 
     def hypotheses(self, symmetry: SymmetryFold, limits: SizeLimits) -> Hypotheses:
-        """Turns all around, each set against the measured points."""
+        """Turns all around, each set against the measured points; where a part may be hidden, also from behind."""
         count = max(_TURNS // symmetry, 1)
         turns = np.arange(count) * 2 * np.pi / (symmetry * count)
         R = np.array([self.cuboid.R_world_object @ yaw_rotation(angle) for angle in turns])
-        poses = self.fit(limits).starts(R)
+        fit = self.fit(limits)
+        ways = _ALL_WAYS if self.partly_hidden else _ALL_WAYS[:1]
+        poses = [fit.starts(R, far) for far in ways]
         quarter = np.mod(turns + np.pi / 4, np.pi / 2) - np.pi / 4
-        return Hypotheses(poses, np.abs(quarter), np.zeros(count))
+        batch = poses[0]
+        for more in poses[1:]:
+            batch = batch.and_also(more)
+        return Hypotheses(batch, np.tile(np.abs(quarter), len(ways)), np.zeros(count * len(ways)))
+
+    @property
+    def partly_hidden(self) -> bool:
+        """Whether the picture's border or something nearer may hide a part."""
+        return self.outline is None or not self.outline.known.all()
+
+    def turned(self, best: PoseBatch, symmetry: SymmetryFold, limits: SizeLimits) -> PoseBatch:
+        """A pose turned by quarters in its place, each turn that the symmetry tells apart, at an even scale."""
+        turns = np.arange(1, max(4 // symmetry, 1)) * np.pi / 2
+        R = np.array([best.R[0] @ yaw_rotation(angle) for angle in turns]).reshape(-1, 3, 3)
+        even = np.exp(np.log(best.scale[0][~limits.thin]).mean()) if not limits.thin.all() else 1.0
+        scale = np.where(limits.thin, best.scale[0], even)
+        return PoseBatch(R, np.tile(best.position[0], (len(R), 1)), np.tile(scale, (len(R), 1)))
 
 
 def _contact(anchor: Anchor, on_floor: bool, points: SeenPoints, outline: Outline | None) -> Contact:

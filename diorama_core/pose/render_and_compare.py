@@ -26,7 +26,7 @@ from diorama_core.library.taxonomy import category
 from diorama_core.pose.agree import agreed_ranks
 from diorama_core.pose.evidence import Evidence
 from diorama_core.pose.facing import facing_of, wall_samples
-from diorama_core.pose.hypotheses import Anchor, anchor_of, hypotheses_for
+from diorama_core.pose.hypotheses import Anchor, anchor_of, hypotheses_for, unlike_best
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.measured import MeasuredObject
 from diorama_core.pose.refine import BoxFit
@@ -171,15 +171,35 @@ class RenderAndCompare:
             tried = tried.and_also(task.measured.hypotheses(shape.symmetry, limits))
         errors = task.coarse.errors(caster, tried.poses)
         rough = task.coarse.log_scores(errors, tried.poses, tried.off_axis_rad, tried.misfit, limits)
-        best = np.argsort(-rough, kind="stable")[: self.refined if task.measured is None else self.refined_with_depth]
+        if task.measured is None:
+            best = np.argsort(-rough, kind="stable")[: self.refined]
+        else:
+            best = unlike_best(tried.poses, rough, shape.symmetry, limits.shape_size_m, self.refined_with_depth)
         start, off_axis, misfit = tried.poses[best], tried.off_axis_rad[best], tried.misfit[best]
-        moved = self._refined(task, caster, limits, start)
-        both = start.and_also(moved)
+        found = self._chosen(task, caster, limits, start, off_axis, misfit)
+        if task.measured is not None and shape.symmetry < 4:
+            turned = task.measured.turned(found[0], shape.symmetry, limits)
+            nothing = np.zeros(len(turned))
+            other = self._chosen(task, caster, limits, turned, nothing, nothing)
+            found = max(found, other, key=lambda f: f[2])
+        poses, error, score = found
+        return _Posed(shape, Pose(poses.R[0], poses.position[0], poses.scale[0]), error, score)
+
+    def _chosen(
+        self,
+        task: _Task,
+        caster: ShapeCaster,
+        limits: SizeLimits,
+        start: PoseBatch,
+        off_axis_rad: np.ndarray,
+        misfit: np.ndarray,
+    ) -> tuple[PoseBatch, float, float]:
+        """The best of some poses and their refinements, with its error and score."""
+        both = start.and_also(self._refined(task, caster, limits, start))
         errors = task.fine.errors(caster, both)
-        scores = task.fine.log_scores(errors, both, np.tile(off_axis, 2), np.tile(misfit, 2), limits)
+        scores = task.fine.log_scores(errors, both, np.tile(off_axis_rad, 2), np.tile(misfit, 2), limits)
         chosen = int(np.argmax(scores))
-        pose = Pose(both.R[chosen], both.position[chosen], both.scale[chosen])
-        return _Posed(shape, pose, float(errors[chosen]), float(scores[chosen]))
+        return both[chosen : chosen + 1], float(errors[chosen]), float(scores[chosen])
 
     def _refined(self, task: _Task, caster: ShapeCaster, limits: SizeLimits, start: PoseBatch) -> PoseBatch:
         if task.measured is not None:

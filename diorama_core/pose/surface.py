@@ -14,6 +14,8 @@ from diorama_core.geometry.window import Window
 
 RENDERED = "rendered from cuboids and room"
 _NORMALS_SHARE = 0.4
+_LEAST_NORMALS_SHARE = 0.05
+"""Below which normals are not worth their price."""
 _CALM = 0.006
 """Noise (as a share of the depth) up to which single pixels say more than means, which blur thin parts."""
 _NORMALS_NOISE = 0.01
@@ -58,6 +60,8 @@ class MeasuredSurface:
         """0 to 1: nearness of depth and of normals over the object's measured cells."""
         met = np.where(hits.covered, hits.depth_m, 0.0)
         near = np.where(hits.covered, np.exp(-(((met - self.depth_m) / self.tolerance_m) ** 2)), 0.0)
+        if self.normals_share < _LEAST_NORMALS_SHARE:
+            return (near @ self.weight) / max(float(self.weight.sum()), 1e-9)
         aligned = np.clip(np.einsum("pni,ni->pn", hits.normals_world, self.normals_world), 0.0, 1.0)
         score = (1 - self.normals_share) * near + self.normals_share * aligned
         return (score @ self.weight) / max(float(self.weight.sum()), 1e-9)
