@@ -29,6 +29,7 @@ from diorama_app.panels.outliner import Outliner
 from diorama_app.panels.overlays import Overlays
 from diorama_app.panels.own_model import OwnModel
 from diorama_app.panels.photo import PhotoPanel
+from diorama_app.panels.photo_camera import PhotoCamera
 from diorama_app.panels.projects import Projects
 from diorama_app.panels.properties import Properties
 from diorama_app.panels.room_size import RoomSize
@@ -154,7 +155,7 @@ class Editor:
         with left.add_tab("Scene"):
             panels += [Outliner(gui, guest), RoomSize(gui, guest)]
         with left.add_tab("Photo"):
-            panels.append(PhotoPanel(gui, guest, self.views, self.commands))
+            panels += [PhotoPanel(gui, guest, self.views, self.commands), PhotoCamera(gui, guest)]
         with left.add_tab("Arrange"):
             guest.curves = optimiser = Optimiser(gui, guest)
             panels.append(optimiser)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from diorama_app.guest import Guest
 from diorama_app.room import Room
 from diorama_core.artefacts import DetectedObject, Photo
@@ -38,7 +40,7 @@ class PhotoOutlines:
             from diorama_core.pipeline.runner import Runner
 
             stages, runner = stages_for("auto", inputs, room.library), Runner(project.stages_folder)
-            seen = perceived(inputs, stages, runner, progress.part(0.0, 0.2))
+            seen = replace(perceived(inputs, stages, runner, progress.part(0.0, 0.2)), intrinsics=None)
             found = runner.run("objects", stages.objects, stages.objects.segment, (seen,), progress.part(0.2, 1.0))
 
             def keep() -> None:

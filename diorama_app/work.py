@@ -44,7 +44,16 @@ def build(guest: Guest) -> None:
     room.jobs.start("build", "Building the scene", work)
 
 
-def show_built(room: Room, draft: Draft, project: Project, scene: Scene, *, own: bool, message: str = "") -> None:
+def show_built(
+    room: Room,
+    draft: Draft,
+    project: Project,
+    scene: Scene,
+    *,
+    own: bool,
+    message: str = "",
+    label: str = "build the scene",
+) -> None:
     """Show everyone what a build made.
 
     Args:
@@ -54,6 +63,7 @@ def show_built(room: Room, draft: Draft, project: Project, scene: Scene, *, own:
         scene: what was built.
         own: whether it was built in the open project, as one undo step there.
         message: what to say instead of the number of objects.
+        label: what the undo step is called.
     """
     newer = room.draft if room.draft is not draft else None
     if newer is None:
@@ -64,7 +74,7 @@ def show_built(room: Room, draft: Draft, project: Project, scene: Scene, *, own:
         room.textures = project.textures(scene)
         room.read_notes()
         room.draft = Draft(inputs, inputs.boxes if inputs else (), from_project=True, name=project.name)
-        room.commit("build the scene", scene)
+        room.commit(label, scene)
         room.show_everyone_the_room()
     else:
         room.open_project(project)

@@ -1,0 +1,100 @@
+"""What is known of the photo's camera, to be put right: field of view, tilt against the floor, height above it."""
+
+from __future__ import annotations
+
+import numpy as np
+import viser
+
+from diorama_app.camera_fixing import (
+    Held,
+    camera_height_m,
+    checked_angles,
+    rebuild_with_camera,
+    set_camera_height,
+)
+from diorama_app.guest import Guest
+from diorama_app.page import Action, LiveHtml, button, text
+from diorama_app.units import format_length, parse_length
+from diorama_core.errors import InputError
+from diorama_core.scene.types import Camera
+
+FIELDS = {
+    "fov": ("Field of view (°)", "From the left to the right edge of the photo"),
+    "tilt": ("Tilt down (°)", "How far below the horizon the camera looks: says where the floor is"),
+    "roll": ("Roll (°)", "How far the camera leans to the right"),
+}
+
+
+class PhotoCamera:
+    """A folded list below the photo."""
+
+    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
+        self._guest = guest
+        self._html = LiveHtml(gui, self._act)
+        self._typed: dict[str, float] = {}
+        self._of: Camera | None = None
+
+    def refresh(self) -> None:
+        """Draw the camera's figures; typed ones wait for the button."""
+        room = self._guest.room
+        camera = room.scene.camera
+        if camera is None or not room.draft.from_project:
+            self._html.show("")
+            return
+        if self._of != camera:
+            self._of, self._typed = camera, {}
+        values = {**figures(camera), **self._typed}
+        rows = "".join(_row(label, name, f"{values[name]:.1f}", hint) for name, (label, hint) in FIELDS.items())
+        shown = format_length(camera_height_m(room.scene) or 0.0, self._guest.settings.unit)
+        rows += _row("Above the floor", "height", shown, "Rescales everything at once")
+        again = button(
+            "Build again with this camera",
+            "build",
+            title="Outlines stay; place, shape and layout are found anew. One undo step",
+            disabled=not self._typed or room.jobs.status is not None,
+        )
+        self._html.show(
+            f'<details {"open" if self._typed else ""}><summary class="dim">Camera and floor</summary>'
+            f'<table>{rows}</table><div class="bar tight">{again}</div></details>'
+        )
+
+    def _act(self, action: Action) -> None:
+        self._guest.post(lambda: self._do(action))
+
+    def _do(self, action: Action) -> None:
+        guest = self._guest
+        if action.do == "height":
+            set_camera_height(guest, parse_length(action.pair[1], guest.settings.unit))
+        elif action.do in FIELDS:
+            self._typed[action.do] = _degrees(action.pair[1])
+            self.refresh()
+        elif action.do == "build" and self._of is not None:
+            self._build(self._of)
+
+    def _build(self, camera: Camera) -> None:
+        typed, known = self._typed, figures(camera)
+        held: Held | None = None
+        if "tilt" in typed or "roll" in typed:
+            held = checked_angles(typed.get("tilt", known["tilt"]), typed.get("roll", known["roll"]))
+        rebuild_with_camera(self._guest, typed.get("fov"), held)
+
+
+def figures(camera: Camera) -> dict[str, float]:
+    """Field of view, tilt and roll in degrees."""
+    held = Held.of(camera.T_world_camera[:3, :3])
+    angles = (camera.intrinsics.horizontal_fov_rad, held.tilt_rad, held.roll_rad)
+    return dict(zip(FIELDS, (float(np.degrees(a)) + 0.0 for a in angles), strict=True))
+
+
+def _degrees(words: str) -> float:
+    try:
+        return float(words.replace("°", "").replace(",", ".").strip())
+    except ValueError as error:
+        raise InputError(f"'{words[:20]}' is not an angle; write for example 62.5") from error
+
+
+def _row(name: str, do: str, value: str, hint: str) -> str:
+    return (
+        f'<tr><td>{text(name)}</td><td><input data-change="{do}" value="{text(value)}" aria-label="{text(name)}" '
+        f'title="{text(hint)}" style="width:90px"></td></tr>'
+    )
