@@ -16,6 +16,10 @@ SEGMENTERS = ("sam2.1-large", "sam2.1-base-plus", "sam2.1-tiny", "slimsam")
 DEPTH_NETWORKS = ("moge-2-vitl", "moge-2-vitb", "moge-2-vits", "metric3d-large", "metric3d-small")
 INPAINTERS = ("lama", "migan")
 """Best first."""
+FOREGROUNDS = (("birefnet", "birefnet-lite"), ("mvanet",))
+"""Of each kind the best is used, and all kinds together: what they find is joined (supplement A)."""
+PATCH_FEATURES = ("dinov2-large", "dinov2-base", "dinov2-small")
+"""Best first; the publication reads an inner block of the large one."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +56,7 @@ def profile_status(*, store: ModelStore | None = None, lmm: LmmSettings | None =
             "",
             "" if lmm else "set DIORAMA_LMM_BASE_URL and DIORAMA_LMM_MODEL to ask a language model",
         ),
+        _status(store, "room behind furniture", INPAINTERS, "surfaces continued from what is seen of them"),
         StageStatus("retrieval", "category, size, silhouette and colour", None, True, 0, ""),
         StageStatus("pose", "render and compare", None, True, 0, ""),
     )

@@ -1,6 +1,7 @@
 """Which implementation takes which stage: the best network that is on this machine, or the embedded way.
 
-`auto` mixes stage by stage and needs nothing; `embedded` uses no network; `foundation` insists on the paper's.
+`auto` mixes stage by stage and needs nothing; `embedded` uses no network; `foundation` insists on the paper's networks
+and takes the paper's way to poses, by correspondences of patch features.
 """
 
 from __future__ import annotations
@@ -15,6 +16,9 @@ from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.errors import UnavailableError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.models.depth import GeometryNetwork, Metric3d, Moge2
+from diorama_core.models.features import Dinov2
+from diorama_core.models.foreground import Foreground
+from diorama_core.models.gigapose import GigaPoseScale
 from diorama_core.models.inpainting import Lama, Migan
 from diorama_core.models.manifest import Network, network
 from diorama_core.models.owlv2 import Owlv2
@@ -22,19 +26,31 @@ from diorama_core.models.segment_anything import BoxSegmenter, Sam2, SlimSam
 from diorama_core.models.store import ModelStore, how_to_get
 from diorama_core.models.yolox import Yolox
 from diorama_core.perception.foundation.detection import EverydayDetection, OpenVocabularyDetection
+from diorama_core.perception.foundation.emptied import EmptiedRoom
 from diorama_core.perception.foundation.outlines import PromptedMasks
 from diorama_core.perception.foundation.sight import NetworkCamera, NetworkDepth, NetworkGeometry, NetworkSight
 from diorama_core.perception.graph.geometric import GeometricGraph
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.perception.language.stages import LanguageGraph, LanguageRecognition
 from diorama_core.pipeline.build import DEFAULT_RECIPE, Stages, embedded_stages
-from diorama_core.pipeline.choices import DEPTH_NETWORKS, DETECTORS, INPAINTERS, SEGMENTERS
+from diorama_core.pipeline.choices import (
+    DEPTH_NETWORKS,
+    DETECTORS,
+    FOREGROUNDS,
+    INPAINTERS,
+    PATCH_FEATURES,
+    SEGMENTERS,
+)
 from diorama_core.pipeline.perceive import detected
 from diorama_core.pipeline.runner import Runner
+from diorama_core.pose.correspondence.features import NetworkFeatures
+from diorama_core.pose.correspondence.solvers import CorrespondencePose
 from diorama_core.progress import Progress
 from diorama_core.protocols import DetectionStage
 
 Profile = Literal["auto", "embedded", "foundation"]
+PUBLISHED_BLOCK = 17
+"""Of DINOv2 large, whose features the publication matches; a smaller network's last block is read."""
 
 T = TypeVar("T")
 
@@ -67,6 +83,7 @@ def stages_for(
     store = store or ModelStore.default()
     if profile == "foundation":
         _insist(inputs, store)
+        base = _posed_as_published(base, library, store)
     return foundation_stages(base, inputs, store, lmm or LmmSettings.from_environment())
 
 
@@ -80,7 +97,8 @@ def foundation_stages(base: Stages, inputs: Inputs, store: ModelStore, lmm: LmmS
     segmenter = _best(store, SEGMENTERS, _segmenter)
     if segmenter is not None:
         stages = replace(stages, objects=PromptedMasks(segmenter))
-    stages = replace(stages, filler=_best(store, INPAINTERS, _inpainter))
+    filler = _best(store, INPAINTERS, _inpainter)
+    stages = replace(stages, filler=filler)
     sight = _best(store, DEPTH_NETWORKS, _depth_network) if inputs.depth_m is None else None
     if sight is not None:
         stages = replace(
@@ -88,7 +106,9 @@ def foundation_stages(base: Stages, inputs: Inputs, store: ModelStore, lmm: LmmS
             sight=NetworkSight(sight),
             camera=NetworkCamera(),
             geometry=NetworkGeometry(),
-            architecture=PlanarRoom(),
+            architecture=PlanarRoom()
+            if filler is None
+            else EmptiedRoom(PlanarRoom(), filler, sight, _foregrounds(store)),
             depth=NetworkDepth(),
             graph=GeometricGraph(),
         )
@@ -133,6 +153,20 @@ def _insist(inputs: Inputs, store: ModelStore) -> None:
             )
 
 
+def _posed_as_published(base: Stages, library: ShapeLibrary, store: ModelStore) -> Stages:
+    """Poses by DINOv2's patches, and the scale network's where the user has converted one."""
+    features = _best(store, PATCH_FEATURES, _patch_features)
+    if features is None:
+        return base
+    scale = _best(store, ("gigapose-scale",), _scale_network)
+    return replace(base, pose=CorrespondencePose(library, features=NetworkFeatures(features), scale_network=scale))
+
+
+def _foregrounds(store: ModelStore) -> tuple[Foreground, ...]:
+    found = (_best(store, kinds, _foreground) for kinds in FOREGROUNDS)
+    return tuple(f for f in found if f is not None)
+
+
 def _best(store: ModelStore, choices: tuple[str, ...], make: Callable[[ModelStore, Network], T]) -> T | None:
     here = next((network(i) for i in choices if store.has(network(i))), None)
     return None if here is None else make(store, here)
@@ -163,3 +197,17 @@ def _inpainter(store: ModelStore, chosen: Network) -> EmptyRoomFiller:
 def _depth_network(store: ModelStore, chosen: Network) -> GeometryNetwork:
     graph, weights = store.path(chosen, chosen.files[0].path), store.identity(chosen)
     return Metric3d(graph, weights) if chosen.id.startswith("metric3d") else Moge2(graph, weights)
+
+
+def _foreground(store: ModelStore, chosen: Network) -> Foreground:
+    return Foreground(store.path(chosen, chosen.files[0].path), store.identity(chosen))
+
+
+def _patch_features(store: ModelStore, chosen: Network) -> Dinov2:
+    block = PUBLISHED_BLOCK if chosen.id == "dinov2-large" else None
+    return Dinov2(store.path(chosen, chosen.files[0].path), store.identity(chosen), block)
+
+
+def _scale_network(store: ModelStore, chosen: Network) -> GigaPoseScale:
+    features, regressor = (store.path(chosen, f.path) for f in chosen.files)
+    return GigaPoseScale(features, regressor, store.identity(chosen))

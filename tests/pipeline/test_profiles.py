@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import torch
 
+from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.errors import UnavailableError
 from diorama_core.evaluation.rooms import box_library
@@ -19,6 +20,7 @@ from diorama_core.perception.language.client import LmmSettings
 from diorama_core.pipeline.build import Built, Stages, build_scene
 from diorama_core.pipeline.choices import profile_status
 from diorama_core.pipeline.profiles import propose_boxes, stages_for
+from diorama_core.pose import RenderAndCompare
 from diorama_core.progress import Progress
 from tests.models import tiny_networks
 from tests.models.test_depth import HEIGHT, WIDTH, _Moge
@@ -146,6 +148,37 @@ def test_stages_mix_one_by_one_and_a_pull_reruns_only_what_it_touches(
     assert ran() == set()
     store.forget(network("slimsam"))
     assert ran() == set()
+
+
+def test_every_network_of_the_paper_takes_its_stage(photo: Photo, store: ModelStore, tmp_path: Path) -> None:
+    """Which stage uses which network; nothing is loaded before it runs."""
+    file = tmp_path / "some.onnx"
+    file.write_bytes(b"not looked at")
+
+    def install(*ids: str) -> None:
+        for network_id in ids:
+            _install(store, network_id, [file] * len(network(network_id).files))
+
+    inputs = Inputs(photo)
+    install("owlv2-large", "sam2.1-large", "metric3d-large")
+    bare = stages_for("foundation", inputs, box_library(), store=store)
+    assert isinstance(bare.architecture, PlanarRoom)
+    assert isinstance(bare.pose, RenderAndCompare)
+    install("lama", "birefnet", "birefnet-lite", "mvanet", "dinov2-large", "gigapose-scale")
+    stages = stages_for("foundation", inputs, box_library(), store=store)
+    used = {
+        "detection": "owlv2-large",
+        "objects": "sam2.1-large",
+        "sight": "metric3d-large",
+        "architecture": "lama metric3d-large birefnet: mvanet",
+        "filler": "lama",
+        "pose": "dinov2-large gigapose-scale block=17",
+    }
+    for stage, ids in used.items():
+        assert all(network_id in repr(getattr(stages, stage)) for network_id in ids.split()), stage
+    assert "birefnet-lite" not in repr(stages.architecture)
+    assert isinstance(stages_for("auto", inputs, box_library(), store=store).pose, RenderAndCompare)
+    assert stages_for("embedded", inputs, box_library(), store=store).filler is None
 
 
 def test_what_the_user_gave_is_never_replaced(photo: Photo, store: ModelStore, graphs: dict[str, list[Path]]) -> None:
