@@ -9,6 +9,7 @@ from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.render.appearance import linear_to_srgb
 from diorama_core.render.lighting import TILE
+from diorama_core.render.raycast import dot
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,8 +42,8 @@ class Neighbours:
             for dx in range(-half, half + 1):
                 share = (0.5 if abs(dy) == half else 1.0) * (0.5 if abs(dx) == half else 1.0)
                 here, there = _shifted(found.shape, dy, dx)
-                leave = np.abs(np.einsum("ijk,ijk->ij", points[there] - points[here], normals[here]))
-                turn = np.einsum("ijk,ijk->ij", normals[here], normals[there])
+                leave = np.abs(dot(points[there] - points[here], normals[here]))
+                turn = dot(normals[here], normals[there])
                 same = found[there] & (leave < tolerance_m[here]) & (turn > 0.85)
                 weight = np.zeros(found.shape, np.float32)
                 weight[here] = same * np.float32(share)

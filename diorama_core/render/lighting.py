@@ -13,8 +13,8 @@ from functools import cache
 import numpy as np
 from jaxtyping import Float, Float32, Int
 
-from diorama_core.render.raycast import facing, unit
-from diorama_core.render.world import Places, World
+from diorama_core.render.raycast import Caster, dot, facing, unit
+from diorama_core.render.world import World
 
 TILE = 4
 _ORDER = np.array([0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5])
@@ -37,6 +37,8 @@ class Lighting:
     """From below."""
     reach_m: float = 2.5
     """Within this distance surfaces shade and colour one another."""
+    inward: Float[np.ndarray, "3"] | None = None
+    """Where a window in a wall sends its light, most straight ahead and none along the wall; None all around."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,17 @@ class Effort:
 
     window_rays: int = 2
     sky_rays: int = 4
+
+
+@dataclass(frozen=True, eq=False)
+class Spots:
+    """Places to gather light at."""
+
+    points: Float32[np.ndarray, "n 3"]
+    normals: Float32[np.ndarray, "n 3"]
+    """Smooth."""
+    flat_normals: Float32[np.ndarray, "n 3"]
+    """Of the triangles."""
 
 
 def studio(bounds: Float[np.ndarray, "2 3"], toward_camera: Float[np.ndarray, "3"]) -> Lighting:
@@ -74,28 +87,32 @@ def studio(bounds: Float[np.ndarray, "2 3"], toward_camera: Float[np.ndarray, "3
 
 
 def irradiance(
-    world: World, blockers: World, places: Places, pixels: Int[np.ndarray, "n 2"], light: Lighting, effort: Effort
+    world: World, blockers: Caster, spots: Spots, pixels: Int[np.ndarray, "n 2"] | None, light: Lighting, effort: Effort
 ) -> tuple[Float32[np.ndarray, "n 3"], Float32[np.ndarray, "n 3"]]:
-    """Noisy light that falls on places: from the window, and from everywhere else.
+    """Light that falls on places: from the window, and from everywhere else.
 
     Args:
         world: What surrounds the places.
         blockers: What stops the window's light.
-        places: Where to gather.
-        pixels: Row and column of each place, to choose its share of the samples.
+        spots: Where to gather.
+        pixels: Row and column of each place, to choose its share of a block's samples; the light is noisy until it
+            is gathered over blocks. None gives all places the same few samples: no noise, but coarser shadows.
         light: What lights the room.
         effort: Rays per place.
     """
-    lane = _ORDER[(pixels[:, 0] % TILE) * TILE + pixels[:, 1] % TILE]
-    origins = places.points + places.flat_normals * np.float32(1e-3 * max(light.reach_m, 0.2))
-    frames = _tangent_frames(places.normals)
-    window = np.zeros((len(lane), 3), np.float32)
-    around = np.zeros((len(lane), 3), np.float32)
-    for samples in _lanes(effort.window_rays):
-        window += _from_window(blockers, origins, places.normals, samples[lane], light)
-    for samples in _lanes(effort.sky_rays):
-        local = _cosine_directions(samples)[lane]
-        direction = frames[0] * local[:, :1] + frames[1] * local[:, 1:2] + places.normals * local[:, 2:]
+    sharing = 1 if pixels is None else TILE * TILE
+    if pixels is None:
+        lane = np.zeros(len(spots.points), np.int64)
+    else:
+        lane = _ORDER[(pixels[:, 0] % TILE) * TILE + pixels[:, 1] % TILE]
+    origins = spots.points + spots.flat_normals * np.float32(1e-3 * max(light.reach_m, 0.2))
+    frames = _tangent_frames(spots.normals)
+    window, around = (np.zeros((len(lane), 3), np.float32) for _ in range(2))
+    for samples in _sample_sets(effort.window_rays, sharing):
+        window += _from_window(blockers, origins, spots.normals, samples.take(lane, axis=0), light)
+    for samples in _sample_sets(effort.sky_rays, sharing):
+        local = _cosine_directions(samples).take(lane, axis=0)
+        direction = frames[0] * local[:, :1] + frames[1] * local[:, 1:2] + spots.normals * local[:, 2:]
         around += _from_around(world, origins, direction, light)
     return window / max(effort.window_rays, 1), around / max(effort.sky_rays, 1)
 
@@ -105,9 +122,8 @@ def unshadowed(
 ) -> Float32[np.ndarray, "n 3"]:
     """Light on places as if nothing were in the way: what bounced light is reckoned from."""
     to_window = light.window_centre.astype(np.float32) - points
-    squared = np.einsum("ij,ij->i", to_window, to_window)
-    cosine = np.maximum(np.einsum("ij,ij->i", normals, to_window), 0) / np.sqrt(squared)
-    key = cosine * np.minimum(np.float32(light.reference_m**2) / squared, 4.0)
+    squared = dot(to_window, to_window)
+    key = np.maximum(dot(normals, to_window), 0) * _key_strength(to_window, squared, light)
     return key[:, None] * (0.6 * light.window_irradiance).astype(np.float32) + ambient(normals, light)
 
 
@@ -118,18 +134,27 @@ def ambient(directions: Float[np.ndarray, "n 3"], light: Lighting) -> Float32[np
 
 
 def _from_window(
-    blockers: World, origins: np.ndarray, normals: np.ndarray, sample: np.ndarray, light: Lighting
+    blockers: Caster, origins: np.ndarray, normals: np.ndarray, sample: np.ndarray, light: Lighting
 ) -> Float32[np.ndarray, "n 3"]:
     target = light.window_centre.astype(np.float32) + (2 * sample - 1) @ light.window_edges.astype(np.float32)
     ray = target - origins
-    along = np.einsum("ij,ij->i", normals, ray)
-    lit = np.flatnonzero(along > 0)
-    blocked = blockers.shadow_caster.occluded(np.concatenate([origins[lit], ray[lit]], axis=1), far=1.0)
-    squared = np.einsum("ij,ij->i", ray[lit], ray[lit])
-    fall = np.minimum(np.float32(light.reference_m**2) / squared, 4.0)
-    strength = np.zeros(len(ray), np.float32)
-    strength[lit] = np.where(blocked, 0, along[lit] / np.sqrt(squared) * fall)
-    return strength[:, None] * light.window_irradiance.astype(np.float32)
+    key = np.maximum(dot(normals, ray), 0) * _key_strength(ray, dot(ray, ray), light)
+    lit = np.flatnonzero(key > 0)
+    blocked = blockers.occluded(np.concatenate([origins, ray], axis=1).take(lit, axis=0), far=1.0)
+    key[lit[blocked]] = 0
+    return key[:, None] * light.window_irradiance.astype(np.float32)
+
+
+def _key_strength(
+    ray: Float32[np.ndarray, "n 3"], squared: Float32[np.ndarray, "n"], light: Lighting
+) -> Float32[np.ndarray, "n"]:
+    """What a surface facing the window would get along rays to it (of squared length), over the rays' length."""
+    length = np.sqrt(squared)
+    if light.inward is None:
+        return np.minimum(np.float32(light.reference_m**2) / squared, 4.0) / length
+    ahead = np.maximum(-(ray @ light.inward.astype(np.float32)), 0) / length
+    near = squared + np.float32(4 * (light.window_edges**2).sum())  # close by, the window fills the view and no more
+    return np.float32(light.reference_m**2) / near * ahead / length
 
 
 def _from_around(
@@ -140,10 +165,10 @@ def _from_around(
     radiance = ambient(direction, light)
     near = np.flatnonzero(hits.distance < light.reach_m)
     if len(near):
-        chosen, toward = hits.chosen(near), direction[near]
+        chosen, toward = hits.chosen(near), direction.take(near, axis=0)
         normals, colour = world.rough_look(chosen)
         normals = facing(normals, toward)
-        points = origins[near] + toward * chosen.distance[:, None]
+        points = origins.take(near, axis=0) + toward * chosen.distance[:, None]
         fade = (chosen.distance[:, None] / np.float32(light.reach_m)) ** 2
         bounced = np.float32(0.8) * colour * unshadowed(points, normals, light)
         radiance[near] += (1 - fade) * (bounced - radiance[near])
@@ -159,7 +184,7 @@ def _tangent_frames(normals: Float32[np.ndarray, "n 3"]) -> tuple[np.ndarray, np
     return np.stack([1 + sign * x * x * a, sign * b, -sign * x], axis=1), np.stack([b, sign + y * y * a, -y], axis=1)
 
 
-def _cosine_directions(sample: Float32[np.ndarray, "16 2"]) -> Float32[np.ndarray, "16 3"]:
+def _cosine_directions(sample: Float32[np.ndarray, "k 2"]) -> Float32[np.ndarray, "k 3"]:
     """Directions about +z with density proportional to the cosine."""
     radius, angle = np.sqrt(sample[:, 0]), 2 * np.pi * sample[:, 1]
     up = np.sqrt(np.maximum(1 - sample[:, 0], 1e-6))
@@ -167,11 +192,11 @@ def _cosine_directions(sample: Float32[np.ndarray, "16 2"]) -> Float32[np.ndarra
 
 
 @cache
-def _lanes(rays: int) -> tuple[Float32[np.ndarray, "16 2"], ...]:
-    """For each ray of a pixel the 16 samples of a block; together they are the Hammersley set of 16 * rays points."""
-    count = rays * TILE * TILE
+def _sample_sets(rays: int, sharing: int) -> tuple[Float32[np.ndarray, "sharing 2"], ...]:
+    """For each ray of a pixel the samples of those that share; together they are one Hammersley set."""
+    count = rays * sharing
     index = np.arange(count)
     golden = (index * 0.6180339887498949) % 1.0
     mirrored = sum(((index >> bit) & 1) / 2.0 ** (bit + 1) for bit in range(12))
     points = np.stack([(mirrored + 0.5 / count) % 1.0, golden], axis=1).astype(np.float32)
-    return tuple(points.reshape(rays, TILE * TILE, 2))
+    return tuple(points.reshape(rays, sharing, 2))

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import TypeVar
 
 import numpy as np
 from jaxtyping import Bool, Float32, Int
 
-from diorama_core.render.filters import Neighbours, tone_mapped
-from diorama_core.render.lighting import TILE, Effort, Lighting, ambient, irradiance, unshadowed
-from diorama_core.render.raycast import RayArray, View, pixel_centres, unit
+from diorama_core.render.filters import tone_mapped
+from diorama_core.render.gathering import fallen_light
+from diorama_core.render.grid import Grid, bands, each, pixel_footprint
+from diorama_core.render.lighting import Effort, Lighting, ambient, unshadowed
+from diorama_core.render.raycast import Caster, RayArray, View, dot, pixel_centres, unit
 from diorama_core.render.world import Places, World
 
-Item = TypeVar("Item")
-Result = TypeVar("Result")
 BRIGHTEST = 2.0
 """Light beyond this is white anyway; unclipped it would eat away what it borders on."""
 _SUBPIXELS = np.array([[-1, -3], [3, -1], [1, 3], [-3, 1]]) / 8.0
@@ -31,86 +28,50 @@ class Shot:
     """Linear light, 0 where nothing is seen; already weighted by `coverage`."""
     coverage: Float32[np.ndarray, "h w"]
     """Share of the pixel that sees anything."""
+    grid: Grid
+    """What the middle of each pixel sees."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Grid:
-    """The first places of all pixels, as images."""
-
-    found: Bool[np.ndarray, "h w"]
-    points: Float32[np.ndarray, "h w 3"]
-    normals: Float32[np.ndarray, "h w 3"]
-    flat_normals: Float32[np.ndarray, "h w 3"]
-    instance: Int[np.ndarray, "h w"]
-    depth: Float32[np.ndarray, "h w"]
-    pixel_m: Float32[np.ndarray, "h w"]
-    """Width that a pixel covers at its depth."""
-
-
-def shoot(world: World, blockers: World, view: View, light: Lighting, effort: Effort) -> Shot:
+def shoot(world: World, blockers: Caster, view: View, light: Lighting, effort: Effort) -> Shot:
     """The light that reaches every pixel of a view.
 
     Args:
         world: What is seen, and what shades and colours its neighbours.
-        blockers: What casts the window's shadows.
+        blockers: What casts the window's shadows (`World.shadow_caster`).
         view: The rays' source.
         light: What lights the world.
         effort: Rays per pixel.
     """
-    bands = _bands(view.height)
-    parts = _each(lambda band: _lit_band(world, blockers, view, band, light, effort), bands)
+    rows = bands(view.height)
+    parts = each(lambda band: _first_sight(world, view, band), rows)
     grid = _grid(parts, view)
-    noisy = np.concatenate([p.light for p in parts])
-    fallen = np.concatenate(_each(lambda band: _gathered(noisy, grid, band), bands))
-    seen = _each(
+    fallen = fallen_light(world, blockers, grid, light, effort)
+    seen = each(
         lambda pair: _seen(world, pair[1].places, pair[1].rays, fallen[pair[0]][pair[1].found], light),
-        list(zip(bands, parts, strict=True)),
+        list(zip(rows, parts, strict=True)),
     )
     radiance = np.zeros((*grid.found.shape, 3), np.float32)
     radiance[grid.found] = np.concatenate(seen)
-    shot = Shot(radiance, grid.found.astype(np.float32))
-    return _with_smooth_edges(shot, world, view, light, grid, fallen)
+    shot = Shot(radiance, grid.found.astype(np.float32), grid)
+    return _with_smooth_edges(shot, world, view, light, fallen)
 
 
 @dataclass(frozen=True, eq=False)
 class _Band:
-    """Some rows of the picture: what they see and, noisy, the light that falls on it."""
+    """What some rows of the picture see."""
 
     found: Bool[np.ndarray, "h w"]
     rays: RayArray
     places: Places
-    light: Float32[np.ndarray, "h w 3"]
     depth: Float32[np.ndarray, "h w"]
 
 
-def _lit_band(world: World, blockers: World, view: View, rows: slice, light: Lighting, effort: Effort) -> _Band:
+def _first_sight(world: World, view: View, rows: slice) -> _Band:
     rays = view.rays(pixel_centres(view.width, rows.stop)[rows])
     hits = world.caster.first_hits(rays)
     found = hits.found
     places = world.places(rays[found], hits.chosen(found))
-    window, around = irradiance(world, blockers, places, np.argwhere(found) + np.array([rows.start, 0]), light, effort)
-    noisy = np.zeros((*found.shape, 3), np.float32)
-    noisy[found] = window + around
-    return _Band(found, rays[found], places, noisy, np.where(found, hits.distance, 0).astype(np.float32))
-
-
-def _gathered(noisy: Float32[np.ndarray, "h w 3"], grid: _Grid, rows: slice) -> Float32[np.ndarray, "b w 3"]:
-    """Light of some rows without its noise: gathered over blocks, twice, from the rows and those around them."""
-    halo = slice(max(0, rows.start - TILE), rows.stop + TILE)
-    neighbours = Neighbours.of(grid.points[halo], grid.normals[halo], grid.found[halo], 3 * grid.pixel_m[halo])
-    smooth = neighbours.mean(neighbours.mean(noisy[halo]))
-    return smooth[rows.start - halo.start : rows.stop - halo.start]
-
-
-def _bands(height: int, rows: int = 48) -> list[slice]:
-    """Rows in groups small enough for the processor's cache."""
-    return [slice(start, min(start + rows, height)) for start in range(0, height, rows)]
-
-
-def _each(work: Callable[[Item], Result], items: list[Item]) -> list[Result]:
-    """Work on all items, two at a time; results in order, so that threads change nothing."""
-    with ThreadPoolExecutor(max_workers=2) as pool:
-        return list(pool.map(work, items))
+    return _Band(found, rays[found], places, np.where(found, hits.distance, 0).astype(np.float32))
 
 
 def _seen(
@@ -146,7 +107,7 @@ def _gloss(
     world: World, places: Places, direction: np.ndarray, fallen: Float32[np.ndarray, "n 3"], light: Lighting
 ) -> Float32[np.ndarray, "n 3"]:
     """Mirrored surroundings, blurred toward the fallen light as roughness grows (Schlick's Fresnel)."""
-    cosine = np.clip(-np.sum(places.normals * direction, axis=1, keepdims=True), 0, 1)
+    cosine = np.clip(-dot(places.normals, direction), 0, 1)[:, None]
     smooth = 1 - places.roughness[:, None]
     f0 = 0.04 * (1 - places.metallic[:, None]) + places.albedo * places.metallic[:, None]
     fresnel = f0 + (np.maximum(smooth, f0) - f0) * (1 - cosine) ** 5
@@ -155,7 +116,7 @@ def _gloss(
     mirrored = fallen.copy()
     if len(shiny):
         normal = places.normals[shiny]
-        away = direction[shiny] - 2 * np.sum(direction[shiny] * normal, axis=1, keepdims=True) * normal
+        away = direction[shiny] - 2 * dot(direction[shiny], normal)[:, None] * normal
         origin = places.points[shiny] + places.flat_normals[shiny] * 1e-3
         sharp = _environment(world, np.concatenate([origin, away], axis=1).astype(np.float32), light)
         blur = np.clip(places.roughness[shiny, None] * 1.4, 0, 1)
@@ -203,26 +164,27 @@ def _beyond(
 
 
 def _with_smooth_edges(
-    shot: Shot, world: World, view: View, light: Lighting, grid: _Grid, fallen: Float32[np.ndarray, "h w 3"]
+    shot: Shot, world: World, view: View, light: Lighting, fallen: Float32[np.ndarray, "h w 3"]
 ) -> Shot:
     """Pixels at edges seen again through four more positions."""
-    pixels = np.argwhere(_edges(shot, grid))
+    grid = shot.grid
+    pixels = np.argwhere(_edges(shot))
     if not len(pixels):
         return shot
     groups = np.array_split(pixels, 1 + len(pixels) // 4096)
-    again = _each(lambda group: _seen_again(world, view, light, grid, fallen, group), groups)
+    again = each(lambda group: _seen_again(world, view, light, grid, fallen, group), groups)
     radiance, coverage = np.minimum(shot.radiance, BRIGHTEST), shot.coverage.copy()
     at, weight = (pixels[:, 0], pixels[:, 1]), 1 / (1 + len(_SUBPIXELS))
     radiance[at] += (1 - weight) * (np.concatenate([colour for colour, _ in again]) - radiance[at])
     coverage[at] += (1 - weight) * (np.concatenate([share for _, share in again]) - coverage[at])
-    return Shot(radiance, coverage)
+    return Shot(radiance, coverage, grid)
 
 
 def _seen_again(
     world: World,
     view: View,
     light: Lighting,
-    grid: _Grid,
+    grid: Grid,
     fallen: Float32[np.ndarray, "h w 3"],
     pixels: Int[np.ndarray, "n 2"],
 ) -> tuple[Float32[np.ndarray, "n 3"], Float32[np.ndarray, "n"]]:
@@ -239,18 +201,19 @@ def _seen_again(
     return seen.reshape(-1, count, 3).mean(axis=1), share.astype(np.float32)
 
 
-def _edges(shot: Shot, grid: _Grid) -> Bool[np.ndarray, "h w"]:
+def _edges(shot: Shot) -> Bool[np.ndarray, "h w"]:
     """Pixels beside a change of object, direction, depth or brightness."""
+    grid = shot.grid
     edge = np.zeros(grid.found.shape, bool)
     bright = tone_mapped(shot.radiance).mean(axis=-1)
     for here, there in (
         ((slice(None), slice(0, -1)), (slice(None), slice(1, None))),
         ((slice(0, -1), slice(None)), (slice(1, None), slice(None))),
     ):
-        leap = np.abs(np.einsum("ijk,ijk->ij", grid.points[there] - grid.points[here], grid.flat_normals[here]))
+        leap = np.abs(dot(grid.points[there] - grid.points[here], grid.flat_normals[here]))
         differs = (
             (grid.instance[here] != grid.instance[there])
-            | (np.einsum("ijk,ijk->ij", grid.normals[here], grid.normals[there]) < 0.9)
+            | (dot(grid.normals[here], grid.normals[there]) < 0.9)
             | (leap > 4 * grid.pixel_m[here])
             | (np.abs(bright[here] - bright[there]) > 0.07)
         )
@@ -260,27 +223,28 @@ def _edges(shot: Shot, grid: _Grid) -> Bool[np.ndarray, "h w"]:
 
 
 def _borrowed(
-    places: Places, near: Int[np.ndarray, "n 2"], grid: _Grid, fallen: Float32[np.ndarray, "h w 3"]
+    places: Places, near: Int[np.ndarray, "n 2"], grid: Grid, fallen: Float32[np.ndarray, "h w 3"]
 ) -> Float32[np.ndarray, "n 3"]:
     """For places seen between pixels, the light on the best-fitting of the pixel and its four neighbours."""
     h, w = grid.found.shape
     best = np.full(len(near), np.inf, np.float32)
-    taken = np.zeros((len(near), 3), np.float32)
+    taken = np.zeros(len(near), np.int64)
+    points, normals = grid.points.reshape(-1, 3), grid.normals.reshape(-1, 3)
+    instance, penalty = grid.instance.reshape(-1), np.where(grid.found, 0, 100).astype(np.float32).reshape(-1)
     scale = np.maximum(grid.depth[near[:, 0], near[:, 1]], 0.1)
     for dy, dx in ((0, 0), (-1, 0), (1, 0), (0, -1), (0, 1)):
         row, column = np.clip(near[:, 0] + dy, 0, h - 1), np.clip(near[:, 1] + dx, 0, w - 1)
-        apart = grid.points[row, column] - places.points
-        offset = np.sqrt(np.einsum("ij,ij->i", apart, apart)) / scale
-        turn = 1 - np.einsum("ij,ij->i", grid.normals[row, column], places.normals)
-        other = grid.instance[row, column] != places.instance
-        cost = 20 * offset + turn + 2.0 * other + 100.0 * ~grid.found[row, column]
-        better = np.flatnonzero(cost < best)
-        best[better] = cost[better]
-        taken[better] = fallen[row[better], column[better]]
-    return taken
+        at = row * w + column
+        apart = points.take(at, axis=0) - places.points
+        turn = 1 - dot(normals.take(at, axis=0), places.normals)
+        cost = 20 * np.sqrt(dot(apart, apart)) / scale + turn + penalty.take(at)
+        cost += 2 * (instance.take(at) != places.instance)
+        better = cost < best
+        best, taken = np.where(better, cost, best), np.where(better, at, taken)
+    return fallen.reshape(-1, 3).take(taken, axis=0)
 
 
-def _grid(parts: list[_Band], view: View) -> _Grid:
+def _grid(parts: list[_Band], view: View) -> Grid:
     found = np.concatenate([p.found for p in parts])
     depth = np.concatenate([p.depth for p in parts])
 
@@ -290,20 +254,12 @@ def _grid(parts: list[_Band], view: View) -> _Grid:
         whole[found] = values
         return whole
 
-    return _Grid(
+    return Grid(
         found,
         image("points"),
         image("normals"),
         image("flat_normals"),
         image("instance", -1),
         depth,
-        _pixel_footprint(view, depth),
+        pixel_footprint(view, depth),
     )
-
-
-def _pixel_footprint(view: View, depth: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
-    """Width in metres that a pixel covers at its depth."""
-    middle = np.array([[view.width / 2, view.height / 2], [view.width / 2 + 1, view.height / 2]])
-    a, b = view.rays(middle).astype(np.float64)
-    at_zero, per_metre = np.linalg.norm(b[:3] - a[:3]), np.linalg.norm(b[3:] - a[3:])
-    return (at_zero + per_metre * depth).astype(np.float32)

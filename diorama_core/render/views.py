@@ -12,11 +12,11 @@ from diorama_core.library.record import Shape, ShapeLibrary, record_of
 from diorama_core.library.taxonomy import category
 from diorama_core.render.appearance import Paint, shape_surfaces
 from diorama_core.render.filters import as_bytes, tone_mapped
-from diorama_core.render.lighting import TILE, Effort, Lighting, irradiance, studio
+from diorama_core.render.lighting import TILE, Effort, Lighting, Spots, irradiance, studio
 from diorama_core.render.picture import framing_camera
 from diorama_core.render.raycast import PinholeView, pixel_centres
 from diorama_core.render.shading import Shot, shoot
-from diorama_core.render.world import Placed, Places, World
+from diorama_core.render.world import Placed, World
 from diorama_core.scene.types import Camera
 
 
@@ -80,7 +80,7 @@ def render_shape(
     camera = PinholeView(studio_camera(alone.vertices, view, *size))
     half = 0.5 * np.asarray(shape.size_m)
     light = studio(np.stack([-half, half]), -camera.camera.T_world_camera[:3, 2])
-    shot = shoot(alone, alone, camera, light, effort)
+    shot = shoot(alone, alone.shadow_caster(), camera, light, effort)
     hung = category(shape.category).mount in ("wall", "ceiling")
     shadow = np.zeros(shot.coverage.shape, np.float32) if hung else _shadow(shape, alone, light, camera, effort)
     return _over(shot, shadow)
@@ -96,10 +96,10 @@ def _shadow(
     fall = np.minimum(rays[..., 5], -1e-6)
     points = rays[..., :3] + rays[..., 3:] * ((ground - rays[..., 2]) / fall)[..., None]
     near = (rays[..., 5] < -1e-6) & (np.linalg.norm(points[..., :2], axis=-1) < 4 * max(shape.size_m))
-    places = _ground_places(points[near])
-    pixels = np.argwhere(near)
-    shaded = np.add(*irradiance(alone, alone, places, pixels, light, effort))
-    bare = np.add(*irradiance(World([]), World([]), places, pixels, light, effort))
+    up = np.broadcast_to(np.array([0, 0, 1], np.float32), points[near].shape)
+    spots, pixels, nothing = Spots(points[near], up, up), np.argwhere(near), World([])
+    shaded = np.add(*irradiance(alone, alone.shadow_caster(), spots, pixels, light, effort))
+    bare = np.add(*irradiance(nothing, nothing.shadow_caster(), spots, pixels, light, effort))
     shadow = np.zeros((height, width), np.float32)
     shadow[near] = np.clip(1.0 - shaded.mean(axis=1) / bare.mean(axis=1), 0, 1)
     whole_blocks = cv2.blur(cv2.blur(shadow, (TILE, TILE)), (TILE, TILE))
@@ -111,13 +111,6 @@ def _vignette(width: int, height: int) -> Float32[np.ndarray, "h w"]:
     """1 inside, falling to 0 at the picture's border, so that no shadow is cut off."""
     x, y = (np.minimum(np.linspace(0, 1, n), np.linspace(1, 0, n)) for n in (width, height))
     return (np.clip(x / 0.12, 0, 1)[None, :] * np.clip(y / 0.12, 0, 1)[:, None]).astype(np.float32)
-
-
-def _ground_places(points: Float32[np.ndarray, "n 3"]) -> Places:
-    up = np.tile(np.array([0, 0, 1], np.float32), (len(points), 1))
-    ones, zeros = np.ones(len(points), np.float32), np.zeros(len(points), np.float32)
-    grey = np.full((len(points), 3), 0.8, np.float32)
-    return Places(points, up, up, grey, ones, zeros, ones, 0 * grey, np.zeros(len(points), np.int32), ones < 0)
 
 
 def _resized(camera: Camera, width: int, height: int) -> Camera:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +16,8 @@ from diorama_core.scene.types import Scene
 
 CLEAR = 0.6
 """Surfaces of less opacity cast no shadow."""
+MEAN_STEP = 3
+"""Every third texel each way tells a picture's mean colour."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +60,8 @@ class World:
         self.vertices = _joined([c.vertices for c in chunks], 3)
         self._normals = _joined([c.normals for c in chunks], 3)
         self._uv = _joined([c.uv for c in chunks], 2)
-        self._colours = _joined([c.colours for c in chunks], 3)
+        coloured = any(s.colours is not None for s in surfaces)
+        self._colours = _joined([c.colours for c in chunks], 3) if coloured else None
         self._faces = np.concatenate(
             [np.zeros((0, 3), np.int32), *(s.faces + start for s, start in zip(surfaces, starts, strict=True))]
         ).astype(np.int32)
@@ -68,11 +71,16 @@ class World:
         self._materials = _MaterialTable(surfaces)
         self._face_normals = face_normals(self.vertices, self._faces)
         self.caster = Caster(self.vertices, self._faces)
-        self.shadow_caster = self._shadow_caster()
 
-    def _shadow_caster(self) -> Caster:
-        """Only what holds light off: clear glass lets it through."""
-        opaque = self._materials.opacity[self._surface_of_face] > CLEAR
+    def shadow_caster(self, without: Collection[int] = ()) -> Caster:
+        """Only what holds light off: clear glass lets it through, and so does what is left out.
+
+        Args:
+            without: Instances that cast no shadow.
+        """
+        opaque = self._materials.opacity.take(self._surface_of_face) > CLEAR
+        if len(without):
+            opaque &= ~np.isin(self._instance_of_face, list(without))
         return self.caster if opaque.all() else Caster(self.vertices, self._faces[opaque])
 
     @property
@@ -86,29 +94,31 @@ class World:
         """What the rays see; every ray must have met something."""
         triangle, direction = hits.triangle, rays[:, 3:]
         w = np.concatenate([1 - hits.barycentric.sum(axis=1, keepdims=True), hits.barycentric], axis=1)
-        corners = self._faces[triangle]
-        flat = facing(self._face_normals[triangle], direction)
-        smooth = unit(_mixed(self._normals, corners, w))
-        smooth = np.where(np.einsum("ij,ij->i", smooth, flat)[:, None] < 0, -smooth, smooth)
-        surface = self._surface_of_face[triangle]
+        corners = self._faces.take(triangle, axis=0)
+        flat = facing(self._face_normals.take(triangle, axis=0), direction)
+        smooth = -facing(unit(_mixed(self._normals, corners, w)), flat)
+        surface = self._surface_of_face.take(triangle)
         albedo, alpha = self._materials.colour(surface, _mixed(self._uv, corners, w))
+        if self._colours is not None:
+            albedo *= _mixed(self._colours, corners, w)
         table = self._materials
         return Places(
             points=rays[:, :3] + direction * hits.distance[:, None],
             normals=smooth.astype(np.float32),
             flat_normals=flat.astype(np.float32),
-            albedo=(albedo * _mixed(self._colours, corners, w)).astype(np.float32),
+            albedo=albedo.astype(np.float32),
             alpha=alpha,
-            metallic=table.metallic[surface],
-            roughness=table.roughness[surface],
-            emissive=table.emissive[surface],
-            instance=self._instance_of_face[triangle],
-            photographed=table.photographed[surface],
+            metallic=table.metallic.take(surface),
+            roughness=table.roughness.take(surface),
+            emissive=table.emissive.take(surface, axis=0),
+            instance=self._instance_of_face.take(triangle),
+            photographed=table.photographed.take(surface),
         )
 
     def rough_look(self, hits: Hits) -> tuple[Float32[np.ndarray, "n 3"], Float32[np.ndarray, "n 3"]]:
         """Face normals (as modelled) and mean colours of what was hit: enough for light that bounces."""
-        return self._face_normals[hits.triangle], self._materials.mean_colour[self._surface_of_face[hits.triangle]]
+        surface = self._surface_of_face.take(hits.triangle)
+        return self._face_normals.take(hits.triangle, axis=0), self._materials.mean_colour.take(surface, axis=0)
 
 
 def scene_world(
@@ -165,7 +175,8 @@ def _joined(arrays: list[np.ndarray], columns: int) -> np.ndarray:
 
 def _mixed(values: np.ndarray, corners: np.ndarray, weights: np.ndarray) -> np.ndarray:
     """Vertex values interpolated in their triangles."""
-    return np.einsum("nkc,nk->nc", values[corners], weights)
+    first, second, third = (values.take(corners[:, k], axis=0) * weights[:, k, None] for k in range(3))
+    return first + second + third
 
 
 class _MaterialTable:
@@ -190,20 +201,21 @@ class _MaterialTable:
                     known[key] = len(self._pictures)
                     self._pictures.append((_linear(surface.material.texture), key[1]))
                 self._picture_of[row] = known[key]
-        means = [texels[..., :3].mean(axis=(0, 1)) for texels, _ in self._pictures]
+        means = [texels[::MEAN_STEP, ::MEAN_STEP, :3].mean(axis=(0, 1)) for texels, _ in self._pictures]
         self.mean_colour = self._colour * np.array([*means, np.ones(3)], dtype=np.float32)[self._picture_of]
 
     def colour(
         self, surface: Int32[np.ndarray, "n"], uv: Float32[np.ndarray, "n 2"]
     ) -> tuple[Float32[np.ndarray, "n 3"], Float32[np.ndarray, "n"]]:
         """Linear base colour and opacity at texture coordinates (bilinear)."""
-        colour, alpha, picture = self._colour[surface], self.opacity[surface], self._picture_of[surface]
+        colour, alpha = self._colour.take(surface, axis=0), self.opacity.take(surface)
+        picture = self._picture_of.take(surface)
         order = np.argsort(picture, kind="stable")
         bounds = np.searchsorted(picture[order], np.arange(len(self._pictures) + 1))
         for (texels, repeat), start, stop in zip(self._pictures, bounds[:-1], bounds[1:], strict=True):
             if start < stop:
                 chosen = order[start:stop]
-                texel = _bilinear(texels, uv[chosen], repeat=repeat)
+                texel = _bilinear(texels, uv.take(chosen, axis=0), repeat=repeat)
                 colour[chosen] *= texel[:, :3]
                 if texel.shape[1] == 4:
                     clear = alpha[chosen] < 1
@@ -235,8 +247,10 @@ def _bilinear(
     fx, fy = (x - x0)[:, None].astype(np.float32), (y - y0)[:, None].astype(np.float32)
     left, right = _within(x0, width, repeat), _within(x0 + 1, width, repeat)
     top, bottom = _within(y0, height, repeat), _within(y0 + 1, height, repeat)
-    above = picture[top, left] * (1 - fx) + picture[top, right] * fx
-    below = picture[bottom, left] * (1 - fx) + picture[bottom, right] * fx
+    texels = picture.reshape(height * width, -1)
+    top, bottom = top * width, bottom * width
+    above = texels.take(top + left, axis=0) * (1 - fx) + texels.take(top + right, axis=0) * fx
+    below = texels.take(bottom + left, axis=0) * (1 - fx) + texels.take(bottom + right, axis=0) * fx
     return above * (1 - fy) + below * fy
 
 

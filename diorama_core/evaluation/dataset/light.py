@@ -32,9 +32,10 @@ def _daylight(window: SceneObject, size: np.ndarray) -> Lighting:
     return Lighting(
         window_centre=window.pose.position + R[:, 0] * 0.12,
         window_edges=np.stack([R[:, 1] * window.size_m[1] / 2, R[:, 2] * window.size_m[2] / 2]),
-        window_irradiance=np.array([0.72, 0.7, 0.67]),
+        window_irradiance=np.array([1.3, 1.27, 1.2]),
         reference_m=0.55 * float(np.linalg.norm(size[:2])),
-        sky=np.array([0.56, 0.55, 0.53]),
+        sky=np.array([0.6, 0.6, 0.59]),
         ground=np.array([0.38, 0.36, 0.34]),
         reach_m=0.55 * float(np.linalg.norm(size[:2])),
+        inward=R[:, 0],
     )

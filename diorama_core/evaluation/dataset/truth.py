@@ -15,7 +15,7 @@ from functools import cached_property
 import cv2
 import numpy as np
 import trimesh
-from jaxtyping import Bool, Float, Float32, Int32, UInt8
+from jaxtyping import Float, Float32, Int32, UInt8
 
 from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
 from diorama_core.evaluation.dataset.finishes import finish_textures
@@ -25,17 +25,20 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.render.filters import as_bytes, tone_mapped
 from diorama_core.render.lighting import Effort
 from diorama_core.render.raycast import MeshCaster, PinholeView
-from diorama_core.render.shading import shoot
+from diorama_core.render.shading import Shot, shoot
 from diorama_core.render.slabs import plane_surfaces
 from diorama_core.render.world import scene_world
 from diorama_core.scene.types import Camera, Plane, Pose, Scene, yaw_rotation
 from diorama_core.scene.values import ArrayValue
 
-FAST = Effort(window_rays=1, sky_rays=2)
+FAST = Effort(window_rays=3, sky_rays=3)
 LEAST_PIXELS = 150
 """Objects with fewer visible pixels (of 640 x 480) are not asked for: no annotator would draw them."""
 LEAST_VISIBLE = 0.15
 """Nor are objects of which less than this share is visible."""
+LETS_LIGHT_IN = ("window", "curtain", "ceiling lamp")
+STEP = 3
+"""Pixels between the rays that measure how much of an object is hidden."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +88,7 @@ def render_truth(
     with_empty_room: bool = True,
     sensor: bool = True,
 ) -> TruthView:
-    """Photograph a room and note what is true about the picture.
+    """Photograph a room and note what is true about the picture; several views of a room share a `Studio`.
 
     Args:
         scene: A room from `furnished_room`, in any frame with +Z up and the floor at z = 0.
@@ -95,40 +98,67 @@ def render_truth(
         with_empty_room: Whether to make the empty room's picture too; black without.
         sensor: Whether the picture has a sensor's noise and a lens' fall-off.
     """
-    camera = Camera(camera.intrinsics.scaled(*size), camera.T_world_camera)
-    scene = in_photo_world(replace(scene, camera=camera))
-    camera = scene.camera or camera
-    buffers = _Casting(scene, library).buffers(camera)
-    asked, boxes = _asked(scene, buffers.object_ids, buffers.visible_fraction, size)
-    objects = tuple(
-        replace(o, mask_id=k + 1, box_px=boxes[k]) if k in boxes else replace(o, mask_id=None, box_px=None)
-        for k, o in enumerate(scene.objects)
-    )
-    scene = replace(scene, objects=objects)
-    rgb = photograph(scene, camera, library, sensor=sensor)
-    bare = replace(scene, objects=(), supports=())
-    empty = photograph(bare, camera, library, sensor=False, lit_as=scene) if with_empty_room else np.zeros_like(rgb)
-    labelled = tuple((k + 1, LabelledBox(boxes[k], objects[k].category, objects[k].label)) for k in sorted(boxes))
-    inputs = Inputs(
-        photo=Photo(rgb, "rendered.png", size),
-        boxes=tuple(b for _, b in labelled),
-        instances=np.where(asked, buffers.object_ids + 1, 0).astype(np.int32),
-        instance_boxes=labelled,
-        depth_m=buffers.depth_m,
-        intrinsics=camera.intrinsics,
-    )
-    return TruthView(
-        inputs=inputs,
-        scene=scene,
-        normals_world=buffers.normals_world,
-        plane_ids=buffers.plane_ids,
-        room_plane_ids=buffers.room_plane_ids,
-        room_depth_m=buffers.room_depth_m,
-        object_ids=buffers.object_ids,
-        empty_room=empty,
-        amodal_boxes=_amodal_boxes(scene, camera, library),
-        visible_fraction=buffers.visible_fraction,
-    )
+    return Studio(scene, library).view(camera, size, with_empty_room=with_empty_room, sensor=sensor)
+
+
+class Studio:
+    """A room made ready once, to be photographed from many places.
+
+    Args:
+        scene: A room from `furnished_room`, in any frame with +Z up and the floor at z = 0.
+        library: Where its shapes are.
+    """
+
+    def __init__(self, scene: Scene, library: ShapeLibrary) -> None:
+        self._scene, self._library, self._light = scene, library, room_light(scene)
+        pictures = finish_textures(scene.architecture)
+        planes = tuple(replace(p, texture=p.id) for p in scene.architecture.planes)
+        self._shown = replace(scene, architecture=replace(scene.architecture, planes=planes))
+        self._world = scene_world(self._shown, library, textures=pictures, photographed=False)
+        count = len(scene.objects)
+        clear = {k for k, o in enumerate(scene.objects) if o.category in LETS_LIGHT_IN}
+        self._blockers = self._world.shadow_caster(without=clear | set(range(count, count + len(planes))))
+        self._room = MeshCaster([(_face(p), np.eye(4)) for p in planes])
+        self._bare = scene_world(replace(self._shown, objects=()), library, textures=pictures, photographed=False)
+
+    def view(
+        self, camera: Camera, size: tuple[int, int] = (640, 480), *, with_empty_room: bool = True, sensor: bool = True
+    ) -> TruthView:
+        """One picture and its truth; the arguments are those of `render_truth`."""
+        camera = Camera(camera.intrinsics.scaled(*size), camera.T_world_camera)
+        shot = shoot(self._world, self._blockers, PinholeView(camera), self._light, FAST)
+        room = self._room.buffers(camera)
+        scene = in_photo_world(replace(self._scene, camera=camera))
+        placed = scene.camera or camera
+        count, instance = len(scene.objects), shot.grid.instance
+        object_ids = np.where(instance < count, instance, -1).astype(np.int32)
+        amodal = _amodal_boxes(scene, placed, self._library)
+        visible = _visible_fractions(scene, placed, self._library, object_ids, amodal)
+        boxes = _asked(object_ids, visible, size)
+        objects = tuple(
+            replace(o, mask_id=k + 1 if k in boxes else None, box_px=boxes.get(k)) for k, o in enumerate(scene.objects)
+        )
+        scene = replace(scene, objects=objects)
+        rgb = _developed(shot)
+        photo = Photo(_sensed(rgb, scene) if sensor else rgb, "rendered.png", size)
+        R_room_photo = camera.T_world_camera[:3, :3] @ placed.T_world_camera[:3, :3].T
+        return TruthView(
+            inputs=_inputs(photo, scene, object_ids, shot.grid.depth),
+            scene=scene,
+            normals_world=shot.grid.flat_normals @ np.rint(R_room_photo).astype(np.float32),
+            plane_ids=np.where(instance >= count, instance - count, -1).astype(np.int32),
+            room_plane_ids=room.instance,
+            room_depth_m=room.depth_m,
+            object_ids=object_ids,
+            empty_room=self._empty_room(camera) if with_empty_room else np.zeros_like(rgb),
+            amodal_boxes=amodal,
+            visible_fraction=visible,
+        )
+
+    def _empty_room(self, camera: Camera) -> UInt8[np.ndarray, "h w 3"]:
+        """The picture with the room's light and without its objects: nothing stands in the way of the light."""
+        nothing = self._bare.shadow_caster(without=range(len(self._shown.architecture.planes)))
+        return _developed(shoot(self._bare, nothing, PinholeView(camera), self._light, FAST))
 
 
 def in_photo_world(scene: Scene) -> Scene:
@@ -154,22 +184,8 @@ def moved(scene: Scene, T_to_from: Float[np.ndarray, "4 4"]) -> Scene:
     return replace(scene, camera=camera, objects=objects, architecture=replace(scene.architecture, planes=planes))
 
 
-def photograph(
-    scene: Scene, camera: Camera, library: ShapeLibrary, *, sensor: bool = True, lit_as: Scene | None = None
-) -> UInt8[np.ndarray, "h w 3"]:
-    """The fast path's picture; `lit_as` names another scene whose light falls into this one."""
-    pictures = finish_textures(scene.architecture)
-    named = tuple(replace(p, texture=p.id) for p in scene.architecture.planes)
-    shown = replace(scene, architecture=replace(scene.architecture, planes=named))
-    world = scene_world(shown, library, textures=pictures, photographed=False)
-    planes = frozenset(p.id for p in scene.architecture.planes)
-    glazed = {o.id for o in scene.objects if o.category in ("window", "curtain", "ceiling lamp")}
-    blockers = scene_world(shown, library, without=planes | glazed)
-    light = room_light(lit_as or scene)
-    shot = shoot(world, blockers, PinholeView(camera), light, FAST)
-    linear = shot.radiance / np.maximum(shot.coverage, 1e-3)[..., None]
-    rgb = as_bytes(tone_mapped(linear))
-    return _sensed(rgb, scene) if sensor else rgb
+def _developed(shot: Shot) -> UInt8[np.ndarray, "h w 3"]:
+    return as_bytes(tone_mapped(shot.radiance / np.maximum(shot.coverage, 1e-3)[..., None]))
 
 
 def _sensed(rgb: UInt8[np.ndarray, "h w 3"], scene: Scene) -> UInt8[np.ndarray, "h w 3"]:
@@ -183,53 +199,25 @@ def _sensed(rgb: UInt8[np.ndarray, "h w 3"], scene: Scene) -> UInt8[np.ndarray, 
     return np.clip(soft * (1 - 0.06 * radius)[..., None] + rng.normal(0.0, 1.6, rgb.shape), 0, 255).astype(np.uint8)
 
 
-@dataclass(frozen=True, eq=False)
-class _Seen:
-    depth_m: Float32[np.ndarray, "h w"]
-    normals_world: Float32[np.ndarray, "h w 3"]
-    object_ids: Int32[np.ndarray, "h w"]
-    plane_ids: Int32[np.ndarray, "h w"]
-    room_plane_ids: Int32[np.ndarray, "h w"]
-    room_depth_m: Float32[np.ndarray, "h w"]
-    visible_fraction: Float[np.ndarray, "n"]
-
-
-class _Casting:
-    """The room with and without its objects, and every object alone, ready to be looked at."""
-
-    def __init__(self, scene: Scene, library: ShapeLibrary) -> None:
-        self._scene, self._library = scene, library
-        planes = [(_face(p), np.eye(4)) for p in scene.architecture.planes]
-        self._all = MeshCaster([*((library.mesh(o.shape_id), o.pose.matrix) for o in scene.objects), *planes])
-        self._room = MeshCaster(planes)
-
-    def buffers(self, camera: Camera) -> _Seen:
-        """Everything per pixel, and the visible share of every object."""
-        count = len(self._scene.objects)
-        seen, room = self._all.buffers(camera), self._room.buffers(camera)
-        object_ids = np.where(seen.instance < count, seen.instance, -1).astype(np.int32)
-        return _Seen(
-            depth_m=seen.depth_m,
-            normals_world=seen.normals_world,
-            object_ids=object_ids,
-            plane_ids=np.where(seen.instance >= count, seen.instance - count, -1).astype(np.int32),
-            room_plane_ids=room.instance,
-            room_depth_m=room.depth_m,
-            visible_fraction=self._visible(camera, object_ids),
-        )
-
-    def _visible(self, camera: Camera, object_ids: Int32[np.ndarray, "h w"]) -> Float[np.ndarray, "n"]:
-        """Visible over whole pixels within the picture, by casting each object alone on every third pixel."""
-        share = np.zeros(len(self._scene.objects))
-        k = camera.intrinsics
-        coarse = Camera(k.scaled(max(1, k.width // 3), max(1, k.height // 3)), camera.T_world_camera)
-        pixels = np.bincount(object_ids[object_ids >= 0], minlength=len(share))
-        for index, item in enumerate(self._scene.objects):
-            if pixels[index]:
-                alone = MeshCaster([(self._library.mesh(item.shape_id), item.pose.matrix)]).buffers(coarse)
-                whole = int(alone.silhouette.sum()) * (k.width * k.height) / alone.silhouette.size
-                share[index] = min(1.0, pixels[index] / max(whole, pixels[index] * 1e-3, 1.0))
-        return share
+def _visible_fractions(
+    scene: Scene,
+    camera: Camera,
+    library: ShapeLibrary,
+    object_ids: Int32[np.ndarray, "h w"],
+    amodal: tuple[Box | None, ...],
+) -> Float[np.ndarray, "n"]:
+    """Visible over whole pixels within the picture, by casting each object alone on every third pixel of its box."""
+    share = np.zeros(len(scene.objects))
+    pixels = np.bincount(object_ids[object_ids >= 0], minlength=len(share))
+    view = PinholeView(camera)
+    for index, (item, box) in enumerate(zip(scene.objects, amodal, strict=True)):
+        if pixels[index] and box is not None:
+            x, y = (np.arange(box[a] // STEP * STEP + STEP / 2, box[a + 2] + STEP, STEP) for a in (0, 1))
+            inside = np.stack(np.meshgrid(x[x < view.width], y[y < view.height]), axis=-1)
+            hits = MeshCaster([(library.mesh(item.shape_id), item.pose.matrix)]).first_hits(view.rays(inside))
+            whole = int(hits.found.sum()) * STEP**2
+            share[index] = min(1.0, pixels[index] / max(whole, pixels[index] * 1e-3, 1.0))
+    return share
 
 
 def _face(plane: Plane) -> trimesh.Trimesh:
@@ -238,19 +226,35 @@ def _face(plane: Plane) -> trimesh.Trimesh:
 
 
 def _asked(
-    scene: Scene, object_ids: Int32[np.ndarray, "h w"], visible: Float[np.ndarray, "n"], size: tuple[int, int]
-) -> tuple[Bool[np.ndarray, "h w"], dict[int, Box]]:
-    """Where the objects are that a person would annotate, and the boxes of their visible parts."""
+    object_ids: Int32[np.ndarray, "h w"], visible: Float[np.ndarray, "n"], size: tuple[int, int]
+) -> dict[int, Box]:
+    """The objects that a person would annotate, with the boxes of their visible parts."""
     least = LEAST_PIXELS * size[0] * size[1] / (640 * 480)
-    asked = np.zeros(object_ids.shape, dtype=bool)
     boxes: dict[int, Box] = {}
-    for index in range(len(scene.objects)):
+    for index in range(len(visible)):
         mask = object_ids == index
         if mask.sum() >= least and visible[index] >= LEAST_VISIBLE:
             rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
             boxes[index] = (float(columns[0]), float(rows[0]), float(columns[-1] + 1), float(rows[-1] + 1))
-            asked |= mask
-    return asked, boxes
+    return boxes
+
+
+def _inputs(
+    photo: Photo, scene: Scene, object_ids: Int32[np.ndarray, "h w"], depth_m: Float32[np.ndarray, "h w"]
+) -> Inputs:
+    """What a build is given: everything measured, and the objects asked for."""
+    asked = [k for k, o in enumerate(scene.objects) if o.mask_id is not None]
+    labelled = tuple(
+        (k + 1, LabelledBox(o.box_px, o.category, o.label)) for k, o in enumerate(scene.objects) if o.box_px is not None
+    )
+    return Inputs(
+        photo=photo,
+        boxes=tuple(b for _, b in labelled),
+        instances=np.where(np.isin(object_ids, asked), object_ids + 1, 0).astype(np.int32),
+        instance_boxes=labelled,
+        depth_m=depth_m,
+        intrinsics=None if scene.camera is None else scene.camera.intrinsics,
+    )
 
 
 def _amodal_boxes(scene: Scene, camera: Camera, library: ShapeLibrary) -> tuple[Box | None, ...]:

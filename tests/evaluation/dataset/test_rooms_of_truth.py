@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from diorama_core.evaluation.dataset.artefacts import photo_only, true_geometry,
 from diorama_core.evaluation.dataset.finishes import FLOORS, WALLS, finish_picture
 from diorama_core.evaluation.dataset.plan import footprint, quads_overlap, room_plan
 from diorama_core.evaluation.dataset.splits import split_library, split_of
+from diorama_core.evaluation.dataset.truth import Studio
 from diorama_core.layout.exact import mesh_overlap_m3
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Plane
@@ -95,6 +98,29 @@ def test_buffers_agree_with_one_another(view):
     assert (depth <= view.room_depth_m + 1e-3).all()
     assert (view.inputs.instances > 0).sum() <= (view.object_ids >= 0).sum()
     assert view.empty_room.shape == view.inputs.photo.rgb.shape
+
+
+def test_normals_are_those_of_the_planes_in_the_photos_world(view):
+    for index, plane in enumerate(view.scene.architecture.planes):
+        seen = view.normals_world[view.plane_ids == index]
+        assert np.allclose(seen, plane.normal, atol=1e-4)
+    assert len(np.unique(view.plane_ids)) >= 4
+
+
+def test_a_studio_gives_every_view_as_if_it_were_alone(rooms, view, library):
+    cameras = hold_cameras(rooms["living"], library, 1, 2, SIZE)
+    studio = Studio(rooms["living"], library)
+    studio.view(cameras[1], SIZE, with_empty_room=False)
+    again = studio.view(hold_cameras(rooms["living"], library, 1, 1, SIZE)[0], SIZE)
+    assert again == view
+
+
+def test_nothing_hides_what_stands_alone(view, library):
+    index = max(view.asked, key=lambda k: view.visible_fraction[k])
+    alone = replace(view.scene, objects=(view.scene.objects[index],), supports=())
+    seen = render_truth(alone, view.camera, library, SIZE, with_empty_room=False)
+    assert 0.9 < seen.visible_fraction[0] <= 1
+    assert (seen.object_ids == 0).sum() >= (view.object_ids == index).sum()
 
 
 def test_depth_and_scene_are_in_the_photos_world(view):

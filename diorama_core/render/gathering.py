@@ -1,0 +1,106 @@
+"""The light that falls on what a view sees: gathered at every second pixel, freed of noise, spread to the rest.
+
+Light changes slowly along a surface, so a quarter of the pixels tells it for all. A pixel takes it from the gathered
+ones beside it that lie on its own smooth surface; the few that have none (twigs, wires, rims) gather for themselves.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from jaxtyping import Bool, Float32, Int
+
+from diorama_core.render.filters import Neighbours
+from diorama_core.render.grid import Grid, bands, each
+from diorama_core.render.lighting import TILE, Effort, Lighting, Spots, irradiance
+from diorama_core.render.raycast import Caster, dot
+from diorama_core.render.world import World
+
+Light = Float32[np.ndarray, "h w 3"]
+SAME_TURN = 0.85
+"""Least cosine between normals of one smooth surface."""
+ENOUGH = 5.0
+"""Weight of neighbours (of 16) from which on the light of a gathered pixel is free enough of noise."""
+ALONE = Effort(window_rays=5, sky_rays=9)
+"""Rays of a pixel that gathers for itself and has no neighbours to share samples with."""
+
+
+def fallen_light(world: World, blockers: Caster, grid: Grid, light: Lighting, effort: Effort) -> Light:
+    """Light on every place of a grid; 0 where nothing is seen.
+
+    Args:
+        world: What surrounds the places.
+        blockers: What stops the window's light.
+        grid: The places.
+        light: What lights the world.
+        effort: Rays of each pixel that gathers.
+    """
+    coarse = grid.part(slice(0, None, 2), slice(0, None, 2))
+    rows = bands(coarse.found.shape[0])
+    noisy = np.concatenate(each(lambda band: _noisy(world, blockers, coarse.part(band), band, light, effort), rows))
+    gathered = each(lambda band: _gathered(noisy, coarse, band), rows)
+    smooth, sure = (np.concatenate([pair[k] for pair in gathered]) for k in (0, 1))
+    spread = each(lambda band: _spread(smooth, sure, coarse, grid, band), rows)
+    fallen, known = (np.concatenate([pair[k] for pair in spread]) for k in (0, 1))
+    pixels = np.argwhere(grid.found & ~known)
+    groups = [group for group in np.array_split(pixels, 1 + len(pixels) // 4096) if len(group)]
+    for group, alone in zip(groups, each(lambda g: _alone(world, blockers, grid, g, light), groups), strict=True):
+        fallen[group[:, 0], group[:, 1]] = alone
+    return fallen
+
+
+def _noisy(world: World, blockers: Caster, grid: Grid, rows: slice, light: Lighting, effort: Effort) -> Light:
+    """Light of some rows, every pixel with its own share of the samples."""
+    found = grid.found
+    spots = Spots(grid.points[found], grid.normals[found], grid.flat_normals[found])
+    pixels = np.argwhere(found) + np.array([rows.start, 0])
+    noisy = np.zeros(grid.points.shape, np.float32)
+    noisy[found] = np.add(*irradiance(world, blockers, spots, pixels, light, effort))
+    return noisy
+
+
+def _gathered(noisy: Light, grid: Grid, rows: slice) -> tuple[Light, Bool[np.ndarray, "h w"]]:
+    """Light of some rows without its noise, gathered over blocks from the rows and those around them.
+
+    Returns:
+        The light, and where it was gathered from enough neighbours to be free of noise.
+    """
+    halo = slice(max(0, rows.start - TILE), rows.stop + TILE)
+    near = grid.part(halo)
+    neighbours = Neighbours.of(near.points, near.normals, near.found, 4 * near.pixel_m)
+    smooth = neighbours.mean(neighbours.mean(noisy[halo]))
+    own = slice(rows.start - halo.start, rows.stop - halo.start)
+    return smooth[own], neighbours.total[own] >= ENOUGH
+
+
+def _spread(
+    smooth: Light, sure: Bool[np.ndarray, "h w"], coarse: Grid, grid: Grid, rows: slice
+) -> tuple[Light, Bool[np.ndarray, "h w"]]:
+    """Light of the fine rows that belong to some coarse ones, and where the gathered pixels beside them tell it."""
+    fine = grid.part(slice(2 * rows.start, 2 * rows.stop))
+    total, mixed = np.zeros(fine.found.shape, np.float32), np.zeros(fine.points.shape, np.float32)
+    for below, right in ((0, 0), (0, 1), (1, 0), (1, 1)):
+        for dy in range(1 + below):
+            for dx in range(1 + right):
+                there = (slice(rows.start + dy, rows.stop + dy), slice(dx, None))
+                h, w = (min(a, b) for a, b in zip(coarse.found[there].shape, fine.found[below::2, right::2].shape))
+                here = (slice(below, below + 2 * h, 2), slice(right, right + 2 * w, 2))
+                there = (slice(there[0].start, there[0].start + h), slice(dx, dx + w))
+                fits = (sure[there] & _on_one_surface(fine.part(*here), coarse.part(*there))).astype(np.float32)
+                total[here] += fits
+                mixed[here] += fits[..., None] * smooth[there]
+    return mixed / np.maximum(total, 1)[..., None], total > 0
+
+
+def _on_one_surface(pixel: Grid, beside: Grid) -> Bool[np.ndarray, "h w"]:
+    """Where the pixels beside continue the surfaces of the given ones."""
+    leave = np.abs(dot(beside.points - pixel.points, pixel.normals))
+    return beside.found & pixel.found & (leave < 3 * pixel.pixel_m) & (dot(beside.normals, pixel.normals) > SAME_TURN)
+
+
+def _alone(
+    world: World, blockers: Caster, grid: Grid, pixels: Int[np.ndarray, "n 2"], light: Lighting
+) -> Float32[np.ndarray, "n 3"]:
+    """Light of pixels that no neighbour tells."""
+    at = (pixels[:, 0], pixels[:, 1])
+    spots = Spots(grid.points[at], grid.normals[at], grid.flat_normals[at])
+    return np.add(*irradiance(world, blockers, spots, None, light, ALONE))
