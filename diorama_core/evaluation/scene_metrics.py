@@ -261,7 +261,7 @@ def surface_agreement(
     """Mean distance to the other points, both ways averaged, and the F-score: the harmonic mean of the shares of
     either side's points that have one of the other side within `near_m`.
     """
-    there, back = cKDTree(true).query(found)[0], cKDTree(found).query(true)[0]
+    there, back = np.asarray(cKDTree(true).query(found)[0]), np.asarray(cKDTree(found).query(true)[0])
     precision, recall = float((there <= near_m).mean()), float((back <= near_m).mean())
     both = precision + recall
     return 0.5 * float(there.mean() + back.mean()), 2 * precision * recall / both if both else 0.0

@@ -16,6 +16,11 @@ from diorama_core.scene.types import Camera, Intrinsics, Plane, Scene
 
 PROBE_SIZE = (64, 48)
 CANDIDATES = 28
+LEAST_SHOWN = 6
+LEAST_FLOOR = 0.04
+LARGEST_SHARE = 0.45
+NEAR_SHARE = 0.1
+"""A view with fewer things, less floor, a larger thing or more right before the lens is a last resort."""
 UNDER_CEILING_M = 0.2
 """Nobody holds a camera nearer to a sloping ceiling."""
 
@@ -66,15 +71,16 @@ def hold_cameras(
         tried += [_candidate(scene, rng, size, nearer) for _ in range(CANDIDATES * max(1, count))]
         if sum(c is not None for c in tried) >= 2 * count:
             break
-    scored = sorted(
-        ((_score(scene, caster, c), k) for k, c in enumerate(tried) if c is not None), key=lambda pair: -pair[0]
-    )
+    looks = [(camera, _look(scene, caster, camera)) for camera in tried if camera is not None]
+    looks.sort(key=lambda pair: -pair[1].score)
     chosen: list[Camera] = []
-    for least_apart in (1.2, 0.6, 0.2, 0.0):
-        for _, k in scored:
-            camera = tried[k]
-            if camera is not None and len(chosen) < count and all(_apart(camera, c) > least_apart for c in chosen):
-                chosen.append(camera)
+    # Two pictures that resemble each other are better than one of a cupboard's side.
+    for worth_it in (True, False):
+        for least_apart in (1.2, 0.6, 0.2, 0.0):
+            for camera, look in looks:
+                apart = all(_apart(camera, c) > least_apart for c in chosen)
+                if len(chosen) < count and apart and (look.worth_it or not worth_it):
+                    chosen.append(camera)
     if len(chosen) < count:
         raise SceneError(f"no place for {count} cameras was found in the room; it is too full or too small")
     return tuple(chosen)
@@ -129,7 +135,17 @@ def held(
     return T
 
 
-def _score(scene: Scene, caster: MeshCaster, camera: Camera) -> float:
+@dataclass(frozen=True)
+class _Look:
+    """What a quick look through a camera shows."""
+
+    score: float
+    """Higher is better."""
+    worth_it: bool
+    """Whether it shows a room: several things, some floor, nothing that fills the view."""
+
+
+def _look(scene: Scene, caster: MeshCaster, camera: Camera) -> _Look:
     """How much a view shows: objects well inside the picture, not too near, with floor to stand on."""
     probe = Camera(camera.intrinsics.scaled(*PROBE_SIZE), camera.T_world_camera)
     seen = caster.buffers(probe)
@@ -142,9 +158,10 @@ def _score(scene: Scene, caster: MeshCaster, camera: Camera) -> float:
     near = float((seen.depth_m < 0.9).mean())
     biggest = float(pixels.max() / total) if count else 0.0
     floor = float((seen.instance == count).mean())
-    return float(
-        whole.sum() + 0.3 * (pixels >= 4).sum() - 12 * near - 8 * max(biggest - 0.3, 0.0) + 4 * min(floor, 0.2)
-    )
+    shown = int((pixels >= 4).sum())
+    score = whole.sum() + 0.3 * shown - 12 * near - 8 * max(biggest - 0.3, 0.0) + 4 * min(floor, 0.2)
+    worth_it = shown >= LEAST_SHOWN and floor >= LEAST_FLOOR and biggest <= LARGEST_SHARE and near <= NEAR_SHARE
+    return _Look(float(score), bool(worth_it))
 
 
 def _apart(a: Camera, b: Camera) -> float:

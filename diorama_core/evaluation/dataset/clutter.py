@@ -38,6 +38,8 @@ HABITS: dict[str, Habit] = {
     "table": Habit(("tray", "cup", "bottle", "vase", "books", "plate", "bowl", "glass", "fruit", "candle"), 6, 0.5),
     "desk": Habit(("books", "cup", "lamp", "plant", "laptop", "bottle", "telephone", "printer", "photo frame"), 4, 0.6),
     "bookshelf": Habit(("books", "books", "books", "vase", "box", "plant", "toy", "globe", "basket"), 3, 0.4),
+    "sink": Habit(("soap dispenser", "cup", "soap dispenser"), 2, 0.3),
+    "toilet": Habit(("toilet paper", "plant", "box"), 1, 0.3),
     "shelves": Habit(("books", "books", "vase", "plant", "cup", "jar", "bottle", "candle", "photo frame"), 3, 0.35),
     "kitchen counter": Habit(
         ("microwave", "kettle", "toaster", "coffee machine", "bowl", "bottle", "cutting board", "jar", "cooking pot",

@@ -226,9 +226,10 @@ def _bathroom(f: Furnisher) -> None:
     if towels and f.chance(0.6):
         wall = f.plan.walls[int(f.rng.integers(len(f.plan.walls)))]
         f.hang(towels, wall, float(f.rng.uniform(0.5, max(wall.length_m - 0.5, 0.6))), 1.1)
-    for _ in range(2):
+    for _ in range(3):
         wall = f.plan.walls[int(f.rng.integers(len(f.plan.walls)))]
         groups.wall_shelf(f, wall, float(f.rng.uniform(0.6, max(wall.length_m - 0.6, 0.7))), 1.4)
+    groups.pictures(f, int(f.rng.integers(1, 3)), "picture", "mirror", "towel")
     groups.ceiling_light(f)
 
 
@@ -287,6 +288,6 @@ RECIPES: dict[RoomKind, Recipe] = {
     "dining": Recipe((3.8, 5.4), (3.6, 4.8), _dining, clutter=(6, 24)),
     "study": Recipe((3.0, 4.4), (3.0, 4.2), _study, SLEPT_IN, clutter=(8, 34)),
     "lab": Recipe((4.8, 7.0), (4.2, 6.0), _lab, clutter=(8, 36)),
-    "bathroom": Recipe((2.4, 3.4), (2.6, 3.6), _bathroom, ("box", "box", "slanted wall"), (0, 1), (3, 10)),
+    "bathroom": Recipe((2.4, 3.4), (2.6, 3.6), _bathroom, ("box", "box", "slanted wall"), (0, 1), (6, 16)),
     "corridor": Recipe((1.9, 2.4), (4.5, 7.0), _corridor, ("box", "box", "L-shape"), (0, 1), (3, 12)),
 }

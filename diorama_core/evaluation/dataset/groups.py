@@ -270,7 +270,7 @@ def dining(f: Furnisher, xy: Float[np.ndarray, "2"] | None = None, *, rug: bool 
     return table
 
 
-def _table_with_room(f: Furnisher, item: Item, xy: Float[np.ndarray, "2"] | None, *, rug: bool) -> str | None:
+def _table_with_room(f: Furnisher, item: Item, xy: Float[np.ndarray, "2"] | None, *, rug: bool = False) -> str | None:
     """The table where there is space to sit around it, on a rug that carries all of it if there is such a one."""
     low, high = f.plan.outline.min(axis=0), f.plan.outline.max(axis=0)
     for attempt in range(24):
