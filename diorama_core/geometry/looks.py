@@ -27,7 +27,7 @@ from diorama_core.geometry.silhouette import ShapeCaster
 
 log = logging.getLogger(__name__)
 
-_FORMAT = "1"
+_FORMAT = "2"
 _KEPT = 512
 _LEAST_AREA_M2 = 1e-12
 
@@ -79,10 +79,22 @@ def material_rgb(visual: Any) -> UInt8[np.ndarray, "3"] | None:
         return np.asarray(visual.main_color, dtype=np.uint8)[:3]
     material: Any = visual.material
     texture = getattr(material, "baseColorTexture", None)
-    colour = np.asarray(material.main_color, dtype=np.float64)[:3]
-    if texture is not None:
-        colour = colour / 255.0 * np.asarray(texture.convert("RGB").resize((1, 1)), dtype=np.float64).reshape(3)
-    return np.clip(colour, 0, 255).astype(np.uint8)
+    factor = getattr(material, "baseColorFactor", None)
+    if texture is None and factor is None:
+        return np.asarray(material.main_color, dtype=np.uint8)[:3]
+    picture = np.ones(3) if texture is None else np.asarray(texture.convert("RGB").resize((1, 1)), float)[0, 0] / 255.0
+    # glTF: the factor is linear light, the picture is sRGB; a material without a factor shows its picture as it is.
+    light = _to_linear(picture) * (np.ones(3) if factor is None else np.asarray(factor, float)[:3] / 255.0)
+    return np.asarray(np.clip(np.rint(255.0 * _to_srgb(light)), 0, 255), dtype=np.uint8)
+
+
+def _to_linear(srgb: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
+    return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+
+
+def _to_srgb(light: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
+    light = np.maximum(light, 0.0)
+    return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
 
 
 class LookStore:

@@ -35,7 +35,7 @@ SEARCH_GRID = TemplateGrid(
     elevations_deg=(-12.0, 8.0, 28.0), azimuths=12, size_px=72, longest_side=0.85, distance=2.2, fov_deg=32.0
 )
 """Views as photos of rooms have them: rarely from high above, sometimes from below (lamps), little perspective."""
-_VERSION = "1"
+_VERSION = "2"
 _BATCH = 32
 _STALE = 4
 """Features are made anew when there are so many times more of them than shapes."""

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import trimesh
+from PIL import Image
 
-from diorama_core.geometry.looks import LookStore, look_of
+from diorama_core.geometry.looks import LookStore, look_of, material_rgb
 from tests.primitives import PrimitiveLibrary
 
 LIBRARY = PrimitiveLibrary()
@@ -55,3 +56,18 @@ def test_a_folder_that_cannot_be_written_loses_nothing(tmp_path) -> None:
     blocked = tmp_path / "file"
     blocked.write_text("")
     assert len(LookStore().get("key", blocked, lambda: LIBRARY.parts("chair")).faces)
+
+
+def test_colours_are_those_that_viewers_show() -> None:
+    picture = Image.new("RGB", (4, 4), (63, 95, 82))
+    plain = trimesh.visual.material.PBRMaterial(baseColorTexture=picture)
+    halved = trimesh.visual.material.PBRMaterial(baseColorTexture=picture, baseColorFactor=[0.5, 0.5, 0.5, 1.0])
+    tinted = trimesh.visual.material.PBRMaterial(baseColorFactor=[0.2140, 0.0, 1.0, 1.0])
+    seen = []
+    for material in (plain, halved, tinted):
+        box = trimesh.creation.box((1, 1, 1))
+        box.visual = trimesh.visual.TextureVisuals(uv=np.zeros((len(box.vertices), 2)), material=material)
+        seen.append(material_rgb(box.visual))
+    assert np.array_equal(seen[0], [63, 95, 82])
+    assert np.allclose(seen[1], [45, 69, 59], atol=2)  # half the light, not half the number
+    assert np.allclose(seen[2], [128, 0, 255], atol=2)
