@@ -34,7 +34,7 @@ from diorama_core.pose.correspondence.solvers import CorrespondencePose, Kind
 from diorama_core.progress import Progress
 from diorama_core.protocols import PoseStage
 from diorama_core.render.templates import TemplateGrid
-from diorama_core.retrieval import EmbeddedRetrieval
+from diorama_core.retrieval import HierarchicalRetrieval
 from diorama_core.scene.types import Scene
 
 OURS = "render and compare"
@@ -190,7 +190,7 @@ class SideBySide:
 
     def retrieved(self, seen: Seen, keep: int) -> tuple[RankedShapes, ...]:
         """Ranked shapes of every object."""
-        stage = EmbeddedRetrieval(self.library, keep=keep)
+        stage = HierarchicalRetrieval(self.library, keep=keep)
         return stage.retrieve(seen.inputs, seen.objects, seen.geometry, Progress())
 
     def given(self, view: TruthView, seen: Seen) -> tuple[RankedShapes, ...]:

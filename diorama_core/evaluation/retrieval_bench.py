@@ -22,7 +22,7 @@ from diorama_core.evaluation.shape_metrics import is_household, shape_distance
 from diorama_core.evaluation.tables import Column, Row, Table, paper_rows
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
-from diorama_core.retrieval import EmbeddedRetrieval
+from diorama_core.retrieval import HierarchicalRetrieval
 
 log = logging.getLogger(__name__)
 
@@ -78,8 +78,8 @@ def run(library: ShapeLibrary, scenes: int = 20, seed: int = 0, progress: Progre
     """Retrieve for every object asked for, from the whole library and from its training and validation shapes."""
     progress = progress or Progress()
     tested = split_library(library, "test")
-    everything = EmbeddedRetrieval(library)
-    others = EmbeddedRetrieval(split_library(library, "train", "validation"))
+    everything = HierarchicalRetrieval(library)
+    others = HierarchicalRetrieval(split_library(library, "train", "validation"))
     results: list[ObjectResult] = []
     cases = recipe(scenes, 1, seed)
     for k, (case, view) in enumerate(views_of(cases, tested)):
@@ -89,7 +89,7 @@ def run(library: ShapeLibrary, scenes: int = 20, seed: int = 0, progress: Progre
     return RetrievalBench(seed, tuple(results))
 
 
-def _ranked(stage: EmbeddedRetrieval, view: TruthView) -> dict[str, tuple[str, ...]]:
+def _ranked(stage: HierarchicalRetrieval, view: TruthView) -> dict[str, tuple[str, ...]]:
     try:
         found = stage.retrieve(view.inputs, true_objects(view), true_geometry(view), Progress())
     except DioramaError as error:

@@ -54,7 +54,7 @@ from diorama_core.protocols import (
     RetrievalStage,
     SightStage,
 )
-from diorama_core.retrieval import EmbeddedRetrieval
+from diorama_core.retrieval import HierarchicalRetrieval
 from diorama_core.scene.edits import set_metrics
 from diorama_core.scene.types import Scene
 
@@ -118,7 +118,7 @@ def embedded_stages(inputs: Inputs, library: ShapeLibrary, *, recipe: str = DEFA
         geometry=MeasuredGeometry() if measured else SingleViewMetrology(),
         architecture=PlanarRoom() if measured else RoomBox(),
         depth=MeasuredDepth() if measured else RenderedDepth(),
-        retrieval=EmbeddedRetrieval(library),
+        retrieval=HierarchicalRetrieval(library),
         pose=RenderAndCompare(library),
         layout=layout_recipe(recipe, library, depth_measured=measured),
         graph=GeometricGraph() if measured else None,

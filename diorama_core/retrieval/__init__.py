@@ -1,5 +1,5 @@
 """Which shapes could stand for each object, best first."""
 
-from diorama_core.retrieval.embedded import EmbeddedRetrieval
+from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
 
-__all__ = ["EmbeddedRetrieval"]
+__all__ = ["HierarchicalRetrieval"]

@@ -21,7 +21,8 @@ _ENOUGH = 4
 _RELATED_FACTOR = 0.6
 _USUAL_FACTOR = 0.92
 _RARE_FACTOR = 0.68
-_NAMED_POOL = 24
+_NAMED_POOL = 50
+"""Of one kind; the paper's text query keeps as many."""
 _SPECIAL_POOL = 4
 _SUBSTITUTES = 3
 _UNNAMED_POOL = 30
@@ -161,7 +162,7 @@ class Wish(ArrayValue):
 
 
 def pool_for(library: ShapeLibrary, wish: Wish) -> Pool:
-    """Shapes worth comparing with the picture, at most a dozen or two; nearest sizes where there are more."""
+    """Shapes worth comparing with the picture, some dozens; nearest sizes where there are more."""
     if wish.category == UNKNOWN.name:
         return Pool(_plausible(library, wish))
     own = _nearest(_usable(library, library.in_category(wish.category), wish), wish.size_m, _NAMED_POOL)

@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 
 from diorama_core.progress import Progress
-from diorama_core.retrieval import EmbeddedRetrieval
+from diorama_core.retrieval import HierarchicalRetrieval
 from tests.pose.rooms import LIBRARY, Room, camera_at, random_room, standing
 
-STAGE = EmbeddedRetrieval(LIBRARY)
+STAGE = HierarchicalRetrieval(LIBRARY)
 
 
-def ranked(room: Room, stage: EmbeddedRetrieval = STAGE):
+def ranked(room: Room, stage: HierarchicalRetrieval = STAGE):
     return stage.retrieve(room.inputs, room.objects, room.geometry, Progress())
 
 
@@ -32,7 +32,7 @@ def test_scores_are_finite_and_fall() -> None:
 
 
 def test_no_more_than_asked_for_are_kept() -> None:
-    stage = EmbeddedRetrieval(LIBRARY, keep=2)
+    stage = HierarchicalRetrieval(LIBRARY, keep=2)
     assert all(len(found.ranked) <= 2 for found in ranked(random_room(2), stage))
 
 
@@ -86,4 +86,4 @@ def test_its_name_is_short_and_changes_with_the_library() -> None:
             return super().shapes()[1:]
 
     assert len(repr(STAGE)) < 80
-    assert repr(STAGE) == repr(EmbeddedRetrieval(LIBRARY)) != repr(EmbeddedRetrieval(Fewer()))
+    assert repr(STAGE) == repr(HierarchicalRetrieval(LIBRARY)) != repr(HierarchicalRetrieval(Fewer()))

@@ -1,4 +1,4 @@
-"""Retrieval without learned embeddings: category first, then size, silhouette and colour."""
+"""Hierarchical retrieval: the category group first, then size, silhouette and looks."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from jaxtyping import Float
 from diorama_core.artefacts import Cuboid, DetectedObject, Inputs, ObjectGeometry, RankedShapes
 from diorama_core.geometry.looks import SHARED_LOOKS
 from diorama_core.geometry.observed import Observed, observe_among
-from diorama_core.geometry.palettes import Palette, palette_agreement, palette_of_crop, palette_of_look
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import UNKNOWN, with_kin
 from diorama_core.progress import Progress
+from diorama_core.retrieval.likeness import EmbeddedLikeness, Glimpse, Likeness
 from diorama_core.retrieval.pools import Pool, Wish, pool_for, size_cost
 from diorama_core.scene.types import Support, yaw_rotation
 
@@ -28,14 +28,16 @@ _SEATS = with_kin("chair", "office chair", "stool", "armchair")
 _UNNAMED_OUTLINE, _UNNAMED_SIZE = 3.0, 0.5
 """How much more the outline, and how much less the guessed size, of a thing without a name counts."""
 _OWN_EVIDENCE = 0.4
+_LEAST_LIKENESS = 0.25
 
 
 @dataclass(frozen=True)
-class EmbeddedRetrieval:
-    """Ranks a category's shapes by what the photo shows of the object; needs no weights (paper, section 3.2).
+class HierarchicalRetrieval:
+    """Ranks a category's shapes by what the photo shows of the object (paper, section 3.2).
 
-    The paper's text query becomes the category's pool, its image query the agreement of size, silhouette and main
-    colours. Objects of one category and size are ranked together, so that four dining chairs are four of a kind.
+    The paper's text query becomes the category's pool, its image query the agreement of size, silhouette and looks,
+    which are compared with rendered views, or in a joint embedding of words, pictures and shapes where one is at hand.
+    Objects of one category and size are ranked together, so that four dining chairs are four of a kind.
     """
 
     library: ShapeLibrary
@@ -43,14 +45,18 @@ class EmbeddedRetrieval:
     """How many shapes are kept for an object."""
     cells: int = 36
     """Resolution of the silhouettes, both ways."""
-    size_weight: float = 0.45
+    size_weight: float = 0.3
     silhouette_weight: float = 0.4
     """Of a mask that can be trusted; less for doubtful ones."""
-    colour_weight: float = 0.2
+    likeness_weight: float = 1.3
+    """Of a thing that is seen whole; less, down to a quarter, for cut, hidden and badly outlined ones."""
+    likeness: Likeness | None = None
+    """Compares looks; by colours, outline and edges where None."""
 
     def __repr__(self) -> str:
-        numbers = (self.keep, self.cells, self.size_weight, self.silhouette_weight, self.colour_weight)
-        return f"EmbeddedRetrieval({_fingerprint(self.library)}, {', '.join(map(str, numbers))})"
+        numbers = (self.keep, self.cells, self.size_weight, self.silhouette_weight, self.likeness_weight)
+        looks = "" if self.likeness is None else f", {self.likeness!r}"
+        return f"HierarchicalRetrieval({_fingerprint(self.library)}, {', '.join(map(str, numbers))}{looks})"
 
     def retrieve(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
@@ -63,17 +69,22 @@ class EmbeddedRetrieval:
         pools = self._pools(measured, sizes, groups, geometry.supports)
         centres = np.array([cuboids[o.id].centre for o in measured]).reshape(-1, 3)
         parents = _parent_indices(measured, geometry.supports)
+        likeness = self.likeness or EmbeddedLikeness(self.library)
         scores: list[dict[str, float]] = []
         for index, thing in enumerate(measured):
             progress.report(index / len(measured), f"Looking for shapes: {thing.label}")
             seen = observe_among(geometry.camera, measured, centres, parents, index, self.cells)
-            palette = palette_of_crop(inputs.photo.rgb, thing.mask)
             unnamed = thing.category == UNKNOWN.name
             members = pools[groups[index]].members
+            visible = (1 - seen.border_share) * (1 - seen.hidden_share) * seen.mask_trust
+            glimpse = Glimpse(inputs.photo.rgb, thing.mask, thing.label, visible)
+            alike = likeness.of(glimpse, [m.shape for m in members])
+            weight = self.likeness_weight * (_LEAST_LIKENESS + (1 - _LEAST_LIKENESS) * visible)
             scores.append(
                 {
-                    m.shape.id: m.kind_factor * self._score(m.shape, cuboids[thing.id], seen, palette, unnamed)
-                    for m in members
+                    m.shape.id: m.kind_factor
+                    * self._score(m.shape, cuboids[thing.id], seen, (weight, float(like)), unnamed)
+                    for m, like in zip(members, alike, strict=True)
                 }
             )
         shared = _agreed(groups, scores)
@@ -105,8 +116,8 @@ class EmbeddedRetrieval:
             pools.append(pool_for(self.library, wish))
         return pools
 
-    def _score(self, shape: Shape, cuboid: Cuboid, seen: Observed, palette: Palette, unnamed: bool) -> float:
-        """0 to 1: the best of the shape's quarter turns in the cuboid."""
+    def _score(self, shape: Shape, cuboid: Cuboid, seen: Observed, looks: tuple[float, float], unnamed: bool) -> float:
+        """0 to 1: the best of the shape's quarter turns in the cuboid, and its likeness, given as (weight, value)."""
         look = SHARED_LOOKS.get(shape.content_hash, default_cache_dir() / "looks", lambda: self.library.parts(shape.id))
         targets, poses = quarter_turns(shape, cuboid)
         cost = np.array([size_cost(shape.size_m, t) for t in targets])
@@ -116,9 +127,8 @@ class EmbeddedRetrieval:
         if unnamed:
             outline_weight, size_weight = _UNNAMED_OUTLINE * outline_weight, _UNNAMED_SIZE * size_weight
         fit = size_weight * np.exp(-cost / 2) + outline_weight * outline
-        colour = palette_agreement(palette, palette_of_look(look))
-        total = size_weight + outline_weight + self.colour_weight
-        return float((fit.max() + self.colour_weight * colour) / total)
+        weight, like = looks
+        return float((fit.max() + weight * like) / (size_weight + outline_weight + weight))
 
 
 def _fingerprint(library: ShapeLibrary) -> str:
