@@ -18,6 +18,7 @@ from diorama_app.gestures import Gestures
 from diorama_app.guest import Guest, Panel
 from diorama_app.panels.alternatives import Alternatives
 from diorama_app.panels.compare import Compare
+from diorama_app.panels.dropping import take_dropped_files
 from diorama_app.panels.evidence import Evidence
 from diorama_app.panels.help import show_help
 from diorama_app.panels.job import JobStrip
@@ -36,6 +37,7 @@ from diorama_app.panels.room_size import RoomSize
 from diorama_app.panels.supports import Supports
 from diorama_app.panels.toast import Toasts
 from diorama_app.panels.toolbar import Toolbar
+from diorama_app.panels.unsaved import UnsavedChanges
 from diorama_app.photo_outlines import PhotoOutlines
 from diorama_app.room import Room
 from diorama_app.shelf import Shelf
@@ -59,7 +61,7 @@ class Editor:
     ) -> None:
         self.server = server
         library = Shelf(library)
-        self.room = Room(server, library, projects_dir)
+        self.room = Room(server, library, projects_dir, low_graphics=low_graphics)
         self.room.viewport.light(low_graphics=low_graphics)
         self.views = Views(self.room)
         self._collisions = Collisions(library)
@@ -146,6 +148,7 @@ class Editor:
             gestures,
             toolbar,
             job_strip,
+            UnsavedChanges(gui, guest),
             Tape(gui, guest),
             Compare(gui, guest, self.views),
             Overlays(guest, self._outlines),
@@ -155,7 +158,8 @@ class Editor:
         with left.add_tab("Scene"):
             panels += [Outliner(gui, guest), RoomSize(gui, guest)]
         with left.add_tab("Photo"):
-            panels += [PhotoPanel(gui, guest, self.views, self.commands), PhotoCamera(gui, guest)]
+            photo = PhotoPanel(gui, guest, self.views, self.commands)
+            panels += [photo, PhotoCamera(gui, guest)]
         with left.add_tab("Arrange"):
             guest.curves = optimiser = Optimiser(gui, guest)
             panels.append(optimiser)
@@ -171,7 +175,9 @@ class Editor:
                 Evidence(gui, guest),
             ]
         with right.add_tab("Library"):
-            panels.append(LibraryPanel(gui, guest))
+            library = LibraryPanel(gui, guest)
+            panels.append(library)
+        take_dropped_files(gui, photo.upload_id, library.upload_id)
         right.dock_right()
         right.set_width(RIGHT_WIDTH_PX)
         guest.panels = panels

@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Callable
 
+from diorama_app.recovery import Recovery
 from diorama_core.errors import DioramaError
 from diorama_core.project.storage import Project
 from diorama_core.scene.types import Scene
@@ -17,8 +18,15 @@ SETTLE_S = 0.4
 class Saver:
     """A thread that writes the newest scene. May be used from any thread."""
 
-    def __init__(self, on_error: Callable[[str], None]) -> None:
+    def __init__(self, on_error: Callable[[str], None], recovery: Recovery | None = None) -> None:
+        """Start the thread.
+
+        Args:
+            on_error: told in one line why something was not saved.
+            recovery: where changes lie until they are saved.
+        """
         self._on_error = on_error
+        self.recovery = recovery or Recovery()
         self._condition = threading.Condition()
         self._waiting: tuple[Project, Scene] | None = None
         self._busy = False
@@ -59,6 +67,12 @@ class Saver:
                     self._condition.wait()
                 if self._stopping:
                     return
+                newest, self._busy = self._waiting, True
+            if newest is not None:
+                self.recovery.note(*newest)
+            with self._condition:
+                self._busy = False
+                self._condition.notify_all()
             time.sleep(SETTLE_S)
             with self._condition:
                 waiting, self._waiting = self._waiting, None
@@ -73,5 +87,7 @@ class Saver:
         try:
             project.save_scene(scene)
             self.saved_at = time.time()
+            self.recovery.forget(project)
         except DioramaError as error:
-            self._on_error(f"not saved: {error}")
+            self.recovery.note(project, scene)
+            self._on_error(f"not saved: {error}; the changes are kept and offered when the project is opened again")

@@ -73,6 +73,11 @@ class PhotoPanel:
         on_press(self._build, lambda: guest.post(lambda: work.build(guest)))
 
     @property
+    def upload_id(self) -> str:
+        """The id of the button that takes photos."""
+        return self._photo_button
+
+    @property
     def label(self) -> str:
         """What the next box is called."""
         return self._other.value.strip() or self._label.value
