@@ -37,6 +37,8 @@ from diorama_core.project.storage import Project
 from diorama_core.scene.types import Pose, Scene
 
 JOB_TOLD_EVERY_S = 0.15
+LOW_GRAPHICS_TRIANGLES = 600
+"""Of one object, for browsers that draw without a graphics card."""
 MESH_OVERLAP_S = 0.45
 """How long an old mesh stays while the browser parses its successor."""
 
@@ -44,7 +46,9 @@ MESH_OVERLAP_S = 0.45
 class Room:
     """The open project and everyone in it."""
 
-    def __init__(self, server: viser.ViserServer, library: ShapeLibrary, projects_dir: Path) -> None:
+    def __init__(
+        self, server: viser.ViserServer, library: ShapeLibrary, projects_dir: Path, *, low_graphics: bool = False
+    ) -> None:
         self.server = server
         self.library: ShapeLibrary = library
         self.projects_dir = projects_dir
@@ -71,7 +75,7 @@ class Room:
         self.desk = Desk(lambda message: self.notice_all(message, "bad"))
         self.jobs = Jobs(self._job_changed, self._job_ended)
         self.saver = Saver(on_error=lambda message: self.notice_all(message, "bad"))
-        self.shapes = ShapeBytes(library)
+        self.shapes = ShapeBytes(library, most_triangles=LOW_GRAPHICS_TRIANGLES if low_graphics else None)
         self.preparer = Preparer(library)
         self.checker = Checker(library, lambda found: self.desk.post(lambda: self._badged(found)))
         self.records = Records(library)

@@ -12,6 +12,7 @@ from jaxtyping import Int32, UInt8
 from PIL import Image
 from trimesh.visual.material import PBRMaterial
 
+from diorama_app.lighter import lighter_glb
 from diorama_core.geometry.planes import plane_axes, plane_uv
 from diorama_core.library.paint import painted
 from diorama_core.library.record import ShapeLibrary
@@ -25,8 +26,10 @@ KEPT = 256
 class ShapeBytes:
     """GLB bytes of library shapes, in their own colours or others; +Z up, metres. Safe between threads."""
 
-    def __init__(self, library: ShapeLibrary) -> None:
+    def __init__(self, library: ShapeLibrary, *, most_triangles: int | None = None) -> None:
+        """Nothing is made yet; with `most_triangles` models are simplified to about so many."""
         self._library = library
+        self._most_triangles = most_triangles
         self._kept: OrderedDict[tuple[str, Colour | None, Finish | None], bytes] = OrderedDict()
         self._lock = threading.Lock()
 
@@ -39,6 +42,8 @@ class ShapeBytes:
                 return self._kept[key]
         own = colour is None and finish is None
         data = self._library.glb(shape_id) if own else _painted_glb(self._library.parts(shape_id), colour, finish)
+        if self._most_triangles is not None:
+            data = lighter_glb(data, self._most_triangles)
         with self._lock:
             self._kept[key] = data
             while len(self._kept) > KEPT:
