@@ -45,6 +45,10 @@ def add_bench(commands: Any) -> None:
             one.add_argument("--sheet", type=Path, metavar="FILE", help="write a sheet of all pictures (PNG or JPEG)")
         if name == "system":
             one.add_argument("--physics", action="store_true", help="measure drift under gravity too (needs MuJoCo)")
+            one.add_argument(
+                "--dataset", choices=("ssdb", "scan2cad", "sunrgbd"), help="other people's pictures instead"
+            )
+            one.add_argument("--path", type=Path, metavar="DIR", help="where the dataset's local copy is")
             one.add_argument("--offered", action="store_true", help="search the shapes that stand in the rooms too")
             one.add_argument("--pictures", type=Path, metavar="DIR", help="write every photo beside its two results")
         if name == "speed":
@@ -86,10 +90,27 @@ def _bench_system(a: argparse.Namespace) -> None:
     from diorama_core.library.catalogue import built_in_library
 
     _check(a)
+    if a.dataset or a.path:
+        _bench_dataset(a)
+        return
     library = built_in_library()
     show = case_writer(a.pictures, library) if a.pictures else None
     with progress_bar() as progress:
         bench = system_bench.run(library, a.scenes, a.seed, progress, offered=a.offered, physics=a.physics, show=show)
+    _show(bench, a)
+
+
+def _bench_dataset(a: argparse.Namespace) -> None:
+    """The whole system on a local copy of other people's pictures."""
+    from diorama_core.evaluation import local_bench
+    from diorama_core.library.catalogue import built_in_library
+
+    if not (a.dataset and a.path):
+        raise InputError("--dataset and --path belong together: name the dataset and say where its copy is")
+    if not a.path.is_dir():
+        raise InputError(f"{a.path}: there is no such folder; give the local copy of {a.dataset}")
+    with progress_bar() as progress:
+        bench = local_bench.run(a.dataset, a.path, built_in_library(), a.scenes, progress)
     _show(bench, a)
 
 

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 from scipy.spatial import cKDTree
 
 from diorama_core.evaluation.dataset.artefacts import true_supports
@@ -24,7 +24,7 @@ from diorama_core.layout.problem import build_problem
 from diorama_core.layout.report import measure
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.render.raycast import Caster, MeshCaster
-from diorama_core.scene.types import Camera, Scene, SceneObject
+from diorama_core.scene.types import Camera, Intrinsics, Scene, SceneObject
 
 SAME_BOX = 0.5
 """Boxes that overlap less than this are of different objects."""
@@ -226,21 +226,42 @@ def image_iou(view: TruthView, scene: Scene, match: list[SceneObject | None], li
 
     Its own, because that is the picture its user sees; an error of the camera counts in every metric in space.
     """
-    if not view.asked:
+    pairs = [
+        (view.object_ids == k, None if found is None else found.id) for k, found in zip(view.asked, match, strict=True)
+    ]
+    return mean_mask_iou(pairs, scene, library, view.camera.intrinsics)
+
+
+def mean_mask_iou(
+    pairs: Sequence[tuple[Bool[np.ndarray, "h w"], str | None]],
+    scene: Scene,
+    library: ShapeLibrary,
+    intrinsics: Intrinsics | None,
+) -> float:
+    """Mean agreement of true masks with the objects (by id, None where absent) seen by the scene's own camera.
+
+    Args:
+        pairs: true masks and the objects they should be.
+        scene: the prediction, with its camera.
+        library: where its shapes are.
+        intrinsics: whose picture size the masks have; the scene camera's by default.
+    """
+    if not pairs:
         return 1.0
-    own = scene.camera or view.camera
-    size = view.camera.intrinsics.width, view.camera.intrinsics.height
+    if scene.camera is None:
+        return 0.0
+    k = intrinsics or scene.camera.intrinsics
     items = [o for o in scene.objects if not o.hidden]
     caster = MeshCaster([(library.mesh(o.shape_id), o.pose.matrix) for o in items])
-    seen = caster.buffers(Camera(own.intrinsics.scaled(*size), own.T_world_camera)).instance
-    index = {o.id: k for k, o in enumerate(items)}
+    own = Camera(scene.camera.intrinsics.scaled(k.width, k.height), scene.camera.T_world_camera)
+    seen = caster.buffers(own).instance
+    index = {o.id: number for number, o in enumerate(items)}
     total = 0.0
-    for k, found in zip(view.asked, match):
-        true = view.object_ids == k
-        if found is not None and found.id in index:
-            mask = seen == index[found.id]
+    for true, name in pairs:
+        if name in index:
+            mask = seen == index[name]
             total += float((mask & true).sum() / max((mask | true).sum(), 1))
-    return total / len(view.asked)
+    return total / len(pairs)
 
 
 def scene_points(

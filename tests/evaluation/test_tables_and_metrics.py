@@ -12,7 +12,7 @@ from diorama_core.artefacts import Inputs, Photo
 from diorama_core.evaluation import paper
 from diorama_core.evaluation.architecture_bench import RoomResult, architecture_table
 from diorama_core.evaluation.architecture_metrics import architecture_scores
-from diorama_core.evaluation.cases import STANDARD_SCENES, recipe
+from diorama_core.evaluation.cases import STANDARD_SCENES, Case, recipe
 from diorama_core.evaluation.dataset.truth import TruthView, in_photo_world, moved
 from diorama_core.evaluation.pose_bench import with_true_architecture, with_true_graph
 from diorama_core.evaluation.pose_comparison import PoseScores
@@ -27,7 +27,15 @@ from diorama_core.evaluation.pose_tables import (
 )
 from diorama_core.evaluation.retrieval_bench import ObjectResult, recall_table, retrieval_table
 from diorama_core.evaluation.rooms import box_library, generate_room, room_box
-from diorama_core.evaluation.scene_metrics import SceneScores, scene_scores, without_unasked
+from diorama_core.evaluation.scene_metrics import (
+    SceneScores,
+    mean_mask_iou,
+    out_of_bounds_share,
+    scene_points,
+    scene_scores,
+    surface_agreement,
+    without_unasked,
+)
 from diorama_core.evaluation.shape_metrics import chamfer, shape_distance
 from diorama_core.evaluation.speed_bench import (
     Series,
@@ -37,8 +45,10 @@ from diorama_core.evaluation.speed_bench import (
     search_by_library,
     speed_table,
 )
-from diorama_core.evaluation.system_bench import CaseResult, scene_table, system_table
-from diorama_core.scene.types import Camera, Intrinsics, Scene, yaw_rotation
+from diorama_core.evaluation.system_bench import CaseResult, build_case, scene_table, system_table
+from diorama_core.progress import Progress
+from diorama_core.render.raycast import MeshCaster
+from diorama_core.scene.types import Architecture, Camera, Intrinsics, Scene, yaw_rotation
 
 SIZE = (80, 60)
 
@@ -102,6 +112,74 @@ def test_missing_moved_and_floating_objects_count(view, library):
     outside = replace(first, pose=first.pose.moved([20, 0, 0]))
     far = scene_scores(view, replace(truth, objects=(outside, *rest)), library)
     assert far.out_of_bounds == pytest.approx(1 / 8)
+
+
+def test_surfaces_agree_within_ten_centimetres():
+    a = np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]])
+    b = a + np.array([0, 0.05, 0])
+    assert surface_agreement(a, b) == (pytest.approx(0.05), 1.0)
+    # Half of the found points are far away: precision a half, recall 1.
+    found = np.concatenate([b, a + np.array([0, 0, 50.0])])
+    assert surface_agreement(found, a)[1] == pytest.approx(2 * 0.5 / 1.5)
+    assert surface_agreement(a + 10, a)[1] == 0.0
+
+
+def test_points_stand_for_the_surface_of_a_posed_shape(library):
+    item = generate_room(3, 8).truth.objects[0]
+    local = (scene_points([item], library) - item.pose.position) @ item.pose.R_world_object
+    assert np.allclose(np.abs(local).max(axis=0), item.size_m / 2, atol=0.03)
+
+
+def test_things_over_the_edge_of_the_floor_are_out_of_bounds(view):
+    scene = without_unasked(view)
+    assert out_of_bounds_share(scene) == 0
+    first, *rest = scene.objects
+    half_out = replace(first, pose=first.pose.moved([30, 0, 0]))
+    assert out_of_bounds_share(replace(scene, objects=(half_out, *rest))) == pytest.approx(1 / 8)
+    assert out_of_bounds_share(replace(scene, architecture=Architecture())) == 1
+
+
+def test_masks_are_compared_through_the_scenes_own_camera(view, library):
+    scene = without_unasked(view)
+    k = view.camera.intrinsics
+    seen = MeshCaster([(library.mesh(o.shape_id), o.pose.matrix) for o in scene.objects]).buffers(view.camera).instance
+    shown = [n for n in range(8) if (seen == n).any()]
+    pairs = [(seen == n, scene.objects[n].id) for n in shown]
+    assert mean_mask_iou(pairs, scene, library, k) == 1
+    half = [(pairs[0][0], None), (pairs[1][0], pairs[1][1])]
+    assert mean_mask_iou(half, scene, library, k) == 0.5
+    wider = replace(scene, camera=Camera(Intrinsics.from_fov(*SIZE, 1.8), view.camera.T_world_camera))
+    assert mean_mask_iou(pairs, wider, library, k) < 0.6
+
+
+def test_gravity_moves_what_floats(view, library):
+    pytest.importorskip("mujoco")
+    scene = without_unasked(view)
+    still = scene_scores(view, scene, library, physics=True)
+    lifted = replace(scene, objects=tuple(replace(o, pose=o.pose.moved([0, 0, 0.3])) for o in scene.objects))
+    fallen = scene_scores(view, lifted, library, physics=True)
+    assert still.stable > fallen.stable
+    assert still.drift_cm < 2
+    assert fallen.drift_cm > 10
+
+
+def test_litres_that_meshes_share(view, library):
+    scene = without_unasked(view)
+    standing = [o for o in scene.objects if scene.has_plane(scene.support_of(o.id).parent)]
+    first, second = standing[0], standing[1]
+    into = replace(first, id=second.id, mask_id=second.mask_id, box_px=second.box_px)
+    shared = replace(scene, objects=tuple(into if o.id == second.id else o for o in scene.objects))
+    litres = 1000 * abs(library.mesh(first.shape_id).volume) * float(np.prod(first.pose.scale))
+    gained = scene_scores(view, shared, library).mesh_overlap_l - scene_scores(view, scene, library).mesh_overlap_l
+    assert gained >= 0.99 * litres
+
+
+def test_a_build_that_fails_counts_as_wrong(view, library):
+    blank = Inputs(view.inputs.photo)
+    scene, result = build_case(Case(0, "living"), view, blank, library, library, Progress())
+    assert scene is None or not scene.objects
+    assert result.failure
+    assert (result.scores.asked, result.scores.found, result.scores.pairs.acc) == (8, 0, 0.0)
 
 
 def test_an_empty_scene_is_a_failure_not_a_crash(view, library):
