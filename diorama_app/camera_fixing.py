@@ -13,7 +13,7 @@ from diorama_core.errors import EditRefused, InputError
 from diorama_core.progress import Progress
 from diorama_core.protocols import CameraStage
 from diorama_core.scene.room_edits import floor_height, rescale_to_length
-from diorama_core.scene.types import Intrinsics, Scene
+from diorama_core.scene.types import Camera, Intrinsics, Scene
 
 LEAST_FOV_DEG, MOST_FOV_DEG = 15.0, 130.0
 MOST_TILT_DEG, MOST_ROLL_DEG = 80.0, 45.0
@@ -83,10 +83,7 @@ def rebuild_with_camera(guest: Guest, fov_deg: float | None, held: Held | None) 
     if project is None or inputs is None or not draft.from_project:
         raise EditRefused("the open scene was not built from this photo; build it first")
     if fov_deg is not None:
-        if not LEAST_FOV_DEG <= fov_deg <= MOST_FOV_DEG:
-            raise InputError(
-                f"a field of view of {fov_deg:g}° is no camera's; give {LEAST_FOV_DEG:g} to {MOST_FOV_DEG:g}°"
-            )
+        check_fov(fov_deg)
         photo = inputs.photo
         seen = Intrinsics.from_fov(photo.width, photo.height, float(np.radians(fov_deg)))
         inputs = replace(inputs, intrinsics=seen)
@@ -110,6 +107,13 @@ def rebuild_with_camera(guest: Guest, fov_deg: float | None, held: Held | None) 
     room.jobs.start("build", "Building with this camera", work)
 
 
+def trial_camera(camera: Camera, fov_deg: float, held: Held) -> Camera:
+    """A camera at the same place with another field of view, held otherwise."""
+    k, T = camera.intrinsics, np.array(camera.T_world_camera)
+    T[:3, :3] = held.rotation(T[:3, 2])
+    return Camera(Intrinsics.from_fov(k.width, k.height, float(np.radians(fov_deg))), T)
+
+
 def set_camera_height(guest: Guest, height_m: float) -> None:
     """Say how high above the floor the photo was taken: everything takes that scale, at once."""
     now = camera_height_m(guest.room.scene)
@@ -121,6 +125,12 @@ def set_camera_height(guest: Guest, height_m: float) -> None:
 def camera_height_m(scene: Scene) -> float | None:
     """How high the photo's camera is above the floor; None without one."""
     return None if scene.camera is None else float(scene.camera.position[2]) - floor_height(scene)
+
+
+def check_fov(fov_deg: float) -> None:
+    """Raises `InputError` when no camera sees so much or so little."""
+    if not LEAST_FOV_DEG <= fov_deg <= MOST_FOV_DEG:
+        raise InputError(f"a field of view of {fov_deg:g}° is no camera's; give {LEAST_FOV_DEG:g} to {MOST_FOV_DEG:g}°")
 
 
 def checked_angles(tilt_deg: float, roll_deg: float) -> Held:

@@ -159,7 +159,7 @@ class Editor:
             panels += [Outliner(gui, guest), RoomSize(gui, guest)]
         with left.add_tab("Photo"):
             photo = PhotoPanel(gui, guest, self.views, self.commands)
-            panels += [photo, PhotoCamera(gui, guest)]
+            panels += [photo, PhotoCamera(gui, guest, self.views)]
         with left.add_tab("Arrange"):
             guest.curves = optimiser = Optimiser(gui, guest)
             panels.append(optimiser)

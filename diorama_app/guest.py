@@ -16,7 +16,7 @@ from diorama_app.client_view import ClientView, NoticeKind
 from diorama_app.marks import Marks
 from diorama_app.units import Unit
 from diorama_core.errors import EditRefused
-from diorama_core.scene.types import Scene, SceneObject
+from diorama_core.scene.types import Camera, Scene, SceneObject
 
 if TYPE_CHECKING:
     from diorama_app.room import Room
@@ -99,6 +99,8 @@ class Guest:
         self.job_panel: Panel | None = None
         self.curves: Panel | None = None
         """What is redrawn while a layout is optimised."""
+        self.trial_camera: Camera | None = None
+        """The photo's camera as it is being set by hand; seen as a grid on its floor."""
         self.dialog: Callable[[], None] | None = None
         """Closes the dialog that is open over the page, if one is."""
         self.toast: Callable[[str, bool], None] = lambda message, undo: None

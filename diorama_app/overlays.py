@@ -12,7 +12,7 @@ from jaxtyping import Bool, Float, UInt8
 
 from diorama_app.client_view import PLANE_COLOURS
 from diorama_core.artefacts import DetectedObject
-from diorama_core.scene.types import Camera, Plane, Scene, SceneObject
+from diorama_core.scene.types import Camera, Intrinsics, Plane, Scene, SceneObject
 
 LONGEST_PX = 1280
 FILL_ALPHA, SELECTED_ALPHA = 70, 120
@@ -20,6 +20,8 @@ LINE_PX = 2
 SELECTED_COLOUR = (255, 122, 26)
 NEAR_M = 0.05
 SAME_BOX_PX = 1.5
+GRID_M, GROUND_M = 0.5, 8.0
+"""Mesh and extent of the grid on the floor."""
 
 Colour = tuple[int, int, int]
 
@@ -95,12 +97,37 @@ def draw_planes(picture: UInt8[np.ndarray, "h w 4"], planes: Iterable[Plane], ca
     scaled = camera.intrinsics.scaled(picture.shape[1], picture.shape[0])
     for plane in planes:
         for start, end in zip(plane.polygon, np.roll(plane.polygon, -1, axis=0), strict=True):
-            ends = _in_front(camera.to_camera(np.stack([start, end])))
-            if ends is None:
-                continue
-            uv = ends[:, :2] / ends[:, 2:] * (scaled.fx, scaled.fy) + (scaled.cx, scaled.cy)
-            a, b = (np.clip(np.round(p), -30_000, 30_000).astype(int).tolist() for p in uv)
-            cv2.line(picture, a, b, (*PLANE_COLOURS[plane.role], 255), LINE_PX + 1, cv2.LINE_AA)
+            _draw_line(picture, camera, scaled, np.stack([start, end]), (*PLANE_COLOURS[plane.role], 255))
+
+
+def draw_ground(picture: UInt8[np.ndarray, "h w 4"], camera: Camera, floor_m: float) -> None:
+    """Draw a grid on the floor as a camera would see it, half a metre wide, in front of its feet."""
+    scaled = camera.intrinsics.scaled(picture.shape[1], picture.shape[0])
+    ahead = camera.T_world_camera[:3, 2] * (1.0, 1.0, 0.0)
+    ahead = ahead / max(float(np.linalg.norm(ahead)), 1e-9)
+    across = np.array([ahead[1], -ahead[0], 0.0])
+    foot = camera.position * (1.0, 1.0, 0.0) + (0.0, 0.0, floor_m)
+    steps = np.arange(0.0, GROUND_M + GRID_M / 2, GRID_M)
+    sideways = steps - GROUND_M / 2
+    lines = [(foot + s * across, foot + s * across + GROUND_M * ahead) for s in sideways]
+    lines += [(foot + t * ahead + sideways[0] * across, foot + t * ahead + sideways[-1] * across) for t in steps]
+    for start, end in lines:
+        _draw_line(picture, camera, scaled, np.stack([start, end]), (*SELECTED_COLOUR, 230))
+
+
+def _draw_line(
+    picture: UInt8[np.ndarray, "h w 4"],
+    camera: Camera,
+    scaled: Intrinsics,
+    ends_world: Float[np.ndarray, "2 3"],
+    colour: tuple[int, int, int, int],
+) -> None:
+    ends = _in_front(camera.to_camera(ends_world))
+    if ends is None:
+        return
+    uv = ends[:, :2] / ends[:, 2:] * (scaled.fx, scaled.fy) + (scaled.cx, scaled.cy)
+    a, b = (np.clip(np.round(p), -30_000, 30_000).astype(int).tolist() for p in uv)
+    cv2.line(picture, a, b, colour, LINE_PX, cv2.LINE_AA)
 
 
 def _in_front(ends: Float[np.ndarray, "2 3"]) -> Float[np.ndarray, "2 3"] | None:

@@ -118,7 +118,7 @@ class SizeHandles:
         pull = self._pull
         if pull is None:
             return
-        if phase == "update":
+        if phase in ("update", "end"):
             eye = np.asarray(guest.client.camera.position, dtype=np.float64)
             start = pull.start.object(pull.object_id)
             by_m = pulled_m(start, handle, grabbed, eye, hand - eye)
@@ -126,6 +126,7 @@ class SizeHandles:
             pull.now = stretched(pull.start, pull.object_id, handle, by_m, snap=snap)
             self._show_scene(pull.start, pull.now)
             self._put(pull.now.object(pull.object_id))
+        if phase != "end":
             return
         self._pull = None
         self._done()

@@ -8,6 +8,7 @@ from jaxtyping import UInt8
 from diorama_app.editing import supporter_name
 from diorama_app.guest import Guest
 from diorama_app.photo_outlines import PhotoOutlines
+from diorama_core.scene.room_edits import floor_height
 from diorama_core.scene.types import Architecture, Camera
 
 
@@ -38,11 +39,12 @@ class Overlays:
         settings, scene, photo = guest.settings, room.scene, room.photo
         shown = guest.view.through_photo and photo is not None and scene.camera is not None
         masks, planes = settings.masks and self._outlines.found is not None, settings.planes
-        if not shown or not (masks or planes):
+        trial = guest.trial_camera
+        if not shown or not (masks or planes or trial is not None):
             key: object = None
         else:
             objects = tuple((o.id, o.box_px, o.hidden) for o in scene.objects) if masks else ()
-            key = (scene.camera, scene.architecture if planes else None, objects, guest.selection, masks)
+            key = (scene.camera, scene.architecture if planes else None, objects, guest.selection, masks, trial)
         if key == self._picture_of:
             return
         self._picture_of = key
@@ -52,11 +54,13 @@ class Overlays:
         guest.view.show_evidence(scene.camera, self._picture(scene.camera, masks=masks, planes=planes))
 
     def _picture(self, camera: Camera, *, masks: bool, planes: bool) -> UInt8[np.ndarray, "h w 4"]:
-        from diorama_app.overlays import draw_planes, mask_picture, seen_objects
+        from diorama_app.overlays import draw_ground, draw_planes, mask_picture, seen_objects
 
         room, k = self._guest.room, camera.intrinsics
         things = seen_objects(room.scene, self._outlines.found or ()) if masks else ()
         picture = mask_picture((k.width, k.height), things, self._guest.selection)
         if planes:
             draw_planes(picture, room.scene.architecture.planes, camera)
+        if self._guest.trial_camera is not None:
+            draw_ground(picture, self._guest.trial_camera, floor_height(room.scene))
         return picture

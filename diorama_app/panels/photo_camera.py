@@ -8,13 +8,16 @@ import viser
 from diorama_app.camera_fixing import (
     Held,
     camera_height_m,
+    check_fov,
     checked_angles,
     rebuild_with_camera,
     set_camera_height,
+    trial_camera,
 )
 from diorama_app.guest import Guest
 from diorama_app.page import Action, LiveHtml, button, text
 from diorama_app.units import format_length, parse_length
+from diorama_app.views import Views
 from diorama_core.errors import InputError
 from diorama_core.scene.types import Camera
 
@@ -28,8 +31,9 @@ FIELDS = {
 class PhotoCamera:
     """A folded list below the photo."""
 
-    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
+    def __init__(self, gui: viser.GuiApi, guest: Guest, views: Views) -> None:
         self._guest = guest
+        self._views = views
         self._html = LiveHtml(gui, self._act)
         self._typed: dict[str, float] = {}
         self._of: Camera | None = None
@@ -43,6 +47,7 @@ class PhotoCamera:
             return
         if self._of != camera:
             self._of, self._typed = camera, {}
+            self._guest.trial_camera = None
         values = {**figures(camera), **self._typed}
         rows = "".join(_row(label, name, f"{values[name]:.1f}", hint) for name, (label, hint) in FIELDS.items())
         shown = format_length(camera_height_m(room.scene) or 0.0, self._guest.settings.unit)
@@ -53,9 +58,11 @@ class PhotoCamera:
             title="Outlines stay; place, shape and layout are found anew. One undo step",
             disabled=not self._typed or room.jobs.status is not None,
         )
+        back = button("Never mind", "back", title="As it was") if self._typed else ""
+        explained = '<p class="dim">The grid should lie on the floor of the photo.</p>' if self._typed else ""
         self._html.show(
             f'<details {"open" if self._typed else ""}><summary class="dim">Camera and floor</summary>'
-            f'<table>{rows}</table><div class="bar tight">{again}</div></details>'
+            f'{explained}<table>{rows}</table><div class="bar tight">{again}{back}</div></details>'
         )
 
     def _act(self, action: Action) -> None:
@@ -66,10 +73,25 @@ class PhotoCamera:
         if action.do == "height":
             set_camera_height(guest, parse_length(action.pair[1], guest.settings.unit))
         elif action.do in FIELDS:
-            self._typed[action.do] = _degrees(action.pair[1])
-            self.refresh()
+            self._try({**self._typed, action.do: _degrees(action.pair[1])})
+        elif action.do == "back":
+            self._typed, guest.trial_camera = {}, None
+            guest.refresh()
         elif action.do == "build" and self._of is not None:
             self._build(self._of)
+
+    def _try(self, typed: dict[str, float]) -> None:
+        """Show what was typed as a grid on the floor, over the photo."""
+        if self._of is None:
+            return
+        values = {**figures(self._of), **typed}
+        check_fov(values["fov"])
+        held = checked_angles(values["tilt"], values["roll"])
+        self._typed = typed
+        self._guest.trial_camera = trial_camera(self._of, values["fov"], held)
+        if not self._guest.view.through_photo:
+            self._views.photo(self._guest)
+        self._guest.refresh()
 
     def _build(self, camera: Camera) -> None:
         typed, known = self._typed, figures(camera)

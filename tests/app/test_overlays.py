@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_app.overlays import SELECTED_COLOUR, draw_planes, mask_picture, seen_objects
+from diorama_app.camera_fixing import Held, trial_camera
+from diorama_app.overlays import SELECTED_COLOUR, draw_ground, draw_planes, mask_picture, seen_objects
 from diorama_core.artefacts import DetectedObject
 from diorama_core.scene.types import Scene
 from tests.app.small_room import furnished_scene
@@ -59,3 +60,17 @@ def test_planes_are_drawn_where_the_camera_sees_their_edges() -> None:
 @pytest.mark.parametrize("size", [(4000, 3000), (300, 200)])
 def test_large_photos_are_drawn_small_enough(size: tuple[int, int]) -> None:
     assert max(mask_picture(size, (), ()).shape) <= 1280
+
+
+def test_the_ground_of_a_trial_camera_lies_below_its_horizon() -> None:
+    made = scene()
+    assert made.camera is not None
+    picture = np.zeros((480, 640, 4), dtype=np.uint8)
+    draw_ground(picture, made.camera, 0.0)
+    rows = np.flatnonzero(picture[..., 3].any(axis=1))
+    horizon = made.camera.project(made.camera.position[None] + np.array([[0.0, 1.0, 0.0]]))[0, 1]
+    assert rows.min() > horizon
+    steeper = trial_camera(made.camera, 66.0, Held(np.radians(25.0), 0.0))
+    lower = np.zeros_like(picture)
+    draw_ground(lower, steeper, 0.0)
+    assert np.flatnonzero(lower[..., 3].any(axis=1)).min() < rows.min(), "looking down, the floor rises in the picture"
