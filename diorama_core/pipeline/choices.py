@@ -21,6 +21,9 @@ FOREGROUNDS = (("birefnet", "birefnet-lite"), ("mvanet",))
 PATCH_FEATURES = ("dinov2-large", "dinov2-base", "dinov2-small")
 """Best first; the publication reads an inner block of the large one."""
 
+JOINT_EMBEDDINGS = ("openclip-b32",)
+"""Words, pictures and shapes in one space, to find shapes by."""
+
 
 @dataclass(frozen=True)
 class StageStatus:
@@ -57,7 +60,7 @@ def profile_status(*, store: ModelStore | None = None, lmm: LmmSettings | None =
             "" if lmm else "set DIORAMA_LMM_BASE_URL and DIORAMA_LMM_MODEL to ask a language model",
         ),
         _status(store, "room behind furniture", INPAINTERS, "surfaces continued from what is seen of them"),
-        StageStatus("retrieval", "category, size, silhouette and colour", None, True, 0, ""),
+        _status(store, "retrieval", JOINT_EMBEDDINGS, "category, size, outline, inner edges and colour"),
         StageStatus("pose", "render and compare", None, True, 0, ""),
     )
 

@@ -41,6 +41,7 @@ from diorama_core.pipeline.choices import (
     PATCH_FEATURES,
     SEGMENTERS,
 )
+from diorama_core.pipeline.learned_retrieval import with_joint_retrieval
 from diorama_core.pipeline.perceive import detected
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pose.correspondence.features import NetworkFeatures
@@ -81,6 +82,7 @@ def stages_for(
     if profile == "embedded":
         return base
     store = store or ModelStore.default()
+    base = with_joint_retrieval(base, library, store)
     if profile == "foundation":
         _insist(inputs, store)
         base = _posed_as_published(base, library, store)
