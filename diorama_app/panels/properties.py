@@ -189,4 +189,4 @@ def _surface(item: SceneObject) -> str:
     )
     own = button("Back to its own colours", "own", title="Takes the paint off") if item.colour is not None else ""
     paint = f'<div class="bar tight">{own}</div>' if own else ""
-    return f'{paint}<div class="bar tight">{finishes}</div>'
+    return f'{paint}<div class="bar tight"><span class="dim lead">Finish</span>{finishes}</div>'

@@ -18,8 +18,9 @@ _METALLIC_ROUGHNESS: dict[Finish, tuple[float, float]] = {
     "matt": (0.0, 0.95),
     "satin": (0.0, 0.45),
     "gloss": (0.0, 0.12),
-    "metal": (1.0, 0.3),
+    "metal": (0.75, 0.35),
 }
+"""Metal keeps a little diffuse colour: where a viewer has no surroundings to mirror, pure metal is black."""
 
 
 def painted(parts: trimesh.Scene, colour: Colour | None, finish: Finish | None = None) -> trimesh.Scene:

@@ -55,7 +55,7 @@ def test_the_painted_colour_averages_to_the_asked_one() -> None:
 def test_a_finish_changes_how_light_is_thrown_back_and_nothing_else() -> None:
     before = _scene().geometry["body"].visual.material
     material = painted(_scene(), None, "metal").geometry["body"].visual.material
-    assert (material.metallicFactor, material.roughnessFactor) == (1.0, 0.3)
+    assert (material.metallicFactor, material.roughnessFactor) == (0.75, 0.35)
     assert material.metallicRoughnessTexture is None
     assert (np.asarray(material.baseColorTexture) == np.asarray(before.baseColorTexture)).all()
     both = painted(_scene(), (0.1, 0.2, 0.8), "matt").geometry
