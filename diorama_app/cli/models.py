@@ -48,6 +48,7 @@ def _list(a: argparse.Namespace) -> None:
             "size_mb": round(n.size_bytes / 1e6),
             "licence": n.licence,
             "sets": list(n.tiers),
+            "checked_by": n.checked_by,
             "here": store.has(n),
         }
         for n in NETWORKS
@@ -57,10 +58,12 @@ def _list(a: argparse.Namespace) -> None:
         return
     for row in rows:
         mark = "here" if row["here"] else "-"
+        unsure = "" if row["checked_by"].startswith("published") else " *"
         print(
             f"{mark:<5} {row['id']:<17} {row['role']:<15} {row['size_mb']:>5} MB  {row['licence']:<13}"
-            f" {', '.join(row['sets']):<22} {row['title']}"
+            f" {', '.join(row['sets']):<22} {row['title']}{unsure}"
         )
+    print("* no published checksum: later downloads are held to the first one's")
 
 
 def _pull(a: argparse.Namespace) -> None:
@@ -78,14 +81,17 @@ def _pull(a: argparse.Namespace) -> None:
         chosen.update({n.id: n for n in (networks_of(what) if what in TIERS else (network(what),))})
     with progress_bar() as progress:
         fetched = pull(store, tuple(chosen.values()), accept=_asker(a.yes), progress=progress)
-    print(f"{len(fetched)} networks fetched, {len(chosen) - len(fetched)} were here already: {store.folder}")
+    count = "1 network" if len(fetched) == 1 else f"{len(fetched)} networks"
+    print(f"{count} fetched, {len(chosen) - len(fetched)} already here: {store.folder}")
 
 
 def _asker(yes: bool) -> Any:
     def accept(networks: Sequence[Network]) -> bool:
         for n in networks:
             source = n.repo or n.url
-            print(f"{n.title}: {n.licence}, {n.size_bytes / 1e6:.0f} MB, from {source}", file=sys.stderr)
+            print(
+                f"{n.title}: {n.licence}, {n.size_bytes / 1e6:.0f} MB, from {source} ({n.checked_by})", file=sys.stderr
+            )
         if yes:
             return True
         if not sys.stdin.isatty():

@@ -59,6 +59,14 @@ class Network:
         return sum(f.bytes or 0 for f in self.files)
 
     @property
+    def checked_by(self) -> str:
+        """How a download is checked, in words for people."""
+        if all(f.sha256 for f in self.files):
+            return "published checksum"
+        known = "size checked; " if all(f.bytes for f in self.files) else ""
+        return f"{known}no published checksum: held to the first download's"
+
+    @property
     def pullable(self) -> bool:
         """Whether the files can be fetched from somewhere."""
         return bool(self.repo or self.url)

@@ -105,17 +105,37 @@ def _fetch(store: ModelStore, network: Network, file: ModelFile, progress: Progr
     staging = store.folder / ".part" / network.id
     name = f"{network.title}: {Path(file.path).name}"
     progress.report(0.0, name)
-    with _one_line(store, network), _quiet_hub():
+    heard = _Heard(progress, name)
+    with _one_line(store, network), _hub_told(heard):
         staging.mkdir(parents=True, exist_ok=True)
-        meter = _meter(progress, name, _about(network, file))
+        meter = _meter(heard, _about(network, file))
         revision = "" if network.url else _revision(store, network)
         arrived = _downloaded(network, file, revision, staging, meter)
         store.adopt(network, file, arrived, revision)
     progress.report(1.0, name)
 
 
-def _meter(progress: Progress, name: str, size: int) -> type:
-    """A progress-bar class for `huggingface_hub` that draws nothing and reports here."""
+class _Heard(logging.Filter):
+    """One file's progress; what the hub's library would print about retries becomes part of it."""
+
+    def __init__(self, progress: Progress, name: str) -> None:
+        super().__init__()
+        self._progress, self._name, self._fraction = progress, name, 0.0
+
+    def bytes(self, done: int, size: int) -> None:
+        """So many of so many bytes are here."""
+        self._fraction = min(done / max(size, 1), 0.999)
+        self._progress.report(self._fraction, f"{self._name} ({done / 1e6:.0f} MB)")
+
+    def filter(self, record: logging.LogRecord) -> bool:
+        """Nothing is printed: an error that ends the transfer is said by whoever catches it."""
+        if record.levelno >= logging.WARNING and "downloading" in record.getMessage():
+            self._progress.report(self._fraction, f"{self._name}: the connection was cut, going on where it stopped")
+        return False
+
+
+def _meter(heard: _Heard, size: int) -> type:
+    """A progress-bar class for `huggingface_hub` that draws nothing and reports what was heard."""
     from huggingface_hub.utils.tqdm import tqdm as hub_tqdm
 
     class Meter(hub_tqdm):  # type: ignore[misc, unused-ignore]
@@ -128,7 +148,7 @@ def _meter(progress: Progress, name: str, size: int) -> type:
         def update(self, n: float | None = 1) -> None:
             """So many more bytes."""
             self._bytes += int(n or 0)
-            progress.report(min(self._bytes / max(size, 1), 0.999), f"{name} ({self._bytes / 1e6:.0f} MB)")
+            heard.bytes(self._bytes, size)
 
     return Meter
 
@@ -185,15 +205,16 @@ def _downloaded(network: Network, file: ModelFile, revision: str, staging: Path,
 
 
 @contextmanager
-def _quiet_hub() -> Iterator[None]:
-    """The hub's own warnings are said again, better, by the error that follows them; retries need no words."""
-    logger = logging.getLogger("huggingface_hub")
-    before = logger.level
-    logger.setLevel(logging.CRITICAL)
+def _hub_told(heard: _Heard) -> Iterator[None]:
+    """While it lasts, what the hub's library logs about transfers is heard instead of printed."""
+    loggers = [logging.getLogger(f"huggingface_hub.{part}") for part in ("file_download", "utils._http")]
+    for logger in loggers:
+        logger.addFilter(heard)
     try:
         yield
     finally:
-        logger.setLevel(before)
+        for logger in loggers:
+            logger.removeFilter(heard)
 
 
 @contextmanager

@@ -3,6 +3,9 @@
 A network's folder is `<store>/<id>/`, with its files at their paths in the repository, so that a graph's external data
 lies beside it. `installed.json` in it lists size and sha256 of every file that was checked; a file without such an
 entry, or of another size, counts as absent. Downloads happen in `<store>/.part/` and are moved when they are whole.
+
+Where nobody published a checksum, the first download's is kept in `<store>/first-seen.json`, which outlives the
+network's folder, and every later download of that revision is held to it.
 """
 
 from __future__ import annotations
@@ -22,6 +25,7 @@ from diorama_core.models.manifest import NETWORKS, ModelFile, Network
 
 RECORD = "installed.json"
 LICENCES = "licences.json"
+FIRST_SEEN = "first-seen.json"
 _BLOCK = 1 << 20
 
 
@@ -124,19 +128,31 @@ class ModelStore:
         """
         record = self.installed(network)
         found = digest or sha256_of(arrived)
-        expected = (file.sha256, *file.also_sha256) if file.sha256 else ()
+        key = f"{network.id}@{revision}/{file.path}"
+        first = self._first_seen()
+        published = (file.sha256, *file.also_sha256) if file.sha256 else ()
+        expected = published or ((first[key],) if key in first and not network.conversion else ())
         if expected and found not in expected:
             arrived.unlink(missing_ok=True)
+            held = "expected" if published else "the first download had"
             raise UnavailableError(
                 f"{network.title}: {file.path} arrived with the wrong content (sha256 {found[:12]}…, "
-                f"expected {str(file.sha256)[:12]}…); it was deleted: pull again, or from another mirror (HF_ENDPOINT)"
+                f"{held} {expected[0][:12]}…); it was deleted: pull again, or from another mirror (HF_ENDPOINT)"
             )
+        if not published:
+            write_json(self.folder / FIRST_SEEN, {**first, key: found})
         target = self.folder_of(network) / file.path
         target.parent.mkdir(parents=True, exist_ok=True)
         size = arrived.stat().st_size
         os.replace(arrived, target)
         files = {**record.files, file.path: FileRecord(bytes=size, sha256=found)}
         self._write(network, Installed(revision=revision, files=files))
+
+    def _first_seen(self) -> dict[str, str]:
+        try:
+            return TypeAdapter(dict[str, str]).validate_json((self.folder / FIRST_SEEN).read_bytes())
+        except (OSError, ValidationError):
+            return {}
 
     def _write(self, network: Network, record: Installed) -> None:
         write_json(self.folder_of(network) / RECORD, record.model_dump())

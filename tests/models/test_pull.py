@@ -189,6 +189,33 @@ def test_an_unpinned_revision_is_resolved_and_recorded(hub: Hub, store: ModelSto
         assert store.installed(unpinned).revision == SHA
 
 
+def test_without_a_published_checksum_later_downloads_are_held_to_the_first(hub: Hub, store: ModelStore) -> None:
+    unpublished = _network(files=(ModelFile("onnx/model.onnx", len(GRAPH)), ModelFile("tokenizer.json", len(TOKENS))))
+    assert unpublished.checked_by.startswith("size checked; no published checksum")
+    assert _network().checked_by.startswith("no published checksum")
+    assert _network(files=(_PLAIN,)).checked_by == "published checksum"
+    _pull(store, unpublished)
+    store.forget(unpublished)
+    hub.corrupt = True
+    assert "the first download had" in _fails(store, unpublished)
+    hub.corrupt = False
+    _pull(store, unpublished)
+    assert store.check(unpublished).state == "ok"
+
+
+def test_retries_are_told_as_progress_and_print_nothing(
+    hub: Hub, store: ModelStore, capfd: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
+) -> None:
+    hub.cut_after = [600_000, 200_000]
+    events: list[ProgressEvent] = []
+    _pull(store, _network(), progress=Progress(events.append))
+    assert sum("was cut, going on" in e.message for e in events) == 2
+    assert capfd.readouterr() == ("", "")
+    assert caplog.text == ""
+    fractions = [e.fraction for e in events]
+    assert fractions == sorted(fractions)
+
+
 @pytest.mark.parametrize("damage", ["cut off", "changed"])
 def test_files_damaged_later_are_found(hub: Hub, store: ModelStore, damage: str) -> None:
     _pull(store, _network())
