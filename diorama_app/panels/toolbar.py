@@ -9,6 +9,13 @@ from diorama_app.guest import Guest
 from diorama_app.page import STYLE, Action, LiveHtml, button, text
 
 
+HALF_MOON = (
+    '<svg width="13" height="13" viewBox="0 0 24 24" style="display:block;margin:2px auto" aria-label="Dark or light">'
+    '<circle cx="12" cy="12" r="10" fill="none" stroke="currentColor" stroke-width="2.5"/>'
+    '<path d="M12 2a10 10 0 0 1 0 20z" fill="currentColor"/></svg>'
+)
+
+
 class Toolbar:
     """Buttons that run commands by id."""
 
@@ -27,6 +34,7 @@ class Toolbar:
             + self._button("undo", "&#8630; Undo", title=undo, disabled=not history.can_undo)
             + self._button("redo", "&#8631; Redo", disabled=not history.can_redo)
             + self._button("measure", on=self._guest.doing is not None)
+            + self._button("theme", HALF_MOON)
             + self._button("help", "?")
             + "</div><div class='bar tight'>"
             + self._button("view_photo", "Photo view", disabled=room.scene.camera is None)
