@@ -8,7 +8,6 @@ from diorama_app.commands import CommandTable
 from diorama_app.guest import Guest
 from diorama_app.page import STYLE, Action, LiveHtml, button, text
 
-
 HALF_MOON = (
     '<svg width="13" height="13" viewBox="0 0 24 24" style="display:block;margin:2px auto" aria-label="Dark or light">'
     '<circle cx="12" cy="12" r="10" fill="none" stroke="currentColor" stroke-width="2.5"/>'
