@@ -20,6 +20,8 @@ log = logging.getLogger(__name__)
 
 FLOATING_M = 0.03
 OUTSIDE_M = 0.06
+SETTLE_S = 0.15
+"""An edit reaches the screens first, and of quick edits in a row only the last one is looked at."""
 COLLIDES, FLOATS, OUTSIDE = "collides", "floats", "outside"
 
 Problems = Mapping[str, tuple[str, ...]]
@@ -118,6 +120,7 @@ class Checker:
         while True:
             with self._condition:
                 self._condition.wait_for(lambda: self._scene is not None or self._stopping)
+                self._condition.wait_for(lambda: self._stopping, SETTLE_S)
                 if self._stopping:
                     return
                 scene, self._scene = self._scene, None

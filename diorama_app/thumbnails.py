@@ -23,8 +23,8 @@ Paint = tuple[tuple[float, float, float] | None, Finish | None]
 OWN: Paint = (None, None)
 
 SIDE_PX = 112
-KEPT = 4096
-"""The oldest names are forgotten beyond so many."""
+KEPT = 1024
+"""The oldest names of painted shapes are forgotten beyond so many."""
 
 PAINTED_WAIT_S = 0.1
 """Pictures in another colour are not urgent: what a person does just now goes before them."""
@@ -36,7 +36,8 @@ class Thumbnails:
     def __init__(self, library: ShapeLibrary, records: Records) -> None:
         self._library = library
         self._records = records
-        self._named: OrderedDict[str, tuple[str, Paint]] = OrderedDict()
+        self._own: dict[str, str] = {}
+        self._painted: OrderedDict[str, tuple[str, Paint]] = OrderedDict()
         self._lock = threading.Lock()
         self._worker = ThreadPoolExecutor(1, thread_name_prefix="thumbnails")
 
@@ -48,16 +49,20 @@ class Thumbnails:
             return '<span class="blank"></span>'
         name = hashlib.sha256(f"{shape_id} {content} {paint}".encode()).hexdigest()[:20]
         with self._lock:
-            self._named[name] = (shape_id, paint)
-            self._named.move_to_end(name)
-            while len(self._named) > KEPT:
-                self._named.popitem(last=False)
+            if paint == OWN:
+                self._own[name] = shape_id
+            else:
+                self._painted[name] = (shape_id, paint)
+                self._painted.move_to_end(name)
+                while len(self._painted) > KEPT:
+                    self._painted.popitem(last=False)
         return f'<img alt="" loading="lazy" src="{PICTURES}{name}.png">'
 
     def png(self, name: str) -> Future[bytes | None]:
         """The picture called so, made beside everything else; None where there is none."""
+        name = name.removesuffix(".png")
         with self._lock:
-            asked = self._named.get(name.removesuffix(".png"))
+            asked = (self._own[name], OWN) if name in self._own else self._painted.get(name)
         if asked is None:
             nothing: Future[bytes | None] = Future()
             nothing.set_result(None)

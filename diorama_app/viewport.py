@@ -36,6 +36,8 @@ class _Shown:
     mesh: viser.GlbHandle | None = None
     version: int = 0
     appearance: Appearance | None = None
+    pose: Pose | None = None
+    """Where it is shown: the document's place, or a preview's."""
 
 
 class Viewport:
@@ -143,9 +145,11 @@ class Viewport:
             frame = self._server.scene.add_frame(self._fresh_name("/objects"), show_axes=False)
             shown = self._objects[item.id] = _Shown(frame, item)
         shown.item = item
-        if shown.appearance != (item.shape_id, item.colour, item.finish):
+        replaced = shown.appearance != (item.shape_id, item.colour, item.finish)
+        if replaced:
             self._replace_mesh(shown, item)
-        self._set_pose(shown, item.pose)
+        if shown.pose is not item.pose or replaced:
+            self._set_pose(shown, item.pose)
         shown.frame.visible = not item.hidden
 
     def _replace_mesh(self, shown: _Shown, item: SceneObject) -> None:
@@ -176,8 +180,11 @@ class Viewport:
             self._later(lambda: remove_quietly(old))
 
     def _set_pose(self, shown: _Shown, pose: Pose) -> None:
-        shown.frame.wxyz = quaternion(pose.R_world_object)
-        shown.frame.position = pose.position
+        before, shown.pose = shown.pose, pose
+        if before is None or not np.array_equal(before.R_world_object, pose.R_world_object):
+            shown.frame.wxyz = quaternion(pose.R_world_object)
+        if before is None or not np.array_equal(before.position, pose.position):
+            shown.frame.position = pose.position
         scale = tuple(float(s) for s in pose.scale)
         if shown.mesh is not None and shown.mesh.scale != scale:
             shown.mesh.scale = scale

@@ -24,7 +24,9 @@ class LibraryPanel:
         self._guest = guest
         self._words = gui.add_text("Search", "", hint="For example: armchair, round table, blue")
         on_change(self._words, lambda v: guest.post(self.refresh, key="search"))
+        self._where = LiveHtml(gui)
         self._html = LiveHtml(gui, self._act)
+        self._drawn: tuple[object, ...] = ()
         upload = gui.add_upload_button(
             "Add a model file", hint="GLB, OBJ, PLY, STL or FBX; then click where it should stand"
         )
@@ -39,18 +41,19 @@ class LibraryPanel:
 
     def refresh(self) -> None:
         """Draw what was found."""
-        words = self._words.value.strip()
-        found = self._found(words)
         selected = self._guest.selected
-        if not found:
-            self._html.show(f"<p class='dim'>Nothing in the library is like “{text(words)}”. Try a plainer word.</p>")
-            return
-        tiles = "".join(self._tile(shape) for shape in found)
         where = "on the floor you look at" + (f", or on the selected {text(selected.label)}" if selected else "")
-        self._html.show(
+        self._where.show(
             f'<p class="dim"><b>Insert</b> puts it {where}; <b>Place</b> waits for your click in the view.</p>'
-            f'<div class="grid">{tiles}</div>'
         )
+        words = self._words.value.strip()
+        drawn = (words, self._guest.settings.unit, self._guest.room.library.shapes())
+        if drawn == self._drawn:
+            return  # a hundred tiles, the same as before
+        self._drawn = drawn
+        tiles = "".join(self._tile(shape) for shape in self._found(words))
+        nothing = f"<p class='dim'>Nothing in the library is like “{text(words)}”. Try a plainer word.</p>"
+        self._html.show(f'<div class="grid">{tiles}</div>' if tiles else nothing)
 
     def _found(self, words: str) -> list[Shape]:
         library = self._guest.room.library

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import viser
 
 from diorama_app.guest import Guest
@@ -19,6 +21,8 @@ SETS = {
     "paper: as published": "paper",
 }
 
+LOOKED_AT_EVERY_S = 3.0
+
 
 class Networks:
     """The list of stages, the choice of a set with its licences, and "Get networks"."""
@@ -31,12 +35,18 @@ class Networks:
             self._offer = LiveHtml(gui)
             self._accept = gui.add_checkbox("I accept these licences", False)
             self._get = gui.add_button("Get networks", color="blue", hint="Fetches what is missing; can be stopped")
+        self._state: tuple[object, ...] = ()
+        self._looked_at = 0.0
         on_change(self._choice, lambda _: guest.post(self._chosen))
         on_change(self._accept, lambda _: guest.post(self.refresh))
         on_press(self._get, lambda: guest.post(self._start))
 
     def refresh(self) -> None:
-        """Draw what is here and what the chosen set would add."""
+        """Draw what is here and what the chosen set would add; looks at the disk now and then, not at every edit."""
+        state = (self._choice.value, self._accept.value, self._guest.room.jobs.status is None)
+        if state == self._state and time.monotonic() - self._looked_at < LOOKED_AT_EVERY_S:
+            return
+        self._state, self._looked_at = state, time.monotonic()
         store = ModelStore.default()
         self._stages.show(_stages_html())
         missing, unknown = self._missing(store), self._unknown(store)
