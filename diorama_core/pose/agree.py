@@ -4,15 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from diorama_core.library.taxonomy import UNKNOWN
+from diorama_core.library.taxonomy import UNKNOWN, with_kin
 
 _OWN_SHARE = 0.35
 _ABSENT = -0.7
 _OVERLAP = 0.5
+MOST_LOSS_WITH_DEPTH = 1.0
+"""What agreeing may cost where depth was measured: it shows when things of a kind are not the same."""
+_SETS = with_kin("chair", "office chair", "stool", "armchair", "night stand", "ottoman", "lamp")
+"""What comes in sets; books and pictures of one room are different ones."""
 
 
 def agreed_ranks(
-    categories: Sequence[str], ranks: Sequence[Mapping[str, float]], trust: Sequence[float]
+    categories: Sequence[str],
+    ranks: Sequence[Mapping[str, float]],
+    trust: Sequence[float],
+    most_loss: Sequence[float],
 ) -> list[dict[str, float]]:
     """Each object's log ranks of shapes, mixed with those of objects of its kind.
 
@@ -20,6 +27,8 @@ def agreed_ranks(
         categories: Category of every object; unnamed things stand alone.
         ranks: For every object its shapes' log ranks, higher is better.
         trust: How well every object is seen: how much it has to say for its group.
+        most_loss: By how much the shape agreed on may be ranked below an object's own best before the object goes its
+            own way; where this is finite, only things that come in sets agree at all.
 
     Returns:
         For every object the same shapes with ranks relative to its best.
@@ -27,11 +36,13 @@ def agreed_ranks(
     relative = [{key: value - max(own.values()) for key, value in own.items()} for own in ranks]
     groups = _groups(categories, relative)
     agreed = []
-    for group, own in zip(groups, relative, strict=True):
+    for group, own, name, most in zip(groups, relative, categories, most_loss, strict=True):
         alike = [i for i, other in enumerate(groups) if other == group]
         weight = sum(trust[i] + 1e-3 for i in alike)
         mean = {key: sum((trust[i] + 1e-3) * relative[i].get(key, _ABSENT) for i in alike) / weight for key in own}
-        agreed.append({key: _OWN_SHARE * own[key] + (1 - _OWN_SHARE) * mean[key] for key in own})
+        mixed = {key: _OWN_SHARE * own[key] + (1 - _OWN_SHARE) * mean[key] for key in own}
+        in_sets = most == float("inf") or name in _SETS
+        agreed.append(mixed if in_sets and own[max(mixed, key=lambda key: mixed[key])] >= -most else dict(own))
     return agreed
 
 

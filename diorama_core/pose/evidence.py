@@ -26,6 +26,9 @@ _NOISE_FLOOR = 0.03
 """Error below which two poses are not told apart: the resolution of the silhouettes."""
 _FACING_STRENGTH = 0.7
 _STRETCH_SIGMA = 0.3
+_ENLARGED_SIGMA = 0.2
+_LIKENESS_SIGMA = 0.15
+_LIKENESS_FLOOR = 0.02
 _MISFIT_SIGMA = 0.2
 _OFF_AXIS_SIGMA_RAD = float(np.deg2rad(35.0))
 
@@ -80,6 +83,15 @@ class Evidence:
         cost = cost + 0.5 * (off_axis_rad / _OFF_AXIS_SIGMA_RAD) ** 2
         strength = 1.0 if self.surface is None else _STRENGTH_WITH_DEPTH
         return -strength * np.log(errors + _NOISE_FLOOR) - cost
+
+    def log_likeness(self, error: float, scale: Float[np.ndarray, "3"], limits: SizeLimits) -> float:
+        """How well one shape at its best pose explains the object, to compare shapes where depth was measured.
+
+        Shapes are made in metres: the right one fits without being enlarged or stretched much.
+        """
+        logs = np.log(scale[~limits.thin]) if not limits.thin.all() else np.log(scale)
+        cost = 0.5 * (float(logs.mean()) / _ENLARGED_SIGMA) ** 2 + 0.5 * (float(logs.std()) / _LIKENESS_SIGMA) ** 2
+        return -_STRENGTH_WITH_DEPTH * float(np.log(error + _LIKENESS_FLOOR)) - cost
 
     def confidence(self, error: float, cuboid_confidence: float) -> float:
         """0 to 1: lower for cut, hidden, tiny or badly masked objects and for poses that fit badly."""

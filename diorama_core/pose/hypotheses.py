@@ -57,6 +57,9 @@ class Hypotheses:
     misfit: Float[np.ndarray, "p"]
     """How far the limits keep the shape from filling the cuboid that way round: root mean square of log extents."""
 
+    def __getitem__(self, chosen: np.ndarray) -> Hypotheses:
+        return Hypotheses(self.poses[chosen], self.off_axis_rad[chosen], self.misfit[chosen])
+
     def and_also(self, other: Hypotheses) -> Hypotheses:
         """These and then those."""
         return Hypotheses(

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
+from jaxtyping import Float
 
 from diorama_core.artefacts import (
     Cuboid,
@@ -23,10 +24,10 @@ from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import category
-from diorama_core.pose.agree import agreed_ranks
+from diorama_core.pose.agree import MOST_LOSS_WITH_DEPTH, agreed_ranks
 from diorama_core.pose.evidence import Evidence
 from diorama_core.pose.facing import facing_of, wall_samples
-from diorama_core.pose.hypotheses import Anchor, anchor_of, hypotheses_for, unlike_best
+from diorama_core.pose.hypotheses import Anchor, Hypotheses, anchor_of, hypotheses_for, unlike_best
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.measured import MeasuredObject
 from diorama_core.pose.refine import BoxFit
@@ -36,8 +37,8 @@ from diorama_core.scene.types import Candidate, Pose
 
 _POWERS = (1.5, 0.6)
 """How much retrieval and pose say about which shape is best: the picture's outline alone would ignore colours."""
-_POWERS_WITH_DEPTH = (0.7, 1.5)
-"""The same where depth was measured: it tells shapes apart."""
+_RETRIEVAL_WITH_DEPTH = 0.7
+"""What retrieval says beside `Evidence.log_likeness` where depth was measured: that tells shapes apart."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +52,19 @@ class _Task:
     fine: Evidence
     measured: MeasuredObject | None
     """Where depth was measured."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Tried:
+    """One shape with its hypotheses compared at the coarse resolution."""
+
+    shape: Shape
+    liked: float
+    """By retrieval: a logarithm, 0 for the shape it likes best."""
+    caster: ShapeCaster
+    limits: SizeLimits
+    hypotheses: Hypotheses
+    scores: Float[np.ndarray, "p"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,12 +95,14 @@ class RenderAndCompare:
     refined: int = 2
     """How many hypotheses of each shape are refined where only the outline is known."""
     refined_with_depth: int = 5
-    """How many where depth was measured."""
+    """How many of each promising shape where depth was measured."""
+    promising: int = 4
+    """Shapes that the coarse comparison likes best; where depth was measured the others are looked at less."""
 
     def __repr__(self) -> str:
         words = "\n".join(f"{s.id} {s.content_hash}" for s in self.library.shapes())
         shapes = hashlib.sha256(words.encode()).hexdigest()[:12]
-        settings = (self.coarse_cells, self.fine_cells, self.refined, self.refined_with_depth)
+        settings = (self.coarse_cells, self.fine_cells, self.refined, self.refined_with_depth, self.promising)
         return f"RenderAndCompare({shapes}, {', '.join(map(str, settings))})"
 
     def pose(
@@ -110,6 +126,7 @@ class RenderAndCompare:
             [task.thing.category for task in tasks],
             [{posed.shape.id: posed.rank for posed in of_one} for of_one in found],
             [task.fine.confidence(0.0, 1.0) for task in tasks],
+            [np.inf if task.measured is None else MOST_LOSS_WITH_DEPTH for task in tasks],
         )
         return tuple(_candidates(*one) for one in zip(tasks, found, ranks, strict=True))
 
@@ -152,16 +169,14 @@ class RenderAndCompare:
         self, task: _Task, ranked: tuple[tuple[str, float], ...], records: Mapping[str, Shape]
     ) -> tuple[_Posed, ...]:
         best = max(max(score for _, score in ranked), 1e-9)
-        of_retrieval, of_pose = _POWERS if task.measured is None else _POWERS_WITH_DEPTH
-        posed = []
-        for shape_id, score in ranked:
-            found = self._pose_shape(task, records[shape_id])
-            liked = float(np.log(max(score / best, 1e-6)))
-            posed.append(replace(found, rank=of_retrieval * liked + of_pose * found.rank))
-        return tuple(posed)
+        tried = [self._try_shape(task, records[i], float(np.log(max(score / best, 1e-6)))) for i, score in ranked]
+        if task.measured is None:
+            return tuple(self._pose_by_outline(task, one) for one in tried)
+        order = sorted(range(len(tried)), key=lambda k: -float(tried[k].scores.max()))
+        promising = set(order[: self.promising])
+        return tuple(self._pose_by_depth(task, task.measured, one, k in promising) for k, one in enumerate(tried))
 
-    def _pose_shape(self, task: _Task, shape: Shape) -> _Posed:
-        """Search, refine and choose: a refinement is taken only where it scores better."""
+    def _try_shape(self, task: _Task, shape: Shape, liked: float) -> _Tried:
         folder = default_cache_dir() / "looks"
         caster = SHARED_LOOKS.get(shape.content_hash, folder, lambda: self.library.parts(shape.id)).caster
         name = task.thing.category
@@ -170,34 +185,36 @@ class RenderAndCompare:
         if task.measured is not None:
             tried = tried.and_also(task.measured.hypotheses(shape.symmetry, limits))
         errors = task.coarse.errors(caster, tried.poses)
-        rough = task.coarse.log_scores(errors, tried.poses, tried.off_axis_rad, tried.misfit, limits)
-        if task.measured is None:
-            best = np.argsort(-rough, kind="stable")[: self.refined]
-        else:
-            best = unlike_best(tried.poses, rough, shape.symmetry, limits.shape_size_m, self.refined_with_depth)
-        start, off_axis, misfit = tried.poses[best], tried.off_axis_rad[best], tried.misfit[best]
-        found = self._chosen(task, caster, limits, start, off_axis, misfit)
-        if task.measured is not None and shape.symmetry < 4:
-            turned = task.measured.turned(found[0], shape.symmetry, limits)
-            nothing = np.zeros(len(turned))
-            other = self._chosen(task, caster, limits, turned, nothing, nothing)
-            found = max(found, other, key=lambda f: f[2])
-        poses, error, score = found
-        return _Posed(shape, Pose(poses.R[0], poses.position[0], poses.scale[0]), error, score)
+        scores = task.coarse.log_scores(errors, tried.poses, tried.off_axis_rad, tried.misfit, limits)
+        return _Tried(shape, liked, caster, limits, tried, scores)
 
-    def _chosen(
-        self,
-        task: _Task,
-        caster: ShapeCaster,
-        limits: SizeLimits,
-        start: PoseBatch,
-        off_axis_rad: np.ndarray,
-        misfit: np.ndarray,
-    ) -> tuple[PoseBatch, float, float]:
+    def _pose_by_outline(self, task: _Task, tried: _Tried) -> _Posed:
+        best = np.argsort(-tried.scores, kind="stable")[: self.refined]
+        poses, error, score = self._chosen(task, tried, tried.hypotheses[best])
+        of_retrieval, of_pose = _POWERS
+        return _Posed(tried.shape, _only(poses), error, of_retrieval * tried.liked + of_pose * score)
+
+    def _pose_by_depth(self, task: _Task, measured: MeasuredObject, tried: _Tried, promising: bool) -> _Posed:
+        """Unlike hypotheses are refined; the best one is also tried turned by quarters in its place."""
+        fold, size_m = tried.shape.symmetry, tried.limits.shape_size_m
+        count = self.refined_with_depth if promising else self.refined
+        best = unlike_best(tried.hypotheses.poses, tried.scores, fold, size_m, count)
+        found = self._chosen(task, tried, tried.hypotheses[best])
+        if promising and fold < 4:
+            turned = measured.turned(found[0], fold, tried.limits)
+            nothing = np.zeros(len(turned))
+            other = self._chosen(task, tried, Hypotheses(turned, nothing, nothing))
+            found = max(found, other, key=lambda f: f[2])
+        poses, error, _ = found
+        likeness = task.fine.log_likeness(error, poses.scale[0], tried.limits)
+        return _Posed(tried.shape, _only(poses), error, _RETRIEVAL_WITH_DEPTH * tried.liked + likeness)
+
+    def _chosen(self, task: _Task, tried: _Tried, start: Hypotheses) -> tuple[PoseBatch, float, float]:
         """The best of some poses and their refinements, with its error and score."""
-        both = start.and_also(self._refined(task, caster, limits, start))
-        errors = task.fine.errors(caster, both)
-        scores = task.fine.log_scores(errors, both, np.tile(off_axis_rad, 2), np.tile(misfit, 2), limits)
+        both = start.poses.and_also(self._refined(task, tried.caster, tried.limits, start.poses))
+        errors = task.fine.errors(tried.caster, both)
+        off_axis, misfit = np.tile(start.off_axis_rad, 2), np.tile(start.misfit, 2)
+        scores = task.fine.log_scores(errors, both, off_axis, misfit, tried.limits)
         chosen = int(np.argmax(scores))
         return both[chosen : chosen + 1], float(errors[chosen]), float(scores[chosen])
 
@@ -206,6 +223,10 @@ class RenderAndCompare:
             return task.measured.fit(limits).refined(caster, start)
         yaw_sigma = np.deg2rad(9.0 if category(task.thing.category).quarter_turns_free else 4.0)
         return BoxFit(task.fine.camera, task.fine.seen, task.anchor, limits, float(yaw_sigma)).refined(caster, start)
+
+
+def _only(poses: PoseBatch) -> Pose:
+    return Pose(poses.R[0], poses.position[0], poses.scale[0])
 
 
 def _candidates(task: _Task, found: tuple[_Posed, ...], ranks: Mapping[str, float]) -> PosedCandidates:
