@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -40,7 +41,9 @@ def add_bench(commands: Any) -> None:
         one.add_argument("--scenes", type=int, default=scenes, metavar="N", help="rooms (default: %(default)s)")
         one.add_argument("--seed", type=int, default=0, metavar="S", help="of the rooms (default: %(default)s)")
         one.add_argument("--json", type=Path, metavar="FILE", help="write the results as JSON too")
-        one.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables as Markdown too")
+        one.add_argument(
+            "--markdown", type=Path, metavar="FILE", help="write the tables as Markdown, or into their place in it"
+        )
         if name == "rooms":
             one.add_argument("--sheet", type=Path, metavar="FILE", help="write a sheet of all pictures (PNG or JPEG)")
         if name == "system":
@@ -53,6 +56,9 @@ def add_bench(commands: Any) -> None:
             one.add_argument("--pictures", type=Path, metavar="DIR", help="write every photo beside its two results")
         if name == "speed":
             one.add_argument("--keep", type=Path, metavar="FILE", help="write the figures as a regression file")
+            one.add_argument("--against", type=Path, metavar="FILE", help="figures to compare with (default: built in)")
+            one.add_argument("--tolerance", type=float, default=1.6, metavar="T", help="times (default: %(default)s)")
+            one.add_argument("--quick", action="store_true", help="small quantities only, about a minute")
 
 
 def _bench_layout(a: argparse.Namespace) -> None:
@@ -62,7 +68,7 @@ def _bench_layout(a: argparse.Namespace) -> None:
     with progress_bar() as progress:
         bench = run(scenes=a.scenes, seed=a.seed, progress=progress)
     _write(a.json, bench.to_json())
-    _write_text(a.markdown, bench.to_markdown())
+    _write_text(a, bench.to_markdown())
     print(bench.to_markdown())
 
 
@@ -129,17 +135,26 @@ def _bench_survey(a: argparse.Namespace) -> None:
         print(f"{name}: {', '.join(faults)}")
 
 
-def _bench_speed(a: argparse.Namespace) -> None:
-    from diorama_core.evaluation.speed_bench import regression_file, run
+def _bench_speed(a: argparse.Namespace) -> int:
+    from diorama_core.evaluation.speed_bench import FULL, QUICK, committed_figures, regression_bytes, run, slower
     from diorama_core.library.catalogue import built_in_library
     from diorama_core.project.files import write_atomically
 
     _check(a)
+    if a.tolerance <= 1:
+        raise InputError(f"--tolerance {a.tolerance:g}: give more than 1, such as 1.6")
+    before = committed_figures(a.against)
     with progress_bar() as progress:
-        bench = run(built_in_library(), a.seed, progress)
+        bench = run(built_in_library(), a.seed, progress, QUICK if a.quick else FULL, before=before)
     if a.keep:
-        write_atomically(a.keep, regression_file(bench))
+        write_atomically(a.keep, regression_bytes(bench.figures()))
     _show(bench, a)
+    worse = slower(bench.figures(), before, a.tolerance)
+    for name, times in worse.items():
+        print(
+            f"diorama: slower than {a.against or 'the committed figures'}: {name}, {times:.1f} times", file=sys.stderr
+        )
+    return 1 if worse and not a.keep else 0
 
 
 def _check(a: argparse.Namespace) -> None:
@@ -150,7 +165,7 @@ def _check(a: argparse.Namespace) -> None:
 def _show(bench: _Bench, a: argparse.Namespace) -> None:
     _write(a.json, bench.to_json())
     text = "\n".join(table.to_markdown() for table in bench.tables())
-    _write_text(a.markdown, text)
+    _write_text(a, text)
     print(text)
 
 
@@ -161,8 +176,15 @@ def _write(path: Path | None, document: dict[str, object]) -> None:
         write_atomically(path, json.dumps(document, indent=1).encode())
 
 
-def _write_text(path: Path | None, text: str) -> None:
+def _write_text(a: argparse.Namespace, text: str) -> None:
+    """Tables into a file: between `<!-- bench NAME -->` and `<!-- end NAME -->` where it has them, else whole."""
     from diorama_core.project.files import write_atomically
 
-    if path:
-        write_atomically(path, text.encode())
+    if not a.markdown:
+        return
+    begin, end = f"<!-- bench {a.table} -->", f"<!-- end {a.table} -->"
+    there = a.markdown.read_text() if a.markdown.exists() else ""
+    if begin in there and end in there:
+        before, _, after = there.partition(begin)
+        text = f"{before}{begin}\n\n{text.strip()}\n\n{end}{after.partition(end)[2]}"
+    write_atomically(a.markdown, text.encode())

@@ -13,10 +13,10 @@ from diorama_core.errors import InputError
 from diorama_core.evaluation.dataset.truth import TruthView
 from diorama_core.evaluation.system_bench import Show
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.pipeline.build import Built
 from diorama_core.project.files import write_atomically
 from diorama_core.render.compare import side_by_side
 from diorama_core.render.picture import picture
-from diorama_core.scene.types import Scene
 
 SIZE = (320, 240)
 JPEG_QUALITY = 82
@@ -26,21 +26,20 @@ def case_writer(folder: Path, library: ShapeLibrary) -> Show:
     """What the system bench calls to have every case written into a folder, as `living-3-0.jpg`."""
     folder.mkdir(parents=True, exist_ok=True)
 
-    def show(name: str, view: TruthView, built: tuple[Scene | None, ...]) -> None:
-        write_picture(folder / f"{name}.jpg", case_picture(view, built, library))
+    def show(name: str, view: TruthView, results: tuple[Built | None, ...]) -> None:
+        write_picture(folder / f"{name}.jpg", case_picture(view, results, library))
 
     return show
 
 
-def case_picture(view: TruthView, built: Sequence[Scene | None], library: ShapeLibrary) -> UInt8[np.ndarray, "h w 3"]:
+def case_picture(view: TruthView, results: Sequence[Built | None], library: ShapeLibrary) -> UInt8[np.ndarray, "h w 3"]:
     """The photo, then every result through its own camera and from outside; grey where nothing was built."""
     strip = cv2.resize(view.inputs.photo.rgb, SIZE, interpolation=cv2.INTER_AREA)
-    for scene in built:
+    for built in results:
         for look in ("photo", "orbit:30"):
-            if scene is None or (look == "photo" and scene.camera is None):
-                seen = np.full((SIZE[1], SIZE[0], 3), 128, np.uint8)
-            else:
-                seen = picture(scene, library, view=look, size=SIZE)
+            seen = np.full((SIZE[1], SIZE[0], 3), 128, np.uint8)
+            if built is not None and (look != "photo" or built.scene.camera is not None):
+                seen = picture(built.scene, library, view=look, size=SIZE, textures=built.textures)
             strip = side_by_side(strip, seen, gap=4)
     return strip
 

@@ -23,15 +23,14 @@ from diorama_core.evaluation.pose_metrics import pooled
 from diorama_core.evaluation.scene_metrics import SceneScores, scene_scores
 from diorama_core.evaluation.tables import Column, Row, Table, paper_rows
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.pipeline.build import build_scene
+from diorama_core.pipeline.build import Built, build_scene
 from diorama_core.progress import Progress
-from diorama_core.scene.types import Scene
 
 log = logging.getLogger(__name__)
 
 TRUE_INPUTS = "true masks and depth"
 PHOTO_ALONE = "embedded perception"
-Show = Callable[[str, TruthView, tuple[Scene | None, ...]], None]
+Show = Callable[[str, TruthView, tuple[Built | None, ...]], None]
 
 
 @dataclass(frozen=True)
@@ -95,14 +94,14 @@ def run(
     ways = {TRUE_INPUTS: list[CaseResult](), PHOTO_ALONE: list[CaseResult]()}
     cases = recipe(scenes, 1, seed)
     for k, (case, view) in enumerate(views_of(cases, tested)):
-        built: list[Scene | None] = []
+        results: list[Built | None] = []
         for turn, (name, inputs) in enumerate(((TRUE_INPUTS, view.inputs), (PHOTO_ALONE, photo_only(view)))):
             progress.report((k + turn / 2) / len(cases), f"{case.name}: {name}")
-            scene, result = build_case(case, view, inputs, library, searched, progress, physics=physics)
+            built, result = build_case(case, view, inputs, library, searched, progress, physics=physics)
             ways[name].append(result)
-            built.append(scene)
+            results.append(built)
         if show is not None:
-            show(case.name, view, tuple(built))
+            show(case.name, view, tuple(results))
     progress.report(1.0, "done")
     return SystemBench(seed, offered, tuple((name, tuple(results)) for name, results in ways.items()))
 
@@ -116,7 +115,7 @@ def build_case(
     progress: Progress,
     *,
     physics: bool = False,
-) -> tuple[Scene | None, CaseResult]:
+) -> tuple[Built | None, CaseResult]:
     """Build one scene from what is searched and score it with the library that knows the truth's shapes too."""
     begun, wall = time.process_time(), time.perf_counter()
 
@@ -124,10 +123,10 @@ def build_case(
         return CaseResult(case.name, scores, spent, waited, failure)
 
     try:
-        scene: Scene = build_scene(inputs, searched, progress=Progress(token=progress.token)).scene
+        built = build_scene(inputs, searched, progress=Progress(token=progress.token))
         spent, waited = time.process_time() - begun, time.perf_counter() - wall
-        scores = scene_scores(view, scene, library, physics=physics)
-        return scene, result(scores, "" if scene.objects else "no object came out")
+        scores = scene_scores(view, built.scene, library, physics=physics)
+        return built, result(scores, "" if built.scene.objects else "no object came out")
     except Cancelled:
         raise
     except Exception as error:  # whatever goes wrong, the scene counts as failed

@@ -176,8 +176,8 @@ def test_litres_that_meshes_share(view, library):
 
 def test_a_build_that_fails_counts_as_wrong(view, library):
     blank = Inputs(view.inputs.photo)
-    scene, result = build_case(Case(0, "living"), view, blank, library, library, Progress())
-    assert scene is None or not scene.objects
+    built, result = build_case(Case(0, "living"), view, blank, library, library, Progress())
+    assert built is None or not built.scene.objects
     assert result.failure
     assert (result.scores.asked, result.scores.found, result.scores.pairs.acc) == (8, 0, 0.0)
 
