@@ -18,6 +18,7 @@ from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import UNKNOWN, with_kin
 from diorama_core.progress import Progress
 from diorama_core.retrieval.likeness import EmbeddedLikeness, Glimpse, Likeness
+from diorama_core.retrieval.outlines import outline_agreement
 from diorama_core.retrieval.pools import Pool, Wish, pool_for, size_cost
 from diorama_core.scene.types import Support, yaw_rotation
 
@@ -29,6 +30,9 @@ _UNNAMED_OUTLINE, _UNNAMED_SIZE = 3.0, 0.5
 """How much more the outline, and how much less the guessed size, of a thing without a name counts."""
 _OWN_EVIDENCE = 0.4
 _LEAST_LIKENESS = 0.25
+_GUESSED_SIZE = 0.5
+"""How much less the size of a thing counts of which nothing is seen: it is what such things usually have."""
+_LEAST_VOICE = 0.1
 
 
 @dataclass(frozen=True)
@@ -71,23 +75,24 @@ class HierarchicalRetrieval:
         parents = _parent_indices(measured, geometry.supports)
         likeness = self.likeness or EmbeddedLikeness(self.library)
         scores: list[dict[str, float]] = []
+        sight: list[float] = []
         for index, thing in enumerate(measured):
             progress.report(index / len(measured), f"Looking for shapes: {thing.label}")
             seen = observe_among(geometry.camera, measured, centres, parents, index, self.cells)
-            unnamed = thing.category == UNKNOWN.name
+            named = thing.category != UNKNOWN.name
             members = pools[groups[index]].members
             visible = (1 - seen.border_share) * (1 - seen.hidden_share) * seen.mask_trust
-            glimpse = Glimpse(inputs.photo.rgb, thing.mask, thing.label, visible)
+            glimpse = Glimpse(inputs.photo.rgb, thing.mask, thing.label, visible, seen.mask_trust)
             alike = likeness.of(glimpse, [m.shape for m in members])
-            weight = self.likeness_weight * (_LEAST_LIKENESS + (1 - _LEAST_LIKENESS) * visible)
+            sight.append(visible)
             scores.append(
                 {
                     m.shape.id: m.kind_factor
-                    * self._score(m.shape, cuboids[thing.id], seen, (weight, float(like)), unnamed)
+                    * self._score(m.shape, cuboids[thing.id], seen, visible, float(like), named)
                     for m, like in zip(members, alike, strict=True)
                 }
             )
-        shared = _agreed(groups, scores)
+        shared = _agreed(groups, scores, sight)
         return tuple(
             RankedShapes(thing.id, _best(ranking, self.keep), pools[group].note)
             for thing, ranking, group in zip(measured, shared, groups, strict=True)
@@ -116,19 +121,23 @@ class HierarchicalRetrieval:
             pools.append(pool_for(self.library, wish))
         return pools
 
-    def _score(self, shape: Shape, cuboid: Cuboid, seen: Observed, looks: tuple[float, float], unnamed: bool) -> float:
-        """0 to 1: the best of the shape's quarter turns in the cuboid, and its likeness, given as (weight, value)."""
+    def _score(self, shape: Shape, cuboid: Cuboid, seen: Observed, visible: float, like: float, named: bool) -> float:
+        """0 to 1: the best of the shape's quarter turns in the cuboid, and its likeness."""
         look = SHARED_LOOKS.get(shape.content_hash, default_cache_dir() / "looks", lambda: self.library.parts(shape.id))
         targets, poses = quarter_turns(shape, cuboid)
         cost = np.array([size_cost(shape.size_m, t) for t in targets])
-        outline = seen.agreement(seen.silhouettes(look.caster, poses))
-        outline_weight = self.silhouette_weight * (0.25 + 0.75 * seen.mask_trust)
-        size_weight = self.size_weight
-        if unnamed:
-            outline_weight, size_weight = _UNNAMED_OUTLINE * outline_weight, _UNNAMED_SIZE * size_weight
-        fit = size_weight * np.exp(-cost / 2) + outline_weight * outline
-        weight, like = looks
-        return float((fit.max() + weight * like) / (size_weight + outline_weight + weight))
+        outline = outline_agreement(seen, seen.silhouettes(look.caster, poses))
+        of_size, of_outline, of_looks = self._weights(seen, visible, named)
+        fit = of_size * np.exp(-cost / 2) + of_outline * outline
+        return float((fit.max() + of_looks * like) / (of_size + of_outline + of_looks))
+
+    def _weights(self, seen: Observed, visible: float, named: bool) -> tuple[float, float, float]:
+        """How much size, outline and looks say about a thing of which so much is seen."""
+        return (
+            self.size_weight * (1 - _GUESSED_SIZE * (1 - visible)) * (1.0 if named else _UNNAMED_SIZE),
+            self.silhouette_weight * (0.25 + 0.75 * seen.mask_trust) * (1.0 if named else _UNNAMED_OUTLINE),
+            self.likeness_weight * (_LEAST_LIKENESS + (1 - _LEAST_LIKENESS) * visible),
+        )
 
 
 def _fingerprint(library: ShapeLibrary) -> str:
@@ -171,12 +180,15 @@ def _groups(categories: Sequence[str], sizes_m: Sequence[np.ndarray]) -> list[in
     return groups
 
 
-def _agreed(groups: Sequence[int], scores: Sequence[dict[str, float]]) -> list[dict[str, float]]:
-    """Each object's scores mixed with the mean of its group's."""
+def _agreed(
+    groups: Sequence[int], scores: Sequence[dict[str, float]], visible: Sequence[float]
+) -> list[dict[str, float]]:
+    """Each object's scores mixed with the mean of its group's, in which those that are seen best say most."""
     shared = []
     for group, own in zip(groups, scores, strict=True):
-        alike = [s for g, s in zip(groups, scores, strict=True) if g == group]
-        mean = {key: sum(s[key] for s in alike) / len(alike) for key in own}
+        alike = [(v + _LEAST_VOICE, s) for g, s, v in zip(groups, scores, visible, strict=True) if g == group]
+        voices = sum(voice for voice, _ in alike)
+        mean = {key: sum(voice * s[key] for voice, s in alike) / voices for key in own}
         shared.append({key: _OWN_EVIDENCE * own[key] + (1 - _OWN_EVIDENCE) * mean[key] for key in own})
     return shared
 

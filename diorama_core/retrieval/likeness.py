@@ -24,6 +24,7 @@ from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.render.templates import TemplateGrid, render_templates
 from diorama_core.render.view_features import WIDTH, Weights, colour_feature, view_feature
 from diorama_core.retrieval.kept import kept_features
+from diorama_core.retrieval.outlines import filled, open_share
 from diorama_core.scene.values import ArrayValue
 
 NEUTRAL = 235
@@ -32,11 +33,11 @@ SIDE_PX = 224
 _MARGIN = 0.06
 _GRID = TemplateGrid(elevations_deg=(8.0, 28.0), azimuths=12, size_px=72, longest_side=0.85, distance=2.2, fov_deg=32.0)
 """Views as photos of rooms have them, with little perspective."""
-_KIND = f"views-1-{_GRID.key}"
+_KIND = f"views-2-{_GRID.key}"
 _SHAPE_ONLY = Weights(outline=0.5, edges=0.5, colour=0.0)
 _NO_COLOUR = colour_feature(NOTHING_KNOWN)
-_COLOUR_SHARE = 0.3
-"""Weight of the colours beside the views of a thing that is seen whole."""
+_COLOUR_WEIGHTS = (0.3, 0.6)
+"""Beside the views of a thing that is seen whole, and of one of which little is seen."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +52,8 @@ class Glimpse(ArrayValue):
     """What it is called."""
     visible: float = 1.0
     """How much of it the mask shows, 0 to 1: less where it is cut, hidden or badly outlined."""
+    mask_trust: float = 1.0
+    """0 to 1: whether the mask's inner gaps can be believed."""
 
     @property
     def crop(self) -> UInt8[np.ndarray, "s s 3"]:
@@ -89,11 +92,14 @@ class EmbeddedLikeness:
         looks = [self._look(s) for s in shapes]
         seen = palette_of_crop(thing.rgb, thing.mask)
         colours = np.array([palette_agreement(seen, palette_of_look(look)) for look in looks])
-        query = view_feature(cv2.cvtColor(thing.rgb, cv2.COLOR_RGB2GRAY), thing.mask, _NO_COLOUR, _SHAPE_ONLY)
+        query = _open_and_filled(cv2.cvtColor(thing.rgb, cv2.COLOR_RGB2GRAY), thing.mask)
         if query is None or thing.visible <= 0:
             return colours
-        alike = [float((self._views(s, look) @ query).max()) for s, look in zip(shapes, looks, strict=True)]
-        return (_COLOUR_SHARE * colours + thing.visible * np.clip(alike, 0.0, 1.0)) / (_COLOUR_SHARE + thing.visible)
+        share = open_share(thing.mask_trust)
+        query = query * np.array([[share], [1 - share]], np.float32)
+        alike = [float((self._views(s, look) @ query.ravel()).max()) for s, look in zip(shapes, looks, strict=True)]
+        of_colours = float(np.interp(1.0 - thing.visible, (0.0, 1.0), _COLOUR_WEIGHTS))
+        return (of_colours * colours + thing.visible * np.clip(alike, 0.0, 1.0)) / (of_colours + thing.visible)
 
     def _look(self, shape: Shape) -> Look:
         parts = partial(self.library.parts, shape.id)
@@ -105,12 +111,20 @@ class EmbeddedLikeness:
 
 def _features_of_views(look: Look) -> Float32[np.ndarray, "v width"]:
     """Of every view; zeros where nothing is seen, and for shapes without a surface."""
-    rows = np.zeros((len(_GRID), WIDTH), np.float32)
+    rows = np.zeros((len(_GRID), 2 * WIDTH), np.float32)
     if not len(look.faces) or np.ptp(look.vertices, axis=0).max() <= 0:
         return rows
     templates = render_templates(trimesh.Trimesh(look.vertices, look.faces, process=False), _GRID)
     for k, (gray, mask) in enumerate(zip(templates.gray, templates.mask, strict=True)):
-        found = view_feature(gray, mask, _NO_COLOUR, _SHAPE_ONLY)
+        found = _open_and_filled(gray, mask)
         if found is not None:
-            rows[k] = found
+            rows[k] = found.ravel()
     return rows
+
+
+def _open_and_filled(
+    gray: UInt8[np.ndarray, "h w"], mask: Bool[np.ndarray, "h w"]
+) -> Float32[np.ndarray, "2 width"] | None:
+    """Features of a picture as it is outlined, and with the outline's gaps filled: what shows through is an edge."""
+    rows = [view_feature(gray, m, _NO_COLOUR, _SHAPE_ONLY) for m in (mask, filled(mask))]
+    return None if rows[0] is None or rows[1] is None else np.stack([rows[0], rows[1]])

@@ -1,0 +1,45 @@
+"""Outlines with their small gaps filled: the masks of photos rarely tell the air between two slats from the slats."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float
+
+from diorama_core.geometry.observed import Observed
+from diorama_core.geometry.window import soft_iou
+
+_GAP_SHARE = 0.12
+"""Of a thing's longer side: wider gaps stay open."""
+_MOST_OPEN = 0.5
+_DOUBTFUL = 0.5
+"""Trust in a mask below which its gaps say nothing."""
+
+
+def filled(mask: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+    """The mask with narrow gaps and small holes closed."""
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    if not len(rows):
+        return mask
+    side = max(rows[-1] - rows[0], columns[-1] - columns[0]) + 1
+    size = max(round(_GAP_SHARE * side), 1) | 1
+    window = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
+    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
+    padded = np.pad(mask[window].astype(np.uint8), size)
+    closed = np.zeros_like(mask)
+    closed[window] = cv2.morphologyEx(padded, cv2.MORPH_CLOSE, kernel)[size:-size, size:-size] > 0
+    return closed
+
+
+def open_share(mask_trust: float) -> float:
+    """How much the outline with its gaps counts beside the filled one: nothing for a doubtful mask."""
+    return _MOST_OPEN * float(np.clip((mask_trust - _DOUBTFUL) / (1 - _DOUBTFUL), 0.0, 1.0))
+
+
+def outline_agreement(seen: Observed, silhouettes: Bool[np.ndarray, "p n"]) -> Float[np.ndarray, " p"]:
+    """Intersection over union with the mask, 0 to 1, with gaps as far as the mask may be trusted, and without."""
+    side = round(np.sqrt(silhouettes.shape[1]))
+    share = open_share(seen.mask_trust)
+    whole = np.maximum(seen.covered, filled((seen.covered > 0.5).reshape(side, side)).ravel())
+    closed = np.stack([filled(s.reshape(side, side)).ravel() for s in silhouettes]).astype(np.float64)
+    return share * seen.agreement(silhouettes) + (1 - share) * soft_iou(whole, closed, seen.weight)
