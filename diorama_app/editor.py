@@ -177,7 +177,7 @@ class Editor:
         with right.add_tab("Library"):
             library = LibraryPanel(gui, guest)
             panels.append(library)
-        take_dropped_files(gui, photo.upload_id, library.upload_id)
+        take_dropped_files(gui, (photo.upload_id, "Photo"), (library.upload_id, "Library"))
         right.dock_right()
         right.set_width(RIGHT_WIDTH_PX)
         guest.panels = panels

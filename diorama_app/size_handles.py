@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import viser
+from jaxtyping import Float
 
 from diorama_app.guest import Guest
 from diorama_app.stretching import HANDLES, Handle, changed_poses, handle_place, pulled_m, stretched
@@ -27,6 +28,8 @@ class Pull:
 
     object_id: str
     handle: Handle
+    grabbed: Float[np.ndarray, "3"]
+    """Where the hand took hold of it, world."""
     start: Scene
     now: Scene
 
@@ -113,7 +116,7 @@ class SizeHandles:
         item = guest.selected
         if phase == "start":
             if item is not None and guest.doing is None:
-                self._pull = Pull(item.id, handle, room.scene, room.scene)
+                self._pull = Pull(item.id, handle, grabbed, room.scene, room.scene)
             return
         pull = self._pull
         if pull is None:
@@ -121,7 +124,7 @@ class SizeHandles:
         if phase in ("update", "end"):
             eye = np.asarray(guest.client.camera.position, dtype=np.float64)
             start = pull.start.object(pull.object_id)
-            by_m = pulled_m(start, handle, grabbed, eye, hand - eye)
+            by_m = pulled_m(start, handle, pull.grabbed, eye, hand - eye)
             snap = guest.settings.snap != inverted
             pull.now = stretched(pull.start, pull.object_id, handle, by_m, snap=snap)
             self._show_scene(pull.start, pull.now)

@@ -37,6 +37,7 @@ class PhotoCamera:
         self._html = LiveHtml(gui, self._act)
         self._typed: dict[str, float] = {}
         self._of: Camera | None = None
+        self._used = False
 
     def refresh(self) -> None:
         """Draw the camera's figures; typed ones wait for the button."""
@@ -61,7 +62,7 @@ class PhotoCamera:
         back = button("Never mind", "back", title="As it was") if self._typed else ""
         explained = '<p class="dim">The grid should lie on the floor of the photo.</p>' if self._typed else ""
         self._html.show(
-            f'<details {"open" if self._typed else ""}><summary class="dim">Camera and floor</summary>'
+            f'<details {"open" if self._used else ""}><summary class="dim">Camera and floor</summary>'
             f'{explained}<table>{rows}</table><div class="bar tight">{again}{back}</div></details>'
         )
 
@@ -87,7 +88,7 @@ class PhotoCamera:
         values = {**figures(self._of), **typed}
         check_fov(values["fov"])
         held = checked_angles(values["tilt"], values["roll"])
-        self._typed = typed
+        self._typed, self._used = typed, True
         self._guest.trial_camera = trial_camera(self._of, values["fov"], held)
         if not self._guest.view.through_photo:
             self._views.photo(self._guest)
