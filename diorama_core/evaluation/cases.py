@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from diorama_core.evaluation.dataset import ROOM_KINDS, RoomKind, TruthView, furnished_room, hold_cameras, render_truth
+from diorama_core.evaluation.dataset import ROOM_KINDS, RoomKind, TruthView, furnished_room, hold_cameras
+from diorama_core.evaluation.dataset.truth import Studio
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.scene.types import Scene
+from diorama_core.scene.types import Camera, Scene
 
+SIZE = (640, 480)
 VIEWS = 3
 STANDARD_SCENES = 60
 LEAST_ASKED = 4
@@ -44,26 +46,19 @@ def furnished(case: Case, library: ShapeLibrary) -> Scene:
     return furnished_room(case.seed, case.kind, library, split="test")
 
 
-def photographed(
-    case: Case,
-    library: ShapeLibrary,
-    *,
-    scene: Scene | None = None,
-    size: tuple[int, int] = (640, 480),
-    with_empty_room: bool = False,
-) -> TruthView:
-    """Photograph one case, furnished first unless its room is given."""
-    scene = scene or furnished(case, library)
-    cameras = hold_cameras(scene, library, case.seed, max(VIEWS, case.view + 1), size)
-    return render_truth(scene, cameras[case.view], library, size, with_empty_room=with_empty_room)
+def studio_of(case: Case, library: ShapeLibrary, size: tuple[int, int] = SIZE) -> tuple[Studio, tuple[Camera, ...]]:
+    """The room of a case ready to be photographed, and where from."""
+    scene = furnished(case, library)
+    return Studio(scene, library), hold_cameras(scene, library, case.seed, max(VIEWS, case.view + 1), size)
 
 
 def views_of(cases: tuple[Case, ...], library: ShapeLibrary) -> Iterator[tuple[Case, TruthView]]:
     """The pictures one after another; a room without enough objects in view gives its next view."""
     for case in cases:
-        view = photographed(case, library)
-        for later in range(case.view + 1, VIEWS):
+        studio, cameras = studio_of(case, library)
+        view = studio.view(cameras[case.view], SIZE, with_empty_room=False)
+        for later in cameras[case.view + 1 :]:
             if len(view.asked) >= LEAST_ASKED:
                 break
-            view = photographed(Case(case.seed, case.kind, later), library)
+            view = studio.view(later, SIZE, with_empty_room=False)
         yield case, view

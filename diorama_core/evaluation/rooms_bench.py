@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from jaxtyping import UInt8
 
-from diorama_core.evaluation.cases import LEAST_ASKED, VIEWS, Case, furnished, photographed, recipe
+from diorama_core.evaluation.cases import LEAST_ASKED, Case, recipe, studio_of
 from diorama_core.evaluation.dataset.splits import split_library
 from diorama_core.evaluation.dataset.survey import RoomSurvey, ViewSurvey, counted, survey_room, survey_view
 from diorama_core.evaluation.tables import Column, Row, Table
@@ -64,12 +64,11 @@ def run(
     cases = recipe(scenes, 1, seed)
     for k, case in enumerate(cases):
         progress.report(k / len(cases), case.name)
-        scene = furnished(case, tested)
-        rooms.append(survey_room(case.name, scene, tested))
-        for number in range(VIEWS):
-            again = Case(case.seed, case.kind, number)
-            view = photographed(again, tested, scene=scene, size=THUMBNAIL)
-            views.append(survey_view(again.name, view))
+        studio, cameras = studio_of(case, tested, THUMBNAIL)
+        rooms.append(survey_room(case.name, studio.scene, tested))
+        for number, camera in enumerate(cameras):
+            view = studio.view(camera, THUMBNAIL, with_empty_room=False)
+            views.append(survey_view(Case(case.seed, case.kind, number).name, view))
             pictures.append(view.inputs.photo.rgb)
     progress.report(1.0, "done")
     return RoomsBench(seed, tuple(rooms), tuple(views)), sheet(pictures, [v.name for v in views])

@@ -36,6 +36,8 @@ LEAST_PIXELS = 150
 """Objects with fewer visible pixels (of 640 x 480) are not asked for: no annotator would draw them."""
 LEAST_VISIBLE = 0.15
 """Nor are objects of which less than this share is visible."""
+LEAST_INSIDE = 0.15
+"""Nor are those with less than this share of their bounding box in the picture, such as a bath's rim in a corner."""
 LETS_LIGHT_IN = ("window", "curtain", "ceiling lamp")
 STEP = 3
 """Pixels between the rays that measure how much of an object is hidden."""
@@ -110,7 +112,7 @@ class Studio:
     """
 
     def __init__(self, scene: Scene, library: ShapeLibrary) -> None:
-        self._scene, self._library, self._light = scene, library, room_light(scene)
+        self.scene, self._library, self._light = scene, library, room_light(scene)
         pictures = finish_textures(scene.architecture)
         planes = tuple(replace(p, texture=p.id) for p in scene.architecture.planes)
         self._shown = replace(scene, architecture=replace(scene.architecture, planes=planes))
@@ -128,13 +130,13 @@ class Studio:
         camera = Camera(camera.intrinsics.scaled(*size), camera.T_world_camera)
         shot = shoot(self._world, self._blockers, PinholeView(camera), self._light, FAST)
         room = self._room.buffers(camera)
-        scene = in_photo_world(replace(self._scene, camera=camera))
+        scene = in_photo_world(replace(self.scene, camera=camera))
         placed = scene.camera or camera
         count, instance = len(scene.objects), shot.grid.instance
         object_ids = np.where(instance < count, instance, -1).astype(np.int32)
         amodal = _amodal_boxes(scene, placed, self._library)
         visible = _visible_fractions(scene, placed, self._library, object_ids, amodal)
-        boxes = _asked(object_ids, visible, size)
+        boxes = _asked(object_ids, np.where(_inside(scene, placed) >= LEAST_INSIDE, visible, 0.0), size)
         objects = tuple(
             replace(o, mask_id=k + 1 if k in boxes else None, box_px=boxes.get(k)) for k, o in enumerate(scene.objects)
         )
@@ -218,6 +220,20 @@ def _visible_fractions(
             whole = int(hits.found.sum()) * STEP**2
             share[index] = min(1.0, pixels[index] / max(whole, pixels[index] * 1e-3, 1.0))
     return share
+
+
+def _inside(scene: Scene, camera: Camera, steps: int = 6) -> Float[np.ndarray, "n"]:
+    """For every object the share of its bounding box that lies within the picture, hidden or not."""
+    along = (np.arange(steps) + 0.5) / steps - 0.5
+    grid = np.stack(np.meshgrid(along, along, along), axis=-1).reshape(-1, 3)
+    shares = np.zeros(len(scene.objects))
+    k = camera.intrinsics
+    for index, item in enumerate(scene.objects):
+        points = camera.to_camera(item.pose.apply(grid * np.asarray(item.shape_size_m)))
+        uv = points[:, :2] / np.maximum(points[:, 2:], 1e-6) * [k.fx, k.fy] + [k.cx, k.cy]
+        within = (points[:, 2] > 1e-6) & ((uv >= 0) & (uv < [k.width, k.height])).all(axis=1)
+        shares[index] = within.mean()
+    return shares
 
 
 def _face(plane: Plane) -> trimesh.Trimesh:
