@@ -16,6 +16,7 @@ from diorama_app.commands import Command
 from diorama_app.example import example_project
 from diorama_app.gestures import Gestures
 from diorama_app.guest import Guest, Panel
+from diorama_app.importing import import_model
 from diorama_app.panels.alternatives import Alternatives
 from diorama_app.panels.compare import Compare
 from diorama_app.panels.dropping import take_dropped_files
@@ -175,9 +176,8 @@ class Editor:
                 Evidence(gui, guest),
             ]
         with right.add_tab("Library"):
-            library = LibraryPanel(gui, guest)
-            panels.append(library)
-        take_dropped_files(gui, (photo.upload_id, "Photo"), (library.upload_id, "Library"))
+            panels.append(LibraryPanel(gui, guest))
+        take_dropped_files(gui, guest, photo.take, lambda name, content: import_model(guest, name, content))
         right.dock_right()
         right.set_width(RIGHT_WIDTH_PX)
         guest.panels = panels

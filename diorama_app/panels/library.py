@@ -10,7 +10,6 @@ from diorama_app.inserting import insert_shape, start_placing
 from diorama_app.page import Action, LiveHtml, button, text
 from diorama_app.panels.fields import on_change
 from diorama_app.units import format_size
-from diorama_app.viser_adapter import component_uuid
 from diorama_core.library.record import Shape
 from diorama_core.library.search import search
 
@@ -36,8 +35,6 @@ class LibraryPanel:
             guest.post(lambda: import_model(guest, file.name, file.content))
 
         upload.on_upload(uploaded)
-        self.upload_id = component_uuid(upload)
-        """The id of the button that takes models."""
 
     def refresh(self) -> None:
         """Draw what was found."""

@@ -17,6 +17,7 @@ RECIPES = {"Tidy up (feasible)": "feasible", "As in the paper": "paper", "All in
 COLOURS = ("#2f6fd6", "#d6542f", "#269660", "#a050c8", "#c89614", "#149696", "#7a5a3a", "#808080")
 CURVE_POINTS = 240
 ORDINALS = ("best", "second best", "third best", "fourth best", "fifth best")
+SHORT_ORDINALS = ("1st", "2nd", "3rd", "4th", "5th")
 SHARES = frozenset({"orientation", "placement", "structure", "in_support"})
 FIGURES = {
     "orientation": "Upright on their support",
@@ -121,7 +122,7 @@ class Optimiser:
             for k, on in enumerate(is_arranged(scene, k) for k in range(count))
         )
         some = "".join(
-            button(str(k + 1), "mix", k, title=f"Only what is selected in its {ORDINALS[k]} shape", on=on)
+            button(SHORT_ORDINALS[k], "mix", k, title=f"Only what is selected in its {ORDINALS[k]} shape", on=on)
             for k, on in enumerate(is_arranged(scene, k, chosen) for k in range(count))
         )
         mixed = f'<p class="dim">Only what is selected:</p><div class="bar tight">{some}</div>' if chosen else ""

@@ -72,10 +72,9 @@ class PhotoPanel:
         self._build = gui.add_button("Build scene", color="green", hint="Makes a scene of the photo and its boxes")
         on_press(self._build, lambda: guest.post(lambda: work.build(guest)))
 
-    @property
-    def upload_id(self) -> str:
-        """The id of the button that takes photos."""
-        return self._photo_button
+    def take(self, name: str, content: bytes) -> None:
+        """Take a picture that was dropped somewhere on the page."""
+        self._received("photo", name, content)
 
     @property
     def label(self) -> str:

@@ -95,7 +95,7 @@ def test_arrangements_are_mixed_by_what_is_selected(editor: EditorPage) -> None:
     editor.tab("Scene")
     editor.row("dining table").click()
     editor.tab("Arrange")
-    editor.page.locator('.dio button[data-do="mix"]', has_text="1").click()
+    editor.page.locator('.dio button[data-do="mix"]', has_text="1st").click()
     editor.until(lambda: room.scene.object("table_1").shape_id == "table_a", "only the table")
     assert room.scene.object("chair_1").shape_id == "chair_b"
     assert room.document.history.current.label == "arrangement 1 for dining table"

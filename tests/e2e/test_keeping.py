@@ -1,0 +1,109 @@
+"""Points 6 and 10: the photo's camera put right, unsaved changes restored, files dropped anywhere."""
+
+from __future__ import annotations
+
+import base64
+import os
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from playwright.sync_api import expect
+
+from diorama_app.camera_fixing import Held
+from diorama_app.recovery import Recovery
+from diorama_core.scene import edits
+from tests.app.small_room import furnished_scene, make_project
+from tests.e2e.browser import EditorPage
+
+pytestmark = pytest.mark.browser
+
+DROP = """([name, kind, data]) => {
+    const bytes = Uint8Array.from(atob(data), (c) => c.charCodeAt(0)), files = new DataTransfer();
+    files.items.add(new File([bytes], name, {type: kind}));
+    const at = document.querySelector('canvas');
+    for (const what of ['dragenter', 'dragover', 'drop'])
+        at.dispatchEvent(new DragEvent(what, {bubbles: true, cancelable: true, dataTransfer: files}));
+}"""
+
+
+def test_height_rescales_at_once_and_field_of_view_and_tilt_build_again(editor: EditorPage) -> None:
+    room = editor.running.room
+    before = room.scene
+    editor.tab("Photo")
+    editor.page.get_by_text("Camera and floor").click()
+    height = editor.page.get_by_label("Above the floor")
+    expect(height).to_have_value("1.5 m")
+    height.fill("3 m")
+    height.press("Tab")
+    editor.until(lambda: room.scene.camera.position[2] == pytest.approx(3.0), "twice as large")
+    assert room.scene.object("table_1").size_m[0] == pytest.approx(2 * before.object("table_1").size_m[0])
+    editor.page.keyboard.press("Control+z")
+    editor.until(lambda: room.scene == before, "one undo step")
+    editor.page.get_by_text("Camera and floor").click()
+    for label, value in (("Field of view (°)", "60"), ("Tilt down (°)", "15")):
+        field = editor.page.get_by_label(label)
+        field.fill(value)
+        field.press("Tab")
+        expect(field).to_have_value(f"{value}.0")
+    editor.page.wait_for_function("!!window.__viserMutable.nodeRefFromName['/photo_evidence']")
+    editor.button("Build again with this camera").click()
+    editor.until(lambda: room.jobs.status is None and room.scene != before, "built again", seconds=120)
+    camera = room.scene.camera
+    assert np.degrees(camera.intrinsics.horizontal_fov_rad) == pytest.approx(60.0, abs=1e-6)
+    assert np.degrees(Held.of(camera.T_world_camera[:3, :3]).tilt_rad) == pytest.approx(15.0, abs=1e-6)
+    assert [o.category for o in room.scene.objects] == ["table"]
+    assert room.document.history.current.label == "set the camera"
+    outlined = list(room.project.stages_folder.glob("objects-*.zip"))
+    assert len(outlined) == 1
+    first = outlined[0].stat().st_ino
+    expect(editor.page.get_by_label("Field of view (°)")).to_have_value("60.0")
+    editor.settle()
+    editor.page.get_by_label("Field of view (°)").fill("70")
+    editor.page.get_by_label("Field of view (°)").press("Tab")
+    now = room.scene
+    editor.button("Build again with this camera").click()
+    editor.until(lambda: room.jobs.status is None and room.scene != now, "and again", seconds=120)
+    again = list(room.project.stages_folder.glob("objects-*.zip"))
+    assert [p.stat().st_ino for p in again] == [first], "what is not downstream did not run again"
+    editor.page.keyboard.press("Control+z")
+    editor.page.keyboard.press("Control+z")
+    editor.until(lambda: room.scene == before, "everything comes back")
+
+
+def test_what_an_earlier_session_could_not_save_is_restored(editor: EditorPage, tmp_path: Path) -> None:
+    room = editor.running.room
+    project = make_project(tmp_path / "projects" / "crashed")
+    crashed = Recovery(room.saver.recovery._folder)
+    lost = edits.rename(furnished_scene(), "chair_1", "throne")
+    crashed.note(project, lost)
+    minute_ago = time.time() - 60.0
+    os.utime(project.scene_path, (minute_ago - 60.0, minute_ago - 60.0))
+    os.utime(crashed._path(project, crashed._session), (minute_ago, minute_ago))
+    room.desk.post(lambda: room.open_project(project))
+    expect(editor.page.get_by_text("were not saved when Diorama ended")).to_be_visible()
+    editor.button("Restore unsaved changes").click()
+    editor.until(lambda: room.scene == lost, "restored")
+    expect(editor.row("throne")).to_be_visible()
+    expect(editor.button("Restore unsaved changes")).to_have_count(0)
+    editor.page.keyboard.press("Control+z")
+    editor.until(lambda: room.scene == furnished_scene(), "as one undo step")
+
+
+def test_files_dropped_on_the_view_go_where_they_belong(editor: EditorPage, tmp_path: Path) -> None:
+    room = editor.running.room
+    trimesh.creation.box((0.4, 0.5, 0.9)).export(tmp_path / "cupboard.glb")
+    drop(editor, tmp_path / "cupboard.glb", "model/gltf-binary")
+    expect(editor.page.get_by_text("Click where it should stand")).to_be_visible()
+    editor.click_world(np.array([0.9, 0.4, 0.0]))
+    editor.until(lambda: len(room.scene.objects) == 6, "placed")
+    photo = room.project.folder / "photo.jpg"
+    drop(editor, photo, "image/jpeg")
+    editor.until(lambda: room.draft.name == "photo.jpg" and not room.draft.from_project, "a new photo")
+    editor.until(lambda: editor.guest.view.drawing, "and it is there to be marked")
+
+
+def drop(editor: EditorPage, path: Path, kind: str) -> None:
+    editor.page.evaluate(DROP, [path.name, kind, base64.b64encode(path.read_bytes()).decode()])
