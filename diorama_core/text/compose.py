@@ -31,6 +31,10 @@ _AT_WALLS = frozenset(
     ["night stand", "piano", "fireplace"],
 )
 _ORDER = ("bed", "sofa", "rug", "desk", "kitchen counter", "table", "wardrobe", "bookshelf", "coffee table", "armchair")
+_COMPANIONS = ("desk", "bookshelf", "bed", "dresser", "sideboard", "tv stand", "piano")
+"""Beside these stand lamps and plants where there are no seats."""
+TALL_PLANT_M = 0.6
+"""Lower ones are put on something, where nothing is said."""
 _FREE_FRONT_M = {"bed": 0.6, "sofa": 0.8, "desk": 0.85, "wardrobe": 0.6}
 
 
@@ -151,6 +155,10 @@ def _chosen(f: Furnisher, thing: Thing) -> Item | None:
         standing = f.pick("television", where=lambda s: s.size_m[0] > 0.12 and s.size_m[1] < 1.2)
         if standing is not None:
             return standing
+    if thing.category == "plant" and thing.label in ("plant", "plants") and thing.place != "on":
+        tall = f.pick("plant", where=lambda s: s.size_m[2] > TALL_PLANT_M and s.size_m[2] < 2.3)
+        if tall is not None:
+            return tall
     tries = [thing.looks, *((w,) for w in thing.looks), ()]
     named = tuple(thing.label.split())
     for words in (*((*t, *named) for t in tries), *tries):
@@ -178,9 +186,10 @@ def _on_floor(f: Furnisher, item: Item, thing: Thing, placed: dict[str, list[str
         return _gathered(f, item, placed)
     if name in ("floor lamp", "plant", "basket", "trash can", "side table"):
         near = placed.get("armchair", []) + placed.get("sofa", [])
+        near = near or [host for kind in _COMPANIONS for host in placed.get(kind, [])]
         beside = (_by(f, item, host, replace(thing, place="beside")) for host in near)
-        corner = f.against_wall(item, free_front_m=0.0, gap_m=0.08, corner=True)
-        return corner if not near else next((n for n in beside if n), None) or corner
+        found = next((n for n in beside if n), None)
+        return found or f.against_wall(item, free_front_m=0.0, gap_m=0.08, corner=True)
     if name == "table":
         return groups._table_with_room(f, item, np.zeros(2)) or f.anywhere(item, margin_m=0.2)
     at_wall = name in _AT_WALLS
@@ -192,9 +201,10 @@ def _on_floor(f: Furnisher, item: Item, thing: Thing, placed: dict[str, list[str
 
 
 def _gathered(f: Furnisher, item: Item, placed: dict[str, list[str]]) -> str | None:
-    """Armchairs in a half circle that opens to the room: around the sofa's table, or around a corner."""
+    """Armchairs in a half circle that opens to the room: around the sofa's table, any other, or around a corner."""
     others = placed.get("armchair", [])
-    hosts = placed.get("coffee table") or placed.get("sofa") or []
+    table = [] if placed.get("chair") else placed.get("table", [])
+    hosts = placed.get("coffee table") or placed.get("sofa") or placed.get("side table") or table
     if hosts:
         body = f.object(hosts[0])
         goal = body.pose.position[:2]

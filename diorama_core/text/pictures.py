@@ -4,26 +4,24 @@ from __future__ import annotations
 
 import base64
 import os
+from collections import Counter
 from dataclasses import dataclass, field, replace
-
-import numpy as np
 
 from diorama_core.artefacts import Inputs
 from diorama_core.errors import InputError, UnavailableError
-from diorama_core.evaluation.dataset import hold_cameras, render_truth
-from diorama_core.evaluation.dataset.cameras import Holding
+from diorama_core.evaluation.dataset import render_truth
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.library.taxonomy import category
 from diorama_core.perception.inputs import read_inputs
 from diorama_core.progress import Progress
-from diorama_core.render.raycast import render_buffers
-from diorama_core.scene.types import Camera, Scene
-from diorama_core.text.compose import composed_room
+from diorama_core.scene.types import Camera, Scene, SceneObject
+from diorama_core.text.compose import Composed, composed_room
+from diorama_core.text.viewpoint import best_viewpoint, unseen
 
 MOST_PROMPT_CHARS = 2000
-LOOKS = 4
-"""Rounds of looking for a place to take the picture from."""
-PROBE_PX = (96, 72)
+OPENINGS = ("door", "window")
+"""Every room has some; a picture may do without."""
+ROOMS = 5
+"""Composed until one picture shows everything in it."""
 TEMPLATE = (
     "A realistic wide-angle photo of {}. Interior, taken at eye level from one side of the room, the floor visible, "
     "furniture whole and unobstructed, no people, no text."
@@ -99,36 +97,45 @@ def picture_of(
 
 
 def _composed(words: str, library: ShapeLibrary, seed: int, size: tuple[int, int], progress: Progress) -> TextPicture:
-    progress.report(0.0, "Composing a room from the library")
-    room = composed_room(words, library, seed)
-    progress.report(0.4, "Choosing where to stand")
-    camera = _best_camera(room.scene, library, seed, size)
+    room, camera = _room_and_camera(words, library, seed, size, progress)
     progress.report(0.6, "Taking its picture")
     view = render_truth(room.scene, camera, library, size, with_empty_room=False)
     photo = replace(view.inputs.photo, name="composed.png")
     progress.report(1.0, "The picture is taken")
     told = "no image endpoint is set up: the room was composed from the library by rules, photographed, and rebuilt"
-    return TextPicture(replace(view.inputs, photo=photo), (told, *room.notes))
+    notes = (told, *room.notes, *_not_shown(room.scene, library, camera))
+    return TextPicture(replace(view.inputs, photo=photo), notes)
 
 
-def _best_camera(scene: Scene, library: ShapeLibrary, seed: int, size: tuple[int, int]) -> Camera:
-    """Of some places where people would stand, the one from which most of the room's things are seen whole."""
-    meshes = [(library.mesh(o.shape_id), o.pose.matrix) for o in scene.objects]
-    holding = Holding(pitch_rad=(0.16, 0.42), fov_rad=(1.2, 1.4), clearance_m=0.12)
-    best: tuple[float, Camera] | None = None
-    for attempt in range(LOOKS):
-        for camera in hold_cameras(scene, library, seed + 1000 * attempt, count=2, size=size, holding=holding):
-            probe = Camera(camera.intrinsics.scaled(*PROBE_PX), camera.T_world_camera)
-            seen = render_buffers(meshes, probe).instance
-            rim = np.concatenate([seen[0], seen[-1], seen[:, 0], seen[:, -1]])
-            present = set(np.unique(seen[seen >= 0]))
-            weights = [2.0 if category(scene.objects[k].category).mount == "floor" else 1.0 for k in present]
-            cut = len(set(np.unique(rim[rim >= 0])))
-            score = float(sum(weights)) - 1.2 * cut
-            if best is None or score > best[0]:
-                best = (score, camera)
+def _room_and_camera(
+    words: str, library: ShapeLibrary, seed: int, size: tuple[int, int], progress: Progress
+) -> tuple[Composed, Camera]:
+    """The first of some rooms that one picture shows whole, else the one that hides the least."""
+    best: tuple[tuple[int, int], Composed, Camera] | None = None
+    for variant in range(ROOMS):
+        progress.report(0.6 * variant / ROOMS, "Composing a room from the library")
+        room = composed_room(words, library, seed + 1_000_003 * variant)
+        camera = best_viewpoint(room.scene, library, size, {o.id: _worth(o) for o in room.scene.objects})
+        hidden = [o for o in room.scene.objects if o.id in unseen(room.scene, library, camera)]
+        lacks = (len(room.notes), sum(o.category not in OPENINGS for o in hidden))
+        if best is None or lacks < best[0]:
+            best = (lacks, room, camera)
+        if not lacks[1]:
+            break
     assert best is not None
-    return best[1]
+    return best[1], best[2]
+
+
+def _worth(item: SceneObject) -> float:
+    return 0.2 if item.category in OPENINGS else 1.0
+
+
+def _not_shown(scene: Scene, library: ShapeLibrary, camera: Camera) -> tuple[str, ...]:
+    """A note of what stands in the room but not in its picture, which is all that is rebuilt."""
+    hidden = unseen(scene, library, camera)
+    names = Counter(o.category for o in scene.objects if o.id in hidden and o.category not in OPENINGS)
+    listed = ", ".join(f"{n} x {name}" for name, n in sorted(names.items()))
+    return (f"the picture does not show {listed}: another seed may",) if names else ()
 
 
 def _generated(words: str, endpoint: ImageSettings) -> bytes:

@@ -121,6 +121,8 @@ def _clause(clause: str, before: list[Thing]) -> tuple[list[Thing], list[str]]:
         if thing is not None and target is not None and re.match(r"\s*(each|every|both)\b", parts[1]):
             hosts = sum(t.count for t in before if t.category == target.category)
             thing = replace(thing, count=thing.count * max(hosts, 1))
+        if target is None and before and re.match(r"\s*(it|them|top)\b", parts[1]):
+            target = before[-1]  # "a sideboard with a vase on it"
         if place == "in" or target is None:
             return ([thing] if thing else []) + ([target] if target else []), unknown + more
         known = any(t.category == target.category for t in before)
