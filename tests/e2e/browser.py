@@ -32,6 +32,8 @@ FLAGS = (
 )
 SIZE = (1100, 640)
 PATIENCE_MS = 30_000
+LEARN_MS = 300_000
+"""The first model of one's own is compared with all built-in shapes, which takes half a minute of a free core once."""
 
 SETTLED = """() => {
     const m = window.__viserMutable, info = window.__viserTestpoints && window.__viserTestpoints.rendererInfo;
@@ -78,9 +80,9 @@ class EditorPage:
         return self.guest.selection
 
     @classmethod
-    def open(cls, context: BrowserContext, running: Running) -> EditorPage:
+    def open(cls, context: BrowserContext, running: Running, patience_ms: int = PATIENCE_MS) -> EditorPage:
         page = context.new_page()
-        page.set_default_timeout(PATIENCE_MS)
+        page.set_default_timeout(patience_ms)
         made = cls(page, running)
         page.on("pageerror", lambda error: made.errors.append(str(error)))
         made.load()

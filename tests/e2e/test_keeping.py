@@ -16,7 +16,7 @@ from diorama_app.camera_fixing import Held
 from diorama_app.recovery import Recovery
 from diorama_core.scene import edits
 from tests.app.small_room import furnished_scene, make_project
-from tests.e2e.browser import EditorPage
+from tests.e2e.browser import LEARN_MS, EditorPage
 
 pytestmark = pytest.mark.browser
 
@@ -96,7 +96,7 @@ def test_files_dropped_on_the_view_go_where_they_belong(editor: EditorPage, tmp_
     room = editor.running.room
     trimesh.creation.box((0.4, 0.5, 0.9)).export(tmp_path / "cupboard.glb")
     drop(editor, tmp_path / "cupboard.glb", "model/gltf-binary")
-    expect(editor.page.get_by_text("Click where it should stand")).to_be_visible()
+    expect(editor.page.get_by_text("Click where it should stand")).to_be_visible(timeout=LEARN_MS)
     editor.click_world(np.array([0.9, 0.4, 0.0]))
     editor.until(lambda: len(room.scene.objects) == 6, "placed")
     photo = room.project.folder / "photo.jpg"
