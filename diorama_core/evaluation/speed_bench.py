@@ -1,53 +1,85 @@
-"""How time grows: every stage against picture size and objects, the optimiser against a per-pair eager one, search
-against library size. Processor time of one thread, the least of some runs, so that a busy machine changes little.
+"""How time and memory grow, in tables, and against the committed figures. `diorama bench speed`.
+
+Processor time of all threads, so that a busy machine changes little; see `speed_meter` for the yardstick.
 """
 
 from __future__ import annotations
 
-import json
-import resource
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
-from importlib import resources
 
 import numpy as np
-from jaxtyping import Float32, Int
 
-from diorama_core.errors import InputError
-from diorama_core.evaluation.cases import Case, photographed
-from diorama_core.evaluation.layout_bench import refinement_speedup
-from diorama_core.evaluation.rooms import box_library, generate_room
-from diorama_core.evaluation.tables import Column, Row, Table
-from diorama_core.layout.recipes import recipe as layout_recipe
+from diorama_core.evaluation import speed_series as measure
+from diorama_core.evaluation.speed_eager import BATCHED_GPU, EAGER, NO_GPU, OURS, WAYS
+from diorama_core.evaluation.speed_meter import check_ascending, process_peak_mb, yardstick_s
+from diorama_core.evaluation.speed_regression import (
+    GAIN,
+    GROWTH,
+    MEMORY,
+    committed_figures,
+    regression_bytes,
+    regression_table,
+    slower,
+)
+from diorama_core.evaluation.speed_series import OBJECTS, Series
+from diorama_core.evaluation.tables import Column, Row, Table, Value
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.pipeline.build import build_scene
 from diorama_core.progress import Progress
 
-SIZES = ((320, 240), (640, 480), (1280, 960))
-OBJECTS = (1, 5, 20, 50, 100, 200)
-LIBRARIES = (1_000, 10_000, 100_000, 1_000_000)
-FEATURES = 64
-"""Numbers per shape in the search by features."""
-REGRESSION_FILE = "speed_regression.json"
-SLOWER = 2.0
-"""A figure this many times the committed one is called a regression; less is another machine or a busy one."""
+__all__ = [
+    "FULL",
+    "QUICK",
+    "Extent",
+    "Series",
+    "SpeedBench",
+    "committed_figures",
+    "memory_table",
+    "regression_bytes",
+    "regression_table",
+    "run",
+    "slower",
+    "speed_table",
+]
+
+LEAST_KEPT_S = 0.004
+"""Shorter times are mostly the clock's noise and are not kept."""
 
 
 @dataclass(frozen=True)
-class Series:
-    """Seconds against one quantity."""
+class Extent:
+    """How far a run goes."""
 
-    what: str
-    against: str
-    points: tuple[tuple[float, float], ...]
-    """(quantity, processor seconds)."""
+    sizes: tuple[tuple[int, int], ...]
+    hall_objects: tuple[int, ...]
+    layout_objects: tuple[int, ...]
+    step_objects: tuple[int, ...]
+    feature_shapes: tuple[int, ...]
+    word_shapes: tuple[int, ...]
 
-    @property
-    def exponent(self) -> float:
-        """Growth: the slope of log time over log quantity."""
-        return growth_exponent(self.points)
+    def check(self) -> None:
+        """Raise `InputError` for quantities that do not ascend."""
+        check_ascending("picture sizes", tuple(float(w * h) for w, h in self.sizes))
+        for name in ("hall_objects", "layout_objects", "step_objects", "feature_shapes", "word_shapes"):
+            check_ascending(name.replace("_", " "), tuple(map(float, getattr(self, name))))
+
+
+FULL = Extent(
+    sizes=((320, 240), (640, 480), (1280, 960), (1920, 1440)),
+    hall_objects=(1, 5, 20, 60, 200),
+    layout_objects=(1, 5, 20, 50, 100, 200),
+    step_objects=(5, 20, 50, 100, 200),
+    feature_shapes=(1_000, 10_000, 100_000, 1_000_000),
+    word_shapes=(1_000, 10_000, 100_000),
+)
+QUICK = Extent(
+    sizes=((320, 240), (640, 480)),
+    hall_objects=(1, 5, 20),
+    layout_objects=(5, 20, 50),
+    step_objects=(5, 20),
+    feature_shapes=(1_000, 10_000, 100_000),
+    word_shapes=(1_000, 10_000),
+)
 
 
 @dataclass(frozen=True)
@@ -56,21 +88,35 @@ class SpeedBench:
 
     seed: int
     series: tuple[Series, ...]
-    eager_ratio: float
-    """Times by which the batched refinement step beats a loop over pairs through autograd, 20 objects."""
+    yardstick_s: float
+    """Of this machine, while the run went on."""
     peak_memory_mb: float
+    before: Mapping[str, float]
+    """Figures to compare with."""
 
     def tables(self) -> tuple[Table, ...]:
-        """One table per quantity, and what has become slower."""
+        """Time and memory against each quantity, the optimiser's step, and what has become slower."""
+        steps = tuple(s for s in self.series if s.what in WAYS)
+        others = tuple(s for s in self.series if s.what not in WAYS)
+        against = tuple(dict.fromkeys(s.against for s in others))
         return (
-            *(speed_table(self.series, against) for against in dict.fromkeys(s.against for s in self.series)),
-            regression_table(self.figures(), committed_figures()),
+            *(speed_table(others, quantity) for quantity in against),
+            *(memory_table(others, quantity) for quantity in against),
+            step_table(steps),
+            regression_table(self.figures(), self.before),
         )
 
     def figures(self) -> dict[str, float]:
-        """The figures that the regression file keeps: the seconds at the largest quantity of each series."""
-        kept = {f"{s.what} at {s.points[-1][0]:g} {s.against}": s.points[-1][1] for s in self.series if s.points}
-        return {**kept, "eager over batched refinement": self.eager_ratio}
+        """What the regression file keeps."""
+        kept: dict[str, float] = {}
+        for s in self.series:
+            if s.points and s.points[-1][1] >= LEAST_KEPT_S:
+                quantity = f"{s.points[-1][0]:g} {s.against}"
+                kept[f"{s.what} at {quantity}"] = s.points[-1][1] / self.yardstick_s
+                kept[f"{GROWTH}{s.what} from {s.points[0][0]:g} to {quantity}"] = s.exponent
+                if s.peaks_mb and s.peaks_mb[-1] is not None:
+                    kept[f"{MEMORY}{s.what} at {quantity}"] = s.peaks_mb[-1]
+        return {**kept, **_gains(self.series)}
 
     def to_json(self) -> dict[str, object]:
         """Tables and figures."""
@@ -79,7 +125,8 @@ class SpeedBench:
             "seed": self.seed,
             "tables": [t.to_json() for t in self.tables()],
             "figures": self.figures(),
-            "exponents": {f"{s.what} against {s.against}": s.exponent for s in self.series},
+            "exponents": {f"{s.what} against {s.against}": s.exponent for s in self.series if s.points},
+            "yardstick_s": self.yardstick_s,
             "peak_memory_mb": self.peak_memory_mb,
         }
 
@@ -88,122 +135,88 @@ def run(
     library: ShapeLibrary,
     seed: int = 0,
     progress: Progress | None = None,
+    extent: Extent = FULL,
     *,
-    sizes: Sequence[tuple[int, int]] = SIZES,
-    objects: Sequence[int] = OBJECTS,
-    libraries: Sequence[int] = LIBRARIES,
+    before: Mapping[str, float] | None = None,
 ) -> SpeedBench:
-    """Measure all series."""
+    """Measure all series; some minutes on two cores, stopped at any point by `progress`.
+
+    Args:
+        library: What the stages build from.
+        seed: Of rooms, halls and features.
+        progress: Reports and cancellation.
+        extent: How far to go.
+        before: Figures to compare with; None takes the committed ones.
+    """
+    extent.check()
+    known = committed_figures() if before is None else before
     progress = progress or Progress()
-    progress.report(0.0, "stages against picture size")
-    series = stages_by_size(library, seed, sizes)
-    progress.report(0.6, "layout against objects")
-    series += layout_by_objects(seed, objects)
-    progress.report(0.9, "search against library size")
-    series.append(search_by_library(seed, libraries))
-    ratio = refinement_speedup(generate_room(seed, 20).observed)
+    sticks = [yardstick_s()]
+    series = measure.stages_by_objects(library, seed, extent.hall_objects, progress.part(0.0, 0.55))
+    sticks.append(yardstick_s())
+    series += measure.stages_by_size(library, seed, extent.sizes, progress.part(0.55, 0.75))
+    series += measure.layout_by_objects(seed, extent.layout_objects, progress.part(0.75, 0.8))
+    series += measure.steps_by_objects(seed, extent.step_objects, progress.part(0.8, 0.87))
+    sticks.append(yardstick_s())
+    series += measure.features_by_library(seed, extent.feature_shapes, progress.part(0.87, 0.95))
+    series += measure.words_by_library(library, extent.word_shapes, progress.part(0.95, 1.0))
+    sticks.append(yardstick_s())
     progress.report(1.0, "done")
-    return SpeedBench(seed, tuple(series), ratio, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
-
-
-def stages_by_size(library: ShapeLibrary, seed: int, sizes: Sequence[tuple[int, int]]) -> list[Series]:
-    """Every stage of a build with true masks and depth, and the renderer, for one room at several sizes."""
-    spent: dict[str, list[tuple[float, float]]] = {}
-    case = Case(seed, "living")
-    # once for nothing: the first build also prepares shapes and views that later ones find ready
-    build_scene(photographed(case, library, size=sizes[0]).inputs, library)
-    for size in sizes:
-        pixels = size[0] * size[1] / 1e6
-        begun = time.process_time()
-        view = photographed(case, library, size=size)
-        spent.setdefault("render with truth", []).append((pixels, time.process_time() - begun))
-        built = build_scene(view.inputs, library)
-        for one in built.runs:
-            spent.setdefault(one.stage, []).append((pixels, one.seconds))
-    return [Series(name, "megapixels", tuple(points)) for name, points in spent.items()]
-
-
-def layout_by_objects(seed: int, objects: Sequence[int]) -> list[Series]:
-    """The default and the paper's recipe on generated rooms."""
-    library = box_library()
-    found = []
-    for name in ("feasible", "paper"):
-        stage = layout_recipe(name, library)
-        points = []
-        for count in objects:
-            scene = generate_room(seed + 500, count).observed
-            points.append((float(count), least_time(partial(stage.optimise, scene, Progress()), 2)))
-        found.append(Series(f"layout {name}", "objects", tuple(points)))
-    return found
-
-
-def search_by_library(seed: int, libraries: Sequence[int]) -> Series:
-    """One exact nearest-neighbour search by features (cosine, float32, the best 50) as the library grows."""
-    rng = np.random.default_rng(seed)
-    points = []
-    for count in libraries:
-        features = rng.standard_normal((count, FEATURES), dtype=np.float32)
-        query = rng.standard_normal(FEATURES, dtype=np.float32)
-        points.append((float(count), least_time(partial(_best_fifty, features, query), 3)))
-    return Series("search by features", "shapes", tuple(points))
-
-
-def _best_fifty(features: Float32[np.ndarray, "n d"], query: Float32[np.ndarray, " d"]) -> Int[np.ndarray, " 50"]:
-    return np.argpartition(features @ query, -50)[-50:]
-
-
-def least_time(work: Callable[[], object], repeats: int) -> float:
-    """Least processor time of some runs, seconds."""
-    spent = []
-    for _ in range(repeats):
-        begun = time.process_time()
-        work()
-        spent.append(time.process_time() - begun)
-    return min(spent)
-
-
-def growth_exponent(points: Sequence[tuple[float, float]]) -> float:
-    """Slope of log time over log quantity, least squares; 0 for fewer than two points."""
-    if len(points) < 2:
-        return 0.0
-    x, y = np.log(np.maximum(np.array(points).T, 1e-9))
-    return float(np.polyfit(x, y, 1)[0])
+    return SpeedBench(seed, tuple(series), float(np.mean(sticks)), process_peak_mb(), known)
 
 
 def speed_table(series: Sequence[Series], against: str) -> Table:
     """Milliseconds at every quantity, and the growth exponent."""
+    return _table(f"Processor milliseconds against {against}", series, against, ".1f", _milliseconds, exponent=True)
+
+
+def memory_table(series: Sequence[Series], against: str) -> Table:
+    """Megabytes at every quantity: the highest resident memory above what was held before."""
+    return _table(f"Memory in MB against {against}", series, against, ".0f", lambda s: s.peaks_mb, exponent=False)
+
+
+def step_table(series: Sequence[Series]) -> Table:
+    """One step of the optimiser, ours and others."""
+    chosen = [s for s in series if s.points or s.missing]
+    note = "" if any(s.what == BATCHED_GPU and s.points for s in chosen) else f"GPU: {NO_GPU}."
+    title = "Milliseconds of one refinement step against objects"
+    table = _table(title, chosen, OBJECTS, ".2f", _milliseconds, exponent=True)
+    return Table(table.title, table.columns, table.rows, note)
+
+
+def _milliseconds(series: Series) -> tuple[float | None, ...]:
+    return tuple(1000 * seconds for _, seconds in series.points)
+
+
+def _table(
+    title: str,
+    series: Sequence[Series],
+    against: str,
+    form: str,
+    values_of: Callable[[Series], Sequence[float | None]],
+    *,
+    exponent: bool,
+) -> Table:
     chosen = [s for s in series if s.against == against]
     quantities = sorted({q for s in chosen for q, _ in s.points})
-    columns = (*(Column(f"{q:g}", ".1f") for q in quantities), Column("exponent", ".2f"))
+    columns = tuple(Column(_quantity(q), form) for q in quantities)
     rows = []
     for s in chosen:
-        known = dict(s.points)
-        values = [1000 * known[q] if q in known else None for q in quantities]
-        rows.append(Row(s.what, (*values, s.exponent)))
-    return Table(f"Processor milliseconds against {against}", columns, tuple(rows))
+        values = values_of(s)
+        if not values and not s.missing:
+            continue
+        known: dict[float, Value] = {q: v for (q, _), v in zip(s.points, values, strict=True)}
+        cells: list[Value] = [s.missing or known.get(q) for q in quantities]
+        rows.append(Row(s.what, (*cells, None if s.missing else s.exponent) if exponent else tuple(cells)))
+    return Table(title, (*columns, Column("exponent", ".2f")) if exponent else columns, tuple(rows))
 
 
-def committed_figures() -> dict[str, float]:
-    """The figures of the regression file that comes with the package."""
-    text = resources.files("diorama_core.evaluation").joinpath(REGRESSION_FILE).read_text()
-    figures: dict[str, float] = json.loads(text)["figures"]
-    return figures
+def _quantity(value: float) -> str:
+    return f"{value:,.0f}" if value == round(value) else f"{value:.2f}"
 
 
-def regression_table(now: dict[str, float], before: dict[str, float]) -> Table:
-    """Every committed figure beside today's."""
-    rows = []
-    for name in sorted(before):
-        ratio = now[name] / before[name] if name in now and before[name] > 0 else None
-        worse = ratio is not None and (1 / ratio if name.startswith("eager") else ratio) > SLOWER
-        rows.append(Row(name, (before[name], now.get(name), ratio, "slower" if worse else "")))
-    columns = (Column("committed", ".3f"), Column("now", ".3f"), Column("ratio", ".2f"), Column("", ""))
-    return Table("Against the committed figures", columns, tuple(rows), f"Slower means more than {SLOWER:g} times.")
-
-
-def regression_file(bench: SpeedBench) -> bytes:
-    """What to commit as the new figures."""
-    if not bench.series:
-        raise InputError("a speed run without series cannot be kept; measure something")
-    note = "processor seconds of one thread; refresh with: diorama bench speed --keep"
-    return (json.dumps({"note": note, "figures": bench.figures()}, indent=1) + "\n").encode()
+def _gains(series: Sequence[Series]) -> dict[str, float]:
+    """Times by which our step beats the pair by pair one, at each number of objects."""
+    by_name = {s.what: dict(s.points) for s in series}
+    ours, eager = by_name.get(OURS, {}), by_name.get(EAGER, {})
+    return {f"{GAIN}ours, a step at {n:g} {OBJECTS}": eager[n] / ours[n] for n in eager if n in ours and ours[n] > 0}

@@ -37,14 +37,7 @@ from diorama_core.evaluation.scene_metrics import (
     without_unasked,
 )
 from diorama_core.evaluation.shape_metrics import chamfer, shape_distance
-from diorama_core.evaluation.speed_bench import (
-    Series,
-    committed_figures,
-    growth_exponent,
-    regression_table,
-    search_by_library,
-    speed_table,
-)
+from diorama_core.evaluation.speed_bench import Series, speed_table
 from diorama_core.evaluation.system_bench import CaseResult, build_case, scene_table, system_table
 from diorama_core.progress import Progress
 from diorama_core.render.raycast import MeshCaster
@@ -221,19 +214,6 @@ def test_shapes_of_a_kind_are_nearer_than_others(library):
     near, far = shape_distance(library, tables[0], tables[1]), shape_distance(library, tables[0], lamp)
     assert 0 < near < far
     assert shape_distance(library, lamp, tables[0]) == pytest.approx(far)
-
-
-def test_growth_exponents():
-    assert growth_exponent([(1, 2.0), (10, 200.0), (100, 20000.0)]) == pytest.approx(2.0)
-    assert growth_exponent([(1, 2.0)]) == 0
-    series = search_by_library(0, (200, 400))
-    assert [q for q, _ in series.points] == [200, 400]
-
-
-def test_regressions_show():
-    table = regression_table({"a": 5.0, "b": 1.0, "eager over x": 10.0}, {"a": 1.0, "b": 1.0, "eager over x": 100.0})
-    assert {r.name: r.values[-1] for r in table.rows} == {"a": "slower", "b": "", "eager over x": "slower"}
-    assert isinstance(committed_figures(), dict)
 
 
 def test_the_recipe_is_long_enough_and_names_are_unique():
