@@ -6,13 +6,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.pipeline.arrangements import arrangement, arrangement_count
 from diorama_core.progress import Progress
 from diorama_core.project.files import write_atomically
 from diorama_core.project.storage import Project
 from diorama_core.protocols import LayoutStage
 from diorama_core.scene import edits
 from diorama_core.scene.schema import scene_to_json
-from diorama_core.scene.types import Scene
 
 if TYPE_CHECKING:
     from diorama_core.pipeline.build import Built  # the whole pipeline; opening a project does without it
@@ -30,22 +30,15 @@ def library_of(project: Project) -> ShapeLibrary:
     return library_named(str(project.info().get("library", "built-in")))
 
 
-def arrangement(scene: Scene, rank: int) -> Scene:
-    """The scene with every object in its `rank`-th alternative (its last where it has fewer), on the same spots."""
-    for item in scene.objects:
-        others = [c for c in item.candidates if c.shape_id != item.shape_id]
-        if others and rank > 0 and not item.locked:
-            scene = edits.swap(scene, item.id, others[min(rank, len(others)) - 1], keep_pose=True)
-    return scene
-
-
 def write_arrangements(
-    project: Project, scene: Scene, layout: LayoutStage, count: int, progress: Progress
+    project: Project, built: Built, layout: LayoutStage, count: int, progress: Progress
 ) -> tuple[str, ...]:
-    """Write `count` scenes: `scene.json` and `arrangements/scene_2.json`...; returns their paths in the project."""
+    """Write `count` scenes, or as many as differ: `scene.json` and `arrangements/scene_2.json`...; returns their paths
+    in the project."""
     names = ["scene.json"]
-    for rank in range(1, count):
-        arranged, report = layout.optimise(arrangement(scene, rank), replace(progress, start=0.0, span=1.0))
+    for rank in range(1, min(count, arrangement_count(built.observed))):
+        observed = arrangement(built.observed, rank)
+        arranged, report = layout.optimise(observed, replace(progress, start=0.0, span=1.0))
         name = f"arrangements/scene_{rank + 1}.json"
         write_atomically(project.folder / name, scene_to_json(edits.set_metrics(arranged, report.after)).encode())
         names.append(name)

@@ -1,0 +1,76 @@
+"""Other readings of one picture: every thing in another of its ranked shapes (the paper's Arrangement 1, 2, 3).
+
+In one arrangement things of a set stay a set: what has one shape in the best reading has one shape in every other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diorama_core.pipeline.sets import sized_by_sets
+from diorama_core.scene import edits
+from diorama_core.scene.types import Candidate, Scene, SceneObject
+
+LEAST_PLAUSIBLE = 0.3
+"""A shape is offered in another arrangement when it scores at least this share of its set's best."""
+
+
+def arrangement(observed: Scene, rank: int) -> Scene:
+    """The observed scene with every set in the `rank`-th of its plausible shapes, posed as fitted to the picture.
+
+    A set with fewer plausible shapes takes its last; what is locked stays.
+
+    Args:
+        observed: Before any layout, as the stages saw it.
+        rank: 0 is the scene itself.
+    """
+    scene = observed
+    for members in _sets(observed):
+        shapes = plausible_shapes(members)
+        shape_id = shapes[min(rank, len(shapes) - 1)]
+        for item in members:
+            if item.shape_id != shape_id:
+                scene = _swapped(scene, item, shape_id, members)
+    return sized_by_sets(scene) if rank else scene
+
+
+def arrangement_count(observed: Scene) -> int:
+    """How many arrangements differ: the most shapes that any set may plausibly have."""
+    return max((len(plausible_shapes(members)) for members in _sets(observed)), default=1)
+
+
+def plausible_shapes(members: Sequence[SceneObject]) -> tuple[str, ...]:
+    """The shape that a set has, then those that its members together find likely, best first."""
+    own = members[0].shape_id
+    totals: dict[str, float] = {}
+    for item in members:
+        best = max((c.score for c in item.candidates), default=0.0)
+        for candidate in {c.shape_id: c for c in item.candidates}.values():
+            share = candidate.score / best if best > 0 else 0.0
+            totals[candidate.shape_id] = totals.get(candidate.shape_id, 0.0) + share / len(members)
+    others = sorted((s for s in totals if s != own), key=lambda s: (-totals[s], s))
+    return (own, *(s for s in others if totals[s] >= LEAST_PLAUSIBLE))
+
+
+def _sets(scene: Scene) -> list[list[SceneObject]]:
+    """Unlocked things by kind and shape."""
+    found: dict[tuple[str, str], list[SceneObject]] = {}
+    for item in scene.objects:
+        if not item.locked and item.candidates:
+            found.setdefault((item.category, item.shape_id), []).append(item)
+    return list(found.values())
+
+
+def _swapped(scene: Scene, item: SceneObject, shape_id: str, members: Sequence[SceneObject]) -> Scene:
+    """The thing in another shape: in its own fitted pose, or where the shape was not tried on it, on its own spot."""
+    own = _candidate(item, shape_id)
+    if own is not None:
+        return edits.swap(scene, item.id, own)
+    lent = next(c for c in (_candidate(m, shape_id) for m in members) if c is not None)
+    return edits.swap(scene, item.id, lent, keep_pose=True)
+
+
+def _candidate(item: SceneObject, shape_id: str) -> Candidate | None:
+    return next((c for c in item.candidates if c.shape_id == shape_id and np.isfinite(c.pose.matrix).all()), None)

@@ -1,0 +1,103 @@
+"""Other arrangements: sets stay sets, shapes are plausible, what is locked stays."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diorama_core.pipeline.arrangements import arrangement, arrangement_count, plausible_shapes
+from diorama_core.pipeline.sets import sized_by_sets
+from diorama_core.scene.types import Architecture, Candidate, Pose, Scene, SceneObject, Support
+
+SIZE = (0.5, 0.5, 0.9)
+
+
+def candidate(shape_id: str, score: float, x: float, scale: float = 1.0) -> Candidate:
+    return Candidate(shape_id, SIZE, score, Pose.upright((x, 0.0, 0.45 * scale), 0.3, (scale,) * 3))
+
+
+def thing(name: str, category: str, x: float, ranked: dict[str, float], scale: float = 1.0) -> SceneObject:
+    candidates = tuple(candidate(s, v, x, scale) for s, v in ranked.items())
+    best = candidates[0]
+    return SceneObject(
+        id=name, label=name, category=category, shape_id=best.shape_id, shape_size_m=best.shape_size_m, pose=best.pose,
+        candidates=candidates, confidence=0.8,
+    )  # fmt: skip
+
+
+def room(*things: SceneObject) -> Scene:
+    return Scene(camera=None, architecture=Architecture(()), objects=things)
+
+
+CHAIRS = (
+    thing("c1", "chair", 0.0, {"a": 0.9, "b": 0.8, "x": 0.1}),
+    thing("c2", "chair", 1.0, {"a": 0.9, "c": 0.7, "b": 0.6}, 1.04),
+    thing("c3", "chair", 2.0, {"a": 0.9, "b": 0.5}, 0.98),
+)
+LAMP = thing("l", "lamp", 3.0, {"p": 0.9, "q": 0.8})
+
+
+def test_a_set_changes_its_shape_as_one() -> None:
+    scene = room(*CHAIRS, LAMP)
+    second = arrangement(scene, 1)
+    assert [o.shape_id for o in second.objects] == ["b", "b", "b", "q"]
+    third = arrangement(scene, 2)
+    # Only one chair was tried in `c`, by which alone the set would be too little like it: it keeps its last.
+    assert [o.shape_id for o in third.objects] == ["b", "b", "b", "q"]
+    assert arrangement(scene, 0) == scene
+
+
+def test_what_scores_too_little_is_no_alternative() -> None:
+    assert plausible_shapes(CHAIRS) == ("a", "b")
+    assert plausible_shapes([thing("s", "sofa", 0, {"a": 0.9, "b": 0.2})]) == ("a",)
+    assert arrangement_count(room(*CHAIRS)) == 2
+    assert arrangement_count(room()) == 1
+
+
+def test_shapes_take_the_pose_that_was_fitted_to_them() -> None:
+    alone = thing("s", "sofa", 0.0, {"a": 0.9, "b": 0.8})
+    better = replace(alone.candidates[1], pose=Pose.upright((0.2, 0.1, 0.4), 1.2, (1.1, 0.9, 0.95)))
+    scene = room(replace(alone, candidates=(alone.candidates[0], better)))
+    assert arrangement(scene, 1).objects[0].pose == better.pose
+
+
+def test_a_shape_lent_by_another_of_the_set_stands_where_the_thing_stood() -> None:
+    lender = thing("c1", "chair", 0.0, {"a": 0.9, "b": 0.9})
+    other = thing("c2", "chair", 1.0, {"a": 0.9})
+    changed = arrangement(room(lender, other), 1).object("c2")
+    assert changed.shape_id == "b"
+    assert np.allclose(changed.pose.position[:2], [1.0, 0.0])
+
+
+def test_what_is_locked_stays_and_what_stands_on_a_thing_follows() -> None:
+    locked = replace(CHAIRS[0], locked=True)
+    assert arrangement(room(locked, LAMP), 1).objects[0] == locked
+    table = thing("t", "table", 0.0, {"a": 0.9, "b": 0.8})
+    taller = replace(table.candidates[1], pose=Pose.upright((0, 0, 0.55), 0.0, (1, 1, 0.55 / 0.45)))
+    cup = thing("k", "cup", 0.0, {"m": 0.9})
+    scene = replace(
+        room(replace(table, candidates=(table.candidates[0], taller)), cup),
+        supports=(Support("k", "t", "placed on"),),
+    )
+    assert arrangement(scene, 1).object("k").pose.position[2] - cup.pose.position[2] == pytest.approx(0.2)
+
+
+def test_things_of_a_set_are_equally_large_on_their_bases() -> None:
+    sized = sized_by_sets(room(*CHAIRS))
+    scales = np.array([o.pose.scale for o in sized.objects])
+    assert np.ptp(scales, axis=0).max() < 1e-12
+    assert 0.98 < scales.min() < 1.04
+    assert np.allclose([o.pose.position[2] - o.size_m[2] / 2 for o in sized.objects], 0.0, atol=1e-9)
+
+
+def test_evidence_that_does_not_agree_is_left() -> None:
+    high = replace(thing("c4", "chair", 4.0, {"a": 0.9}, 1.5), confidence=0.95)
+    sized = sized_by_sets(room(*CHAIRS, high))
+    assert sized.object("c4") == high
+    assert sized.object("c1").pose.scale[0] == sized.object("c2").pose.scale[0]
+    hardly_seen = replace(high, pose=Pose.upright((4, 0, 0.5), 0, (1.3, 1.3, 1.3)), confidence=0.05)
+    assert sized_by_sets(room(*CHAIRS, hardly_seen)).object("c4").pose.scale[0] < 1.1
+    alone = room(CHAIRS[0], LAMP)
+    assert sized_by_sets(alone) is alone
