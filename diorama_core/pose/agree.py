@@ -11,7 +11,7 @@ _ABSENT = -0.7
 _OVERLAP = 0.5
 MOST_LOSS_WITH_DEPTH = 1.0
 """What agreeing may cost where depth was measured: it shows when things of a kind are not the same."""
-_SETS = with_kin("chair", "office chair", "stool", "armchair", "night stand", "ottoman", "lamp")
+SETS = with_kin("chair", "office chair", "stool", "armchair", "night stand", "ottoman", "lamp")
 """What comes in sets; books and pictures of one room are different ones."""
 
 
@@ -41,7 +41,7 @@ def agreed_ranks(
         weight = sum(trust[i] + 1e-3 for i in alike)
         mean = {key: sum((trust[i] + 1e-3) * relative[i].get(key, _ABSENT) for i in alike) / weight for key in own}
         mixed = {key: _OWN_SHARE * own[key] + (1 - _OWN_SHARE) * mean[key] for key in own}
-        in_sets = most == float("inf") or name in _SETS
+        in_sets = most == float("inf") or name in SETS
         agreed.append(mixed if in_sets and own[max(mixed, key=lambda key: mixed[key])] >= -most else dict(own))
     return agreed
 

@@ -36,7 +36,7 @@ _GRAZING = 0.15
 _SIZE_SIGMA = 0.22
 _SHAPE_SIGMA = 0.1
 """Expected deviation of one axis' log scale from the mean of the three."""
-_THIN_SHAPE_SIGMA = 0.4
+_THIN_SHAPE_SIGMA = 0.8
 """The same for thin axes: frames and panels come in any thickness."""
 SURE_CONTACT_M = 0.02
 _YAW_SIGMA_RAD = float(np.deg2rad(10.0))
@@ -161,7 +161,7 @@ class DepthFit:
         whole = (self.outline is not None and self.outline.height_seen) or (stands and sure and self._top_seen)
         bottom = self.contact.anchor.point_world[2]
         height = np.maximum(high[:, 2] - bottom, spans[:, 2]) if stands and sure else spans[:, 2]
-        growth = np.clip(height / own[2], 0.5, 2.0) if whole else np.ones(len(rotations))
+        growth = np.clip(height / max(float(own[2]), 1e-3), 0.5, 2.0) if whole else np.ones(len(rotations))
         wanted = np.where(self.limits.thin, own, np.maximum(own * growth[:, None], spans))
         scale = self.limits.scale_for(wanted)
         size = scale * own
@@ -274,10 +274,11 @@ class DepthFit:
         J, r = np.zeros((count, 6, PARAMETERS)), np.zeros((count, 6))
         J[:, 0, :3], J[:, 0, 4:] = axis, -lever
         J[:, 0], r[:, 0] = J[:, 0] / sigma, gap / sigma
-        logs = np.log(poses.scale)
-        centring = (np.eye(3) - 1 / 3) / np.where(self.limits.thin, _THIN_SHAPE_SIGMA, _SHAPE_SIGMA)[:, None]
+        logs, thin = np.log(poses.scale), self.limits.thin
+        of_mean = np.full(3, 1 / 3) if thin.all() else ~thin / (~thin).sum()
+        centring = (np.eye(3) - of_mean) / np.where(thin, _THIN_SHAPE_SIGMA, _SHAPE_SIGMA)[:, None]
         J[:, 1:4, 4:], r[:, 1:4] = centring, logs @ centring.T
-        J[:, 4, 4:], r[:, 4] = 1 / (3 * _SIZE_SIGMA), logs.mean(axis=1) / _SIZE_SIGMA
+        J[:, 4, 4:], r[:, 4] = of_mean / _SIZE_SIGMA, logs @ of_mean / _SIZE_SIGMA
         J[:, 5, 3], r[:, 5] = 1 / self.yaw_sigma_rad, x[:, 3] / self.yaw_sigma_rad
         return J, r, np.ones((count, 6))
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -31,6 +31,7 @@ from diorama_core.pose.hypotheses import Anchor, Hypotheses, anchor_of, hypothes
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.measured import MeasuredObject
 from diorama_core.pose.refine import BoxFit
+from diorama_core.pose.sets import shared_scales
 from diorama_core.pose.surface import measured_surface, noise_of
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Candidate, Pose
@@ -39,6 +40,8 @@ _POWERS = (1.5, 0.6)
 """How much retrieval and pose say about which shape is best: the picture's outline alone would ignore colours."""
 _RETRIEVAL_WITH_DEPTH = 0.7
 """What retrieval says beside `Evidence.log_likeness` where depth was measured: that tells shapes apart."""
+_LOSS_FOR_A_SET = 0.02
+"""By how much more a thing may disagree with the picture to be as large as the others of its set."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +80,8 @@ class _Posed:
     """Disagreement with the picture, 0 to 1."""
     rank: float
     """By which the shapes of one object are ordered: a logarithm, higher is better."""
+    doubt: float = 0.0
+    """How nearly as well it fits when turned otherwise: 0 to 1."""
 
 
 @dataclass(frozen=True)
@@ -128,7 +133,38 @@ class RenderAndCompare:
             [task.fine.confidence(0.0, 1.0) for task in tasks],
             [np.inf if task.measured is None else MOST_LOSS_WITH_DEPTH for task in tasks],
         )
-        return tuple(_candidates(*one) for one in zip(tasks, found, ranks, strict=True))
+        ordered = [_ordered(of_one, order) for of_one, order in zip(found, ranks, strict=True)]
+        firsts = self._evened(tasks, [of_one[0] for of_one in ordered])
+        ordered = [(first, *of_one[1:]) for first, of_one in zip(firsts, ordered, strict=True)]
+        return tuple(_candidates(*one) for one in zip(tasks, ordered, ranks, strict=True))
+
+    def _evened(self, tasks: Sequence[_Task], chosen: Sequence[_Posed]) -> list[_Posed]:
+        """The chosen poses, those of one set equally large where that fits the picture hardly worse."""
+        if not tasks:
+            return []
+        scales = shared_scales(
+            [task.thing.category for task in tasks],
+            [posed.shape.id for posed in chosen],
+            np.array([posed.pose.scale for posed in chosen]),
+            [
+                task.fine.confidence(posed.error, task.cuboid.confidence)
+                for task, posed in zip(tasks, chosen, strict=True)
+            ],
+        )
+        return [self._rescaled(*one) for one in zip(tasks, chosen, scales, strict=True)]
+
+    def _rescaled(self, task: _Task, posed: _Posed, scale: Float[np.ndarray, "3"]) -> _Posed:
+        if np.array_equal(scale, posed.pose.scale):
+            return posed
+        anchor = task.anchor if task.measured is None else task.measured.contact.anchor
+        R, at = posed.pose.R_world_object[None], posed.pose.position[None]
+        poses = PoseBatch(R, anchor.placed(at, R, (scale * posed.shape.size_m)[None]), scale[None])
+        error = float(task.fine.errors(self._caster(posed.shape), poses)[0])
+        return replace(posed, pose=_only(poses), error=error) if error <= posed.error + _LOSS_FOR_A_SET else posed
+
+    def _caster(self, shape: Shape) -> ShapeCaster:
+        folder = default_cache_dir() / "looks"
+        return SHARED_LOOKS.get(shape.content_hash, folder, lambda: self.library.parts(shape.id)).caster
 
     def _tasks(
         self,
@@ -177,8 +213,7 @@ class RenderAndCompare:
         return tuple(self._pose_by_depth(task, task.measured, one, k in promising) for k, one in enumerate(tried))
 
     def _try_shape(self, task: _Task, shape: Shape, liked: float) -> _Tried:
-        folder = default_cache_dir() / "looks"
-        caster = SHARED_LOOKS.get(shape.content_hash, folder, lambda: self.library.parts(shape.id)).caster
+        caster = self._caster(shape)
         name = task.thing.category
         limits = SizeLimits.of(shape.size_m, name, task.cuboid.size_m)
         tried = hypotheses_for(task.cuboid, name, shape.symmetry, limits, task.anchor)
@@ -200,14 +235,16 @@ class RenderAndCompare:
         count = self.refined_with_depth if promising else self.refined
         best = unlike_best(tried.hypotheses.poses, tried.scores, fold, size_m, count)
         found = self._chosen(task, tried, tried.hypotheses[best])
+        doubt = 0.0
         if promising and fold < 4:
             turned = measured.turned(found[0], fold, tried.limits)
             nothing = np.zeros(len(turned))
             other = self._chosen(task, tried, Hypotheses(turned, nothing, nothing))
+            doubt = float(np.exp(-abs(found[2] - other[2])))
             found = max(found, other, key=lambda f: f[2])
         poses, error, _ = found
         likeness = task.fine.log_likeness(error, poses.scale[0], tried.limits)
-        return _Posed(tried.shape, _only(poses), error, _RETRIEVAL_WITH_DEPTH * tried.liked + likeness)
+        return _Posed(tried.shape, _only(poses), error, _RETRIEVAL_WITH_DEPTH * tried.liked + likeness, doubt)
 
     def _chosen(self, task: _Task, tried: _Tried, start: Hypotheses) -> tuple[PoseBatch, float, float]:
         """The best of some poses and their refinements, with its error and score."""
@@ -229,13 +266,17 @@ def _only(poses: PoseBatch) -> Pose:
     return Pose(poses.R[0], poses.position[0], poses.scale[0])
 
 
-def _candidates(task: _Task, found: tuple[_Posed, ...], ranks: Mapping[str, float]) -> PosedCandidates:
-    """The posed shapes of one object in order; scores are relative to the best one's agreement with the picture."""
-    ordered = sorted(found, key=lambda posed: (-ranks[posed.shape.id], posed.shape.id))
+def _ordered(found: Sequence[_Posed], ranks: Mapping[str, float]) -> tuple[_Posed, ...]:
+    return tuple(sorted(found, key=lambda posed: (-ranks[posed.shape.id], posed.shape.id)))
+
+
+def _candidates(task: _Task, ordered: Sequence[_Posed], ranks: Mapping[str, float]) -> PosedCandidates:
+    """The posed shapes of one object; scores are relative to the best one's agreement with the picture."""
     best = ordered[0]
     top = ranks[best.shape.id]
     candidates = tuple(
         Candidate(p.shape.id, p.shape.size_m, float(np.exp(ranks[p.shape.id] - top) * (1.0 - best.error)), p.pose)
         for p in ordered
     )
-    return PosedCandidates(task.thing.id, candidates, task.fine.confidence(best.error, task.cuboid.confidence))
+    confidence = task.fine.confidence(best.error, task.cuboid.confidence) * (1.0 - 0.5 * best.doubt)
+    return PosedCandidates(task.thing.id, candidates, confidence)
