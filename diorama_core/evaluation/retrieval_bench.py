@@ -21,6 +21,7 @@ from diorama_core.evaluation.dataset.truth import TruthView
 from diorama_core.evaluation.shape_metrics import is_household, shape_distance
 from diorama_core.evaluation.tables import Column, Row, Table, paper_rows
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.taxonomy import broad
 from diorama_core.progress import Progress
 from diorama_core.retrieval import HierarchicalRetrieval
 
@@ -51,6 +52,9 @@ class ObjectResult:
     unseen_best: float
     rank: int | None
     """Place of the true shape, 1 for the first; None when it is not among those kept."""
+    same_kind: bool
+    """Whether the first shape is of the true category, or of the same broad one; the whole library offered."""
+    unseen_kind: bool
 
 
 @dataclass(frozen=True)
@@ -112,11 +116,22 @@ def _result(
         near = [shape_distance(library, item.shape_id, s) for s in ranked[:KEPT]]
         return (near[0], min(near)) if near else (MISSED, MISSED)
 
-    ranked = same.get(item.id, ())
+    def right_kind(ranked: tuple[str, ...]) -> bool:
+        return bool(ranked) and broad(library.shape(ranked[0]).category) == broad(item.category)
+
+    ranked, others = same.get(item.id, ()), unseen.get(item.id, ())
     rank = ranked.index(item.shape_id) + 1 if item.shape_id in ranked else None
     groups = object_groups(view, index)
     return ObjectResult(
-        case, item.id, item.category, groups, *distances(ranked), *distances(unseen.get(item.id, ())), rank
+        case,
+        item.id,
+        item.category,
+        groups,
+        *distances(ranked),
+        *distances(others),
+        rank,
+        right_kind(ranked),
+        right_kind(others),
     )
 
 
@@ -156,15 +171,18 @@ def retrieval_table(objects: Sequence[ObjectResult]) -> Table:
 
 
 def recall_table(objects: Sequence[ObjectResult]) -> Table:
-    """How often the very shape is first, or among the first five."""
-    columns = (Column("objects", "d"), Column("first", better="↑"), Column("first five", better="↑"))
+    """How often the very shape is first, or among the first five or eight, and the first is of the right kind."""
+    columns = (
+        Column("objects", "d"),
+        *(Column(n, better="↑") for n in ("first", "first five", "first eight", "right kind", "right kind OOD")),
+    )
     rows = []
     for group in ("all", *GROUPS):
         inside = [o for o in objects if group == "all" or group in o.groups]
         ranks = [o.rank for o in inside]
-        first = _mean([float(r == 1) for r in ranks])
-        five = _mean([float(r is not None and r <= KEPT) for r in ranks])
-        rows.append(Row(group, (len(inside), first, five)))
+        shares = [_mean([float(r is not None and r <= most) for r in ranks]) for most in (1, KEPT, 8)]
+        kinds = [_mean([float(o.same_kind) for o in inside]), _mean([float(o.unseen_kind) for o in inside])]
+        rows.append(Row(group, (len(inside), *shares, *kinds)))
     return Table("The very shape found", columns, tuple(rows))
 
 

@@ -103,3 +103,41 @@ def test_scene_alignment_ignores_one_common_turn_shift_and_scale(yaw: float, shi
 @given(st.floats(0.0, 3.1))
 def test_the_angle_between_rotations(angle: float) -> None:
     assert rotation_angle(np.eye(3), yaw_rotation(angle)) == pytest.approx(angle, abs=1e-6)
+
+
+def test_every_threshold_of_the_object_focus_by_itself() -> None:
+    true = [placed(0, 0)]
+
+    def shares_of(found: Placed) -> tuple[float, float, float, float]:
+        return shares(object_alignment(true, [found]))
+
+    assert shares_of(placed(0.199, 0)) == (1, 1, 1, 1)
+    assert shares_of(placed(0.201, 0)) == (1, 0, 1, 0)
+    assert shares_of(placed(0, 0, 19.9)) == (1, 1, 1, 1)
+    assert shares_of(placed(0, 0, 20.1)) == (0, 1, 1, 0)
+    # 20 % is the mean over the three extents: one axis may be half as long again, not more than 60 %.
+    assert shares_of(placed(0, 0, size=(0.79, 0.6, 0.9))) == (1, 1, 1, 1)
+    assert shares_of(placed(0, 0, size=(0.81, 0.6, 0.9))) == (1, 1, 0, 0)
+    assert shares(object_alignment(true, [None])) == (0, 0, 0, 0)
+
+
+@pytest.mark.parametrize(("fold", "turn_deg", "right"), [(1, 180, 0), (2, 180, 1), (2, 90, 0), (4, 90, 1), (36, 37, 1)])
+def test_a_turn_counts_only_beyond_the_true_shapes_symmetry(fold: int, turn_deg: float, right: int) -> None:
+    true, found = [placed(0, 0, symmetry=fold)], [placed(0, 0, turn_deg)]
+    size = found[0].size_m
+    square = [replace(true[0], size_m=size * [1, 0, 1] + [0, size[0], 0])] if fold == 4 else true
+    same = [replace(found[0], size_m=square[0].size_m)]
+    assert object_alignment(square, same).r_acc == right
+
+
+def test_both_readings_on_three_objects_by_hand() -> None:
+    """One of three is half again as large: its two pairs are wrong in scale, one pair of three is right."""
+    truth = [placed(0, 0), placed(2, 0), placed(0, 2)]
+    found = [truth[0], truth[1], replace(truth[2], size_m=1.5 * truth[2].size_m)]
+    pairs, strict = scene_alignment(truth, found)
+    assert shares(pairs) == (1.0, 1.0, pytest.approx(1 / 3), pytest.approx(1 / 3))
+    assert shares(strict) == (1.0, 1.0, 0.0, 0.0)
+    assert (pairs.reading, strict.reading) == ("mean over pairs", "against every other object")
+    missing_pairs, missing_strict = scene_alignment(truth, [truth[0], truth[1], None])
+    assert shares(missing_pairs) == pytest.approx((1 / 3,) * 4)
+    assert shares(missing_strict) == (0.0, 0.0, 0.0, 0.0)

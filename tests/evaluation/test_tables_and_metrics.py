@@ -227,7 +227,7 @@ def test_the_recipe_is_long_enough_and_names_are_unique():
 def _tables():
     failed = PoseScores.failed(4)
     result = CaseResult("living-0-0", SceneScores.failed(4), 1.0, 1.0, "DioramaError: nothing")
-    item = ObjectResult("living-0-0", "a", "chair", ("furniture", "complete"), 5.0, 4.0, 9.0, 8.0, 2)
+    item = ObjectResult("living-0-0", "a", "chair", ("furniture", "complete"), 5.0, 4.0, 9.0, 8.0, 2, True, False)
     room = room_box(4.0, 4.0).planes
     view = Camera(Intrinsics.from_fov(*SIZE, 1.2), moved_camera())
     scores = architecture_scores(room, room, view)
@@ -287,5 +287,7 @@ def test_failures_are_counted():
     assert row["IoU"] == pytest.approx(50, abs=1)
     assert row["PE"] == pytest.approx(50, abs=1)
     assert tables["retrieval"].row("embedded, first")["furniture OOD"] == 9
-    assert tables["recall"].row("all")["first five"] == 1
+    assert tables["recall"].row("all")["first"] == 0
+    assert tables["recall"].row("all")["first five"] == tables["recall"].row("all")["right kind"] == 1
+    assert tables["recall"].row("furniture")["right kind OOD"] == 0
     assert tables["category"].row("embedded, true depth and shapes")["chair"] == 50
