@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.architecture.evidence import MAX_CEILING_M, PRIOR_MEDIAN_M, STRICT_OBJECT_WEIGHT, RoomEvidence
+from diorama_core.architecture.evidence import MAX_CEILING_M, PRIOR_MEDIAN_M, RoomEvidence
 
 REFINEMENTS = (0.08, 0.03, 0.012)
 SWEEPS = 3
 FINALISTS = 4
 """Starts that are followed to the end after their first round."""
-NEAR_SHARE = 0.2
-"""Walls whose distances from the camera change by less than this share are near."""
 MAX_LINES = 40
 """Segments, longest first, that suggest candidates."""
 MARGIN_M = 0.05
@@ -29,20 +25,6 @@ def find_box(evidence: RoomEvidence) -> tuple[Float[np.ndarray, "4"], float]:
     found = [_swept(evidence, start, float(evidence.score(start[None])[0])) for start in _starts(evidence)]
     found.sort(key=lambda pair: -pair[1])
     return max((_ascend(evidence, *pair) for pair in found[:FINALISTS]), key=lambda pair: pair[1])
-
-
-def refined_around(evidence: RoomEvidence, box: Float[np.ndarray, "4"]) -> Float[np.ndarray, "4"]:
-    """The best box near one that holds the objects, among those that hold them too; itself when none is near."""
-    strict = replace(evidence, object_weight=STRICT_OBJECT_WEIGHT)
-    refined = _ascend(strict, box, float(strict.score(box[None])[0]))[0]
-    growth = np.abs(_reach(evidence, refined) / _reach(evidence, box) - 1.0)
-    return refined if growth.max() < NEAR_SHARE else box
-
-
-def _reach(evidence: RoomEvidence, box: Float[np.ndarray, "4"]) -> Float[np.ndarray, "3"]:
-    """Distances of the walls from the camera."""
-    x, y, _ = evidence.camera.position
-    return np.array([x - box[0], box[1] - x, box[2] - y])
 
 
 def _starts(evidence: RoomEvidence) -> list[Float[np.ndarray, "4"]]:

@@ -26,6 +26,13 @@ EDGE_SIGMA = 0.006
 EDGE_THRESHOLD = 0.3
 """Response at which a boundary neither gains nor loses."""
 EDGE_SAMPLES = 40
+SLANT_SHARE, SLANT_DIAGONALS = 0.025, 0.12
+"""A slanted direction is believed when its segments make up this share of all, and so many picture diagonals."""
+SLANT_FROM_AXIS_RAD = np.deg2rad(12.0)
+LEAST_LEVEL = 0.25
+"""Segments about at the height of the eye tell no direction."""
+CROWD_SHARE, CROWD_FREE, CROWD_LOSS, CROWD_LEAST = 0.12, 0.12, 3.0, 0.25
+"""Edges among many like ones, as bricks' and boards', say little: beyond a share of a window they count ever less."""
 SURE_MASK = 0.95
 NEAR_M = 0.05
 MAX_CEILING_M = 5.0
@@ -33,8 +40,6 @@ MAX_CEILING_M = 5.0
 ORIENTATION_WEIGHT = 2.0
 EDGE_WEIGHT = 1.0
 OBJECT_WEIGHT = 0.5
-STRICT_OBJECT_WEIGHT = 8.0
-"""At the end, when objects must be inside and lines only choose among the boxes that hold them."""
 PRIOR_WEIGHT = 0.1
 PRIOR_MEDIAN_M = np.array([4.2, 3.5, 2.6])
 """Width, depth from the camera, ceiling."""
@@ -68,7 +73,10 @@ class RoomEvidence:
     object_weights: Float[np.ndarray, "k"]
     hung_top_m: float
     """Top of the highest thing that hangs from the ceiling; 0 when nothing does."""
-    object_weight: float = OBJECT_WEIGHT
+    slants_rad: tuple[float, ...] = ()
+    """Headings, counter-clockwise from +X and below a half turn, of level lines that run along none of the axes."""
+    slant_maps: tuple[Float32[np.ndarray, "hm wm"], ...] = ()
+    """Edge maps of those."""
 
     def hits(self, boxes: Float[np.ndarray, "b 4"], directions: Float[np.ndarray, "s 3"]) -> Int[np.ndarray, "b s"]:
         """The axis of the face that each ray meets first: 0 a side wall, 1 the far wall, 2 floor or ceiling."""
@@ -90,13 +98,6 @@ class RoomEvidence:
         """Edge evidence along the visible part of each of the eight boundaries, in picture diagonals."""
         response, lengths = self._responses(boxes)
         return (response - EDGE_THRESHOLD).mean(axis=-1) * lengths
-
-    def boundary_support(self, box: Float[np.ndarray, "4"]) -> tuple[Float[np.ndarray, "8"], Float[np.ndarray, "8"]]:
-        """Mean response, 0 to 1, along each boundary where nothing hides it, and that part's length in diagonals."""
-        response, lengths = (values[0] for values in self._responses(box[None]))
-        free = np.abs(response - EDGE_THRESHOLD) > 1e-6
-        mean = (response * free).sum(axis=-1) / np.maximum(free.sum(axis=-1), 1)
-        return mean, lengths * free.mean(axis=-1)
 
     def _responses(
         self, boxes: Float[np.ndarray, "b 4"]
@@ -163,20 +164,19 @@ class RoomEvidence:
         possible = (boxes[:, 0] < ox - 0.2) & (boxes[:, 1] > ox + 0.2) & (boxes[:, 2] > oy + 0.5)
         possible &= boxes[:, 3] > oz + 0.1
         total = ORIENTATION_WEIGHT * self.orientation(boxes) + EDGE_WEIGHT * self.edges(boxes).sum(axis=1)
-        total += self.object_weight * self.objects(boxes) + PRIOR_WEIGHT * self.prior(boxes)
+        total += OBJECT_WEIGHT * self.objects(boxes) + PRIOR_WEIGHT * self.prior(boxes)
         return np.where(possible, total, -np.inf)
 
 
 EDGE_AXES = np.array([1, 1, 0, 2, 2, 1, 1, 0])
 """Axis of each boundary of `box_edges`."""
-EDGE_NAMES = (
-    "floor left", "floor right", "floor back", "corner left", "corner right",
-    "ceiling left", "ceiling right", "ceiling back",
-)  # fmt: skip
 
 
 def box_edges(boxes: Float[np.ndarray, "b 4"], y0: float) -> Float[np.ndarray, "b 8 2 3"]:
-    """World ends of a box's boundaries, in the order of `EDGE_NAMES`; side boundaries run from `y0` to the far wall."""
+    """World ends of a box's boundaries: floor left, right and back, corners left and right, ceiling likewise.
+
+    Side boundaries run from `y0` to the far wall.
+    """
     x0, x1, y1, top = boxes.T
     near, zero = np.full_like(x0, y0), np.zeros_like(x0)
     a, b = np.stack([x0, y1, zero], -1), np.stack([x1, y1, zero], -1)
@@ -221,7 +221,7 @@ def gather_evidence(
     """Everything that the photo, the camera and the objects say about the room."""
     segments = line_segments_px(rgb, min_length=0.015)
     axes = segment_axes(segments, camera)
-    segments, axes = segments[axes >= 0], axes[axes >= 0]
+    oblique, segments, axes = segments[axes < 0], segments[axes >= 0], axes[axes >= 0]
     standing = [o for o in objects if o.category not in _WALL_CATEGORIES]
     free = ~_inside_masks(segments, standing, rgb.shape[:2])
     map_scale = min(1.0, MAP_SIDE_PX / max(rgb.shape[:2]))
@@ -230,6 +230,8 @@ def gather_evidence(
     hung = {o.id for o in objects if category(o.category).mount == "ceiling"}
     solid = [c for c in cuboids if not _on_wall(c, objects)]
     corners = np.array([c.corners_world for c in solid]).reshape(-1, 8, 3)
+    oblique = oblique[~_inside_masks(oblique, standing, rgb.shape[:2])]
+    slants = _slants(oblique, segments[free], camera)
     return RoomEvidence(
         camera=camera,
         directions=directions,
@@ -243,7 +245,36 @@ def gather_evidence(
         object_high=corners.max(axis=1),
         object_weights=np.array([max(c.confidence, 0.1) for c in solid]),
         hung_top_m=max((float(c.corners_world[:, 2].max()) for c in cuboids if c.object_id in hung), default=0.0),
+        slants_rad=tuple(angle for angle, _ in slants),
+        slant_maps=tuple(_edge_map(oblique[own], objects, rgb.shape[:2], map_scale) for _, own in slants),
     )
+
+
+def _slants(
+    oblique: Float[np.ndarray, "n 4"], straight: Float[np.ndarray, "m 4"], camera: Camera
+) -> list[tuple[float, Bool[np.ndarray, "n"]]]:
+    """Level directions, far from the axes, that much of the oblique segments share; and which those are."""
+    if len(oblique) == 0:
+        return []
+    # A segment lies in a plane with the camera; it runs along a level direction square to that plane's normal.
+    normals = np.cross(camera.rays(oblique[:, :2]), camera.rays(oblique[:, 2:]))
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    level = np.linalg.norm(normals[:, :2], axis=1)
+    angles = np.arctan2(-normals[:, 0], normals[:, 1]) % np.pi
+    lengths = np.linalg.norm(oblique[:, 2:] - oblique[:, :2], axis=1)
+    everything = lengths.sum() + np.linalg.norm(straight[:, 2:] - straight[:, :2], axis=1).sum()
+    k = camera.intrinsics
+    from_axis = np.abs((angles + np.pi / 4) % (np.pi / 2) - np.pi / 4)
+    usable = (level > LEAST_LEVEL) & (from_axis > SLANT_FROM_AXIS_RAD)
+    found: list[tuple[float, Bool[np.ndarray, "n"]]] = []
+    for angle in np.deg2rad(np.arange(0.0, 180.0, 1.0)):
+        along = np.array([np.cos(angle), np.sin(angle), 0.0])
+        own = usable & (np.abs(normals @ along) < np.sin(AXIS_TOLERANCE_RAD / 2))
+        found.append((float(angle), own))
+    best = max(found, key=lambda pair: float(lengths[pair[1]].sum()))
+    total = float(lengths[best[1]].sum())
+    enough = total > max(SLANT_SHARE * everything, SLANT_DIAGONALS * float(np.hypot(k.width, k.height)))
+    return [best] if enough else []
 
 
 def _on_wall(cuboid: Cuboid, objects: tuple[DetectedObject, ...]) -> bool:
@@ -289,19 +320,32 @@ def _edge_maps(
     scale: float,
 ) -> Float32[np.ndarray, "3 hm wm"]:
     """For each axis, how near the nearest segment along it is: a Gaussian of the distance, neutral on objects."""
+    return np.stack([_edge_map(segments[axes == axis], objects, shape, scale, level=axis < 2) for axis in range(3)])
+
+
+def _edge_map(
+    segments: Float[np.ndarray, "n 4"],
+    objects: tuple[DetectedObject, ...],
+    shape: tuple[int, ...],
+    scale: float,
+    *,
+    level: bool = True,
+) -> Float32[np.ndarray, "hm wm"]:
+    """Of one direction's segments; level ones say less where they crowd, as bricks' and boards' do."""
     rows, columns = max(1, round(shape[0] * scale)), max(1, round(shape[1] * scale))
     sigma = EDGE_SIGMA * float(np.hypot(rows, columns))
-    maps = np.zeros((3, rows, columns), np.float32)
-    for axis in range(3):
-        canvas = np.full((rows, columns), 255, np.uint8)
-        for x1, y1, x2, y2 in np.round(segments[axes == axis] * scale - 0.5).astype(int):
-            cv2.line(canvas, (x1, y1), (x2, y2), 0, 1)
-        if (canvas == 0).any():
-            distance = cv2.distanceTransform(canvas, cv2.DIST_L2, 3)
-            maps[axis] = np.exp(-0.5 * (distance / sigma) ** 2)
-    for found in objects:
-        maps[:, _neutral(found, (rows, columns), scale)] = EDGE_THRESHOLD
-    return maps
+    canvas = np.full((rows, columns), 255, np.uint8)
+    for x1, y1, x2, y2 in np.round(segments * scale - 0.5).astype(int):
+        cv2.line(canvas, (x1, y1), (x2, y2), 0, 1)
+    found = np.zeros((rows, columns), np.float32)
+    if (canvas == 0).any():
+        found = np.exp(-0.5 * (cv2.distanceTransform(canvas, cv2.DIST_L2, 3) / sigma) ** 2)
+        side = round(CROWD_SHARE * float(np.hypot(rows, columns))) | 1
+        crowd = cv2.blur((found > 0.6).astype(np.float32), (side, side)) if level else 0.0
+        found *= np.clip(1.0 - CROWD_LOSS * (crowd - CROWD_FREE), CROWD_LEAST, 1.0)
+    for item in objects:
+        found[_neutral(item, (rows, columns), scale)] = EDGE_THRESHOLD
+    return np.asarray(found, np.float32)
 
 
 def _neutral(found: DetectedObject, shape: tuple[int, int], scale: float) -> Bool[np.ndarray, "hm wm"]:

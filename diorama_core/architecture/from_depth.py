@@ -42,7 +42,7 @@ class PlanarRoom:
             ValueError: when the inputs hold no measured depth.
         """
         if inputs.depth_m is None:
-            raise ValueError("PlanarRoom needs measured depth; use RoomBox for a photo alone")
+            raise ValueError("PlanarRoom needs measured depth; use PhotoRoom for a photo alone")
         progress.report(0.0, "Looking for planes in the measured depth")
         hidden = object_pixels((inputs.photo.height, inputs.photo.width), objects)
         surface = measured_surface(inputs.depth_m, geometry.camera, hidden)

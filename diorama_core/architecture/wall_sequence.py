@@ -59,7 +59,17 @@ def outline(
     runs = wall_runs(surface, walls, view, top_m)
     if not runs:
         return ()
-    runs = _merged(_closed(_merged(runs, origin), surface, view), origin)
+    return chained(_merged(_closed(_merged(runs, origin), surface, view), origin), view, origin)
+
+
+def chained(runs: list[Run], view: tuple[float, float], origin: Float[np.ndarray, "2"]) -> tuple[WallPiece, ...]:
+    """Runs as pieces that meet.
+
+    Args:
+        runs: At least one, from left to right.
+        view: Headings of the picture's left and right side.
+        origin: The camera, in plan.
+    """
     pieces: list[WallPiece] = []
     start = _beyond_view(runs[0], view[0], origin, left=True)
     for run, following in pairwise(runs):

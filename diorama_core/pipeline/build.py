@@ -12,7 +12,7 @@ from jaxtyping import UInt8
 from diorama_core.architecture.empty_room import EmptyRoomFiller
 from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.architecture.hanging import hung_up
-from diorama_core.architecture.room_box import RoomBox
+from diorama_core.architecture.photo_room import PhotoRoom
 from diorama_core.architecture.texture import plane_textures
 from diorama_core.artefacts import (
     ArchitectureEstimate,
@@ -116,7 +116,7 @@ def embedded_stages(inputs: Inputs, library: ShapeLibrary, *, recipe: str = DEFA
         camera=EmbeddedCamera(),
         objects=EmbeddedMasks(),
         geometry=MeasuredGeometry() if measured else SingleViewMetrology(),
-        architecture=PlanarRoom() if measured else RoomBox(),
+        architecture=PlanarRoom() if measured else PhotoRoom(),
         depth=MeasuredDepth() if measured else RenderedDepth(),
         retrieval=HierarchicalRetrieval(library),
         pose=RenderAndCompare(library),

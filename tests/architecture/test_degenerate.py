@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from diorama_core.architecture.from_depth import PlanarRoom
+from diorama_core.architecture.photo_room import PhotoRoom
 from diorama_core.architecture.plainrecon import PlainRecon
-from diorama_core.architecture.room_box import RoomBox
 from diorama_core.progress import Progress
 from tests.synthetic_rooms import box_room, cuboid, look, shoot
 
-SOLVERS = {"closed": PlanarRoom(), "plainrecon": PlainRecon(), "photo": RoomBox()}
+SOLVERS = {"closed": PlanarRoom(), "plainrecon": PlainRecon(), "photo": PhotoRoom()}
 CASES = (
     "no floor seen", "one plane", "corridor", "mirror", "all masked", "empty depth", "fifty points",
     "not a number", "a wall before the nose",
