@@ -258,14 +258,16 @@ class Bench:
         page.wait_for_timeout(400)
         page.evaluate(WATCH, node)
         taken, used = [], time.process_time()
-        for k in range(30):
-            page.wait_for_timeout(60)
-            begun = page.evaluate("() => { window.__frames.length = 0; return Date.now(); }")
-            page.mouse.move(x + 12 + 2 * (1 + k % 10), y)
-            page.wait_for_function("window.__frames.length > 0", polling=5)
-            taken.append(page.evaluate("window.__frames[0][0]") - begun)
+        try:
+            for k in range(30):
+                page.wait_for_timeout(60)
+                begun = page.evaluate("() => { window.__frames.length = 0; return Date.now(); }")
+                page.mouse.move(x + 12 + 2 * (1 + k % 10), y)
+                page.wait_for_function("window.__frames.length > 0", polling=5)
+                taken.append(page.evaluate("window.__frames[0][0]") - begun)
+        finally:
+            page.mouse.up()
         used = time.process_time() - used
-        page.mouse.up()
         line("drag: move to moved frame", taken, "median < 120", used)
 
     def optimiser(self) -> None:
