@@ -183,7 +183,7 @@ def _measured(case: LocalCase, library: ShapeLibrary, progress: Progress) -> Loc
         return LocalResult(case.name, len(asked), 0, 0.0, relation, missed, 0.0, 0.0, 1.0, None, spent, failure)
 
 
-def _relation(case: LocalCase, scene: Scene, by_mask: dict[int | None, SceneObject]) -> float | None:
+def _relation(case: LocalCase, scene: Scene, by_mask: dict[int, SceneObject]) -> float | None:
     if case.parents is None:
         return None
     right = 0
@@ -191,7 +191,7 @@ def _relation(case: LocalCase, scene: Scene, by_mask: dict[int | None, SceneObje
         edge = scene.support_of(by_mask[child].id) if child in by_mask else None
         if edge is not None and parent is None:
             right += scene.has_plane(edge.parent)
-        elif edge is not None and parent in by_mask:
+        elif edge is not None and parent is not None and parent in by_mask:
             right += edge.parent == by_mask[parent].id
     return right / len(case.parents) if case.parents else 1.0
 
