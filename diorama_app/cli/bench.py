@@ -24,6 +24,7 @@ TABLES = (
     ("rooms", 60, "The rooms themselves: valid, varied, and worth a picture."),
     ("architecture", 20, "The empty room: planes against the truth."),
     ("retrieval", 20, "Shapes for objects, offered and never offered."),
+    ("relations", 18, "What holds up what, from geometry alone."),
     ("pose", 6, "Poses with true and estimated depth, groups, ablations."),
     ("layout", 40, "The layout recipes against each other."),
     ("system", 20, "Pictures to scenes, end to end."),
@@ -73,8 +74,8 @@ def _bench_layout(a: argparse.Namespace) -> None:
 
 
 def _bench_rooms(a: argparse.Namespace) -> None:
-    """Architecture, retrieval or pose on rendered rooms."""
-    from diorama_core.evaluation import architecture_bench, pose_bench, retrieval_bench
+    """Architecture, retrieval, relations or pose on rendered rooms."""
+    from diorama_core.evaluation import architecture_bench, pose_bench, relations_bench, retrieval_bench
     from diorama_core.library.catalogue import built_in_library
 
     _check(a)
@@ -85,6 +86,8 @@ def _bench_rooms(a: argparse.Namespace) -> None:
             bench = architecture_bench.run(library, a.scenes, a.seed, progress)
         elif a.table == "retrieval":
             bench = retrieval_bench.run(library, a.scenes, a.seed, progress)
+        elif a.table == "relations":
+            bench = relations_bench.run(library, a.scenes, a.seed, progress)
         else:
             bench = pose_bench.run(library, a.scenes, a.seed, progress)
     _show(bench, a)
