@@ -30,6 +30,7 @@ from diorama_app.shapes import ShapeBytes
 from diorama_app.shelf import Records
 from diorama_app.thumbnails import Thumbnails
 from diorama_app.viewport import Viewport
+from diorama_core.architecture.refit import refitted_textures
 from diorama_core.artefacts import Photo
 from diorama_core.errors import DioramaError
 from diorama_core.library.record import ShapeLibrary
@@ -111,7 +112,7 @@ class Room:
             merge_key: quick edits of the same key become one step.
         """
         try:
-            scene = change(self.scene)
+            scene = self._with_pictures_refitted(change(self.scene))
         except DioramaError:
             self.refresh()  # fields and gizmo go back to what the document says
             raise
@@ -119,6 +120,17 @@ class Room:
             self.refresh()
             return
         self.commit(label, scene, by=by, selection=selection, merge_key=merge_key)
+
+    def _with_pictures_refitted(self, scene: Scene) -> Scene:
+        """The edited scene with the pictures of resized planes cut and continued, not stretched."""
+        if not self.textures or scene.architecture is self.scene.architecture:
+            return scene
+        scene, made = refitted_textures(self.scene, scene, self.textures)
+        if made:
+            self.textures = {**self.textures, **made}
+            if self.project is not None:
+                self.project.save_textures(made)
+        return scene
 
     def commit(
         self,
