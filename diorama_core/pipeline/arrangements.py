@@ -6,12 +6,13 @@ In one arrangement things of a set stay a set: what has one shape in the best re
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.pipeline.sets import sized_by_sets
+from diorama_core.pose.sets import shared_scales
 from diorama_core.scene import edits
-from diorama_core.scene.types import Candidate, Scene, SceneObject
+from diorama_core.scene.types import Candidate, Pose, Scene, SceneObject
 
 LEAST_PLAUSIBLE = 0.3
 """A shape is offered in another arrangement when it scores at least this share of its set's best."""
@@ -33,7 +34,7 @@ def arrangement(observed: Scene, rank: int) -> Scene:
         for item in members:
             if item.shape_id != shape_id:
                 scene = _swapped(scene, item, shape_id, members)
-    return sized_by_sets(scene) if rank else scene
+    return _equally_large(scene) if rank else scene
 
 
 def arrangement_count(observed: Scene) -> int:
@@ -74,3 +75,27 @@ def _swapped(scene: Scene, item: SceneObject, shape_id: str, members: Sequence[S
 
 def _candidate(item: SceneObject, shape_id: str) -> Candidate | None:
     return next((c for c in item.candidates if c.shape_id == shape_id and np.isfinite(c.pose.matrix).all()), None)
+
+
+def _equally_large(scene: Scene) -> Scene:
+    """One scale for the things of a set where their sizes agree; each keeps its base, what is mounted its middle."""
+    free = [o for o in scene.objects if not o.locked]
+    if not free:
+        return scene
+    scales = shared_scales(
+        [o.category for o in free],
+        [o.shape_id for o in free],
+        np.array([o.pose.scale for o in free]),
+        [o.confidence for o in free],
+    )
+    sized = {o.id: _scaled(scene, o, scale) for o, scale in zip(free, scales, strict=True)}
+    return replace(scene, objects=tuple(sized.get(o.id, o) for o in scene.objects))
+
+
+def _scaled(scene: Scene, item: SceneObject, scale: np.ndarray) -> SceneObject:
+    edge = scene.support_of(item.id)
+    position = item.pose.position
+    if edge is None or edge.relation == "placed on":
+        rise = 0.5 * item.shape_size_m[2] * (scale[2] - item.pose.scale[2])
+        position = position + rise * item.pose.R_world_object[:, 2]
+    return replace(item, pose=Pose(item.pose.R_world_object, position, scale))

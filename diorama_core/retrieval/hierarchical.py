@@ -92,10 +92,10 @@ class HierarchicalRetrieval:
                     for m, like in zip(members, alike, strict=True)
                 }
             )
-        shared = _agreed(groups, scores, sight)
+        means = _means(groups, scores, sight)
         return tuple(
-            RankedShapes(thing.id, _best(ranking, self.keep), pools[group].note)
-            for thing, ranking, group in zip(measured, shared, groups, strict=True)
+            RankedShapes(thing.id, _best(own, mean, self.keep), pools[group].note)
+            for thing, own, mean, group in zip(measured, scores, means, groups, strict=True)
         )
 
     def _pools(
@@ -180,17 +180,16 @@ def _groups(categories: Sequence[str], sizes_m: Sequence[np.ndarray]) -> list[in
     return groups
 
 
-def _agreed(
+def _means(
     groups: Sequence[int], scores: Sequence[dict[str, float]], visible: Sequence[float]
 ) -> list[dict[str, float]]:
-    """Each object's scores mixed with the mean of its group's, in which those that are seen best say most."""
-    shared = []
+    """For each object the mean scores of its group, in which those that are seen best say most."""
+    means = []
     for group, own in zip(groups, scores, strict=True):
         alike = [(v + _LEAST_VOICE, s) for g, s, v in zip(groups, scores, visible, strict=True) if g == group]
         voices = sum(voice for voice, _ in alike)
-        mean = {key: sum(voice * s[key] for voice, s in alike) / voices for key in own}
-        shared.append({key: _OWN_EVIDENCE * own[key] + (1 - _OWN_EVIDENCE) * mean[key] for key in own})
-    return shared
+        means.append({key: sum(voice * s[key] for voice, s in alike) / voices for key in own})
+    return means
 
 
 def _log_difference(a_m: np.ndarray, b_m: np.ndarray) -> float:
@@ -199,6 +198,13 @@ def _log_difference(a_m: np.ndarray, b_m: np.ndarray) -> float:
     return float(min(np.abs(a - b).max(), np.abs(a - b[[1, 0, 2]]).max()))
 
 
-def _best(scores: dict[str, float], keep: int) -> tuple[tuple[str, float], ...]:
-    ranked = sorted(scores.items(), key=lambda item: (-item[1], item[0]))
-    return tuple((shape_id, float(score)) for shape_id, score in ranked[:keep])
+def _best(own: dict[str, float], of_group: dict[str, float], keep: int) -> tuple[tuple[str, float], ...]:
+    """The best shapes by own and group's scores; half of them the group's, so that things of a kind can agree."""
+    mixed = {key: _OWN_EVIDENCE * own[key] + (1 - _OWN_EVIDENCE) * of_group[key] for key in own}
+    shared = _in_order(of_group)[: keep // 2]
+    kept = [*shared, *(key for key in _in_order(mixed) if key not in shared)][:keep]
+    return tuple((key, float(mixed[key])) for key in _in_order({key: mixed[key] for key in kept}))
+
+
+def _in_order(scores: dict[str, float]) -> list[str]:
+    return sorted(scores, key=lambda key: (-scores[key], key))
