@@ -1,4 +1,4 @@
-"""Planes that were moved, stretched or cut keep their pictures' scale: what is new is continued, what is gone cut off."""
+"""Planes that were moved, stretched or cut keep their pictures: what is new is continued, what is gone cut off."""
 
 from __future__ import annotations
 

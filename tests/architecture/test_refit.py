@@ -77,7 +77,7 @@ def test_other_edits_make_no_pictures(edit):
 
 def test_a_plane_without_overlap_takes_the_nearest_colours():
     a = Plane("wall", "wall", np.array([[0.0, 2, 0], [2, 2, 0], [2, 2, 2], [0, 2, 2]]))
-    b = replace(a, polygon=a.polygon + [5.0, 0.0, 0.0])
+    b = replace(a, polygon=a.polygon + np.array([5.0, 0.0, 0.0]))
     picture = refitted(np.full((50, 50, 3), 77, np.uint8), a, b)
     assert (picture == 77).all()
     assert plane_rectangle(b)[2] == pytest.approx([2.0, 2.0])
