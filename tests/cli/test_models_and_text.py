@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 
 from diorama_app.cli import main
+from diorama_core.models.manifest import network
+from diorama_core.models.store import ModelStore
 
 
 @pytest.fixture(autouse=True)
@@ -60,10 +62,19 @@ def test_failures_are_one_clear_line(arguments: list[str], capsys: pytest.Captur
     assert len(lines) == 1
 
 
-def test_an_unreachable_language_model_leaves_the_project_as_it_was(
+def test_failing_networks_and_language_models_leave_the_project_as_it_was(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     from tests.cli.room_photo import write_room
+
+    def fails(*more: str) -> str:
+        """The one line that is said; the scene is what it was."""
+        capsys.readouterr()
+        assert main([*arguments, *more]) == 1
+        lines = [x for x in capsys.readouterr().err.splitlines() if x.startswith("diorama:")]
+        assert len(lines) == 1, lines
+        assert (tmp_path / "room" / "scene.json").read_bytes() == before
+        return lines[0]
 
     photo, boxes = write_room(tmp_path)
     arguments = ["build", str(photo), "--boxes", str(boxes), "-o", str(tmp_path / "room")]
@@ -71,7 +82,15 @@ def test_an_unreachable_language_model_leaves_the_project_as_it_was(
     before = (tmp_path / "room" / "scene.json").read_bytes()
     monkeypatch.setenv("DIORAMA_LMM_BASE_URL", "http://127.0.0.1:9/v1")
     monkeypatch.setenv("DIORAMA_LMM_MODEL", "m")
+    assert "cannot be reached" in fails()
+    monkeypatch.delenv("DIORAMA_LMM_BASE_URL")
+    assert "diorama models pull lite" in fails("--profile", "foundation")
+    damaged, store = network("slimsam"), ModelStore.default()
+    for file in damaged.files:
+        arrived = tmp_path / "arrived"
+        arrived.write_bytes(b"half a graph")
+        store.adopt(damaged, file, arrived, "local")
+    assert "diorama models verify" in fails()
     capsys.readouterr()
-    assert main(arguments) == 1
-    assert "cannot be reached" in capsys.readouterr().err
+    assert main([*arguments, "--profile", "embedded"]) == 0
     assert (tmp_path / "room" / "scene.json").read_bytes() == before
