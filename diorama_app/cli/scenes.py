@@ -141,8 +141,12 @@ def _build(a: argparse.Namespace) -> None:
     else:
         print(f"{a.output}: {report['summary']}")
         if not built.objects:
-            found = "No furniture was found" if stages.detection else "No boxes were given"
-            print(f"{found}: open it with 'diorama serve {a.output}' and draw boxes around the furniture.")
+            drawing = f"open it with 'diorama serve {a.output}' and draw boxes around the furniture"
+            found = f"No furniture was found: {drawing}."
+            lacking = (
+                f"No boxes were given: get the small detector with 'diorama models pull yolox-nano', or {drawing}."
+            )
+            print(found if stages.detection else lacking)
 
 
 def add_optimise(commands: Any) -> None:
