@@ -205,8 +205,7 @@ def _overlays(views: Views, outlines: PhotoOutlines) -> tuple[Command, ...]:
         wanted = not guest.settings.masks
         if wanted:
             outlines.find(guest)
-            if not guest.view.through_photo:
-                views.photo(guest)
+            views.overlay(guest, 1.0)
         guest.change_settings(masks=wanted)
 
     def planes(guest: Guest) -> None:

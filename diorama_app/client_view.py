@@ -95,6 +95,8 @@ class ClientView:
         self._pyramid_of: tuple[Camera | None, UInt8[np.ndarray, "h w 3"] | None] = (None, None)
         self.through_photo = False
         self._overlay: viser.ImageHandle | None = None
+        self.overlay_opacity = 0.0
+        """How much of the photo lies over the model, 0 to 1."""
         self._backdrop: viser.ImageHandle | None = None
         self._evidence: viser.ImageHandle | None = None
         self._planes: list[viser.SceneNodeHandle] = []
@@ -258,8 +260,10 @@ class ClientView:
         if self._overlay is not None:
             self._overlay.remove()
             self._overlay = None
+        self.overlay_opacity = 0.0
         if camera is not None and photo is not None and opacity > 0.0:
             small = reduced(photo, 800)
+            self.overlay_opacity = opacity
             alpha = np.full((*small.shape[:2], 1), round(255 * opacity), dtype=np.uint8)
             self._overlay = self._add_picture("/photo_overlay", camera, np.concatenate([small, alpha], axis=2), 0.12)
 

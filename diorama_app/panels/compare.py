@@ -20,7 +20,8 @@ class Compare:
         on_change(self._slider, lambda v: guest.post(lambda: views.overlay(guest, v / 100), key="over"))
 
     def refresh(self) -> None:
-        """Offer it where there is a photo to compare with; put it back when nothing is compared."""
+        """Offer it where there is a photo to compare with; show all or nothing where something else asked."""
         show_if(self._guest.room.photo is not None and self._guest.room.scene.camera is not None, self._slider)
-        if not self._guest.view.comparing:
-            show_value(self._slider, 0)
+        shown = round(100 * self._guest.view.overlay_opacity)
+        if shown in (0, 100):
+            show_value(self._slider, shown)

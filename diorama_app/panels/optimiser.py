@@ -165,7 +165,10 @@ class Optimiser:
             return
         names = tuple(list(run.costs)[: len(COLOURS)])
         step = max(1, len(run.times_s) // CURVE_POINTS)
-        data = tuple(np.asarray(v, dtype=np.float64)[::step] for v in (run.times_s, *(run.costs[n] for n in names)))
+        # From the first cost on: what the recipe loads before is no part of its curves.
+        times_s = np.asarray(run.times_s, dtype=np.float64) - run.times_s[0]
+        costs = (np.asarray(run.costs[n], dtype=np.float64) for n in names)
+        data = tuple(values[::step] for values in (times_s, *costs))
         if self._plot is None or names != self._names:
             self._add_plot(names, data)
         elif len(data[0]) != len(self._plot.data[0]) or data[0][-1] != self._plot.data[0][-1]:
@@ -176,7 +179,7 @@ class Optimiser:
     def _add_plot(self, names: tuple[str, ...], data: tuple[np.ndarray, ...]) -> None:
         if self._plot is not None:
             self._plot.remove()
-        series = [viser.uplot.Series(label="s")]
+        series = [viser.uplot.Series(label="Seconds")]
         for name, colour in zip(names, COLOURS, strict=False):
             series.append(viser.uplot.Series(label=COSTS.get(name, name), stroke=colour, width=2))
         with self._folder:

@@ -90,8 +90,7 @@ class PhotoCamera:
         held = checked_angles(values["tilt"], values["roll"])
         self._typed, self._used = typed, True
         self._guest.trial_camera = trial_camera(self._of, values["fov"], held)
-        if not self._guest.view.through_photo:
-            self._views.photo(self._guest)
+        self._views.overlay(self._guest, 1.0)
         self._guest.refresh()
 
     def _build(self, camera: Camera) -> None:
@@ -106,7 +105,8 @@ def figures(camera: Camera) -> dict[str, float]:
     """Field of view, tilt and roll in degrees."""
     held = Held.of(camera.T_world_camera[:3, :3])
     angles = (camera.intrinsics.horizontal_fov_rad, held.tilt_rad, held.roll_rad)
-    return dict(zip(FIELDS, (float(np.degrees(a)) + 0.0 for a in angles), strict=True))
+    # Adding zero takes the sign off a rounded minus nothing.
+    return dict(zip(FIELDS, (round(float(np.degrees(a)), 6) + 0.0 for a in angles), strict=True))
 
 
 def _degrees(words: str) -> float:

@@ -13,6 +13,7 @@ import trimesh
 from playwright.sync_api import expect
 
 from diorama_app.camera_fixing import Held
+from diorama_app.guest import Placing
 from diorama_app.recovery import Recovery
 from diorama_core.scene import edits
 from tests.app.small_room import furnished_scene, make_project
@@ -96,6 +97,7 @@ def test_files_dropped_on_the_view_go_where_they_belong(editor: EditorPage, tmp_
     room = editor.running.room
     trimesh.creation.box((0.4, 0.5, 0.9)).export(tmp_path / "cupboard.glb")
     drop(editor, tmp_path / "cupboard.glb", "model/gltf-binary")
+    editor.until(lambda: isinstance(editor.guest.doing, Placing), "it is read", seconds=90)
     expect(editor.page.get_by_text("Click where it should stand")).to_be_visible(timeout=LEARN_MS)
     editor.click_world(np.array([0.9, 0.4, 0.0]))
     editor.until(lambda: len(room.scene.objects) == 6, "placed")
