@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from importlib.util import find_spec
 
@@ -9,7 +10,7 @@ import pytest
 
 from diorama_core.errors import SceneError, UnavailableError
 from diorama_core.evaluation.dataset import furnished_room, hold_cameras, in_photo_world
-from diorama_core.evaluation.dataset.cycles import cycles_picture
+from diorama_core.evaluation.dataset.cycles import PYTHON_VARIABLE, cycles_picture
 from diorama_core.library.catalogue import built_in_library
 
 
@@ -21,8 +22,15 @@ def scene():
 
 
 @pytest.mark.skipif(find_spec("bpy") is not None, reason="Blender's module is installed")
-def test_says_what_to_install(scene):
-    with pytest.raises(UnavailableError, match=r"diorama\[cycles\]"):
+def test_says_what_to_install(scene, monkeypatch):
+    monkeypatch.delenv(PYTHON_VARIABLE, raising=False)
+    with pytest.raises(UnavailableError, match=PYTHON_VARIABLE):
+        cycles_picture(scene, built_in_library())
+
+
+def test_a_python_that_is_not_there_is_named(scene, monkeypatch):
+    monkeypatch.setenv(PYTHON_VARIABLE, "/nowhere/python")
+    with pytest.raises(UnavailableError, match="/nowhere/python"):
         cycles_picture(scene, built_in_library())
 
 
@@ -31,7 +39,10 @@ def test_needs_a_camera(scene):
         cycles_picture(replace(scene, camera=None), built_in_library())
 
 
-@pytest.mark.skipif(find_spec("bpy") is None, reason="needs Blender's module: pip install 'diorama[cycles]'")
+@pytest.mark.skipif(
+    find_spec("bpy") is None and PYTHON_VARIABLE not in os.environ,
+    reason=f"needs Blender's module: name a Python that has it in {PYTHON_VARIABLE}",
+)
 def test_renders_a_tiny_picture(scene):
     picture = cycles_picture(scene, built_in_library(), samples=2)
     assert picture.shape == (36, 48, 3)
