@@ -33,6 +33,8 @@ _DAMPING = 0.01
 _MOST_SHIFT = 0.6
 """A fit moves a pose by at most this share of its largest extent: farther ones lost hold of the object."""
 _GRAZING = 0.15
+_NOISE_REACH = 1.8
+"""Deviations by which noise widens the first and last hundredth of the points."""
 _SIZE_SIGMA = 0.22
 _SHAPE_SIGMA = 0.1
 """Expected deviation of one axis' log scale from the mean of the three."""
@@ -49,22 +51,39 @@ class SeenPoints:
     directions_world: Float[np.ndarray, "r 3"]
     points_world: Float[np.ndarray, "r 3"]
     depth_m: Float[np.ndarray, " r"]
+    spread_m: Float[np.ndarray, " r"]
+    """Standard deviation of the noise in it."""
 
     @classmethod
-    def of(cls, seen: Observed, depth_m: Float[np.ndarray, " n"], weight: Float[np.ndarray, " n"]) -> SeenPoints:
+    def of(
+        cls,
+        seen: Observed,
+        depth_m: Float[np.ndarray, " n"],
+        weight: Float[np.ndarray, " n"],
+        spread_m: Float[np.ndarray, " n"],
+    ) -> SeenPoints:
         """The measured cells inside the mask, evenly thinned; all that are covered at all where few are covered whole.
 
         Args:
             seen: the object's window.
             depth_m: measured at the cells' centres.
             weight: 0 where nothing was measured.
+            spread_m: standard deviation of the noise in the depth.
         """
         chosen = np.flatnonzero((seen.covered >= _WHOLE_CELL) & (weight > 0))
         if len(chosen) < 12:
             chosen = np.flatnonzero(weight > 0)
         chosen = chosen[:: max(1, -(-len(chosen) // _MOST_RAYS))]
         directions, depth = seen.directions_world[chosen], depth_m[chosen]
-        return cls(directions, seen.origin_world + depth[:, None] * directions, depth)
+        return cls(directions, seen.origin_world + depth[:, None] * directions, depth, spread_m[chosen])
+
+    def span(self, axes_world: Float[np.ndarray, "p 3 3"]) -> tuple[Float[np.ndarray, "p 3"], Float[np.ndarray, "p 3"]]:
+        """Where the points begin and end along the columns of rotations, less what noise adds."""
+        local = np.einsum("pji,rj->pri", axes_world, self.points_world)
+        low, high = np.quantile(local, [0.01, 0.99], axis=1)
+        along = np.abs(np.einsum("pji,j->pi", axes_world, self.directions_world.mean(axis=0)))
+        inflated = np.minimum(_NOISE_REACH * float(np.median(self.spread_m)) * along, 0.4 * (high - low))
+        return low + inflated, high - inflated
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,8 +170,7 @@ class DepthFit:
         The height decides the size where all of it is seen; then width and depth follow the shape's own proportions,
         and are stretched to hold what was measured.
         """
-        local = np.einsum("pji,rj->pri", rotations, self.points.points_world)
-        low, high = np.quantile(local, [0.01, 0.99], axis=1)
+        low, high = self.points.span(rotations)
         eye = np.einsum("pji,j->pi", rotations, self.camera.position)
         spans = np.maximum(high - low, 1e-3)
         own = self.limits.shape_size_m
@@ -228,12 +246,13 @@ class DepthFit:
         depth = np.where(hits.covered, hits.depth_m, 0.0)
         met = self.seen.origin_world + depth[..., None] * self.points.directions_world
         normals = hits.normals_world
-        sigma = looseness * (0.008 + 0.006 * self.points.depth_m)
+        # Many rays see one surface; together they should not outvote the outline. Noise is each ray's own.
+        alike = max(len(self.points.depth_m) / 40.0, 1.0)
+        sigma = np.hypot(looseness * (0.008 + 0.006 * self.points.depth_m), self.points.spread_m / np.sqrt(alike))
         r = (normals * (met - self.points.points_world)).sum(axis=-1) / sigma
         facing = np.abs((normals * self.points.directions_world).sum(axis=-1))
         w = np.where(hits.covered & (facing > _GRAZING), 1.0 / (1.0 + (r / 2.0) ** 2), 0.0)
         J = self._slopes(poses, met, normals) / sigma[:, None]
-        # Many rays see one surface; together they should not outvote the outline.
         return J, r, w * (40.0 / max(len(sigma), 1))
 
     def _reaches(

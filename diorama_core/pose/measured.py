@@ -47,7 +47,9 @@ class MeasuredObject:
         """
         if evidence.surface is None:
             return None
-        points = SeenPoints.of(evidence.seen, evidence.surface.depth_m, evidence.surface.weight)
+        points = SeenPoints.of(
+            evidence.seen, evidence.surface.depth_m, evidence.surface.weight, evidence.surface.spread_m
+        )
         if len(points.depth_m) < FEWEST_RAYS:
             return None
         outline = Outline.of(evidence.seen, mask)
@@ -89,7 +91,7 @@ def _contact(anchor: Anchor, on_floor: bool, points: SeenPoints, outline: Outlin
     """Where the object stands: where the cuboid ends, unless its own lower end is seen elsewhere or is hidden."""
     if anchor.axis_world[2] < 0.5 or outline is None or len(points.depth_m) < 12:
         return Contact(anchor, SURE_CONTACT_M)
-    lowest = float(np.quantile(points.points_world[:, 2], 0.01))
+    lowest = float(points.span(np.eye(3)[None])[0][0, 2])
     gap = lowest - float(anchor.point_world[2])
     if abs(gap) < _FLOATS_M or (on_floor and not outline.lower_end_seen):
         return Contact(anchor, SURE_CONTACT_M)

@@ -88,8 +88,10 @@ class _Posed:
 class RenderAndCompare:
     """Poses every ranked shape by yaw search, per-axis scaling and refinement; needs no weights.
 
-    Hypotheses are gravity-aligned turns in the object's cuboid; they are scored by silhouette and box, by depth and
-    normals where these were measured, and by where such things usually face.
+    Hypotheses are gravity-aligned turns in the object's cuboid and, where depth was measured, turns all around set
+    against the measured points. They are scored by silhouette and box, or by silhouette, depth and normals where
+    nothing was measured in front; and by where such things usually face. Unlike ones are refined; the posed fit and
+    how little a shape had to be enlarged or stretched choose among shapes; things of a set share shape and size.
     """
 
     library: ShapeLibrary

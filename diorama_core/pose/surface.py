@@ -53,6 +53,8 @@ class MeasuredSurface:
     """Whether depth was measured in the cell, of the object or of anything else."""
     tolerance_m: Float[np.ndarray, "n"]
     """Expected deviation of depth."""
+    spread_m: Float[np.ndarray, "n"]
+    """Standard deviation of the noise in it alone."""
     normals_share: float = _NORMALS_SHARE
     """How much normals say beside depth."""
 
@@ -94,9 +96,10 @@ def measured_surface(
     if weight.sum() < _LEAST_CELLS:
         return None
     metres = np.where(known, metres, 1.0)
-    tolerance = 0.02 + 0.01 * metres + 1.5 * np.where(known, spread, 0.0) * metres
+    spread_m = np.where(known, spread, 0.0) * metres
+    tolerance = 0.02 + 0.01 * metres + 1.5 * spread_m
     share = _NORMALS_SHARE / (1.0 + (noise / _NORMALS_NOISE) ** 2)
-    return MeasuredSurface(metres, normals, weight, known, tolerance, share)
+    return MeasuredSurface(metres, normals, weight, known, tolerance, spread_m, share)
 
 
 def _means(

@@ -134,7 +134,7 @@ def test_where_its_foot_is_hidden_a_thing_may_stand_anywhere_below() -> None:
 def test_hardly_any_depth_is_no_measurement() -> None:
     room = Room(camera_at(), (standing("chair", 0.0, 2.6, 40.0),), (0,))
     whole = measured(room)
-    few = SeenPoints(*(a[:3] for a in (whole.points.directions_world, whole.points.points_world, whole.points.depth_m)))
+    few = SeenPoints(*(a[:3] for a in vars(whole.points).values()))
     assert len(few.depth_m) == 3
     mask = np.zeros_like(room.objects[0].mask)
     assert whole.evidence.surface is not None
