@@ -1,4 +1,4 @@
-"""Running networks with onnxruntime: loaded when first used, shared, freed on demand.
+"""Running networks with onnxruntime: loaded when first used, shared, freed on demand or when others need the room.
 
 CUDA is used where onnxruntime offers it, else the processor. DIORAMA_DEVICE=cpu and DIORAMA_THREADS=N override.
 """
@@ -82,8 +82,13 @@ _TYPES = {
 
 @dataclass(eq=False)
 class SessionPool:
-    """Graphs by path; each is loaded once, by whoever needs it first."""
+    """Graphs by path; each is loaded once, by whoever needs it first.
 
+    Before another is loaded, those that were not used for longest are freed until all fit into `budget_bytes`.
+    """
+
+    budget_bytes: int | None = None
+    """Half of the machine's memory where None."""
     _loaded: dict[Path, Session] = field(default_factory=dict)
     _lock: threading.RLock = field(default_factory=threading.RLock)
 
@@ -95,9 +100,21 @@ class SessionPool:
         """
         path = path.resolve()
         with self._lock:
-            if path not in self._loaded:
-                self._loaded[path] = _load(path)
-            return self._loaded[path]
+            session = self._loaded.pop(path, None)
+            if session is None:
+                self._make_room(_file_bytes(path))
+                session = _load(path)
+                told = session.info
+                _LOG.info("%s: loaded on %s, %.0f MB", path.name, told.device, told.memory_bytes / 1e6)
+            self._loaded[path] = session  # the last is the one used last
+            return session
+
+    def _make_room(self, needed: int) -> None:
+        budget = _half_of_memory() if self.budget_bytes is None else self.budget_bytes
+        while self._loaded and needed + sum(s.info.memory_bytes for s in self._loaded.values()) > budget:
+            oldest = next(iter(self._loaded))
+            del self._loaded[oldest]
+            _LOG.info("%s: freed for another network", oldest.name)
 
     def release(self, path: Path | None = None) -> None:
         """Free one graph, or all of them; whoever runs one at this moment finishes first."""
@@ -159,9 +176,8 @@ def _load(path: Path) -> Session:
         reason = " ".join(str(error).split())[:160]
         raise UnavailableError(f"{path}: cannot be loaded ({reason}); run: diorama models verify") from error
     grown = _resident_bytes() - before
-    files = sum(p.stat().st_size for p in (path, path.with_name(path.name + "_data")) if p.exists())
     device = "cuda" if raw.get_providers()[0].startswith("CUDA") else "cpu"
-    return Session(raw, LoadedNetwork(path, device, grown if grown > 0 else files))
+    return Session(raw, LoadedNetwork(path, device, grown if grown > 0 else _file_bytes(path)))
 
 
 def _session(path: Path, options: Any) -> Any:
@@ -178,6 +194,19 @@ def _session(path: Path, options: Any) -> Any:
         reason = " ".join(str(error).split())[:120]
         _LOG.warning("%s: the graphics card cannot be used (%s); DIORAMA_DEVICE=cpu avoids the try", path.name, reason)
         return raw
+
+
+def _file_bytes(path: Path) -> int:
+    """Of a graph and its external data: about what its weights take in memory."""
+    return sum(p.stat().st_size for p in (path, path.with_name(path.name + "_data")) if p.exists())
+
+
+def _half_of_memory() -> int:
+    """Of this machine; four gigabytes where the system does not tell."""
+    try:
+        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") // 2
+    except (AttributeError, OSError, ValueError):
+        return 4_000_000_000
 
 
 def _resident_bytes() -> int:

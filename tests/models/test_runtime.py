@@ -79,6 +79,23 @@ def test_a_card_that_fails_is_given_up_for_the_processor(
     assert "DIORAMA_DEVICE=cpu" in caplog.text
 
 
+def test_networks_that_were_not_used_for_longest_make_room(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    first, second, third = (tiny_networks.migan(tmp_path / f"{name}.onnx") for name in ("first", "second", "third"))
+    roomy, narrow = SessionPool(), SessionPool(budget_bytes=1)
+    with caplog.at_level("INFO"):
+        for pool in (roomy, narrow):
+            pool.get(first)
+            pool.get(second)
+    assert "second.onnx: loaded on cpu" in caplog.text
+    assert "first.onnx: freed" in caplog.text
+    assert [n.path.name for n in narrow.report()] == ["second.onnx"]
+    roomy.get(first)
+    roomy.budget_bytes = sum(n.memory_bytes for n in roomy.report())
+    roomy.get(third)
+    assert "second.onnx" not in [n.path.name for n in roomy.report()]
+    assert roomy.report()[-1].path.name == "third.onnx"
+
+
 @pytest.mark.parametrize(("cores", "threads"), [(1, 1), (2, 2), (8, 8), (64, 16)])
 def test_threads_follow_the_cores_up_to_a_bound(monkeypatch: pytest.MonkeyPatch, cores: int, threads: int) -> None:
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: set(range(cores)), raising=False)
