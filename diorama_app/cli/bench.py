@@ -150,7 +150,8 @@ def _bench_speed(a: argparse.Namespace) -> int:
     with progress_bar() as progress:
         bench = run(built_in_library(), a.seed, progress, QUICK if a.quick else FULL, before=before)
     if a.keep:
-        write_atomically(a.keep, regression_bytes(bench.figures()))
+        kept = committed_figures(a.keep) if a.keep.exists() else {}  # a quick run and a full one keep other figures
+        write_atomically(a.keep, regression_bytes({**kept, **bench.figures()}))
     _show(bench, a)
     worse = slower(bench.figures(), before, a.tolerance)
     for name, times in worse.items():

@@ -100,6 +100,15 @@ def test_figures_survive_their_file(tmp_path):
         committed_figures(path)
 
 
+def test_the_committed_figures_cover_stages_and_growth():
+    figures = committed_figures()
+    assert all(np.isfinite(v) for v in figures.values())
+    for stage in ("pose", "layout", "retrieval", "render with truth", "whole build"):
+        assert f"{stage} at 20 objects" in figures
+        assert f"growth of {stage} from 1 to 20 objects" in figures
+    assert figures["eager over ours, a step at 20 objects"] > 20
+
+
 def test_tables_say_what_was_not_measured():
     ours = Series(OURS, "objects", ((5.0, 0.001), (20.0, 0.002)))
     gpu = Series(BATCHED_GPU, "objects", (), missing="no GPU here")
