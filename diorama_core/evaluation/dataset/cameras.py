@@ -65,13 +65,13 @@ def hold_cameras(
     """
     rng = np.random.default_rng((seed, 4711))
     caster = MeshCaster([*_meshes(scene, library), *((_plane_mesh(p), np.eye(4)) for p in scene.architecture.planes)])
-    how, tried = holding or Holding(), list[Camera | None]()
+    how, looks = holding or Holding(), list[tuple[Camera, _Look]]()
     for closer in (1.0, 0.6, 0.3, 0.1):  # a full or narrow room lets nobody stand well clear of things
         nearer = replace(how, clearance_m=closer * how.clearance_m)
-        tried += [_candidate(scene, rng, size, nearer) for _ in range(CANDIDATES * max(1, count))]
-        if sum(c is not None for c in tried) >= 2 * count:
+        tried = [_candidate(scene, rng, size, nearer) for _ in range(CANDIDATES * max(1, count))]
+        looks += [(camera, _look(scene, caster, camera)) for camera in tried if camera is not None]
+        if len(looks) >= 2 * count and sum(look.worth_it for _, look in looks) >= count:
             break
-    looks = [(camera, _look(scene, caster, camera)) for camera in tried if camera is not None]
     looks.sort(key=lambda pair: -pair[1].score)
     chosen: list[Camera] = []
     # Two pictures that resemble each other are better than one of a cupboard's side.
