@@ -199,9 +199,9 @@ def _log_difference(a_m: np.ndarray, b_m: np.ndarray) -> float:
 
 
 def _best(own: dict[str, float], of_group: dict[str, float], keep: int) -> tuple[tuple[str, float], ...]:
-    """The best shapes by own and group's scores; half of them the group's, so that things of a kind can agree."""
+    """The best shapes by own and group's scores; most of them the group's, so that things of a kind can agree."""
     mixed = {key: _OWN_EVIDENCE * own[key] + (1 - _OWN_EVIDENCE) * of_group[key] for key in own}
-    shared = _in_order(of_group)[: keep // 2]
+    shared = _in_order(of_group)[: 3 * keep // 4]
     kept = [*shared, *(key for key in _in_order(mixed) if key not in shared)][:keep]
     return tuple((key, float(mixed[key])) for key in _in_order({key: mixed[key] for key in kept}))
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from diorama_core.progress import Progress
 from diorama_core.retrieval import HierarchicalRetrieval
+from diorama_core.retrieval.hierarchical import _best
 from tests.pose.rooms import LIBRARY, Room, camera_at, random_room, standing
 
 STAGE = HierarchicalRetrieval(LIBRARY)
@@ -87,3 +88,14 @@ def test_its_name_is_short_and_changes_with_the_library() -> None:
 
     assert len(repr(STAGE)) < 80
     assert repr(STAGE) == repr(HierarchicalRetrieval(LIBRARY)) != repr(HierarchicalRetrieval(Fewer()))
+
+
+def test_things_of_a_kind_choose_among_mostly_the_same_shapes() -> None:
+    own = [{f"s{k}": 1.0 - abs(k - best) / 20 for k in range(20)} for best in (2, 17)]
+    mean = {key: (own[0][key] + own[1][key]) / 2 for key in own[0]}
+    first, second = (_best(scores, mean, 8) for scores in own)
+    assert len(first) == len(second) == 8
+    shared = {s for s, _ in first} & {s for s, _ in second}
+    assert len(shared) >= 6
+    assert [v for _, v in first] == sorted((v for _, v in first), reverse=True)
+    assert first[0] != second[0]
