@@ -65,7 +65,8 @@ WATCH = """(name) => {
     let last = null;
     const look = () => {
         const n = window.__viserMutable.nodeRefFromName[name];
-        if (n && n.position.x !== last) { last = n.position.x; window.__frames.push([Date.now(), last]); }
+        const at = n ? n.position.x + n.position.z : last;
+        if (at !== last) { last = at; window.__frames.push([Date.now(), at]); }
         requestAnimationFrame(look);
     };
     look();
@@ -287,6 +288,8 @@ class Bench:
         deadline = time.monotonic() + 300
         while self.room.jobs.status is not None and time.monotonic() < deadline:
             page.wait_for_timeout(200)
+        assert self.room.document.history.current.label == "arrange the layout", "the layout was not arranged"
+        self.page.settle()
         stamps = np.array([t for t, _ in page.evaluate("window.__frames")], dtype=float)
         gaps = np.diff(stamps)
         gaps = gaps[gaps < 2000]
