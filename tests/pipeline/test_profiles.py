@@ -80,6 +80,7 @@ def graphs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[Path]]:
     return {
         "yolox-nano": [tiny_networks.export(_Yolox(), yolox, folder / "y.onnx", ["images"], ["output"])],
         "slimsam": [encoder, decoder],
+        "migan": [tiny_networks.migan(folder / "p.onnx")],
         "moge-2-vits": [tiny_networks.export(_Moge(), moge, folder / "m.onnx", ["image", "num_tokens"], names)],
     }
 
@@ -144,6 +145,12 @@ def test_stages_mix_one_by_one_and_a_pull_reruns_only_what_it_touches(
     assert ran() == set()
     _install(store, "moge-2-vits", graphs["moge-2-vits"])
     assert ran() >= {"sight", "camera", "geometry", "depth"}
+    _install(store, "migan", graphs["migan"])
+    emptied = ran()
+    assert "architecture" in emptied
+    assert not emptied & {"sight", "camera", "objects", "geometry", "graph"}
+    store.forget(network("migan"))
+    assert ran() == set()
     store.forget(network("moge-2-vits"))
     assert ran() == set()
     store.forget(network("slimsam"))
