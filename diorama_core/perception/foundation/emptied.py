@@ -47,7 +47,7 @@ class EmptiedRoom:
             ValueError: when the inputs hold no depth.
         """
         if inputs.depth_m is None:
-            raise ValueError("EmptiedRoom needs the depth that a network read; use RoomBox without one")
+            raise ValueError("EmptiedRoom needs the depth that a network read; use PhotoRoom without one")
         rgb = inputs.photo.rgb
         progress.report(0.0, "Looking for what stands in the room")
         hole = self.hole(rgb, objects)
