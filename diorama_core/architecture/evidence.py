@@ -1,4 +1,4 @@
-"""What the picture says about a room box: line orientations, edges, objects and usual room sizes.
+"""What the picture says about a room: line orientations, edges, objects and usual room sizes.
 
 A box is a row (x0, x1, y1, ceiling): left, right and far wall and ceiling height in the world frame, whose floor is
 z = 0 and whose axes are the room's. Boxes are scored many at a time.
