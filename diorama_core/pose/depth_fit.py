@@ -33,7 +33,7 @@ _DAMPING = 0.01
 _MOST_SHIFT = 0.6
 """A fit moves a pose by at most this share of its largest extent: farther ones lost hold of the object."""
 _GRAZING = 0.15
-_NOISE_REACH = 1.8
+NOISE_REACH = 1.8
 """Deviations by which noise widens the first and last hundredth of the points."""
 _SIZE_SIGMA = 0.22
 _SHAPE_SIGMA = 0.1
@@ -82,7 +82,7 @@ class SeenPoints:
         local = np.einsum("pji,rj->pri", axes_world, self.points_world)
         low, high = np.quantile(local, [0.01, 0.99], axis=1)
         along = np.abs(np.einsum("pji,j->pi", axes_world, self.directions_world.mean(axis=0)))
-        inflated = np.minimum(_NOISE_REACH * float(np.median(self.spread_m)) * along, 0.4 * (high - low))
+        inflated = np.minimum(NOISE_REACH * float(np.median(self.spread_m)) * along, 0.4 * (high - low))
         return low + inflated, high - inflated
 
 

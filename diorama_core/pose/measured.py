@@ -10,7 +10,7 @@ from jaxtyping import Bool
 from diorama_core.artefacts import Cuboid
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.record import SymmetryFold
-from diorama_core.pose.depth_fit import FEWEST_RAYS, SURE_CONTACT_M, Contact, DepthFit, Outline, SeenPoints
+from diorama_core.pose.depth_fit import FEWEST_RAYS, NOISE_REACH, SURE_CONTACT_M, Contact, DepthFit, Outline, SeenPoints
 from diorama_core.pose.evidence import Evidence
 from diorama_core.pose.hypotheses import Anchor, Hypotheses
 from diorama_core.pose.limits import SizeLimits
@@ -93,7 +93,9 @@ def _contact(anchor: Anchor, on_floor: bool, points: SeenPoints, outline: Outlin
         return Contact(anchor, SURE_CONTACT_M)
     lowest = float(points.span(np.eye(3)[None])[0][0, 2])
     gap = lowest - float(anchor.point_world[2])
-    if abs(gap) < _FLOATS_M or (on_floor and not outline.lower_end_seen):
+    if abs(gap) < _FLOATS_M + NOISE_REACH * float(np.median(points.spread_m)) or (
+        on_floor and not outline.lower_end_seen
+    ):
         return Contact(anchor, SURE_CONTACT_M)
     seen = replace(anchor, point_world=np.array([*anchor.point_world[:2], lowest]))
     if outline.lower_end_seen or gap < 0:

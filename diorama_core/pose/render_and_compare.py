@@ -158,9 +158,9 @@ class RenderAndCompare:
     def _rescaled(self, task: _Task, posed: _Posed, scale: Float[np.ndarray, "3"]) -> _Posed:
         if np.array_equal(scale, posed.pose.scale):
             return posed
-        anchor = task.anchor if task.measured is None else task.measured.contact.anchor
-        R, at = posed.pose.R_world_object[None], posed.pose.position[None]
-        poses = PoseBatch(R, anchor.placed(at, R, (scale * posed.shape.size_m)[None]), scale[None])
+        R, axis = posed.pose.R_world_object, task.anchor.axis_world
+        grown = 0.5 * float(np.abs(axis @ R) @ ((scale - posed.pose.scale) * posed.shape.size_m))
+        poses = PoseBatch(R[None], (posed.pose.position + grown * axis)[None], scale[None])
         error = float(task.fine.errors(self._caster(posed.shape), poses)[0])
         return replace(posed, pose=_only(poses), error=error) if error <= posed.error + _LOSS_FOR_A_SET else posed
 

@@ -158,7 +158,7 @@ def test_chairs_of_a_set_are_equally_large_where_the_picture_allows_it() -> None
     assert np.array_equal(scales, scales[[0, 0, 0]])
     for item in found:
         best = item.candidates[0]
-        assert best.pose.position[2] - 0.5 * best.pose.scale[2] * best.shape_size_m[2] == pytest.approx(0, abs=1e-6)
+        assert best.pose.position[2] - 0.5 * best.pose.scale[2] * best.shape_size_m[2] == pytest.approx(0, abs=0.03)
 
 
 def test_a_thing_twice_as_large_is_no_part_of_the_set() -> None:
