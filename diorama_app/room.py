@@ -30,7 +30,6 @@ from diorama_app.shapes import ShapeBytes
 from diorama_app.shelf import Records
 from diorama_app.thumbnails import Thumbnails
 from diorama_app.viewport import Viewport
-from diorama_core.architecture.refit import refitted_textures
 from diorama_core.artefacts import Photo
 from diorama_core.errors import DioramaError
 from diorama_core.library.record import ShapeLibrary
@@ -125,6 +124,8 @@ class Room:
         """The edited scene with the pictures of resized planes cut and continued, not stretched."""
         if not self.textures or scene.architecture is self.scene.architecture:
             return scene
+        from diorama_core.architecture.refit import refitted_textures  # OpenCV; opening a project does without it
+
         scene, made = refitted_textures(self.scene, scene, self.textures)
         if made:
             self.textures = {**self.textures, **made}

@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 from typing import Literal
 
-import cv2
 import numpy as np
 from jaxtyping import Float32, Shaped
 from numpy.lib import format as npy
@@ -152,6 +151,8 @@ def _at_size(
     if (width, height) == photo_size:
         return depth_m, ()
     check_same_proportions(name, "depth", (width, height), photo_size)
+    import cv2  # the editor opens without it
+
     resized = cv2.resize(depth_m, photo_size, interpolation=cv2.INTER_NEAREST_EXACT)
     if width * 2 < photo_size[0]:
         return resized, (f"the depth ({width} x {height}) is much coarser than the photo",)

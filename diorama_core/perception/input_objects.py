@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from typing import Annotated
 
-import cv2
 import numpy as np
 from jaxtyping import Int32
 from PIL import Image
@@ -185,6 +184,8 @@ def _without_specks(name: str, values: Int32[np.ndarray, "h w"]) -> tuple[Int32[
 
 def _large_pieces(mask: np.ndarray, least: int) -> tuple[np.ndarray, int]:
     """The mask without its loose specks, and how many there were."""
+    import cv2  # the editor opens without it
+
     count, labels, stats, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
     small = [k for k in range(1, count) if stats[k, cv2.CC_STAT_AREA] < least]
     return (labels > 0) & ~np.isin(labels, small), len(small)

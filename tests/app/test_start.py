@@ -9,6 +9,7 @@ HEAVY = (
     "torch",
     "sklearn",
     "open3d",
+    "cv2",
     "onnxruntime",
     "openai",
     "diorama_core.pipeline.build",
