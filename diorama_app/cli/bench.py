@@ -186,9 +186,9 @@ def _write_text(a: argparse.Namespace, text: str) -> None:
 
     if not a.markdown:
         return
-    begin, end = f"<!-- bench {a.table} -->", f"<!-- end {a.table} -->"
+    begin, end = f"\n<!-- bench {a.table} -->\n", f"\n<!-- end {a.table} -->\n"  # each on a line of its own
     there = a.markdown.read_text() if a.markdown.exists() else ""
     if begin in there and end in there:
         before, _, after = there.partition(begin)
-        text = f"{before}{begin}\n\n{text.strip()}\n\n{end}{after.partition(end)[2]}"
+        text = f"{before}{begin}\n{text.strip()}\n{end}{after.partition(end)[2]}"
     write_atomically(a.markdown, text.encode())
