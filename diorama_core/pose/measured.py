@@ -93,9 +93,8 @@ def _contact(anchor: Anchor, on_floor: bool, points: SeenPoints, outline: Outlin
         return Contact(anchor, SURE_CONTACT_M)
     lowest = float(points.span(np.eye(3)[None])[0][0, 2])
     gap = lowest - float(anchor.point_world[2])
-    if abs(gap) < _FLOATS_M + NOISE_REACH * float(np.median(points.spread_m)) or (
-        on_floor and not outline.lower_end_seen
-    ):
+    noise_m = NOISE_REACH * float(np.median(points.spread_m)) if on_floor else 0.0
+    if abs(gap) < _FLOATS_M + noise_m or (on_floor and not outline.lower_end_seen):
         return Contact(anchor, SURE_CONTACT_M)
     seen = replace(anchor, point_world=np.array([*anchor.point_world[:2], lowest]))
     if outline.lower_end_seen or gap < 0:
