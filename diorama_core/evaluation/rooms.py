@@ -155,7 +155,7 @@ def lamp(height: float = 0.5) -> BoxShape:
 COMPOUNDS: tuple[BoxShape, ...] = (
     table(0.9, 1.4, 0.74), table(0.8, 0.8, 0.72), table(0.6, 1.1, 0.42), table(0.45, 0.45, 0.55),
     chair(), chair(0.46, 0.48, 1.0), bookshelf(), bookshelf(1.2, 0.3, 1.2, 4), sofa(), sofa(1.5),
-    block("cabinet", 0.45, 1.0, 0.8, top=True), block("nightstand", 0.4, 0.45, 0.5, top=True),
+    block("cabinet", 0.45, 1.0, 0.8, top=True), block("night stand", 0.4, 0.45, 0.5, top=True),
     block("wardrobe", 0.6, 1.2, 2.0), block("picture", 0.03, 0.7, 0.5), block("picture", 0.04, 0.5, 0.7),
     block("television", 0.06, 1.0, 0.6), lamp(), lamp(0.4), block("books", 0.17, 0.12, 0.24),
     block("books", 0.2, 0.15, 0.04), block("vase", 0.12, 0.12, 0.28), block("cup", 0.09, 0.09, 0.1),
@@ -330,7 +330,7 @@ class _Builder:
         self._stand(self._pick("chair"))
 
     def _add_floor(self) -> None:
-        self._stand(self._pick("sofa", "cabinet", "nightstand", "wardrobe", "plant", "box"))
+        self._stand(self._pick("sofa", "cabinet", "night stand", "wardrobe", "plant", "box"))
 
     def _add_shelf(self) -> None:
         shape = self._pick("bookshelf")

@@ -19,9 +19,13 @@ def crop(left, right):
     return rgb
 
 
+def linear_light(srgb) -> np.ndarray:
+    return ((np.array(srgb) / 255 + 0.055) / 1.055) ** 2.4  # above 0.04, as all of these are
+
+
 def painted(colour) -> trimesh.Scene:
     mesh = trimesh.creation.box((1, 1, 1))
-    mesh.visual = trimesh.visual.TextureVisuals(material=material("paint", tuple(np.array(colour) / 255)))
+    mesh.visual = trimesh.visual.TextureVisuals(material=material("paint", tuple(linear_light(colour))))
     return trimesh.Scene({"box": mesh})
 
 

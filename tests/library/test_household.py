@@ -124,4 +124,4 @@ def test_light_passes_through_glass_but_not_through_clay(tmp_path: Path) -> None
     for shape_id, blocked in (("cup-tumbler", False), ("cup-beaker", True)):
         world = World([Placed(shape_surfaces(library, shape_id), np.eye(4), 0)])
         assert world.caster.first_hits(across).found.all()
-        assert bool(world.shadow_caster.occluded(across, far=1.0)[0]) is blocked
+        assert bool(world.shadow_caster().occluded(across, far=1.0)[0]) is blocked
