@@ -197,6 +197,8 @@ class ArchitectureEstimate:
     """The support edges with "floor" and "wall" resolved to plane ids."""
     confidence: float
     source: str
+    openings: tuple[str, ...] = ()
+    """Objects that are holes in the walls, open doorways, and get no shape."""
 
 
 @dataclass(frozen=True)

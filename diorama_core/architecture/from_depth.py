@@ -9,7 +9,8 @@ import numpy as np
 from diorama_core.architecture.ceilings import CeilingPiece, find_ceilings
 from diorama_core.architecture.closed_room import GUESS_CONFIDENCE, room_planes
 from diorama_core.architecture.colours import coloured, object_pixels
-from diorama_core.architecture.openings import Opening, find_openings
+from diorama_core.architecture.openings import Opening, counted, find_openings, is_shut
+from diorama_core.architecture.passages import is_passage, with_passages
 from diorama_core.architecture.supports import resolve_supports
 from diorama_core.architecture.surface import MeasuredSurface, measured_surface
 from diorama_core.architecture.wall_candidates import find_walls, tolerance_m
@@ -44,7 +45,8 @@ class PlanarRoom:
         if inputs.depth_m is None:
             raise ValueError("PlanarRoom needs measured depth; use PhotoRoom for a photo alone")
         progress.report(0.0, "Looking for planes in the measured depth")
-        hidden = object_pixels((inputs.photo.height, inputs.photo.width), objects)
+        solid = tuple(o for o in objects if not is_passage(o))
+        hidden = object_pixels((inputs.photo.height, inputs.photo.width), solid)
         surface = measured_surface(inputs.depth_m, geometry.camera, hidden)
         ceilings = find_ceilings(surface)
         top_m = _top(surface, ceilings)
@@ -54,7 +56,18 @@ class PlanarRoom:
         guessed = not pieces
         pieces = pieces or (_guessed_wall(surface, geometry.camera),)
         floor_seen = _share(surface, 0.0, 1.0) > MIN_FLAT_SHARE
-        openings = tuple(find_openings(surface, p, top_m) if not _sloped(ceilings) else () for p in pieces)
+        openings: tuple[tuple[Opening, ...], ...] = ((),) * len(pieces)
+        pointed: tuple[str, ...] = ()
+        if not _sloped(ceilings):
+            measured = tuple(find_openings(surface, p, top_m) for p in pieces)
+            openings, pointed = with_passages(
+                measured,
+                objects,
+                pieces,
+                geometry.camera,
+                top_m,
+                lambda wall, opening: is_shut(surface, pieces[wall], opening, top_m),
+            )
         sure = 0.95 if floor_seen else GUESS_CONFIDENCE
         planes = room_planes(pieces, ceilings, geometry.camera, top_m, sure, openings)
         planes = coloured(planes, inputs.photo.rgb, geometry.camera, objects)
@@ -64,7 +77,8 @@ class PlanarRoom:
             architecture=architecture,
             supports=resolve_supports(geometry, architecture),
             confidence=float(np.mean([p.confidence for p in architecture.planes])),
-            source=_source(pieces, guessed, floor_seen, ceilings, openings),
+            source=_source(pieces, guessed, floor_seen, ceilings) + counted(openings),
+            openings=pointed,
         )
 
 
@@ -115,7 +129,6 @@ def _source(
     guessed: bool,
     floor_seen: bool,
     ceilings: tuple[CeilingPiece, ...],
-    openings: tuple[tuple[Opening, ...], ...],
 ) -> str:
     seen = sum(p.candidate is not None for p in pieces)
     walls = "no wall was measured; one is assumed behind everything seen" if guessed else f"{seen} walls measured"
@@ -125,7 +138,4 @@ def _source(
     overhead = [f"ceiling at {-c.offset:.2f} m" for c in ceilings if c.is_flat]
     overhead += [f"{slopes} sloped ceiling{'s' * (slopes > 1)}"] * bool(slopes)
     above = " and ".join(overhead) or "ceiling not seen"
-    doors, cut = sum(o.is_doorway for wall in openings for o in wall), sum(len(wall) for wall in openings)
-    counted = ((doors, "doorway"), (cut - doors, "window"))
-    through = "".join(f", {n} {name}{'s' * (n > 1)}" for n, name in counted if n)
-    return f"planes of the measured depth: {floor}, {walls}{assumed}, {above}{through}"
+    return f"planes of the measured depth: {floor}, {walls}{assumed}, {above}"

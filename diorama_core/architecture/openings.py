@@ -64,6 +64,23 @@ def find_openings(surface: MeasuredSurface, piece: WallPiece, top_m: float) -> t
     return tuple(sorted((o for o in found if o is not None), key=lambda o: o.left))
 
 
+def is_shut(surface: MeasuredSurface, piece: WallPiece, opening: Opening, top_m: float) -> bool:
+    """Whether more of what is measured within a rectangle lies on the wall than behind it."""
+    if piece.candidate is None:
+        return False
+    passed, stopped = _rays(surface, piece, piece.candidate, top_m)
+    rows = slice(int(opening.bottom / CELL_M), int(opening.top / CELL_M) + 1)
+    columns = slice(int(opening.left / CELL_M), int(opening.right / CELL_M) + 1)
+    return bool(stopped[rows, columns].sum() > passed[rows, columns].sum())
+
+
+def counted(openings: tuple[tuple[Opening, ...], ...]) -> str:
+    """How many doorways and windows the walls have, to go on with a sentence; nothing where there is none."""
+    doors, cut = sum(o.is_doorway for wall in openings for o in wall), sum(len(wall) for wall in openings)
+    named = ((doors, "doorway"), (cut - doors, "window"))
+    return "".join(f", {n} {name}{'s' * (n > 1)}" for n, name in named if n)
+
+
 def _rays(
     surface: MeasuredSurface, piece: WallPiece, wall: WallCandidate, top_m: float
 ) -> tuple[Float[np.ndarray, "v u"], Float[np.ndarray, "v u"]]:

@@ -13,6 +13,8 @@ from diorama_core.architecture.closed_room import GUESS_CONFIDENCE, room_planes
 from diorama_core.architecture.colours import coloured, visible_planes
 from diorama_core.architecture.evidence import MAX_CEILING_M, RoomEvidence, gather_evidence
 from diorama_core.architecture.level_view import level_view
+from diorama_core.architecture.openings import Opening, counted
+from diorama_core.architecture.passages import with_passages
 from diorama_core.architecture.supports import resolve_supports
 from diorama_core.architecture.wall_candidates import WallCandidate
 from diorama_core.architecture.wall_chain import (
@@ -70,7 +72,8 @@ class PhotoRoom:
         pieces = _pieces(chain, scorer, sure)
         top_m = max(chain.ceiling_m, _highest(evidence))
         hung = any(s.parent == "ceiling" for s in geometry.supports)
-        planes = coloured(_planes(pieces, top_m, geometry, hung), inputs.photo.rgb, geometry.camera, objects)
+        openings, pointed = with_passages(((),) * len(pieces), objects, pieces, geometry.camera, top_m)
+        planes = coloured(_planes(pieces, top_m, geometry, hung, openings), inputs.photo.rgb, geometry.camera, objects)
         architecture = Architecture(planes)
         progress.report(1.0, "The room is closed")
         walls = architecture.by_role("wall")
@@ -78,7 +81,8 @@ class PhotoRoom:
             architecture=architecture,
             supports=resolve_supports(geometry, architecture),
             confidence=float(np.mean([w.confidence for w in walls])),
-            source=_source(pieces, top_m, float(sure.max())),
+            source=_source(pieces, top_m, float(sure.max())) + counted(openings),
+            openings=pointed,
         )
 
 
@@ -165,10 +169,16 @@ def _highest(evidence: RoomEvidence) -> float:
     return float(tops.max()) + CLEARANCE_M if len(tops) else 0.0
 
 
-def _planes(pieces: tuple[WallPiece, ...], top_m: float, geometry: ObjectGeometry, hung: bool) -> tuple[Plane, ...]:
+def _planes(
+    pieces: tuple[WallPiece, ...],
+    top_m: float,
+    geometry: ObjectGeometry,
+    hung: bool,
+    openings: tuple[tuple[Opening, ...], ...],
+) -> tuple[Plane, ...]:
     """The closed room; without a ceiling where none shows and nothing hangs from it."""
     ceiling = CeilingPiece(np.array([0.0, 0.0, -1.0]), -top_m, np.inf)
-    planes = room_planes(pieces, (ceiling,), geometry.camera, top_m, FLOOR_CONFIDENCE)
+    planes = room_planes(pieces, (ceiling,), geometry.camera, top_m, FLOOR_CONFIDENCE, openings)
     seen = visible_planes(planes, geometry.camera, CEILING_STEP)
     kept = []
     for index, plane in enumerate(planes):

@@ -173,7 +173,7 @@ CATEGORIES: tuple[Category, ...] = (
     _c("shelves", (0.4, 1.0, 0.25), (0.5, 0.35, 0.2), "wall", synonyms="shelf, wall shelf, floating shelf, rack", supports_things=True),
     _c("curtain", (2.2, 1.2, 0.12), (0.2, 0.4, 0.3), "wall", synonyms="curtains, drapes, shower curtain"),
     _c("window", (1.2, 1.1, 0.08), (0.25, 0.35, 0.3), "wall", synonyms="windows, window frame"),
-    _c("door", (2.03, 0.85, 0.06), (0.04, 0.1, 0.3), "wall", synonyms="doorway, doors, door frame"),
+    _c("door", (2.03, 0.85, 0.06), (0.04, 0.1, 0.3), "wall", synonyms="doorway, doors, door frame, archway, passageway, door opening"),
     _c("radiator", (0.6, 1.0, 0.12), (0.15, 0.3, 0.2), "wall"),
     _c("rug", (0.015, 1.6, 2.2), (0.3, 0.3, 0.3), "floor", synonyms="carpet, mat, floor mat, floormat", supports_things=True),
     _c("piano", (1.15, 1.45, 0.62), (0.15, 0.1, 0.15), synonyms="upright piano, keyboard piano"),

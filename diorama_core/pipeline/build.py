@@ -12,6 +12,7 @@ from jaxtyping import UInt8
 from diorama_core.architecture.empty_room import EmptyRoomFiller
 from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.architecture.hanging import hung_up
+from diorama_core.architecture.passages import furniture
 from diorama_core.architecture.photo_room import PhotoRoom
 from diorama_core.architecture.texture import plane_textures
 from diorama_core.artefacts import (
@@ -168,7 +169,8 @@ def build_scene(
     room = runner.run(
         "architecture", s.architecture, s.architecture.reconstruct, (inputs, objects, geometry), progress.part(0.4, 0.5)
     )
-    geometry = hung_up(geometry, room)
+    pointed_at = objects
+    objects, geometry = furniture(objects, hung_up(geometry, room), room)
     depth = runner.run("depth", s.depth, s.depth.depth, (inputs, objects, geometry, room), progress.part(0.5, 0.55))
     shapes = runner.run(
         "retrieval", s.retrieval, s.retrieval.retrieve, (inputs, objects, geometry), progress.part(0.55, 0.65)
@@ -176,7 +178,7 @@ def build_scene(
     posed = runner.run(
         "pose", s.pose, s.pose.pose, (inputs, objects, geometry, depth, shapes), progress.part(0.65, 0.85)
     )
-    textures = plane_textures(inputs, objects, geometry.camera, room.architecture, s.filler)
+    textures = plane_textures(inputs, pointed_at, geometry.camera, room.architecture, s.filler)
     shape_of = {p.object_id: p.candidates[0].shape_id for p in posed if p.candidates}
     colours = shared_by_sets(photo_colours(inputs.photo.rgb, objects), objects, shape_of)
     observed = _textured(assemble(objects, geometry, room, posed, library, colours), textures)

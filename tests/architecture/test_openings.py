@@ -9,6 +9,7 @@ import pytest
 
 from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.architecture.openings import Opening, with_openings
+from diorama_core.artefacts import DetectedObject
 from diorama_core.evaluation.architecture_metrics import plane_points
 from diorama_core.geometry.casting import camera_rays, cast_plane
 from diorama_core.progress import Progress
@@ -100,3 +101,17 @@ def test_raising_the_ceiling_leaves_doors_and_windows_as_they_are():
     after = edits.set_ceiling_height(Scene(architecture=Architecture((before,))), 3.0).plane("back")
     changed = np.abs(after.polygon - before.polygon).max(axis=1) > 1e-9
     np.testing.assert_array_equal(changed, before.polygon[:, 2] > 2.5)
+
+
+@pytest.mark.parametrize(("label", "expected"), [("doorway", ("it",)), ("window", ()), ("french doors", ())])
+def test_what_is_seen_through_is_a_hole_and_only_a_doorway_is_no_thing(label, expected):
+    shot = opened_room(DOORWAY)
+    left, right, top = -2.0 + DOORWAY.left, -2.0 + DOORWAY.right, DOORWAY.top
+    pixels = shot.camera.project(np.array([[x, 4.0, z] for x in (left, right) for z in (0.0, top)]))
+    box = (*(float(v) for v in pixels.min(axis=0)), *(float(v) for v in pixels.max(axis=0)))
+    rows, columns = np.indices(shot.inputs.depth_m.shape)
+    mask = (columns >= box[0]) & (columns < box[2]) & (rows >= box[1]) & (rows < box[3])
+    found = DetectedObject("it", "door", label, box, mask, 1, 1.0)
+    estimate = PlanarRoom().reconstruct(shot.inputs, (found,), shot.geometry, Progress())
+    assert estimate.openings == expected
+    assert "1 doorway" in estimate.source

@@ -1,0 +1,137 @@
+"""Open doorways that a person or a detector pointed at: holes in the wall they lie in, and no things of their own.
+
+Doors and windows themselves are things that hang on their wall, which a photo alone leaves whole. Their panes and
+leaves are opaque (a pane shows what the photo shows behind it), so a hole behind one would not be seen, and it would
+stay where it is when its door or window is moved, deleted or exchanged for one of another outline.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from jaxtyping import Float
+from scipy.optimize import least_squares
+
+from diorama_core.architecture.openings import FRAME_M, MIN_AREA_M2, MIN_SIDE_M, SILL_M, Opening
+from diorama_core.architecture.wall_sequence import WallPiece
+from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, ObjectGeometry
+from diorama_core.scene.types import Camera
+
+NAMES = frozenset({"doorway", "archway", "passageway", "door opening"})
+MAX_MISFIT_PX = 0.03
+"""A rectangle whose outline misses the box by more, as a share of the photo's longer side, is not in that wall."""
+
+
+def is_passage(found: DetectedObject) -> bool:
+    """Whether a thing was called by a name of something that one walks through."""
+    words = re.findall(r"[a-z]+", found.label.lower().removesuffix("s"))
+    return bool(NAMES & {words[-1] if words else "", " ".join(words[-2:])})
+
+
+def furniture(
+    objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, room: ArchitectureEstimate
+) -> tuple[tuple[DetectedObject, ...], ObjectGeometry]:
+    """The objects and the geometry without what became a hole in a wall."""
+    gone = set(room.openings)
+    kept = tuple(c for c in geometry.cuboids if c.object_id not in gone)
+    return tuple(o for o in objects if o.id not in gone), replace(geometry, cuboids=kept)
+
+
+def with_passages(
+    measured: tuple[tuple[Opening, ...], ...],
+    objects: tuple[DetectedObject, ...],
+    pieces: tuple[WallPiece, ...],
+    camera: Camera,
+    top_m: float,
+    is_shut: Callable[[int, Opening], bool] | None = None,
+) -> tuple[tuple[tuple[Opening, ...], ...], tuple[str, ...]]:
+    """Each wall's openings from left to right with those that were pointed at, and the ids of the latter.
+
+    Args:
+        measured: What was seen through; where it overlaps what was pointed at, it stays as measured.
+        objects: Everything pointed at; only open doorways count.
+        pieces: The walls.
+        camera: The photo's.
+        top_m: Height of the walls.
+        is_shut: Tells of a wall and a rectangle of it that it was measured to be closed.
+    """
+    of_wall = [list(openings) for openings in measured]
+    ids = []
+    for found in objects:
+        place = _opening(found, pieces, camera, top_m) if is_passage(found) else None
+        if place is None:
+            continue
+        wall, opening = place
+        if not any(opening.left < other.right and other.left < opening.right for other in of_wall[wall]):
+            if is_shut is not None and is_shut(wall, opening):
+                continue
+            of_wall[wall].append(opening)
+        ids.append(found.id)
+    return tuple(tuple(sorted(o, key=lambda opening: opening.left)) for o in of_wall), tuple(ids)
+
+
+def _opening(
+    found: DetectedObject, pieces: tuple[WallPiece, ...], camera: Camera, top_m: float
+) -> tuple[int, Opening] | None:
+    """The wall that a box lies in, and the rectangle of it that the box surrounds."""
+    x1, y1, x2, y2 = found.box
+    columns, rows = np.array([x1, x2, (x1 + x2) / 2, (x1 + x2) / 2]), np.array([(y1 + y2) / 2] * 2 + [y1, y2])
+    rays = camera.rays(np.stack([columns, rows], axis=-1))
+    middle = camera.rays(np.array([[(x1 + x2) / 2, (y1 + y2) / 2]]))
+    nearest: tuple[float, int] | None = None
+    for index, piece in enumerate(pieces):
+        reach, u, v = _met(piece, camera, middle)
+        on = reach[0] > 0 and 0 < u[0] < piece.length_m and 0 < v[0] < top_m
+        if on and (nearest is None or reach[0] < nearest[0]):
+            nearest = float(reach[0]), index
+    if nearest is None:
+        return None
+    piece = pieces[nearest[1]]
+    reach, u, v = _met(piece, camera, rays)
+    if (reach <= 0).any():
+        return None
+    start = np.array([u[0], u[1], v[3], v[2]])
+    left, right, bottom, top = _fitted(start, found, piece, camera)
+    left, right = max(left, FRAME_M), min(right, piece.length_m - FRAME_M)
+    bottom, top = (0.0 if bottom < SILL_M else bottom), min(top, top_m - FRAME_M)
+    if min(right - left, top - bottom) < MIN_SIDE_M or (right - left) * (top - bottom) < MIN_AREA_M2:
+        return None
+    return nearest[1], Opening(left, right, bottom, top)
+
+
+def _met(
+    piece: WallPiece, camera: Camera, rays: Float[np.ndarray, "n 3"]
+) -> tuple[Float[np.ndarray, "n"], Float[np.ndarray, "n"], Float[np.ndarray, "n"]]:
+    """Where rays meet a wall's plane: their reach (below 0 behind the camera), metres along its foot, and heights."""
+    along = (piece.end - piece.start) / max(piece.length_m, 1e-9)
+    across = np.array([along[1], -along[0]])
+    steep = rays[:, :2] @ across
+    reach = ((piece.start - camera.position[:2]) @ across) / np.where(np.abs(steep) < 1e-9, 1e-9, steep)
+    points = camera.position + reach[:, None] * rays
+    return reach, (points[:, :2] - piece.start) @ along, points[:, 2]
+
+
+def _fitted(
+    start: Float[np.ndarray, "4"], found: DetectedObject, piece: WallPiece, camera: Camera
+) -> tuple[float, float, float, float]:
+    """Left, right, bottom and top of the rectangle whose picture the box surrounds.
+
+    Edges seen aslant run through the photo at an angle, so a box's sides are touched by corners only.
+    """
+    along = np.array([*(piece.end - piece.start) / piece.length_m, 0.0])
+    foot = np.array([*piece.start, 0.0])
+
+    def misfit(edges: Float[np.ndarray, "4"]) -> Float[np.ndarray, "4"]:
+        corners = np.array([foot + u * along + [0, 0, v] for u in edges[:2] for v in edges[2:]])
+        pixels = camera.project(corners)
+        return np.concatenate([pixels.min(axis=0), pixels.max(axis=0)]) - np.array(found.box)
+
+    found_edges = least_squares(misfit, start, max_nfev=30).x
+    # A box that no upright rectangle of this wall fills is read along its middle lines.
+    largest = MAX_MISFIT_PX * max(camera.intrinsics.width, camera.intrinsics.height)
+    edges = found_edges if np.abs(misfit(found_edges)).max() < largest else start
+    left, right, bottom, top = (float(e) for e in edges)
+    return left, right, bottom, top
