@@ -43,6 +43,20 @@ FADE_M = 1.2
 """Far from what is seen, shading fades to the plane's plain colour over this length."""
 FLOOR_SHADING_M, WALL_SHADING_M = 0.10, 0.08
 """Variation broader than this is light and shade, finer is the material's own."""
+SMALL_M2, CUT_SHARE = 0.4, 0.1
+"""A foreign piece smaller than this is given up where so much of its outline borders on what was not seen."""
+STANDING_M2, FOOT_SHARE = 0.8, 0.25
+"""Larger ones up to this only where so much of their width ends below at what was not seen, or on the floor."""
+STRAY_SHARE = 0.25
+"""None that is more of all that is seen: there may be two materials."""
+STRAY_RIM_M = 0.03
+"""So much around them is given up too."""
+EDGE_M, SKIRTING = 0.18, 4.0
+"""Except skirtings and mouldings: within so much of a wall's foot or top, so many times as long as high."""
+SEAM_M = 0.25
+"""Over about this length beside what is seen, what is made up has its light and shade."""
+SEAM_LEVELS = 40.0
+"""Not that of what differs by more levels of 255 from the plane's own."""
 LEAST_TYPICAL = 0.06
 """Where less than this share of what is seen has about one colour, all of it is continued."""
 FLOOR_DETAIL, WALL_DETAIL = 45.0, 14.0
@@ -89,6 +103,8 @@ def plane_textures(
         enough_m2 = MIN_FLOOR_M2 if plane.role == "floor" else np.inf
         if seen.sum() >= MIN_SEEN_PX and (seen.mean() >= MIN_SEEN_SHARE or seen.sum() * pixel_m**2 >= enough_m2):
             own = _own(colours, seen, weight, expected)
+            seen = _without_islands(seen & ~strays(seen, own, pixel_m, wall=plane.role == "wall"), ISLAND_M / pixel_m)
+            own &= seen
             found[plane.id] = completed(colours, seen, plane.colour, pixel_m, own, ground=plane.role == "floor")
     return found
 
@@ -171,7 +187,7 @@ def _foreign(
 def _photo_share(points: Float[np.ndarray, "h w 3"], plane: Plane, camera: Camera) -> Float[np.ndarray, "h w"]:
     """How much of the photo each texel covers, up to one factor: it shrinks with distance and with slant."""
     rays = points - camera.position
-    distance = np.maximum(np.linalg.norm(rays, axis=-1), 0.1)
+    distance = np.maximum(np.sqrt(np.einsum("hwk,hwk->hw", rays, rays)), 0.1)
     return np.asarray(np.maximum(-(rays @ plane.normal), 0.0) / distance**3)
 
 
@@ -199,12 +215,13 @@ def _seen_colours(
     depth = camera.to_camera(points)[..., 2]
     k = camera.intrinsics
     frame = 1.0 + FRAME * max(k.width, k.height)
-    seen = (depth > 0.05) & (pixels > frame).all(axis=-1) & (pixels < [k.width - frame, k.height - frame]).all(axis=-1)
-    rays = points - camera.position
-    distance = np.linalg.norm(rays, axis=-1)
-    seen &= -(rays @ plane.normal) > MAX_GRAZING_COSINE * distance
+    x, y = pixels[..., 0], pixels[..., 1]
+    seen = (depth > 0.05) & (x > frame) & (y > frame) & (x < k.width - frame) & (y < k.height - frame)
+    rays = points[seen] - camera.position
+    seen[seen] = -(rays @ plane.normal) > MAX_GRAZING_COSINE * np.linalg.norm(rays, axis=-1)
     if seen.any():
-        nearest = cast_planes(camera.position, rays[seen], tuple(p for p in planes if p.id != plane.id))[0]
+        rays = points[seen] - camera.position
+        nearest = cast_planes(camera.position, rays, tuple(p for p in planes if p.id != plane.id))[0]
         seen[seen] = nearest > 0.995
     columns, rows = np.moveaxis(np.where(seen[..., None], pixels, 0).astype(int), -1, 0)
     seen &= ~hidden[rows, columns]
@@ -222,6 +239,35 @@ def _own(
     """What is seen of the plane's own material; all of it where hardly anything has one colour."""
     own = seen & ~_foreign(colours, seen, weight, expected)
     return own if own.sum() >= LEAST_TYPICAL * seen.sum() else seen
+
+
+def strays(
+    seen: Bool[np.ndarray, "h w"], own: Bool[np.ndarray, "h w"], pixel_m: float, *, wall: bool
+) -> Bool[np.ndarray, "h w"]:
+    """Foreign pieces that are cut off by what was not seen: things before the plane, their rims, shadows and glow.
+
+    A poster or a socket has the plane's own material all around; a plant nobody pointed at goes on below the rim of a
+    mask or stands on the floor, the glow around a lamp and the shadow at a table's foot go on behind the mask.
+    """
+    pieces = (seen & ~own).astype(np.uint8)
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(pieces, connectivity=8)
+    _, top, width, height, area = (stats[:, k] for k in range(5))
+    unseen = cv2.dilate((~seen).astype(np.uint8), np.ones((3, 3), np.uint8)).astype(bool)
+    outline = (pieces > 0) & (cv2.erode(pieces, np.ones((3, 3), np.uint8), borderValue=1) == 0)
+    cut = np.bincount(labels[unseen & outline], minlength=count)
+    below = np.full_like(seen, wall)
+    below[:-1] = ~seen[1:]
+    foot = np.bincount(labels[below & (pieces > 0)], minlength=count)
+    small = (area < SMALL_M2 / pixel_m**2) & (cut > CUT_SHARE * np.bincount(labels[outline], minlength=count))
+    standing = (area < STANDING_M2 / pixel_m**2) & (foot > FOOT_SHARE * width)
+    stray = (small | standing) & (area < STRAY_SHARE * float(seen.sum()))
+    if wall:
+        edge = EDGE_M / pixel_m
+        at_edge = (top + height < edge) | (top > len(pieces) - edge)
+        stray &= ~(at_edge & (width > SKIRTING * height))
+    stray[0] = False
+    rim = round(STRAY_RIM_M / pixel_m)
+    return cv2.dilate(stray[labels].astype(np.uint8), np.ones((2 * rim + 1,) * 2, np.uint8)).astype(bool)
 
 
 def completed(
@@ -255,6 +301,10 @@ def completed(
     distance = cv2.distanceTransform((~seen).astype(np.uint8), cv2.DIST_L2, 5)
     keep = np.exp(-distance * pixel_m / FADE_M)[..., None]
     filled = keep * smooth + (1.0 - keep) * (np.array(plain, np.float32) * 255.0)
+    near = np.exp(-distance * pixel_m / SEAM_M)[..., None]
+    beside = broad_shading(colours, seen, breadth_m / pixel_m)
+    alike = seen & (np.abs(beside - smooth).max(axis=-1) < SEAM_LEVELS)
+    filled = near * _pull_push(beside * alike[..., None], alike.astype(np.float32)) + (1.0 - near) * filled
     detail = detail_continued(colours - shading, own, strongest)
     if detail is not None:
         filled = filled + detail
@@ -275,9 +325,11 @@ def _pull_push(
         mean = weighted.reshape(-1, 3).sum(axis=0) / max(total, 1e-6)
         return np.where(weight[..., None] > 1e-3, average, mean).astype(np.float32)
     size = ((width + 1) // 2, (height + 1) // 2)
-    coarse = _pull_push(
-        cv2.resize(weighted, size, interpolation=cv2.INTER_AREA), cv2.resize(weight, size, interpolation=cv2.INTER_AREA)
-    )
+    share = cv2.resize(weight, size, interpolation=cv2.INTER_AREA)
+    # One known texel of four makes a coarser one known: what is near the seam must not be thinned by what is far.
+    sure = np.minimum(4.0 * share, 1.0)
+    total_colour = cv2.resize(weighted, size, interpolation=cv2.INTER_AREA)
+    coarse = _pull_push(total_colour * (sure / np.maximum(share, 1e-6))[..., None], sure)
     above = cv2.resize(coarse, (width, height), interpolation=cv2.INTER_LINEAR)
-    share = np.clip(weight, 0.0, 1.0)[..., None]
-    return (share * average + (1.0 - share) * above).astype(np.float32)
+    known = np.clip(weight, 0.0, 1.0)[..., None]
+    return (known * average + (1.0 - known) * above).astype(np.float32)

@@ -7,7 +7,7 @@ import pytest
 
 from diorama_core.architecture.colours import coloured, object_pixels
 from diorama_core.architecture.empty_room import empty_room
-from diorama_core.architecture.texture import MAX_SIDE_PX, completed, plane_textures
+from diorama_core.architecture.texture import MAX_SIDE_PX, completed, plane_textures, strays
 from diorama_core.geometry.casting import camera_rays, cast_planes
 from diorama_core.geometry.planes import plane_rectangle
 from diorama_core.scene.types import Architecture
@@ -138,3 +138,32 @@ def test_the_empty_room_has_no_furniture(shot, textures):
     which = cast_planes(CAMERA.position, rays, planes)[1]
     expected = PALETTE[which % len(PALETTE)]
     assert np.quantile(np.abs(empty[hidden].astype(int) - expected[hidden]).max(axis=-1), 0.9) < 45
+
+
+def wall_with_a_thing(rows, columns):
+    """A grey wall of 3 by 4 m seen above 2 m of furniture, and whether a green thing on it is given up."""
+    colours = np.full((300, 400, 3), 150.0, np.float32)
+    colours[rows, columns] = (30.0, 120.0, 40.0)
+    seen = np.zeros((300, 400), dtype=bool)
+    seen[20:200, 20:380] = True
+    own = seen & (colours[..., 0] > 100)
+    return strays(seen, own, 0.01, wall=True)
+
+
+def test_what_stands_before_a_wall_is_given_up_and_a_poster_is_not():
+    plant, poster = (slice(140, 200), slice(100, 160)), (slice(60, 120), slice(100, 160))
+    assert wall_with_a_thing(*plant)[plant].all()
+    assert not wall_with_a_thing(*poster).any()
+
+
+def test_a_wall_of_two_materials_keeps_both():
+    assert not wall_with_a_thing(slice(20, 110), slice(20, 380)).any()
+
+
+def test_light_and_shade_go_on_beside_what_is_seen():
+    shade = np.linspace(60.0, 190.0, 400, dtype=np.float32)
+    colours = np.broadcast_to(shade[None, :, None], (300, 400, 3)).copy()
+    seen = np.zeros((300, 400), dtype=bool)
+    seen[100:200] = True
+    filled = completed(colours, seen, (0.5, 0.5, 0.5), 0.01, seen).astype(float)
+    assert np.abs(filled[90, 20:380, 0] - shade[20:380]).max() < 12
