@@ -62,8 +62,10 @@ MESH = """(name) => new Promise((done, fail) => {
 })"""
 WATCH = """(name) => {
     window.__frames = [];
+    const mine = window.__watch = (window.__watch || 0) + 1;
     let last = null;
     const look = () => {
+        if (mine !== window.__watch) return;  // another figure watches now
         const n = window.__viserMutable.nodeRefFromName[name];
         const at = n ? n.position.x + n.position.z : last;
         if (at !== last) { last = at; window.__frames.push([Date.now(), at]); }

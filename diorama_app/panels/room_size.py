@@ -16,22 +16,24 @@ class RoomSize:
 
     def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
         self._guest = guest
-        self._html = LiveHtml(gui, self._act)
+        self._folder = gui.add_folder("Room", expand_by_default=False)
+        with self._folder:
+            self._html = LiveHtml(gui, self._act)
 
     def refresh(self) -> None:
         """Draw the height of the room and a field for every wall."""
         scene, unit = self._guest.room.scene, self._guest.settings.unit
         walls = scene.architecture.by_role("wall")
         height = ceiling_height(scene)
+        self._folder.visible = height is not None
         if height is None:
-            self._html.show("")
             return
         rows = _row("Height", "height", "", format_length(height, unit), "How high the room is")
         rows += "".join(
             _row(supporter_name(scene, w.id).capitalize(), "wall", w.id, "", "Move it outward by this; minus is inward")
             for w in walls
         )
-        self._html.show(f'<details><summary class="dim">Room</summary><table>{rows}</table></details>')
+        self._html.show(f"<table>{rows}</table>")
 
     def _act(self, action: Action) -> None:
         self._guest.post(lambda: self._do(action.do, *action.pair))

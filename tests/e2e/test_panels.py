@@ -169,7 +169,7 @@ def test_projects_are_saved_reopened_and_exported(editor: EditorPage, tmp_path: 
     room.desk.post(room.refresh)
     editor.page.locator(".dio .row", has_text="second").get_by_role("button", name="Open").click()
     editor.until(lambda: room.project is not None and room.project.name == "second", "opened")
-    assert room.scene.has_object("lamp_1")
+    editor.until(lambda: room.scene.has_object("lamp_1"), "its scene is shown")
     expect(editor.page.locator(".dio .row", has_text="demo").get_by_role("button", name="Open")).to_be_visible()
 
 
