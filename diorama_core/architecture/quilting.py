@@ -12,6 +12,8 @@ from jaxtyping import Bool, Float32
 
 BLOCKS_PX = ((48, 24), (32, 60), (20, 400))
 """Sizes of the copied squares and how many must have been seen: copies of few small ones show as a weave."""
+BROADEST = 0.1
+"""Detail broader than this share of a block is not copied."""
 LEAST_SOURCE = 0.01
 """A material seen on a smaller share of the surface is not continued."""
 OVERLAP = 0.34
@@ -44,6 +46,9 @@ def detail_continued(
     size = next((b for b, enough in BLOCKS_PX if min(seen.shape) > b and _places(source, b).sum() >= enough), None)
     if size is None or source.mean() < LEAST_SOURCE:
         return None
+    given = detail
+    # What is nearly as broad as a block shows as a weave when the block is copied side by side.
+    detail = detail - broad_shading(detail, source, BROADEST * size)
     out = np.where(source[..., None], detail, 0.0).astype(np.float32)
     # What hides or decorates the surface stays in its own picture but is not continued.
     known = source.copy()
@@ -57,7 +62,7 @@ def detail_continued(
         block = detail[y : y + size, x : x + size]
         out[window] = np.where(wanted[..., None], block, _blended(out[window], block, known[window], source[window]))
         known[window] = True
-    return np.asarray(np.where(seen[..., None], detail, out), dtype=np.float32)
+    return np.asarray(np.where(seen[..., None], given, out), dtype=np.float32)
 
 
 def _odd(
@@ -123,11 +128,12 @@ class _Finder:
         self._picture = grey[::SEARCH_STEP, ::SEARCH_STEP].copy()
         self._squares = self._picture**2
         self._rng = rng
+        self._rows, self._columns = np.nonzero(self._places)
         self._uses = np.zeros(self._places.shape, np.float32)
 
     def best(self, block: Float32[np.ndarray, "b b 3"], known: Bool[np.ndarray, "b b"]) -> tuple[int, int]:
         """Top-left corner of a block of the source that continues what is known of a block."""
-        rows, columns = np.nonzero(self._places)
+        rows, columns = self._rows, self._columns
         if known.any():
             grey = cv2.cvtColor(block, cv2.COLOR_RGB2GRAY)[::SEARCH_STEP, ::SEARCH_STEP]
             weight = known[::SEARCH_STEP, ::SEARCH_STEP].astype(np.float32)

@@ -157,10 +157,10 @@ def _foreign(
     """
     if not seen.any():
         return np.zeros(seen.shape, dtype=bool)
-    lab = cv2.cvtColor(colours / 255.0, cv2.COLOR_RGB2LAB)
     rows, columns = np.nonzero(seen)
+    lab = cv2.cvtColor(colours[rows, columns][:, None] / 255.0, cv2.COLOR_RGB2LAB)[:, 0]
     every = max(1, len(rows) // 4000)
-    sample = lab[rows[::every], columns[::every]]
+    sample = lab[::every]
     places = np.stack([rows[::every], columns[::every]], axis=1).astype(np.float64)
     share = weight[rows[::every], columns[::every]]
     cells, index = np.unique(np.round(sample / COLOUR_CELL_LAB), axis=0, return_inverse=True)
@@ -177,10 +177,11 @@ def _foreign(
         if score > best:
             best, own = score, np.median(sample[alike], axis=0)
     deviation = np.abs(lab - own)
-    alike = (deviation < 2.0 * COLOUR_CELL_LAB).all(axis=-1) & seen
-    typical = np.median(deviation[alike if alike.any() else seen], axis=0)
-    far = (deviation / np.maximum(FOREIGN_SPREADS * typical, FOREIGN_LEAST_LAB)).max(axis=-1) > 1.0
-    compact = cv2.morphologyEx((far & seen).astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
+    alike = (deviation < 2.0 * COLOUR_CELL_LAB).all(axis=-1)
+    typical = np.median(deviation[alike] if alike.any() else deviation, axis=0)
+    far = np.zeros(seen.shape, np.uint8)
+    far[rows, columns] = (deviation > np.maximum(FOREIGN_SPREADS * typical, FOREIGN_LEAST_LAB)).any(axis=-1)
+    compact = cv2.morphologyEx(far, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
     return cv2.dilate(compact, np.ones((9, 9), np.uint8)).astype(bool)
 
 

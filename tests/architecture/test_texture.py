@@ -167,3 +167,15 @@ def test_light_and_shade_go_on_beside_what_is_seen():
     seen[100:200] = True
     filled = completed(colours, seen, (0.5, 0.5, 0.5), 0.01, seen).astype(float)
     assert np.abs(filled[90, 20:380, 0] - shade[20:380]).max() < 12
+
+
+def test_copies_of_a_small_piece_do_not_show_as_a_weave():
+    rng = np.random.default_rng(0)
+    colours = (150 + rng.normal(0, 2, (300, 300, 1)) + np.zeros(3)).astype(np.float32)
+    seen = np.zeros((300, 300), dtype=bool)
+    seen[130:170, 130:170] = True
+    # A broad dark stripe across the little that is seen, as a thing's shadow leaves it.
+    colours -= 18.0 * np.exp(-(((np.arange(300) - 150) / 6.0) ** 2))[:, None, None].astype(np.float32)
+    filled = completed(colours, seen, (150 / 255,) * 3, 0.01, seen, ground=True).astype(float)
+    rows, places = filled[:90, 230:, 0].mean(axis=1), np.arange(90)
+    assert np.std(rows - np.polyval(np.polyfit(places, rows, 3), places)) < 2.5
