@@ -1,8 +1,8 @@
 """Open doorways that a person or a detector pointed at: holes in the wall they lie in, and no things of their own.
 
 Doors and windows themselves are things that hang on their wall, which a photo alone leaves whole. Their panes and
-leaves are opaque (a pane shows what the photo shows behind it), so a hole behind one would not be seen, and it would
-stay where it is when its door or window is moved, deleted or exchanged for one of another outline.
+leaves are opaque (a pane shows a painted sky), so a hole behind one would not be seen, and it would stay where it is
+when its door or window is moved, deleted or exchanged for one of another outline.
 """
 
 from __future__ import annotations
