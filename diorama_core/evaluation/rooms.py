@@ -29,6 +29,11 @@ class BoxShape:
     boxes: Boxes
     tops: tuple[tuple[float, float, float, float, float, float, bool], ...] = ()
 
+    @property
+    def word(self) -> str:
+        """The category as one word."""
+        return self.category.replace(" ", "_")
+
 
 @dataclass(frozen=True)
 class BoxLibrary:
@@ -79,7 +84,7 @@ def _record(number: int, compound: BoxShape) -> tuple[Shape, trimesh.Trimesh]:
     )
     digest = hashlib.sha256(np.ascontiguousarray(corners).tobytes()).hexdigest()[:16]
     shape = Shape(
-        id=f"{compound.category}_{number}",
+        id=f"{compound.word}_{number}",
         category=compound.category,
         caption=f"{compound.category} of boxes",
         size_m=tuple(float(x) for x in high - low),  # type: ignore[arg-type]
@@ -282,7 +287,7 @@ class _Builder:
         return options[int(self.rng.integers(len(options)))]
 
     def _put(self, shape: Shape, pose: Pose, parent: str, relation: str = "placed on", **edge: object) -> str:
-        name = f"{shape.category}_{len(self.objects):03d}"
+        name = f"{shape.category.replace(' ', '_')}_{len(self.objects):03d}"
         self.objects.append(SceneObject(name, name, shape.category, shape.id, shape.size_m, pose))
         self.supports.append(Support(name, parent, relation, **edge))  # type: ignore[arg-type]
         return name

@@ -132,3 +132,15 @@ def grid_normals(points_camera: Float[np.ndarray, "h w 3"], step: int = 2) -> Fl
     away = (unit * points_camera[inner]).sum(axis=-1, keepdims=True) > 0
     normals[inner] = np.where(known[..., None], np.where(away, -unit, unit), 0.0)
     return normals
+
+
+def in_polygon(points: Float[np.ndarray, "n 2"], outline: Float[np.ndarray, "k 2"]) -> Bool[np.ndarray, "n"]:
+    """Whether points lie within a polygon, convex or not, by the even-odd rule; never within an empty one."""
+    if len(outline) < 3:
+        return np.zeros(len(points), dtype=bool)
+    a, b = outline, np.roll(outline, -1, axis=0)
+    x, y = points[:, :1], points[:, 1:]
+    passes = (a[:, 1] > y) != (b[:, 1] > y)
+    rise = np.where(a[:, 1] == b[:, 1], 1.0, b[:, 1] - a[:, 1])
+    crossing = a[:, 0] + (y - a[:, 1]) * (b[:, 0] - a[:, 0]) / rise
+    return np.asarray((passes & (x < crossing)).sum(axis=1) % 2 == 1)

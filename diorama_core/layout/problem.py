@@ -64,6 +64,8 @@ class Problem:
     """Doors: they hang on a wall and reach down to the floor."""
     floor_m: float
     """Height of the floor; 0 without one."""
+    floor_outline: Float[np.ndarray, "k 2"]
+    """The floor's outline in plan, empty without one; with walls that stand into the room it is not convex."""
     walls: tuple[Plane, ...]
     relations: Int[np.ndarray, "m 2"]
     """Pairs that are near each other and should stay so."""
@@ -140,6 +142,7 @@ def build_problem(
         surfaces.append(choose_surface(scene, item, edge, held_by) if edge is not None else None)
         contacts[k] = choose_contact(scene, item, edge, surfaces[-1])
     walls = tuple(sorted(scene.architecture.by_role("wall"), key=lambda w: w.id))
+    floor = scene.architecture.floor
     yielding = _yielding_pairs(objects)
     firm = np.array([FIRM_SHARE if is_soft(o) else 1.0 for o in objects]).reshape(-1)
     parts = tuple(_scaled(parts_of_shape(library, s), share) for s, share in zip(shapes, firm))
@@ -162,7 +165,8 @@ def build_problem(
         free=free,
         adheres=_adherences(R, p, sizes, edges, surfaces, walls, adherence_m),
         grounded=np.array([o.category == "door" for o in objects], dtype=bool),
-        floor_m=float(floor.centre[2]) if (floor := scene.architecture.floor) is not None else 0.0,
+        floor_m=0.0 if floor is None else float(floor.centre[2]),
+        floor_outline=np.zeros((0, 2)) if floor is None else floor.polygon[:, :2],
         walls=walls,
         relations=_relations(parent, on_plane, p, sizes),
         kin=_kin(parent, yielding),

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.geometry.planes import in_polygon
 from diorama_core.geometry.sat import Bodies, PairAxes, pair_axes, place_bodies
 from diorama_core.layout.problem import Problem
 from diorama_core.layout.quadratic import HARD, SOFT, least_distance
@@ -90,16 +91,21 @@ def build_program(problem: Problem, structure: Structure, weight: Float[np.ndarr
 
 
 def _wall_rows(problem: Problem, structure: Structure, bodies: Bodies, J: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Every object stays in front of the walls it could reach."""
+    """Every object stays in front of the walls it could reach.
+
+    Round the corner of a wall that stands into the room an object is behind that wall's plane and rightly so.
+    """
     rows, need = [np.zeros((0, J.shape[2]))], [np.zeros(0)]
     fixed = {(i, w) for i, w, _ in problem.adheres}
     starts = np.searchsorted(bodies.owner, np.arange(problem.count))
     radius = 0.5 * np.linalg.norm(problem.shape_size * structure.scale, axis=1)
+    in_room = in_polygon(structure.p[:, :2], problem.floor_outline)
     for w, wall in enumerate(problem.walls if problem.count else ()):
         surface = plane_surface(wall)
         ahead = structure.p @ wall.normal - wall.offset
         beside = (structure.p @ surface.outward.T - surface.offset).max(axis=1)
         reached = problem.free & (beside <= radius) & (ahead >= -radius - 0.5)
+        reached &= ~(in_room & (beside > 0) & (ahead < 0))
         reached &= np.array([problem.on_plane[i] != wall.id and (i, w) not in fixed for i in range(problem.count)])
         nearest = np.minimum.reduceat((bodies.vertices @ wall.normal).min(axis=1), starts)
         rows.append(np.einsum("c,ncv->nv", wall.normal, J[reached]))

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from diorama_core.geometry.casting import cast_box, cast_plane, cast_planes
 from diorama_core.geometry.depth_grid import points_camera, smooth_normals_camera
-from diorama_core.geometry.planes import clip_polygon, plane_axes, plane_uv, ransac_plane
+from diorama_core.geometry.planes import clip_polygon, in_polygon, plane_axes, plane_uv, ransac_plane
 from diorama_core.geometry.segments import line_segments_px
 from diorama_core.scene.types import Intrinsics, Plane
 from tests.synthetic_rooms import box_room, wall
@@ -125,3 +125,11 @@ def test_plane_needs_no_particular_start():
     corners = wall("w", (-1, 3), (2, 3), 2.0).polygon
     turned = Plane("w", "wall", np.roll(corners, 2, axis=0))
     np.testing.assert_allclose(np.roll(plane_uv(turned), -2, axis=0), plane_uv(Plane("w", "wall", corners)))
+
+
+def test_points_are_within_an_l_but_not_in_its_notch():
+    outline = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [2.0, 2.0], [2.0, 4.0], [0.0, 4.0]])
+    points = np.array([[1.0, 1.0], [3.0, 1.0], [1.0, 3.0], [3.0, 3.0], [5.0, 1.0], [-0.1, 1.0]])
+    assert in_polygon(points, outline).tolist() == [True, True, True, False, False, False]
+    assert in_polygon(points, outline[::-1]).tolist() == in_polygon(points, outline).tolist()
+    assert not in_polygon(points, np.zeros((0, 2))).any()

@@ -125,6 +125,18 @@ def test_a_stated_wall_is_stood_against(room: Room) -> None:
     assert stood.pose.position[1] + stood.size_m[0] / 2 == pytest.approx(2.5)
 
 
+def test_round_the_corner_of_a_wall_that_stands_in_things_stay_where_they_are(room: Room) -> None:
+    corners = np.array([[-2, -2, 0], [2, -2, 0], [2, 0, 0], [0, 0, 0], [0, 2, 0], [-2, 2, 0]], dtype=float)
+    up = np.array([0.0, 0.0, 2.5])
+    sides = zip(corners, np.roll(corners, -1, axis=0), strict=True)
+    walls = [Plane(f"wall_{k}", "wall", np.array([b, a, a + up, b + up])) for k, (a, b) in enumerate(sides)]
+    beyond = room.put("box_24", (0.3, -0.4, 0.15))  # behind the plane of the wall from (0, 0) to (0, 2)
+    through = room.put("box_24", (-0.1, 1.0, 0.15), id="through")
+    after, _ = solve(room.scene(architecture=Architecture((Plane("floor", "floor", corners), *walls))))
+    np.testing.assert_allclose(after.object(beyond).pose.position[:2], (0.3, -0.4), atol=1e-9)
+    assert after.object(through).pose.position[0] == pytest.approx(-after.object(through).size_m[0] / 2, abs=1e-6)
+
+
 def test_nothing_leaves_the_room(room: Room) -> None:
     box = room.put("cabinet_10", (2.95, 2.4, 0.4))
     after, _ = solve(room.scene())
@@ -195,7 +207,7 @@ def test_wrong_graphs_stay_finite_and_inside(seed: int) -> None:
 
 
 def test_larger_than_its_support_is_named(room: Room) -> None:
-    stand = room.put("nightstand_11", (0, 0, 0.25))
+    stand = room.put("night_stand_11", (0, 0, 0.25))
     room.put("box_24", (0.0, 0, 0.7), on=stand, scale=(1.9, 1.9, 1.0))
     _, report = solve(room.scene())
     assert any(r.startswith("larger than its support") for r in report.reasons)
