@@ -39,7 +39,7 @@ FLOOR_CONFIDENCE = 0.6
 LINES = 14
 """So many of the longest lines along an axis are tried as feet of walls."""
 SURE = 0.4
-MAX_PUSH_M, MAX_SURE_PUSH_M = 2.0, 0.12
+MAX_PUSH_M, MAX_SURE_PUSH_M = 2.0, 1.0
 """Walls give way to things by at most this, those that are clearly seen by less; what is farther out is a mistake."""
 CLEARANCE_M = 0.02
 MEASURED = 0.95
