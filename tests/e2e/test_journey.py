@@ -43,6 +43,7 @@ def test_the_example_is_there_and_is_swapped_moved_undone_optimised_and_download
     _click_on(editor, chair)
     editor.page.locator(".dio .tile:not(.on)[data-do=swap]").first.click()
     editor.until(lambda: room.scene.object(chair.id).shape_id != chair.shape_id, "swapped")
+    editor.settle()
     swapped = room.scene.object(chair.id)
     goal = round(float(swapped.pose.position[0]) - 0.2, 2)
     editor.page.get_by_label("Place (m)").fill(f"{goal:.2f}")

@@ -25,9 +25,10 @@ def test_the_room_becomes_higher_and_what_hangs_on_a_moved_wall_goes_with_it(edi
     editor.page.get_by_text("Room", exact=True).last.click()
     height = editor.page.get_by_label("Height", exact=True)
     expect(height).to_have_value("2.5 m")
-    height.fill("2.9 m")
+    height.fill("2.9")
     height.press("Enter")
     editor.until(lambda: abs((ceiling_height(scene(editor)) or 0.0) - 2.9) < 1e-6, "higher")
+    expect(height).to_have_value("2.9 m")  # drawn anew: what is typed from here on stays
     picture = scene(editor).object("picture_1").pose.position
     wall = editor.page.get_by_label("Wall 3", exact=True)
     wall.fill("40 cm")
