@@ -101,20 +101,21 @@ class Marks:
         names: bool,
         doubt: str,
     ) -> _Mark | None:
-        size = tuple(float(s) for s in item.size_m.round(5))
+        x, y, z = item.size_m.round(5).tolist()
+        size = (x, y, z)
         name = item.label[:40] + (" (locked)" if item.locked else "")
         problems = "".join(f" ⚠ {badge}" for badge in badges) + doubt
         if item.id in self._colliding:
-            return _Mark(node, size, COLLIDING_COLOUR, 3.5, name if item.id in selection else "")  # type: ignore[arg-type]
+            return _Mark(node, size, COLLIDING_COLOUR, 3.5, name if item.id in selection else "")
         if item.id in selection:
             colour = LOCKED_COLOUR if item.locked else SELECTED_COLOUR
-            return _Mark(node, size, colour, 3.0 if selection[-1] == item.id else 2.0, name + problems)  # type: ignore[arg-type]
+            return _Mark(node, size, colour, 3.0 if selection[-1] == item.id else 2.0, name + problems)
         for who, colour, theirs in others:
             if item.id in theirs:
-                return _Mark(node, size, colour, 2.0, who)  # type: ignore[arg-type]
+                return _Mark(node, size, colour, 2.0, who)
         if names or problems:
             short = ("⚠" if badges else "") + doubt
-            return _Mark(node, size, None, 0.0, name + problems if names else short)  # type: ignore[arg-type]
+            return _Mark(node, size, None, 0.0, name + problems if names else short)
         return None
 
     def _draw(self, mark: _Mark) -> list[viser.SceneNodeHandle]:

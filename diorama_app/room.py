@@ -16,11 +16,12 @@ import viser
 from jaxtyping import UInt8
 
 from diorama_app.checks import Checker, Problems
-from diorama_app.client_view import DEFAULT_FOV_RAD, NoticeKind, room_view
+from diorama_app.client_view import NoticeKind
 from diorama_app.clipboard import Clip
 from diorama_app.desk import Desk
 from diorama_app.document import Document
 from diorama_app.drafts import Draft
+from diorama_app.framing import DEFAULT_FOV_RAD, room_view
 from diorama_app.guest import Guest
 from diorama_app.jobs import Jobs, JobStatus, Outcome
 from diorama_app.layout_run import LayoutRun

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_app.client_view import NARROW_FOV_RAD, bounds, room_view, side_view
+from diorama_app.framing import NARROW_FOV_RAD, bounds, room_view, side_view
 from diorama_app.guest import Guest
 from diorama_app.room import Room
 from diorama_core.errors import EditRefused

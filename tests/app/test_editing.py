@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 
 from diorama_app import editing, swapping
-from diorama_app.client_view import Board, fitting_fov, room_view, screen_rays
+from diorama_app.client_view import Board, fitting_fov, screen_rays
 from diorama_app.desk import Desk
 from diorama_app.drafts import Draft, boxes_json
+from diorama_app.framing import room_view
 from diorama_app.guest import Guest
 from diorama_app.inserting import insert_shape
 from diorama_app.jobs import Jobs, Outcome
