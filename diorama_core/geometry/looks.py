@@ -27,9 +27,11 @@ from diorama_core.geometry.silhouette import ShapeCaster
 
 log = logging.getLogger(__name__)
 
-_FORMAT = "2"
+_FORMAT = "3"
 _KEPT = 512
 _LEAST_AREA_M2 = 1e-12
+_CORNER_SHARES = np.array([[1, 1, 1], [4, 1, 1], [1, 4, 1], [1, 1, 4]]) / np.array([[3], [6], [6], [6]])
+"""Points of a face at which its picture is read, as shares of its corners."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +44,8 @@ class Look:
     """One colour per part whose material has one."""
     areas_m2: Float[np.ndarray, "k"]
     """Surface of those parts."""
+    face_rgba: UInt8[np.ndarray, "f 4"]
+    """sRGB colour of every face, the mean of its picture, and its opacity; all 0 where no colour is known."""
 
     @cached_property
     def caster(self) -> ShapeCaster:
@@ -52,12 +56,14 @@ class Look:
 def look_of(parts: trimesh.Scene) -> Look:
     """The triangles and colours of a shape's parts."""
     vertices, faces, colours, areas = [np.zeros((0, 3))], [np.zeros((0, 3), int)], [], []
+    of_faces = [np.zeros((0, 4), np.uint8)]
     count = 0
     for node in parts.graph.nodes_geometry:
         T, name = parts.graph[node]
         mesh = parts.geometry[name]
         vertices.append(trimesh.transform_points(mesh.vertices, T))
         faces.append(np.asarray(mesh.faces) + count)
+        of_faces.append(face_rgba(mesh))
         count += len(mesh.vertices)
         colour = material_rgb(mesh.visual)
         if colour is not None and mesh.area > _LEAST_AREA_M2:
@@ -68,7 +74,48 @@ def look_of(parts: trimesh.Scene) -> Look:
         np.concatenate(faces).astype(np.int32),
         np.array(colours, dtype=np.uint8).reshape(-1, 3),
         np.array(areas),
+        np.concatenate(of_faces),
     )
+
+
+def face_rgba(mesh: trimesh.Trimesh) -> UInt8[np.ndarray, "f 4"]:
+    """The sRGB colour and opacity of every face of one part; all 0 where it has none."""
+    visual: Any = mesh.visual
+    count = len(mesh.faces)
+    if visual is None or not visual.defined:
+        return np.zeros((count, 4), np.uint8)
+    if visual.kind == "face":
+        return np.asarray(visual.face_colors, dtype=np.uint8)
+    if visual.kind == "vertex":
+        return np.rint(np.asarray(visual.vertex_colors, float)[mesh.faces].mean(axis=1)).astype(np.uint8)
+    material: Any = visual.material
+    texture = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
+    whole = material_rgb(visual)
+    rgb = np.tile(np.zeros(3) if whole is None else whole, (count, 1))
+    if texture is not None and visual.uv is not None and len(visual.uv) == len(mesh.vertices):
+        factor = getattr(material, "baseColorFactor", None)
+        light = _to_linear(_read_picture(texture, np.asarray(visual.uv, float)[mesh.faces]))
+        light *= np.ones(3) if factor is None else np.asarray(factor, float)[:3] / 255.0
+        rgb = np.clip(np.rint(255.0 * _to_srgb(light)), 0, 255)
+    return np.concatenate([rgb, np.full((count, 1), _opacity(material))], axis=1).astype(np.uint8)
+
+
+def _opacity(material: Any) -> int:
+    """0 to 255; at least 1, since 0 says that nothing is known."""
+    factor = getattr(material, "baseColorFactor", None)
+    if factor is None or len(factor) < 4 or getattr(material, "alphaMode", None) in (None, "OPAQUE"):
+        return 255
+    return max(int(factor[3]), 1)
+
+
+def _read_picture(picture: Any, uv: Float[np.ndarray, "f 3 2"]) -> Float[np.ndarray, "f 3"]:
+    """Mean sRGB (0 to 1) at a few points of every face; pictures repeat beyond their edges."""
+    pixels = np.asarray(picture.convert("RGB"))
+    height, width = pixels.shape[:2]
+    at = np.nan_to_num(np.einsum("sc,fck->fsk", _CORNER_SHARES, uv))
+    column = np.floor(np.mod(at[..., 0], 1.0) * width).astype(int) % width
+    row = np.floor(np.mod(1.0 - at[..., 1], 1.0) * height).astype(int) % height
+    return np.asarray(pixels[row, column].mean(axis=1) / 255.0)
 
 
 def material_rgb(visual: Any) -> UInt8[np.ndarray, "3"] | None:
@@ -88,11 +135,11 @@ def material_rgb(visual: Any) -> UInt8[np.ndarray, "3"] | None:
     return np.asarray(np.clip(np.rint(255.0 * _to_srgb(light)), 0, 255), dtype=np.uint8)
 
 
-def _to_linear(srgb: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
+def _to_linear(srgb: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
     return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
 
 
-def _to_srgb(light: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
+def _to_srgb(light: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
     light = np.maximum(light, 0.0)
     return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
 
@@ -127,7 +174,7 @@ SHARED_LOOKS = LookStore()
 def _read(path: Path) -> Look | None:
     try:
         with np.load(path, allow_pickle=False) as data:
-            return Look(data["vertices"], data["faces"], data["colours"], data["areas"])
+            return Look(data["vertices"], data["faces"], data["colours"], data["areas"], data["of_faces"])
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
         return None  # absent, or half a file from another program: it is made again
 
@@ -135,7 +182,14 @@ def _read(path: Path) -> Look | None:
 def _made(folder: Path, key: str, parts: trimesh.Scene) -> Look:
     look = look_of(parts)
     data = io.BytesIO()
-    np.savez(data, vertices=look.vertices, faces=look.faces, colours=look.colours_srgb, areas=look.areas_m2)
+    np.savez(
+        data,
+        vertices=look.vertices,
+        faces=look.faces,
+        colours=look.colours_srgb,
+        areas=look.areas_m2,
+        of_faces=look.face_rgba,
+    )
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=folder, delete=False) as part:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import open3d as o3d
 import trimesh
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Float, Int, UInt32
 from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.scene.types import Camera, box_corners
@@ -61,6 +61,8 @@ class Hits:
     depth_m: Float[np.ndarray, "p r"]
     normals_object: Float[np.ndarray, "p r 3"]
     """Of the faces met, in the shape's own frame at scale 1."""
+    triangles: UInt32[np.ndarray, "p r"]
+    """Which faces are met; of no use where nothing is."""
     directions_world: Float[np.ndarray, "r 3"]
     poses: PoseBatch
 
@@ -93,9 +95,9 @@ class ShapeCaster:
         self._scene.add_triangles(np.asarray(corners, dtype=np.float32), np.asarray(triangles, dtype=np.uint32))
         self._cast(np.array([[9.0, 9.0, 9.0, 1.0, 0.0, 0.0]], np.float32))  # builds the tree here, not under threads
 
-    def _cast(self, rays: Float[np.ndarray, "n 6"]) -> tuple[np.ndarray, np.ndarray]:
+    def _cast(self, rays: Float[np.ndarray, "n 6"]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         answer = self._scene.cast_rays(_OPEN3D.core.Tensor(rays), nthreads=1)
-        return answer["t_hit"].numpy(), answer["primitive_normals"].numpy()
+        return answer["t_hit"].numpy(), answer["primitive_normals"].numpy(), answer["primitive_ids"].numpy()
 
     def cast(
         self, origin_world: Float[np.ndarray, "3"], directions_world: Float[np.ndarray, "r 3"], poses: PoseBatch
@@ -106,10 +108,11 @@ class ShapeCaster:
         rays = np.empty((count, rays_each, 6), np.float32)
         rays[..., :3] = (to_object @ (origin_world - poses.position)[..., None])[:, None, :, 0]
         rays[..., 3:] = directions_world @ to_object.transpose(0, 2, 1)
-        depth, normals = self._cast(rays.reshape(-1, 6))
+        depth, normals, triangles = self._cast(rays.reshape(-1, 6))
         depth = depth.reshape(count, rays_each).astype(np.float64)
         depth[~(depth > _NEAR_M)] = np.inf
-        return Hits(depth, normals.reshape(count, rays_each, 3), directions_world, poses)
+        shape = (count, rays_each)
+        return Hits(depth, normals.reshape(*shape, 3), triangles.reshape(shape), directions_world, poses)
 
     def bounds_px(self, camera: Camera, poses: PoseBatch) -> Float[np.ndarray, "p 4"]:
         """Boxes x1, y1, x2, y2 of the posed shape in the photo, clipped to it; NaN where it is out of sight."""

@@ -6,7 +6,7 @@ import numpy as np
 import trimesh
 from PIL import Image
 
-from diorama_core.geometry.looks import LookStore, look_of, material_rgb
+from diorama_core.geometry.looks import LookStore, face_rgba, look_of, material_rgb
 from tests.primitives import PrimitiveLibrary
 
 LIBRARY = PrimitiveLibrary()
@@ -43,6 +43,7 @@ def test_a_look_is_made_once_and_read_back_the_same(tmp_path) -> None:
     assert (first.vertices == again.vertices).all()
     assert (first.faces == again.faces).all()
     assert (first.areas_m2 == again.areas_m2).all()
+    assert (first.face_rgba == again.face_rgba).all()
 
 
 def test_half_a_file_is_made_again(tmp_path) -> None:
@@ -71,3 +72,36 @@ def test_colours_are_those_that_viewers_show() -> None:
     assert np.array_equal(seen[0], [63, 95, 82])
     assert np.allclose(seen[1], [45, 69, 59], atol=2)  # half the light, not half the number
     assert np.allclose(seen[2], [128, 0, 255], atol=2)
+
+
+def striped(uv) -> trimesh.Trimesh:
+    """One triangle of a picture whose upper half is red and whose lower half is blue."""
+    pixels = np.zeros((8, 8, 3), np.uint8)
+    pixels[:4], pixels[4:] = (200, 0, 0), (0, 0, 200)
+    material = trimesh.visual.material.PBRMaterial(baseColorTexture=Image.fromarray(pixels))
+    visual = trimesh.visual.TextureVisuals(uv=np.array(uv), material=material)
+    return trimesh.Trimesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], visual=visual, process=False)
+
+
+def test_a_face_has_the_colour_of_its_part_of_the_picture() -> None:
+    upper, lower, beyond = (
+        face_rgba(striped([(0.1, v), (0.9, v), (0.5, v + 0.1)]))[0].tolist() for v in (0.7, 0.2, -0.8)
+    )
+    assert upper == [200, 0, 0, 255]
+    assert lower == beyond == [0, 0, 200, 255]
+
+
+def test_faces_keep_their_own_colours_and_their_opacity() -> None:
+    box = trimesh.creation.box((1, 1, 1))
+    box.visual.face_colors = [(10 * k, 5, 7, 255) for k in range(12)]
+    assert face_rgba(box)[:, 0].tolist() == [10 * k for k in range(12)]
+    box = trimesh.creation.box((1, 1, 1))
+    glass = trimesh.visual.material.PBRMaterial(baseColorFactor=[255, 255, 255, 60], alphaMode="BLEND")
+    box.visual = trimesh.visual.TextureVisuals(uv=np.zeros((len(box.vertices), 2)), material=glass)
+    assert (face_rgba(box) == [255, 255, 255, 60]).all()
+
+
+def test_without_colours_nothing_is_known_of_a_face() -> None:
+    scene = trimesh.Scene({"plain": trimesh.creation.box((1, 1, 1))})
+    assert not look_of(scene).face_rgba.any()
+    assert look_of(trimesh.Scene()).face_rgba.shape == (0, 4)
