@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import fsum
 
 import numpy as np
 from jaxtyping import Float
@@ -187,8 +188,8 @@ def _means(
     means = []
     for group, own in zip(groups, scores, strict=True):
         alike = [(v + _LEAST_VOICE, s) for g, s, v in zip(groups, scores, visible, strict=True) if g == group]
-        voices = sum(voice for voice, _ in alike)
-        means.append({key: sum(voice * s[key] for voice, s in alike) / voices for key in own})
+        voices = fsum(voice for voice, _ in alike)  # exact sums: the order of the objects must not show in a bit
+        means.append({key: fsum(voice * s[key] for voice, s in alike) / voices for key in own})
     return means
 
 
