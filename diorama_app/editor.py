@@ -39,6 +39,7 @@ from diorama_app.panels.supports import Supports
 from diorama_app.panels.toast import Toasts
 from diorama_app.panels.toolbar import Toolbar
 from diorama_app.panels.unsaved import UnsavedChanges
+from diorama_app.panels.walls import Walls
 from diorama_app.photo_outlines import PhotoOutlines
 from diorama_app.room import Room
 from diorama_app.shelf import Shelf
@@ -154,6 +155,7 @@ class Editor:
             Compare(gui, guest, self.views),
             Overlays(guest, self._outlines),
             Toasts(gui, guest),
+            Walls(gui, guest),
         ]
         left = gui.add_tab_group()
         with left.add_tab("Scene"):

@@ -53,6 +53,7 @@ class Room:
         self.server = server
         self.library: ShapeLibrary = library
         self.projects_dir = projects_dir
+        self.low_graphics = low_graphics
         self.document = Document()
         self.draft = Draft()
         self.project: Project | None = None

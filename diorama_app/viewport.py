@@ -22,6 +22,9 @@ from diorama_core.scene.types import Finish, Plane, Pose, Scene, SceneObject
 MESH_NAMES = 8
 """An object's meshes take turns among so many names, so that what is on its way out keeps its own."""
 
+SHADOW_ON_PLANES = 0.25
+"""How dark."""
+
 Appearance = tuple[str, tuple[float, float, float] | None, Finish | None]
 Pick = Callable[[str, Any], None]
 Later = Callable[[Callable[[], None]], None]
@@ -60,12 +63,14 @@ class Viewport:
         self._later = later
         self._objects: dict[str, _Shown] = {}
         self._planes: dict[str, tuple[Plane, viser.SceneNodeHandle]] = {}
+        self._shadow_on_planes: float | bool = SHADOW_ON_PLANES
 
     def light(self, *, low_graphics: bool) -> None:
         """Soft light from all sides; shadows and an environment where the browser can afford them."""
         scene = self._server.scene
         scene.configure_default_lights(enabled=True, cast_shadow=not low_graphics)
         if low_graphics:
+            self._shadow_on_planes = False  # even without shadows, every plane would be drawn twice for them
             scene.configure_environment_map(None)
             scene.add_light_hemisphere(
                 "/lights/sky", sky_color=(255, 252, 246), ground_color=(176, 170, 162), intensity=1.0
@@ -111,6 +116,11 @@ class Viewport:
         shown = self._objects.get(object_id)
         return None if shown is None else shown.frame.name
 
+    def plane_name(self, plane_id: str) -> str | None:
+        """The node of a plane."""
+        shown = self._planes.get(plane_id)
+        return None if shown is None else shown[1].name
+
     def _show_planes(self, scene: Scene, textures: Mapping[str, UInt8[np.ndarray, "h w 3"]]) -> None:
         wanted = {p.id: p for p in scene.architecture.planes}
         for plane_id, (plane, handle) in list(self._planes.items()):
@@ -126,7 +136,7 @@ class Viewport:
         name = self._fresh_name("/room")
         if texture is not None:
             return self._server.scene.add_glb(
-                name, plane_glb(plane, reduced(texture, 1024)), cast_shadow=False, receive_shadow=0.25
+                name, plane_glb(plane, reduced(texture, 1024)), cast_shadow=False, receive_shadow=self._shadow_on_planes
             )
         return self._server.scene.add_mesh_simple(
             name,
@@ -136,7 +146,7 @@ class Viewport:
             flat_shading=True,
             side="front",
             cast_shadow=False,
-            receive_shadow=0.25,
+            receive_shadow=self._shadow_on_planes,
         )
 
     def _show_object(self, item: SceneObject) -> None:

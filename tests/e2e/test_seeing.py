@@ -100,3 +100,36 @@ def test_walls_between_the_eye_and_the_room_are_not_in_the_way(editor: EditorPag
     assert editor.guest.client.camera.position[1] < -5.0, "the eye is behind the front wall"
     editor.click_world(chair.pose.apply(np.array([0.0, 0.0, 0.045])))
     editor.until(lambda: editor.selection == ("chair_1",), "seen and clicked through the wall")
+
+
+LEFT_OF = "(name) => (window.__dioWalls.shares || {})[name]"
+"""How much of a plane, or of what hangs on one, is drawn: 1 all, 0 nothing."""
+
+
+def test_walls_fade_with_what_hangs_on_them_and_come_back(editor: EditorPage) -> None:
+    room, view = editor.running.room, editor.guest.view
+    wall, ceiling = (str(room.viewport.plane_name(i)) for i in ("wall_3", "ceiling"))
+    picture = str(room.viewport.node_name("picture_1"))
+    hangs = room.scene.object("picture_1").pose.position
+
+    def left(name: str) -> float:
+        return float(editor.page.evaluate(LEFT_OF, name))
+
+    editor.until(lambda: left(wall) == 1.0 and left(picture) == 1.0, "the far wall is solid from inside")
+    solid = editor.mean_colour(hangs)
+    room.desk.post(lambda: view.look(hangs + (0.5, 5.0, 1.5), hangs))
+    editor.until(lambda: 0.0 < left(wall) < 0.3 and left(picture) == left(wall), "faded, not gone")
+    assert left(ceiling) == 0.0, "nothing lies over the room seen from above"
+    table = room.scene.object("table_1")
+    editor.click_world(table.pose.apply(np.array([0.0, 0.0, 0.36])))
+    editor.until(lambda: editor.selection == ("table_1",), "clicked through the wall")
+    editor.row("picture").click()
+    editor.until(lambda: left(picture) == 1.0, "what is selected is seen")
+    assert left(wall) < 0.3
+    editor.page.keyboard.press("p")
+    editor.until(lambda: view.through_photo and left(wall) == 1.0, "solid through the photo's camera")
+    editor.page.keyboard.press("Escape")
+    editor.page.keyboard.press("r")
+    editor.until(lambda: not view.through_photo and left(wall) == 1.0 and left(picture) == 1.0, "back")
+    editor.settle()
+    assert np.abs(editor.mean_colour(hangs) - solid).max() < 12.0, "as it was before"
