@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import functools
+import gzip
 import hmac
 import http
 import io
@@ -18,6 +19,7 @@ from collections.abc import Awaitable, Callable, Iterator
 from concurrent.futures import Future
 from dataclasses import dataclass
 from http.cookies import SimpleCookie
+from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
@@ -36,6 +38,8 @@ ANY_HOST = frozenset({"", "0.0.0.0", "::"})
 MAX_UPLOAD_BYTES = 128 * 1024 * 1024
 MAX_UPLOADS_IN_FLIGHT = 8
 
+HEAD_SCRIPT = Path(__file__).parent / "static" / "head.js"
+"""Runs in the page before viser does."""
 PICTURES = "pictures/"
 """Addresses below this one are pictures."""
 
@@ -179,10 +183,28 @@ def _checked(handler: HttpHandler | None, visitors: Visitors, pictures: Pictures
             return _picture(pictures(name))
         response = handler(connection, request) if handler is not None else None
         if response is not None:
+            _prepend_script(response)
             _add_headers(response, remember=visitors.token if visitors.brings_token(request) else None)
         return response
 
     return process_request
+
+
+def _prepend_script(response: Response) -> None:
+    """Our script in front of viser's, in the page itself."""
+    if not response.headers.get("Content-Type", "").startswith("text/html"):
+        return
+    zipped = response.headers.get("Content-Encoding") == "gzip"
+    response.body = _page(bytes(response.body or b""), zipped)
+    del response.headers["Content-Length"]
+    response.headers["Content-Length"] = str(len(response.body))
+
+
+@functools.lru_cache(maxsize=2)
+def _page(body: bytes, zipped: bool) -> bytes:
+    page = gzip.decompress(body) if zipped else body
+    page = page.replace(b"<head>", b"<head>\n<script>" + HEAD_SCRIPT.read_bytes() + b"</script>", 1)
+    return gzip.compress(page, mtime=0) if zipped else page
 
 
 async def _picture(asked: Future[bytes | None]) -> Response:

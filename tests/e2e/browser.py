@@ -38,6 +38,7 @@ LEARN_MS = 300_000
 SETTLED = """() => {
     const m = window.__viserMutable, info = window.__viserTestpoints && window.__viserTestpoints.rendererInfo;
     if (!m || !info || m.messageQueue.length > 0) { window.__quietFrom = null; return false; }
+    m.requestRender();
     if (window.__quietFrom == null) { window.__quietFrom = info.render.frame; return false; }
     return info.render.frame >= window.__quietFrom + 2;
 }"""
