@@ -27,7 +27,8 @@ def test_planes_between_an_eye_outside_and_the_room_are_told_apart_from_those_be
     behind = [name for name, row in rows.items() if seen_from_behind(row, (0.0, 9.0, 1.2))]
     assert behind == ["/room/wall_3"]
     above = [name for name, row in rows.items() if seen_from_behind(row, (0.0, 1.4, 9.0))]
-    assert above == ["/room/ceiling"] and rows["/room/ceiling"][3] == 0.0, "seen from above there is no ceiling"
+    assert above == ["/room/ceiling"]
+    assert rows["/room/ceiling"][3] == 0.0, "seen from above there is no ceiling"
 
 
 def test_what_hangs_fades_with_its_wall_and_so_does_what_stands_on_it() -> None:

@@ -117,7 +117,7 @@ def test_walls_fade_with_what_hangs_on_them_and_come_back(editor: EditorPage) ->
 
     editor.until(lambda: left(wall) == 1.0 and left(picture) == 1.0, "the far wall is solid from inside")
     solid = editor.mean_colour(hangs)
-    room.desk.post(lambda: view.look(hangs + (0.5, 5.0, 1.5), hangs))
+    room.desk.post(lambda: view.look(hangs + np.array([0.5, 5.0, 1.5]), hangs))
     editor.until(lambda: 0.0 < left(wall) < 0.3 and left(picture) == left(wall), "faded, not gone")
     assert left(ceiling) == 0.0, "nothing lies over the room seen from above"
     table = room.scene.object("table_1")
