@@ -180,7 +180,7 @@ def _checked(handler: HttpHandler | None, visitors: Visitors, pictures: Pictures
             return connection.respond(http.HTTPStatus.FORBIDDEN, f"Refused: {refusal}.\n")
         name = urlsplit(request.path).path.removeprefix(f"/{PICTURES}")
         if pictures is not None and f"/{PICTURES}{name}" == urlsplit(request.path).path:
-            return _picture(pictures(name))
+            return _picture(connection, pictures(name))
         response = handler(connection, request) if handler is not None else None
         if response is not None:
             _prepend_script(response)
@@ -207,8 +207,10 @@ def _page(body: bytes, zipped: bool) -> bytes:
     return gzip.compress(page, mtime=0) if zipped else page
 
 
-async def _picture(asked: Future[bytes | None]) -> Response:
+async def _picture(connection: ServerConnection, asked: Future[bytes | None]) -> Response:
     png = await asyncio.wrap_future(asked)
+    if connection.protocol.eof_sent:
+        raise asyncio.CancelledError  # the page was closed meanwhile; websockets would trip over an answer to nobody
     if png is None:
         return Response(http.HTTPStatus.NOT_FOUND, "Not Found", Headers({"Content-Length": "0", "Connection": "close"}))
     headers = {

@@ -174,3 +174,18 @@ def test_pictures_are_served_beside_the_page_to_those_who_may_see_it() -> None:
     assert fetch(made, "/pictures/chair.png")[0] == 403
     assert fetch(made, "/?token=s3cret")[0] == 200
     stop_server(made)
+
+
+def test_a_page_that_is_closed_while_its_picture_is_made_is_no_error(caplog: pytest.LogCaptureFixture) -> None:
+    asked: Future[bytes | None] = Future()
+    made = create_server(
+        host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1"), pictures=lambda name: asked
+    )
+    with socket.create_connection(("127.0.0.1", made.get_port())) as page:
+        page.sendall(f"GET /pictures/chair.png HTTP/1.1\r\nHost: 127.0.0.1:{made.get_port()}\r\n\r\n".encode())
+        time.sleep(0.2)
+    time.sleep(0.2)
+    asked.set_result(b"\x89PNG")
+    assert fetch(made, "/pictures/table.png")[0] == 200
+    stop_server(made)
+    assert not [record.message for record in caplog.records if record.levelname == "ERROR"]
