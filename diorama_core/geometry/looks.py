@@ -21,17 +21,19 @@ from typing import Any
 
 import numpy as np
 import trimesh
-from jaxtyping import Float, Float32, Int32, UInt8
+from jaxtyping import Float, Float32, Int, Int32, UInt8
 
 from diorama_core.geometry.silhouette import ShapeCaster
 
 log = logging.getLogger(__name__)
 
-_FORMAT = "3"
+_FORMAT = "4"
 _KEPT = 512
 _LEAST_AREA_M2 = 1e-12
-_CORNER_SHARES = np.array([[1, 1, 1], [4, 1, 1], [1, 4, 1], [1, 1, 4]]) / np.array([[3], [6], [6], [6]])
-"""Points of a face at which its picture is read, as shares of its corners."""
+_READ_ALONG_EDGE = 5
+"""Rows of points at which a face's picture is read."""
+_OPAQUE = 200
+"""Opacity from which on nothing behind a face is seen."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,24 +48,42 @@ class Look:
     """Surface of those parts."""
     face_rgba: UInt8[np.ndarray, "f 4"]
     """sRGB colour of every face, the mean of its picture, and its opacity; all 0 where no colour is known."""
+    face_spread: UInt8[np.ndarray, "f"]
+    """Standard deviation of the picture on every face, as an sRGB value: what a single colour does not tell."""
 
     @cached_property
     def caster(self) -> ShapeCaster:
         """The triangles, prepared for rays."""
         return ShapeCaster(trimesh.Trimesh(self.vertices, self.faces, process=False))
 
+    @cached_property
+    def opaque_faces(self) -> Int[np.ndarray, "o"]:
+        """Faces that hide what is behind them and whose colour is known."""
+        return np.flatnonzero(self.face_rgba[:, 3] >= _OPAQUE)
+
+    @cached_property
+    def opaque_caster(self) -> ShapeCaster:
+        """Those faces alone, in their order: what is seen through glass."""
+        if len(self.opaque_faces) == len(self.faces):
+            return self.caster
+        opaque = trimesh.Trimesh(self.vertices, self.faces[self.opaque_faces], process=False)
+        opaque.remove_unreferenced_vertices()
+        return ShapeCaster(opaque)
+
 
 def look_of(parts: trimesh.Scene) -> Look:
     """The triangles and colours of a shape's parts."""
     vertices, faces, colours, areas = [np.zeros((0, 3))], [np.zeros((0, 3), int)], [], []
-    of_faces = [np.zeros((0, 4), np.uint8)]
+    of_faces, spreads = [np.zeros((0, 4), np.uint8)], [np.zeros(0, np.uint8)]
     count = 0
     for node in parts.graph.nodes_geometry:
         T, name = parts.graph[node]
         mesh = parts.geometry[name]
         vertices.append(trimesh.transform_points(mesh.vertices, T))
         faces.append(np.asarray(mesh.faces) + count)
-        of_faces.append(face_rgba(mesh))
+        rgba, spread = face_colours(mesh)
+        of_faces.append(rgba)
+        spreads.append(spread)
         count += len(mesh.vertices)
         colour = material_rgb(mesh.visual)
         if colour is not None and mesh.area > _LEAST_AREA_M2:
@@ -75,29 +95,34 @@ def look_of(parts: trimesh.Scene) -> Look:
         np.array(colours, dtype=np.uint8).reshape(-1, 3),
         np.array(areas),
         np.concatenate(of_faces),
+        np.concatenate(spreads),
     )
 
 
-def face_rgba(mesh: trimesh.Trimesh) -> UInt8[np.ndarray, "f 4"]:
-    """The sRGB colour and opacity of every face of one part; all 0 where it has none."""
+def face_colours(mesh: trimesh.Trimesh) -> tuple[UInt8[np.ndarray, "f 4"], UInt8[np.ndarray, "f"]]:
+    """`Look.face_rgba` and `Look.face_spread` of one part."""
     visual: Any = mesh.visual
     count = len(mesh.faces)
+    spread = np.zeros(count, np.uint8)
     if visual is None or not visual.defined:
-        return np.zeros((count, 4), np.uint8)
+        return np.zeros((count, 4), np.uint8), spread
     if visual.kind == "face":
-        return np.asarray(visual.face_colors, dtype=np.uint8)
+        return np.asarray(visual.face_colors, dtype=np.uint8), spread
     if visual.kind == "vertex":
-        return np.rint(np.asarray(visual.vertex_colors, float)[mesh.faces].mean(axis=1)).astype(np.uint8)
+        return np.rint(np.asarray(visual.vertex_colors, float)[mesh.faces].mean(axis=1)).astype(np.uint8), spread
     material: Any = visual.material
     texture = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
     whole = material_rgb(visual)
     rgb = np.tile(np.zeros(3) if whole is None else whole, (count, 1))
     if texture is not None and visual.uv is not None and len(visual.uv) == len(mesh.vertices):
         factor = getattr(material, "baseColorFactor", None)
-        light = _to_linear(_read_picture(texture, np.asarray(visual.uv, float)[mesh.faces]))
-        light *= np.ones(3) if factor is None else np.asarray(factor, float)[:3] / 255.0
+        pixels = _read_picture(texture, np.asarray(visual.uv, float)[mesh.faces])
+        light = _to_linear(pixels.mean(axis=1) / 255.0) * (
+            np.ones(3) if factor is None else np.asarray(factor, float)[:3] / 255.0
+        )
         rgb = np.clip(np.rint(255.0 * _to_srgb(light)), 0, 255)
-    return np.concatenate([rgb, np.full((count, 1), _opacity(material))], axis=1).astype(np.uint8)
+        spread = np.rint(pixels.std(axis=1).mean(axis=1)).astype(np.uint8)
+    return np.concatenate([rgb, np.full((count, 1), _opacity(material))], axis=1).astype(np.uint8), spread
 
 
 def _opacity(material: Any) -> int:
@@ -108,14 +133,21 @@ def _opacity(material: Any) -> int:
     return max(int(factor[3]), 1)
 
 
-def _read_picture(picture: Any, uv: Float[np.ndarray, "f 3 2"]) -> Float[np.ndarray, "f 3"]:
-    """Mean sRGB (0 to 1) at a few points of every face; pictures repeat beyond their edges."""
+def _read_picture(picture: Any, uv: Float[np.ndarray, "f 3 2"]) -> Float[np.ndarray, "f s 3"]:
+    """sRGB, 0 to 255, at evenly spread points of every face; pictures repeat beyond their edges."""
     pixels = np.asarray(picture.convert("RGB"))
     height, width = pixels.shape[:2]
-    at = np.nan_to_num(np.einsum("sc,fck->fsk", _CORNER_SHARES, uv))
+    at = np.nan_to_num(np.einsum("sc,fck->fsk", _even_shares(), uv))
     column = np.floor(np.mod(at[..., 0], 1.0) * width).astype(int) % width
     row = np.floor(np.mod(1.0 - at[..., 1], 1.0) * height).astype(int) % height
-    return np.asarray(pixels[row, column].mean(axis=1) / 255.0)
+    return np.asarray(pixels[row, column], dtype=np.float64)
+
+
+def _even_shares() -> Float[np.ndarray, "s 3"]:
+    """Points inside a triangle as shares of its corners."""
+    n = _READ_ALONG_EDGE
+    steps = [(i + 1 / 3, j + 1 / 3, n - i - j - 2 / 3) for i in range(n) for j in range(n - i)]
+    return np.array(steps) / n
 
 
 def material_rgb(visual: Any) -> UInt8[np.ndarray, "3"] | None:
@@ -174,7 +206,9 @@ SHARED_LOOKS = LookStore()
 def _read(path: Path) -> Look | None:
     try:
         with np.load(path, allow_pickle=False) as data:
-            return Look(data["vertices"], data["faces"], data["colours"], data["areas"], data["of_faces"])
+            return Look(
+                data["vertices"], data["faces"], data["colours"], data["areas"], data["of_faces"], data["spread"]
+            )
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
         return None  # absent, or half a file from another program: it is made again
 
@@ -189,6 +223,7 @@ def _made(folder: Path, key: str, parts: trimesh.Scene) -> Look:
         colours=look.colours_srgb,
         areas=look.areas_m2,
         of_faces=look.face_rgba,
+        spread=look.face_spread,
     )
     try:
         folder.mkdir(parents=True, exist_ok=True)

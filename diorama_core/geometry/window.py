@@ -39,18 +39,22 @@ class Window:
 
     def coverage(self, mask: Bool[np.ndarray, "h w"]) -> Float[np.ndarray, "n"]:
         """Share of every cell's area that the mask covers, exactly; nothing outside the photo is covered."""
-        height, width = mask.shape
+        return np.clip(self.means(mask.astype(np.uint8)), 0.0, 1.0)
+
+    def means(self, image: Shaped[np.ndarray, "h w *c"]) -> Float[np.ndarray, "n *c"]:
+        """The mean of an image of numbers over every cell's area, exactly; outside the photo it is 0."""
+        height, width = image.shape[:2]
         x1, y1, x2, y2 = self.bounds_px
         left, top = int(np.clip(np.floor(x1), 0, width)), int(np.clip(np.floor(y1), 0, height))
         right, bottom = int(np.clip(np.ceil(x2), left, width)), int(np.clip(np.ceil(y2), top, height))
         if right == left or bottom == top:
-            return np.zeros(self.cells**2)
-        total = cv2.integral(mask[top:bottom, left:right].astype(np.uint8), sdepth=cv2.CV_64F)
+            return np.zeros((self.cells**2, *image.shape[2:]))
+        total = cv2.integral(np.ascontiguousarray(image[top:bottom, left:right]), sdepth=cv2.CV_64F)
         lines = np.linspace(0.0, 1.0, self.cells + 1)
         sums = _at(total, y1 + (y2 - y1) * lines - top, x1 + (x2 - x1) * lines - left)
         areas = np.diff(np.diff(sums, axis=0), axis=1)
         cell = (x2 - x1) * (y2 - y1) / self.cells**2
-        return np.clip(areas / max(cell, 1e-12), 0.0, 1.0).ravel()
+        return areas.reshape(self.cells**2, *image.shape[2:]) / max(cell, 1e-12)
 
     def sample(self, image: Shaped[np.ndarray, "h w *c"]) -> Shaped[np.ndarray, "n *c"]:
         """The image's pixel under every cell's centre; the nearest one where the centre is outside."""
@@ -66,7 +70,8 @@ def _at(integral: np.ndarray, rows: np.ndarray, columns: np.ndarray) -> np.ndarr
     columns = np.clip(columns, 0, integral.shape[1] - 1)
     i = np.minimum(rows.astype(int), integral.shape[0] - 2)
     j = np.minimum(columns.astype(int), integral.shape[1] - 2)
-    u, v = (rows - i)[:, None], (columns - j)[None]
+    shape = (1,) * (integral.ndim - 2)
+    u, v = (rows - i).reshape(-1, 1, *shape), (columns - j).reshape(1, -1, *shape)
     top = integral[np.ix_(i, j)] * (1 - v) + integral[np.ix_(i, j + 1)] * v
     low = integral[np.ix_(i + 1, j)] * (1 - v) + integral[np.ix_(i + 1, j + 1)] * v
     return top * (1 - u) + low * u
