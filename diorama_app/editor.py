@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import threading
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -36,12 +37,14 @@ from diorama_app.panels.projects import Projects
 from diorama_app.panels.properties import Properties
 from diorama_app.panels.room_size import RoomSize
 from diorama_app.panels.supports import Supports
+from diorama_app.panels.tabs import remember_tabs
 from diorama_app.panels.toast import Toasts
 from diorama_app.panels.toolbar import Toolbar
 from diorama_app.panels.unsaved import UnsavedChanges
 from diorama_app.panels.walls import Walls
 from diorama_app.photo_outlines import PhotoOutlines
 from diorama_app.room import Room
+from diorama_app.settings import Settings, remembered
 from diorama_app.shelf import Shelf
 from diorama_app.views import Views
 from diorama_app.viser_adapter import MAX_UPLOAD_BYTES
@@ -53,6 +56,8 @@ log = logging.getLogger(__name__)
 
 LEFT_WIDTH_PX = 292
 RIGHT_WIDTH_PX = 312
+LEFT_TABS = ("Scene", "Photo", "Arrange", "Project")
+RIGHT_TABS = ("Object", "Library")
 
 
 class Editor:
@@ -157,19 +162,22 @@ class Editor:
             Toasts(gui, guest),
             Walls(gui, guest),
         ]
+        remember_tabs(gui, (LEFT_TABS, RIGHT_TABS))
         left = gui.add_tab_group()
-        with left.add_tab("Scene"):
+        scene, from_photo, arrange, projects = (left.add_tab(name) for name in LEFT_TABS)
+        with scene:
             panels += [Outliner(gui, guest), RoomSize(gui, guest)]
-        with left.add_tab("Photo"):
+        with from_photo:
             photo = PhotoPanel(gui, guest, self.views, self.commands)
             panels += [photo, PhotoCamera(gui, guest, self.views)]
-        with left.add_tab("Arrange"):
+        with arrange:
             guest.curves = optimiser = Optimiser(gui, guest)
             panels.append(optimiser)
-        with left.add_tab("Project"):
+        with projects:
             panels += [Projects(gui, guest, self.commands), Networks(gui, guest)]
         right = gui.add_panel()
-        with right.add_tab("Object"):
+        about, library = (right.add_tab(name) for name in RIGHT_TABS)
+        with about:
             panels += [
                 Properties(gui, guest, self.commands),
                 Supports(gui, guest),
@@ -177,7 +185,7 @@ class Editor:
                 Alternatives(gui, guest),
                 Evidence(gui, guest),
             ]
-        with right.add_tab("Library"):
+        with library:
             panels.append(LibraryPanel(gui, guest))
         take_dropped_files(gui, guest, photo.take, lambda name, content: import_model(guest, name, content))
         right.dock_right()
@@ -186,6 +194,18 @@ class Editor:
 
     async def _joined(self, client: viser.ClientHandle) -> None:
         self.room.desk.post(lambda: self.room.joined(client))
+        threading.Thread(target=self._recall, args=(client,), daemon=True, name="settings").start()
+
+    def _recall(self, client: viser.ClientHandle) -> None:
+        """Let somebody work as they did the last time, unless they were quicker to choose."""
+        kept = remembered(client)
+
+        def take() -> None:
+            guest = self.room.guests.get(client.client_id)
+            if guest is not None and guest.settings == Settings() != kept:
+                guest.take_settings(kept)
+
+        self.room.desk.post(take)
 
     async def _left(self, client: viser.ClientHandle) -> None:
         def leave() -> None:

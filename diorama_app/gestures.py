@@ -14,10 +14,11 @@ import viser
 
 from diorama_app.collisions import Collisions
 from diorama_app.dragging import Slide, snapped_pose
-from diorama_app.guest import GizmoMode, Guest, Measuring, Placing
+from diorama_app.guest import Guest, Measuring, Placing
 from diorama_app.inserting import place_at
 from diorama_app.measuring import measure_at
 from diorama_app.selecting import objects_in
+from diorama_app.settings import GizmoMode
 from diorama_app.size_handles import SizeHandles
 from diorama_app.stretching import changed_poses
 from diorama_app.viewport import quaternion, rotation

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import viser
 
 from diorama_app.client_view import ClientView, NoticeKind
 from diorama_app.marks import Marks
-from diorama_app.units import Unit
+from diorama_app.settings import Settings, remember
 from diorama_core.errors import EditRefused
 from diorama_core.scene.types import Camera, Scene, SceneObject
 
@@ -24,9 +24,6 @@ if TYPE_CHECKING:
 COLOURS = ((38, 150, 96), (160, 80, 200), (20, 130, 190), (200, 60, 110), (150, 120, 20), (90, 100, 120))
 """Of the others' cursors; one's own selection is orange."""
 
-SizeMode = Literal["as found", "same box", "in proportion", "catalogue"]
-GizmoMode = Literal["floor", "free", "size"]
-
 
 class Panel(Protocol):
     """A part of the page that shows something of the room."""
@@ -34,33 +31,6 @@ class Panel(Protocol):
     def refresh(self) -> None:
         """Draw what differs from what is drawn."""
         ...
-
-
-@dataclass(frozen=True)
-class Settings:
-    """How one person likes to work."""
-
-    unit: Unit = "m"
-    snap: bool = False
-    """Places to the grid, headings to steps; Alt inverts it while dragging."""
-    slide: bool = True
-    """While dragging, slide along what is in the way instead of going through it."""
-    names: bool = False
-    """Name tags on everything."""
-    badges: bool = True
-    """Marks on what collides, floats, is outside the room or unsure."""
-    masks: bool = False
-    """The outlines of what was found, over the photo."""
-    planes: bool = False
-    """The edges of floor, walls and ceiling, with their names."""
-    dark: bool = False
-    gizmo: GizmoMode = "floor"
-    size_mode: SizeMode = "as found"
-    """What size a swapped shape takes."""
-    keep_colour: bool = True
-    """Whether a swapped shape takes the colour of what it replaces."""
-    all_alike: bool = False
-    """Whether a swap goes to every object of the same shape."""
 
 
 @dataclass(frozen=True)
@@ -146,13 +116,21 @@ class Guest:
     def change_settings(self, **changes: Any) -> None:
         """Work differently from now on."""
         self.settings = replace(self.settings, **changes)
+        remember(self.client, self.settings)
+        self.refresh()
+
+    def take_settings(self, settings: Settings) -> None:
+        """Work as this browser did the last time."""
+        self.settings = settings
+        self.view.set_dark(settings.dark)
         self.refresh()
 
     def refresh(self) -> None:
         """Bring this browser's own marks and panels in line with the document."""
-        self.show_marks()
-        for panel in self.panels:
-            panel.refresh()
+        with self.client.atomic():  # one parcel: every one of them would wake the thread that sends
+            self.show_marks()
+            for panel in self.panels:
+                panel.refresh()
 
     def show_marks(self, scene: Scene | None = None) -> None:
         """Outlines, name tags and the others' cursors; around a preview where one is given."""

@@ -235,6 +235,12 @@ class LiveHtml:
         return self._body
 
 
+def run_once(script: str) -> str:
+    """HTML that runs a script when it is drawn, and shows nothing. The script has no comments to the end of a line."""
+    code = html.escape(" ".join(line.strip() for line in script.splitlines()))
+    return f'<div style="display:none"><img alt="" src="data:," onerror="{code}"></div>'
+
+
 def text(value: object) -> str:
     """Escape for HTML content and attributes."""
     return html.escape(str(value), quote=True)

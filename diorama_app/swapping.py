@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from diorama_app.editing import names_of
-from diorama_app.guest import Guest, SizeMode
+from diorama_app.guest import Guest
+from diorama_app.settings import SizeMode
 from diorama_core.errors import EditRefused
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.scene import edits

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import viser
 
-from diorama_app.guest import Guest, SizeMode
+from diorama_app.guest import Guest
 from diorama_app.page import Action, LiveHtml, button, text
 from diorama_app.panels.fields import on_change, show_if, show_value
 from diorama_app.room import Room
+from diorama_app.settings import SizeMode
 from diorama_app.swapping import SIZE_MODES, alike, preview_swap, swap
 from diorama_app.thumbnails import Paint
 from diorama_app.units import format_size

@@ -11,9 +11,14 @@ from diorama_app.layout_run import LayoutRun
 from diorama_app.optimising import optimise, put_back, show_before
 from diorama_app.page import Action, LiveHtml, button, text
 from diorama_app.panels.fields import enable, on_change, on_press, show_if, show_value
+from diorama_app.settings import RecipeName
 from diorama_core.layout.weights import Weights, weighted_costs
 
-RECIPES = {"Tidy up (feasible)": "feasible", "As in the paper": "paper", "All in one": "all-in-one"}
+RECIPES: dict[str, RecipeName] = {
+    "Tidy up (feasible)": "feasible",
+    "As in the paper": "paper",
+    "All in one": "all-in-one",
+}
 COLOURS = ("#2f6fd6", "#d6542f", "#269660", "#a050c8", "#c89614", "#149696", "#7a5a3a", "#808080")
 CURVE_POINTS = 240
 ORDINALS = ("best", "second best", "third best", "fourth best", "fifth best")
@@ -65,7 +70,7 @@ class Optimiser:
         self._gui = gui
         gui.add_markdown("Objects settle on their supports, out of each other and into the room. Locked ones stay.")
         self._recipe = gui.add_dropdown("Recipe", list(RECIPES), hint="How the layout is found")
-        on_change(self._recipe, lambda _: guest.post(self.refresh, key="recipe"))
+        on_change(self._recipe, lambda v: guest.post(lambda: guest.change_settings(recipe=RECIPES[v]), key="recipe"))
         self._weights: dict[str, viser.GuiSliderHandle[float]] = {}
         with gui.add_folder("Weights", expand_by_default=False):
             for name, (label, hint) in WEIGHTS.items():
@@ -92,7 +97,9 @@ class Optimiser:
         """Allow starting when nothing runs; show the curves and the last report."""
         room, run = self._guest.room, self._guest.room.layout_run
         idle = room.jobs.status is None and bool(room.scene.objects)
-        used = weighted_costs(RECIPES[self._recipe.value])
+        recipe = self._guest.settings.recipe
+        show_value(self._recipe, next(label for label, name in RECIPES.items() if name == recipe))
+        used = weighted_costs(recipe)
         for name, slider in self._weights.items():
             show_if(name in used, slider)
         enable(self._even, any(slider.value != 1.0 for slider in self._weights.values()))
@@ -104,7 +111,8 @@ class Optimiser:
         self._arrangements.show(self._others() if idle else "")
 
     def _started(self, *, some: bool) -> None:
-        name, guest = RECIPES[self._recipe.value], self._guest
+        guest = self._guest
+        name = guest.settings.recipe
 
         def start() -> None:
             weights = Weights(**{cost: self._weights[cost].value for cost in weighted_costs(name)})

@@ -5,7 +5,6 @@ The page is told where planes are and what hangs on them; it fades by itself, so
 
 from __future__ import annotations
 
-import html
 import json
 from collections.abc import Callable
 from typing import Any
@@ -13,6 +12,7 @@ from typing import Any
 import viser
 
 from diorama_app.guest import Guest
+from diorama_app.page import run_once
 from diorama_app.viewport import MESH_NAMES
 from diorama_core.scene.types import Plane, Scene
 
@@ -50,8 +50,13 @@ const paint = (node, share, plane) => node.traverse((o) => {
     const b = k.userData.before;
     k.userData.faded = faded;
     k.transparent = faded || b[0]; k.depthWrite = !faded && b[1]; k.side = faded && plane ? 2 : b[2];
+    k.opacity = b[3];
     k.needsUpdate = true;
-    if (faded) o.raycast = () => {}; else { delete o.raycast; k.opacity = b[3]; }
+  }
+  if (faded !== !!o.userData.faded) {
+    o.userData.faded = faded;
+    if (faded) { o.userData.casts = o.castShadow; o.raycast = () => {}; } else delete o.raycast;
+    o.castShadow = !faded && o.userData.casts;
   }
   if (faded) k.opacity = share * k.userData.before[3];
   o.visible = share > 0;
@@ -83,7 +88,7 @@ const frame = (m) => {
     const share = towards(name, photo || dot(n) > offset ? 1 : ghost);
     for (const node of meshes(m, name, d.versions)) paint(node, share, false);
   }
-  if (busy) m.requestRender();
+  if (busy) setTimeout(() => m.requestRender());
 };
 const hook = () => {
   const m = window.__viserMutable;
@@ -114,7 +119,7 @@ class Walls:
     def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
         self._guest = guest
         self._told = ""
-        gui.add_html(_run_once(_FADER))
+        gui.add_html(run_once(_FADER))
         self._html = gui.add_html("")
 
     def refresh(self) -> None:
@@ -125,7 +130,7 @@ class Walls:
         told = json.dumps({**about, "versions": MESH_NAMES}, separators=(",", ":"))
         if told != self._told:
             self._told = told
-            self._html.content = _run_once(_TOLD % told)
+            self._html.content = run_once(_TOLD % told)
 
 
 def what_fades(
@@ -175,9 +180,3 @@ def _held_by(scene: Scene, object_id: str) -> str:
     while held in parents:
         held = parents[held]
     return held
-
-
-def _run_once(script: str) -> str:
-    """HTML that runs a script when it is drawn, and shows nothing."""
-    code = html.escape(" ".join(line.strip() for line in script.splitlines()))
-    return f'<div style="display:none"><img alt="" src="data:," onerror="{code}"></div>'

@@ -14,6 +14,19 @@ from diorama_app.guest import Guest
 from diorama_app.room import Room
 
 
+class Drawer:
+    """What a browser keeps for its pages."""
+
+    def __init__(self) -> None:
+        self.kept: dict[str, str] = {}
+
+    def set_item(self, key: str, value: str) -> None:
+        self.kept[key] = value
+
+    def get_item(self, key: str, timeout: float | None = None) -> str | None:
+        return self.kept.get(key)
+
+
 class LocalClient:
     """Stands in for a browser's handle; nodes and panels go to the shared scene of the server."""
 
@@ -29,6 +42,7 @@ class LocalClient:
             aspect=1.3,
         )
         self.told: list[str] = []
+        self.local_storage = Drawer()
 
     @contextlib.contextmanager
     def atomic(self) -> Iterator[None]:

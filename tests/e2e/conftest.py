@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from diorama_app.guest import Settings
 from diorama_app.server import Running, start
+from diorama_app.settings import Settings
 from diorama_core.library.record import ShapeLibrary
 from tests.app.small_room import PlainLibrary, make_project
 from tests.e2e.browser import FLAGS, SIZE, EditorPage, chromium

@@ -1,0 +1,54 @@
+"""The tabs that were open last are open again after a reload, in the browser where they were."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+
+import viser
+
+from diorama_app.page import run_once
+
+KEPT_AS = "diorama-tabs"
+TRIES = 40
+"""While the page is being made, so many looks for its tabs, a twentieth of a second apart."""
+
+_KEEPER = """
+const groups = %s, key = %s;
+const tabs = () => [...document.querySelectorAll('[role=tab]')];
+const named = (tab) => tab.textContent.trim();
+const enter = (tab) => tab.dispatchEvent(new KeyboardEvent('keydown', { key: 'Enter', bubbles: true }));
+const read = () => { try { return JSON.parse(localStorage.getItem(key)) || []; } catch { return []; } };
+const note = () => {
+  const open = tabs().filter((t) => t.getAttribute('aria-selected') === 'true').map(named);
+  const kept = groups.map((names) => names.find((name) => open.includes(name)) || names[0]);
+  try { localStorage.setItem(key, JSON.stringify(kept)); } catch { window.__dioTabs = 'not kept'; }
+};
+const recall = (left) => {
+  const there = tabs(), kept = read();
+  if (groups.flat().some((name) => !there.some((t) => named(t) === name))) {
+    if (left) setTimeout(() => recall(left - 1), 50);
+    return;
+  }
+  for (const tab of there)
+    if (kept.includes(named(tab)) && tab.getAttribute('aria-selected') !== 'true') enter(tab);
+};
+recall(%d);
+if (!window.__dioTabs) {
+  window.__dioTabs = 'kept';
+  for (const kind of ['pointerup', 'keyup'])
+    document.addEventListener(kind, () => setTimeout(note, 200), true);
+}
+"""
+"""viser's tabs answer to a press of the mouse, not to a click; a key does the same."""
+
+
+def remember_tabs(gui: viser.GuiApi, groups: Sequence[Sequence[str]]) -> None:
+    """Open the tabs that were open here the last time, and note which are from now on.
+
+    Args:
+        gui: the page.
+        groups: names of the tabs that stand side by side.
+    """
+    names = json.dumps([list(group) for group in groups])
+    gui.add_html(run_once(_KEEPER % (names, json.dumps(KEPT_AS), TRIES)))
