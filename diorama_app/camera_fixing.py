@@ -2,103 +2,64 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from jaxtyping import Float
 
 from diorama_app.guest import Guest
-from diorama_core.artefacts import CameraEstimate, Inputs
+from diorama_core.artefacts import Inputs
 from diorama_core.errors import EditRefused, InputError
+from diorama_core.geometry.held import Held
 from diorama_core.progress import Progress
-from diorama_core.protocols import CameraStage
 from diorama_core.scene.room_edits import floor_height, rescale_to_length
 from diorama_core.scene.types import Camera, Intrinsics, Scene
 
 LEAST_FOV_DEG, MOST_FOV_DEG = 15.0, 130.0
 MOST_TILT_DEG, MOST_ROLL_DEG = 80.0, 45.0
-UP = np.array([0.0, 0.0, 1.0])
-
-
-@dataclass(frozen=True)
-class Held:
-    """How a camera is held against the floor."""
-
-    tilt_rad: float
-    """Downward, of the viewing direction."""
-    roll_rad: float
-    """Clockwise about the viewing direction, as the photographer sees it."""
-
-    @classmethod
-    def of(cls, R_world_camera: Float[np.ndarray, "3 3"]) -> Held:
-        """How this camera is held."""
-        right, forward = R_world_camera[:, 0], R_world_camera[:, 2]
-        level, below = _level_axes(forward)
-        return cls(float(-np.arcsin(np.clip(forward[2], -1, 1))), float(np.arctan2(right @ below, right @ level)))
-
-    def rotation(self, heading: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
-        """R_world_camera of a camera held so that looks along `heading`, whose height is not used."""
-        flat = np.asarray(heading) * (1.0, 1.0, 0.0)
-        flat = flat / np.linalg.norm(flat)
-        forward = np.cos(self.tilt_rad) * flat - np.sin(self.tilt_rad) * UP
-        level, below = _level_axes(forward)
-        c, s = np.cos(self.roll_rad), np.sin(self.roll_rad)
-        return np.column_stack([c * level + s * below, c * below - s * level, forward])
-
-
-def _level_axes(forward: Float[np.ndarray, "3"]) -> tuple[np.ndarray, np.ndarray]:
-    """Right and down of a camera that looks along `forward` and is not rolled."""
-    level = np.cross(forward, UP)
-    level = level / np.linalg.norm(level)
-    return level, np.cross(forward, level)
-
-
-@dataclass(frozen=True)
-class HandHeldCamera:
-    """A camera stage: what another one finds, but held against the floor as a person said."""
-
-    stage: CameraStage
-    held: Held
-
-    def estimate(self, inputs: Inputs, progress: Progress) -> CameraEstimate:
-        """One reading: the other stage's best, tilted and rolled as given; its heading stays."""
-        found = self.stage.estimate(inputs, progress)
-        best = replace(found.best, R_world_camera=self.held.rotation(found.best.R_world_camera[:, 2]), score=1.0)
-        return replace(found, hypotheses=(best,), confidence=1.0, source=f"{found.source}; tilt set by hand")
 
 
 def rebuild_with_camera(guest: Guest, fov_deg: float | None, held: Held | None) -> None:
     """Build the open project's scene anew with what a person says of its camera, as one undo step.
 
-    Only what depends on the camera runs again: boxes and outlines stay.
+    Only what depends on the camera runs again: boxes and outlines stay. What was said holds for later builds, too.
 
     Args:
         guest: who asks.
         fov_deg: horizontal field of view; as it was when None.
-        held: against the floor; found from the photo when None.
+        held: against the floor; as it was when None.
     """
-    room = guest.room
-    project, draft = room.project, room.draft
-    inputs = None if project is None else project.load_inputs()
-    if project is None or inputs is None or not draft.from_project:
+    inputs = guest.room.document.inputs
+    if inputs is None:
         raise EditRefused("the open scene was not built from this photo; build it first")
     if fov_deg is not None:
         check_fov(fov_deg)
         photo = inputs.photo
         seen = Intrinsics.from_fov(photo.width, photo.height, float(np.radians(fov_deg)))
         inputs = replace(inputs, intrinsics=seen)
-    told = replace(inputs, boxes=draft.boxes) if draft.boxes else inputs
+    _rebuild(guest, inputs if held is None else replace(inputs, held=held))
+
+
+def rebuild_as_found(guest: Guest) -> None:
+    """Build the scene anew with the tilt that the photo tells, not what a person said."""
+    inputs = guest.room.document.inputs
+    if inputs is None or inputs.held is None:
+        raise EditRefused("nobody said how this camera was held")
+    _rebuild(guest, replace(inputs, held=None))
+
+
+def _rebuild(guest: Guest, inputs: Inputs) -> None:
+    room = guest.room
+    project, draft = room.project, room.draft
+    if project is None or not draft.from_project:
+        raise EditRefused("the open scene was not built from this photo; build it first")
+    told = replace(draft, inputs=inputs).to_build()
 
     def work(progress: Progress) -> None:
         from diorama_app.work import show_built
-        from diorama_core.pipeline.profiles import stages_for
         from diorama_core.project.build import build_project
 
-        stages = stages_for("auto", told, room.library)
-        if held is not None:
-            stages = replace(stages, camera=HandHeldCamera(stages.camera, held))
         room.saver.flush()
-        built = build_project(project, told, room.library, stages=stages, progress=progress)
+        built = build_project(project, told, room.library, progress=progress)
         message = "Built again with this camera. Undo brings back what was there."
         guest.post(
             lambda: show_built(room, draft, project, built.scene, own=True, message=message, label="set the camera")
@@ -119,7 +80,15 @@ def set_camera_height(guest: Guest, height_m: float) -> None:
     now = camera_height_m(guest.room.scene)
     if now is None:
         raise EditRefused("this scene has no photo camera; build it from a photo first")
-    guest.room.edit(f"camera {height_m:.2f} m above the floor", lambda s: rescale_to_length(s, now, height_m), by=guest)
+    rescale_room(guest, f"camera {height_m:.2f} m above the floor", now, height_m)
+
+
+def rescale_room(guest: Guest, label: str, now_m: float, true_m: float) -> None:
+    """Say how long something of the room is: everything takes that scale, and so does every later build."""
+    room = guest.room
+    height, inputs = camera_height_m(room.scene), room.document.inputs
+    said = None if height is None or inputs is None else replace(inputs, camera_height_m=height * true_m / now_m)
+    room.edit(label, lambda s: rescale_to_length(s, now_m, true_m), by=guest, inputs=said)
 
 
 def camera_height_m(scene: Scene) -> float | None:

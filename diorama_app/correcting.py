@@ -6,6 +6,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+from jaxtyping import Bool
+
+from diorama_app.corrected_inputs import given_outline, with_correction
 from diorama_app.guest import Guest
 from diorama_app.placing import seated
 from diorama_core.artefacts import Box, Inputs, LabelledBox
@@ -32,7 +36,7 @@ def add_from_photo(guest: Guest, box: Box, label: str) -> None:
             edge = None
         return seated(edits.insert(scene, item, edge), room.library, item.id)
 
-    _look(guest, _labelled(box, label), new_id, f"insert {label} from the photo", put, select_new=True)
+    _look(guest, None, _labelled(box, label), new_id, f"insert {label} from the photo", put, select_new=True)
 
 
 def rename_class(guest: Guest, object_id: str, label: str) -> None:
@@ -48,13 +52,14 @@ def rename_class(guest: Guest, object_id: str, label: str) -> None:
         return _with_evidence(swapped, object_id, found, colour=now.colour)
 
     assert item.box_px is not None
-    _look(guest, _labelled(item.box_px, words), object_id, f"{item.label} is a {words}", put)
+    _look(guest, item.box_px, _labelled(item.box_px, words), object_id, f"{item.label} is a {words}", put)
 
 
 def redraw_box(guest: Guest, object_id: str, box: Box) -> None:
     """Say where in the photo an object is: it is outlined, retrieved and posed again."""
     item = guest.room.scene.object(object_id)
-    _look(guest, _labelled(box, item.label), object_id, f"look again at {item.label}", _replaced(guest, object_id))
+    now, label = _labelled(box, item.label), f"look again at {item.label}"
+    _look(guest, item.box_px, now, object_id, label, _replaced(guest, object_id))
 
 
 def use_outline(guest: Guest, object_id: str, outline: Outline) -> None:
@@ -64,30 +69,34 @@ def use_outline(guest: Guest, object_id: str, outline: Outline) -> None:
         raise EditRefused("the outline is empty; click on the thing first")
     box = _labelled(outline.bounds, item.label)
     label = f"outline of {item.label}"
-    _look(guest, box, object_id, label, _replaced(guest, object_id), outline=outline)
+    _look(guest, item.box_px, box, object_id, label, _replaced(guest, object_id), drawn=outline.mask)
 
 
 def start_outline(guest: Guest, object_id: str) -> Outline:
-    """The present outline of an object, as far as its box tells."""
+    """The present outline of an object: as it was given, or as far as its box tells."""
     item, inputs = _seen(guest, object_id), _inputs(guest)
     from diorama_app.outlining import Outline
     from diorama_core.perception.masks import EmbeddedMasks
 
     assert item.box_px is not None
-    mask, _ = EmbeddedMasks().inside_box(inputs.photo.rgb, item.box_px)
+    mask = given_outline(inputs, item.box_px)
+    if mask is None:
+        mask, _ = EmbeddedMasks().inside_box(inputs.photo.rgb, item.box_px)
     return Outline(inputs.photo.rgb, item.box_px, mask)
 
 
 def _look(
     guest: Guest,
+    before: Box | None,
     box: LabelledBox,
     object_id: str,
     label: str,
     put: Callable[[Scene, Found], Scene],
     *,
-    outline: Outline | None = None,
+    drawn: Bool[np.ndarray, "h w"] | None = None,
     select_new: bool = False,
 ) -> None:
+    """Look at a box of the photo anew, put what is found into the scene, and keep what was said for the next build."""
     room = guest.room
     inputs, scene, project = _inputs(guest), room.scene, room.project
 
@@ -100,15 +109,16 @@ def _look(
             room.library,
             box,
             object_id,
-            mask=None if outline is None else outline.mask,
+            mask=given_outline(inputs, box.box) if drawn is None else drawn,
             cache=None if project is None else project.stages_folder,
             progress=progress,
         )
 
         def show() -> None:
-            before = {o.id for o in room.scene.objects}
-            room.edit(label, lambda s: put(s, found), by=guest)
-            new = [o.id for o in room.scene.objects if o.id not in before]
+            there = {o.id for o in room.scene.objects}
+            said = with_correction(_inputs(guest), before, box, drawn)
+            room.edit(label, lambda s: put(s, found), by=guest, inputs=said)
+            new = [o.id for o in room.scene.objects if o.id not in there]
             if select_new and new:
                 guest.view.close_board()
                 guest.select(new)
@@ -149,8 +159,7 @@ def _labelled(box: Box, label: str) -> LabelledBox:
 
 
 def _inputs(guest: Guest) -> Inputs:
-    room = guest.room
-    inputs = None if room.project is None else room.project.load_inputs()
+    inputs = guest.room.document.inputs
     if inputs is None:
         raise EditRefused("this project has no photo; upload one in the Photo panel")
     return inputs

@@ -1,4 +1,4 @@
-"""What is being edited: a history of scenes. The single source of truth for every browser."""
+"""What is being edited: a history of scenes, each with what was said of its photo. The single source of truth."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterable
 from dataclasses import replace
 
+from diorama_core.artefacts import Inputs
 from diorama_core.errors import EditRefused
 from diorama_core.scene.history import Entry, History
 from diorama_core.scene.types import Scene
@@ -22,16 +23,36 @@ class Document:
         """The scene as it is now."""
         return self.history.current.scene
 
-    def open(self, scene: Scene) -> None:
-        """Start over with another scene; the history begins anew."""
-        self.history = History.start(scene)
+    @property
+    def inputs(self) -> Inputs | None:
+        """The photo and all that people have said of it, as it is now."""
+        beside = self.history.current.beside
+        return beside if isinstance(beside, Inputs) else None
 
-    def commit(self, label: str, scene: Scene, *, selection: Iterable[str] = (), merge_key: str | None = None) -> None:
+    def open(self, scene: Scene, inputs: Inputs | None = None) -> None:
+        """Start over with another scene; the history begins anew."""
+        self.history = History(entries=(Entry("open", scene, beside=inputs),))
+
+    def commit(
+        self,
+        label: str,
+        scene: Scene,
+        *,
+        inputs: Inputs | None = None,
+        selection: Iterable[str] = (),
+        merge_key: str | None = None,
+    ) -> None:
         """Make `scene` the current state, as one undo step called `label`.
 
-        `selection` is what the person who did it has selected then: undo and redo select it again.
+        Args:
+            label: what was done.
+            scene: what it led to.
+            inputs: what is said of the photo from now on; as before when None.
+            selection: what the person who did it has selected then: undo and redo select it again.
+            merge_key: quick edits of the same key become one step.
         """
-        entry = Entry(label, scene, tuple(selection), merge_key, time.monotonic())
+        beside = self.inputs if inputs is None else inputs
+        entry = Entry(label, scene, tuple(selection), merge_key, time.monotonic(), beside)
         self.history = self.history.commit(entry)
 
     def undo(self) -> Entry:

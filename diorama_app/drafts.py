@@ -56,6 +56,15 @@ class Draft:
         changed = replace(self.boxes[index], label=label, category=resolve(label).category.name)
         return replace(self, boxes=tuple(changed if i == index else b for i, b in enumerate(self.boxes)))
 
+    def following(self, inputs: Inputs) -> Draft:
+        """The draft after what is known of the project's photo has changed; what is not built yet stays in it."""
+        before = () if self.inputs is None else self.inputs.boxes
+        deleted = {b.box for b in before} - {b.box for b in self.boxes}
+        known = {b.box for b in (*before[: len(inputs.boxes)], *inputs.boxes)}
+        waiting = tuple(b for b in self.boxes if b.box not in known)
+        kept = tuple(b for b in inputs.boxes if b.box not in deleted)
+        return replace(self, inputs=inputs, boxes=(*kept, *waiting), highlighted=None)
+
     def to_build(self) -> Inputs:
         """The inputs of the pipeline; raises `InputError` when there is no photo."""
         if self.inputs is None:

@@ -91,7 +91,7 @@ def look_again(
     stages, runner = stages_for("auto", inputs, library), Runner(cache)
     inputs = perceived(inputs, stages, runner, progress.part(0.0, 0.05))
     camera = runner.run("camera", stages.camera, stages.camera.estimate, (inputs,), progress.part(0.05, 0.1))
-    seen = replace(inputs, intrinsics=None)  # as the build asks, for its saved result
+    seen = inputs.of_any_camera  # as the build asks, for its saved result
     known = runner.run("objects", stages.objects, stages.objects.segment, (seen,), progress.part(0.1, 0.4))
     geometry = runner.run(
         "geometry", stages.geometry, stages.geometry.measure, (inputs, camera, known), progress.part(0.4, 0.5)

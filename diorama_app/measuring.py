@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from jaxtyping import Float
 
+from diorama_app.camera_fixing import rescale_room
 from diorama_app.guest import Guest, Measuring
 from diorama_app.units import format_length
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.casting import cast_box, cast_planes
-from diorama_core.scene.room_edits import rescale_to_length
 from diorama_core.scene.types import Scene
 
 
@@ -61,11 +61,7 @@ def rescale_measured(guest: Guest, length_true_m: float) -> None:
     if now is None:
         raise EditRefused("click two points in the view first, then say how far apart they are")
     shown = format_length(length_true_m, guest.settings.unit)
-    guest.room.edit(
-        f"rescale: {format_length(now, guest.settings.unit)} is {shown}",
-        lambda s: rescale_to_length(s, now, length_true_m),
-        by=guest,
-    )
+    rescale_room(guest, f"rescale: {format_length(now, guest.settings.unit)} is {shown}", now, length_true_m)
     stop_measuring(guest)
     guest.room.show_everyone_the_room()
     guest.room.refresh()

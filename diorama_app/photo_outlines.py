@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from diorama_app.guest import Guest
 from diorama_app.room import Room
 from diorama_core.artefacts import DetectedObject, Photo
@@ -29,8 +27,7 @@ class PhotoOutlines:
         room = self._room
         if self.found is not None:
             return
-        photo, project = room.photo, room.project
-        inputs = None if project is None else project.load_inputs()
+        photo, project, inputs = room.photo, room.project, room.document.inputs
         if photo is None or project is None or inputs is None:
             raise EditRefused("this scene has no photo; upload one in the Photo panel")
 
@@ -40,7 +37,7 @@ class PhotoOutlines:
             from diorama_core.pipeline.runner import Runner
 
             stages, runner = stages_for("auto", inputs, room.library), Runner(project.stages_folder)
-            seen = replace(perceived(inputs, stages, runner, progress.part(0.0, 0.2)), intrinsics=None)
+            seen = perceived(inputs, stages, runner, progress.part(0.0, 0.2)).of_any_camera
             found = runner.run("objects", stages.objects, stages.objects.segment, (seen,), progress.part(0.2, 1.0))
 
             def keep() -> None:

@@ -31,14 +31,14 @@ from diorama_app.shapes import ShapeBytes
 from diorama_app.shelf import Records
 from diorama_app.thumbnails import Thumbnails
 from diorama_app.viewport import Viewport
-from diorama_core.artefacts import Photo
+from diorama_core.artefacts import Inputs, Photo
 from diorama_core.errors import DioramaError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.project.storage import Project
 from diorama_core.scene.types import Pose, Scene
 
 JOB_TOLD_EVERY_S = 0.15
-LOW_GRAPHICS_TRIANGLES = 600
+LOW_GRAPHICS_TRIANGLES = 400
 """Of one object, for browsers that draw without a graphics card."""
 MESH_OVERLAP_S = 0.45
 """How long an old mesh stays while the browser parses its successor."""
@@ -57,6 +57,8 @@ class Room:
         self.document = Document()
         self.draft = Draft()
         self.project: Project | None = None
+        self._inputs_kept: Inputs | None = None
+        """What is said of the photo, as it is in the project's folder."""
         self.photo: Photo | None = None
         self.notes: tuple[str, ...] = ()
         """What the pipeline had to say of how the scene was made."""
@@ -102,6 +104,7 @@ class Room:
         by: Guest | None = None,
         selection: Iterable[str] | None = None,
         merge_key: str | None = None,
+        inputs: Inputs | None = None,
     ) -> None:
         """Apply a pure edit as one undo step, show it and save it. A refused edit changes nothing.
 
@@ -111,16 +114,17 @@ class Room:
             by: who does it.
             selection: what that person has selected afterwards; as before when None.
             merge_key: quick edits of the same key become one step.
+            inputs: what is said of the photo from now on; as before when None.
         """
         try:
             scene = self._with_pictures_refitted(change(self.scene))
         except DioramaError:
             self.refresh()  # fields and gizmo go back to what the document says
             raise
-        if scene == self.scene:
+        if scene == self.scene and inputs is None:
             self.refresh()
             return
-        self.commit(label, scene, by=by, selection=selection, merge_key=merge_key)
+        self.commit(label, scene, by=by, selection=selection, merge_key=merge_key, inputs=inputs)
 
     def _with_pictures_refitted(self, scene: Scene) -> Scene:
         """The edited scene with the pictures of resized planes cut and continued, not stretched."""
@@ -143,12 +147,13 @@ class Room:
         by: Guest | None = None,
         selection: Iterable[str] | None = None,
         merge_key: str | None = None,
+        inputs: Inputs | None = None,
     ) -> None:
         """Make a whole scene the current state as one undo step, show it and save it."""
         if by is not None and selection is not None:
             by.selection = tuple(selection)
         chosen = () if by is None else tuple(i for i in by.selection if scene.has_object(i))
-        self.document.commit(label, scene, selection=chosen, merge_key=merge_key)
+        self.document.commit(label, scene, selection=chosen, merge_key=merge_key, inputs=inputs)
         self.changed()
         for guest in self.guests.values():
             who = "" if guest is by or by is None else f"{by.name}: "
@@ -172,10 +177,22 @@ class Room:
 
     def changed(self) -> None:
         """The document changed: show and save it."""
+        self._follow_inputs()
         self.refresh()
         self.checker.look_at(self.scene)
         if self.project is not None:
             self.saver.save_soon(self.project, self.scene)
+
+    def _follow_inputs(self) -> None:
+        """What is said of the photo changed: the next build starts from that, in this session and in later ones."""
+        inputs = self.document.inputs
+        if inputs is None or inputs is self._inputs_kept:
+            return
+        if self.project is not None:
+            self.project.save_inputs(inputs, self.project.info().get("warnings", ()))
+        if self.draft.from_project:
+            self.draft = self.draft.following(inputs)
+        self._inputs_kept = inputs
 
     def _badged(self, found: Problems) -> None:
         self.badges = found
@@ -218,7 +235,8 @@ class Room:
         self.draft = Draft()
         if inputs is not None:
             self.draft = Draft(inputs, inputs.boxes, from_project=True, name=project.name)
-        self.document.open(scene)
+        self.document.open(scene, inputs)
+        self._inputs_kept = inputs
         self.layout_run = None
         self.show_everyone_the_room()
         self.refresh()

@@ -74,7 +74,7 @@ def show_built(
         room.textures = project.textures(scene)
         room.read_notes()
         room.draft = Draft(inputs, inputs.boxes if inputs else (), from_project=True, name=project.name)
-        room.commit(label, scene)
+        room.commit(label, scene, inputs=inputs)
         room.show_everyone_the_room()
     else:
         room.open_project(project)

@@ -6,10 +6,10 @@ import numpy as np
 import viser
 
 from diorama_app.camera_fixing import (
-    Held,
     camera_height_m,
     check_fov,
     checked_angles,
+    rebuild_as_found,
     rebuild_with_camera,
     set_camera_height,
     trial_camera,
@@ -19,6 +19,7 @@ from diorama_app.page import Action, LiveHtml, button, text
 from diorama_app.units import format_length, parse_length
 from diorama_app.views import Views
 from diorama_core.errors import InputError
+from diorama_core.geometry.held import Held
 from diorama_core.scene.types import Camera
 
 FIELDS = {
@@ -60,6 +61,14 @@ class PhotoCamera:
             disabled=not self._typed or room.jobs.status is not None,
         )
         back = button("Never mind", "back", title="As it was") if self._typed else ""
+        inputs = room.document.inputs
+        if inputs is not None and inputs.held is not None and not self._typed:
+            back = button(
+                "Tilt from the photo",
+                "find",
+                title="Forget the tilt and roll that were set by hand, and build again",
+                disabled=room.jobs.status is not None,
+            )
         explained = '<p class="dim">The grid should lie on the floor of the photo.</p>' if self._typed else ""
         self._html.show(
             f'<details {"open" if self._used else ""}><summary class="dim">Camera and floor</summary>'
@@ -78,6 +87,8 @@ class PhotoCamera:
         elif action.do == "back":
             self._typed, guest.trial_camera = {}, None
             guest.refresh()
+        elif action.do == "find":
+            rebuild_as_found(guest)
         elif action.do == "build" and self._of is not None:
             self._build(self._of)
 

@@ -27,6 +27,7 @@ from diorama_core.artefacts import (
 )
 from diorama_core.layout.recipes import recipe as layout_recipe
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.perception.camera.by_hand import as_held
 from diorama_core.perception.camera.estimate import EmbeddedCamera
 from diorama_core.perception.depth import MeasuredDepth, RenderedDepth
 from diorama_core.perception.foundation.sight import reworded
@@ -57,6 +58,7 @@ from diorama_core.protocols import (
 )
 from diorama_core.retrieval import HierarchicalRetrieval
 from diorama_core.scene.edits import set_metrics
+from diorama_core.scene.room_edits import floor_height, rescale_to_length
 from diorama_core.scene.types import Scene
 
 DEFAULT_RECIPE = "feasible"
@@ -114,7 +116,7 @@ def embedded_stages(inputs: Inputs, library: ShapeLibrary, *, recipe: str = DEFA
     """The stages that need no download, chosen by what the user gave: measured depth or a photo alone."""
     measured = inputs.depth_m is not None
     return Stages(
-        camera=EmbeddedCamera(),
+        camera=as_held(EmbeddedCamera(), inputs.held),
         objects=EmbeddedMasks(),
         geometry=MeasuredGeometry() if measured else SingleViewMetrology(),
         architecture=PlanarRoom() if measured else PhotoRoom(),
@@ -156,7 +158,7 @@ def build_scene(
     inputs = perceived(inputs, s, runner, progress.part(0.0, 0.05))
     camera = runner.run("camera", s.camera, s.camera.estimate, (inputs,), progress.part(0.05, 0.1))
     # Outlines do not depend on the camera: correcting its field of view must not look for them again.
-    seen = replace(inputs, intrinsics=None)
+    seen = inputs.of_any_camera
     objects = runner.run("objects", s.objects, s.objects.segment, (seen,), progress.part(0.1, 0.25))
     geometry = runner.run(
         "geometry", s.geometry, s.geometry.measure, (inputs, camera, objects), progress.part(0.25, 0.38)
@@ -190,6 +192,7 @@ def build_scene(
         scene, report = s.layout.optimise(observed, step, preview)
         runner.runs.append(StageRun("layout", repr(s.layout), report.seconds, cached=False))
         scene = set_metrics(scene, report.after)
+    scene = _as_high(scene, inputs.camera_height_m)
     progress.report(1.0, "done")
     network = inputs.depth_source == "network"
     return Built(
@@ -206,6 +209,13 @@ def build_scene(
         runs=tuple(runner.runs),
         notes=_notes(network, camera, geometry, room, graph, tuple(r.note for r in shapes), report),
     )
+
+
+def _as_high(scene: Scene, camera_height_m: float | None) -> Scene:
+    """The scene in the scale that a person gave."""
+    if camera_height_m is None or scene.camera is None:
+        return scene
+    return rescale_to_length(scene, float(scene.camera.position[2]) - floor_height(scene), camera_height_m)
 
 
 def _textured(scene: Scene, textures: Mapping[str, object]) -> Scene:

@@ -10,13 +10,14 @@ import hashlib
 import io
 import json
 import zipfile
-from dataclasses import fields, is_dataclass
+from dataclasses import Field, fields, is_dataclass
 from typing import Any
 
 import numpy as np
 
 from diorama_core import artefacts
 from diorama_core.errors import ProjectError
+from diorama_core.geometry import held
 from diorama_core.scene import types
 
 _CLASSES: dict[str, type] = {
@@ -37,6 +38,7 @@ _CLASSES: dict[str, type] = {
         artefacts.RankedShapes,
         artefacts.PosedCandidates,
         artefacts.LayoutReport,
+        held.Held,
         types.Intrinsics,
         types.Camera,
         types.Pose,
@@ -100,7 +102,7 @@ def _encode(value: Any, arrays: list[np.ndarray]) -> Any:
         arrays.append(value)
         return {"array": len(arrays) - 1}
     if is_dataclass(value) and type(value).__name__ in _CLASSES:
-        content = {f.name: _encode(getattr(value, f.name), arrays) for f in fields(value)}
+        content = {f.name: _encode(getattr(value, f.name), arrays) for f in fields(value) if not _left_out(value, f)}
         return {"class": type(value).__name__, "fields": content}
     if isinstance(value, tuple):
         return {"tuple": [_encode(v, arrays) for v in value]}
@@ -111,6 +113,11 @@ def _encode(value: Any, arrays: list[np.ndarray]) -> Any:
     if value is None or isinstance(value, (bool, int, float, str)):
         return value
     raise TypeError(f"{type(value).__name__} is not an artefact")
+
+
+def _left_out(value: Any, known: Field[Any]) -> bool:
+    """Whether a field came later and says nothing: values from before it keep their bytes, and saved results hold."""
+    return "absent when none" in known.metadata and getattr(value, known.name) is None
 
 
 def _decode(tree: Any, arrays: list[np.ndarray]) -> Any:

@@ -25,6 +25,7 @@ from diorama_core.models.owlv2 import Owlv2
 from diorama_core.models.segment_anything import BoxSegmenter, Sam2, SlimSam
 from diorama_core.models.store import ModelStore, how_to_get
 from diorama_core.models.yolox import Yolox
+from diorama_core.perception.camera.by_hand import as_held
 from diorama_core.perception.foundation.detection import EverydayDetection, OpenVocabularyDetection
 from diorama_core.perception.foundation.emptied import EmptiedRoom
 from diorama_core.perception.foundation.outlines import PromptedMasks
@@ -106,7 +107,7 @@ def foundation_stages(base: Stages, inputs: Inputs, store: ModelStore, lmm: LmmS
         stages = replace(
             stages,
             sight=NetworkSight(sight),
-            camera=NetworkCamera(),
+            camera=as_held(NetworkCamera(), inputs.held),
             geometry=NetworkGeometry(),
             architecture=PlanarRoom()
             if filler is None

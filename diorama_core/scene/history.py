@@ -19,6 +19,8 @@ class Entry:
     merge_key: str | None = None
     """Entries with the same key, committed within the merge window, become one step."""
     time_s: float = 0.0
+    beside: object = None
+    """What belongs to this state besides the scene, for whoever keeps the history."""
 
 
 @dataclass(frozen=True)

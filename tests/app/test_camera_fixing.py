@@ -7,9 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from diorama_app.camera_fixing import HandHeldCamera, Held, checked_angles
+from diorama_app.camera_fixing import checked_angles
 from diorama_core.artefacts import CameraEstimate, CameraHypothesis, Inputs
 from diorama_core.errors import InputError
+from diorama_core.geometry.held import Held
+from diorama_core.perception.camera.by_hand import HandHeldCamera
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Intrinsics, yaw_rotation
 from tests.app.small_room import photo_camera, plain_photo

@@ -11,6 +11,7 @@ from tests.app.small_room import PlainLibrary, make_project
 
 pytestmark = pytest.mark.browser
 
+KEPT = "Object.values(localStorage).some((text) => text.includes('paper'))"
 DARK = "document.documentElement.dataset.mantineColorScheme == 'dark'"
 
 
@@ -27,6 +28,7 @@ def test_theme_unit_snap_recipe_and_open_tabs_outlive_a_reload_and_another_start
     page.page.get_by_label("Recipe").click()
     page.page.get_by_role("option", name="As in the paper", exact=True).click()
     page.until(lambda: page.guest.settings.recipe == "paper")
+    page.page.wait_for_function(KEPT)
     chosen = page.guest.settings
     assert (chosen.dark, chosen.snap, chosen.unit) == (True, True, "ft-in")
 
