@@ -18,7 +18,7 @@ import cv2
 import numpy as np
 import open3d as o3d
 import trimesh
-from jaxtyping import Bool, Float, Float32, Int, UInt8, UInt16
+from jaxtyping import Bool, Float, Float32, Int, Int32, UInt8, UInt16
 from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.errors import LibraryError
@@ -208,7 +208,21 @@ def render_templates(
         LibraryError: when the mesh has no triangles or no extent.
         Cancelled: On request.
     """
-    progress = progress or Progress()
+    return _cast_views(mesh, grid, progress or Progress(), None)
+
+
+def templates_with_faces(
+    mesh: trimesh.Trimesh, grid: TemplateGrid = PAPER_GRID
+) -> tuple[Templates, Int32[np.ndarray, "v h w"]]:
+    """As `render_templates`, and which of the mesh's faces every pixel of every view shows; -1 where none."""
+    face_ids = np.full((len(grid), grid.size_px, grid.size_px), -1, np.int32)
+    return _cast_views(mesh, grid, Progress(), face_ids), face_ids
+
+
+def _cast_views(
+    mesh: trimesh.Trimesh, grid: TemplateGrid, progress: Progress, face_ids: Int32[np.ndarray, "v h w"] | None
+) -> Templates:
+    """All views; fills `face_ids` where they are asked for."""
     low, high = _bounds(mesh)
     centre, size = (low + high) / 2, high - low
     unit = float(size.max()) / grid.longest_side
@@ -218,7 +232,7 @@ def render_templates(
     normals = np.zeros_like(depth)
     for view in range(len(grid)):
         progress.report(view / len(grid), "views of a shape")
-        caster.cast(view, depth[view], normals[view])
+        caster.cast(view, depth[view], normals[view], None if face_ids is None else face_ids[view])
     return Templates(grid, centre, size, depth, normals)
 
 
@@ -243,8 +257,14 @@ class _UnitCaster:
         self._hull = _hull_points(vertices)
         self._rays = grid.rays_camera.reshape(-1, 3)
 
-    def cast(self, view: int, depth: UInt16[np.ndarray, "h w"], normals: UInt16[np.ndarray, "h w"]) -> None:
-        """Fill one view's codes."""
+    def cast(
+        self,
+        view: int,
+        depth: UInt16[np.ndarray, "h w"],
+        normals: UInt16[np.ndarray, "h w"],
+        face_ids: Int32[np.ndarray, "h w"] | None,
+    ) -> None:
+        """Fill one view's codes, and the faces seen where they are asked for."""
         grid, R = self._grid, self._grid.R_object_camera[view]
         pixels = self._worth_casting(R)
         rays = np.empty((len(pixels), 6), np.float32)
@@ -256,6 +276,8 @@ class _UnitCaster:
         depth.reshape(-1)[pixels[seen]] = _depth_codes(distance[seen], grid)
         facing = answer["primitive_normals"].numpy()[seen] @ R.astype(np.float32)
         normals.reshape(-1)[pixels[seen]] = _normal_codes(facing, self._rays[pixels[seen]])
+        if face_ids is not None:
+            face_ids.reshape(-1)[pixels[seen]] = answer["primitive_ids"].numpy()[seen]
 
     def _worth_casting(self, R: Float[np.ndarray, "3 3"]) -> Int[np.ndarray, "p"]:
         """Pixels inside the outline of the convex hull: no other ray can meet the shape."""

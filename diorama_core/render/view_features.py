@@ -38,7 +38,8 @@ class Weights:
 
 
 WEIGHTS = Weights()
-WIDTH = _CELLS**2 + _EDGE_CELLS**2 * _DIRECTIONS + 27
+OUTLINE_WIDTH, EDGES_WIDTH = _CELLS**2, _EDGE_CELLS**2 * _DIRECTIONS
+WIDTH = OUTLINE_WIDTH + EDGES_WIDTH + 27
 """Numbers in a feature."""
 
 
@@ -59,18 +60,36 @@ def view_feature(
     Returns:
         `WIDTH` numbers of unit length (shorter where colours are not known); None for an empty mask.
     """
-    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-    if not len(rows):
+    found = outline_and_edges(gray, mask)
+    if found is None:
         return None
-    box = (columns[0], rows[0], columns[-1] + 1, rows[-1] + 1)
+    parts = (np.sqrt(weights.outline) * found[0], np.sqrt(weights.edges) * found[1], np.sqrt(weights.colour) * colour)
+    return np.concatenate(parts).astype(np.float32)
+
+
+def outline_and_edges(
+    gray: UInt8[np.ndarray, "h w"], mask: Bool[np.ndarray, "h w"]
+) -> tuple[Float[np.ndarray, "outline"], Float[np.ndarray, "edges"]] | None:
+    """The outline and the inner edges of one picture of a thing, each of unit length; None for an empty mask."""
+    box = _box(mask)
+    if box is None:
+        return None
     covered = _squared(mask.astype(np.float32), box, cv2.BORDER_CONSTANT)
     brightness = _squared(np.where(mask, gray, gray[mask].mean()).astype(np.float32), box, cv2.BORDER_REPLICATE)
-    parts = (
-        np.sqrt(weights.outline) * _unit(_outline(covered)),
-        np.sqrt(weights.edges) * _unit(_edges(brightness, covered)),
-        np.sqrt(weights.colour) * colour,
-    )
-    return np.concatenate(parts).astype(np.float32)
+    return _unit(_outline(covered)), _unit(_edges(brightness, covered))
+
+
+def squared_around(
+    mask: Bool[np.ndarray, "h w"], picture: Float32[np.ndarray, "h w *c"]
+) -> Float32[np.ndarray, "s s *c"] | None:
+    """A picture in the small square around what a mask covers, 0 outside the picture; None for an empty mask."""
+    box = _box(mask)
+    return None if box is None else _squared(picture, box, cv2.BORDER_CONSTANT)
+
+
+def _box(mask: Bool[np.ndarray, "h w"]) -> tuple[int, int, int, int] | None:
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    return (columns[0], rows[0], columns[-1] + 1, rows[-1] + 1) if len(rows) else None
 
 
 def colour_feature(palette: Palette) -> Float[np.ndarray, "c"]:
@@ -85,8 +104,8 @@ def colour_feature(palette: Palette) -> Float[np.ndarray, "c"]:
 
 
 def _squared(
-    picture: Float32[np.ndarray, "h w"], box: tuple[int, int, int, int], border: int
-) -> Float32[np.ndarray, "s s"]:
+    picture: Float32[np.ndarray, "h w *c"], box: tuple[int, int, int, int], border: int
+) -> Float32[np.ndarray, "s s *c"]:
     """The square around a box, with a margin, resized; `border` tells what lies outside the picture."""
     x1, y1, x2, y2 = box
     half = (0.5 + _MARGIN) * max(x2 - x1, y2 - y1)

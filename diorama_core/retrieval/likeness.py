@@ -15,14 +15,15 @@ from typing import Protocol
 import cv2
 import numpy as np
 import trimesh
-from jaxtyping import Bool, Float, Float32, UInt8
+from jaxtyping import Bool, Float, UInt8
 
 from diorama_core.geometry.looks import SHARED_LOOKS, Look
-from diorama_core.geometry.palettes import NOTHING_KNOWN, palette_agreement, palette_of_crop, palette_of_look
+from diorama_core.geometry.palettes import palette_agreement, palette_of_crop, palette_of_look
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.render.templates import TemplateGrid, render_templates
-from diorama_core.render.view_features import WIDTH, Weights, colour_feature, view_feature
+from diorama_core.render.colour_layout import LAYOUT_WIDTH, colour_layout, layout_agreement, painted_views
+from diorama_core.render.templates import TemplateGrid, templates_with_faces
+from diorama_core.render.view_features import EDGES_WIDTH, OUTLINE_WIDTH, outline_and_edges
 from diorama_core.retrieval.kept import kept_features
 from diorama_core.retrieval.outlines import filled, open_share
 from diorama_core.scene.values import ArrayValue
@@ -33,11 +34,14 @@ SIDE_PX = 224
 _MARGIN = 0.06
 _GRID = TemplateGrid(elevations_deg=(8.0, 28.0), azimuths=12, size_px=72, longest_side=0.85, distance=2.2, fov_deg=32.0)
 """Views as photos of rooms have them, with little perspective."""
-_KIND = f"views-2-{_GRID.key}"
-_SHAPE_ONLY = Weights(outline=0.5, edges=0.5, colour=0.0)
-_NO_COLOUR = colour_feature(NOTHING_KNOWN)
-_COLOUR_WEIGHTS = (0.3, 0.6)
-"""Beside the views of a thing that is seen whole, and of one of which little is seen."""
+_KIND = f"views-3-{_GRID.key}"
+_FORM_WIDTH = 2 * (OUTLINE_WIDTH + EDGES_WIDTH)
+_EDGES_SHARE, _EDGES_OF_DOUBTFUL = 0.5, 0.45
+"""What inner edges say of a thing's form beside its outline, and how much more where the outline is doubtful."""
+_LAYOUT_WEIGHT = 0.5
+"""What the places of colours say beside the form."""
+_COLOUR_WEIGHTS = (0.1, 0.4)
+"""Of main colours, beside the views of a thing that is seen whole, and of one of which little is seen."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,50 +85,66 @@ class Likeness(Protocol):
 
 @dataclass(frozen=True)
 class EmbeddedLikeness:
-    """By main colours, and by outline and inner edges against rendered views; needs no weights."""
+    """By main colours, and by outline, inner edges and places of colours in rendered views; needs no weights."""
 
     library: ShapeLibrary = field(repr=False)
     folder: Path | None = field(default=None, repr=False)
     """Where features of views are kept; `features` in the cache folder by default."""
 
     def of(self, thing: Glimpse, shapes: Sequence[Shape]) -> Float[np.ndarray, " n"]:
-        """The better seen the thing, the more the views say beside the colours."""
+        """The better seen the thing, the more the views say beside the main colours."""
         looks = [self._look(s) for s in shapes]
         seen = palette_of_crop(thing.rgb, thing.mask)
         colours = np.array([palette_agreement(seen, palette_of_look(look)) for look in looks])
-        query = _open_and_filled(cv2.cvtColor(thing.rgb, cv2.COLOR_RGB2GRAY), thing.mask)
-        if query is None or thing.visible <= 0:
+        query = _feature(thing.rgb, thing.mask)
+        if query is None or thing.visible <= 0 or not len(shapes):
             return colours
-        share = open_share(thing.mask_trust)
-        query = query * np.array([[share], [1 - share]], np.float32)
-        alike = [float((self._views(s, look) @ query.ravel()).max()) for s, look in zip(shapes, looks, strict=True)]
+        views = np.stack([self._views(s, look) for s, look in zip(shapes, looks, strict=True)])
+        form = np.clip(views[..., :_FORM_WIDTH] @ (query[:_FORM_WIDTH] * _form_weights(thing.mask_trust)), 0.0, 1.0)
+        layout = layout_agreement(query[_FORM_WIDTH:], views[..., _FORM_WIDTH:])
+        alike = (form + _LAYOUT_WEIGHT * layout).max(axis=1)
         of_colours = float(np.interp(1.0 - thing.visible, (0.0, 1.0), _COLOUR_WEIGHTS))
-        return (of_colours * colours + thing.visible * np.clip(alike, 0.0, 1.0)) / (of_colours + thing.visible)
+        of_views = thing.visible * (1 + _LAYOUT_WEIGHT)
+        return (of_colours * colours + thing.visible * alike) / (of_colours + of_views)
+
+    def prepare(self, shape: Shape) -> None:
+        """Make and keep what is compared of a shape, where that has not been done yet."""
+        self._views(shape, self._look(shape))
 
     def _look(self, shape: Shape) -> Look:
         parts = partial(self.library.parts, shape.id)
         return SHARED_LOOKS.get(shape.content_hash, default_cache_dir() / "looks", parts)
 
-    def _views(self, shape: Shape, look: Look) -> Float32[np.ndarray, "v width"]:
-        return kept_features(_KIND, shape, lambda: _features_of_views(look), self.folder).astype(np.float32)
+    def _views(self, shape: Shape, look: Look) -> Float[np.ndarray, "v width"]:
+        # In double precision sums do not depend on the machine's order of adding by more than is rounded away.
+        return kept_features(_KIND, shape, lambda: _features_of_views(look), self.folder).astype(np.float64)
 
 
-def _features_of_views(look: Look) -> Float32[np.ndarray, "v width"]:
+def _features_of_views(look: Look) -> Float[np.ndarray, "v width"]:
     """Of every view; zeros where nothing is seen, and for shapes without a surface."""
-    rows = np.zeros((len(_GRID), 2 * WIDTH), np.float32)
+    rows = np.zeros((len(_GRID), _FORM_WIDTH + LAYOUT_WIDTH))
     if not len(look.faces) or np.ptp(look.vertices, axis=0).max() <= 0:
         return rows
-    templates = render_templates(trimesh.Trimesh(look.vertices, look.faces, process=False), _GRID)
-    for k, (gray, mask) in enumerate(zip(templates.gray, templates.mask, strict=True)):
-        found = _open_and_filled(gray, mask)
+    templates, face_ids = templates_with_faces(trimesh.Trimesh(look.vertices, look.faces, process=False), _GRID)
+    for k, rgb in enumerate(painted_views(templates, face_ids, look)):
+        found = _feature(rgb, templates.mask[k])
         if found is not None:
-            rows[k] = found.ravel()
+            rows[k] = found
     return rows
 
 
-def _open_and_filled(
-    gray: UInt8[np.ndarray, "h w"], mask: Bool[np.ndarray, "h w"]
-) -> Float32[np.ndarray, "2 width"] | None:
-    """Features of a picture as it is outlined, and with the outline's gaps filled: what shows through is an edge."""
-    rows = [view_feature(gray, m, _NO_COLOUR, _SHAPE_ONLY) for m in (mask, filled(mask))]
-    return None if rows[0] is None or rows[1] is None else np.stack([rows[0], rows[1]])
+def _feature(rgb: UInt8[np.ndarray, "h w 3"], mask: Bool[np.ndarray, "h w"]) -> Float[np.ndarray, "width"] | None:
+    """Outline and inner edges of a picture as it is outlined, and with the outline's gaps filled (what shows through
+    is an edge), each of unit length; then where its colours are. None for an empty mask."""
+    gray = cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY)
+    form = [outline_and_edges(gray, m) for m in (mask, filled(mask))]
+    if form[0] is None or form[1] is None:
+        return None
+    return np.concatenate([*form[0], *form[1], colour_layout(rgb, mask)]).astype(np.float64)
+
+
+def _form_weights(mask_trust: float) -> Float[np.ndarray, "width"]:
+    """How much each number says about form: outlines and gaps of doubtful masks little; the sum's parts add up to 1."""
+    open_, edges = open_share(mask_trust), _EDGES_SHARE + _EDGES_OF_DOUBTFUL * (1.0 - mask_trust)
+    outline = np.repeat([1.0 - edges, edges], [OUTLINE_WIDTH, EDGES_WIDTH])
+    return np.concatenate([open_ * outline, (1.0 - open_) * outline])
