@@ -38,6 +38,7 @@ def lighter_glb(data: bytes, most_triangles: int) -> bytes:
         triangles = _array(document, binary, part["indices"]).ravel().astype(np.uint32)
         arrays = {name: _array(document, binary, k) for name, k in part["attributes"].items()}
         fewer = _simplified(triangles, arrays["POSITION"], most_triangles / total)
+        fewer = _in_cache_order(fewer, len(arrays["POSITION"]))
         used, renumbered = np.unique(fewer, return_inverse=True)
         part["attributes"] = {name: written.vertices(name, array[used]) for name, array in arrays.items()}
         part["indices"] = written.indices(renumbered.astype(np.uint32))
@@ -60,6 +61,12 @@ def _simplified(triangles: np.ndarray, positions: np.ndarray, share: float) -> n
         target_error=LARGEST_ERROR,
     )
     return kept[:count]
+
+
+def _in_cache_order(triangles: np.ndarray, vertex_count: int) -> np.ndarray:
+    ordered = np.empty_like(triangles)
+    meshoptimizer.optimize_vertex_cache(ordered, triangles, len(triangles), vertex_count)
+    return ordered
 
 
 class _Writer:

@@ -91,6 +91,7 @@ class Viewport:
                 self._objects.pop(gone).frame.remove()
             for item in scene.objects:
                 self._show_object(item)
+        self._server.flush()  # ahead of the panels, which take longer
 
     def preview(self, poses: Mapping[str, Pose]) -> None:
         """Put objects into poses that are not part of the document (a drag, a running optimiser)."""
@@ -99,6 +100,7 @@ class Viewport:
                 shown = self._objects.get(object_id)
                 if shown is not None:
                     self._set_pose(shown, pose)
+        self._server.flush()
 
     def preview_item(self, item: SceneObject) -> None:
         """Show an object as it would be; the next `show` takes it back."""

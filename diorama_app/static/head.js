@@ -1,8 +1,15 @@
-// Runs before viser's page does. Where WebGL draws on the processor, a frame costs what all else on the machine does:
-// there edges are not smoothed, and a change is drawn once and once more when all is quiet, not for a quarter second.
+// Runs before viser's page does, and matters where WebGL draws on the processor: there a picture takes what all else on
+// the machine needs, and the page waits for it. So edges are not smoothed; a change is drawn once, and once more when
+// all is quiet (viser draws for a quarter second); what moves is drawn with fewer pixels until it rests; what was only
+// added is drawn when it is there; and what a hand drags when the server has said where it is.
 (() => {
   const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
-  const QUIET_MS = 120;
+  const QUIET_MS = 300;
+  const REPLY_MS = 80; // for the server to say where the thing in the hand is now
+  const MOUNT_MS = 50; // for React to put in place what came together
+  const PARSE_MS = 250; // for a model to be read
+  const COARSE = 0.6; // pixels of the picture for one of the screen, both ways, while something moves
+  const MOVES = /^(SetPosition|SetOrientation|SetBonePosition|SetBoneOrientation|SetCamera)/;
   const original = HTMLCanvasElement.prototype.getContext;
   let software;
 
@@ -27,17 +34,90 @@
     get: () => page,
     set: (mutable) => {
       page = mutable;
-      if (mutable && drawsInSoftware()) drawSparingly(mutable);
+      if (mutable?.scene && drawsInSoftware()) drawSparingly(mutable);
     },
   });
 
   function drawSparingly(mutable) {
-    const draw = () => mutable.scene?.__r3f.root.getState().invalidate();
-    let later;
-    mutable.requestRender = () => {
-      draw();
-      clearTimeout(later);
-      later = setTimeout(draw, QUIET_MS);
+    const store = mutable.scene.__r3f.root;
+    const { gl: renderer, invalidate } = store.getState();
+    const fixed = new URLSearchParams(location.search).has("fixedDpr");
+    let moving = false; // since the last picture of a page at rest
+    let looking = false; // the camera moved from the last picture to this one
+    let seenFrom;
+    let due; // [when, timer] of the next picture
+    let rest;
+    let look;
+    const models = new Set(); // the names of those that came after the last picture and are not read yet
+
+    const draw = () => {
+      clearTimeout(due?.[1]);
+      due = undefined;
+      models.clear();
+      invalidate();
     };
+    const drawWithin = (wait) => {
+      const when = performance.now() + wait;
+      if (due && due[0] <= when) return;
+      clearTimeout(due?.[1]);
+      due = [when, setTimeout(draw, wait)];
+    };
+    const restSoon = () => {
+      clearTimeout(rest);
+      rest = setTimeout(() => {
+        moving = false;
+        draw();
+      }, QUIET_MS);
+    };
+
+    // The number of pixels changes right before a picture is drawn: a canvas that changes its size is empty until then.
+    const render = renderer.render.bind(renderer);
+    renderer.render = (scene, camera) => {
+      if (camera === mutable.camera && renderer.getRenderTarget() === null) {
+        const ratio = store.getState().viewport.dpr * (moving && !fixed ? COARSE : 1);
+        if (renderer.getPixelRatio() !== ratio) renderer.setPixelRatio(ratio);
+        looking = seenFrom !== undefined && !camera.matrixWorld.equals(seenFrom);
+        seenFrom = camera.matrixWorld.clone();
+      }
+      render(scene, camera);
+    };
+
+    const isThere = (name) => {
+      let meshes = 0;
+      mutable.nodeRefFromName[name]?.traverse((part) => (meshes += part.isMesh ? 1 : 0));
+      return meshes > 0;
+    };
+    const drawWhenThere = () => {
+      look = undefined;
+      const came = [...models].filter(isThere);
+      came.forEach((name) => models.delete(name));
+      if (came.length > 0 && models.size === 0) draw();
+      else drawWithin(models.size > 0 ? PARSE_MS : MOUNT_MS);
+    };
+
+    // React asks while it puts things in place, and the camera's controls while they glide.
+    const mounted = () => {
+      if (looking) draw();
+      else look ??= setTimeout(drawWhenThere);
+    };
+    store.setState({ invalidate: mounted });
+
+    const requestRender = () => {
+      const queue = mutable.messageQueue;
+      moving = true;
+      restSoon();
+      if (queue.length === 0) {
+        if (mutable.cameraControl?.enabled === false) drawWithin(REPLY_MS);
+        else draw();
+      } else if (queue.every((message) => MOVES.test(message.type)) || mutable.getRenderRequestState !== "ready") {
+        draw();
+      } else {
+        queue.filter((message) => message.type === "GlbMessage").forEach((message) => models.add(message.name));
+        mutable.drainMessageQueue?.();
+        mounted();
+      }
+    };
+    // viser puts its own back whenever React has a new way to ask for pictures.
+    Object.defineProperty(mutable, "requestRender", { get: () => requestRender, set: () => {} });
   }
 })();

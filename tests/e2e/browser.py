@@ -66,6 +66,8 @@ class EditorPage:
     running: Running
     errors: list[str] = field(default_factory=list)
     guest_id: int = -1
+    query: str = "?fixedDpr=1"
+    """Of the address: as many pixels as the screen has, whatever the machine can afford."""
 
     @property
     def guest(self) -> Guest:
@@ -78,17 +80,19 @@ class EditorPage:
         return self.guest.selection
 
     @classmethod
-    def open(cls, context: BrowserContext, running: Running, patience_ms: int = PATIENCE_MS) -> EditorPage:
+    def open(
+        cls, context: BrowserContext, running: Running, patience_ms: int = PATIENCE_MS, *, query: str = query
+    ) -> EditorPage:
         page = context.new_page()
         page.set_default_timeout(patience_ms)
-        made = cls(page, running)
+        made = cls(page, running, query=query)
         page.on("pageerror", lambda error: made.errors.append(str(error)))
         made.load()
         return made
 
     def load(self) -> None:
         joined = set(self.running.room.guests)
-        self.page.goto(f"http://127.0.0.1:{self.running.port}/?fixedDpr=1")
+        self.page.goto(f"http://127.0.0.1:{self.running.port}/{self.query}")
         self.settle()
         self.until(lambda: bool(set(self.running.room.guests) - joined))
         self.guest_id = max(self.running.room.guests)
