@@ -4,6 +4,13 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import threading
+import time
+
+import pytest
+
+from diorama_app import warming
+from diorama_core.library.ingest import known_shapes
 
 HEAVY = (
     "torch",
@@ -47,3 +54,23 @@ print(len(added))
 """
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert int(done.stdout) > 0
+
+
+def test_what_the_first_upload_needs_is_learnt_beside_and_ends_with_the_server(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(known_shapes, "are_known", lambda: False)
+    monkeypatch.setattr(warming, "LEARN", "import time; time.sleep(60)")
+    stopped = threading.Event()
+    beside = threading.Thread(target=warming.learn_shapes, args=(stopped,), daemon=True)
+    beside.start()
+    time.sleep(0.3)
+    assert beside.is_alive()
+    stopped.set()
+    beside.join(timeout=10.0)
+    assert not beside.is_alive()
+
+
+def test_nothing_is_learnt_twice(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(known_shapes, "are_known", lambda: True)
+    monkeypatch.setattr(warming, "LEARN", "raise SystemExit('learnt again')")
+    monkeypatch.setattr(subprocess, "Popen", None)
+    warming.learn_shapes(threading.Event())

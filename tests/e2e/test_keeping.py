@@ -12,7 +12,7 @@ import pytest
 import trimesh
 from playwright.sync_api import expect
 
-from diorama_app.camera_fixing import Held
+from diorama_core.geometry.held import Held
 from diorama_app.guest import Placing
 from diorama_app.recovery import Recovery
 from diorama_core.scene import edits

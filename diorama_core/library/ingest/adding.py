@@ -29,6 +29,8 @@ from diorama_core.workers import Workers
 
 REVISION = 1
 """Of what ingestion makes of a file: raise it when results change, so that a repeated run takes files in anew."""
+LEARNING_SHARE = 0.8
+"""Of a first import's time, what goes into learning the built-in shapes."""
 UNSURE = 0.6
 """Guesses less sure than this are worth a person's look."""
 _COLUMNS = ("file", "up", "front", "unit", "category", "caption", "licence")
@@ -153,8 +155,7 @@ def add_models(
     progress = progress or Progress()
     have = sink.source_keys()
     waiting = [s for s in found if s.key not in have]
-    if waiting:
-        known_shapes(on_step=lambda share: progress.report(0.1 * share, "learning what furniture looks like"))
+    learnt = _learn(progress) if waiting else 0.0
     added: list[Ingested] = []
     failed: list[Trouble] = []
     done = workers.map(partial(_work, painter=painter, limits=limits), waiting)
@@ -164,7 +165,8 @@ def add_models(
             added.append(replace(piece.value, glb=b"", thumbnail_png=None))
         else:
             failed.append(Trouble(piece.item.path, _reason(piece.error)))
-        progress.report(0.1 + 0.9 * number / len(waiting), f"{number} of {len(waiting)}: {piece.item.path.name}")
+        share = learnt + (1.0 - learnt) * number / len(waiting)
+        progress.report(share, f"{number} of {len(waiting)}: {piece.item.path.name}")
     added.sort(key=lambda i: i.record.id)
     return Added(
         added=tuple(i.record.id for i in added),
@@ -174,6 +176,19 @@ def add_models(
         repaired=tuple((i.record.id, i.warnings) for i in added if i.warnings),
         unsure=tuple(i.record.id for i in added if i.record.guess and confidence(i.record.guess) < UNSURE),
     )
+
+
+def _learn(progress: Progress) -> float:
+    """See to it that known shapes are there; the share of the whole work that it was: much once, then nothing."""
+    took: list[float] = []
+
+    def step(share: float) -> None:
+        progress.check()
+        progress.report(LEARNING_SHARE * share, "getting to know what furniture looks like (only this once)")
+        took.append(share)
+
+    known_shapes(on_step=step)
+    return LEARNING_SHARE if took else 0.0
 
 
 def _work(source: Source, painter: Painter | None, limits: Limits) -> Ingested:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 import logging
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -56,8 +57,7 @@ def known_shapes(
     """
     library = library or built_in_library()
     shapes = _spread(library.shapes())
-    state = hashlib.sha256(f"{_FORMAT} {SIDE} {[s.content_hash for s in shapes]}".encode()).hexdigest()[:24]
-    path = (cache_dir or default_cache_dir()) / "reliefs" / f"{state}.npz"
+    path = _place(shapes, cache_dir)
     categories = tuple(s.category for s in shapes)
     sizes = np.log([s.size_m for s in shapes])
     kept = _read(path, len(shapes))
@@ -65,6 +65,16 @@ def known_shapes(
         kept = _taken(library, shapes, on_step)
         _write(path, kept)
     return KnownShapes(categories, relief_features(kept.astype(np.float32) / 255.0), sizes)
+
+
+def are_known(cache_dir: Path | None = None) -> bool:
+    """Whether the reliefs of the built-in shapes are in the cache."""
+    return _place(_spread(built_in_library().shapes()), cache_dir).exists()
+
+
+def _place(shapes: Sequence[Shape], cache_dir: Path | None) -> Path:
+    state = hashlib.sha256(f"{_FORMAT} {SIDE} {[s.content_hash for s in shapes]}".encode()).hexdigest()[:24]
+    return (cache_dir or default_cache_dir()) / "reliefs" / f"{state}.npz"
 
 
 def _spread(shapes: Sequence[Shape]) -> list[Shape]:
@@ -98,7 +108,7 @@ def _write(path: Path, found: np.ndarray) -> None:
     np.savez_compressed(buffer, reliefs=found)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        part = path.with_suffix(".part")
+        part = path.with_suffix(f".{os.getpid()}.part")
         part.write_bytes(buffer.getvalue())
         part.replace(path)
     except OSError as error:

@@ -24,7 +24,7 @@ from diorama_core.library.ingest.relief import relief
 from diorama_core.library.ingest.shaping import Source
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.store import StoredLibrary
-from diorama_core.progress import CancelToken, Progress
+from diorama_core.progress import CancelToken, Progress, ProgressEvent
 from diorama_core.workers import Done, Workers, workers
 from tests.library.ingest.models import chair, document, table, write_glb, y_up
 
@@ -231,3 +231,23 @@ def test_a_source_is_a_plain_value(folder: Path) -> None:
     assert all(isinstance(s, Source) for s in made)
     assert len({s.id for s in made}) == len(made)
     assert made == sources(folder, paths, Given(), {})
+
+
+@pytest.mark.parametrize("steps", [0, 4], ids=["known", "first time"])
+def test_progress_only_grows_and_a_first_import_spends_most_of_it_on_learning(
+    steps: int, folder: Path, library: StoredLibrary, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    known = adding.known_shapes()
+
+    def learn(on_step: Callable[[float], None] = lambda _: None) -> KnownShapes:
+        for number in range(steps):
+            on_step((number + 1) / steps)
+        return known
+
+    monkeypatch.setattr(adding, "known_shapes", learn)
+    events: list[ProgressEvent] = []
+    added(folder, library, progress=Progress(on_event=events.append))
+    shares = [event.fraction for event in events]
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
+    assert [e.fraction for e in events if "furniture looks like" in e.message] == pytest.approx([0.2, 0.4, 0.6, 0.8][:steps])
