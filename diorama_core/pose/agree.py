@@ -9,6 +9,8 @@ from diorama_core.library.taxonomy import UNKNOWN, with_kin
 _OWN_SHARE = 0.35
 _ABSENT = -0.7
 _OVERLAP = 0.5
+_TIE = 0.15
+"""Two shapes whose log ranks differ by less are as good for one thing of a set: then it takes what the set likes."""
 MOST_LOSS_WITH_DEPTH = 1.0
 """What agreeing may cost where depth was measured: it shows when things of a kind are not the same."""
 SETS = with_kin("chair", "office chair", "stool", "armchair", "night stand", "ottoman", "lamp")
@@ -41,9 +43,19 @@ def agreed_ranks(
         weight = sum(trust[i] + 1e-3 for i in alike)
         mean = {key: sum((trust[i] + 1e-3) * relative[i].get(key, _ABSENT) for i in alike) / weight for key in own}
         mixed = {key: _OWN_SHARE * own[key] + (1 - _OWN_SHARE) * mean[key] for key in own}
+        if name in SETS:
+            mixed = _with_the_set(mixed, mean)
         in_sets = most == float("inf") or name in SETS
         agreed.append(mixed if in_sets and own[max(mixed, key=lambda key: mixed[key])] >= -most else dict(own))
     return agreed
+
+
+def _with_the_set(mixed: Mapping[str, float], mean: Mapping[str, float]) -> dict[str, float]:
+    """The ranks with the set's favourite first, where it is nearly that already; the two change places."""
+    own, favourite = (max(sorted(ranks), key=ranks.__getitem__) for ranks in (mixed, mean))
+    if mixed[own] - mixed[favourite] >= _TIE:
+        return dict(mixed)
+    return {**mixed, favourite: mixed[own], own: mixed[favourite]}
 
 
 def _groups(categories: Sequence[str], ranks: Sequence[Mapping[str, float]]) -> list[int]:

@@ -18,6 +18,15 @@ def test_a_badly_seen_chair_follows_the_well_seen_ones() -> None:
     assert [best(r) for r in agreed] == ["a", "a", "a"]
 
 
+def test_between_shapes_that_are_as_good_a_set_takes_the_same() -> None:
+    chairs = [{"a": 0.0, "b": -0.2}, {"a": 0.0, "b": -0.2}, {"a": -0.3, "b": 0.0}, {"a": 0.0, "b": -0.05}]
+    trust = [0.4, 0.4, 0.9, 0.3]
+    agreed = agreed_ranks(["chair"] * 4, chairs, trust, [ANY] * 4)
+    assert {best(r) for r in agreed} == {"b"}
+    apart = agreed_ranks(["chair"] * 2, [{"a": 0.0, "b": -2.0}, {"a": -2.0, "b": 0.0}], [0.5, 0.45], [1.0] * 2)
+    assert [best(r) for r in apart] == ["a", "b"]  # measured depth says that they differ
+
+
 def test_other_kinds_unnamed_things_and_other_choices_stand_alone() -> None:
     a, b = {"a": 0.0, "b": -1.0}, {"a": -1.0, "b": 0.0}
     for categories in (["chair", "stool"], ["object", "object"]):
