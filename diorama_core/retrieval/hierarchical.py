@@ -18,7 +18,7 @@ from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import UNKNOWN, with_kin
 from diorama_core.progress import Progress
-from diorama_core.retrieval.likeness import EmbeddedLikeness, Glimpse, Likeness
+from diorama_core.retrieval.likeness import EMBEDDED_FEATURES, EmbeddedLikeness, Glimpse, Likeness
 from diorama_core.retrieval.outlines import outline_agreement
 from diorama_core.retrieval.pools import Pool, Wish, pool_for, size_cost
 from diorama_core.scene.types import Support, yaw_rotation
@@ -60,8 +60,8 @@ class HierarchicalRetrieval:
 
     def __repr__(self) -> str:
         numbers = (self.keep, self.cells, self.size_weight, self.silhouette_weight, self.likeness_weight)
-        looks = "" if self.likeness is None else f", {self.likeness!r}"
-        return f"HierarchicalRetrieval({_fingerprint(self.library)}, {', '.join(map(str, numbers))}{looks})"
+        looks = EMBEDDED_FEATURES if self.likeness is None else repr(self.likeness)  # other features, other results
+        return f"HierarchicalRetrieval({_fingerprint(self.library)}, {', '.join(map(str, numbers))}, {looks})"
 
     def retrieve(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress

@@ -34,7 +34,8 @@ SIDE_PX = 224
 _MARGIN = 0.06
 _GRID = TemplateGrid(elevations_deg=(8.0, 28.0), azimuths=12, size_px=72, longest_side=0.85, distance=2.2, fov_deg=32.0)
 """Views as photos of rooms have them, with little perspective."""
-_KIND = f"views-3-{_GRID.key}"
+EMBEDDED_FEATURES = f"views-3-{_GRID.key}"
+"""Names what is kept of shapes; changes with what features are."""
 _FORM_WIDTH = 2 * (OUTLINE_WIDTH + EDGES_WIDTH)
 _EDGES_SHARE, _EDGES_OF_DOUBTFUL = 0.5, 0.45
 """What inner edges say of a thing's form beside its outline, and how much more where the outline is doubtful."""
@@ -117,7 +118,7 @@ class EmbeddedLikeness:
 
     def _views(self, shape: Shape, look: Look) -> Float[np.ndarray, "v width"]:
         # In double precision sums do not depend on the machine's order of adding by more than is rounded away.
-        return kept_features(_KIND, shape, lambda: _features_of_views(look), self.folder).astype(np.float64)
+        return kept_features(EMBEDDED_FEATURES, shape, lambda: _features_of_views(look), self.folder).astype(np.float64)
 
 
 def _features_of_views(look: Look) -> Float[np.ndarray, "v width"]:
