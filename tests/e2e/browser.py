@@ -49,6 +49,11 @@ PROJECT = """(point) => {
     return [box.left + (p.x + 1) / 2 * box.width, box.top + (1 - p.y) / 2 * box.height];
 }"""
 
+AT_BOARD = """() => {
+    const m = window.__viserMutable, photo = m.nodeRefFromName['/board/photo'];
+    return photo && m.camera.position.distanceTo(photo.getWorldPosition(m.camera.position.clone())) < 3.0;
+}"""
+
 ON_CANVAS = "([x, y]) => (document.elementFromPoint(x, y) || {}).tagName === 'CANVAS'"
 
 
@@ -103,6 +108,12 @@ class EditorPage:
         """Wait until the page has handled every message and drawn two frames since."""
         self.page.evaluate("window.__quietFrom = null")
         self.page.wait_for_function(SETTLED, polling=50)
+
+    def at_board(self) -> None:
+        """Wait until the photo is there to draw on, and the eye in front of it."""
+        self.until(lambda: self.guest.view.drawing, "the drawing board is open")
+        self.page.wait_for_function(AT_BOARD)
+        self.settle()
 
     def canvas_box(self) -> tuple[float, float, float, float]:
         """Left, top, width and height of the 3D view on the page."""

@@ -282,8 +282,7 @@ def test_what_was_missed_is_added_from_the_photo_and_renamed(editor: EditorPage)
     assert room.scene.object(new.id).shape_id.startswith("chair")
     np.testing.assert_allclose(room.scene.object(new.id).pose.position[:2], new.pose.position[:2])
     editor.button("Fix outline").click()
-    editor.until(lambda: editor.guest.view.drawing)
-    editor.settle()
+    editor.at_board()
     board = editor.guest.view.board
     assert board is not None
     editor.click_world(board.to_world(np.array([340.0, 300.0])))
@@ -291,6 +290,10 @@ def test_what_was_missed_is_added_from_the_photo_and_renamed(editor: EditorPage)
     label = f"outline of {room.scene.object(new.id).label}"
     editor.until(lambda: room.document.history.current.label == label, "looked at again", seconds=90)
     assert not editor.guest.view.drawing
+    kept = room.project.load_inputs()
+    drawn = kept.instances == kept.instance_boxes[0][0]
+    assert drawn[300, 340], "the next build takes the outline as it was drawn"
+    assert kept.instance_boxes[0][1].label == room.scene.object(new.id).label == "chair"
 
 
 def _drag_row(editor: EditorPage, child: str, parent: str) -> None:

@@ -104,7 +104,7 @@ def test_files_dropped_on_the_view_go_where_they_belong(editor: EditorPage, tmp_
     photo = room.project.folder / "photo.jpg"
     drop(editor, photo, "image/jpeg")
     editor.until(lambda: room.draft.name == "photo.jpg" and not room.draft.from_project, "a new photo")
-    editor.until(lambda: editor.guest.view.drawing, "and it is there to be marked")
+    editor.at_board()
 
 
 def drop(editor: EditorPage, path: Path, kind: str) -> None:

@@ -44,7 +44,7 @@ def test_boxes_drawn_on_the_photo_land_on_its_pixels(editor: EditorPage, tmp_pat
     assert room.scene.objects, "the open scene stays"
     expect(editor.page.get_by_text("Draw a box around each piece of furniture.")).to_be_visible()
     expect(editor.button("Build scene")).to_be_disabled()
-    editor.until(lambda: editor.guest.view.drawing, "the photo is on the board")
+    editor.at_board()
     editor.dismiss_notices()
     view = editor.guest.view
     assert view.board is not None

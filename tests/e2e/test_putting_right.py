@@ -50,8 +50,7 @@ def test_a_box_is_redrawn_on_the_photo_and_its_thing_is_looked_at_again(editor: 
     added = room.scene.object(editor.selection[0])
     others = [o for o in room.scene.objects if o.id != added.id]
     editor.button("Redraw box").click()
-    editor.until(lambda: editor.guest.view.drawing, "the photo is there to draw on")
-    editor.settle()
+    editor.at_board()
     board = editor.guest.view.board
     assert board is not None
     corners = np.array([[250.0, 210.0], [400.0, 410.0]])

@@ -27,8 +27,7 @@ def test_a_box_is_drawn_anew_and_an_outline_is_clicked_and_left(editor: EditorPa
     others = [room.scene.object(i) for i in apart]
     editor.row("dining table").click()
     editor.button("Redraw box").click()
-    editor.until(lambda: editor.guest.view.drawing, "the photo is there")
-    editor.settle()
+    editor.at_board()
     editor.drag(editor.place_of(on_board(editor, 230, 190)), editor.place_of(on_board(editor, 450, 430)))
     editor.until(
         lambda: room.document.history.current.label == "look again at dining table", "looked at again", seconds=120
@@ -41,8 +40,7 @@ def test_a_box_is_drawn_anew_and_an_outline_is_clicked_and_left(editor: EditorPa
     assert [room.scene.object(i) for i in apart] == others, "nothing else changed; the lamp goes along with its table"
     assert not editor.guest.view.drawing
     editor.button("Fix outline").click()
-    editor.until(lambda: editor.guest.view.drawing)
-    editor.settle()
+    editor.at_board()
     panel = next(p for p in editor.guest.panels if isinstance(p, Evidence))
     before = room.scene
     editor.click_world(on_board(editor, 340, 300))
