@@ -12,9 +12,9 @@ import pytest
 import trimesh
 from playwright.sync_api import expect
 
-from diorama_core.geometry.held import Held
 from diorama_app.guest import Placing
 from diorama_app.recovery import Recovery
+from diorama_core.geometry.held import Held
 from diorama_core.scene import edits
 from tests.app.small_room import furnished_scene, make_project
 from tests.e2e.browser import LEARN_MS, EditorPage
