@@ -86,12 +86,12 @@ STYLE = """
 .dio .drop.over { border-color: var(--accent); background: var(--hover); }
 .dio-toast { position: fixed; left: 50%; bottom: 18px; transform: translateX(-50%); z-index: 900; display: flex;
   align-items: center; gap: 12px; max-width: 44vw; padding: 8px 12px; border-radius: 10px; font-size: 13px;
-  color: #fff; background: #262b33ee; box-shadow: 0 4px 16px #0004; animation: dio-fade 6s forwards; }
+  color: #fff; background: #262b33ee; box-shadow: 0 4px 16px #0004; animation: dio-fade .7s 5.3s forwards; }
 .dio-toast span { overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
 .dio-toast button { font: inherit; font-weight: 600; cursor: pointer; border: 0; background: transparent;
   color: #8fc0ff; }
 .dio-toast.stay { animation: none; background: #1d4f9eee; }
-@keyframes dio-fade { 0%, 88% { opacity: 1; visibility: visible; } 100% { opacity: 0; visibility: hidden; } }
+@keyframes dio-fade { 100% { opacity: 0; visibility: hidden; } }
 canvas[data-engine] { background: linear-gradient(#f3f5f8, #dfe4eb); }
 :root[data-mantine-color-scheme="dark"] canvas[data-engine] { background: linear-gradient(#2a2f37, #1c2026); }
 </style>

@@ -9,6 +9,7 @@
   const MOUNT_MS = 50; // for React to put in place what came together
   const PARSE_MS = 250; // for a model to be read
   const COARSE = 0.6; // pixels of the picture for one of the screen, both ways, while something moves
+  const HEARTBEAT_MS = [1000, 10000]; // viser's pictures of a page at rest: how often, and how often here
   const MOVES = /^(SetPosition|SetOrientation|SetBonePosition|SetBoneOrientation|SetCamera)/;
   const original = HTMLCanvasElement.prototype.getContext;
   let software;
@@ -26,6 +27,12 @@
   HTMLCanvasElement.prototype.getContext = function (kind, options) {
     const smoothed = options?.antialias && kind === "webgl2";
     return original.call(this, kind, smoothed && drawsInSoftware() ? { ...options, antialias: false } : options);
+  };
+
+  const every = window.setInterval;
+  window.setInterval = (call, ms, ...rest) => {
+    const beat = ms === HEARTBEAT_MS[0] && drawsInSoftware();
+    return every.call(window, call, beat ? HEARTBEAT_MS[1] : ms, ...rest);
   };
 
   let page;
