@@ -23,7 +23,9 @@ _USUAL_FACTOR = 0.92
 _RARE_FACTOR = 0.68
 _NAMED_POOL = 50
 """Of one kind; the paper's text query keeps as many."""
-_SPECIAL_POOL = 4
+_SPECIAL_POOL = 6
+_LOOSE_FACTOR = 0.97
+"""For kinds that a word is loosely used for: the word itself is some evidence against them."""
 _SUBSTITUTES = 3
 _UNNAMED_POOL = 30
 _EACH_KIND = 2
@@ -114,6 +116,13 @@ def _alike_in_size(name: str) -> tuple[str, ...]:
     return tuple(others[i].name for i in np.argsort(unlike, kind="stable")[:_SUBSTITUTES])
 
 
+SAID_OF_MANY: dict[str, tuple[str, ...]] = {
+    "table": ("coffee table", "side table", "console table"),
+    "cabinet": ("night stand", "dresser", "sideboard"),
+}
+"""Words that people and detectors use for other kinds too, and which."""
+
+
 def special_kinds(name: str) -> tuple[str, ...]:
     """The special kinds of a category: a stool may turn out to be a bar stool."""
     return tuple(c.name for c in CATEGORIES if c.kin == name)
@@ -166,8 +175,12 @@ def pool_for(library: ShapeLibrary, wish: Wish) -> Pool:
     if wish.category == UNKNOWN.name:
         return Pool(_plausible(library, wish))
     own = _nearest(_usable(library, library.in_category(wish.category), wish), wish.size_m, _NAMED_POOL)
-    own = [*own, *_better_fitting_specials(library, wish, own)]
-    members = [Pooled(shape, 1.0) for shape in own]
+    special, loose = (
+        _better_fitting(library, wish, own, kinds)
+        for kinds in (special_kinds(wish.category), SAID_OF_MANY.get(wish.category, ()))
+    )
+    own = [*own, *special]
+    members = [Pooled(shape, 1.0) for shape in own] + [Pooled(shape, _LOOSE_FACTOR) for shape in loose]
     factor = _RELATED_FACTOR
     for near in near_kinds(wish.category):
         if len(members) >= _ENOUGH:
@@ -181,11 +194,11 @@ def pool_for(library: ShapeLibrary, wish: Wish) -> Pool:
     return Pool(tuple(members) or _plausible(library, wish), note)
 
 
-def _better_fitting_specials(library: ShapeLibrary, wish: Wish, own: Sequence[Shape]) -> list[Shape]:
-    """Shapes of the category's special kinds whose size fits better than that of any shape of its own."""
+def _better_fitting(library: ShapeLibrary, wish: Wish, own: Sequence[Shape], kinds: Sequence[str]) -> list[Shape]:
+    """Shapes of other kinds that the word may mean, whose size fits better than that of any shape of its own kind."""
     best = min((_fit_cost(shape, wish.size_m) for shape in own), default=np.inf)
-    special = [shape for kind in special_kinds(wish.category) for shape in library.in_category(kind)]
-    fitting = [shape for shape in _usable(library, special, wish) if _fit_cost(shape, wish.size_m) < best]
+    others = [shape for kind in kinds for shape in library.in_category(kind)]
+    fitting = [shape for shape in _usable(library, others, wish) if _fit_cost(shape, wish.size_m) < best]
     return _nearest(fitting, wish.size_m, _SPECIAL_POOL)
 
 

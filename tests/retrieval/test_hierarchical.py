@@ -86,7 +86,7 @@ def test_its_name_is_short_and_changes_with_the_library() -> None:
         def shapes(self):
             return super().shapes()[1:]
 
-    assert len(repr(STAGE)) < 80
+    assert len(repr(STAGE)) < 120
     assert repr(STAGE) == repr(HierarchicalRetrieval(LIBRARY)) != repr(HierarchicalRetrieval(Fewer()))
 
 

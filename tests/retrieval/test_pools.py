@@ -7,7 +7,15 @@ import pytest
 
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, category
-from diorama_core.retrieval.pools import RELATED, Wish, near_kinds, pool_for, special_kinds
+from diorama_core.retrieval.pools import (
+    _LOOSE_FACTOR,
+    RELATED,
+    SAID_OF_MANY,
+    Wish,
+    near_kinds,
+    pool_for,
+    special_kinds,
+)
 
 LIBRARY = built_in_library()
 
@@ -22,12 +30,20 @@ def test_every_category_knows_its_near_kinds() -> None:
     assert all(near_kinds(name) for name in names)
     assert all(near in names and near != name for name in names for near in near_kinds(name))
     assert all(name in special_kinds(category(name).kin) for name in names if category(name).kin)
+    assert all({name, *others} <= names for name, others in SAID_OF_MANY.items())
 
 
 def test_a_tall_stool_may_be_a_bar_stool_and_a_low_one_may_not() -> None:
     tall, low = (pool("stool", (0.44, 0.44, height)) for height in (1.0, 0.44))
     assert "bar stool" in {m.shape.category for m in tall.members}
     assert {m.shape.category for m in low.members} == {"stool"}
+
+
+def test_a_low_table_may_be_a_coffee_table_and_one_to_eat_at_may_not() -> None:
+    low, high = pool("table", (0.65, 1.1, 0.45)), pool("table", (0.85, 1.6, 0.75))
+    assert {m.kind_factor for m in low.members if m.shape.category == "coffee table"} == {_LOOSE_FACTOR}
+    assert {m.kind_factor for m in low.members if m.shape.category == "table"} == {1.0}
+    assert {m.shape.category for m in high.members} == {"table"}
 
 
 @pytest.mark.parametrize("name", [c.name for c in CATEGORIES])
