@@ -37,7 +37,7 @@ from diorama_app.panels.projects import Projects
 from diorama_app.panels.properties import Properties
 from diorama_app.panels.room_size import RoomSize
 from diorama_app.panels.supports import Supports
-from diorama_app.panels.tabs import remember_tabs
+from diorama_app.panels.tabs import Tabs
 from diorama_app.panels.toast import Toasts
 from diorama_app.panels.toolbar import Toolbar
 from diorama_app.panels.unsaved import UnsavedChanges
@@ -162,7 +162,7 @@ class Editor:
             Toasts(gui, guest),
             Walls(gui, guest),
         ]
-        remember_tabs(gui, (LEFT_TABS, RIGHT_TABS))
+        guest.open_tab = Tabs(gui, (LEFT_TABS, RIGHT_TABS)).open
         left = gui.add_tab_group()
         scene, from_photo, arrange, projects = (left.add_tab(name) for name in LEFT_TABS)
         with scene:
@@ -174,15 +174,15 @@ class Editor:
             guest.curves = optimiser = Optimiser(gui, guest)
             panels.append(optimiser)
         with projects:
-            panels += [Projects(gui, guest, self.commands), Networks(gui, guest)]
+            panels += [Projects(gui, guest, self.commands, photo.take), Networks(gui, guest)]
         right = gui.add_panel()
         about, library = (right.add_tab(name) for name in RIGHT_TABS)
         with about:
             panels += [
                 Properties(gui, guest, self.commands),
-                Supports(gui, guest),
                 OwnModel(gui, guest),
                 Alternatives(gui, guest),
+                Supports(gui, guest),
                 Evidence(gui, guest),
             ]
         with library:

@@ -75,6 +75,8 @@ class Guest:
         """Closes the dialog that is open over the page, if one is."""
         self.toast: Callable[[str, bool], None] = lambda message, undo: None
         """Shows a line at the foot of the view, with a button that undoes when asked."""
+        self.open_tab: Callable[[str], None] = lambda name: None
+        """Brings a tab of the panels to the front."""
         self.open_board: Callable[[], None] = lambda: None
         """Shows the photo with its boxes, to draw on."""
 

@@ -92,6 +92,9 @@ STYLE = """
   color: #8fc0ff; }
 .dio-toast.stay { animation: none; background: #1d4f9eee; }
 @keyframes dio-fade { 100% { opacity: 0; visibility: hidden; } }
+.mantine-Paper-root:has(> .mantine-Paper-root + [aria-hidden=true]) { border-color: transparent;
+  border-top-color: var(--mantine-color-default-border); margin-bottom: 0 !important; }
+.mantine-Paper-root:has(> .mantine-Paper-root + [aria-hidden=true]) > :last-child > div { padding: 2px; }
 canvas[data-engine] { background: linear-gradient(#f3f5f8, #dfe4eb); }
 :root[data-mantine-color-scheme="dark"] canvas[data-engine] { background: linear-gradient(#2a2f37, #1c2026); }
 </style>

@@ -125,6 +125,7 @@ class PhotoPanel:
         for warning in made.warnings[:3]:
             self._guest.notice(warning)
         if kind == "photo":
+            self._guest.open_tab("Photo")
             self._open_board()
         else:
             self._redraw_boards()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import io
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import viser
@@ -29,7 +30,9 @@ COPY = (
 class Projects:
     """Save, export and the list of recent projects."""
 
-    def __init__(self, gui: viser.GuiApi, guest: Guest, commands: CommandTable) -> None:
+    def __init__(
+        self, gui: viser.GuiApi, guest: Guest, commands: CommandTable, take_photo: Callable[[str, bytes], None]
+    ) -> None:
         self._guest = guest
         self._pictures: dict[tuple[str, float], str] = {}
         self._status = LiveHtml(gui, self._act)
@@ -37,6 +40,15 @@ class Projects:
         on_press(self._export, lambda: guest.post(lambda: work.export_glb(guest)))
         save = gui.add_button("Save now", color="gray", hint=commands["save"].tooltip)
         on_press(save, lambda: guest.post(lambda: commands["save"].run(guest)))
+        new = gui.add_upload_button(
+            "New from a photo", color="green", mime_type="image/*", hint="A project of its own; this one stays as it is"
+        )
+
+        async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
+            file = event.target.value
+            guest.post(lambda: take_photo(file.name, file.content))
+
+        new.on_upload(uploaded)
         self._notes = LiveHtml(gui)
         self._list = LiveHtml(gui, self._act)
 
@@ -62,12 +74,16 @@ class Projects:
         notes = "".join(f"<p>{text(note[:1].upper() + note[1:])}.</p>" for note in room.notes[:6])
         self._notes.show(f'<h4>How this scene was made</h4><div class="card">{notes}</div>' if notes else "")
         rows = "".join(self._row(folder) for folder in project_care.recent_projects(room.projects_dir)[:RECENT])
+        binned = project_care.in_bin(room.projects_dir)
         undelete = ""
-        if room.binned is not None:
-            gone = text(room.binned.name.rsplit("-", 1)[0])
+        if room.binned in binned:
+            gone = text(project_care.name_of(room.binned))
             undelete = f'<div class="job card warn"><span class="words">{gone} is in the bin.</span>'
-            undelete += button("Bring back", "unbin") + "</div>"
-        self._list.show(f"<h4>Recent projects</h4>{undelete}{rows}" if rows or undelete else "")
+            undelete += button("Bring back", "unbin", room.binned.name) + "</div>"
+        bin_of = "".join(_binned_row(place) for place in binned[:RECENT] if place != room.binned)
+        if bin_of:
+            bin_of = f"<details><summary class='dim'>Bin</summary>{bin_of}</details>"
+        self._list.show(f"<h4>Recent projects</h4>{undelete}{rows}{bin_of}" if rows or undelete or bin_of else "")
 
     def _row(self, folder: Path) -> str:
         room = self._guest.room
@@ -104,12 +120,20 @@ class Projects:
             scene = project_care.earlier_scene(room.project, action.arg)
             room.textures = {**room.textures, **room.project.textures(scene)}
             room.commit("go back to an earlier version", scene, by=guest, selection=())
-        elif action.do == "unbin" and room.binned is not None:
-            project_care.out_of_bin(room.binned, room.projects_dir)
-            room.binned = None
+        elif action.do == "unbin":
+            self._bring_back(action.arg)
         elif action.do in ("open", "copy", "bin"):
             self._with_listed(action.do, action.arg)
         room.refresh_panels()
+
+    def _bring_back(self, name: str) -> None:
+        room = self._guest.room
+        place = next((p for p in project_care.in_bin(room.projects_dir) if p.name == name), None)
+        if place is None:
+            raise EditRefused("that project is gone")
+        folder = project_care.out_of_bin(place, room.projects_dir)
+        room.binned = None
+        self._guest.toast(f"{project_care.name_of(folder)} is back", False)
 
     def _with_listed(self, do: str, name: str) -> None:
         guest, room = self._guest, self._guest.room
@@ -130,6 +154,11 @@ class Projects:
                 raise EditRefused(f"{room.jobs.status.title} is still running; cancel it or wait")
             room.open_project(Project.open(folder))
             room.notice_all(f"Opened {room.project.name if room.project else ''}.", "good")
+
+
+def _binned_row(place: Path) -> str:
+    name = text(project_care.name_of(place))
+    return f'<div class="row"><span class="name">{name}</span>' + button("Bring back", "unbin", place.name) + "</div>"
 
 
 def _is_open(room: Room, folder: Path) -> bool:

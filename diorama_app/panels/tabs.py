@@ -33,6 +33,7 @@ const recall = (left) => {
   for (const tab of there)
     if (kept.includes(named(tab)) && tab.getAttribute('aria-selected') !== 'true') enter(tab);
 };
+window.__dioOpenTab = (name) => { const tab = tabs().find((t) => named(t) === name); if (tab) enter(tab); };
 recall(%d);
 if (!window.__dioTabs) {
   window.__dioTabs = 'kept';
@@ -43,12 +44,23 @@ if (!window.__dioTabs) {
 """viser's tabs answer to a press of the mouse, not to a click; a key does the same."""
 
 
-def remember_tabs(gui: viser.GuiApi, groups: Sequence[Sequence[str]]) -> None:
-    """Open the tabs that were open here the last time, and note which are from now on.
+class Tabs:
+    """The tabs of one page."""
 
-    Args:
-        gui: the page.
-        groups: names of the tabs that stand side by side.
-    """
-    names = json.dumps([list(group) for group in groups])
-    gui.add_html(run_once(_KEEPER % (names, json.dumps(KEPT_AS), TRIES)))
+    def __init__(self, gui: viser.GuiApi, groups: Sequence[Sequence[str]]) -> None:
+        """Open the tabs that were open here the last time, and note which are from now on.
+
+        Args:
+            gui: the page.
+            groups: names of the tabs that stand side by side.
+        """
+        names = json.dumps([list(group) for group in groups])
+        gui.add_html(run_once(_KEEPER % (names, json.dumps(KEPT_AS), TRIES)))
+        self._opener = gui.add_html("")
+        self._asked = 0
+
+    def open(self, name: str) -> None:
+        """Bring a tab to the front."""
+        self._asked += 1
+        opening = f"window.__dioOpenTab && window.__dioOpenTab({json.dumps(name)}); /* {self._asked} */"
+        self._opener.content = run_once(opening)

@@ -6,11 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 from playwright.sync_api import expect
 
 from diorama_core.project.storage import Project
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
+from tests.app.small_room import plain_photo
 from tests.e2e.browser import EditorPage
 
 pytestmark = pytest.mark.browser
@@ -223,6 +225,28 @@ def test_projects_are_renamed_copied_binned_and_brought_back(editor: EditorPage,
     expect(copy).to_have_count(0)
     editor.button("Bring back").click()
     expect(copy).to_be_visible()
+    copy.get_by_title("Move to the bin").click()
+    expect(copy.get_by_title("Duplicate")).to_have_count(0)
+
+    def another_session() -> None:
+        room.binned = None
+        room.refresh_panels()
+
+    room.desk.post(another_session)
+    editor.page.get_by_text("Bin", exact=True).click()
+    copy.get_by_role("button", name="Bring back").click()
+    expect(copy.get_by_title("Duplicate")).to_be_visible()
+
+
+def test_a_photo_begins_another_project_from_the_list_of_projects(editor: EditorPage, tmp_path: Path) -> None:
+    photo = tmp_path / "attic.png"
+    Image.fromarray(plain_photo().rgb).save(photo)
+    editor.tab("Project")
+    editor.upload("New from a photo", photo)
+    editor.at_board()
+    expect(editor.page.get_by_role("tab", name="Photo", exact=True)).to_have_attribute("aria-selected", "true")
+    expect(editor.page.locator("p").filter(has_text="attic.png").first).to_be_visible()
+    assert not editor.running.room.draft.from_project, "the open project stays as it is"
 
 
 def test_dark_keys_palette_and_units(editor: EditorPage) -> None:
