@@ -31,13 +31,20 @@ def library_of(project: Project) -> ShapeLibrary:
 
 
 def write_arrangements(
-    project: Project, built: Built, layout: LayoutStage, count: int, progress: Progress
+    project: Project, built: Built, library: ShapeLibrary, layout: LayoutStage, count: int, progress: Progress
 ) -> tuple[str, ...]:
     """Write `count` scenes, or as many as differ: `scene.json` and `arrangements/scene_2.json`...; returns their paths
     in the project."""
-    names = ["scene.json"]
-    for rank in range(1, min(count, arrangement_count(built.observed))):
-        observed = arrangement(built.observed, rank)
+    from diorama_core.retrieval.likeness import EmbeddedLikeness
+
+    likeness, names = EmbeddedLikeness(library), ["scene.json"]
+
+    def alike(a: str, b: str) -> float:
+        return likeness.form_agreement(library.shape(a), library.shape(b))
+
+    different = arrangement_count(built.observed, alike) if count > 1 else 1
+    for rank in range(1, min(count, different)):
+        observed = arrangement(built.observed, rank, alike)
         arranged, report = layout.optimise(observed, replace(progress, start=0.0, span=1.0))
         name = f"arrangements/scene_{rank + 1}.json"
         write_atomically(project.folder / name, scene_to_json(edits.set_metrics(arranged, report.after)).encode())

@@ -134,7 +134,7 @@ def _build(a: argparse.Namespace) -> None:
     project.update_info(library=a.library)
     with progress_bar() as progress:
         built = build_project(project, read.inputs, library, stages=stages, warnings=read.warnings, progress=progress)
-        scenes = write_arrangements(project, built, stages.layout, a.arrangements, progress)
+        scenes = write_arrangements(project, built, library, stages.layout, a.arrangements, progress)
     report = build_report(project, built, scenes)
     if a.json:
         print(json.dumps(report))

@@ -1,11 +1,12 @@
 """Other readings of one picture: every thing in another of its ranked shapes (the paper's Arrangement 1, 2, 3).
 
 In one arrangement things of a set stay a set: what has one shape in the best reading has one shape in every other.
+Arrangements are to look different: of shapes of one form, which the photo's colours would make the same, one is taken.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,9 +17,14 @@ from diorama_core.scene.types import Candidate, Pose, Scene, SceneObject
 
 LEAST_PLAUSIBLE = 0.3
 """A shape is offered in another arrangement when it scores at least this share of its set's best."""
+SAME_FORM = 0.89
+"""Shapes as alike as this in form (`EmbeddedLikeness.form_agreement`) are told apart by their colours only."""
+
+Alike = Callable[[str, str], float]
+"""How alike two shapes are in form, 0 to 1, by their ids."""
 
 
-def arrangement(observed: Scene, rank: int) -> Scene:
+def arrangement(observed: Scene, rank: int, alike: Alike | None = None) -> Scene:
     """The observed scene with every set in the `rank`-th of its plausible shapes, posed as fitted to the picture.
 
     A set with fewer plausible shapes takes its last; what is locked stays.
@@ -26,10 +32,11 @@ def arrangement(observed: Scene, rank: int) -> Scene:
     Args:
         observed: Before any layout, as the stages saw it.
         rank: 0 is the scene itself.
+        alike: Tells shapes of one form; None takes all shapes for different.
     """
     scene = observed
     for members in _sets(observed):
-        shapes = plausible_shapes(members)
+        shapes = plausible_shapes(members, alike)
         shape_id = shapes[min(rank, len(shapes) - 1)]
         for item in members:
             if item.shape_id != shape_id:
@@ -37,13 +44,16 @@ def arrangement(observed: Scene, rank: int) -> Scene:
     return _equally_large(scene) if rank else scene
 
 
-def arrangement_count(observed: Scene) -> int:
+def arrangement_count(observed: Scene, alike: Alike | None = None) -> int:
     """How many arrangements differ: the most shapes that any set may plausibly have."""
-    return max((len(plausible_shapes(members)) for members in _sets(observed)), default=1)
+    return max((len(plausible_shapes(members, alike)) for members in _sets(observed)), default=1)
 
 
-def plausible_shapes(members: Sequence[SceneObject]) -> tuple[str, ...]:
-    """The shape that a set has, then those that its members together find likely, best first."""
+def plausible_shapes(members: Sequence[SceneObject], alike: Alike | None = None) -> tuple[str, ...]:
+    """The shape that a set has, then those that its members together find likely, best first, each of another form.
+
+    Things that are not painted in a colour of the photo keep their shapes' own, which differ.
+    """
     own = members[0].shape_id
     totals: dict[str, float] = {}
     for item in members:
@@ -52,7 +62,14 @@ def plausible_shapes(members: Sequence[SceneObject]) -> tuple[str, ...]:
             share = candidate.score / best if best > 0 else 0.0
             totals[candidate.shape_id] = totals.get(candidate.shape_id, 0.0) + share / len(members)
     others = sorted((s for s in totals if s != own), key=lambda s: (-totals[s], s))
-    return (own, *(s for s in others if totals[s] >= LEAST_PLAUSIBLE))
+    likely = [s for s in others if totals[s] >= LEAST_PLAUSIBLE]
+    if alike is None or any(item.colour is None for item in members):
+        return (own, *likely)
+    kept = [own]
+    for shape_id in likely:
+        if all(alike(shape_id, k) < SAME_FORM for k in kept):
+            kept.append(shape_id)
+    return tuple(kept)
 
 
 def _sets(scene: Scene) -> list[list[SceneObject]]:

@@ -112,6 +112,15 @@ class EmbeddedLikeness:
         """Make and keep what is compared of a shape, where that has not been done yet."""
         self._views(shape, self._look(shape))
 
+    def form_agreement(self, a: Shape, b: Shape) -> float:
+        """How alike two shapes are from all sides, whatever their size and colours: 1 for the same, 0 or less for none.
+
+        0 for a shape without a surface.
+        """
+        rows = [self._views(s, self._look(s))[:, :_FORM_WIDTH] for s in (a, b)]
+        lengths = [np.sqrt(np.square(r).sum()) for r in rows]
+        return float((rows[0] * rows[1]).sum() / max(lengths[0] * lengths[1], 1e-9))
+
     def _look(self, shape: Shape) -> Look:
         parts = partial(self.library.parts, shape.id)
         return SHARED_LOOKS.get(shape.content_hash, default_cache_dir() / "looks", parts)

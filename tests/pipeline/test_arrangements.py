@@ -55,6 +55,22 @@ def test_what_scores_too_little_is_no_alternative() -> None:
     assert arrangement_count(room()) == 1
 
 
+def test_shapes_of_one_form_are_one_alternative_where_the_photo_gives_the_colour() -> None:
+    red = replace(
+        thing("s", "sofa", 0.0, {"grey": 0.9, "tan": 0.8, "rolled": 0.7, "rolled blue": 0.6}), colour=(1, 0, 0)
+    )
+    of_one_form = ({"grey", "tan"}, {"rolled", "rolled blue"})
+
+    def alike(a: str, b: str) -> float:
+        return 0.95 if any({a, b} <= form for form in of_one_form) else 0.7
+
+    assert plausible_shapes([red], alike) == ("grey", "rolled")
+    assert plausible_shapes([red]) == ("grey", "tan", "rolled", "rolled blue")
+    assert plausible_shapes([replace(red, colour=None)], alike) == plausible_shapes([red])
+    assert arrangement_count(room(red), alike) == 2
+    assert arrangement(room(red), 1, alike).object("s").shape_id == "rolled"
+
+
 def test_shapes_take_the_pose_that_was_fitted_to_them() -> None:
     alone = thing("s", "sofa", 0.0, {"a": 0.9, "b": 0.8})
     better = replace(alone.candidates[1], pose=Pose.upright((0.2, 0.1, 0.4), 1.2, (1.1, 0.9, 0.95)))

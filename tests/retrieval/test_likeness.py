@@ -56,6 +56,14 @@ def test_of_what_is_not_seen_only_colours_speak(tmp_path: Path) -> None:
     assert (EmbeddedLikeness(LIBRARY, tmp_path).of(nothing, CHAIRS) == 0.5).all()
 
 
+def test_forms_of_shapes_agree_whatever_their_size_and_colours(tmp_path: Path) -> None:
+    likeness = EmbeddedLikeness(LIBRARY, tmp_path)
+    chair, low, sofa, *_ = CHAIRS
+    assert likeness.form_agreement(chair, chair) == pytest.approx(1.0)
+    assert likeness.form_agreement(chair, sofa) < likeness.form_agreement(low, sofa) < 0.99
+    assert likeness.form_agreement(low, sofa) == pytest.approx(likeness.form_agreement(sofa, low))
+
+
 def test_features_are_made_once_and_survive_a_damaged_file(tmp_path: Path) -> None:
     made = []
 
