@@ -38,8 +38,6 @@ from diorama_core.project.storage import Project
 from diorama_core.scene.types import Pose, Scene
 
 JOB_TOLD_EVERY_S = 0.15
-LOW_GRAPHICS_TRIANGLES = 400
-"""Of one object, for browsers that draw without a graphics card."""
 MESH_OVERLAP_S = 0.45
 """How long an old mesh stays while the browser parses its successor."""
 
@@ -79,7 +77,7 @@ class Room:
         self.desk = Desk(lambda message: self.notice_all(message, "bad"))
         self.jobs = Jobs(self._job_changed, self._job_ended)
         self.saver = Saver(on_error=lambda message: self.notice_all(message, "bad"))
-        self.shapes = ShapeBytes(library, most_triangles=LOW_GRAPHICS_TRIANGLES if low_graphics else None)
+        self.shapes = ShapeBytes(library, light=low_graphics)
         self.preparer = Preparer(library)
         self.checker = Checker(library, lambda found: self.desk.post(lambda: self._badged(found)))
         self.records = Records(library)
@@ -233,6 +231,7 @@ class Room:
         self.read_notes()
         self.photo = None if inputs is None else inputs.photo
         self.draft = Draft()
+        self.shapes.expect(len(scene.objects))
         if inputs is not None:
             self.draft = Draft(inputs, inputs.boxes, from_project=True, name=project.name)
         self.document.open(scene, inputs)

@@ -21,17 +21,30 @@ from diorama_core.scene.types import Finish, Plane
 Colour = tuple[float, float, float]
 KEPT = 256
 """How many shapes' bytes are kept in memory."""
+LIGHT_SCENE_TRIANGLES = 24_000
+"""Of a scene's models, for browsers that draw without a graphics card."""
+LIGHT_SHAPE_TRIANGLES = (400, 2000)
+"""Fewest and most of one model there."""
 
 
 class ShapeBytes:
     """GLB bytes of library shapes, in their own colours or others; +Z up, metres. Safe between threads."""
 
-    def __init__(self, library: ShapeLibrary, *, most_triangles: int | None = None) -> None:
-        """Nothing is made yet; with `most_triangles` models are simplified to about so many."""
+    def __init__(self, library: ShapeLibrary, *, light: bool = False) -> None:
+        """Nothing is made yet; `light` models are simplified, the more the more of them there are."""
         self._library = library
-        self._most_triangles = most_triangles
+        self._most_triangles = LIGHT_SHAPE_TRIANGLES[0] if light else None
         self._kept: OrderedDict[tuple[str, Colour | None, Finish | None], bytes] = OrderedDict()
         self._lock = threading.Lock()
+
+    def expect(self, count: int) -> None:
+        """From now on shapes are made for a scene of about `count` objects."""
+        with self._lock:
+            if self._most_triangles is not None:
+                most = int(np.clip(LIGHT_SCENE_TRIANGLES // max(count, 1), *LIGHT_SHAPE_TRIANGLES))
+                if most != self._most_triangles:
+                    self._kept.clear()
+                self._most_triangles = most
 
     def glb(self, shape_id: str, colour: Colour | None = None, finish: Finish | None = None) -> bytes:
         """The shape's GLB; with `colour` (sRGB 0 to 1) and `finish` on its main material."""

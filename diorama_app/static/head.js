@@ -8,7 +8,7 @@
   const REPLY_MS = 80; // for the server to say where the thing in the hand is now
   const MOUNT_MS = 50; // for React to put in place what came together
   const PARSE_MS = 250; // for a model to be read
-  const COARSE = 0.6; // pixels of the picture for one of the screen, both ways, while something moves
+  const COARSE = 0.5; // pixels of the picture for one of the screen, both ways, while something moves
   const HEARTBEAT_MS = [1000, 10000]; // viser's pictures of a page at rest: how often, and how often here
   const MOVES = /^(SetPosition|SetOrientation|SetBonePosition|SetBoneOrientation|SetCamera)/;
   const original = HTMLCanvasElement.prototype.getContext;
@@ -48,7 +48,8 @@
   function drawSparingly(mutable) {
     const store = mutable.scene.__r3f.root;
     const { gl: renderer, invalidate } = store.getState();
-    const fixed = new URLSearchParams(location.search).has("fixedDpr");
+    const given = new URLSearchParams(location.search).get("fixedDpr");
+    const fixed = given === null ? undefined : Number(given);
     let moving = false; // since the last picture of a page at rest
     let looking = false; // the camera moved from the last picture to this one
     let seenFrom;
@@ -81,7 +82,8 @@
     const render = renderer.render.bind(renderer);
     renderer.render = (scene, camera) => {
       if (camera === mutable.camera && renderer.getRenderTarget() === null) {
-        const ratio = store.getState().viewport.dpr * (moving && !fixed ? COARSE : 1);
+        // Not viser's own number: it falls where pictures are slow, and stays there.
+        const ratio = fixed ?? devicePixelRatio * (moving ? COARSE : 1);
         if (renderer.getPixelRatio() !== ratio) renderer.setPixelRatio(ratio);
         looking = seenFrom !== undefined && !camera.matrixWorld.equals(seenFrom);
         seenFrom = camera.matrixWorld.clone();

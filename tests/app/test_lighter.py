@@ -50,6 +50,13 @@ def test_models_with_parts_it_does_not_know_stay_as_they_are() -> None:
     assert lighter_glb(data, 100) is data
 
 
-def test_shapes_are_sent_lighter_when_asked(library: BuiltInLibrary) -> None:
-    full, light = ShapeBytes(library), ShapeBytes(library, most_triangles=600)
-    assert len(light.glb("bed-channel-green")) < len(full.glb("bed-channel-green"))
+def test_shapes_are_sent_lighter_when_asked_and_the_fewer_the_finer(library: BuiltInLibrary) -> None:
+    full, light = ShapeBytes(library), ShapeBytes(library, light=True)
+    whole = triangles(scene_of(full.glb("bed-channel-green")))
+    counts = []
+    for objects in (6, 20, 200):
+        light.expect(objects)
+        counts.append(triangles(scene_of(light.glb("bed-channel-green"))))
+    assert whole > counts[0] > counts[1] > counts[2] > 300
+    full.expect(200)
+    assert triangles(scene_of(full.glb("bed-channel-green"))) == whole
