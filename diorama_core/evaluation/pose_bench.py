@@ -154,7 +154,8 @@ def _one_room(view: TruthView, solvers: SideBySide, tally: _Tally, progress: Pro
     depths = tuple(dict.fromkeys(depth for depth, _ in CONDITIONS))
     progress.report(0.0, f"{name}: perception")
     seen = {d: _tried(see, inputs_with(view, d), library) for d in depths}
-    retrieved = {d: _retrieved(solvers, seen[d]) for d in tally.kept}
+    looked_for = {*tally.kept, *(depth for depth, shapes in CONDITIONS if shapes != GIVEN)}
+    retrieved = {d: _retrieved(solvers, seen[d]) for d in depths if d in looked_for}
     for turn, (depth, shapes) in enumerate(CONDITIONS):
         progress.report(0.1 + 0.1 * turn, f"{name}: {depth}, {shapes}")
         scenes = _scenes(view, solvers, seen[depth], retrieved.get(depth), shapes)

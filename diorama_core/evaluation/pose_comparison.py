@@ -53,6 +53,7 @@ CONDITIONS = (
     (NOISY_DEPTH, GIVEN),
     (TRUE_DEPTH, IN_LIBRARY),
     (TRUE_DEPTH, REMOVED),
+    (NOISY_DEPTH, IN_LIBRARY),
 )
 """(depth, shapes) of every comparison."""
 COMPARED_SHAPES = 4
