@@ -101,7 +101,8 @@ class Guest:
     def select(self, ids: Iterable[str]) -> None:
         """Select exactly these objects, in this order."""
         self.selection = tuple(i for i in dict.fromkeys(ids) if self.room.scene.has_object(i))
-        self.room.document.note_selection(self.selection)
+        if len(self.room.guests) == 1:  # where several work, undo must not select what another one had selected
+            self.room.document.note_selection(self.selection)
         self.room.refresh_cursors()
 
     def toggle(self, object_id: str) -> None:
@@ -138,7 +139,9 @@ class Guest:
         """Outlines, name tags and the others' cursors; around a preview where one is given."""
         room = self.room
         others = [(g.name, g.colour, g.selection) for g in room.guests.values() if g is not self]
-        badges = room.badges if self.settings.badges else {}
+        # Over the photo, marks would seem to be the photo's.
+        warned = self.settings.badges and self.view.overlay_opacity < 0.5
+        badges = room.badges if warned else {}
         self.marks.show(
             scene or room.scene,
             room.viewport.node_name,
@@ -146,7 +149,7 @@ class Guest:
             others,
             badges,
             names=self.settings.names,
-            unsure=self.settings.badges,
+            unsure=warned,
         )
 
     def notice(self, message: str, kind: NoticeKind = "info") -> None:

@@ -49,6 +49,7 @@ class Views:
         if not guest.view.through_photo and opacity > 0.0:
             self.photo(guest)
         guest.view.show_overlay(camera, photo.rgb, opacity)
+        guest.show_marks()
 
     def focus(self, guest: Guest) -> None:
         """Look at what is selected from nearby."""

@@ -23,9 +23,6 @@ class LibraryPanel:
         self._guest = guest
         self._words = gui.add_text("Search", "", hint="For example: armchair, round table, blue")
         on_change(self._words, lambda v: guest.post(self.refresh, key="search"))
-        self._where = LiveHtml(gui)
-        self._html = LiveHtml(gui, self._act)
-        self._drawn: tuple[object, ...] = ()
         upload = gui.add_upload_button(
             "Add a model file", hint="GLB, OBJ, PLY, STL or FBX; then click where it should stand"
         )
@@ -35,6 +32,9 @@ class LibraryPanel:
             guest.post(lambda: import_model(guest, file.name, file.content))
 
         upload.on_upload(uploaded)
+        self._where = LiveHtml(gui)
+        self._html = LiveHtml(gui, self._act)
+        self._drawn: tuple[object, ...] = ()
 
     def refresh(self) -> None:
         """Draw what was found."""

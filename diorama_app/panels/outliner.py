@@ -79,6 +79,9 @@ class Outliner:
                 raise EditRefused("drag a row of the list onto another")
             editing.attach(guest, child, parent)
             return
+        if action.do == "start":
+            guest.open_tab("Photo")
+            return
         if action.do == "wrong":
             guest.select(guest.room.badges)
             return
@@ -108,7 +111,8 @@ def tree_html(
 ) -> str:
     """The rows, nested; every name escaped."""
     if not scene.objects and not scene.architecture.planes:
-        return '<div class="card">Nothing here yet. Upload a photo of a room in the <b>Photo</b> panel.</div>'
+        start = button("Start with a photo", "start", title="Upload one, or describe a room in words")
+        return f'<div class="card">Nothing here yet.<div class="bar" style="margin:6px 0 0 0">{start}</div></div>'
     tree = _Tree(scene, selection, badges or {}, others)
     parts = [_problems(tree)]
     for plane in scene.architecture.planes:

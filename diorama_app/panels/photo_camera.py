@@ -51,7 +51,8 @@ class PhotoCamera:
             self._of, self._typed = camera, {}
             self._guest.trial_camera = None
         values = {**figures(camera), **self._typed}
-        rows = "".join(_row(label, name, f"{values[name]:.1f}", hint) for name, (label, hint) in FIELDS.items())
+        shown_as = {name: f"{round(value, 1) + 0.0:.1f}" for name, value in values.items()}  # no minus before a zero
+        rows = "".join(_row(label, name, shown_as[name], hint) for name, (label, hint) in FIELDS.items())
         shown = format_length(camera_height_m(room.scene) or 0.0, self._guest.settings.unit)
         rows += _row("Above the floor", "height", shown, "Rescales everything at once")
         again = button(

@@ -205,6 +205,9 @@ def test_an_empty_room_says_what_to_do(
     project = make_project(tmp_path / "projects" / "empty", Scene())
     editor = visit(serve(project.folder, PlainLibrary()))
     expect(editor.page.get_by_text("Nothing here yet.")).to_be_visible()
+    editor.button("Start with a photo").click()
+    expect(editor.page.get_by_role("tab", name="Photo", exact=True)).to_have_attribute("aria-selected", "true")
+    editor.tab("Scene")
     editor.tab("Arrange")
     expect(editor.button("Optimise layout")).to_be_disabled()
 
