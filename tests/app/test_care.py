@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 import trimesh
 
 from diorama_app import project_care
-from diorama_app.arrangements import arranged, arrangement_count
+from diorama_app.arrangements import arranged, arrangement_count, is_arranged
 from diorama_app.importing import import_model
 from diorama_app.layout_run import LayoutRun
 from diorama_app.measuring import point_under
@@ -97,6 +98,22 @@ def test_arrangements_leave_what_is_locked() -> None:
     assert other.object("chair_2").shape_id != scene.object("chair_2").shape_id
     assert arranged(other, 0).object("chair_2").shape_id == scene.object("chair_2").shape_id
     assert arrangement_count(Scene()) == 0
+
+
+def test_in_another_arrangement_sets_stay_sets() -> None:
+    scene = furnished_scene()
+    one, other = scene.object("chair_1"), scene.object("chair_2")
+    reordered = (one.candidates[0], *one.candidates[:0:-1])  # the same best shape, the others the other way round
+    scene = replace(
+        scene, objects=tuple(replace(o, candidates=reordered) if o.id == other.id else o for o in scene.objects)
+    )
+    for rank in range(arrangement_count(scene)):
+        taken = arranged(scene, rank)
+        assert taken.object("chair_1").shape_id == taken.object("chair_2").shape_id
+        assert is_arranged(taken, rank)
+    mixed = arranged(scene, 1, only={"chair_1"})
+    assert mixed.object("chair_2") == scene.object("chair_2")
+    assert mixed.object("chair_1").shape_id != one.shape_id
 
 
 def test_costs_that_begin_late_or_end_early_keep_their_level() -> None:
