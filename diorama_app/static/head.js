@@ -111,7 +111,9 @@
     };
     store.setState({ invalidate: mounted });
 
+    let draining = false; // what messages ask for while they are carried out, React will ask for again
     const requestRender = () => {
+      if (draining) return;
       const queue = mutable.messageQueue;
       moving = true;
       restSoon();
@@ -122,7 +124,12 @@
         draw();
       } else {
         queue.filter((message) => message.type === "GlbMessage").forEach((message) => models.add(message.name));
-        mutable.drainMessageQueue?.();
+        draining = true;
+        try {
+          mutable.drainMessageQueue?.();
+        } finally {
+          draining = false;
+        }
         mounted();
       }
     };
