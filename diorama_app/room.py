@@ -186,8 +186,11 @@ class Room:
         inputs = self.document.inputs
         if inputs is None or inputs is self._inputs_kept:
             return
-        if self.project is not None:
-            self.project.save_inputs(inputs, self.project.info().get("warnings", ()))
+        try:
+            if self.project is not None:
+                self.project.save_inputs(inputs, self.project.info().get("warnings", ()))
+        except DioramaError as error:
+            self.notice_all(f"what you said of the photo is not saved: {error}", "bad")
         if self.draft.from_project:
             self.draft = self.draft.following(inputs)
         self._inputs_kept = inputs

@@ -6,7 +6,7 @@ The page is told where planes are and what hangs on them; it fades by itself, so
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import viser
@@ -155,9 +155,10 @@ def what_fades(
     """
     planes = {p.id: p for p in scene.architecture.planes}
     rows = [[plane_name(i), *_sides(p)] for i, p in planes.items() if plane_name(i) is not None]
+    parents = {s.child: s.parent for s in scene.supports}
     hung = []
     for item in scene.objects:
-        wall = planes.get(_held_by(scene, item.id))
+        wall = planes.get(_held_by(parents, item.id))
         if wall is not None and wall.role == "wall":
             normal, offset, ghost = _sides(wall)
             hung.append([object_name(item.id), normal, offset, 1.0 if item.id in selection else ghost])
@@ -173,9 +174,8 @@ def _rounded(vector: Any) -> list[float]:
     return [round(float(v), 4) for v in vector]
 
 
-def _held_by(scene: Scene, object_id: str) -> str:
+def _held_by(parents: Mapping[str, str], object_id: str) -> str:
     """The plane at the root of what holds an object up; empty for what nothing holds."""
-    parents = {s.child: s.parent for s in scene.supports}
     held = parents.get(object_id, "")
     while held in parents:
         held = parents[held]

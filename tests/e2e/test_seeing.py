@@ -133,3 +133,23 @@ def test_walls_fade_with_what_hangs_on_them_and_come_back(editor: EditorPage) ->
     editor.until(lambda: not view.through_photo and left(wall) == 1.0 and left(picture) == 1.0, "back")
     editor.settle()
     assert np.abs(editor.mean_colour(hangs) - solid).max() < 12.0, "as it was before"
+
+
+def test_a_fade_takes_a_few_frames_where_there_is_a_graphics_card(editor: EditorPage) -> None:
+    room, view = editor.running.room, editor.guest.view
+    wall = str(room.viewport.plane_name("wall_3"))
+    editor.until(lambda: editor.page.evaluate(LEFT_OF, wall) == 1.0, "solid from inside")
+    room.low_graphics = False
+    try:
+        room.desk.post(editor.guest.refresh)
+        editor.page.wait_for_function("window.__dioWalls.room.ms > 0")
+        log = "(w) => { window.__seen = []; setInterval(() => window.__seen.push(window.__dioWalls.shares[w]), 5); }"
+        editor.page.evaluate(log, wall)
+        hangs = room.scene.object("picture_1").pose.position
+        room.desk.post(lambda: view.look(hangs + np.array([0.5, 5.0, 1.5]), hangs))
+        editor.until(lambda: editor.page.evaluate(LEFT_OF, wall) < 0.2, "faded")
+        between = [share for share in editor.page.evaluate("window.__seen") if 0.2 < share < 0.95]
+        assert between, "not all at once"
+        assert between == sorted(between, reverse=True)
+    finally:
+        room.low_graphics = True
