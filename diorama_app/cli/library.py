@@ -26,7 +26,7 @@ def add_library(commands: Any) -> None:
     )
     _add_library_name(build)
     build.add_argument("--parts", action="store_true", help="also the convex parts that keep shapes apart (minutes)")
-    build.add_argument("--views", action="store_true", help="also what a search by picture compares")
+    build.add_argument("--views", action="store_true", help="also what retrieval and a search by picture compare")
     build.add_argument("--templates", action="store_true", help="also all pose templates, some 2 MB a shape")
     build.add_argument("--workers", type=int, metavar="N", help="processes (default: all cores)")
     build.add_argument("--ray", metavar="ADDRESS", help="work on a Ray cluster: auto, HOST:PORT, or local to start one")

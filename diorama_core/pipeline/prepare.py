@@ -14,6 +14,7 @@ from diorama_core.library.store import BUILT_IN, open_library
 from diorama_core.progress import Progress
 from diorama_core.render.image_search import ImageSearch
 from diorama_core.render.template_cache import TemplateCache
+from diorama_core.retrieval.likeness import EmbeddedLikeness
 from diorama_core.workers import Workers, workers
 
 _CHUNK = 12
@@ -47,7 +48,8 @@ def prepare_library(
         name: Of the library, as in `open_library`.
         parts: Also the convex parts that the layout optimiser keeps apart, several times the work of all else; else
             they are made for a scene's own shapes when they are first needed.
-        views: Also what a search by picture compares.
+        views: Also what retrieval and a search by picture compare; else it is made of shapes when they are first
+            candidates, some 60 ms a shape.
         templates: Also all pose templates, some two megabytes a shape; else they are made for candidates only.
         pool: Where the work is done; by default all cores of this machine.
         progress: Reports and cancellation.
@@ -63,7 +65,7 @@ def prepare_library(
     failures: list[tuple[str, str]] = []
     done = 0
     chunks = [tuple(s.id for s in shapes[i : i + _CHUNK]) for i in range(0, len(shapes), _CHUNK)]
-    for finished in pool.map(partial(_prepare, name, parts, templates), chunks):
+    for finished in pool.map(partial(_prepare, name, parts, views, templates), chunks):
         failures += finished.value if finished.value is not None else [(i, str(finished.error)) for i in finished.item]
         done += len(finished.item)
         whole.report(done / len(shapes), f"shapes: {done} of {len(shapes)}")
@@ -74,9 +76,10 @@ def prepare_library(
     return Prepared(len(shapes), tuple(sorted(failures)))
 
 
-def _prepare(name: str, parts: bool, templates: bool, shape_ids: Sequence[str]) -> list[tuple[str, str]]:
+def _prepare(name: str, parts: bool, views: bool, templates: bool, shape_ids: Sequence[str]) -> list[tuple[str, str]]:
     """Prepare some shapes; returns those that could not be, and why."""
-    library, views = open_library(name), TemplateCache(held=1)
+    library, kept = open_library(name), TemplateCache(held=1)
+    likeness = EmbeddedLikeness(library)
     looks = default_cache_dir() / "looks"
     failures = []
     for shape_id in shape_ids:
@@ -86,8 +89,10 @@ def _prepare(name: str, parts: bool, templates: bool, shape_ids: Sequence[str]) 
             SHARED_LOOKS.get(shape.content_hash, looks, partial(library.parts, shape_id))
             if parts:
                 parts_of_shape(library, shape)
+            if views:
+                likeness.prepare(shape)
             if templates:
-                views.get(library, shape)
+                kept.get(library, shape)
         except DioramaError as error:
             failures.append((shape_id, str(error)))
     return failures
