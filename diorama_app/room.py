@@ -193,7 +193,7 @@ class Room:
             self.notice_all(f"what you said of the photo is not saved: {error}", "bad")
         if self.draft.from_project:
             self.draft = self.draft.following(inputs)
-        self._inputs_kept = inputs
+        self._inputs_kept, self.photo = inputs, inputs.photo
 
     def _badged(self, found: Problems) -> None:
         self.badges = found
