@@ -148,7 +148,9 @@ def _info(a: argparse.Namespace) -> None:
 
 def _described(shape: Shape) -> str:
     depth, width, height = shape.size_m
-    turns = {1: "none", 2: "half a turn", 4: "quarter turns", 36: "round"}[shape.symmetry]
+    turns = {1: "none", 2: "half a turn", 4: "quarter turns", 36: "round"}.get(
+        shape.symmetry, f"{360 / shape.symmetry:g} degrees"
+    )
     rows = [
         ("id", shape.id),
         ("category", shape.category),

@@ -15,7 +15,8 @@ from diorama_core.errors import LibraryError
 from diorama_core.scene.types import FaceName
 from diorama_core.scene.values import ArrayValue, frozen_array
 
-SymmetryFold = Literal[1, 2, 4, 36]
+SymmetryFold = Literal[1, 2, 3, 4, 5, 6, 8, 36]
+ROUND: SymmetryFold = 36
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +79,7 @@ class Shape:
     source: str = "built in"
     licence: str = "MIT"
     symmetry: SymmetryFold = 1
-    """Turns about up that leave it looking the same; 36 means round."""
+    """Turns about up that leave its geometry and colours the same; 36 means round."""
     surfaces: tuple[SupportSurface, ...] = ()
     mass_kg: float = 1.0
     content_hash: str = ""

@@ -28,7 +28,7 @@ shapes = st.builds(
     category=words,
     caption=words,
     size_m=st.tuples(metres, metres, metres),
-    symmetry=st.sampled_from([1, 2, 4, 36]),
+    symmetry=st.sampled_from([1, 2, 3, 4, 5, 6, 8, 36]),
     surfaces=st.lists(surfaces, max_size=3).map(tuple),
     mass_kg=metres,
     synonyms=st.lists(words, max_size=3).map(tuple),

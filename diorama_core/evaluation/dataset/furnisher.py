@@ -69,7 +69,7 @@ class Furnisher:
     def sized(self, shape: Shape) -> Item:
         """A shape at a random size near its own."""
         log = self.rng.normal(0.0, self.spread.common) + self.rng.normal(0.0, self.spread.per_axis, 3)
-        if shape.symmetry >= 4:
+        if shape.symmetry >= 3:
             log[1] = log[0]
         sx, sy, sz = np.exp(np.clip(log, -0.1, 0.1))
         return Item(shape, (float(sx), float(sy), float(sz)))

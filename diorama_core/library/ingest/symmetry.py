@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import trimesh
 
@@ -10,17 +12,36 @@ from diorama_core.library.record import SymmetryFold
 
 _SAME = 0.035
 """Mean difference of two reliefs below which they are one shape seen twice."""
+_COINCIDES = 0.02
+"""Of the largest extent: how near nearly all of a turned surface comes to where it was."""
+_NEARLY_ALL = 0.98
+_POINTS = 1000
+_ODD_FOLDS: tuple[SymmetryFold, ...] = (3, 5)
 _QUARTER = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]])
 
 
 def symmetry_fold(mesh: trimesh.Trimesh, pictures: Relief) -> SymmetryFold:
-    """The fold of a mesh in its canonical frame, from its relief; 36 means round."""
+    """The fold of a mesh in its canonical frame, from its relief and from its turned surface; 36 means round."""
     if _differ(pictures, turned(pictures, _QUARTER @ _QUARTER)):
-        return 1
+        return next((fold for fold in _ODD_FOLDS if coincides(mesh, fold)), 1)
     x, y, _ = mesh.extents
     if abs(x - y) > 0.03 * max(x, y) or _differ(pictures, turned(pictures, _QUARTER)):
-        return 2
-    return 4 if _differ(pictures, _turned_by(mesh, 30.0)) or _differ(pictures, _turned_by(mesh, 45.0)) else 36
+        return 6 if coincides(mesh, 6) else 2
+    if _differ(pictures, _turned_by(mesh, 30.0)) or _differ(pictures, _turned_by(mesh, 45.0)):
+        return 8 if coincides(mesh, 8) else 4
+    return 36
+
+
+def coincides(mesh: trimesh.Trimesh, fold: int) -> bool:
+    """Whether a mesh turned by one of so many equal turns about up lies where it lay before."""
+    import open3d as o3d  # seconds to load
+
+    scene: Any = o3d.t.geometry.RaycastingScene(nthreads=1)  # takes arrays, unlike its stubs say
+    scene.add_triangles(np.asarray(mesh.vertices, np.float32), np.asarray(mesh.faces, np.uint32))
+    points, _ = trimesh.sample.sample_surface(mesh, _POINTS, seed=0)
+    moved = np.asarray(points) @ trimesh.transformations.rotation_matrix(2 * np.pi / fold, (0, 0, 1))[:3, :3].T
+    away = scene.compute_distance(o3d.core.Tensor.from_numpy(moved.astype(np.float32)), nthreads=1).numpy()
+    return bool(np.quantile(away, _NEARLY_ALL) < _COINCIDES * mesh.extents.max())
 
 
 def _turned_by(mesh: trimesh.Trimesh, angle_deg: float) -> Relief:

@@ -3,8 +3,9 @@ from __future__ import annotations
 import numpy as np
 import trimesh
 
+from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.ingest.relief import quarter_turns, relief, turned
-from diorama_core.library.ingest.symmetry import symmetry_fold
+from diorama_core.library.ingest.symmetry import coincides, symmetry_fold
 from tests.library.ingest.models import block, chair, table
 
 
@@ -38,3 +39,46 @@ def test_symmetry_folds_of_known_shapes() -> None:
     }
     for fold, mesh in folds.items():
         assert symmetry_fold(mesh, relief(mesh)) == fold
+
+
+def prism(sides: int) -> trimesh.Trimesh:
+    mesh = trimesh.creation.cylinder(radius=0.3, height=0.5, sections=sides)
+    mesh.apply_translation(-mesh.bounds.mean(axis=0))
+    return mesh
+
+
+def legs(count: int) -> trimesh.Trimesh:
+    """A round top on legs at equal angles, all within its rim."""
+    angles = 2 * np.pi * np.arange(count) / count
+    parts = [
+        trimesh.creation.cylinder(0.02, segment=[(0.25 * np.cos(a), 0.25 * np.sin(a), 0), (0, 0, 0.6)]) for a in angles
+    ]
+    parts.append(
+        trimesh.creation.cylinder(0.3, 0.04, transform=trimesh.transformations.translation_matrix((0, 0, 0.6)))
+    )
+    mesh = trimesh.util.concatenate(parts)
+    mesh.apply_translation(-mesh.bounds.mean(axis=0))
+    return mesh
+
+
+def test_folds_beyond_quarter_turns_are_found_where_the_surface_coincides() -> None:
+    for fold in (3, 5):
+        assert symmetry_fold(legs(fold), relief(legs(fold))) == fold
+    assert symmetry_fold(prism(6), relief(prism(6))) == 6
+
+
+def test_what_is_nearly_symmetric_is_not_said_to_be() -> None:
+    """A tripod with one leg longer; a mug, round but for its handle."""
+    crooked = trimesh.util.concatenate([legs(3), trimesh.creation.box((0.3, 0.05, 0.05))])
+    handle = trimesh.creation.box((0.1, 0.02, 0.2), trimesh.transformations.translation_matrix((0.33, 0, 0)))
+    mug = trimesh.util.concatenate([prism(48), handle])
+    assert not any(coincides(crooked, fold) for fold in (2, 3, 4, 5, 6, 8))
+    assert not any(coincides(mug, fold) for fold in (2, 3, 4, 5, 6, 8))
+
+
+def test_the_built_in_shapes_of_uncommon_folds_coincide_when_turned() -> None:
+    library = built_in_library()
+    uncommon = [s for s in library.shapes() if s.symmetry in (3, 5, 6, 8)]
+    assert len(uncommon) >= 6
+    for shape in uncommon:
+        assert coincides(library.mesh(shape.id), shape.symmetry), shape.id

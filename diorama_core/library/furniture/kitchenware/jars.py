@@ -264,7 +264,7 @@ DESIGNS: tuple[Design, ...] = (
     design("jar", "pasta", "glass jar of pasta", (0.11, 0.11, 0.26), "modern", canister, 36, glass=m.GLASS, lid=m.BIRCH, fill=CEREAL),
     design("jar", "coffee", "glass jar of coffee beans", (0.11, 0.11, 0.17), "industrial", canister, 36, glass=m.GLASS, lid=m.BLACK_STEEL, fill=BEANS),
     design("jar", "canister-cream", "cream kitchen canister", (0.13, 0.13, 0.19), "rustic", canister, 36, glass=m.CREAM, lid=m.OAK, fill=None),
-    design("jar", "clip", "preserving jar with a wire clip", (0.12, 0.12, 0.20), "rustic", clip_jar, 2, fill=CEREAL),
+    design("jar", "clip", "preserving jar with a wire clip", (0.12, 0.12, 0.20), "rustic", clip_jar, 1, fill=CEREAL),
     design("jar", "ginger", "blue and white ginger jar", (0.20, 0.20, 0.30), "classic", ginger_jar, 36, clay=m.PORCELAIN, band=m.NAVY),
     design("jar", "ginger-green", "green lidded jar", (0.17, 0.17, 0.24), "classic", ginger_jar, 36, clay=m.GREEN_GLAZE, band=m.BRASS),
     design("jar", "crock", "stoneware crock with a wooden lid", (0.16, 0.16, 0.18), "minimal", crock, 36, clay=m.STONEWARE, lid=m.OAK),

@@ -74,7 +74,8 @@ def floor_shade(
         foot = lathe([(0.145, 0), (0.15, 0.006), (0.14, 0.018), (0.02, 0.03), (0.012, 0.05)], 36)
         return of(metal, foot, cylinder(0.011, h - 0.05, 0.002, 16).moved(z=0.025)) + hood
     hub = h - shade_h - 0.06
-    legs = [rod((d * 0.5, 0, 0), (0.018, 0, hub), 0.012, 0.018).turned("z", 60 + 120 * k) for k in range(3)]
+    # Feet end below the rim of the shade, so that the lamp stands about the middle of its box.
+    legs = [rod((r - 0.02, 0, 0), (0.018, 0, hub), 0.012, 0.018).turned("z", 60 + 120 * k) for k in range(3)]
     return (
         of(metal, *legs)
         + of(m.BRASS, cylinder(0.034, 0.05, 0.004).moved(z=hub - 0.03), cylinder(0.008, shade_h * 0.8).moved(z=hub))
@@ -273,7 +274,7 @@ PAPER_SHADE = m.lit("lantern paper", "#f1e9da", 0.32)
 DESIGNS: tuple[Design, ...] = (
     design("floor lamp", "pole-black", "black floor lamp with a linen drum shade", (0.42, 0.42, 1.58), "minimal", floor_shade, 36, stand="pole", metal=m.BLACK_STEEL, cloth=m.LINEN_SHADE),
     design("floor lamp", "pole-brass", "brass floor lamp", (0.38, 0.38, 1.50), "classic", floor_shade, 36, stand="pole", metal=m.BRASS, cloth=m.WHITE_COTTON, shade_h=0.3),
-    design("floor lamp", "tripod-oak", "oak tripod floor lamp", (0.52, 0.52, 1.52), "modern", floor_shade, stand="tripod", metal=m.OAK, cloth=m.LINEN_SHADE),
+    design("floor lamp", "tripod-oak", "oak tripod floor lamp", (0.52, 0.52, 1.52), "modern", floor_shade, 3, stand="tripod", metal=m.OAK, cloth=m.LINEN_SHADE),
     design("floor lamp", "arc", "arched steel floor lamp", (1.15, 0.36, 1.95), "modern", floor_shade, stand="arc", metal=m.STEEL, cloth=m.BLACK_STEEL),
     design("floor lamp", "torchiere", "uplighter with an alabaster bowl", (0.38, 0.38, 1.76), "classic", torchiere, 36, metal=m.IRON, bowl=m.LAMP_GLOW),
     design("floor lamp", "reading", "black reading lamp", (0.45, 0.26, 1.40), "industrial", reading_lamp, metal=m.BLACK_STEEL),
@@ -285,6 +286,6 @@ DESIGNS: tuple[Design, ...] = (
     design("floor lamp", "shelf", "floor lamp with shelves and a linen shade", (0.28, 0.28, 1.60), "modern", shelf_lamp, 4, wood=m.BLACK_WOOD, cloth=m.LINEN_SHADE),
     design("floor lamp", "line", "slim leaning light", (0.36, 0.26, 1.48), "minimal", light_line, 1, metal=m.BLACK_STEEL),
     design("floor lamp", "arc-brass", "brass arc lamp with a white dome", (1.05, 0.38, 1.90), "modern", floor_shade, 1, stand="arc", metal=m.BRASS, cloth=m.PORCELAIN),
-    design("floor lamp", "tripod-black", "black tripod lamp with a linen drum", (0.50, 0.50, 1.48), "industrial", floor_shade, 1, stand="tripod", metal=m.BLACK_WOOD, cloth=m.LINEN_SHADE),
+    design("floor lamp", "tripod-black", "black tripod lamp with a linen drum", (0.50, 0.50, 1.48), "industrial", floor_shade, 3, stand="tripod", metal=m.BLACK_WOOD, cloth=m.LINEN_SHADE),
     design("floor lamp", "pole-turned", "turned wooden floor lamp", (0.44, 0.44, 1.60), "classic", turned_pole, 36, wood=m.MAHOGANY, cloth=m.LINEN_SHADE),
 )  # fmt: skip

@@ -226,7 +226,7 @@ DESIGNS: tuple[Design, ...] = (
     design("coat rack", "hall-cream", "cream hall tree with a linen seat", (0.44, 1.00, 1.92), "classic", hall_tree, wood=m.CREAM, metal=m.BRASS, cloth=m.LINEN, planks=True),
     design("coat rack", "hall-walnut", "walnut hall stand with an open back", (0.40, 0.80, 1.80), "modern", hall_tree, wood=m.WALNUT, metal=m.BLACK_STEEL, cloth=m.GREY_FABRIC, planks=False),
     design("room divider", "cane", "light oak folding screen with cane", (0.30, 1.35, 1.72), "modern", folding_screen, 2, frame=m.LIGHT_OAK, fill=m.RATTAN, kind="sheet"),
-    design("room divider", "shoji", "black folding screen with paper panes", (0.32, 1.60, 1.78), "minimal", folding_screen, 2, frame=m.BLACK_WOOD, fill=m.WHITE_COTTON, kind="grid", panels=4),
+    design("room divider", "shoji", "black folding screen with paper panes", (0.32, 1.60, 1.78), "minimal", folding_screen, 1, frame=m.BLACK_WOOD, fill=m.WHITE_COTTON, kind="grid", panels=4),
     design("room divider", "louvred", "pine folding screen with louvres", (0.34, 1.30, 1.70), "rustic", folding_screen, 2, frame=m.PINE, fill=m.PINE, kind="slats"),
     design("room divider", "panelled", "mahogany panelled dressing screen", (0.32, 1.45, 1.80), "classic", folding_screen, 2, frame=m.MAHOGANY, fill=s.SKY_FABRIC, kind="panelled"),
     design("room divider", "steel-glass", "black steel screen with glass panes", (0.26, 1.50, 1.85), "industrial", folding_screen, 2, frame=m.BLACK_STEEL, fill=m.GLASS, kind="grid"),

@@ -81,6 +81,7 @@ DESIGNS: tuple[Design, ...] = (
         (0.45, 0.45, 0.52),
         "minimal",
         partial(tripod_table, top=m.OAK, legs=m.OAK),
+        symmetry=3,
     ),
     Design(
         "side-table-tulip",
