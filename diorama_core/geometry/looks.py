@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 import trimesh
 from jaxtyping import Float, Float32, Int, Int32, UInt8
+from scipy.spatial import cKDTree
 
 from diorama_core.geometry.silhouette import ShapeCaster
 
@@ -32,6 +33,10 @@ _KEPT = 512
 _LEAST_AREA_M2 = 1e-12
 _READ_ALONG_EDGE = 5
 """Rows of points at which a face's picture is read."""
+_AXIS_POINTS = 500
+_MAIN_SHARES = (0.9, 0.8)
+"""Of the surface that belongs to the body, without handles and spouts."""
+_KEEPS_MIDDLE = 0.95
 _OPAQUE = 200
 """Opacity from which on nothing behind a face is seen."""
 
@@ -57,6 +62,34 @@ class Look:
         return ShapeCaster(trimesh.Trimesh(self.vertices, self.faces, process=False))
 
     @cached_property
+    def axis_xy(self) -> Float[np.ndarray, "2"]:
+        """Where the upright axis of its body is, about which it turns in place: a mug's handle is beside that.
+
+        Of the middle and the middles of its main parts the one about which it looks most alike when turned.
+        """
+        points = self._spread_points(_AXIS_POINTS)
+        if len(points) < 2:
+            return np.zeros(2)
+        tree = cKDTree(points)
+        options = [np.zeros(2), *(_trimmed_middle(points[:, :2], share) for share in _MAIN_SHARES)]
+        unlike = [_unlike_when_turned(tree, points, option) for option in options]
+        unlike[0] *= _KEEPS_MIDDLE
+        return options[int(np.argmin(unlike))]
+
+    def _spread_points(self, count: int) -> Float[np.ndarray, "n 3"]:
+        """Points spread evenly over the surface, the same ones every time; none where there is no surface."""
+        triangles = self.vertices[self.faces].astype(np.float64)
+        area = np.linalg.norm(np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), axis=1)
+        total = np.cumsum(area)
+        if not len(total) or not np.isfinite(total[-1]) or total[-1] <= _LEAST_AREA_M2:
+            return np.zeros((0, 3))
+        steps = np.arange(count) + 0.5
+        face = np.minimum(np.searchsorted(total, steps / count * total[-1]), len(total) - 1)
+        u, v = np.sqrt(np.mod(steps * 0.7548776662466927, 1.0)), np.mod(steps * 0.5698402909980532, 1.0)
+        shares = np.stack([1 - u, u * (1 - v), u * v], axis=1)
+        return np.asarray((shares[:, :, None] * triangles[face]).sum(axis=1))
+
+    @cached_property
     def opaque_faces(self) -> Int[np.ndarray, "o"]:
         """Faces that hide what is behind them and whose colour is known."""
         return np.flatnonzero(self.face_rgba[:, 3] >= _OPAQUE)
@@ -69,6 +102,28 @@ class Look:
         opaque = trimesh.Trimesh(self.vertices, self.faces[self.opaque_faces], process=False)
         opaque.remove_unreferenced_vertices()
         return ShapeCaster(opaque)
+
+
+def _trimmed_middle(xy: Float[np.ndarray, "n 2"], share: float) -> Float[np.ndarray, "2"]:
+    """The middle of the points' extent without the farthest ones."""
+    middle = np.median(xy, axis=0)
+    for _ in range(8):
+        away = np.linalg.norm(xy - middle, axis=1)
+        kept = xy[away <= np.quantile(away, share)]
+        middle = 0.5 * (kept.min(axis=0) + kept.max(axis=0))
+    return middle
+
+
+def _unlike_when_turned(tree: cKDTree, points: Float[np.ndarray, "n 3"], axis_xy: Float[np.ndarray, "2"]) -> float:
+    """How far points turned about an axis come to lie from the others, those of handles and the like left out."""
+    total = 0.0
+    for angle in np.deg2rad(np.arange(40.0, 360.0, 40.0)):
+        c, s = np.cos(angle), np.sin(angle)
+        moved = points.copy()
+        moved[:, :2] = (points[:, :2] - axis_xy) @ np.array([[c, s], [-s, c]]) + axis_xy
+        away = np.sort(tree.query(moved)[0])
+        total += float(away[: max(int(_MAIN_SHARES[0] * len(away)), 1)].mean())
+    return total
 
 
 def look_of(parts: trimesh.Scene) -> Look:

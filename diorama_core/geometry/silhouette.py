@@ -66,6 +66,16 @@ class Hits:
     directions_world: Float[np.ndarray, "r 3"]
     poses: PoseBatch
 
+    def of_rays(self, chosen: Int[np.ndarray, "k"]) -> Hits:
+        """Those of some rays alone."""
+        return Hits(
+            self.depth_m[:, chosen],
+            self.normals_object[:, chosen],
+            self.triangles[:, chosen],
+            self.directions_world[chosen],
+            self.poses,
+        )
+
     @cached_property
     def covered(self) -> Bool[np.ndarray, "p r"]:
         """Whether the shape is met."""

@@ -77,12 +77,16 @@ class Evidence:
         The logarithm lets a nearly perfect silhouette overrule what things usually do, and lets habit decide
         between silhouettes that fit equally badly.
         """
-        cost = _FACING_STRENGTH * self.facing.cost(poses.R)
-        cost = cost + 0.5 * (limits.stretch(poses.scale) / _STRETCH_SIGMA) ** 2
+        cost = self.habit_cost(poses, limits)
         cost = cost + 0.5 * (misfit / _MISFIT_SIGMA) ** 2
         cost = cost + 0.5 * (off_axis_rad / _OFF_AXIS_SIGMA_RAD) ** 2
         strength = 1.0 if self.surface is None else _STRENGTH_WITH_DEPTH
         return -strength * np.log(errors + _NOISE_FLOOR) - cost
+
+    def habit_cost(self, poses: PoseBatch, limits: SizeLimits) -> Float[np.ndarray, "p"]:
+        """What speaks against poses whatever the picture shows: unusual headings and uneven stretching."""
+        stretched = 0.5 * (limits.stretch(poses.scale) / _STRETCH_SIGMA) ** 2
+        return _FACING_STRENGTH * self.facing.cost(poses.R) + stretched
 
     def log_likeness(self, error: float, scale: Float[np.ndarray, "3"], limits: SizeLimits) -> float:
         """How well one shape at its best pose explains the object, to compare shapes where depth was measured.

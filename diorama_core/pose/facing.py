@@ -19,12 +19,14 @@ from diorama_core.scene.types import Camera
 _TABLES = with_kin("table", "desk", "coffee table", "side table", "kitchen counter", "piano", "console table")
 _AT_TABLES = with_kin("chair", "office chair", "stool", "bench", "armchair", "sofa")
 _TOWARD_VIEWER = frozenset({"monitor", "television", "laptop", "picture", "mirror", "clock", "keyboard", "microwave"})
-_NO_FRONT = frozenset(
-    {
-        *("plant", "vase", "bowl", "cup", "bottle", "basket", "trash can", "rug", "box", "books", "pillow"),
-        *("table", "coffee table", "side table", "ottoman", "lamp", "floor lamp", "ceiling lamp"),
-    }
+_NO_FRONT = with_kin(
+    *("plant", "vase", "bowl", "cup", "bottle", "basket", "trash can", "rug", "box", "books", "pillow"),
+    *("table", "coffee table", "side table", "ottoman", "lamp", "floor lamp", "ceiling lamp"),
+    *("candle", "fruit", "kettle", "cooking pot", "utensils", "cutting board", "soap dispenser", "toilet brush"),
+    *("sculpture", "globe", "blanket", "towel", "umbrella stand", "drum", "dumbbells", "exercise ball", "yoga mat"),
+    "ceiling fan",
 )
+"""Set down any way round."""
 _TOWARD_CAMERA = {
     "chair": 0.4,
     "office chair": 0.4,

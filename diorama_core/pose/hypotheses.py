@@ -9,7 +9,7 @@ from jaxtyping import Float, Int
 
 from diorama_core.artefacts import Cuboid
 from diorama_core.geometry.silhouette import PoseBatch
-from diorama_core.library.record import SymmetryFold
+from diorama_core.library.record import ROUND, SymmetryFold
 from diorama_core.library.taxonomy import category
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.scene.types import yaw_rotation
@@ -80,7 +80,7 @@ def hypotheses_for(
     fine = np.arange(-2, 4) * _FINE_STEP_RAD if category(category_name).quarter_turns_free else np.zeros(1)
     turns, off_axis = (grid.ravel() for grid in np.meshgrid(quarters, fine, indexing="ij"))
     total = turns + off_axis
-    if symmetry == 36:
+    if symmetry == ROUND:
         total, turns, off_axis = total[:1] * 0, turns[:1] * 0, off_axis[:1] * 0
     else:
         distinct = np.mod(total + 1e-6, 2 * np.pi) < 2 * np.pi / symmetry

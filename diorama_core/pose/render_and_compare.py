@@ -18,13 +18,14 @@ from diorama_core.artefacts import (
     PosedCandidates,
     RankedShapes,
 )
-from diorama_core.geometry.looks import SHARED_LOOKS
+from diorama_core.geometry.looks import SHARED_LOOKS, Look
 from diorama_core.geometry.observed import observe_among
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.catalogue import default_cache_dir
-from diorama_core.library.record import Shape, ShapeLibrary
+from diorama_core.library.record import ROUND, Shape, ShapeLibrary
 from diorama_core.library.taxonomy import category
 from diorama_core.pose.agree import MOST_LOSS_WITH_DEPTH, agreed_ranks
+from diorama_core.pose.close_look import CloseLook, cells_for
 from diorama_core.pose.evidence import Evidence
 from diorama_core.pose.facing import facing_of, wall_samples
 from diorama_core.pose.hypotheses import Anchor, Hypotheses, anchor_of, hypotheses_for, unlike_best
@@ -33,6 +34,7 @@ from diorama_core.pose.measured import MeasuredObject
 from diorama_core.pose.refine import BoxFit
 from diorama_core.pose.sets import shared_scales
 from diorama_core.pose.surface import measured_surface, noise_of
+from diorama_core.pose.turns import TurnSearch
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Candidate, Pose
 
@@ -55,6 +57,8 @@ class _Task:
     fine: Evidence
     measured: MeasuredObject | None
     """Where depth was measured."""
+    close: CloseLook | None
+    """Where depth was measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +68,7 @@ class _Tried:
     shape: Shape
     liked: float
     """By retrieval: a logarithm, 0 for the shape it likes best."""
-    caster: ShapeCaster
+    look: Look
     limits: SizeLimits
     hypotheses: Hypotheses
     scores: Float[np.ndarray, "p"]
@@ -124,7 +128,7 @@ class RenderAndCompare:
         """Posed candidates, best first, of every object that has a cuboid and at least one ranked shape."""
         ranked = {r.object_id: r.ranked for r in shapes if r.ranked}
         records = {s.id: s for s in self.library.shapes()}
-        tasks = self._tasks(objects, geometry, depth, frozenset(ranked))
+        tasks = self._tasks(inputs, objects, geometry, depth, frozenset(ranked))
         found = []
         for index, task in enumerate(tasks):
             progress.report(index / len(tasks), f"Posing: {task.thing.label}")
@@ -161,15 +165,16 @@ class RenderAndCompare:
         R, axis = posed.pose.R_world_object, task.anchor.axis_world
         grown = 0.5 * float(np.abs(axis @ R) @ ((scale - posed.pose.scale) * posed.shape.size_m))
         poses = PoseBatch(R[None], (posed.pose.position + grown * axis)[None], scale[None])
-        error = float(task.fine.errors(self._caster(posed.shape), poses)[0])
+        error = float(task.fine.errors(self._look(posed.shape).caster, poses)[0])
         return replace(posed, pose=_only(poses), error=error) if error <= posed.error + _LOSS_FOR_A_SET else posed
 
-    def _caster(self, shape: Shape) -> ShapeCaster:
+    def _look(self, shape: Shape) -> Look:
         folder = default_cache_dir() / "looks"
-        return SHARED_LOOKS.get(shape.content_hash, folder, lambda: self.library.parts(shape.id)).caster
+        return SHARED_LOOKS.get(shape.content_hash, folder, lambda: self.library.parts(shape.id))
 
     def _tasks(
         self,
+        inputs: Inputs,
         objects: tuple[DetectedObject, ...],
         geometry: ObjectGeometry,
         depth: DepthMap,
@@ -194,13 +199,17 @@ class RenderAndCompare:
             anchor = anchor_of(cuboids[i], on_wall, geometry.camera.position[:2] - cuboids[i].centre[:2])
             out_of_wall = anchor.axis_world[:2] if on_wall else None
             facing = facing_of(thing, cuboids[i], cuboids, categories, geometry.camera, walls, out_of_wall, lying)
-            coarse, fine = (
-                Evidence(geometry.camera, seen, facing, measured_surface(depth, seen, thing.mask, noise))
-                for cells in (self.coarse_cells, self.fine_cells)
-                for seen in [observe_among(geometry.camera, things, centres, parents, i, cells)]
-            )
+            windows = [
+                observe_among(geometry.camera, things, centres, parents, i, cells)
+                for cells in (self.coarse_cells, self.fine_cells, cells_for(thing.box))
+            ]
+            surfaces = [measured_surface(depth, seen, thing.mask, noise) for seen in windows]
+            coarse, fine = (Evidence(geometry.camera, *of) for of in zip(windows[:2], [facing] * 2, surfaces[:2]))
             measured = MeasuredObject.of(thing.mask, fine, cuboids[i], anchor, parent_of.get(thing.id) == "floor")
-            tasks.append(_Task(thing, cuboids[i], anchor, coarse, fine, measured))
+            close = None
+            if measured is not None and surfaces[2] is not None:
+                close = CloseLook.of(inputs.photo.rgb, thing.mask, windows[2], surfaces[2], cuboids[i].size_m)
+            tasks.append(_Task(thing, cuboids[i], anchor, coarse, fine, measured, close))
         return tasks
 
     def _pose_object(
@@ -212,18 +221,21 @@ class RenderAndCompare:
             return tuple(self._pose_by_outline(task, one) for one in tried)
         order = sorted(range(len(tried)), key=lambda k: -float(tried[k].scores.max()))
         promising = set(order[: self.promising])
-        return tuple(self._pose_by_depth(task, task.measured, one, k in promising) for k, one in enumerate(tried))
+        posed = [self._pose_by_depth(task, task.measured, one, k in promising) for k, one in enumerate(tried)]
+        first = max(range(len(posed)), key=lambda k: posed[k].rank)
+        posed[first] = self._turned_all_around(task, task.measured, tried[first], posed[first])
+        return tuple(posed)
 
     def _try_shape(self, task: _Task, shape: Shape, liked: float) -> _Tried:
-        caster = self._caster(shape)
+        look = self._look(shape)
         name = task.thing.category
         limits = SizeLimits.of(shape.size_m, name, task.cuboid.size_m)
         tried = hypotheses_for(task.cuboid, name, shape.symmetry, limits, task.anchor)
         if task.measured is not None:
             tried = tried.and_also(task.measured.hypotheses(shape.symmetry, limits))
-        errors = task.coarse.errors(caster, tried.poses)
+        errors = task.coarse.errors(look.caster, tried.poses)
         scores = task.coarse.log_scores(errors, tried.poses, tried.off_axis_rad, tried.misfit, limits)
-        return _Tried(shape, liked, caster, limits, tried, scores)
+        return _Tried(shape, liked, look, limits, tried, scores)
 
     def _pose_by_outline(self, task: _Task, tried: _Tried) -> _Posed:
         best = np.argsort(-tried.scores, kind="stable")[: self.refined]
@@ -236,22 +248,29 @@ class RenderAndCompare:
         fold, size_m = tried.shape.symmetry, tried.limits.shape_size_m
         count = self.refined_with_depth if promising else self.refined
         best = unlike_best(tried.hypotheses.poses, tried.scores, fold, size_m, count)
-        found = self._chosen(task, tried, tried.hypotheses[best])
-        doubt = 0.0
-        if promising and fold < 4:
-            turned = measured.turned(found[0], fold, tried.limits)
+        poses, error, score = self._chosen(task, tried, tried.hypotheses[best])
+        if promising and fold < 3:
+            turned = measured.turned(poses, fold, tried.limits)
             nothing = np.zeros(len(turned))
             other = self._chosen(task, tried, Hypotheses(turned, nothing, nothing))
-            doubt = float(np.exp(-abs(found[2] - other[2])))
-            found = max(found, other, key=lambda f: f[2])
-        poses, error, _ = found
+            poses, error, score = max((poses, error, score), other, key=lambda found: found[2])
+        likeness = task.fine.log_likeness(error, poses.scale[0], tried.limits)
+        return _Posed(tried.shape, _only(poses), error, _RETRIEVAL_WITH_DEPTH * tried.liked + likeness)
+
+    def _turned_all_around(self, task: _Task, measured: MeasuredObject, tried: _Tried, posed: _Posed) -> _Posed:
+        """The pose with its turn compared closely."""
+        if tried.shape.symmetry == ROUND or task.close is None:
+            return posed
+        search = TurnSearch(task.close, task.fine, measured, tried.look, tried.limits, tried.shape.symmetry)
+        poses, doubt = search.best(_batch(posed.pose))
+        error = float(task.fine.errors(tried.look.caster, poses)[0])
         likeness = task.fine.log_likeness(error, poses.scale[0], tried.limits)
         return _Posed(tried.shape, _only(poses), error, _RETRIEVAL_WITH_DEPTH * tried.liked + likeness, doubt)
 
     def _chosen(self, task: _Task, tried: _Tried, start: Hypotheses) -> tuple[PoseBatch, float, float]:
         """The best of some poses and their refinements, with its error and score."""
-        both = start.poses.and_also(self._refined(task, tried.caster, tried.limits, start.poses))
-        errors = task.fine.errors(tried.caster, both)
+        both = start.poses.and_also(self._refined(task, tried.look.caster, tried.limits, start.poses))
+        errors = task.fine.errors(tried.look.caster, both)
         off_axis, misfit = np.tile(start.off_axis_rad, 2), np.tile(start.misfit, 2)
         scores = task.fine.log_scores(errors, both, off_axis, misfit, tried.limits)
         chosen = int(np.argmax(scores))
@@ -262,6 +281,10 @@ class RenderAndCompare:
             return task.measured.fit(limits).refined(caster, start)
         yaw_sigma = np.deg2rad(9.0 if category(task.thing.category).quarter_turns_free else 4.0)
         return BoxFit(task.fine.camera, task.fine.seen, task.anchor, limits, float(yaw_sigma)).refined(caster, start)
+
+
+def _batch(pose: Pose) -> PoseBatch:
+    return PoseBatch(pose.R_world_object[None], pose.position[None], pose.scale[None])
 
 
 def _only(poses: PoseBatch) -> Pose:

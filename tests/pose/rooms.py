@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -49,9 +50,38 @@ BLOCKS: dict[str, tuple[str, int, list[Block]]] = {
 }  # fmt: skip
 
 
+def _mug() -> trimesh.Trimesh:
+    body = trimesh.creation.cylinder(0.2, 0.4, sections=40)
+    handle = trimesh.creation.box((0.12, 0.04, 0.2), trimesh.transformations.translation_matrix((0.25, 0, 0)))
+    return trimesh.util.concatenate([body, handle])
+
+
+def _tripod() -> trimesh.Trimesh:
+    legs = [
+        trimesh.creation.cylinder(0.02, segment=[(0.3 * np.cos(a), 0.3 * np.sin(a), 0), (0, 0, 1.2)], sections=8)
+        for a in np.deg2rad([0, 120, 240])
+    ]
+    shade = trimesh.creation.cylinder(
+        0.32, 0.3, sections=48, transform=trimesh.transformations.translation_matrix((0, 0, 1.3))
+    )
+    return trimesh.util.concatenate([*legs, shade])
+
+
+def _carton() -> trimesh.Trimesh:
+    return trimesh.creation.box((0.4, 0.5, 0.4))
+
+
+MODELS: dict[str, tuple[str, int, Callable[[], trimesh.Trimesh]]] = {
+    "mug": ("cup", 1, _mug),
+    "tripod": ("floor lamp", 3, _tripod),
+    "red front": ("box", 1, _carton),
+}
+"""What tells their turns apart is small, or colour alone."""
+
+
 @dataclass(frozen=True)
 class BlockLibrary:
-    """Furniture of blocks, a round table and a lone triangle."""
+    """Furniture of blocks, a round table, a lone triangle, and models that look alike from many sides."""
 
     def _mesh(self, shape_id: str) -> trimesh.Trimesh:
         if shape_id in BLOCKS:
@@ -62,6 +92,8 @@ class BlockLibrary:
             mesh = trimesh.util.concatenate(blocks)
         elif shape_id == "round table":
             mesh = trimesh.creation.cylinder(0.5, 0.7, sections=48)
+        elif shape_id in MODELS:
+            mesh = MODELS[shape_id][2]()
         elif shape_id == "triangle":
             mesh = trimesh.Trimesh([[0, 0, 0], [0.4, 0, 0], [0, 0.4, 0]], [[0, 1, 2]])
         else:
@@ -70,10 +102,11 @@ class BlockLibrary:
         return mesh
 
     def shapes(self) -> tuple[Shape, ...]:
-        return tuple(self.shape(s) for s in (*BLOCKS, "round table", "triangle"))
+        return tuple(self.shape(s) for s in (*BLOCKS, "round table", "triangle", *MODELS))
 
     def shape(self, shape_id: str) -> Shape:
-        name, fold = {"round table": ("table", 36), "triangle": ("toy", 1)}.get(shape_id) or BLOCKS[shape_id][:2]
+        others = {"round table": ("table", 36), "triangle": ("toy", 1)}
+        name, fold = others.get(shape_id) or (BLOCKS | MODELS)[shape_id][:2]
         size = tuple(float(e) for e in self._mesh(shape_id).extents)
         return Shape(
             shape_id, name, shape_id, size, symmetry=fold, content_hash=hashlib.sha256(shape_id.encode()).hexdigest()
@@ -87,6 +120,10 @@ class BlockLibrary:
 
     def parts(self, shape_id: str) -> trimesh.Scene:
         mesh = self._mesh(shape_id)
+        if shape_id == "red front":
+            front = mesh.face_normals[:, 0] > 0.5
+            mesh.visual.face_colors = np.where(front[:, None], (190, 40, 40, 255), (170, 165, 150, 255))
+            return trimesh.Scene({"all": mesh})
         mesh.visual = trimesh.visual.TextureVisuals(material=material("oak", (0.5, 0.35, 0.2)))
         return trimesh.Scene({"all": mesh})
 

@@ -1,0 +1,97 @@
+"""Which way round a shape stands that is almost where it belongs: its turns, compared closely."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.geometry.looks import Look
+from diorama_core.geometry.silhouette import PoseBatch
+from diorama_core.library.record import SymmetryFold
+from diorama_core.pose.close_look import CloseLook
+from diorama_core.pose.evidence import Evidence
+from diorama_core.pose.hypotheses import unlike_best
+from diorama_core.pose.limits import SizeLimits
+from diorama_core.pose.measured import MeasuredObject
+from diorama_core.scene.types import yaw_rotation
+
+_STEPS = 24
+"""Turns compared in place, all around."""
+_REFINED = 3
+_RIVAL_RAD = float(np.deg2rad(45.0))
+"""A pose turned farther than this is another reading of the picture, not a correction."""
+_HABIT_STRENGTH = 1.0
+"""What things usually do says this much more beside evidence that is summed: hardly a cupboard shows its back."""
+_NEARBY_RAD = np.deg2rad(np.arange(-60.0, 61.0, 12.0))
+_RIGHT_RAD = float(np.deg2rad(20.0))
+"""Headings this near are as good as right."""
+_HELD_YAW_RAD = float(np.deg2rad(1.0))
+_LEAST_LIKELY = 0.05
+_STAYS = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class TurnSearch:
+    """Turns of one shape against one object's pixels."""
+
+    close: CloseLook
+    evidence: Evidence
+    measured: MeasuredObject
+    look: Look
+    limits: SizeLimits
+    fold: SymmetryFold
+
+    def best(self, start: PoseBatch) -> tuple[PoseBatch, float]:
+        """The likeliest turn of a pose in its place, and how nearly as likely another one is, 0 to 1."""
+        turns = np.arange(max(round(_STEPS / self.fold), 2)) * 2 * np.pi
+        grid = self._turned(start, turns / (self.fold * len(turns)))
+        best = unlike_best(grid, self._seen_closely(grid, exact=False), self.fold, self.limits.shape_size_m, _REFINED)
+        tried = start.and_also(grid[best]).and_also(
+            self.measured.fit(self.limits).refined(self.look.caster, grid[best])
+        )
+        scores = self._scores(tried)
+        chosen = int(np.argmax(scores))
+        rivals = self._away_rad(tried, chosen) > min(_RIVAL_RAD, 0.8 * np.pi / self.fold)
+        doubt = float(np.exp(scores[rivals].max() - scores[chosen])) if rivals.any() else 0.0
+        return self._in_the_middle(tried[chosen : chosen + 1]), doubt
+
+    def _in_the_middle(self, best: PoseBatch) -> PoseBatch:
+        """The heading with most likelihood near it: a handle that is out of sight may be anywhere behind its mug."""
+        turns = _NEARBY_RAD[np.abs(_NEARBY_RAD) <= np.pi / self.fold]
+        turned = self._turned(best, turns)
+        fit = replace(self.measured.fit(self.limits), yaw_sigma_rad=_HELD_YAW_RAD)
+        both = turned.and_also(fit.refined(self.look.caster, turned))
+        scores = self._seen_closely(both, exact=True)
+        count = len(turns)
+        better = np.where(scores[count:] > scores[:count], np.arange(count) + count, np.arange(count))
+        likely = np.exp(scores[better] - scores[better].max())
+        near = np.abs(turns[:, None] - turns) <= _RIGHT_RAD + 1e-6
+        mass = near @ likely
+        middle = int(np.argmax(mass - _STAYS * mass.max() * np.abs(turns)))
+        return both[better[middle : middle + 1]] if likely[middle] > _LEAST_LIKELY else best
+
+    def _turned(self, start: PoseBatch, turns_rad: Float[np.ndarray, "k"]) -> PoseBatch:
+        """One pose turned about the axis of the shape's body."""
+        R = np.array([start.R[0] @ yaw_rotation(angle) for angle in turns_rad])
+        axis = np.array([*self.look.axis_xy, 0.0]) * start.scale[0]
+        position = start.position + start.R[0] @ axis - R @ axis
+        return PoseBatch(R, position, np.tile(start.scale, (len(R), 1)))
+
+    def _away_rad(self, poses: PoseBatch, index: int) -> Float[np.ndarray, "p"]:
+        """Differences of headings from one of them, up to symmetry."""
+        yaw = np.arctan2(poses.R[:, 1, 0], poses.R[:, 0, 0])
+        half = np.pi / self.fold
+        return np.abs(np.mod(yaw - yaw[index] + half, 2 * half) - half)
+
+    def _seen_closely(self, poses: PoseBatch, exact: bool) -> Float[np.ndarray, "p"]:
+        """By pixels, habit and stretch alone: cheap."""
+        return self.close.log_likelihoods(self.look, poses, exact) - self.evidence.habit_cost(poses, self.limits)
+
+    def _scores(self, poses: PoseBatch) -> Float[np.ndarray, "p"]:
+        """By everything that is known."""
+        errors, nothing = self.evidence.errors(self.look.caster, poses), np.zeros(len(poses))
+        usual = self.evidence.log_scores(errors, poses, nothing, nothing, self.limits)
+        more_habit = _HABIT_STRENGTH * self.evidence.facing.cost(poses.R)
+        return usual + self.close.log_likelihoods(self.look, poses) - more_habit
