@@ -184,7 +184,7 @@ class _LightFit:
             counted = weight.sum(axis=1)[:, None] + _HUE_SIGMA**2 / _TINT_SIGMA**2
             tint = ((hue * weight[..., None]).sum(axis=1) / counted).astype(np.float32)
             left = self.disagreement(log_rgb - self.lit(strength, tint))
-            weight = used / (1 + left / _ROBUST) ** 2
+            weight = (used / (1 + left / _ROBUST) ** 2).astype(np.float32)
         return strength, tint
 
     def lit(self, strength: Float[np.ndarray, "p 4"], tint: Float[np.ndarray, "p 3"]) -> Float[np.ndarray, "p n 3"]:
