@@ -21,6 +21,7 @@ from diorama_core.progress import Progress
 from diorama_core.retrieval.likeness import EMBEDDED_FEATURES, EmbeddedLikeness, Glimpse, Likeness
 from diorama_core.retrieval.outlines import outline_agreement
 from diorama_core.retrieval.pools import Pool, Wish, pool_for, size_cost
+from diorama_core.retrieval.words import described_share
 from diorama_core.scene.types import Support, yaw_rotation
 
 _SIMILAR_LOG_SIZE = 0.45
@@ -34,14 +35,17 @@ _LEAST_LIKENESS = 0.25
 _GUESSED_SIZE = 0.5
 """How much less the size of a thing counts of which nothing is seen: it is what such things usually have."""
 _LEAST_VOICE = 0.1
+_OF_WORDS = 0.12
+"""How much less a shape scores to which none of the words fit that describe the thing beside its kind."""
 
 
 @dataclass(frozen=True)
 class HierarchicalRetrieval:
     """Ranks a category's shapes by what the photo shows of the object (paper, section 3.2).
 
-    The paper's text query becomes the category's pool, its image query the agreement of size, silhouette and looks,
-    which are compared with rendered views, or in a joint embedding of words, pictures and shapes where one is at hand.
+    The paper's text query becomes the category's pool and what words say beyond it, its image query the agreement of
+    size, silhouette and looks, which are compared with rendered views, or in a joint embedding of words, pictures and
+    shapes where one is at hand.
     Objects of one category and size are ranked together, so that four dining chairs are four of a kind.
     """
 
@@ -85,12 +89,13 @@ class HierarchicalRetrieval:
             visible = (1 - seen.border_share) * (1 - seen.hidden_share) * seen.mask_trust
             glimpse = Glimpse(inputs.photo.rgb, thing.mask, thing.label, visible, seen.mask_trust)
             alike = likeness.of(glimpse, [m.shape for m in members])
+            said = described_share(self.library, thing.label, thing.category, [m.shape for m in members])
+            factors = [m.kind_factor * (1 - _OF_WORDS * (1 - w)) for m, w in zip(members, said, strict=True)]
             sight.append(visible)
             scores.append(
                 {
-                    m.shape.id: m.kind_factor
-                    * self._score(m.shape, cuboids[thing.id], seen, visible, float(like), named)
-                    for m, like in zip(members, alike, strict=True)
+                    m.shape.id: factor * self._score(m.shape, cuboids[thing.id], seen, visible, float(like), named)
+                    for m, like, factor in zip(members, alike, factors, strict=True)
                 }
             )
         means = _means(groups, scores, sight)

@@ -1,0 +1,65 @@
+"""What an object is called tells shapes of one kind apart, and says nothing where it names the kind alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.progress import Progress
+from diorama_core.retrieval import HierarchicalRetrieval
+from diorama_core.retrieval.words import described_share
+from tests.pose.rooms import BlockLibrary, Room, camera_at, standing
+
+LIBRARY = built_in_library()
+ARMCHAIRS = LIBRARY.in_category("armchair")
+
+
+def share(label: str) -> dict[str, float]:
+    found = described_share(LIBRARY, label, "armchair", ARMCHAIRS)
+    return dict(zip((s.id for s in ARMCHAIRS), found, strict=True))
+
+
+@pytest.mark.parametrize("label", ["armchair", "armchair 2", "arm chair", "an armchair", "zzyzx armchair", ""])
+def test_a_label_that_names_the_kind_says_no_more(label: str) -> None:
+    assert set(share(label).values()) == {1.0}
+
+
+def test_words_fit_some_shapes_and_not_others() -> None:
+    leather = share("leather armchair")
+    assert leather["armchair-club-leather"] == 1.0
+    assert leather["armchair-wicker"] == 0.0
+    both = share("green leather armchair 3")
+    assert 0.0 < both["armchair-club-leather"] < 1.0
+    assert all(0.0 <= v <= 1.0 for v in both.values())
+
+
+def test_a_name_of_some_of_a_kind_finds_those() -> None:
+    wing = share("wing chair")
+    assert wing["armchair-wing-blue"] == 1.0 > wing["armchair-sling-black"]
+
+
+def test_no_shapes_no_shares() -> None:
+    assert described_share(LIBRARY, "leather armchair", "armchair", []).shape == (0,)
+
+
+def test_between_shapes_that_look_alike_the_word_decides() -> None:
+    class Named(BlockLibrary):
+        def shape(self, shape_id: str):
+            shape = super().shape(shape_id)
+            return replace(shape, caption="rounded") if shape_id == "round table" else shape
+
+    library = Named()
+    room = Room(camera_at(), (standing("table", 0.0, 3.2, 20.0),), (0,))
+    stage = HierarchicalRetrieval(library)
+    scores = []
+    for label in ("table", "rounded table"):
+        objects = tuple(replace(o, label=label) for o in room.objects)
+        (found,) = stage.retrieve(room.inputs, objects, room.geometry, Progress())
+        scores.append(dict(found.ranked))
+    plain, said = scores
+    assert said["round table"] == pytest.approx(plain["round table"])
+    assert said["table"] < plain["table"]
+    assert np.isfinite(list(said.values())).all()
