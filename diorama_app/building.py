@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from diorama_core.artefacts import LayoutReport
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.arrangements import arrangement, arrangement_count
 from diorama_core.progress import Progress
@@ -33,8 +34,8 @@ def library_of(project: Project) -> ShapeLibrary:
 def write_arrangements(
     project: Project, built: Built, library: ShapeLibrary, layout: LayoutStage, count: int, progress: Progress
 ) -> tuple[str, ...]:
-    """Write `count` scenes, or as many as differ: `scene.json` and `arrangements/scene_2.json`...; returns their paths
-    in the project."""
+    """Write `count` scenes, or as many as differ and have room for everything: `scene.json` and
+    `arrangements/scene_2.json`...; returns their paths in the project."""
     from diorama_core.retrieval.likeness import EmbeddedLikeness
 
     likeness, names = EmbeddedLikeness(library), ["scene.json"]
@@ -43,13 +44,21 @@ def write_arrangements(
         return likeness.form_agreement(library.shape(a), library.shape(b))
 
     different = arrangement_count(built.observed, alike) if count > 1 else 1
-    for rank in range(1, min(count, different)):
+    for rank in range(1, different):
+        if len(names) >= count:
+            break
         observed = arrangement(built.observed, rank, alike)
         arranged, report = layout.optimise(observed, replace(progress, start=0.0, span=1.0))
-        name = f"arrangements/scene_{rank + 1}.json"
+        if _overlaps(report) > _overlaps(built.layout):
+            continue  # these shapes have no room beside one another here; the next may
+        name = f"arrangements/scene_{len(names) + 1}.json"
         write_atomically(project.folder / name, scene_to_json(edits.set_metrics(arranged, report.after)).encode())
         names.append(name)
     return tuple(names)
+
+
+def _overlaps(report: LayoutReport | None) -> float:
+    return 0.0 if report is None else report.after.get("overlapping_pairs", 0.0)
 
 
 def build_report(project: Project, built: Built, scenes: tuple[str, ...]) -> dict[str, Any]:
