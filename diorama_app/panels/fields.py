@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+QUIET_COLOUR = (84, 96, 114)
+"""Of buttons that are not the main one of their panel; viser's grey looks as if they could not be pressed."""
+
 
 def on_change(handle: Any, act: Callable[[Any], None]) -> None:
     """Call `act(value)` from the event loop when the person changes a field; not when the program does."""

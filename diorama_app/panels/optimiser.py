@@ -10,7 +10,7 @@ from diorama_app.guest import Guest
 from diorama_app.layout_run import LayoutRun
 from diorama_app.optimising import optimise, put_back, show_before
 from diorama_app.page import Action, LiveHtml, button, text
-from diorama_app.panels.fields import enable, on_change, on_press, show_if, show_value
+from diorama_app.panels.fields import QUIET_COLOUR, enable, on_change, on_press, show_if, show_value
 from diorama_app.settings import RecipeName
 from diorama_core.layout.weights import Weights, weighted_costs
 
@@ -78,11 +78,11 @@ class Optimiser:
                     label, 0.0, 3.0, 0.1, 1.0, hint=f"{hint}; 1 is the recipe as it is"
                 )
                 on_change(self._weights[name], lambda _: guest.post(self.refresh, key="weights"))
-            self._even = gui.add_button("All back to 1", color="gray", hint="The recipe as it is")
+            self._even = gui.add_button("All back to 1", color=QUIET_COLOUR, hint="The recipe as it is")
         on_press(self._even, lambda: guest.post(self._evened))
         self._start = gui.add_button("Optimise layout", hint="One undo step; Cancel puts everything back")
         self._start_some = gui.add_button(
-            "Optimise selection", color="gray", hint="Only what is selected (and what stands on it) moves"
+            "Optimise selection", color=QUIET_COLOUR, hint="Only what is selected (and what stands on it) moves"
         )
         on_press(self._start, lambda: self._started(some=False))
         on_press(self._start_some, lambda: self._started(some=True))

@@ -15,7 +15,7 @@ from diorama_app import project_care, work
 from diorama_app.commands import CommandTable
 from diorama_app.guest import Guest
 from diorama_app.page import Action, LiveHtml, button, text
-from diorama_app.panels.fields import enable, on_press
+from diorama_app.panels.fields import QUIET_COLOUR, enable, on_press
 from diorama_app.room import Room
 from diorama_core.errors import EditRefused
 from diorama_core.project.storage import Project
@@ -38,7 +38,7 @@ class Projects:
         self._status = LiveHtml(gui, self._act)
         self._export = gui.add_button("Download GLB", hint="The whole room, for any 3D program")
         on_press(self._export, lambda: guest.post(lambda: work.export_glb(guest)))
-        save = gui.add_button("Save now", color="gray", hint=commands["save"].tooltip)
+        save = gui.add_button("Save now", color=QUIET_COLOUR, hint=commands["save"].tooltip)
         on_press(save, lambda: guest.post(lambda: commands["save"].run(guest)))
         new = gui.add_upload_button(
             "New from a photo", color="green", mime_type="image/*", hint="A project of its own; this one stays as it is"
