@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from diorama_core.library.catalogue import built_in_library
+from diorama_core.library.record import Shape
 from diorama_core.progress import Progress
 from diorama_core.retrieval import HierarchicalRetrieval
 from diorama_core.retrieval.words import described_share
@@ -47,7 +48,7 @@ def test_no_shapes_no_shares() -> None:
 
 def test_between_shapes_that_look_alike_the_word_decides() -> None:
     class Named(BlockLibrary):
-        def shape(self, shape_id: str):
+        def shape(self, shape_id: str) -> Shape:
             shape = super().shape(shape_id)
             return replace(shape, caption="rounded") if shape_id == "round table" else shape
 
