@@ -11,7 +11,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.pose.sets import shared_scales
 from diorama_core.scene import edits
 from diorama_core.scene.types import Candidate, Pose, Scene, SceneObject
 
@@ -96,6 +95,8 @@ def _candidate(item: SceneObject, shape_id: str) -> Candidate | None:
 
 def _equally_large(scene: Scene) -> Scene:
     """One scale for the things of a set where their sizes agree; each keeps its base, what is mounted its middle."""
+    from diorama_core.pose.sets import shared_scales  # Open3D and OpenCV; the editor opens without them
+
     free = [o for o in scene.objects if not o.locked]
     if not free:
         return scene
