@@ -314,6 +314,7 @@ def test_what_was_missed_is_added_from_the_photo_and_renamed(editor: EditorPage)
     label = f"outline of {room.scene.object(new.id).label}"
     editor.until(lambda: room.document.history.current.label == label, "looked at again", seconds=90)
     assert not editor.guest.view.drawing
+    assert room.desk.wait()
     kept = room.project.load_inputs()
     drawn = kept.instances == kept.instance_boxes[0][0]
     assert drawn[300, 340], "the next build takes the outline as it was drawn"

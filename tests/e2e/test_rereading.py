@@ -35,6 +35,7 @@ def test_a_box_is_drawn_anew_and_an_outline_is_clicked_and_left(editor: EditorPa
     table = room.scene.object("table_1")
     assert table.box_px == pytest.approx((230.0, 190.0, 450.0, 430.0), abs=4.0)
     assert table.category == "table"
+    assert room.desk.wait()
     kept = room.project.load_inputs()
     assert kept.boxes[0].box == table.box_px, "the next build starts from this box"
     assert [room.scene.object(i) for i in apart] == others, "nothing else changed; the lamp goes along with its table"
@@ -57,4 +58,5 @@ def test_a_box_is_drawn_anew_and_an_outline_is_clicked_and_left(editor: EditorPa
     assert room.scene is before
     editor.page.keyboard.press("Control+z")
     editor.until(lambda: room.scene.object("table_1").box_px == (240.0, 200.0, 440.0, 420.0), "one undo step")
+    assert room.desk.wait()
     assert room.project.load_inputs().boxes[0].box == (240.0, 200.0, 440.0, 420.0)
