@@ -94,8 +94,16 @@ class CloseLook:
             exact: whether details may lie a cell off; without that it takes half the time.
         """
         hits = look.caster.cast(self.seen.origin_world, self.seen.directions_world, poses)
-        weight = _MOST_COST * min(1.0, _COUNTED_CELLS / max(float(self.seen.covered.sum()), 1.0))
-        return -weight * (self._of_place(hits, exact) + _COLOUR_SHARE * self._of_colours(look, hits, exact))
+        return -self._weight * (self._of_place(hits, exact) + _COLOUR_SHARE * self._of_colours(look, hits, exact))
+
+    def misfit(self, look: Look, pose: PoseBatch) -> float:
+        """How unlikely one pose is by its outline and depth: high where the shape or its size are wrong."""
+        hits = look.caster.cast(self.seen.origin_world, self.seen.directions_world, pose)
+        return self._weight * float(self._of_place(hits, True)[0])
+
+    @property
+    def _weight(self) -> float:
+        return _MOST_COST * min(1.0, _COUNTED_CELLS / max(float(self.seen.covered.sum()), 1.0))
 
     @cached_property
     def _neighbours(self) -> Int[np.ndarray, "5 n"]:

@@ -261,8 +261,9 @@ class RenderAndCompare:
         """The pose with its turn compared closely."""
         if tried.shape.symmetry == ROUND or task.close is None:
             return posed
-        search = TurnSearch(task.close, task.fine, measured, tried.look, tried.limits, tried.shape.symmetry)
-        poses, doubt = search.best(_batch(posed.pose))
+        start, fold = _batch(posed.pose), tried.shape.symmetry
+        search = TurnSearch.of(task.close, task.fine, measured, tried.look, tried.limits, fold, start)
+        poses, doubt = search.best(start)
         error = float(task.fine.errors(tried.look.caster, poses)[0])
         likeness = task.fine.log_likeness(error, poses.scale[0], tried.limits)
         return _Posed(tried.shape, _only(poses), error, _RETRIEVAL_WITH_DEPTH * tried.liked + likeness, doubt)

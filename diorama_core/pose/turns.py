@@ -30,6 +30,10 @@ _RIGHT_RAD = float(np.deg2rad(20.0))
 _HELD_YAW_RAD = float(np.deg2rad(1.0))
 _LEAST_LIKELY = 0.05
 _STAYS = 1e-3
+_USUAL_MISFIT, _MISFIT_SCALE = 3.0, 6.0
+_WELL_BELIEVED = 0.5
+_MARGIN = 0.5
+"""By how much another turn must be likelier than the one that was found from afar."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,20 +46,39 @@ class TurnSearch:
     look: Look
     limits: SizeLimits
     fold: SymmetryFold
+    believed: float = 1.0
+    """How much its pixels say: less where the shape fits badly whichever way it is turned."""
+
+    @classmethod
+    def of(
+        cls,
+        close: CloseLook,
+        evidence: Evidence,
+        measured: MeasuredObject,
+        look: Look,
+        limits: SizeLimits,
+        fold: SymmetryFold,
+        start: PoseBatch,
+    ) -> TurnSearch:
+        """The search around one pose, believing pixels as far as they fit it."""
+        badly = max(close.misfit(look, start) - _USUAL_MISFIT, 0.0)
+        return cls(close, evidence, measured, look, limits, fold, 1.0 / (1.0 + badly / _MISFIT_SCALE))
 
     def best(self, start: PoseBatch) -> tuple[PoseBatch, float]:
         """The likeliest turn of a pose in its place, and how nearly as likely another one is, 0 to 1."""
         turns = np.arange(max(round(_STEPS / self.fold), 2)) * 2 * np.pi
         grid = self._turned(start, turns / (self.fold * len(turns)))
-        best = unlike_best(grid, self._seen_closely(grid, exact=False), self.fold, self.limits.shape_size_m, _REFINED)
-        tried = start.and_also(grid[best]).and_also(
-            self.measured.fit(self.limits).refined(self.look.caster, grid[best])
+        modes = unlike_best(grid, self._seen_closely(grid, exact=False), self.fold, self.limits.shape_size_m, _REFINED)
+        tried = start.and_also(grid[modes]).and_also(
+            self.measured.fit(self.limits).refined(self.look.caster, grid[modes])
         )
         scores = self._scores(tried)
+        scores[0] += _MARGIN
         chosen = int(np.argmax(scores))
         rivals = self._away_rad(tried, chosen) > min(_RIVAL_RAD, 0.8 * np.pi / self.fold)
         doubt = float(np.exp(scores[rivals].max() - scores[chosen])) if rivals.any() else 0.0
-        return self._in_the_middle(tried[chosen : chosen + 1]), doubt
+        best = tried[chosen : chosen + 1]
+        return (self._in_the_middle(best) if self.believed > _WELL_BELIEVED else best), doubt
 
     def _in_the_middle(self, best: PoseBatch) -> PoseBatch:
         """The heading with most likelihood near it: a handle that is out of sight may be anywhere behind its mug."""
@@ -94,4 +117,4 @@ class TurnSearch:
         errors, nothing = self.evidence.errors(self.look.caster, poses), np.zeros(len(poses))
         usual = self.evidence.log_scores(errors, poses, nothing, nothing, self.limits)
         more_habit = _HABIT_STRENGTH * self.evidence.facing.cost(poses.R)
-        return usual + self.close.log_likelihoods(self.look, poses) - more_habit
+        return usual + self.believed * self.close.log_likelihoods(self.look, poses) - more_habit
