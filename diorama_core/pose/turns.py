@@ -32,7 +32,7 @@ _LEAST_LIKELY = 0.05
 _STAYS = 1e-3
 _USUAL_MISFIT, _MISFIT_SCALE = 3.0, 6.0
 _WELL_BELIEVED = 0.5
-_MARGIN = 0.5
+_MARGIN = 1.0
 """By how much another turn must be likelier than the one that was found from afar."""
 
 
