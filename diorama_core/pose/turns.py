@@ -73,10 +73,9 @@ class TurnSearch:
             self.measured.fit(self.limits).refined(self.look.caster, grid[modes])
         )
         scores = self._scores(tried)
-        scores[0] += _MARGIN
-        chosen = int(np.argmax(scores))
+        chosen = 0 if scores[0] + _MARGIN >= scores.max() else int(np.argmax(scores))
         rivals = self._away_rad(tried, chosen) > min(_RIVAL_RAD, 0.8 * np.pi / self.fold)
-        doubt = float(np.exp(scores[rivals].max() - scores[chosen])) if rivals.any() else 0.0
+        doubt = min(float(np.exp(scores[rivals].max() - scores[chosen])), 1.0) if rivals.any() else 0.0
         best = tried[chosen : chosen + 1]
         return (self._in_the_middle(best) if self.believed > _WELL_BELIEVED else best), doubt
 
