@@ -38,8 +38,8 @@ ANY_HOST = frozenset({"", "0.0.0.0", "::"})
 MAX_UPLOAD_BYTES = 128 * 1024 * 1024
 MAX_UPLOADS_IN_FLIGHT = 8
 
-HEAD_SCRIPT = Path(__file__).parent / "static" / "head.js"
-"""Runs in the page before viser does."""
+HEAD_SCRIPTS = sorted((Path(__file__).parent / "static").glob("*.js"))
+"""Run in the page before viser does."""
 PICTURES = "pictures/"
 """Addresses below this one are pictures."""
 
@@ -191,7 +191,7 @@ def _checked(handler: HttpHandler | None, visitors: Visitors, pictures: Pictures
 
 
 def _prepend_script(response: Response) -> None:
-    """Our script in front of viser's, in the page itself."""
+    """Our scripts in front of viser's, in the page itself."""
     if not response.headers.get("Content-Type", "").startswith("text/html"):
         return
     zipped = response.headers.get("Content-Encoding") == "gzip"
@@ -203,7 +203,8 @@ def _prepend_script(response: Response) -> None:
 @functools.lru_cache(maxsize=2)
 def _page(body: bytes, zipped: bool) -> bytes:
     page = gzip.decompress(body) if zipped else body
-    page = page.replace(b"<head>", b"<head>\n<script>" + HEAD_SCRIPT.read_bytes() + b"</script>", 1)
+    scripts = b"".join(b"\n<script>" + script.read_bytes() + b"</script>" for script in HEAD_SCRIPTS)
+    page = page.replace(b"<head>", b"<head>" + scripts, 1)
     return gzip.compress(page, mtime=0) if zipped else page
 
 

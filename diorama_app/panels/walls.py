@@ -1,6 +1,7 @@
 """Walls that stand between the eye and the room fade, and what hangs on them with them, in every frame the page draws.
 
-The page is told where planes are and what hangs on them; it fades by itself, so that turning the view needs no server.
+The page is told where planes are and what hangs on them; it fades by itself (`static/walls.js`), so that turning the
+view needs no server.
 """
 
 from __future__ import annotations
@@ -22,95 +23,7 @@ GHOST = {"wall": 0.13, "floor": 0.13, "ceiling": 0.0}
 PHOTO_NEAR_M = 0.03
 """Nearer to the photo's camera the model is compared with the photo, and nothing is laid over it."""
 
-_FADER = """
-const W = window.__dioWalls = window.__dioWalls || {};
-W.shares = W.shares || {};
-const plain = (o) => o.isMesh && o.material && !o.material.isShaderMaterial && o.material.type !== 'ShadowMaterial';
-const glass = (m, share) => W.glass = W.glass || new m.backgroundMaterial.constructor({
-  vertexShader: 'void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }',
-  fragmentShader: 'void main() { gl_FragColor = vec4(0.80, 0.78, 0.74, ' + share.toFixed(3) + '); }',
-  transparent: true, depthWrite: false, side: 2,
-});
-const glaze = (m, node, share) => node.traverse((o) => {
-  const own = o.userData.own || o.material;
-  if (!o.isMesh || !own) return;
-  const faded = share < 1;
-  o.visible = share > 0 && (!faded || own.type !== 'ShadowMaterial');
-  if (!o.visible || faded === !!o.userData.own || own.type === 'ShadowMaterial') return;
-  o.userData.own = faded ? own : null;
-  o.material = faded ? glass(m, share) : own;
-});
-const paint = (node, share, plane) => node.traverse((o) => {
-  if (o.material && o.material.type === 'ShadowMaterial') { o.visible = share === 1; return; }
-  if (!plain(o)) return;
-  const k = o.material, faded = share < 1;
-  if (faded !== !!k.userData.faded) {
-    if (faded) k.userData.before = [k.transparent, k.depthWrite, k.side, k.opacity];
-    k.forceSinglePass = faded;
-    const b = k.userData.before;
-    k.userData.faded = faded;
-    k.transparent = faded || b[0]; k.depthWrite = !faded && b[1]; k.side = faded && plane ? 2 : b[2];
-    k.opacity = b[3];
-    k.needsUpdate = true;
-  }
-  if (faded !== !!o.userData.faded) {
-    o.userData.faded = faded;
-    if (faded) { o.userData.casts = o.castShadow; o.raycast = () => {}; } else delete o.raycast;
-    o.castShadow = !faded && o.userData.casts;
-  }
-  if (faded) k.opacity = share * k.userData.before[3];
-  o.visible = share > 0;
-});
-const meshes = (m, name, versions) =>
-  [...Array(versions).keys()].map((v) => m.nodeRefFromName[name + '/v' + v]).filter((node) => node);
-const frame = (m) => {
-  const d = W.room, root = m.nodeRefFromName[''];
-  if (!d || !root) return;
-  const now = performance.now(), step = Math.min(now - (W.last || 0), 60) / d.ms;
-  W.last = now;
-  const p = root.worldToLocal(m.camera.position.clone()), eye = [p.x, p.y, p.z];
-  const dot = (n) => n[0] * eye[0] + n[1] * eye[1] + n[2] * eye[2];
-  const photo = !!d.photo && Math.hypot(...d.photo.map((v, i) => v - eye[i])) < d.near;
-  let busy = false;
-  const towards = (name, aim) => {
-    const was = W.shares[name];
-    const share = was === undefined || photo || !d.ms ? aim : was + Math.max(-step, Math.min(step, aim - was));
-    busy = busy || share !== aim;
-    return W.shares[name] = share;
-  };
-  for (const [name, n, offset, ghost] of d.planes) {
-    const node = m.nodeRefFromName[name];
-    if (!node) continue;
-    const share = towards(name, dot(n) > offset ? 1 : photo ? 0 : ghost);
-    if (d.ms || !m.backgroundMaterial) paint(node, share, true); else glaze(m, node, share);
-  }
-  for (const [name, n, offset, ghost] of d.hung) {
-    const share = towards(name, photo || dot(n) > offset ? 1 : ghost);
-    for (const node of meshes(m, name, d.versions)) paint(node, share, false);
-  }
-  if (busy) setTimeout(() => m.requestRender());
-};
-const hook = () => {
-  const m = window.__viserMutable;
-  if (!m || !m.scene) { requestAnimationFrame(hook); return; }
-  m.scene.onBeforeRender = () => frame(m);
-  m.requestRender();
-};
-W.told = (room) => {
-  const m = window.__viserMutable, still = new Set(room.hung.map((row) => row[0]));
-  for (const [name] of W.room ? W.room.hung : []) if (!still.has(name)) {
-    delete W.shares[name];
-    for (const node of meshes(m, name, W.room.versions)) paint(node, 1, false);
-  }
-  W.room = room;
-  if (m && m.requestRender) m.requestRender();
-};
-if (W.waiting) W.told(W.waiting);
-hook();
-"""
-"""Draws each plane, and what hangs on it, in its share. Runs before every frame, which costs nothing while none is."""
-
-_TOLD = "const W=window.__dioWalls=window.__dioWalls||{},r=%s;if(W.told)W.told(r);else W.waiting=r"
+_TOLD = "window.__dioWalls.told(%s)"
 
 
 class Walls:
@@ -119,7 +32,6 @@ class Walls:
     def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
         self._guest = guest
         self._told = ""
-        gui.add_html(run_once(_FADER))
         self._html = gui.add_html("")
 
     def refresh(self) -> None:

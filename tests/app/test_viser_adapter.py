@@ -68,15 +68,17 @@ def test_pages_of_its_own_origin_are_served(server: viser.ViserServer) -> None:
 
 
 @pytest.mark.parametrize("encoding", ["gzip", "identity"])
-def test_our_script_runs_before_the_page_and_the_page_is_whole(server: viser.ViserServer, encoding: str) -> None:
+def test_our_scripts_run_before_the_page_and_the_page_is_whole(server: viser.ViserServer, encoding: str) -> None:
     address = f"http://127.0.0.1:{server.get_port()}/"
     with urllib.request.urlopen(urllib.request.Request(address, headers={"Accept-Encoding": encoding})) as reply:
         body = reply.read()
         assert int(reply.headers["Content-Length"]) == len(body)
     page = gzip.decompress(body) if encoding == "gzip" else body
-    script = viser_adapter.HEAD_SCRIPT.read_bytes()
-    assert page.count(script) == 1
-    assert page.index(script) < page.index(b"<script data-p")
+    assert len(viser_adapter.HEAD_SCRIPTS) == 2
+    for path in viser_adapter.HEAD_SCRIPTS:
+        script = path.read_bytes()
+        assert page.count(script) == 1
+        assert page.index(script) < page.index(b"<script data-p")
     assert page.rstrip().endswith(b"</html>")
 
 
