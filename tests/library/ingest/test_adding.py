@@ -250,4 +250,6 @@ def test_progress_only_grows_and_a_first_import_spends_most_of_it_on_learning(
     shares = [event.fraction for event in events]
     assert shares == sorted(shares)
     assert shares[-1] == 1.0
-    assert [e.fraction for e in events if "furniture looks like" in e.message] == pytest.approx([0.2, 0.4, 0.6, 0.8][:steps])
+    assert [e.fraction for e in events if "furniture looks like" in e.message] == pytest.approx(
+        [0.2, 0.4, 0.6, 0.8][:steps]
+    )
