@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import hashlib
+import os
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -42,6 +44,8 @@ _POWERS = (1.5, 0.6)
 """How much retrieval and pose say about which shape is best: the picture's outline alone would ignore colours."""
 _RETRIEVAL_WITH_DEPTH = 0.7
 """What retrieval says beside `Evidence.log_likeness` where depth was measured: that tells shapes apart."""
+_MOST_THREADS = 4
+"""Objects posed side by side: casting and array work let go of the interpreter, the rest of it does not."""
 _LOSS_FOR_A_SET = 0.02
 """By how much more a thing may disagree with the picture to be as large as the others of its set."""
 
@@ -130,9 +134,14 @@ class RenderAndCompare:
         records = {s.id: s for s in self.library.shapes()}
         tasks = self._tasks(inputs, objects, geometry, depth, frozenset(ranked))
         found = []
-        for index, task in enumerate(tasks):
-            progress.report(index / len(tasks), f"Posing: {task.thing.label}")
-            found.append(self._pose_object(task, ranked[task.thing.id], records))
+        with ThreadPoolExecutor(min(os.cpu_count() or 1, _MOST_THREADS)) as threads:
+            underway = [threads.submit(self._pose_object, task, ranked[task.thing.id], records) for task in tasks]
+            try:
+                for index, (task, posed) in enumerate(zip(tasks, underway, strict=True)):
+                    progress.report(index / len(tasks), f"Posing: {task.thing.label}")
+                    found.append(posed.result())
+            finally:
+                threads.shutdown(wait=False, cancel_futures=True)
         ranks = agreed_ranks(
             [task.thing.category for task in tasks],
             [{posed.shape.id: posed.rank for posed in of_one} for of_one in found],
