@@ -22,7 +22,7 @@ from diorama_core.progress import Progress
 T = TypeVar("T")
 log = logging.getLogger(__name__)
 
-CODE_VERSION = "2"
+CODE_VERSION = "3"
 """Raised when a change of code must invalidate every saved result."""
 KEPT_PER_STAGE = 4
 """Results kept per stage on disk, so that going back to an earlier correction is instant."""
