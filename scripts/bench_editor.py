@@ -218,8 +218,11 @@ class Bench:
             tile.scroll_into_view_if_needed()
             self.page.settle()
             used -= time.process_time()
-            begun = page.evaluate("(e) => { const t = Date.now(); e.click(); return t; }", tile.element_handle())
-            taken.append(page.evaluate(SHOWN, [following, None]) - begun)
+            click = (
+                "([tile, what]) => { const begun = Date.now(); tile.click(); "
+                f"return ({SHOWN})(what).then((at) => at - begun); }}"
+            )
+            taken.append(page.evaluate(click, [tile.element_handle(), [following, None]]))
             used += time.process_time()
         line("swap to visible", taken, "< 300", used)
 
@@ -233,14 +236,14 @@ class Bench:
             x0 = float(self.room.scene.object(item.id).pose.position[0])
             pose = self.room.scene.object(item.id).pose.moved((0.1 + 0.01 * k, 0.0, 0.0))
             self._do(lambda p=pose: self.room.edit("move", lambda s: edits.move(s, item.id, p), by=self.page.guest))
-            page.evaluate(SHOWN, [node, float(pose.position[0])])
-            self.page.settle()
+            page.wait_for_timeout(1500)  # it comes and rests
             used -= time.process_time()
-            begun = page.evaluate(
-                "() => { const t = Date.now(); document.body.dispatchEvent(new KeyboardEvent('keydown', "
-                "{key: 'z', code: 'KeyZ', ctrlKey: true, bubbles: true})); return t; }"
+            press = (
+                "(what) => { const begun = Date.now(); document.body.dispatchEvent(new KeyboardEvent('keydown', "
+                "{key: 'z', code: 'KeyZ', ctrlKey: true, bubbles: true})); "
+                f"return ({SHOWN})(what).then((at) => at - begun); }}"
             )
-            taken.append(page.evaluate(SHOWN, [node, x0]) - begun)
+            taken.append(page.evaluate(press, [node, x0]))
             used += time.process_time()
         line("undo", taken, "< 150", used)
 

@@ -56,12 +56,12 @@
     let due; // [when, timer] of the next picture
     let rest;
     let look;
-    const models = new Set(); // the names of those that came after the last picture and are not read yet
+    const awaited = new Set(); // the names of those that came after the last picture and are not read yet
 
     const draw = () => {
       clearTimeout(due?.[1]);
       due = undefined;
-      models.clear();
+      awaited.clear();
       invalidate();
     };
     const drawWithin = (wait) => {
@@ -98,10 +98,10 @@
     };
     const drawWhenThere = () => {
       look = undefined;
-      const came = [...models].filter(isThere);
-      came.forEach((name) => models.delete(name));
-      if (came.length > 0 && models.size === 0) draw();
-      else drawWithin(models.size > 0 ? PARSE_MS : MOUNT_MS);
+      const came = [...awaited].filter(isThere);
+      came.forEach((name) => awaited.delete(name));
+      if (came.length > 0 && awaited.size === 0) draw();
+      else drawWithin(awaited.size > 0 ? PARSE_MS : MOUNT_MS);
     };
 
     // React asks while it puts things in place, and the camera's controls while they glide.
@@ -117,13 +117,16 @@
       const queue = mutable.messageQueue;
       moving = true;
       restSoon();
+      const models = queue.filter((message) => message.type === "GlbMessage");
       if (queue.length === 0) {
         if (mutable.cameraControl?.enabled === false) drawWithin(REPLY_MS);
         else draw();
-      } else if (queue.every((message) => MOVES.test(message.type)) || mutable.getRenderRequestState !== "ready") {
+      } else if (models.length === 0 && queue.some((message) => MOVES.test(message.type))) {
+        draw();
+      } else if (mutable.getRenderRequestState !== "ready") {
         draw();
       } else {
-        queue.filter((message) => message.type === "GlbMessage").forEach((message) => models.add(message.name));
+        models.forEach((message) => awaited.add(message.name));
         draining = true;
         try {
           mutable.drainMessageQueue?.();
