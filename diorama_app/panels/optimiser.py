@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import viser
 
-from diorama_app.arrangements import arrangement_count, is_arranged, switch_arrangement
+from diorama_app.arrangements import Arrangements, switch_arrangement
 from diorama_app.guest import Guest
 from diorama_app.layout_run import LayoutRun
 from diorama_app.optimising import optimise, put_back, show_before
@@ -121,17 +121,17 @@ class Optimiser:
         guest.post(start)
 
     def _others(self) -> str:
-        count = arrangement_count(self._guest.room.scene)
+        arrangements, chosen = Arrangements(self._guest.room.scene), self._guest.selection
+        count = arrangements.count
         if count < 2:
             return ""
-        scene, chosen = self._guest.room.scene, self._guest.selection
         whole = "".join(
             button(str(k + 1), "arrangement", k, title=f"Every unlocked object in its {ORDINALS[k]} shape", on=on)
-            for k, on in enumerate(is_arranged(scene, k) for k in range(count))
+            for k, on in enumerate(arrangements.is_taken(k) for k in range(count))
         )
         some = "".join(
             button(SHORT_ORDINALS[k], "mix", k, title=f"Only what is selected in its {ORDINALS[k]} shape", on=on)
-            for k, on in enumerate(is_arranged(scene, k, chosen) for k in range(count))
+            for k, on in enumerate(arrangements.is_taken(k, chosen) for k in range(count))
         )
         mixed = f'<p class="dim">Only what is selected:</p><div class="bar tight">{some}</div>' if chosen else ""
         return (

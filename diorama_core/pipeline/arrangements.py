@@ -48,12 +48,19 @@ def arrangement_count(observed: Scene, alike: Alike | None = None) -> int:
     return max((len(plausible_shapes(members, alike)) for members in _sets(observed)), default=1)
 
 
-def plausible_shapes(members: Sequence[SceneObject], alike: Alike | None = None) -> tuple[str, ...]:
+def plausible_shapes(
+    members: Sequence[SceneObject], alike: Alike | None = None, *, own: str | None = None
+) -> tuple[str, ...]:
     """The shape that a set has, then those that its members together find likely, best first, each of another form.
 
     Things that are not painted in a colour of the photo keep their shapes' own, which differ.
+
+    Args:
+        members: The things of the set.
+        alike: Tells shapes of one form; None takes all shapes for different.
+        own: What comes first; the first member's shape by default.
     """
-    own = members[0].shape_id
+    own = members[0].shape_id if own is None else own
     totals: dict[str, float] = {}
     for item in members:
         best = max((c.score for c in item.candidates), default=0.0)

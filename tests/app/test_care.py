@@ -10,7 +10,7 @@ import pytest
 import trimesh
 
 from diorama_app import project_care
-from diorama_app.arrangements import arranged, arrangement_count, is_arranged
+from diorama_app.arrangements import Arrangements
 from diorama_app.importing import import_model
 from diorama_app.layout_run import LayoutRun
 from diorama_app.measuring import point_under
@@ -92,12 +92,12 @@ def test_a_library_that_cannot_grow_says_so() -> None:
 
 def test_arrangements_leave_what_is_locked() -> None:
     scene = edits.set_locked(furnished_scene(), "chair_1", True)
-    assert arrangement_count(scene) == 3
-    other = arranged(scene, 1)
+    assert Arrangements(scene).count == 3
+    other = Arrangements(scene).taken(1)
     assert other.object("chair_1") == scene.object("chair_1")
     assert other.object("chair_2").shape_id != scene.object("chair_2").shape_id
-    assert arranged(other, 0).object("chair_2").shape_id == scene.object("chair_2").shape_id
-    assert arrangement_count(Scene()) == 0
+    assert Arrangements(other).taken(0).object("chair_2").shape_id == scene.object("chair_2").shape_id
+    assert Arrangements(Scene()).count == 0
 
 
 def test_in_another_arrangement_sets_stay_sets() -> None:
@@ -107,11 +107,11 @@ def test_in_another_arrangement_sets_stay_sets() -> None:
     scene = replace(
         scene, objects=tuple(replace(o, candidates=reordered) if o.id == other.id else o for o in scene.objects)
     )
-    for rank in range(arrangement_count(scene)):
-        taken = arranged(scene, rank)
+    for rank in range(Arrangements(scene).count):
+        taken = Arrangements(scene).taken(rank)
         assert taken.object("chair_1").shape_id == taken.object("chair_2").shape_id
-        assert is_arranged(taken, rank)
-    mixed = arranged(scene, 1, only={"chair_1"})
+        assert Arrangements(taken).is_taken(rank)
+    mixed = Arrangements(scene).taken(1, only={"chair_1"})
     assert mixed.object("chair_2") == scene.object("chair_2")
     assert mixed.object("chair_1").shape_id != one.shape_id
 
