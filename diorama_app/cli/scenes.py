@@ -24,11 +24,14 @@ from diorama_app.cli.arguments import (
 from diorama_core.errors import InputError
 
 if TYPE_CHECKING:
+    from diorama_core.library.record import ShapeLibrary
     from diorama_core.project.storage import Project
+    from diorama_core.protocols import PoseStage
     from diorama_core.scene.types import Scene
 
 EXPORT_FORMATS = ("glb",)
 ROOMS = ("closed", "plainrecon")
+POSES = ("render-and-compare", "correspondence", "zsp", "gigapose-like", "best-match")
 
 
 def add_serve(commands: Any) -> None:
@@ -97,6 +100,12 @@ def add_build(commands: Any) -> None:
         default=ROOMS[0],
         help="how planes are found in depth; plainrecon: as published, floor and walls only (default: %(default)s)",
     )
+    p.add_argument(
+        "--pose",
+        choices=POSES,
+        help="how shapes are posed, to compare with: the paper's correspondences or a baseline, with the embedded "
+        "features (default: the profile's)",
+    )
     p.add_argument("--seed", type=int, default=0, help="seed of random stages (the embedded ones draw nothing)")
     p.add_argument("--json", action="store_true", help="print the result as JSON")
 
@@ -130,6 +139,8 @@ def _build(a: argparse.Namespace) -> None:
         if read.inputs.depth_m is None and stages.sight is None:
             raise InputError("--room plainrecon reads depth: add --depth FILE or a profile with a depth network")
         stages = replace(stages, architecture=PlainRecon())
+    if a.pose is not None:
+        stages = replace(stages, pose=pose_solver(a.pose, library))
     project = Project.create(a.output)
     project.update_info(library=a.library)
     with progress_bar() as progress:
@@ -147,6 +158,15 @@ def _build(a: argparse.Namespace) -> None:
                 f"No boxes were given: get the small detector with 'diorama models pull yolox-nano', or {drawing}."
             )
             print(found if stages.detection else lacking)
+
+
+def pose_solver(name: str, library: ShapeLibrary) -> PoseStage:
+    """The solver with this name, one of `POSES`."""
+    from diorama_core.pose.correspondence.solvers import HALF_GRID, KINDS, CorrespondencePose
+    from diorama_core.pose.render_and_compare import RenderAndCompare
+
+    kind = next((kind for kind in KINDS if kind == name), None)
+    return RenderAndCompare(library) if kind is None else CorrespondencePose(library, kind, grid=HALF_GRID)
 
 
 def add_optimise(commands: Any) -> None:

@@ -30,10 +30,9 @@ from diorama_core.pipeline.assemble import assemble
 from diorama_core.pipeline.build import embedded_stages
 from diorama_core.pipeline.perceive import with_graph
 from diorama_core.pose import RenderAndCompare
-from diorama_core.pose.correspondence.solvers import CorrespondencePose, Kind
+from diorama_core.pose.correspondence.solvers import HALF_GRID, CorrespondencePose, Kind
 from diorama_core.progress import Progress
 from diorama_core.protocols import PoseStage
-from diorama_core.render.templates import TemplateGrid
 from diorama_core.retrieval import HierarchicalRetrieval
 from diorama_core.scene.types import Scene
 
@@ -59,8 +58,6 @@ CONDITIONS = (
 COMPARED_SHAPES = 4
 """Retrieved shapes that every solver chooses from."""
 NOISE = 0.05
-GRID = TemplateGrid(size_px=112)
-"""The paper's 180 views at half its resolution: embedded patch features are means over patches."""
 
 
 @dataclass(frozen=True)
@@ -187,7 +184,7 @@ class SideBySide:
     @classmethod
     def embedded(cls, library: ShapeLibrary) -> SideBySide:
         """The solvers that need no networks."""
-        return cls(library, RenderAndCompare(library), CorrespondencePose(library, grid=GRID))
+        return cls(library, RenderAndCompare(library), CorrespondencePose(library, grid=HALF_GRID))
 
     def retrieved(self, seen: Seen, keep: int) -> tuple[RankedShapes, ...]:
         """Ranked shapes of every object."""

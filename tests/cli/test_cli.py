@@ -11,6 +11,9 @@ import trimesh
 from PIL import Image
 
 from diorama_app.cli import main
+from diorama_app.cli.scenes import POSES, pose_solver
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.pose.correspondence.solvers import CorrespondencePose
 from tests.cli.room_photo import write_room
 
 
@@ -212,3 +215,9 @@ def test_the_installed_command_runs() -> None:
     done = subprocess.run([command, "--version"], capture_output=True, text=True, timeout=60)
     assert done.returncode == 0
     assert done.stdout.startswith("diorama ")
+
+
+@pytest.mark.parametrize("name", POSES)
+def test_every_way_to_pose_can_be_chosen(name: str) -> None:
+    solver = pose_solver(name, built_in_library())
+    assert (solver.kind if isinstance(solver, CorrespondencePose) else "render-and-compare") == name

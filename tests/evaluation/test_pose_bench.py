@@ -15,7 +15,6 @@ from diorama_core.evaluation.pose_comparison import (
     CONDITIONS,
     ESTIMATED_DEPTH,
     GIVEN,
-    GRID,
     IN_LIBRARY,
     NOISY_DEPTH,
     OURS,
@@ -32,7 +31,7 @@ from diorama_core.evaluation.pose_tables import comparison_table
 from diorama_core.evaluation.rooms import box_library, generate_room
 from diorama_core.evaluation.scene_metrics import without_unasked
 from diorama_core.pose import RenderAndCompare
-from diorama_core.pose.correspondence.solvers import CorrespondencePose
+from diorama_core.pose.correspondence.solvers import HALF_GRID, CorrespondencePose
 from diorama_core.render.templates import TemplateGrid
 
 
@@ -123,4 +122,4 @@ def test_a_room_that_fails_counts_for_every_solver(view, library, solvers, monke
 
 
 def test_the_views_are_the_papers() -> None:
-    assert len(GRID) == 180
+    assert len(HALF_GRID) == 180

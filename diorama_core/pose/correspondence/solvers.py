@@ -49,6 +49,9 @@ from diorama_core.scene.types import Camera, Candidate, Pose
 Kind = Literal["correspondence", "zsp", "gigapose-like", "best-match"]
 KINDS: tuple[Kind, ...] = ("correspondence", "zsp", "gigapose-like", "best-match")
 
+HALF_GRID = TemplateGrid(size_px=112)
+"""The paper's 180 views at half its resolution: embedded patch features are means over patches."""
+
 _SHAPES_HELD = 12
 _MOST_NUMBERS = 2**25
 """In one matrix of similarities: as many candidates are compared at once as that allows."""
