@@ -45,6 +45,7 @@ STYLE = """
 .dio button.on { background: var(--accent); border-color: var(--accent); color: #fff; }
 .dio .bar { display: flex; gap: 4px; flex-wrap: wrap; margin-bottom: 6px; }
 .dio .bar button { flex: 1 1 auto; white-space: nowrap; padding: 5px 8px; }
+.dio .bar button:only-child { flex: 0 1 auto; }
 .dio .tight button { padding: 4px 5px; font-size: 12px; }
 .dio .lead { align-self: center; margin-right: 4px; }
 .dio .row { display: flex; align-items: center; gap: 4px; border-radius: 6px; padding: 2px 4px; cursor: pointer; }
