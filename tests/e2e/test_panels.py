@@ -142,7 +142,7 @@ def test_cancelling_the_optimiser_restores_everything(editor: EditorPage) -> Non
     before = room.scene
     editor.tab("Arrange")
     editor.page.get_by_label("Recipe").click()
-    editor.page.get_by_role("option", name="As in the paper").click()
+    editor.page.get_by_role("option", name="All in one").click()
     editor.button("Optimise layout").click()
     editor.button("Cancel").click()
     editor.until(lambda: room.jobs.status is None, "stopped")
