@@ -38,8 +38,6 @@ from diorama_core.project.storage import Project
 from diorama_core.scene.types import Pose, Scene
 
 JOB_TOLD_EVERY_S = 0.15
-OTHERS_AFTER_S = 0.2
-"""The scene changes before everybody's eyes at once; the others' panels follow, so that they do not hold it up."""
 MESH_OVERLAP_S = 0.45
 """How long an old mesh stays while the browser parses its successor."""
 
@@ -154,7 +152,7 @@ class Room:
             by.selection = tuple(selection)
         chosen = () if by is None else tuple(i for i in by.selection if scene.has_object(i))
         self.document.commit(label, scene, selection=chosen, merge_key=merge_key, inputs=inputs)
-        self.changed(by)
+        self.changed()
         for guest in self.guests.values():
             who = "" if guest is by or by is None else f"{by.name}: "
             guest.toast(f"{who}{label[:1].upper()}{label[1:]}", True)
@@ -171,14 +169,14 @@ class Room:
 
     def _time_travelled(self, by: Guest, message: str, selection: tuple[str, ...]) -> None:
         by.selection = selection or by.selection
-        self.changed(by)
+        self.changed()
         for guest in self.guests.values():
             guest.toast(message, False)
 
-    def changed(self, by: Guest | None = None) -> None:
+    def changed(self) -> None:
         """The document changed: show and save it."""
         self._follow_inputs()
-        self.refresh(by)
+        self.refresh()
         self.checker.look_at(self.scene)
         if self.project is not None:
             self.saver.save_soon(self.project, self.scene)
@@ -205,17 +203,14 @@ class Room:
         """Show poses that are not (yet) part of the document."""
         self.viewport.preview(poses)
 
-    def refresh(self, first: Guest | None = None) -> None:
-        """Bring every browser in line with the document, the panels of whoever changed it `first`."""
+    def refresh(self) -> None:
+        """Bring every browser in line with the document."""
         self.viewport.show(self.scene, self.textures)
         self.preparer.want(o.shape_id for o in self.scene.objects)
         for guest in self.guests.values():
             guest.drop_missing()
             self._show_photo_camera(guest)
-            if first is None or guest is first:
-                guest.refresh()
-        if first is not None and len(self.guests) > 1:
-            self._later(self.refresh_panels, OTHERS_AFTER_S)
+            guest.refresh()
 
     def refresh_panels(self) -> None:
         """Redraw the panels only."""
@@ -327,8 +322,8 @@ class Room:
         if self.on_drag is not None:
             self.on_drag(object_id, event)
 
-    def _later(self, task: Callable[[], None], after_s: float = MESH_OVERLAP_S) -> None:
-        timer = threading.Timer(after_s, lambda: self.desk.post(task))
+    def _later(self, task: Callable[[], None]) -> None:
+        timer = threading.Timer(MESH_OVERLAP_S, lambda: self.desk.post(task))
         timer.daemon = True
         timer.start()
 
