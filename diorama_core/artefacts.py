@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int32, UInt8
 
-from diorama_core.geometry.held import Held
+from diorama_core.geometry.camera_attitude import CameraAttitude
 from diorama_core.scene.types import Architecture, Camera, Candidate, Intrinsics, Support
 from diorama_core.scene.values import ArrayValue
 
@@ -72,7 +72,7 @@ class Inputs(ArrayValue):
     """Unit normals that came with the depth, toward the camera; zero where unknown."""
     depth_source: Literal["measured", "network"] = "measured"
     """Who says how deep it is: a sensor, or a network that looked at the photo."""
-    held: Held | None = field(default=None, metadata={"absent when none": True})
+    camera_attitude: CameraAttitude | None = field(default=None, metadata={"absent when none": True})
     """How the camera was held, where somebody said it; found from the photo otherwise."""
     camera_height_m: float | None = field(default=None, metadata={"absent when none": True})
     """How high above the floor the camera was, where somebody said it or any length of the room."""
@@ -80,7 +80,7 @@ class Inputs(ArrayValue):
     @property
     def of_any_camera(self) -> Inputs:
         """The same without what is known of the camera, on which outlines do not depend."""
-        return replace(self, intrinsics=None, held=None, camera_height_m=None)
+        return replace(self, intrinsics=None, camera_attitude=None, camera_height_m=None)
 
 
 @dataclass(frozen=True, eq=False)

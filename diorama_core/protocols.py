@@ -47,10 +47,10 @@ class DetectionStage(Protocol):
     def detect(self, photo: Photo, words: tuple[str, ...], progress: Progress) -> tuple[LabelledBox, ...]: ...
 
 
-class SightStage(Protocol):
+class DepthPredictionStage(Protocol):
     """Depth, normals and intrinsics that a network reads from a photo."""
 
-    def see(self, photo: Photo, intrinsics: Intrinsics | None, progress: Progress) -> DepthPrediction: ...
+    def predict(self, photo: Photo, intrinsics: Intrinsics | None, progress: Progress) -> DepthPrediction: ...
 
 
 class GraphStage(Protocol):

@@ -27,8 +27,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
 from playwright.sync_api import Error as BrowserError
 
-from diorama_app.server import Running, start
-from diorama_app.viewport import MESH_NAMES
+from diorama_app.serve import Running, start
+from diorama_app.viewport.scene_view import MESH_NAMES
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.project.storage import Project
 from diorama_core.scene import edits
@@ -146,7 +146,7 @@ class Bench:
     """One server, one project, as many tabs as a figure needs."""
 
     def __init__(self, browser: Browser, returning: BrowserContext, running: Running) -> None:
-        self.browser, self.running, self.room = browser, running, running.room
+        self.browser, self.running, self.session = browser, running, running.session
         self.returning = returning
         """A browser that was here before, as a person's is."""
         self.page = self._open()
@@ -161,9 +161,9 @@ class Bench:
     def start(self) -> None:
         """From the command on a shell to its address, and on to every object on the screen of a new tab."""
         served, usable = [], []
-        project = self.room.project
+        project = self.session.project
         assert project is not None
-        last = f"{self.room.viewport.node_name(self.room.scene.objects[-1].id)}/v1"
+        last = f"{self.session.viewport.node_name(self.session.scene.objects[-1].id)}/v1"
         command = [sys.executable, "-m", "diorama_app.cli", "serve", str(project.folder)]
         for _ in range(3):
             begun = time.monotonic()
@@ -181,7 +181,7 @@ class Bench:
                 page = self.returning.new_page()
                 page.set_default_timeout(PATIENCE_MS)
                 page.goto(address[0], wait_until="commit")
-                wait_for_scene(page, last, len(self.room.scene.objects))
+                wait_for_scene(page, last, len(self.session.scene.objects))
                 usable.append(1000 * (time.monotonic() - begun))
                 page.close()
             finally:
@@ -193,13 +193,13 @@ class Bench:
     def load(self) -> None:
         """A tab that opens, until every object's mesh is there and a frame was drawn."""
         taken, used = [], time.process_time()
-        last = str(self.room.viewport.mesh_name(self.room.scene.objects[-1].id))
+        last = str(self.session.viewport.mesh_name(self.session.scene.objects[-1].id))
         for _ in range(5):
             page = self.returning.new_page()
             page.set_default_timeout(PATIENCE_MS)
             begun = time.monotonic()
             page.goto(f"http://127.0.0.1:{self.running.port}/", wait_until="commit")
-            wait_for_scene(page, last, len(self.room.scene.objects))
+            wait_for_scene(page, last, len(self.session.scene.objects))
             taken.append(1000 * (time.monotonic() - begun))
             page.close()
         line("page to usable scene", taken, "< 4000", time.process_time() - used)
@@ -207,13 +207,13 @@ class Bench:
     def swap(self) -> None:
         """From the click on an alternative to its mesh on the screen."""
         taken, used = [], 0.0
-        page, guest = self.page.page, self.page.guest
-        items = [o for o in self.room.scene.objects if len({c.shape_id for c in o.candidates}) > 1][:ROUNDS]
+        page, client = self.page.page, self.page.client
+        items = [o for o in self.session.scene.objects if len({c.shape_id for c in o.candidates}) > 1][:ROUNDS]
         for item in items:
-            self._do(lambda i=item: guest.select((i.id,)))
+            self._do(lambda i=item: client.select((i.id,)))
             self.page.settle()
-            node = self.room.viewport.node_name(item.id)
-            shown = str(self.room.viewport.mesh_name(item.id))
+            node = self.session.viewport.node_name(item.id)
+            shown = str(self.session.viewport.mesh_name(item.id))
             following = f"{node}/v{(int(shown.rsplit('/v', 1)[1]) + 1) % MESH_NAMES}"
             other = next(c.shape_id for c in item.candidates if c.shape_id != item.shape_id)
             tile = page.locator(f'.dio .tile[data-do="swap"][data-arg="{other}"]').first
@@ -231,13 +231,13 @@ class Bench:
     def undo(self) -> None:
         """From Ctrl+Z to the frame that shows it."""
         taken, used, page = [], 0.0, self.page.page
-        item = self.room.scene.objects[0]
-        node = self.room.viewport.node_name(item.id)
+        item = self.session.scene.objects[0]
+        node = self.session.viewport.node_name(item.id)
         page.mouse.move(640, 400)
         for k in range(ROUNDS):
-            x0 = float(self.room.scene.object(item.id).pose.position[0])
-            pose = self.room.scene.object(item.id).pose.moved((0.1 + 0.01 * k, 0.0, 0.0))
-            self._do(lambda p=pose: self.room.edit("move", lambda s: edits.move(s, item.id, p), by=self.page.guest))
+            x0 = float(self.session.scene.object(item.id).pose.position[0])
+            pose = self.session.scene.object(item.id).pose.moved((0.1 + 0.01 * k, 0.0, 0.0))
+            self._do(lambda p=pose: self.session.edit("move", lambda s: edits.move(s, item.id, p), by=self.page.client))
             page.wait_for_timeout(1500)  # it comes and rests
             used -= time.process_time()
             press = (
@@ -252,13 +252,15 @@ class Bench:
     def drag(self) -> None:
         """From a mouse move to the frame in which the object has followed."""
         page = self.page.page
-        self._do(lambda: self.page.guest.select(()))
-        self.page.guest.view.look(np.array([0.0, -7.0, 7.0]), np.array([0.0, 3.0, 0.0]))
+        self._do(lambda: self.page.client.select(()))
+        self.page.client.view.move_camera(np.array([0.0, -7.0, 7.0]), np.array([0.0, 3.0, 0.0]))
         self.page.settle()
-        others = [o for o in self.room.scene.objects if o.id.startswith("other")]
+        others = [o for o in self.session.scene.objects if o.id.startswith("other")]
         item = min(others, key=lambda o: float(o.size_m[0] * o.size_m[1]))  # it stays free of its neighbours
-        self.page.until(lambda: self.room.preparer.ready(o.shape_id for o in self.room.scene.objects), seconds=600)
-        node = self.room.viewport.node_name(item.id)
+        self.page.until(
+            lambda: self.session.preparer.ready(o.shape_id for o in self.session.scene.objects), seconds=600
+        )
+        node = self.session.viewport.node_name(item.id)
         x, y = self.page.place_of(item.pose.position)
         page.mouse.move(x, y)
         self.page.settle()
@@ -283,20 +285,20 @@ class Bench:
         """Pictures a second while the published recipe runs, and how many show one object moved without another."""
         page = self.page.page
         lifted = {
-            o.id: o.pose.moved((0.05, 0.0, 0.08)) for o in self.room.scene.objects if not o.id.startswith("small")
+            o.id: o.pose.moved((0.05, 0.0, 0.08)) for o in self.session.scene.objects if not o.id.startswith("small")
         }
-        self._do(lambda: self.room.edit("lift", lambda s: edits.place(s, lifted)))
-        table = next(o for o in self.room.scene.objects if o.id.startswith("table"))
-        node = self.room.viewport.node_name(table.id)
+        self._do(lambda: self.session.edit("lift", lambda s: edits.place(s, lifted)))
+        table = next(o for o in self.session.scene.objects if o.id.startswith("table"))
+        node = self.session.viewport.node_name(table.id)
         self.page.settle()
         page.evaluate(WATCH, node)
-        from diorama_app.optimising import optimise
+        from diorama_app.commands.optimise import optimise
 
-        self._do(lambda: optimise(self.page.guest, "paper"))
+        self._do(lambda: optimise(self.page.client, "paper"))
         deadline = time.monotonic() + 300
-        while self.room.jobs.status is not None and time.monotonic() < deadline:
+        while self.session.jobs.status is not None and time.monotonic() < deadline:
             page.wait_for_timeout(200)
-        assert self.room.document.history.current.label == "arrange the layout", "the layout was not arranged"
+        assert self.session.document.history.current.label == "arrange the layout", "the layout was not arranged"
         self.page.settle()
         stamps = np.array([t for t, _ in page.evaluate("window.__frames")], dtype=float)
         gaps = np.diff(stamps)
@@ -307,35 +309,35 @@ class Bench:
 
     def _tearing(self) -> None:
         """Two objects moved together twenty times a second: frames in which only one has moved."""
-        page, items = self.page.page, self.room.scene.objects
+        page, items = self.page.page, self.session.scene.objects
         a, b = items[0], items[-1]
-        page.evaluate(TORN, [self.room.viewport.node_name(a.id), self.room.viewport.node_name(b.id)])
+        page.evaluate(TORN, [self.session.viewport.node_name(a.id), self.session.viewport.node_name(b.id)])
         for k in range(100):
             shift = 0.3 * np.sin(k / 5)
             poses = {o.id: o.pose.moved((shift, 0.0, 0.0)) for o in items}
-            self.room.desk.post(lambda p=poses: self.room.preview(p), key="preview")
+            self.session.ui_thread.post(lambda p=poses: self.session.preview(p), key="preview")
             page.wait_for_timeout(50)
         torn, seen = page.evaluate("[window.__torn, window.__seen]")
-        self._do(self.room.refresh)
+        self._do(self.session.refresh)
         print(f"{'torn frames':34s} {torn:7d} of {seen}   asked 0", flush=True)
 
     def four(self) -> None:
         """Four browsers on one project: from one person's edit to the last one's frame."""
         tabs = [self.page, *(self._open() for _ in range(3))]
-        item = self.room.scene.objects[0]
-        node = self.room.viewport.node_name(item.id)
+        item = self.session.scene.objects[0]
+        node = self.session.viewport.node_name(item.id)
         taken, used = [], time.process_time()
         for k in range(ROUNDS):
             self.page.page.wait_for_timeout(1500)  # until every tab has drawn what came before, finely
-            pose = self.room.scene.object(item.id).pose.moved((0.05 + 0.01 * k, 0.0, 0.0))
+            pose = self.session.scene.object(item.id).pose.moved((0.05 + 0.01 * k, 0.0, 0.0))
             for tab in tabs:
                 tab.page.evaluate(
                     f"(what) => {{ window.__at = null; ({SHOWN})(what).then((at) => {{ window.__at = at; }}); }}",
                     [node, float(pose.position[0])],
                 )
             begun = time.time() * 1000
-            guest = tabs[k % 4].guest
-            guest.post(lambda p=pose, g=guest: self.room.edit("move", lambda s: edits.move(s, item.id, p), by=g))
+            client = tabs[k % 4].client
+            client.post(lambda p=pose, g=client: self.session.edit("move", lambda s: edits.move(s, item.id, p), by=g))
             for tab in tabs:
                 tab.page.wait_for_function("window.__at !== null", polling=10)
             taken.append(max(tab.page.evaluate("window.__at") for tab in tabs) - begun)
@@ -345,8 +347,8 @@ class Bench:
         line("four browsers in step", taken, "< 300", used)
 
     def _do(self, task: Callable[[], object]) -> None:
-        self.room.desk.post(task)  # type: ignore[arg-type]
-        self.room.desk.wait(60.0)
+        self.session.ui_thread.post(task)  # type: ignore[arg-type]
+        self.session.ui_thread.wait(60.0)
 
 
 FIGURES = ("start", "load", "swap", "undo", "drag", "optimiser", "four")

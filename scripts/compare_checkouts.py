@@ -2,8 +2,8 @@
 
     python scripts/compare_checkouts.py OLD NEW --photos ../shared/photos -o compared [--only im3d_1 nyu_00000]
 
-OLD and NEW are checkouts (or folders of scenes that an earlier run made: `compared/old`). Scenes are compared as bytes of
-`scene.json`; where they differ, the largest difference between numbers and the first differing entries are named.
+OLD and NEW are checkouts (or folders of scenes that an earlier run made: `compared/old`). Scenes are compared as
+bytes of `scene.json`; where they differ, the largest difference between numbers and the first entries are named.
 Exits with 1 when any scene differs.
 """
 

@@ -78,13 +78,13 @@ def overlaps(objects: tuple[DetectedObject, ...], geometry: ObjectGeometry) -> l
 
 
 def describe(objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, ious: list[float]) -> None:
-    for thing, cuboid, support, iou in zip(objects, geometry.cuboids, geometry.supports, ious, strict=True):
+    for item, cuboid, support, iou in zip(objects, geometry.cuboids, geometry.supports, ious, strict=True):
         depth, width, height = cuboid.size_m
         yaw = np.degrees(np.arctan2(cuboid.R_world_object[1, 0], cuboid.R_world_object[0, 0]))
         place = " ".join(f"{v:6.2f}" for v in cuboid.centre)
         print(
-            f"  {thing.id:16s} {iou:.2f}  HWD {height:.2f} {width:.2f} {depth:.2f}  at {place}  yaw {yaw:4.0f}  "
-            f"on {support.parent:16s} confidence {cuboid.confidence:.2f}{remark(thing.category, cuboid.size_m)}"
+            f"  {item.id:16s} {iou:.2f}  HWD {height:.2f} {width:.2f} {depth:.2f}  at {place}  yaw {yaw:4.0f}  "
+            f"on {support.parent:16s} confidence {cuboid.confidence:.2f}{remark(item.category, cuboid.size_m)}"
         )
 
 
@@ -100,16 +100,16 @@ def overlay(inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: Objec
     picture = np.ascontiguousarray(inputs.photo.rgb[..., ::-1]) // 2 + 40
     generator = np.random.default_rng(3)
     thick = max(1, round(inputs.photo.width / 500))
-    for thing, cuboid in zip(objects, geometry.cuboids, strict=True):
+    for item, cuboid in zip(objects, geometry.cuboids, strict=True):
         colour = tuple(int(v) for v in generator.integers(90, 256, 3))
         corners = box_corners(cuboid.size_m) @ cuboid.R_world_object.T + cuboid.centre
         for a, b in EDGES:
             front = corners[a] + np.linspace(0, 1, 25)[:, None] * (corners[b] - corners[a])
             draw_line(picture, front, geometry.camera, colour, thick)
-        x1, y1, x2, y2 = (round(v) for v in thing.box)
+        x1, y1, x2, y2 = (round(v) for v in item.box)
         cv2.rectangle(picture, (x1, y1), (x2, y2), colour, 1)
         place = (x1 + 3, y1 + 12 * thick)
-        cv2.putText(picture, thing.id, place, cv2.FONT_HERSHEY_SIMPLEX, 0.4 * thick, colour, thick)
+        cv2.putText(picture, item.id, place, cv2.FONT_HERSHEY_SIMPLEX, 0.4 * thick, colour, thick)
     return picture
 
 

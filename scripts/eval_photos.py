@@ -18,11 +18,11 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from diorama_core.evaluation.photo_agreement import agreement
+from diorama_core.evaluation.metrics.photo_agreement import agreement
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.inputs import read_inputs
-from diorama_core.pipeline.build import Built
+from diorama_core.pipeline.run import Built
 from diorama_core.project.build import build_project
 from diorama_core.project.storage import Project
 from diorama_core.render.picture import picture

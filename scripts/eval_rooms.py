@@ -16,8 +16,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from diorama_core.architecture.from_depth import PlanarRoom
-from diorama_core.evaluation.architecture_metrics import match_planes
+from diorama_core.architecture.from_depth.stage import PlanarRoom
+from diorama_core.evaluation.metrics.architecture import match_planes
 from diorama_core.progress import Progress
 from tests.architecture.known_rooms import KINDS, photographed
 
@@ -32,18 +32,18 @@ def main() -> None:
     for noise, angle, offset in ((0.0, 1.0, 0.03), (0.02, 3.0, 0.08)):
         total = [0, 0, 0]
         for kind in a.kinds:
-            counts = evaluate(kind, a.rooms, a.things, not a.no_masks, noise, angle, offset)
+            counts = evaluate(kind, a.rooms, a.items, not a.no_masks, noise, angle, offset)
             total = [x + y for x, y in zip(total, counts, strict=True)]
         print(f"noise {noise:.2f} all: {shares(total)}")
 
 
 def evaluate(
-    kind: str, rooms: int, things: int, masks: bool, noise: float, angle: float, offset: float
+    kind: str, rooms: int, items: int, masks: bool, noise: float, angle: float, offset: float
 ) -> tuple[int, int, int]:
     found = missed = spurious = 0
     seconds, worst_angle, worst_offset = 0.0, 0.0, 0.0
     for seed in range(rooms):
-        shot = photographed(kind, seed, things=things, noise=noise)
+        shot = photographed(kind, seed, items=items, noise=noise)
         started = time.process_time()
         room = PlanarRoom().reconstruct(shot.inputs, shot.objects if masks else (), shot.geometry, Progress())
         seconds += time.process_time() - started

@@ -37,7 +37,7 @@ def main() -> None:
         growth = 100 * (after - before) / before
         print(f"{options.edits} edits in {time.monotonic() - begun:.0f} s, {soak.refused} refused")
         print(f"memory {before:.0f} MB after {first} edits, {after:.0f} MB at the end: {growth:+.1f} % (asked < 10 %)")
-        print(f"messages kept for late joiners {soak.kept_messages()}, objects {len(soak.room.scene.objects)}")
+        print(f"messages kept for late joiners {soak.retained_messages()}, objects {len(soak.session.scene.objects)}")
         soak.close()
 
 

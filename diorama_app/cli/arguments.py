@@ -39,7 +39,7 @@ def opened(folder: Path) -> tuple[Project, Scene]:
 
 def progress_bar() -> Any:
     """The bar on stderr."""
-    from diorama_app.progress_bar import progress_bar
+    from diorama_app.cli.progress_bar import progress_bar
 
     return progress_bar()
 

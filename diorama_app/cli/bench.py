@@ -63,7 +63,7 @@ def add_bench(commands: Any) -> None:
 
 
 def _bench_layout(a: argparse.Namespace) -> None:
-    from diorama_core.evaluation.layout_bench import run
+    from diorama_core.evaluation.benchmarks.layout import run
 
     _check(a)
     with progress_bar() as progress:
@@ -75,7 +75,10 @@ def _bench_layout(a: argparse.Namespace) -> None:
 
 def _bench_rooms(a: argparse.Namespace) -> None:
     """Architecture, retrieval, relations or pose on rendered rooms."""
-    from diorama_core.evaluation import architecture_bench, pose_bench, relations_bench, retrieval_bench
+    from diorama_core.evaluation.benchmarks import architecture as architecture_bench
+    from diorama_core.evaluation.benchmarks import pose as pose_bench
+    from diorama_core.evaluation.benchmarks import relations as relations_bench
+    from diorama_core.evaluation.benchmarks import retrieval as retrieval_bench
     from diorama_core.library.catalogue import built_in_library
 
     _check(a)
@@ -94,8 +97,8 @@ def _bench_rooms(a: argparse.Namespace) -> None:
 
 
 def _bench_system(a: argparse.Namespace) -> None:
-    from diorama_core.evaluation import system_bench
-    from diorama_core.evaluation.case_pictures import case_writer
+    from diorama_core.evaluation.benchmarks import system as system_bench
+    from diorama_core.evaluation.reports.case_pictures import case_writer
     from diorama_core.library.catalogue import built_in_library
 
     _check(a)
@@ -111,7 +114,7 @@ def _bench_system(a: argparse.Namespace) -> None:
 
 def _bench_dataset(a: argparse.Namespace) -> None:
     """The whole system on a local copy of other people's pictures."""
-    from diorama_core.evaluation import local_bench
+    from diorama_core.evaluation.benchmarks import local_datasets as local_bench
     from diorama_core.library.catalogue import built_in_library
 
     if not (a.dataset and a.path):
@@ -124,8 +127,8 @@ def _bench_dataset(a: argparse.Namespace) -> None:
 
 
 def _bench_survey(a: argparse.Namespace) -> None:
-    from diorama_core.evaluation import rooms_bench
-    from diorama_core.evaluation.case_pictures import write_picture
+    from diorama_core.evaluation.benchmarks import rooms as rooms_bench
+    from diorama_core.evaluation.reports.case_pictures import write_picture
     from diorama_core.library.catalogue import built_in_library
 
     _check(a)
@@ -139,9 +142,9 @@ def _bench_survey(a: argparse.Namespace) -> None:
 
 
 def _bench_speed(a: argparse.Namespace) -> int:
-    from diorama_core.evaluation.speed_bench import FULL, QUICK, committed_figures, regression_bytes, run, slower
+    from diorama_core.evaluation.speed.bench import FULL, QUICK, committed_figures, regression_bytes, run, slower
+    from diorama_core.io.atomic import write_atomically
     from diorama_core.library.catalogue import built_in_library
-    from diorama_core.project.files import write_atomically
 
     _check(a)
     if a.tolerance <= 1:
@@ -150,8 +153,8 @@ def _bench_speed(a: argparse.Namespace) -> int:
     with progress_bar() as progress:
         bench = run(built_in_library(), a.seed, progress, QUICK if a.quick else FULL, before=before)
     if a.keep:
-        kept = committed_figures(a.keep) if a.keep.exists() else {}  # a quick run and a full one keep other figures
-        write_atomically(a.keep, regression_bytes({**kept, **bench.figures()}))
+        retained = committed_figures(a.keep) if a.keep.exists() else {}  # a quick run and a full one keep other figures
+        write_atomically(a.keep, regression_bytes({**retained, **bench.figures()}))
     _show(bench, a)
     worse = slower(bench.figures(), before, a.tolerance)
     for name, times in worse.items():
@@ -174,7 +177,7 @@ def _show(bench: _Bench, a: argparse.Namespace) -> None:
 
 
 def _write(path: Path | None, document: dict[str, object]) -> None:
-    from diorama_core.project.files import write_atomically
+    from diorama_core.io.atomic import write_atomically
 
     if path:
         write_atomically(path, json.dumps(document, indent=1).encode())
@@ -182,7 +185,7 @@ def _write(path: Path | None, document: dict[str, object]) -> None:
 
 def _write_text(a: argparse.Namespace, text: str) -> None:
     """Tables into a file: between `<!-- bench NAME -->` and `<!-- end NAME -->` where it has them, else whole."""
-    from diorama_core.project.files import write_atomically
+    from diorama_core.io.atomic import write_atomically
 
     if not a.markdown:
         return

@@ -17,7 +17,7 @@ def add_doctor(commands: Any) -> None:
 
 
 def _doctor(a: argparse.Namespace) -> int:
-    from diorama_app.doctor import examine
+    from diorama_app.cli.machine import examine
 
     findings = examine()
     if a.json:

@@ -86,7 +86,7 @@ def _library_build(a: argparse.Namespace) -> None:
 
 
 def _library_list(a: argparse.Namespace) -> None:
-    from diorama_app.building import library_named
+    from diorama_app.projects.report import library_named
     from diorama_core.library.taxonomy import resolve
 
     library = library_named(a.library)
@@ -95,7 +95,7 @@ def _library_list(a: argparse.Namespace) -> None:
 
 
 def _library_search(a: argparse.Namespace) -> None:
-    from diorama_app.building import library_named
+    from diorama_app.projects.report import library_named
     from diorama_core.library.search import find
 
     if a.k < 1:
@@ -120,7 +120,7 @@ def _library_search(a: argparse.Namespace) -> None:
 
 
 def _library_sheet(a: argparse.Namespace) -> None:
-    from diorama_app.building import library_named
+    from diorama_app.projects.report import library_named
     from diorama_core.library.taxonomy import resolve
     from diorama_core.render.thumbnails import shape_sheet
 

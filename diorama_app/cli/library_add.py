@@ -100,7 +100,7 @@ def _add(a: argparse.Namespace) -> None:
         print(json.dumps(_as_json(report, name), default=str))
     else:
         _print_report(report, name)
-    if report.failed and not report.added and not report.kept:
+    if report.failed and not report.added and not report.retained:
         raise InputError(f"none of {len(report.failed)} models could be used; the reasons are above")
 
 
@@ -119,7 +119,7 @@ def _print_report(report: Added, name: str) -> None:
             print(f"{title}: {line}", file=sys.stderr)
         if len(lines) > SHOWN:
             print(f"{title}: and {len(lines) - SHOWN} more", file=sys.stderr)
-    before = f", {report.kept} were there already" if report.kept else ""
+    before = f", {report.retained} were there already" if report.retained else ""
     refused = f", {len(report.failed)} refused" if report.failed else ""
     print(f"{name}: {len(report.added)} shapes added{before}{refused}")
     if report.added:
@@ -139,7 +139,7 @@ def _by_note(report: Added) -> list[str]:
 
 
 def _info(a: argparse.Namespace) -> None:
-    from diorama_app.building import library_named
+    from diorama_app.projects.report import library_named
     from diorama_core.library.record import shape_to_json
 
     shape = library_named(a.library).shape(a.id)

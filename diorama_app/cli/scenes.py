@@ -48,8 +48,8 @@ def add_serve(commands: Any) -> None:
 
 
 def _serve(a: argparse.Namespace) -> None:
-    from diorama_app.building import library_named, library_of
-    from diorama_app.server import serve
+    from diorama_app.projects.report import library_named, library_of
+    from diorama_app.serve import serve
     from diorama_core.project.storage import Project
 
     if a.library is None and a.project is not None:
@@ -111,9 +111,9 @@ def add_build(commands: Any) -> None:
 
 
 def _build(a: argparse.Namespace) -> None:
-    from diorama_app.building import build_report, library_named, write_arrangements
+    from diorama_app.projects.report import build_report, library_named, write_arrangements
     from diorama_core.perception.inputs import read_inputs
-    from diorama_core.pipeline.profiles import stages_for
+    from diorama_core.pipeline.presets import stages_for
     from diorama_core.project.build import build_project
     from diorama_core.project.storage import Project
 
@@ -134,9 +134,9 @@ def _build(a: argparse.Namespace) -> None:
     library = library_named(a.library)
     stages = stages_for(a.profile, read.inputs, library, recipe=a.recipe)
     if a.room == "plainrecon":
-        from diorama_core.architecture.plainrecon import PlainRecon
+        from diorama_core.architecture.plainrecon.stage import PlainRecon
 
-        if read.inputs.depth_m is None and stages.sight is None:
+        if read.inputs.depth_m is None and stages.depth_prediction is None:
             raise InputError("--room plainrecon reads depth: add --depth FILE or a profile with a depth network")
         stages = replace(stages, architecture=PlainRecon())
     if a.pose is not None:
@@ -186,7 +186,7 @@ def add_optimise(commands: Any) -> None:
 def _optimise(a: argparse.Namespace) -> None:
     from dataclasses import asdict
 
-    from diorama_app.building import library_of
+    from diorama_app.projects.report import library_of
     from diorama_core.layout.recipes import recipe
     from diorama_core.scene.edits import set_metrics
 
@@ -223,7 +223,7 @@ def add_export(commands: Any) -> None:
 
 
 def _export(a: argparse.Namespace) -> None:
-    from diorama_app.building import library_of
+    from diorama_app.projects.report import library_of
     from diorama_core.export.gltf import write_glb
 
     project, scene = opened(a.project)
@@ -257,8 +257,8 @@ def _picture(a: argparse.Namespace) -> None:
 
     from PIL import Image
 
-    from diorama_app.building import library_of
-    from diorama_core.project.files import write_atomically
+    from diorama_app.projects.report import library_of
+    from diorama_core.io.atomic import write_atomically
     from diorama_core.render.picture import picture
 
     project, scene = opened(a.project)

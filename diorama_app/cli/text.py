@@ -30,8 +30,8 @@ def add_text(commands: Any) -> None:
 
 
 def _text(a: argparse.Namespace) -> None:
-    from diorama_app.building import build_report, library_named
-    from diorama_core.pipeline.profiles import stages_for
+    from diorama_app.projects.report import build_report, library_named
+    from diorama_core.pipeline.presets import stages_for
     from diorama_core.project.build import build_project
     from diorama_core.project.storage import Project
     from diorama_core.text.pictures import ImageSettings, picture_of

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import viser
 
-from diorama_app.guest import Guest
-from diorama_app.page import Action, LiveHtml, button, text
+from diorama_app.commands.swap import SIZE_MODES, alike, preview_swap, swap
 from diorama_app.panels.fields import on_change, show_if, show_value
-from diorama_app.room import Room
-from diorama_app.settings import SizeMode
-from diorama_app.swapping import SIZE_MODES, alike, preview_swap, swap
-from diorama_app.thumbnails import Paint
-from diorama_app.units import format_size
+from diorama_app.session.client import Client
+from diorama_app.session.preferences import SizeMode
+from diorama_app.session.session import EditorSession
+from diorama_app.session.units import format_size
+from diorama_app.viewport.thumbnails import Paint
+from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.errors import LibraryError
 from diorama_core.library.record import Shape
 from diorama_core.library.search import search
@@ -35,17 +35,17 @@ SIZE_HINTS: dict[SizeMode, str] = {
 class Alternatives:
     """A search field, how to take size and colour, and a grid of thumbnails."""
 
-    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
-        self._guest = guest
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self._client = client
         self._options = LiveHtml(gui, self._act)
         self._words = gui.add_text("Swap for", "", visible=False, hint="Any words; empty shows its own alternatives")
-        on_change(self._words, lambda v: guest.post(self.refresh, key="swap search"))
+        on_change(self._words, lambda v: client.post(self.refresh, key="swap search"))
         self._html = LiveHtml(gui, self._act)
         self._of: str | None = None
 
     def refresh(self) -> None:
         """Draw the alternatives of the selected object."""
-        item = self._guest.selected
+        item = self._client.selected
         show_if(item is not None, self._words)
         if item is None:
             self._options.show("")
@@ -59,13 +59,13 @@ class Alternatives:
         self._html.show(self._found(item, words) if words else self._own(item))
 
     def _choices(self, item: SceneObject) -> str:
-        settings = self._guest.settings
+        preferences = self._client.preferences
         sizes = "".join(
-            button(SIZE_NAMES[m], "size", m, title=SIZE_HINTS[m], on=settings.size_mode == m) for m in SIZE_MODES
+            button(SIZE_NAMES[m], "size", m, title=SIZE_HINTS[m], on=preferences.size_mode == m) for m in SIZE_MODES
         )
-        count = len(alike(self._guest.room.scene, item))
-        same = button(f"All {count} alike", "alike", title="Swap every one of this shape", on=settings.all_alike)
-        keep = button("Keep colour", "keep", title="In the colour of what it replaces", on=settings.keep_colour)
+        count = len(alike(self._client.session.scene, item))
+        same = button(f"All {count} alike", "alike", title="Swap every one of this shape", on=preferences.all_alike)
+        keep = button("Keep colour", "keep", title="In the colour of what it replaces", on=preferences.keep_colour)
         return (
             f'<h4>Swap</h4><div class="bar tight">{sizes}</div>'
             f'<div class="bar tight">{keep}{same if count > 1 else ""}</div>'
@@ -75,11 +75,11 @@ class Alternatives:
         if not item.candidates:
             return "<p class='dim'>It has no alternatives of its own. Search for others above.</p>"
         tiles = "".join(self._candidate(item, c) for c in item.candidates[:SHOWN])
-        unit = "" if self._guest.settings.unit == "ft-in" else f" ({self._guest.settings.unit})"
+        unit = "" if self._client.preferences.unit == "ft-in" else f" ({self._client.preferences.unit})"
         return f'<h4>Alternatives — click to swap <span class="dim">{unit}</span></h4><div class="grid">{tiles}</div>'
 
     def _found(self, item: SceneObject, words: str) -> str:
-        found = search(self._guest.room.library, words, k=SHOWN)
+        found = search(self._client.session.library, words, k=SHOWN)
         if not found:
             return f"<p class='dim'>Nothing in the library is like “{text(words)}”. Try a plainer word.</p>"
         return f'<div class="grid">{"".join(self._shape(item, s) for s in found)}</div>'
@@ -93,45 +93,46 @@ class Alternatives:
 
     def _tile(self, item: SceneObject, shape_id: str, size: list[float], about: str) -> str:
         current = shape_id == item.shape_id
-        name, key = text(shape_caption(self._guest.room, shape_id)), text(shape_id)
-        shown = format_size(size[1], size[0], size[2], self._guest.settings.unit)
+        name, key = text(shape_caption(self._client.session, shape_id)), text(shape_id)
+        shown = format_size(size[1], size[0], size[2], self._client.preferences.unit)
         return (
             f'<button type="button" class="tile {"on" if current else ""}" data-do="swap" data-arg="{key}" '
             f'data-peek="{key}" title="{name}&#10;{text(shown)} (width, depth, height)&#10;{text(about)}">'
-            f"{self._guest.room.thumbnails.html(shape_id, self._paint(item))}<b>{name}</b><small>{text(shown)}</small>"
+            f"{self._client.session.thumbnails.html(shape_id, self._paint(item))}<b>{name}</b>"
+            f"<small>{text(shown)}</small>"
             f"<small>{'in use' if current else text(about)}</small></button>"
         )
 
     def _paint(self, item: SceneObject) -> Paint:
-        return (item.colour, item.finish) if self._guest.settings.keep_colour else (None, None)
+        return (item.colour, item.finish) if self._client.preferences.keep_colour else (None, None)
 
     def _act(self, action: Action) -> None:
-        guest = self._guest
+        client = self._client
         if action.do == "swap":
-            guest.post(lambda: swap(guest, guest.need_selected(), action.arg))
+            client.post(lambda: swap(client, client.need_selected(), action.arg))
         elif action.do == "peek":
-            guest.post(lambda: self._peek(action.arg), key="peek")
+            client.post(lambda: self._peek(action.arg), key="peek")
         elif action.do == "size" and action.arg in SIZE_MODES:
-            guest.post(lambda: guest.change_settings(size_mode=action.arg))
+            client.post(lambda: client.change_preferences(size_mode=action.arg))
         elif action.do == "alike":
-            guest.post(lambda: guest.change_settings(all_alike=not guest.settings.all_alike))
+            client.post(lambda: client.change_preferences(all_alike=not client.preferences.all_alike))
         elif action.do == "keep":
-            guest.post(lambda: guest.change_settings(keep_colour=not guest.settings.keep_colour))
+            client.post(lambda: client.change_preferences(keep_colour=not client.preferences.keep_colour))
 
     def _peek(self, shape_id: str) -> None:
-        guest = self._guest
-        if not guest.selection:
+        client = self._client
+        if not client.selection:
             return
         if shape_id:
-            preview_swap(guest, guest.need_selected(), shape_id)
+            preview_swap(client, client.need_selected(), shape_id)
         else:
-            guest.room.refresh()
+            client.session.refresh()
 
 
-def shape_caption(room: Room, shape_id: str) -> str:
+def shape_caption(session: EditorSession, shape_id: str) -> str:
     """What people call a shape; its category at the least."""
     try:
-        shape = room.records.shape(shape_id)
+        shape = session.records.shape(shape_id)
     except LibraryError:
         return "missing shape"
     return shape.caption or shape.category

@@ -8,8 +8,8 @@ from collections.abc import Callable
 
 import viser
 
-from diorama_app.guest import Guest
-from diorama_app.viser_adapter import component_uuid
+from diorama_app.session.client import Client
+from diorama_app.web.viser_adapter import component_uuid
 
 MODELS = ("glb", "gltf", "obj", "ply", "stl", "fbx")
 Take = Callable[[str, bytes], None]
@@ -33,7 +33,7 @@ _STYLE = """<style>#dio-drop { position: fixed; inset: 12px; z-index: 950; displ
   color: #fff; background: #1d4f9e99; } %s { display: none; }</style>"""
 
 
-def take_dropped_files(gui: viser.GuiApi, guest: Guest, photo: Take, model: Take) -> None:
+def take_dropped_files(gui: viser.GuiApi, client: Client, photo: Take, model: Take) -> None:
     """Listen to the page for dropped files. Call it where the panel is always there: uploads go through hidden buttons.
 
     Args:
@@ -42,19 +42,19 @@ def take_dropped_files(gui: viser.GuiApi, guest: Guest, photo: Take, model: Take
         photo: takes name and content of a picture, and of what is of no known kind, to say what is wrong.
         model: takes those of a model.
     """
-    for_photos, for_models = (_hidden_upload(gui, guest, take) for take in (photo, model))
+    for_photos, for_models = (_hidden_upload(gui, client, take) for take in (photo, model))
     to = {"": for_photos, **dict.fromkeys(MODELS, for_models)}
     script = html.escape(_SCRIPT.replace("\n", "") % json.dumps(to))
     hidden = ", ".join(f"div:has(> #file_upload_{uuid})" for uuid in (for_photos, for_models))
     gui.add_html(f'{_STYLE % hidden}<img alt="" src="data:," style="display:none" onerror="{script}">')
 
 
-def _hidden_upload(gui: viser.GuiApi, guest: Guest, take: Take) -> str:
+def _hidden_upload(gui: viser.GuiApi, client: Client, take: Take) -> str:
     button = gui.add_upload_button("Dropped file")
 
     async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
         file = event.target.value
-        guest.post(lambda: take(file.name, file.content))
+        client.post(lambda: take(file.name, file.content))
 
     button.on_upload(uploaded)
     return component_uuid(button)

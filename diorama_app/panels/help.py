@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import viser
 
-from diorama_app.commands import Command, CommandTable
-from diorama_app.guest import Guest
-from diorama_app.page import STYLE, text
+from diorama_app.commands.registry import Command, CommandTable
 from diorama_app.panels.fields import on_press
+from diorama_app.session.client import Client
+from diorama_app.web.html import STYLE, text
 
 MOUSE = (
     ("Select", "Click"),
@@ -21,22 +21,22 @@ MOUSE = (
 )
 
 
-def show_help(guest: Guest, commands: CommandTable) -> None:
+def show_help(client: Client, commands: CommandTable) -> None:
     """Open the list over the page."""
-    gui: viser.GuiApi = guest.client.gui
-    if guest.dialog is not None:
-        guest.dialog()
+    gui: viser.GuiApi = client.viser_client.gui
+    if client.dialog is not None:
+        client.dialog()
 
     def close() -> None:
-        guest.dialog = None
+        client.dialog = None
         modal.close()
 
     with gui.add_modal("What you can do") as modal:
-        guest.dialog = close
+        client.dialog = close
         mouse = "".join(f"<tr><td>{text(a)}</td><td><kbd>{text(b)}</kbd></td></tr>" for a, b in MOUSE)
         keys = "".join(_row(c) for c in commands.all if c.keys)
         rest = ", ".join(text(c.label) for c in commands.all if not c.keys)
-        on_press(gui.add_button("Close"), lambda: guest.post(close))
+        on_press(gui.add_button("Close"), lambda: client.post(close))
         gui.add_html(
             f'{STYLE}<div class="dio" style="columns:2;column-gap:24px"><h4>Mouse</h4><table>{mouse}</table>'
             f"<h4>Keys</h4><table>{keys}</table></div>"

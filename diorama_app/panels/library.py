@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import viser
 
-from diorama_app.guest import Guest
-from diorama_app.importing import import_model
-from diorama_app.inserting import insert_shape, start_placing
-from diorama_app.page import Action, LiveHtml, button, text
+from diorama_app.commands.import_model import import_model
+from diorama_app.commands.insert import insert_shape, start_placing
 from diorama_app.panels.fields import on_change
-from diorama_app.units import format_size
+from diorama_app.session.client import Client
+from diorama_app.session.units import format_size
+from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.library.record import Shape
 from diorama_core.library.search import search
 
@@ -19,17 +19,17 @@ SHOWN = 24
 class LibraryPanel:
     """A search field and a grid of what was found."""
 
-    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
-        self._guest = guest
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self._client = client
         self._words = gui.add_text("Search", "", hint="For example: armchair, round table, blue")
-        on_change(self._words, lambda v: guest.post(self.refresh, key="search"))
+        on_change(self._words, lambda v: client.post(self.refresh, key="search"))
         upload = gui.add_upload_button(
             "Add a model file", hint="GLB, OBJ, PLY, STL or FBX; then click where it should stand"
         )
 
         async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
             file = event.target.value
-            guest.post(lambda: import_model(guest, file.name, file.content))
+            client.post(lambda: import_model(client, file.name, file.content))
 
         upload.on_upload(uploaded)
         self._where = LiveHtml(gui)
@@ -38,13 +38,13 @@ class LibraryPanel:
 
     def refresh(self) -> None:
         """Draw what was found."""
-        selected = self._guest.selected
+        selected = self._client.selected
         where = "on the floor you look at" + (f", or on the selected {text(selected.label)}" if selected else "")
         self._where.show(
             f'<p class="dim"><b>Insert</b> puts it {where}; <b>Place</b> waits for your click in the view.</p>'
         )
         words = self._words.value.strip()
-        drawn = (words, self._guest.settings.unit, self._guest.room.library.shapes())
+        drawn = (words, self._client.preferences.unit, self._client.session.library.shapes())
         if drawn == self._drawn:
             return  # a hundred tiles, the same as before
         self._drawn = drawn
@@ -53,7 +53,7 @@ class LibraryPanel:
         self._html.show(f'<div class="grid">{tiles}</div>' if tiles else nothing)
 
     def _found(self, words: str) -> list[Shape]:
-        library = self._guest.room.library
+        library = self._client.session.library
         if not words:
             firsts: dict[str, Shape] = {}
             for shape in library.shapes():
@@ -64,10 +64,10 @@ class LibraryPanel:
     def _tile(self, shape: Shape) -> str:
         size = shape.size_m
         name = text(shape.caption or shape.category)
-        about = text(format_size(size[1], size[0], size[2], self._guest.settings.unit))
+        about = text(format_size(size[1], size[0], size[2], self._client.preferences.unit))
         return (
             f'<div class="tile" title="{name}&#10;{about}">'
-            f"{self._guest.room.thumbnails.html(shape.id)}<b>{name}</b><small>{about}</small>"
+            f"{self._client.session.thumbnails.html(shape.id)}<b>{name}</b><small>{about}</small>"
             '<div class="bar" style="margin:4px 0 0 0">'
             + button("Insert", "insert", shape.id, title=f"Insert: {shape.caption}")
             + button("Place", "place", shape.id, title="Then click where it should stand")
@@ -75,8 +75,8 @@ class LibraryPanel:
         )
 
     def _act(self, action: Action) -> None:
-        guest = self._guest
+        client = self._client
         if action.do == "insert":
-            guest.post(lambda: insert_shape(guest, action.arg))
+            client.post(lambda: insert_shape(client, action.arg))
         elif action.do == "place":
-            guest.post(lambda: start_placing(guest, action.arg))
+            client.post(lambda: start_placing(client, action.arg))

@@ -4,26 +4,26 @@ from __future__ import annotations
 
 import viser
 
-from diorama_app.guest import Guest
-from diorama_app.measuring import measured_m, rescale_measured, stop_measuring
-from diorama_app.page import Action, LiveHtml, button, text
-from diorama_app.units import format_length, parse_length
+from diorama_app.commands.measure import measured_m, rescale_measured, stop_measuring
+from diorama_app.session.client import Client
+from diorama_app.session.units import format_length, parse_length
+from diorama_app.web.html import Action, LiveHtml, button, text
 
 
 class Tape:
     """Shown while two points are marked."""
 
-    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
-        self._guest = guest
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self._client = client
         self._html = LiveHtml(gui, self._act)
 
     def refresh(self) -> None:
         """Draw the length, and ask for the true one."""
-        length = measured_m(self._guest.doing)
+        length = measured_m(self._client.doing)
         if length is None:
             self._html.show("")
             return
-        shown = text(format_length(length, self._guest.settings.unit))
+        shown = text(format_length(length, self._client.preferences.unit))
         self._html.show(
             f'<div class="card"><b>{shown}</b> between the two points.'
             '<div style="display:flex;gap:4px;margin-top:6px;align-items:center">'
@@ -32,14 +32,14 @@ class Tape:
         )
 
     def _act(self, action: Action) -> None:
-        guest = self._guest
+        client = self._client
 
         def done() -> None:
-            stop_measuring(guest)
-            guest.refresh()
+            stop_measuring(client)
+            client.refresh()
 
         if action.do == "true" and action.pair[1].strip():
             words = action.pair[1]
-            guest.post(lambda: rescale_measured(guest, parse_length(words, guest.settings.unit)))
+            client.post(lambda: rescale_measured(client, parse_length(words, client.preferences.unit)))
         elif action.do == "done":
-            guest.post(done)
+            client.post(done)

@@ -6,10 +6,10 @@ import time
 
 import viser
 
-from diorama_app.guest import Guest
-from diorama_app.networks import get_networks, missing_networks
-from diorama_app.page import LiveHtml, text
 from diorama_app.panels.fields import enable, on_change, on_press, show_if, show_value
+from diorama_app.reconstruction.networks import get_networks, missing_networks
+from diorama_app.session.client import Client
+from diorama_app.web.html import LiveHtml, text
 from diorama_core.errors import DioramaError
 from diorama_core.models.manifest import Network, networks_of
 from diorama_core.models.store import ModelStore
@@ -21,14 +21,14 @@ SETS = {
     "paper: as published": "paper",
 }
 
-LOOKED_AT_EVERY_S = 3.0
+POLL_EVERY_S = 3.0
 
 
 class Networks:
     """The list of stages, the choice of a set with its licences, and "Get networks"."""
 
-    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
-        self._guest = guest
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self._client = client
         with gui.add_folder("Networks", expand_by_default=False):
             self._stages = LiveHtml(gui)
             self._choice = gui.add_dropdown("Set", tuple(SETS), hint="Which networks to get; all are optional")
@@ -36,24 +36,24 @@ class Networks:
             self._accept = gui.add_checkbox("I accept these licences", False)
             self._get = gui.add_button("Get networks", color="blue", hint="Fetches what is missing; can be stopped")
         self._state: tuple[object, ...] = ()
-        self._looked_at = 0.0
-        on_change(self._choice, lambda _: guest.post(self._chosen))
-        on_change(self._accept, lambda _: guest.post(self.refresh))
-        on_press(self._get, lambda: guest.post(self._start))
+        self._polled_at = 0.0
+        on_change(self._choice, lambda _: client.post(self._chosen))
+        on_change(self._accept, lambda _: client.post(self.refresh))
+        on_press(self._get, lambda: client.post(self._start))
 
     def refresh(self) -> None:
         """Draw what is here and what the chosen set would add; looks at the disk now and then, not at every edit."""
-        state = (self._choice.value, self._accept.value, self._guest.room.jobs.status is None)
-        if state == self._state and time.monotonic() - self._looked_at < LOOKED_AT_EVERY_S:
+        state = (self._choice.value, self._accept.value, self._client.session.jobs.status is None)
+        if state == self._state and time.monotonic() - self._polled_at < POLL_EVERY_S:
             return
-        self._state, self._looked_at = state, time.monotonic()
+        self._state, self._polled_at = state, time.monotonic()
         store = ModelStore.default()
         self._stages.show(_stages_html())
         missing, unknown = self._missing(store), self._unknown(store)
         self._offer.show(_offer_html(missing, store))
         show_if(bool(unknown), self._accept)
         show_if(bool(missing), self._get)
-        enable(self._get, self._guest.room.jobs.status is None and (not unknown or self._accept.value))
+        enable(self._get, self._client.session.jobs.status is None and (not unknown or self._accept.value))
 
     def _networks(self) -> tuple[Network, ...]:
         return networks_of(SETS[self._choice.value])
@@ -71,7 +71,7 @@ class Networks:
 
     def _start(self) -> None:
         accepted = self._unknown(ModelStore.default()) if self._accept.value else frozenset[str]()
-        get_networks(self._guest, self._networks(), accepted)
+        get_networks(self._client, self._networks(), accepted)
 
 
 def _stages_html() -> str:

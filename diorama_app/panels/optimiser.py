@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import viser
 
-from diorama_app.arrangements import Arrangements, switch_arrangement
-from diorama_app.guest import Guest
-from diorama_app.layout_run import LayoutRun
-from diorama_app.optimising import optimise, put_back, show_before
-from diorama_app.page import Action, LiveHtml, button, text
+from diorama_app.commands.arrangements import Arrangements, switch_arrangement
+from diorama_app.commands.optimise import optimise, put_back, show_before
 from diorama_app.panels.fields import QUIET_COLOUR, enable, on_change, on_press, show_if, show_value
-from diorama_app.settings import RecipeName
+from diorama_app.session.client import Client
+from diorama_app.session.layout_run import LayoutRun
+from diorama_app.session.preferences import RecipeName
+from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.layout.weights import Weights, weighted_costs
 
 RECIPES: dict[str, RecipeName] = {
@@ -59,27 +59,29 @@ COSTS = {
     "e_col": "Apart",
 }
 """What the curves and the table of costs call them."""
-LEAST_COST = 1e-6
+MIN_COST = 1e-6
 
 
 class Optimiser:
     """Recipe, what may move, start, curves, report, whole-scene alternatives."""
 
-    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
-        self._guest = guest
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self._client = client
         self._gui = gui
         gui.add_markdown("Objects settle on their supports, out of each other and into the room. Locked ones stay.")
         self._recipe = gui.add_dropdown("Recipe", list(RECIPES), hint="How the layout is found")
-        on_change(self._recipe, lambda v: guest.post(lambda: guest.change_settings(recipe=RECIPES[v]), key="recipe"))
+        on_change(
+            self._recipe, lambda v: client.post(lambda: client.change_preferences(recipe=RECIPES[v]), key="recipe")
+        )
         self._weights: dict[str, viser.GuiSliderHandle[float]] = {}
         with gui.add_folder("Weights", expand_by_default=False):
             for name, (label, hint) in WEIGHTS.items():
                 self._weights[name] = gui.add_slider(
                     label, 0.0, 3.0, 0.1, 1.0, hint=f"{hint}; 1 is the recipe as it is"
                 )
-                on_change(self._weights[name], lambda _: guest.post(self.refresh, key="weights"))
+                on_change(self._weights[name], lambda _: client.post(self.refresh, key="weights"))
             self._even = gui.add_button("All back to 1", color=QUIET_COLOUR, hint="The recipe as it is")
-        on_press(self._even, lambda: guest.post(self._evened))
+        on_press(self._even, lambda: client.post(self._evened))
         self._start = gui.add_button("Optimise layout", hint="One undo step; Cancel puts everything back")
         self._start_some = gui.add_button(
             "Optimise selection", color=QUIET_COLOUR, hint="Only what is selected (and what stands on it) moves"
@@ -95,33 +97,33 @@ class Optimiser:
 
     def refresh(self) -> None:
         """Allow starting when nothing runs; show the curves and the last report."""
-        room, run = self._guest.room, self._guest.room.layout_run
-        idle = room.jobs.status is None and bool(room.scene.objects)
-        recipe = self._guest.settings.recipe
+        session, run = self._client.session, self._client.session.layout_run
+        idle = session.jobs.status is None and bool(session.scene.objects)
+        recipe = self._client.preferences.recipe
         show_value(self._recipe, next(label for label, name in RECIPES.items() if name == recipe))
         used = weighted_costs(recipe)
         for name, slider in self._weights.items():
             show_if(name in used, slider)
         enable(self._even, any(slider.value != 1.0 for slider in self._weights.values()))
         enable(self._start, idle)
-        enable(self._start_some, idle and bool(self._guest.selection))
+        enable(self._start_some, idle and bool(self._client.selection))
         self._draw(run)
         self._result.show(_choice(run) if run is not None and run.final is not None else "")
         self._report.show("" if run is None else _report(run))
         self._arrangements.show(self._others() if idle else "")
 
     def _started(self, *, some: bool) -> None:
-        guest = self._guest
-        name = guest.settings.recipe
+        client = self._client
+        name = client.preferences.recipe
 
         def start() -> None:
             weights = Weights(**{cost: self._weights[cost].value for cost in weighted_costs(name)})
-            optimise(guest, name, guest.need_selection() if some else (), weights)
+            optimise(client, name, client.need_selection() if some else (), weights)
 
-        guest.post(start)
+        client.post(start)
 
     def _others(self) -> str:
-        arrangements, chosen = Arrangements(self._guest.room.scene), self._guest.selection
+        arrangements, chosen = Arrangements(self._client.session.scene), self._client.selection
         count = arrangements.count
         if count < 2:
             return ""
@@ -145,26 +147,26 @@ class Optimiser:
         self.refresh()
 
     def _act(self, action: Action) -> None:
-        guest, room = self._guest, self._guest.room
+        client, session = self._client, self._client.session
         if action.do == "before":
-            guest.post(lambda: show_before(room, True))
+            client.post(lambda: show_before(session, True))
         elif action.do == "after":
-            guest.post(lambda: show_before(room, False))
+            client.post(lambda: show_before(session, False))
         elif action.do == "back":
-            guest.post(lambda: put_back(guest))
+            client.post(lambda: put_back(client))
         elif action.do == "keep":
-            guest.post(self._keep)
+            client.post(self._keep)
         elif action.do == "arrangement" and action.arg.isdigit():
-            guest.post(lambda: switch_arrangement(guest, int(action.arg)))
+            client.post(lambda: switch_arrangement(client, int(action.arg)))
         elif action.do == "mix" and action.arg.isdigit():
-            guest.post(lambda: switch_arrangement(guest, int(action.arg), guest.need_selection()))
+            client.post(lambda: switch_arrangement(client, int(action.arg), client.need_selection()))
 
     def _keep(self) -> None:
-        room = self._guest.room
-        if room.layout_run is not None and room.layout_run.showing_before:
-            show_before(room, False)
-        room.layout_run = None
-        room.refresh_panels()
+        session = self._client.session
+        if session.layout_run is not None and session.layout_run.showing_before:
+            show_before(session, False)
+        session.layout_run = None
+        session.refresh_panels()
 
     def _draw(self, run: LayoutRun | None) -> None:
         if run is None or len(run.times_s) < 2:
@@ -232,4 +234,4 @@ def _figure(name: str, value: float) -> str:
         return f"{100 * value:.0f}%"
     if name.endswith("_m"):
         return f"{100 * value:.1f} cm"
-    return f"{value:.3g}" if abs(value) >= LEAST_COST else "0"
+    return f"{value:.3g}" if abs(value) >= MIN_COST else "0"

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 
 import viser
 
-from diorama_app import editing
-from diorama_app.guest import Guest
-from diorama_app.marks import is_unsure
-from diorama_app.page import Action, LiveHtml, button, text
+from diorama_app.commands import edit as editing
 from diorama_app.panels.toolbar import title_bar
+from diorama_app.session.client import Client
+from diorama_app.viewport.decorations import is_unsure
+from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.errors import EditRefused
 from diorama_core.scene.types import Plane, Scene, SceneObject
 
@@ -47,29 +47,31 @@ class _Tree:
 class Outliner:
     """Planes and objects, nested by support edges."""
 
-    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
-        self._guest = guest
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self._client = client
         self._html = LiveHtml(gui, self._act)
-        self._held_until = 0.0
+        self._paused_until = 0.0
 
     def refresh(self) -> None:
         """Draw the tree of the current scene; not while a row is being dragged, which would let go of it."""
-        if time.monotonic() < self._held_until:
+        if time.monotonic() < self._paused_until:
             return
-        guest, room = self._guest, self._guest.room
-        others = [(g.name, g.colour, g.selection) for g in room.guests.values() if g is not guest]
-        self._html.show(f"<p>{title_bar(guest)}</p>" + tree_html(room.scene, guest.selection, room.badges, others))
+        client, session = self._client, self._client.session
+        others = [(g.name, g.colour, g.selection) for g in session.clients.values() if g is not client]
+        self._html.show(
+            f"<p>{title_bar(client)}</p>" + tree_html(session.scene, client.selection, session.badges, others)
+        )
 
     def _act(self, action: Action) -> None:
-        self._guest.post(lambda: self._do(action))
+        self._client.post(lambda: self._do(action))
 
     def _do(self, action: Action) -> None:
-        guest, scene = self._guest, self._guest.room.scene
+        client, scene = self._client, self._client.session.scene
         if action.do == "grab":
-            self._held_until = time.monotonic() + LONGEST_DRAG_S
+            self._paused_until = time.monotonic() + LONGEST_DRAG_S
             return
         if action.do in ("drop", "release"):
-            self._held_until = 0.0
+            self._paused_until = 0.0
         if action.do == "release":
             self.refresh()
             return
@@ -77,25 +79,25 @@ class Outliner:
             child, parent = action.pair
             if not scene.has_object(child):
                 raise EditRefused("drag a row of the list onto another")
-            editing.attach(guest, child, parent)
+            editing.attach(client, child, parent)
             return
         if action.do == "start":
-            guest.open_tab("Photo")
+            client.open_tab("Photo")
             return
         if action.do == "wrong":
-            guest.select(guest.room.badges)
+            client.select(client.session.badges)
             return
         if not scene.has_object(action.arg):
             return
         item = scene.object(action.arg)
         if action.do == "select" and action.add:
-            guest.toggle(item.id)
+            client.toggle(item.id)
         elif action.do == "select":
-            guest.select((item.id,))
+            client.select((item.id,))
         elif action.do == "lock":
-            editing.set_locked(guest, (item.id,), not item.locked)
+            editing.set_locked(client, (item.id,), not item.locked)
         elif action.do == "hide":
-            editing.set_hidden(guest, (item.id,), not item.hidden)
+            editing.set_hidden(client, (item.id,), not item.hidden)
 
 
 def plane_name(scene: Scene, plane: Plane) -> str:

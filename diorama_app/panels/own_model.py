@@ -4,26 +4,26 @@ from __future__ import annotations
 
 import viser
 
-from diorama_app.guest import Guest
-from diorama_app.importing import FIXES, correct_model, is_own_model
-from diorama_app.page import Action, LiveHtml, button, text
+from diorama_app.commands.import_model import FIXES, correct_model, is_own_model
+from diorama_app.session.client import Client
+from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.library.record import Shape
 
 
 class OwnModel:
     """Shown for objects whose shape somebody brought along."""
 
-    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
-        self._guest = guest
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self._client = client
         self._html = LiveHtml(gui, self._act)
 
     def refresh(self) -> None:
         """Draw what was guessed about the selected object's model, and ways to correct it."""
-        item = self._guest.selected
-        if item is None or not is_own_model(self._guest.room, item.shape_id):
+        item = self._client.selected
+        if item is None or not is_own_model(self._client.session, item.shape_id):
             self._html.show("")
             return
-        shape = self._guest.room.library.shape(item.shape_id)
+        shape = self._client.session.library.shape(item.shape_id)
         fixes = "".join(button(fix.name, "fix", name, title=fix.hint) for name, fix in FIXES.items())
         self._html.show(
             f'<h4>Your model</h4><div class="dim">{text(_guessed(shape))}</div>'
@@ -34,11 +34,11 @@ class OwnModel:
         )
 
     def _act(self, action: Action) -> None:
-        guest = self._guest
+        client = self._client
         if action.do == "fix" and action.arg in FIXES:
-            guest.post(lambda: correct_model(guest, guest.need_selected(), FIXES[action.arg]))
+            client.post(lambda: correct_model(client, client.need_selected(), FIXES[action.arg]))
         elif action.do == "is":
-            guest.post(lambda: correct_model(guest, guest.need_selected(), category=action.pair[1]))
+            client.post(lambda: correct_model(client, client.need_selected(), category=action.pair[1]))
 
 
 def _guessed(shape: Shape) -> str:

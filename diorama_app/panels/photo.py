@@ -11,18 +11,18 @@ import viser
 from jaxtyping import UInt8
 from PIL import Image
 
-from diorama_app import work
-from diorama_app.commands import CommandTable
-from diorama_app.correcting import add_from_photo
-from diorama_app.describing import describe_room, how_pictures_come
-from diorama_app.drafts import Draft, boxes_json, can_find_furniture
-from diorama_app.guest import Guest
-from diorama_app.networks import NO_DETECTOR
-from diorama_app.page import Action, LiveHtml, button, text
+from diorama_app.commands.camera_presets import Views
+from diorama_app.commands.registry import CommandTable
 from diorama_app.panels.fields import enable, on_change, on_press, show_if, show_label, show_value
-from diorama_app.viewport import reduced
-from diorama_app.views import Views
-from diorama_app.viser_adapter import component_uuid
+from diorama_app.reconstruction import build_job as work
+from diorama_app.reconstruction.networks import NO_DETECTOR
+from diorama_app.reconstruction.object_correction import add_from_photo
+from diorama_app.reconstruction.text_to_scene import describe_room, how_pictures_come
+from diorama_app.session.client import Client
+from diorama_app.session.draft import Draft, boxes_json, can_find_furniture
+from diorama_app.viewport.scene_view import reduced
+from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_app.web.viser_adapter import component_uuid
 from diorama_core.artefacts import Box
 from diorama_core.errors import InputError
 from diorama_core.library.taxonomy import CATEGORIES
@@ -35,16 +35,16 @@ UPLOADS = {"photo": "Photo", "depth": "Depth (PNG, NPY)", "boxes": "Boxes (JSON)
 class PhotoPanel:
     """Uploads, the drawing board's controls, the list of boxes, and "Build scene"."""
 
-    def __init__(self, gui: viser.GuiApi, guest: Guest, views: Views, commands: CommandTable) -> None:
-        self._guest, self._room, self._views = guest, guest.room, views
+    def __init__(self, gui: viser.GuiApi, client: Client, views: Views, commands: CommandTable) -> None:
+        self._client, self._session, self._views = client, client.session, views
         self._picture_of: object = None
         self._picture = ""
         self._invitation = LiveHtml(gui, self._act)
         self._photo_button = self._upload(gui, "photo", "Upload a photo", "image/*")
         self._words = gui.add_text("Describe a room", "", hint="For example: a bedroom with a double bed and two lamps")
         self._describe = gui.add_button("Make this room", color="green", hint="A project of its own, made from words")
-        on_change(self._words, lambda _: guest.post(self.refresh, key="words"))
-        on_press(self._describe, lambda: guest.post(lambda: describe_room(guest, self._words.value)))
+        on_change(self._words, lambda _: client.post(self.refresh, key="words"))
+        on_press(self._describe, lambda: client.post(lambda: describe_room(client, self._words.value)))
         self._drawn_by = LiveHtml(gui)
         self._more = gui.add_folder("More about this photo", expand_by_default=False)
         with self._more:
@@ -54,23 +54,23 @@ class PhotoPanel:
             self._camera = gui.add_text("Camera", "", hint="fx,fy,cx,cy in pixels of the photo; empty: estimated")
             on_change(self._camera, self._camera_given)
         self._draw = gui.add_button("Draw boxes", color="blue", hint="Mark every piece of furniture with a rectangle")
-        on_press(self._draw, lambda: guest.post(self._toggle_board))
+        on_press(self._draw, lambda: client.post(self._toggle_board))
         self._find = gui.add_button("Find furniture", hint=commands["find_furniture"].tooltip)
-        on_press(self._find, lambda: guest.post(lambda: commands["find_furniture"].run(guest)))
+        on_press(self._find, lambda: client.post(lambda: commands["find_furniture"].run(client)))
         self._no_detector = LiveHtml(gui)
-        guest.open_board = self._open_board
+        client.open_board = self._open_board
         names = [*COMMON, *sorted({c.name for c in CATEGORIES} - {*COMMON, "object"})]
         self._label = gui.add_dropdown("This is a", names, hint="What the next box (or the marked one) is")
         self._other = gui.add_text("or type", "", hint="Any other word; used instead of the list")
-        on_change(self._label, lambda value: guest.post(lambda: self._labelled(value, listed=True)))
-        on_change(self._other, lambda value: guest.post(lambda: self._labelled(value, listed=False), key="word"))
+        on_change(self._label, lambda value: client.post(lambda: self._labelled(value, listed=True)))
+        on_change(self._other, lambda value: client.post(lambda: self._labelled(value, listed=False), key="word"))
         self._list = LiveHtml(gui, self._act)
         self._add = gui.add_button(
             "Add marked one to the scene", color="blue", hint="Only the marked box is looked at; everything else stays"
         )
-        on_press(self._add, lambda: guest.post(self._add_marked))
+        on_press(self._add, lambda: client.post(self._add_marked))
         self._build = gui.add_button("Build scene", color="green", hint="Makes a scene of the photo and its boxes")
-        on_press(self._build, lambda: guest.post(lambda: work.build(guest)))
+        on_press(self._build, lambda: client.post(lambda: work.build(client)))
 
     def take(self, name: str, content: bytes) -> None:
         """Take a picture that was dropped somewhere on the page."""
@@ -83,20 +83,20 @@ class PhotoPanel:
 
     def refresh(self) -> None:
         """Draw the state of the draft."""
-        draft = self._room.draft
+        draft = self._session.draft
         has_photo = draft.photo is not None
         self._invitation.show(self._introduction(draft))
         show_if(has_photo, self._more, self._draw, self._find, self._label, self._other, self._build)
         self._drawn_by.show(f'<p class="dim">{text(how_pictures_come())}</p>' if self._words.value.strip() else "")
-        enable(self._describe, self._room.jobs.status is None and bool(self._words.value.strip()))
+        enable(self._describe, self._session.jobs.status is None and bool(self._words.value.strip()))
         finds = can_find_furniture()
-        enable(self._find, self._room.jobs.status is None and finds)
+        enable(self._find, self._session.jobs.status is None and finds)
         self._no_detector.show(f'<p class="dim">{text(NO_DETECTOR)}</p>' if has_photo and not finds else "")
         self._list.show(_box_list(draft) if has_photo else "")
-        show_if(has_photo and draft.from_project and bool(self._room.scene.objects), self._add)
-        enable(self._add, self._room.jobs.status is None and draft.highlighted is not None)
-        enable(self._build, self._room.jobs.status is None and draft.ready)
-        show_label(self._draw, "Done drawing" if self._guest.view.drawing else "Draw boxes")
+        show_if(has_photo and draft.from_project and bool(self._session.scene.objects), self._add)
+        enable(self._add, self._session.jobs.status is None and draft.highlighted is not None)
+        enable(self._build, self._session.jobs.status is None and draft.ready)
+        show_label(self._draw, "Done drawing" if self._client.view.drawing else "Draw boxes")
 
     # -- uploads ----------------------------------------------------------------------------------------------
 
@@ -105,13 +105,13 @@ class PhotoPanel:
 
         async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
             file = event.target.value
-            self._guest.post(lambda: self._received(kind, file.name, file.content))
+            self._client.post(lambda: self._received(kind, file.name, file.content))
 
         handle.on_upload(uploaded)
         return component_uuid(handle)
 
     def _received(self, kind: str, name: str, content: bytes) -> None:
-        draft = self._room.draft
+        draft = self._session.draft
         if kind == "photo":
             files: dict[str, bytes] = {"photo": content}
         elif draft.photo is None:
@@ -121,16 +121,16 @@ class PhotoPanel:
         made = self._read(files, Draft(name=name) if kind == "photo" else draft)
         if kind == "boxes" and made.inputs is not None:
             made = replace(made, boxes=made.inputs.boxes)
-        self._room.draft = made
+        self._session.draft = made
         for warning in made.warnings[:3]:
-            self._guest.notice(warning)
+            self._client.notice(warning)
         if kind == "photo":
-            self._guest.open_tab("Photo")
+            self._client.open_tab("Photo")
             self._open_board()
         else:
             self._redraw_boards()
-            self._guest.notice(f"{UPLOADS[kind]}: {name} is read.", "good")
-        self._room.refresh_panels()
+            self._client.notice(f"{UPLOADS[kind]}: {name} is read.", "good")
+        self._session.refresh_panels()
 
     def _read(self, files: dict[str, bytes], draft: Draft) -> Draft:
         files = dict(files)
@@ -150,59 +150,59 @@ class PhotoPanel:
 
     def _camera_given(self, value: str) -> None:
         def read() -> None:
-            if self._room.draft.photo is not None and (not value.strip() or value.count(",") == 3):
-                self._room.draft = self._read(self._room.draft.files, self._room.draft)
-                self._room.refresh_panels()
+            if self._session.draft.photo is not None and (not value.strip() or value.count(",") == 3):
+                self._session.draft = self._read(self._session.draft.files, self._session.draft)
+                self._session.refresh_panels()
 
-        self._guest.post(read, key="camera")
+        self._client.post(read, key="camera")
 
     # -- the drawing board ------------------------------------------------------------------------------------
 
     def _toggle_board(self) -> None:
-        if self._guest.view.drawing:
-            self._views.room_view(self._guest)
+        if self._client.view.drawing:
+            self._views.room_view(self._client)
         else:
             self._open_board()
         self.refresh()
 
     def _open_board(self) -> None:
-        photo = self._room.draft.photo
+        photo = self._session.draft.photo
         if photo is None:
             raise InputError("there is no photo yet; upload one first")
-        self._guest.view.open_board(photo.rgb, lambda box: self._guest.post(lambda: self._drawn(box)))
+        self._client.view.open_board(photo.rgb, lambda box: self._client.post(lambda: self._drawn(box)))
         self._redraw_boards()
 
     def _drawn(self, box: Box) -> None:
-        self._change(self._room.draft.with_box(box, self.label))
+        self._change(self._session.draft.with_box(box, self.label))
 
     def _labelled(self, word: str, *, listed: bool) -> None:
         if listed and self._other.value:
             show_value(self._other, "")
-        draft = self._room.draft
+        draft = self._session.draft
         label = word.strip() or self._label.value
         if draft.highlighted is not None and draft.highlighted < len(draft.boxes):
             self._change(draft.relabelled(draft.highlighted, label))
 
     def _change(self, draft: Draft) -> None:
-        self._room.draft = draft
+        self._session.draft = draft
         self._redraw_boards()
-        self._room.refresh_panels()
+        self._session.refresh_panels()
 
     def _add_marked(self) -> None:
-        draft = self._room.draft
+        draft = self._session.draft
         if draft.highlighted is None or draft.highlighted >= len(draft.boxes):
             raise InputError("mark a box in the list first, or draw one around what was missed")
         box = draft.boxes[draft.highlighted]
-        add_from_photo(self._guest, box.box, box.label)
+        add_from_photo(self._client, box.box, box.label)
 
     def _redraw_boards(self) -> None:
-        draft = self._room.draft
-        for guest in self._room.guests.values():
-            guest.view.show_boxes(draft.boxes, draft.highlighted)
+        draft = self._session.draft
+        for client in self._session.clients.values():
+            client.view.show_boxes(draft.boxes, draft.highlighted)
 
     def _act(self, action: Action) -> None:
         def do() -> None:
-            draft, index = self._room.draft, int(action.arg)
+            draft, index = self._session.draft, int(action.arg)
             if index >= len(draft.boxes):
                 return
             if action.do == "drop":
@@ -211,7 +211,7 @@ class PhotoPanel:
                 self._change(replace(draft, highlighted=None if draft.highlighted == index else index))
 
         if action.arg.isdigit():
-            self._guest.post(do)
+            self._client.post(do)
 
     # -- words ------------------------------------------------------------------------------------------------
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import viser
 
-from diorama_app.camera_fixing import (
+from diorama_app.commands.camera_presets import Views
+from diorama_app.reconstruction.camera_correction import (
     camera_height_m,
     check_fov,
     checked_angles,
@@ -14,12 +15,11 @@ from diorama_app.camera_fixing import (
     set_camera_height,
     trial_camera,
 )
-from diorama_app.guest import Guest
-from diorama_app.page import Action, LiveHtml, button, text
-from diorama_app.units import format_length, parse_length
-from diorama_app.views import Views
+from diorama_app.session.client import Client
+from diorama_app.session.units import format_length, parse_length
+from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.errors import InputError
-from diorama_core.geometry.held import Held
+from diorama_core.geometry.camera_attitude import CameraAttitude
 from diorama_core.scene.types import Camera
 
 FIELDS = {
@@ -32,8 +32,8 @@ FIELDS = {
 class PhotoCamera:
     """A folded list below the photo."""
 
-    def __init__(self, gui: viser.GuiApi, guest: Guest, views: Views) -> None:
-        self._guest = guest
+    def __init__(self, gui: viser.GuiApi, client: Client, views: Views) -> None:
+        self._client = client
         self._views = views
         self._html = LiveHtml(gui, self._act)
         self._typed: dict[str, float] = {}
@@ -42,33 +42,33 @@ class PhotoCamera:
 
     def refresh(self) -> None:
         """Draw the camera's figures; typed ones wait for the button."""
-        room = self._guest.room
-        camera = room.scene.camera
-        if camera is None or not room.draft.from_project:
+        session = self._client.session
+        camera = session.scene.camera
+        if camera is None or not session.draft.from_project:
             self._html.show("")
             return
         if self._of != camera:
             self._of, self._typed = camera, {}
-            self._guest.trial_camera = None
+            self._client.trial_camera = None
         values = {**figures(camera), **self._typed}
         shown_as = {name: f"{round(value, 1) + 0.0:.1f}" for name, value in values.items()}  # no minus before a zero
         rows = "".join(_row(label, name, shown_as[name], hint) for name, (label, hint) in FIELDS.items())
-        shown = format_length(camera_height_m(room.scene) or 0.0, self._guest.settings.unit)
+        shown = format_length(camera_height_m(session.scene) or 0.0, self._client.preferences.unit)
         rows += _row("Above the floor", "height", shown, "Rescales everything at once")
         again = button(
             "Build again with this camera",
             "build",
             title="Outlines stay; place, shape and layout are found anew. One undo step",
-            disabled=not self._typed or room.jobs.status is not None,
+            disabled=not self._typed or session.jobs.status is not None,
         )
         back = button("Never mind", "back", title="As it was") if self._typed else ""
-        inputs = room.document.inputs
-        if inputs is not None and inputs.held is not None and not self._typed:
+        inputs = session.document.inputs
+        if inputs is not None and inputs.camera_attitude is not None and not self._typed:
             back = button(
                 "Tilt from the photo",
                 "find",
                 title="Forget the tilt and roll that were set by hand, and build again",
-                disabled=room.jobs.status is not None,
+                disabled=session.jobs.status is not None,
             )
         explained = '<p class="dim">The grid should lie on the floor of the photo.</p>' if self._typed else ""
         self._html.show(
@@ -77,19 +77,19 @@ class PhotoCamera:
         )
 
     def _act(self, action: Action) -> None:
-        self._guest.post(lambda: self._do(action))
+        self._client.post(lambda: self._do(action))
 
     def _do(self, action: Action) -> None:
-        guest = self._guest
+        client = self._client
         if action.do == "height":
-            set_camera_height(guest, parse_length(action.pair[1], guest.settings.unit))
+            set_camera_height(client, parse_length(action.pair[1], client.preferences.unit))
         elif action.do in FIELDS:
             self._try({**self._typed, action.do: _degrees(action.pair[1])})
         elif action.do == "back":
-            self._typed, guest.trial_camera = {}, None
-            guest.refresh()
+            self._typed, client.trial_camera = {}, None
+            client.refresh()
         elif action.do == "find":
-            rebuild_as_found(guest)
+            rebuild_as_found(client)
         elif action.do == "build" and self._of is not None:
             self._build(self._of)
 
@@ -99,24 +99,24 @@ class PhotoCamera:
             return
         values = {**figures(self._of), **typed}
         check_fov(values["fov"])
-        held = checked_angles(values["tilt"], values["roll"])
+        camera_attitude = checked_angles(values["tilt"], values["roll"])
         self._typed, self._used = typed, True
-        self._guest.trial_camera = trial_camera(self._of, values["fov"], held)
-        self._views.overlay(self._guest, 1.0)
-        self._guest.refresh()
+        self._client.trial_camera = trial_camera(self._of, values["fov"], camera_attitude)
+        self._views.overlay(self._client, 1.0)
+        self._client.refresh()
 
     def _build(self, camera: Camera) -> None:
         typed, known = self._typed, figures(camera)
-        held: Held | None = None
+        camera_attitude: CameraAttitude | None = None
         if "tilt" in typed or "roll" in typed:
-            held = checked_angles(typed.get("tilt", known["tilt"]), typed.get("roll", known["roll"]))
-        rebuild_with_camera(self._guest, typed.get("fov"), held)
+            camera_attitude = checked_angles(typed.get("tilt", known["tilt"]), typed.get("roll", known["roll"]))
+        rebuild_with_camera(self._client, typed.get("fov"), camera_attitude)
 
 
 def figures(camera: Camera) -> dict[str, float]:
     """Field of view, tilt and roll in degrees."""
-    held = Held.of(camera.T_world_camera[:3, :3])
-    angles = (camera.intrinsics.horizontal_fov_rad, held.tilt_rad, held.roll_rad)
+    camera_attitude = CameraAttitude.of(camera.T_world_camera[:3, :3])
+    angles = (camera.intrinsics.horizontal_fov_rad, camera_attitude.pitch_rad, camera_attitude.roll_rad)
     # Adding zero takes the sign off a rounded minus nothing.
     return dict(zip(FIELDS, (round(float(np.degrees(a)), 6) + 0.0 for a in angles), strict=True))
 

@@ -11,12 +11,13 @@ from pathlib import Path
 import viser
 from PIL import Image
 
-from diorama_app import project_care, work
-from diorama_app.commands import CommandTable
-from diorama_app.guest import Guest
-from diorama_app.page import Action, LiveHtml, button, text
+from diorama_app.commands.registry import CommandTable
 from diorama_app.panels.fields import QUIET_COLOUR, enable, on_press
-from diorama_app.room import Room
+from diorama_app.projects import manage as project_care
+from diorama_app.reconstruction import build_job as work
+from diorama_app.session.client import Client
+from diorama_app.session.session import EditorSession
+from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.errors import EditRefused
 from diorama_core.project.storage import Project
 
@@ -31,22 +32,22 @@ class Projects:
     """Save, export and the list of recent projects."""
 
     def __init__(
-        self, gui: viser.GuiApi, guest: Guest, commands: CommandTable, take_photo: Callable[[str, bytes], None]
+        self, gui: viser.GuiApi, client: Client, commands: CommandTable, take_photo: Callable[[str, bytes], None]
     ) -> None:
-        self._guest = guest
+        self._client = client
         self._pictures: dict[tuple[str, float], str] = {}
         self._status = LiveHtml(gui, self._act)
         self._export = gui.add_button("Download GLB", hint="The whole room, for any 3D program")
-        on_press(self._export, lambda: guest.post(lambda: work.export_glb(guest)))
+        on_press(self._export, lambda: client.post(lambda: work.export_glb(client)))
         save = gui.add_button("Save now", color=QUIET_COLOUR, hint=commands["save"].tooltip)
-        on_press(save, lambda: guest.post(lambda: commands["save"].run(guest)))
+        on_press(save, lambda: client.post(lambda: commands["save"].run(client)))
         new = gui.add_upload_button(
             "New from a photo", color="green", mime_type="image/*", hint="A project of its own; this one stays as it is"
         )
 
         async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
             file = event.target.value
-            guest.post(lambda: take_photo(file.name, file.content))
+            client.post(lambda: take_photo(file.name, file.content))
 
         new.on_upload(uploaded)
         self._notes = LiveHtml(gui)
@@ -54,40 +55,40 @@ class Projects:
 
     def refresh(self) -> None:
         """Draw what is open and what else there is."""
-        room = self._guest.room
-        enable(self._export, room.jobs.status is None)
-        if room.project is None:
+        session = self._client.session
+        enable(self._export, session.jobs.status is None)
+        if session.project is None:
             self._status.show('<div class="card">No project is open.</div>')
         else:
-            name = text(room.project.name)
+            name = text(session.project.name)
             earlier = "".join(
                 f'<div class="row"><span class="name">{text(when)}</span>'
                 + button("Go back to it", "version", file)
                 + "</div>"
-                for file, when in project_care.earlier_versions(room.project)
+                for file, when in project_care.earlier_versions(session.project)
             )
             versions = f"<details><summary class='dim'>Earlier versions</summary>{earlier}</details>" if earlier else ""
             self._status.show(
                 f'<input data-change="rename" value="{name}" aria-label="Project name" title="Type to rename">'
                 f"<p class='dim' style='margin-top:4px'>Every change is saved as you make it.</p>{versions}"
             )
-        notes = "".join(f"<p>{text(note[:1].upper() + note[1:])}.</p>" for note in room.notes[:6])
+        notes = "".join(f"<p>{text(note[:1].upper() + note[1:])}.</p>" for note in session.notes[:6])
         self._notes.show(f'<h4>How this scene was made</h4><div class="card">{notes}</div>' if notes else "")
-        rows = "".join(self._row(folder) for folder in project_care.recent_projects(room.projects_dir)[:RECENT])
-        binned = project_care.in_bin(room.projects_dir)
+        rows = "".join(self._row(folder) for folder in project_care.recent_projects(session.projects_dir)[:RECENT])
+        binned = project_care.in_bin(session.projects_dir)
         undelete = ""
-        if room.binned in binned:
-            gone = text(project_care.name_of(room.binned))
+        if session.binned in binned:
+            gone = text(project_care.name_of(session.binned))
             undelete = f'<div class="job card warn"><span class="words">{gone} is in the bin.</span>'
-            undelete += button("Bring back", "unbin", room.binned.name) + "</div>"
-        bin_of = "".join(_binned_row(place) for place in binned[:RECENT] if place != room.binned)
+            undelete += button("Bring back", "unbin", session.binned.name) + "</div>"
+        bin_of = "".join(_binned_row(place) for place in binned[:RECENT] if place != session.binned)
         if bin_of:
             bin_of = f"<details><summary class='dim'>Bin</summary>{bin_of}</details>"
         self._list.show(f"<h4>Recent projects</h4>{undelete}{rows}{bin_of}" if rows or undelete or bin_of else "")
 
     def _row(self, folder: Path) -> str:
-        room = self._guest.room
-        current = room.project is not None and room.project.folder.resolve() == folder.resolve()
+        session = self._client.session
+        current = session.project is not None and session.project.folder.resolve() == folder.resolve()
         when = time.strftime("%d %b %H:%M", time.localtime(project_care.touched(folder)))
         name = text(project_care.name_of(folder))
         return (
@@ -109,51 +110,51 @@ class Projects:
         return self._pictures[key]
 
     def _act(self, action: Action) -> None:
-        self._guest.post(lambda: self._do(action))
+        self._client.post(lambda: self._do(action))
 
     def _do(self, action: Action) -> None:
-        guest, room = self._guest, self._guest.room
-        if action.do == "rename" and room.project is not None:
-            project_care.rename_project(room.project, action.pair[1])
-            guest.toast(f"This project is now called {room.project.name}", False)
-        elif action.do == "version" and room.project is not None:
-            scene = project_care.earlier_scene(room.project, action.arg)
-            room.textures = {**room.textures, **room.project.textures(scene)}
-            room.commit("go back to an earlier version", scene, by=guest, selection=())
+        client, session = self._client, self._client.session
+        if action.do == "rename" and session.project is not None:
+            project_care.rename_project(session.project, action.pair[1])
+            client.toast(f"This project is now called {session.project.name}", False)
+        elif action.do == "version" and session.project is not None:
+            scene = project_care.earlier_scene(session.project, action.arg)
+            session.textures = {**session.textures, **session.project.textures(scene)}
+            session.commit("go back to an earlier version", scene, by=client, selection=())
         elif action.do == "unbin":
             self._bring_back(action.arg)
         elif action.do in ("open", "copy", "bin"):
             self._with_listed(action.do, action.arg)
-        room.refresh_panels()
+        session.refresh_panels()
 
     def _bring_back(self, name: str) -> None:
-        room = self._guest.room
-        place = next((p for p in project_care.in_bin(room.projects_dir) if p.name == name), None)
+        session = self._client.session
+        place = next((p for p in project_care.in_bin(session.projects_dir) if p.name == name), None)
         if place is None:
             raise EditRefused("that project is gone")
-        folder = project_care.out_of_bin(place, room.projects_dir)
-        room.binned = None
-        self._guest.toast(f"{project_care.name_of(folder)} is back", False)
+        folder = project_care.out_of_bin(place, session.projects_dir)
+        session.binned = None
+        self._client.toast(f"{project_care.name_of(folder)} is back", False)
 
     def _with_listed(self, do: str, name: str) -> None:
-        guest, room = self._guest, self._guest.room
+        client, session = self._client, self._client.session
         # Only a name that is listed: the page must not reach outside the projects' folder.
-        folder = next((f for f in project_care.recent_projects(room.projects_dir) if f.name == name), None)
+        folder = next((f for f in project_care.recent_projects(session.projects_dir) if f.name == name), None)
         if folder is None:
             raise EditRefused("that project is gone")
         if do == "copy":
-            room.saver.flush()
-            made = project_care.duplicate_project(folder, room.projects_dir)
-            guest.toast(f"Copied as {made.name}", False)
+            session.autosave.flush()
+            made = project_care.duplicate_project(folder, session.projects_dir)
+            client.toast(f"Copied as {made.name}", False)
         elif do == "bin":
-            if _is_open(room, folder):
+            if _is_open(session, folder):
                 raise EditRefused("that project is open; open another one first")
-            room.binned = project_care.to_bin(folder, room.projects_dir)
+            session.binned = project_care.to_bin(folder, session.projects_dir)
         else:
-            if room.jobs.status is not None:
-                raise EditRefused(f"{room.jobs.status.title} is still running; cancel it or wait")
-            room.open_project(Project.open(folder))
-            room.notice_all(f"Opened {room.project.name if room.project else ''}.", "good")
+            if session.jobs.status is not None:
+                raise EditRefused(f"{session.jobs.status.title} is still running; cancel it or wait")
+            session.open_project(Project.open(folder))
+            session.notice_all(f"Opened {session.project.name if session.project else ''}.", "good")
 
 
 def _binned_row(place: Path) -> str:
@@ -161,8 +162,8 @@ def _binned_row(place: Path) -> str:
     return f'<div class="row"><span class="name">{name}</span>' + button("Bring back", "unbin", place.name) + "</div>"
 
 
-def _is_open(room: Room, folder: Path) -> bool:
-    return room.project is not None and room.project.folder.resolve() == folder.resolve()
+def _is_open(session: EditorSession, folder: Path) -> bool:
+    return session.project is not None and session.project.folder.resolve() == folder.resolve()
 
 
 def _small_picture(path: Path) -> str:

@@ -7,13 +7,13 @@ from collections.abc import Callable
 import numpy as np
 import viser
 
-from diorama_app import editing
-from diorama_app.commands import CommandTable
-from diorama_app.guest import Guest
-from diorama_app.page import Action, LiveHtml, button, text
+from diorama_app.commands import edit as editing
+from diorama_app.commands.registry import CommandTable
 from diorama_app.panels.fields import on_change, show_if, show_label, show_options, show_value
 from diorama_app.panels.toolbar import run_command
-from diorama_app.units import UNITS, format_length, from_unit, in_unit, parse_lengths
+from diorama_app.session.client import Client
+from diorama_app.session.units import UNITS, format_length, from_unit, in_unit, parse_lengths
+from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.errors import InputError
 from diorama_core.scene.types import Finish, SceneObject
 
@@ -42,8 +42,8 @@ ALIGN = {
 class Properties:
     """Fields of the object selected last."""
 
-    def __init__(self, gui: viser.GuiApi, guest: Guest, commands: CommandTable) -> None:
-        self._guest, self._commands = guest, commands
+    def __init__(self, gui: viser.GuiApi, client: Client, commands: CommandTable) -> None:
+        self._client, self._commands = client, commands
         self._header = LiveHtml(gui, self._act)
         self._name = gui.add_text("Name", "", visible=False)
         where, size = "Middle of its underside: x, y, height", "Width, depth, height"
@@ -57,27 +57,29 @@ class Properties:
         self._unit = gui.add_dropdown("Unit", list(UNITS), visible=False, hint="Of every length shown")
         self._colour = gui.add_rgb("Colour", (200, 200, 200), visible=False, hint="Paints its main material")
         self._own = LiveHtml(gui, self._act)
-        on_change(self._name, lambda v: self._with(lambda i: editing.rename(guest, i, v), "name"))
-        on_change(self._place, lambda v: self._with(lambda i: editing.set_base_position(guest, i, self._m(v)), "place"))
+        on_change(self._name, lambda v: self._with(lambda i: editing.rename(client, i, v), "name"))
+        on_change(
+            self._place, lambda v: self._with(lambda i: editing.set_base_position(client, i, self._m(v)), "place")
+        )
         on_change(self._place_words, lambda v: self._written(v, "place", editing.set_base_position, None))
-        on_change(self._yaw, lambda v: self._with(lambda i: editing.set_yaw(guest, i, v), "yaw"))
+        on_change(self._yaw, lambda v: self._with(lambda i: editing.set_yaw(client, i, v), "yaw"))
         on_change(
             self._size,
-            lambda v: self._with(lambda i: editing.set_size(guest, i, self._m(v)[SIZE_ORDER]), "size"),
+            lambda v: self._with(lambda i: editing.set_size(client, i, self._m(v)[SIZE_ORDER]), "size"),
         )
         on_change(self._size_words, lambda v: self._written(v, "size", editing.set_size, SIZE_ORDER))
-        on_change(self._unit, lambda v: guest.post(lambda: guest.change_settings(unit=v)))
+        on_change(self._unit, lambda v: client.post(lambda: client.change_preferences(unit=v)))
         on_change(
             self._colour,
-            lambda v: guest.post(
-                lambda: editing.set_colour(guest, guest.need_selection(), (v[0] / 255, v[1] / 255, v[2] / 255)),
+            lambda v: client.post(
+                lambda: editing.set_colour(client, client.need_selection(), (v[0] / 255, v[1] / 255, v[2] / 255)),
                 key="colour",
             ),
         )
 
     def refresh(self) -> None:
         """Show the selected object, or what to do when there is none."""
-        item, unit = self._guest.selected, self._guest.settings.unit
+        item, unit = self._client.selected, self._client.preferences.unit
         there, feet = item is not None, unit == "ft-in"
         show_if(there, self._name, self._yaw, self._unit, self._colour)
         show_if(there and not feet, self._place, self._size)
@@ -111,29 +113,29 @@ class Properties:
         show_value(field, ", ".join(format_length(float(v), "ft-in") for v in lengths_m))
 
     def _m(self, values: tuple[float, float, float]) -> np.ndarray:
-        return np.array([from_unit(v, self._guest.settings.unit) for v in values])
+        return np.array([from_unit(v, self._client.preferences.unit) for v in values])
 
     def _written(
         self,
         words: str,
         field: str,
-        act: Callable[[Guest, str, np.ndarray], None],
+        act: Callable[[Client, str, np.ndarray], None],
         order: list[int] | None,
     ) -> None:
         try:
             values = np.array(parse_lengths(words, "ft-in"))
         except InputError:
             return  # still being typed
-        self._with(lambda i: act(self._guest, i, values if order is None else values[order]), field)
+        self._with(lambda i: act(self._client, i, values if order is None else values[order]), field)
 
     def _with(self, act: Callable[[str], None], field: str) -> None:
         """Do something to the object selected now, dropping keystrokes that a newer one of the field overtook."""
-        chosen = self._guest.selection[-1:]
+        chosen = self._client.selection[-1:]
         if chosen:
-            self._guest.post(lambda: act(chosen[0]), key=f"{field} {chosen[0]}")
+            self._client.post(lambda: act(chosen[0]), key=f"{field} {chosen[0]}")
 
     def _advice(self) -> str:
-        if not self._guest.room.scene.objects:
+        if not self._client.session.scene.objects:
             return '<div class="card">The room is empty. Insert furniture from the <b>Library</b> tab.</div>'
         return (
             '<div class="card"><b>Click an object</b> in the view or in the list, or <b>drag it</b> to where it should '
@@ -141,14 +143,14 @@ class Properties:
         )
 
     def _card(self, item: SceneObject) -> str:
-        several = len(self._guest.selection)
+        several = len(self._client.selection)
         more = f' <span class="dim">and {several - 1} more</span>' if several > 1 else ""
-        evidence = f" · {100 * item.confidence:.0f}% sure" if item.box_px is not None else ""
+        photo_layer = f" · {100 * item.confidence:.0f}% sure" if item.box_px is not None else ""
         problems = "".join(
-            f' <span class="chip bad">{text(w)}</span>' for w in self._guest.room.badges.get(item.id, ())
+            f' <span class="chip bad">{text(w)}</span>' for w in self._client.session.badges.get(item.id, ())
         )
         return (
-            f"<p><b>{text(item.label)}</b>{more}{problems}<br><span class='dim'>{text(item.category)}{evidence}"
+            f"<p><b>{text(item.label)}</b>{more}{problems}<br><span class='dim'>{text(item.category)}{photo_layer}"
             f"{' · locked' if item.locked else ''}{' · hidden' if item.hidden else ''}</span></p>"
             '<div class="bar tight">'
             + self._command("focus", "Focus")
@@ -163,7 +165,7 @@ class Properties:
     def _together(self, several: int) -> str:
         align = "".join(self._command(c, label) for c, label in ALIGN.items())
         spread = self._command("distribute", "Distribute evenly") if several > 2 else ""
-        return f'<h4>Align with {text(self._guest.selected.label)}</h4><div class="bar tight">{align}</div>' + (  # type: ignore[union-attr]
+        return f'<h4>Align with {text(self._client.selected.label)}</h4><div class="bar tight">{align}</div>' + (  # type: ignore[union-attr]
             f'<div class="bar tight">{spread}</div>' if spread else ""
         )
 
@@ -171,14 +173,14 @@ class Properties:
         return button(label, "run", command_id, title=self._commands[command_id].tooltip)
 
     def _act(self, action: Action) -> None:
-        guest = self._guest
+        client = self._client
         if action.do == "own":
-            guest.post(lambda: editing.set_colour(guest, guest.need_selection(), None))
+            client.post(lambda: editing.set_colour(client, client.need_selection(), None))
         elif action.do == "finish":
             finish = next((f for f in FINISHES if f == action.arg), None)
-            guest.post(lambda: editing.set_finish(guest, guest.need_selection(), finish))
+            client.post(lambda: editing.set_finish(client, client.need_selection(), finish))
         else:
-            run_command(guest, self._commands, action)
+            run_command(client, self._commands, action)
 
 
 def _surface(item: SceneObject) -> str:

@@ -4,25 +4,25 @@ from __future__ import annotations
 
 import viser
 
-from diorama_app.editing import supporter_name
-from diorama_app.guest import Guest
-from diorama_app.page import Action, LiveHtml, text
-from diorama_app.units import format_length, parse_length
+from diorama_app.commands.edit import supporter_name
+from diorama_app.session.client import Client
+from diorama_app.session.units import format_length, parse_length
+from diorama_app.web.html import Action, LiveHtml, text
 from diorama_core.scene.room_edits import ceiling_height, move_plane, set_ceiling_height
 
 
 class RoomSize:
     """A folded list of lengths below the tree."""
 
-    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
-        self._guest = guest
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self._client = client
         self._folder = gui.add_folder("Room", expand_by_default=False)
         with self._folder:
             self._html = LiveHtml(gui, self._act)
 
     def refresh(self) -> None:
         """Draw the height of the room and a field for every wall."""
-        scene, unit = self._guest.room.scene, self._guest.settings.unit
+        scene, unit = self._client.session.scene, self._client.preferences.unit
         walls = scene.architecture.by_role("wall")
         height = ceiling_height(scene)
         self._folder.visible = height is not None
@@ -36,19 +36,19 @@ class RoomSize:
         self._html.show(f"<table>{rows}</table>")
 
     def _act(self, action: Action) -> None:
-        self._guest.post(lambda: self._do(action.do, *action.pair))
+        self._client.post(lambda: self._do(action.do, *action.pair))
 
     def _do(self, what: str, plane_id: str, words: str) -> None:
-        guest = self._guest
+        client = self._client
         if what not in ("height", "wall") or not words.strip():
             return
-        length = parse_length(words, guest.settings.unit)
-        shown = format_length(length, guest.settings.unit)
+        length = parse_length(words, client.preferences.unit)
+        shown = format_length(length, client.preferences.unit)
         if what == "height":
-            guest.room.edit(f"room {shown} high", lambda s: set_ceiling_height(s, length), by=guest)
-        elif guest.room.scene.has_plane(plane_id):
-            name = supporter_name(guest.room.scene, plane_id)
-            guest.room.edit(f"move {name} by {shown}", lambda s: move_plane(s, plane_id, length), by=guest)
+            client.session.edit(f"room {shown} high", lambda s: set_ceiling_height(s, length), by=client)
+        elif client.session.scene.has_plane(plane_id):
+            name = supporter_name(client.session.scene, plane_id)
+            client.session.edit(f"move {name} by {shown}", lambda s: move_plane(s, plane_id, length), by=client)
 
 
 def _row(name: str, do: str, arg: str, value: str, hint: str) -> str:

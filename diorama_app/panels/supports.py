@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import viser
 
-from diorama_app import editing
-from diorama_app.guest import Guest
+from diorama_app.commands import edit as editing
 from diorama_app.panels.fields import on_change, show_if, show_options, unique_names
 from diorama_app.panels.outliner import plane_name
+from diorama_app.session.client import Client
 from diorama_core.scene.types import Scene
 
 NOTHING = "nothing"
@@ -18,8 +18,8 @@ LIES, HANGS = "stands or lies on it", "is fastened to it"
 class Supports:
     """Drop-downs of supporter, relation and wall."""
 
-    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
-        self._guest = guest
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self._client = client
         self._ids: dict[str, str] = {}
         self._walls: dict[str, str] = {}
         self._parent = gui.add_dropdown(
@@ -27,13 +27,13 @@ class Supports:
         )
         self._relation = gui.add_dropdown("and", [LIES, HANGS], visible=False, hint="How it is held")
         self._wall = gui.add_dropdown("Against", [NO_WALL], visible=False, hint="A wall it also stands against")
-        on_change(self._parent, lambda name: guest.post(lambda: self._chosen(name)))
-        on_change(self._relation, lambda name: guest.post(lambda: self._related(name)))
-        on_change(self._wall, lambda name: guest.post(lambda: self._adhered(name)))
+        on_change(self._parent, lambda name: client.post(lambda: self._chosen(name)))
+        on_change(self._relation, lambda name: client.post(lambda: self._related(name)))
+        on_change(self._wall, lambda name: client.post(lambda: self._adhered(name)))
 
     def refresh(self) -> None:
         """Show the supporter of the selected object."""
-        item, scene = self._guest.selected, self._guest.room.scene
+        item, scene = self._client.selected, self._client.session.scene
         show_if(item is not None, self._parent)
         edge = None if item is None else scene.support_of(item.id)
         show_if(edge is not None, self._relation)
@@ -51,25 +51,25 @@ class Supports:
         show_options(self._wall, (NO_WALL, *self._walls), here)
 
     def _chosen(self, name: str) -> None:
-        guest = self._guest
-        object_id = guest.need_selected()
+        client = self._client
+        object_id = client.need_selected()
         try:
             if name == NOTHING:
-                editing.detach(guest, object_id)
+                editing.detach(client, object_id)
             elif name in self._ids:
-                editing.attach(guest, object_id, self._ids[name])
+                editing.attach(client, object_id, self._ids[name])
         finally:
             self.refresh()  # a refused choice goes back to what holds
 
     def _related(self, name: str) -> None:
         try:
-            editing.set_relation(self._guest, self._guest.need_selected(), name == HANGS)
+            editing.set_relation(self._client, self._client.need_selected(), name == HANGS)
         finally:
             self.refresh()
 
     def _adhered(self, name: str) -> None:
         try:
-            editing.set_adherence(self._guest, self._guest.need_selected(), self._walls.get(name))
+            editing.set_adherence(self._client, self._client.need_selected(), self._walls.get(name))
         finally:
             self.refresh()
 

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 import viser
 
-from diorama_app.page import run_once
+from diorama_app.web.html import run_once
 
-KEPT_AS = "diorama-tabs"
+STORED_AS = "diorama-tabs"
 TRIES = 40
 """While the page is being made, so many looks for its tabs, a twentieth of a second apart."""
 
@@ -55,7 +55,7 @@ class Tabs:
             groups: names of the tabs that stand side by side.
         """
         names = json.dumps([list(group) for group in groups])
-        gui.add_html(run_once(_KEEPER % (names, json.dumps(KEPT_AS), TRIES)))
+        gui.add_html(run_once(_KEEPER % (names, json.dumps(STORED_AS), TRIES)))
         self._opener = gui.add_html("")
         self._asked = 0
 

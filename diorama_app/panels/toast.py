@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import viser
 
-from diorama_app.guest import Guest, Measuring, Placing
-from diorama_app.page import Action, LiveHtml, button, text
+from diorama_app.session.client import Client, Measuring, Placing
+from diorama_app.web.html import Action, LiveHtml, button, text
 
 
 class Toasts:
     """Shows the newest message for a few seconds; stays while the next click has a meaning of its own."""
 
-    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
-        self._guest = guest
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self._client = client
         self._html = LiveHtml(gui, self._act, floating="dio-said")
         self._doing = LiveHtml(gui, self._act, floating="dio-doing")
-        guest.toast = self.say
+        client.toast = self.say
 
     def say(self, message: str, undo: bool) -> None:
         """Show a message, in place of the one before."""
@@ -24,7 +24,7 @@ class Toasts:
 
     def refresh(self) -> None:
         """Say what a click in the view does now."""
-        doing = self._guest.doing
+        doing = self._client.doing
         words = ""
         if isinstance(doing, Placing):
             words = "Click where it should stand: the floor, a table, a wall"
@@ -36,14 +36,14 @@ class Toasts:
         )
 
     def _act(self, action: Action) -> None:
-        guest = self._guest
+        client = self._client
 
         def stop() -> None:
-            guest.doing = None
-            guest.view.show_measure((), "")
-            guest.refresh()
+            client.doing = None
+            client.view.show_measure((), "")
+            client.refresh()
 
         if action.do == "undo":
-            guest.post(lambda: guest.room.undo(guest))
+            client.post(lambda: client.session.undo(client))
         elif action.do == "stop":
-            guest.post(stop)
+            client.post(stop)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import viser
 
-from diorama_app.commands import CommandTable
-from diorama_app.guest import Guest
-from diorama_app.page import STYLE, Action, LiveHtml, button, text
+from diorama_app.commands.registry import CommandTable
+from diorama_app.session.client import Client
+from diorama_app.web.html import STYLE, Action, LiveHtml, button, text
 
 HALF_MOON = (
     '<svg width="13" height="13" viewBox="0 0 24 24" style="display:block;margin:2px auto" aria-label="Dark or light">'
@@ -18,40 +18,40 @@ HALF_MOON = (
 class Toolbar:
     """Buttons that run commands by id."""
 
-    def __init__(self, gui: viser.GuiApi, guest: Guest, commands: CommandTable) -> None:
-        self._guest, self._commands = guest, commands
+    def __init__(self, gui: viser.GuiApi, client: Client, commands: CommandTable) -> None:
+        self._client, self._commands = client, commands
         gui.add_html(STYLE)
         self._html = LiveHtml(gui, self._act)
 
     def refresh(self) -> None:
         """Draw the buttons as the history allows and the settings say."""
-        room, settings = self._guest.room, self._guest.settings
-        history = room.document.history
+        session, preferences = self._client.session, self._client.preferences
+        history = session.document.history
         undo = f"Undo: {history.current.label}" if history.can_undo else "Nothing to undo"
         self._html.show(
             '<div class="bar tight">'
             + self._button("undo", "&#8630; Undo", title=undo, disabled=not history.can_undo)
             + self._button("redo", "&#8631; Redo", disabled=not history.can_redo)
-            + self._button("measure", on=self._guest.doing is not None)
+            + self._button("measure", on=self._client.doing is not None)
             + self._button("theme", HALF_MOON)
             + self._button("help", "?")
             + "</div><div class='bar tight'>"
-            + self._button("view_photo", "Photo view", disabled=room.scene.camera is None)
+            + self._button("view_photo", "Photo view", disabled=session.scene.camera is None)
             + self._button("view_room", "Room")
             + self._button("view_top", "Top")
             + self._button("view_front", "Front")
             + self._button("view_left", "Side")
             + "</div><div class='bar tight'>"
-            + self._button("gizmo_floor", on=settings.gizmo == "floor")
-            + self._button("gizmo_free", on=settings.gizmo == "free")
-            + self._button("gizmo_size", on=settings.gizmo == "size")
-            + self._button("snap", on=settings.snap)
-            + self._button("slide", on=settings.slide)
+            + self._button("gizmo_floor", on=preferences.gizmo == "floor")
+            + self._button("gizmo_free", on=preferences.gizmo == "free")
+            + self._button("gizmo_size", on=preferences.gizmo == "size")
+            + self._button("snap", on=preferences.snap)
+            + self._button("slide", on=preferences.slide)
             + "</div><div class='bar tight'>"
-            + self._button("names", on=settings.names)
-            + self._button("badges", on=settings.badges)
-            + self._button("masks", on=settings.masks, disabled=room.photo is None)
-            + self._button("planes", on=settings.planes)
+            + self._button("names", on=preferences.names)
+            + self._button("badges", on=preferences.badges)
+            + self._button("masks", on=preferences.masks, disabled=session.photo is None)
+            + self._button("planes", on=preferences.planes)
             + "</div>"
         )
 
@@ -70,28 +70,28 @@ class Toolbar:
         )
 
     def _act(self, action: Action) -> None:
-        run_command(self._guest, self._commands, action)
+        run_command(self._client, self._commands, action)
 
 
-def run_command(guest: Guest, commands: CommandTable, action: Action) -> None:
+def run_command(client: Client, commands: CommandTable, action: Action) -> None:
     """Do what a button with the action "run" asks for."""
     if action.do == "run" and action.arg in commands:
         command = commands[action.arg]
 
         def run() -> None:
-            command.run(guest)
-            guest.refresh()
+            command.run(client)
+            client.refresh()
 
-        guest.post(run)
+        client.post(run)
 
 
-def title_bar(guest: Guest) -> str:
+def title_bar(client: Client) -> str:
     """Name of the project, how many things are in it, and who else is here."""
-    room = guest.room
-    name = text(room.project.name) if room.project is not None else "No project"
-    others = [g for g in room.guests.values() if g is not guest]
+    session = client.session
+    name = text(session.project.name) if session.project is not None else "No project"
+    others = [g for g in session.clients.values() if g is not client]
     here = "".join(
         f' <span class="chip" style="border-color:rgb{g.colour}" title="also here">{text(g.name)}</span>'
         for g in others[:4]
     )
-    return f"<b>{name}</b> <span class='dim'>{len(room.scene.objects)} objects</span>{here}"
+    return f"<b>{name}</b> <span class='dim'>{len(session.scene.objects)} objects</span>{here}"

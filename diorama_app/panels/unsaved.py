@@ -4,27 +4,27 @@ from __future__ import annotations
 
 import viser
 
-from diorama_app.guest import Guest
-from diorama_app.page import Action, LiveHtml, button, text
-from diorama_app.recovery import Unsaved
+from diorama_app.session.client import Client
+from diorama_app.session.recovery import Unsaved
+from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.project.storage import Project
 
 
 class UnsavedChanges:
     """A card below the toolbar."""
 
-    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
-        self._guest = guest
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self._client = client
         self._html = LiveHtml(gui, self._act)
         self._of: Project | None = None
         self._found: Unsaved | None = None
 
     def refresh(self) -> None:
         """Look for unsaved changes of a project that was just opened."""
-        room = self._guest.room
-        if room.project is not self._of:
-            self._of = room.project
-            self._found = None if room.project is None else room.saver.recovery.left_behind(room.project)
+        session = self._client.session
+        if session.project is not self._of:
+            self._of = session.project
+            self._found = None if session.project is None else session.autosave.recovery.left_behind(session.project)
         found = self._found
         if found is None or not found.path.exists():
             self._html.show("")
@@ -38,16 +38,16 @@ class UnsavedChanges:
         )
 
     def _act(self, action: Action) -> None:
-        self._guest.post(lambda: self._do(action.do))
+        self._client.post(lambda: self._do(action.do))
 
     def _do(self, what: str) -> None:
-        room, found = self._guest.room, self._found
+        session, found = self._client.session, self._found
         if found is None or not found.path.exists():
             return
-        if what == "restore" and room.project is not None:
+        if what == "restore" and session.project is not None:
             scene = found.scene()
-            room.textures = {**room.textures, **room.project.textures(scene)}
-            room.commit("restore unsaved changes", scene, by=self._guest, selection=())
+            session.textures = {**session.textures, **session.project.textures(scene)}
+            session.commit("restore unsaved changes", scene, by=self._client, selection=())
         if what in ("restore", "discard"):
             found.discard()
-            room.refresh_panels()
+            session.refresh_panels()

@@ -12,9 +12,9 @@ from typing import Any
 
 import viser
 
-from diorama_app.guest import Guest
-from diorama_app.page import run_once
-from diorama_app.viewport import MESH_NAMES
+from diorama_app.session.client import Client
+from diorama_app.viewport.scene_view import MESH_NAMES
+from diorama_app.web.html import run_once
 from diorama_core.scene.types import Plane, Scene
 
 FADE_MS = 200
@@ -29,16 +29,16 @@ _TOLD = "window.__dioWalls.told(%s)"
 class Walls:
     """Tells one page where the walls are."""
 
-    def __init__(self, gui: viser.GuiApi, guest: Guest) -> None:
-        self._guest = guest
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self._client = client
         self._told = ""
         self._html = gui.add_html("")
 
     def refresh(self) -> None:
         """Tell the page what differs from what it knows."""
-        room, guest = self._guest.room, self._guest
-        ms, view = 0 if room.low_graphics else FADE_MS, room.viewport
-        about = what_fades(room.scene, view.plane_name, view.node_name, guest.selection, ms)
+        session, client = self._client.session, self._client
+        ms, view = 0 if session.low_graphics else FADE_MS, session.viewport
+        about = what_fades(session.scene, view.plane_name, view.node_name, client.selection, ms)
         told = json.dumps({**about, "versions": MESH_NAMES}, separators=(",", ":"))
         if told != self._told:
             self._told = told
@@ -70,7 +70,7 @@ def what_fades(
     parents = {s.child: s.parent for s in scene.supports}
     hung = []
     for item in scene.objects:
-        wall = planes.get(_held_by(parents, item.id))
+        wall = planes.get(_supported_by(parents, item.id))
         if wall is not None and wall.role == "wall":
             normal, offset, ghost = _sides(wall)
             hung.append([object_name(item.id), normal, offset, 1.0 if item.id in selection else ghost])
@@ -86,9 +86,9 @@ def _rounded(vector: Any) -> list[float]:
     return [round(float(v), 4) for v in vector]
 
 
-def _held_by(parents: Mapping[str, str], object_id: str) -> str:
+def _supported_by(parents: Mapping[str, str], object_id: str) -> str:
     """The plane at the root of what holds an object up; empty for what nothing holds."""
-    held = parents.get(object_id, "")
-    while held in parents:
-        held = parents[held]
-    return held
+    supported = parents.get(object_id, "")
+    while supported in parents:
+        supported = parents[supported]
+    return supported

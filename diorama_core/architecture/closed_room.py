@@ -8,8 +8,8 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 
-from diorama_core.architecture.ceilings import CeilingPiece
-from diorama_core.architecture.openings import Opening, with_openings
+from diorama_core.architecture.from_depth.ceilings import CeilingPiece
+from diorama_core.architecture.from_depth.openings import Opening, with_openings
 from diorama_core.architecture.wall_sequence import BEHIND_CAMERA_M, WallPiece
 from diorama_core.geometry.planes import clip_polygon
 from diorama_core.scene.types import Camera, Plane
@@ -117,11 +117,11 @@ def floor_outline(pieces: tuple[WallPiece, ...], camera: Camera) -> Float[np.nda
 
 
 def _distinct(points: list[Float[np.ndarray, "2"]]) -> list[Float[np.ndarray, "2"]]:
-    kept = [points[0]]
+    retained = [points[0]]
     for point in points[1:]:
-        if min(float(np.linalg.norm(point - k)) for k in (kept[-1], kept[0])) > 1e-6:
-            kept.append(point)
-    return kept
+        if min(float(np.linalg.norm(point - k)) for k in (retained[-1], retained[0])) > 1e-6:
+            retained.append(point)
+    return retained
 
 
 def is_simple(outline: Float[np.ndarray, "n 2"]) -> bool:

@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import least_squares
 
-from diorama_core.architecture.openings import FRAME_M, MIN_AREA_M2, MIN_SIDE_M, SILL_M, Opening
+from diorama_core.architecture.from_depth.openings import FRAME_M, MIN_AREA_M2, MIN_SIDE_M, SILL_M, Opening
 from diorama_core.architecture.wall_sequence import WallPiece
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, ObjectGeometry
 from diorama_core.scene.types import Camera
@@ -31,13 +31,13 @@ def is_passage(found: DetectedObject) -> bool:
     return bool(NAMES & {words[-1] if words else "", " ".join(words[-2:])})
 
 
-def furniture(
+def without_openings(
     objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, room: ArchitectureEstimate
 ) -> tuple[tuple[DetectedObject, ...], ObjectGeometry]:
     """The objects and the geometry without what became a hole in a wall."""
     gone = set(room.openings)
-    kept = tuple(c for c in geometry.cuboids if c.object_id not in gone)
-    return tuple(o for o in objects if o.id not in gone), replace(geometry, cuboids=kept)
+    retained = tuple(c for c in geometry.cuboids if c.object_id not in gone)
+    return tuple(o for o in objects if o.id not in gone), replace(geometry, cuboids=retained)
 
 
 def with_passages(

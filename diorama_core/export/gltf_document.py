@@ -30,7 +30,7 @@ class GltfDocument:
         self._json: dict[str, Any] = {"asset": {"version": "2.0", "generator": generator}}
         self._materials: dict[tuple[int, bool], int] = {}
         self._pictures: dict[bytes, int] = {}
-        self._kept: list[Material] = []
+        self._retained: list[Material] = []
 
     def add(self, kind: str, entry: dict[str, Any]) -> int:
         """Append an entry to one of the document's lists (nodes, cameras, scenes, ...)."""
@@ -108,7 +108,7 @@ class GltfDocument:
     def _material(self, material: Material, *, textured: bool) -> int:
         key = (id(material), textured)
         if key not in self._materials:
-            self._kept.append(material)  # keeps the id from being reused while this document grows
+            self._retained.append(material)  # keeps the id from being reused while this document grows
             self._materials[key] = self.add("materials", self._material_entry(material, textured))
         return self._materials[key]
 

@@ -25,12 +25,12 @@ TIGHT = 0.88
 """A simpler body is taken when the hull fills at least this share of it."""
 MERGE = 0.93
 """Two parts become one when together they fill at least this share of their common hull."""
-MOST_PARTS = 16
+MAX_PARTS = 16
 SMALL_SHARE = 0.006
 """Components with less than this share of the shape's box keep their hull, whatever they look like."""
-MOST_PIECES = 40
+MAX_PIECES = 40
 """Components beyond this many are joined with their neighbours before anything else."""
-MOST_VERTICES = 24
+MAX_VERTICES = 24
 THINNEST_M = 1e-3
 _ROUGH = np.array(
     [d for d in itertools.product((-2, -1, 0, 1, 2), repeat=3) if max(map(abs, d)) == 2], dtype=np.float64
@@ -113,7 +113,7 @@ def simplest_part(points: Float[np.ndarray, "n 3"]) -> ConvexPart:
     to_box, extents = _oriented_box(points)
     if volume >= TIGHT * float(np.prod(extents)):
         return _turned_box(to_box, extents)
-    return hull_part(points) if len(_hull_points(points)) <= MOST_VERTICES else _polytope(points)
+    return hull_part(points) if len(_hull_points(points)) <= MAX_VERTICES else _polytope(points)
 
 
 def _padded(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -127,8 +127,8 @@ def _directions(vectors: np.ndarray) -> Float[np.ndarray, "k 3"]:
     units = vectors[lengths > 1e-12] / lengths[lengths > 1e-12, None]
     same = np.abs(units @ units.T) >= _SAME_DIRECTION
     # Each direction is kept unless an earlier one is the same.
-    kept = units[~np.tril(same, -1).any(axis=1)]
-    return kept if len(kept) else np.eye(3)
+    retained = units[~np.tril(same, -1).any(axis=1)]
+    return retained if len(retained) else np.eye(3)
 
 
 def _hull_edges(hull: ConvexHull) -> Float[np.ndarray, "e 3"]:
@@ -242,10 +242,10 @@ def _cut(triangles: np.ndarray, axis: int, at: float, sign: float) -> Float[np.n
 
 def _gathered(clouds: list[np.ndarray]) -> list[np.ndarray]:
     """At most `MOST_PIECES` clouds: many small ones (leaves, slats) are joined with their neighbours."""
-    if len(clouds) <= MOST_PIECES:
+    if len(clouds) <= MAX_PIECES:
         return clouds
     centres = np.array([0.5 * (c.min(axis=0) + c.max(axis=0)) for c in clouds])
-    group = fcluster(linkage(centres, "ward"), MOST_PIECES, "maxclust")
+    group = fcluster(linkage(centres, "ward"), MAX_PIECES, "maxclust")
     return [_hull_points(np.vstack([c for c, g in zip(clouds, group) if g == k])) for k in np.unique(group)]
 
 
@@ -256,7 +256,7 @@ def _merge(clouds: list[np.ndarray]) -> list[np.ndarray]:
     while added:
         pair = min(added, key=added.__getitem__)
         filled = parts[pair[0]][1] + parts[pair[1]][1]
-        if added[pair] > (1.0 / MERGE - 1.0) * filled + 1e-7 and len(parts) <= MOST_PARTS:
+        if added[pair] > (1.0 / MERGE - 1.0) * filled + 1e-7 and len(parts) <= MAX_PARTS:
             break
         joined = _hull_points(np.vstack([parts[pair[0]][0], parts[pair[1]][0]]))
         for k in pair:
@@ -279,17 +279,17 @@ def _added(a: tuple[np.ndarray, float], b: tuple[np.ndarray, float]) -> float:
 
 def _drop_contained(clouds: list[np.ndarray]) -> list[np.ndarray]:
     """Without the parts that lie inside a larger one (largest first)."""
-    kept: list[np.ndarray] = []
+    retained: list[np.ndarray] = []
     planes: list[np.ndarray] = []
     for cloud in clouds:
         if any((cloud @ p[:, :3].T + p[:, 3] <= 1e-5).all() for p in planes):
             continue
-        kept.append(cloud)
+        retained.append(cloud)
         try:
             planes.append(ConvexHull(cloud).equations)
         except (QhullError, ValueError):
             continue
-    return kept
+    return retained
 
 
 def _prism_about(points: np.ndarray, axis: int, volume: float) -> ConvexPart | None:

@@ -113,7 +113,7 @@ def observe(
 
 def observe_among(
     camera: Camera,
-    things: Sequence[Outlined],
+    items: Sequence[Outlined],
     centres_world: Float[np.ndarray, "m 3"],
     parents: Sequence[int | None],
     index: int,
@@ -130,9 +130,9 @@ def observe_among(
         cells: Resolution of the window, both ways.
     """
     depths = camera.to_camera(centres_world)[:, 2]
-    masks = [things[i].mask for i in indices_in_front(depths, parents, index)]
-    thing = things[index]
-    return observe(camera, thing.box, thing.mask, thing.mask_confidence, masks, cells)
+    masks = [items[i].mask for i in indices_in_front(depths, parents, index)]
+    item = items[index]
+    return observe(camera, item.box, item.mask, item.mask_confidence, masks, cells)
 
 
 def cut_sides(box: Box, width: int, height: int) -> Bool[np.ndarray, "4"]:

@@ -11,12 +11,12 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float, UInt8
 
-from diorama_core.geometry.looks import Look
+from diorama_core.geometry.shape_appearance import ShapeAppearance
 from diorama_core.scene.values import ArrayValue
 
 _LIGHTNESS_WEIGHT = 0.5
 _BIN = 24.0
-_MOST_PIXELS = 4000
+_MAX_PIXELS = 4000
 _MAIN_COLOURS = 3
 _TOLERANCE = 25.0
 
@@ -54,15 +54,15 @@ def palette_of_crop(rgb: UInt8[np.ndarray, "h w 3"], mask: Bool[np.ndarray, "h w
         return NOTHING_KNOWN
     rows_of_mask = slice(rows[0], rows[-1] + 1)
     pixels = rgb[rows_of_mask][mask[rows_of_mask]]
-    pixels = pixels[:: max(len(pixels) // _MOST_PIXELS, 1)]
+    pixels = pixels[:: max(len(pixels) // _MAX_PIXELS, 1)]
     return _main_colours(_to_lab(pixels), np.ones(len(pixels)))
 
 
-def palette_of_look(look: Look) -> Palette:
+def palette_of_appearance(appearance: ShapeAppearance) -> Palette:
     """The main colours of a shape's materials, by surface area."""
-    if not len(look.areas_m2):
+    if not len(appearance.areas_m2):
         return NOTHING_KNOWN
-    return _main_colours(_to_lab(look.colours_srgb), look.areas_m2)
+    return _main_colours(_to_lab(appearance.colours_srgb), appearance.areas_m2)
 
 
 def palette_agreement(seen: Palette, shape: Palette) -> float:

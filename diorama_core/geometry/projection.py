@@ -91,18 +91,18 @@ def _clipped_bounds(
     crossing = a / np.where(np.abs(span) < 1e-12, 1e-12, span)
     enter = np.where(a < 0, np.where(b < 0, 2.0, crossing), 0.0).max(axis=-1)
     leave = np.where(b < 0, np.where(a < 0, -1.0, crossing), 1.0).min(axis=-1)
-    kept = (enter <= leave)[..., None]
+    retained = (enter <= leave)[..., None]
     start, way = corners[:, edges[:, 0]], corners[:, edges[:, 1]] - corners[:, edges[:, 0]]
     ends = np.concatenate([start + enter[..., None] * way, start + leave[..., None] * way], axis=1)
-    kept = np.concatenate([kept, kept], axis=1)
+    retained = np.concatenate([retained, retained], axis=1)
     pixels = _project(ends, k)
     picture = np.array([[0.0, 0.0], [k.width, 0.0], [0.0, k.height], [k.width, k.height]])
     covered = _covers_rays(corners, (picture - [k.cx, k.cy]) / [k.fx, k.fy])
     pixels = np.concatenate([pixels, np.broadcast_to(picture, (len(corners), 4, 2))], axis=1)
-    kept = np.concatenate([kept, covered[..., None]], axis=1)
-    low = np.where(kept, pixels, np.inf).min(axis=1)
-    high = np.where(kept, pixels, -np.inf).max(axis=1)
-    visible = np.asarray(kept.any(axis=(1, 2)))
+    retained = np.concatenate([retained, covered[..., None]], axis=1)
+    low = np.where(retained, pixels, np.inf).min(axis=1)
+    high = np.where(retained, pixels, -np.inf).max(axis=1)
+    visible = np.asarray(retained.any(axis=(1, 2)))
     nearest = np.clip(_project(corners.mean(axis=1), k), 0.0, [k.width, k.height])
     bounds = np.where(visible[:, None], np.concatenate([low, high], -1), np.concatenate([nearest, nearest], -1))
     return np.clip(bounds, 0.0, [k.width, k.height, k.width, k.height]), visible

@@ -115,8 +115,8 @@ def _block(bodies: Bodies, a: np.ndarray, b: np.ndarray, cut: tuple[int | None, 
     axes = np.concatenate([bodies.normals[a, :f], bodies.normals[b, :f], crosses], axis=1)
     lengths = np.sqrt((axes * axes).sum(axis=2))
     used = lengths > _DEGENERATE
-    kept = used.any(axis=0)
-    axes, lengths, used = axes[:, kept], lengths[:, kept], used[:, kept]
+    retained = used.any(axis=0)
+    axes, lengths, used = axes[:, retained], lengths[:, retained], used[:, retained]
     axes = axes / np.where(used, lengths, 1.0)[..., None]
     on_a, on_b = np.matmul(axes, Va.transpose(0, 2, 1)), np.matmul(axes, Vb.transpose(0, 2, 1))
     ahead = np.where(used, on_a.min(axis=2) - on_b.max(axis=2), -np.inf)

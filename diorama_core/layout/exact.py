@@ -11,8 +11,8 @@ from jaxtyping import Float
 
 from diorama_core.errors import UnavailableError
 from diorama_core.geometry.sat import place_bodies
-from diorama_core.layout.problem import Problem, build_problem
-from diorama_core.layout.supports import is_wall_like
+from diorama_core.layout.problem.problem import Problem, build_problem
+from diorama_core.layout.problem.supports import is_wall_like
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.types import Scene
 
@@ -91,9 +91,9 @@ def drift(
     return moved
 
 
-def stable_share(moved: dict[str, tuple[float, float]], *, most_m: float = 0.01, most_rad: float = 0.0349) -> float:
+def stable_share(moved: dict[str, tuple[float, float]], *, max_m: float = 0.01, max_rad: float = 0.0349) -> float:
     """Share of objects that moved under 1 cm and turned under 2 degrees."""
-    return float(np.mean([d <= most_m and a <= most_rad for d, a in moved.values()])) if moved else 1.0
+    return float(np.mean([d <= max_m and a <= max_rad for d, a in moved.values()])) if moved else 1.0
 
 
 def _model_xml(scene: Scene, problem: Problem, step_s: float) -> str:

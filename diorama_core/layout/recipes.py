@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from diorama_core.errors import InputError
-from diorama_core.layout.feasible import MEASURED_WEIGHT, REASONED_WEIGHT, FeasibleRecipe
+from diorama_core.layout.feasible.recipe import MEASURED_WEIGHT, REASONED_WEIGHT, FeasibleRecipe
 from diorama_core.layout.weights import AS_IT_IS, Weights
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.protocols import LayoutStage
@@ -37,7 +37,7 @@ def recipe(
         depth_weight = MEASURED_WEIGHT if depth_measured else REASONED_WEIGHT
         return FeasibleRecipe(library, only, depth_weight=depth_weight, weights=weights)
     # torch takes two seconds to load, and the default recipe does without it.
-    from diorama_core.layout.published import AllInOneRecipe, PaperRecipe
+    from diorama_core.layout.published.recipes import AllInOneRecipe, PaperRecipe
 
     if name == "paper":
         return PaperRecipe(library, only, weights=weights)

@@ -6,11 +6,11 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.geometry.sat import pair_axes, place_bodies
-from diorama_core.layout import gradients
-from diorama_core.layout.gradients import BoxPairs, near_pairs
-from diorama_core.layout.problem import Problem
-from diorama_core.layout.staged import contact_templates
-from diorama_core.layout.volumes import Volumes
+from diorama_core.layout.problem.problem import Problem
+from diorama_core.layout.problem.volumes import Volumes
+from diorama_core.layout.published import gradients
+from diorama_core.layout.published.gradients import BoxPairs, near_pairs
+from diorama_core.layout.published.staged import contact_templates
 
 ALIGNED_RAD = float(np.deg2rad(1.0))
 PLACED_M = 1e-3
@@ -58,15 +58,15 @@ def cost_values(
 ) -> dict[str, float]:
     """The published costs of a layout (`layout.costs`), support edges only."""
     volumes = Volumes.of(problem)
-    held = volumes.held
-    if not len(held):
+    supported = volumes.supported
+    if not len(supported):
         return dict.fromkeys(("e_align", "e_sem", "e_place", "e_rel", "e_vol", "e_col"), 0.0)
     here, size = volumes.at(R, p, scale), problem.shape_size * scale
-    faces, half = contact_templates(problem, held)
-    corners = p[held][:, None] + np.matmul(faces * scale[held][:, None], R[held].transpose(0, 2, 1))
-    tilt = np.abs(np.matmul(here.normal[:, None, :], R[held])[:, 0]) * half * scale[held]
-    top = (here.normal * p[held]).sum(axis=1) - here.level + tilt.sum(axis=1)
-    inward = -np.matmul(R[held], problem.contact[held][..., None])[..., 0]
+    faces, half = contact_templates(problem, supported)
+    corners = p[supported][:, None] + np.matmul(faces * scale[supported][:, None], R[supported].transpose(0, 2, 1))
+    tilt = np.abs(np.matmul(here.normal[:, None, :], R[supported])[:, 0]) * half * scale[supported]
+    top = (here.normal * p[supported]).sum(axis=1) - here.level + tilt.sum(axis=1)
+    inward = -np.matmul(R[supported], problem.contact[supported][..., None])[..., 0]
     centre = corners.mean(axis=1)
     foot = centre - ((centre * here.normal).sum(axis=1) - here.level)[:, None] * here.normal
     pairs = near_pairs(R, p, size, ~problem.kin, 0.0)
@@ -91,20 +91,20 @@ def _structure(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Whether each supported object is aligned, placed and inside its support."""
     volumes = Volumes.of(problem)
-    here, held = volumes.at(R, p, scale), volumes.held
-    size, contact = problem.shape_size[held] * scale[held], problem.contact[held]
-    own = R[held]
+    here, supported = volumes.at(R, p, scale), volumes.supported
+    size, contact = problem.shape_size[supported] * scale[supported], problem.contact[supported]
+    own = R[supported]
     outward = np.matmul(own, contact[..., None])[..., 0]
-    centre = p[held] + np.matmul(own, (contact * size / 2)[..., None])[..., 0]
+    centre = p[supported] + np.matmul(own, (contact * size / 2)[..., None])[..., 0]
     aligned = (outward * here.normal).sum(axis=1) <= -np.cos(ALIGNED_RAD)
     placed = np.abs((centre * here.normal).sum(axis=1) - here.level) <= PLACED_M
     reach = (
         np.abs(np.matmul(here.outward, own))
-        * (problem.firm[held, None] * size * (1.0 - np.abs(contact)) / 2)[:, None, :]
+        * (problem.firm[supported, None] * size * (1.0 - np.abs(contact)) / 2)[:, None, :]
     ).sum(axis=2)
     past = np.matmul(here.outward, centre[..., None])[..., 0] + reach - here.offset
     half = 0.5 * (np.abs(np.matmul(here.normal[:, None, :], own)[:, 0]) * size).sum(axis=1)
-    top = (p[held] * here.normal).sum(axis=1) - here.level + half
+    top = (p[supported] * here.normal).sum(axis=1) - here.level + half
     return aligned, placed, (past <= INSIDE_M).all(axis=1) & (top <= here.clearance + INSIDE_M)
 
 

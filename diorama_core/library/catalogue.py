@@ -17,11 +17,11 @@ import platformdirs
 import trimesh
 
 from diorama_core.errors import LibraryError
+from diorama_core.io.cache import LruCache
 from diorama_core.library import furniture, taxonomy
 from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.model import Design, built, mesh_of, scene_of
 from diorama_core.library.furniture.solids import Solid
-from diorama_core.library.kept import Kept
 from diorama_core.library.record import Shape, SupportSurface, usual_contact_faces
 from diorama_core.library.surfaces import support_surfaces
 
@@ -82,11 +82,11 @@ class BuiltInLibrary:
             raise LibraryError("two built-in designs share an id; give each its own")
         self._records = {d.id: _record(d) for d in designs}
         self._files = _FileCache(cache_dir)
-        self._solids: Kept[list[tuple[Material, Solid]]] = Kept(8)
-        self._scenes: Kept[trimesh.Scene] = Kept(64)
-        self._meshes: Kept[trimesh.Trimesh] = Kept(256)
-        self._glbs: Kept[bytes] = Kept(256)
-        self._surfaces: Kept[tuple[SupportSurface, ...]] = Kept(4096)
+        self._solids: LruCache[list[tuple[Material, Solid]]] = LruCache(8)
+        self._scenes: LruCache[trimesh.Scene] = LruCache(64)
+        self._meshes: LruCache[trimesh.Trimesh] = LruCache(256)
+        self._glbs: LruCache[bytes] = LruCache(256)
+        self._surfaces: LruCache[tuple[SupportSurface, ...]] = LruCache(4096)
 
     def __repr__(self) -> str:
         return f"BuiltInLibrary({len(self._records)} shapes)"

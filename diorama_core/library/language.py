@@ -85,7 +85,7 @@ _DIMENSIONS = re.compile(rf"{_NUMBER}\s*(?:x|×|by)\s*{_NUMBER}\s*(?:x|×|by)\s*
 
 
 @dataclass(frozen=True)
-class SizeWish:
+class SizeRequest:
     """A word such as "tall": more or less of something than others of the kind have."""
 
     sign: int
@@ -122,10 +122,10 @@ def narrower(word: str) -> tuple[str, ...]:
     return _narrower().get(word, ())
 
 
-def size_wish(word: str) -> SizeWish | None:
+def size_request(word: str) -> SizeRequest | None:
     """What a word asks of the size, if it does."""
     found = _SIZES.get(word)
-    return None if found is None else SizeWish(*found)
+    return None if found is None else SizeRequest(*found)
 
 
 def size_in(text: str) -> tuple[str, tuple[float, float, float] | None]:

@@ -27,7 +27,7 @@ Size = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
-class Wish:
+class TextQuery:
     """A text, understood."""
 
     categories: tuple[str, ...]
@@ -44,7 +44,7 @@ class Wish:
     """What to tell the user when something was not known."""
 
 
-def understand(text: str, size_m: Size | None = None) -> Wish:
+def understand(text: str, size_m: Size | None = None) -> TextQuery:
     """Understand what a person or a detector calls a thing.
 
     "a wooden armchair with cushions" is an armchair; "chests of drawers" a dresser; "desk lamp" a lamp; "sofas and
@@ -73,7 +73,7 @@ def understand(text: str, size_m: Size | None = None) -> Wish:
             naming.append(found[1][-1])
     silent = IGNORED | JOINTS | _CONJUNCTIONS
     described = dict.fromkeys(w for w in tokens(rest) if w not in silent and w not in naming)
-    return Wish(tuple(named), exact, tuple(described), tuple(dict.fromkeys(naming)), size, "; ".join(notes))
+    return TextQuery(tuple(named), exact, tuple(described), tuple(dict.fromkeys(naming)), size, "; ".join(notes))
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,8 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from diorama_core.library import taxonomy
-from diorama_core.library.language import SizeWish, broader, narrower, size_wish, tokens
-from diorama_core.library.naming import Wish, understand
+from diorama_core.library.language import SizeRequest, broader, narrower, size_request, tokens
+from diorama_core.library.naming import TextQuery, understand
 from diorama_core.library.record import Shape, ShapeLibrary
 
 CATEGORY_POINTS = 3.0
@@ -31,7 +31,7 @@ SIZE_POINTS = 0.7
 SIZE_WORD_POINTS = 0.15
 """A caption that says "tall" counts little: sizes are measured."""
 _SPELLING_CUTOFF = 0.8
-_LEAST_SIZE_M = 0.01
+_MIN_SIZE_M = 0.01
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Found:
     shapes: tuple[Shape, ...]
     """Best first."""
     scores: tuple[float, ...]
-    wish: Wish
+    query: TextQuery
     note: str = ""
     """For the user, when something was not known."""
 
@@ -58,15 +58,15 @@ def find(library: ShapeLibrary, text: str, k: int = 24) -> Found:
     id and the shape's own synonyms, also by meaning ("wooden" finds oak) and comparative size ("small", "tall", or a
     size such as "60 x 50 x 110 cm"). Nothing that shares neither a category nor a word with the text is found.
     """
-    index, wish = text_index(library), understand(text)
+    index, query = text_index(library), understand(text)
     if not tokens(text):
-        return Found(index.shapes[:k], (0.0,) * min(k, len(index.shapes)), wish)
-    scores = index.scores(wish)
+        return Found(index.shapes[:k], (0.0,) * min(k, len(index.shapes)), query)
+    scores = index.scores(query)
     positions = np.flatnonzero(scores > 0)
     order = positions[np.lexsort((positions, -scores[positions]))][:k]
-    known = not wish.categories and any(index.knows(word) for word in wish.words)  # "oak" needs no noun
-    note = "" if known else wish.note
-    return Found(tuple(index.shapes[i] for i in order), tuple(float(scores[i]) for i in order), wish, note)
+    known = not query.categories and any(index.knows(word) for word in query.words)  # "oak" needs no noun
+    note = "" if known else query.note
+    return Found(tuple(index.shapes[i] for i in order), tuple(float(scores[i]) for i in order), query, note)
 
 
 class TextIndex:
@@ -91,27 +91,27 @@ class TextIndex:
         self._words = {word: np.array(places) for word, places in words.items()}
         self._categories = {name: np.array(places) for name, places in categories.items()}
 
-    def scores(self, wish: Wish) -> Float[np.ndarray, "n"]:
+    def scores(self, query: TextQuery) -> Float[np.ndarray, "n"]:
         """How well each shape fits, 0 where nothing does."""
         category = np.zeros(len(self.shapes))
-        for name in wish.categories:
+        for name in query.categories:
             for kin in _kin(name):
                 places = self._of_category(kin)
                 category[places] = np.maximum(category[places], CATEGORY_POINTS if kin == name else KIN_POINTS)
         total = category.copy()
-        sizes: list[SizeWish] = []
-        for word in wish.words:
-            asked = size_wish(word)
+        sizes: list[SizeRequest] = []
+        for word in query.words:
+            asked = size_request(word)
             if asked is not None:
                 sizes.append(asked)
             total += (SIZE_WORD_POINTS if asked else WORD_POINTS) * self._word(word)
-        for word in wish.naming:
+        for word in query.naming:
             total += NAME_WORD_POINTS * self._word(word)
         fits = total > 0
         for asked in sizes:
             total[fits] += SIZE_POINTS * self._comparative(asked)[fits]
-        if wish.size_m is not None and (wish.categories or not wish.words):
-            total[fits] += 2 * SIZE_POINTS * self._nearness(wish.size_m)[fits]
+        if query.size_m is not None and (query.categories or not query.words):
+            total[fits] += 2 * SIZE_POINTS * self._nearness(query.size_m)[fits]
         return np.maximum(total, np.where(fits, 1e-6, 0.0))
 
     def knows(self, word: str) -> bool:
@@ -141,9 +141,9 @@ class TextIndex:
     @cached_property
     def _log_sizes(self) -> Float[np.ndarray, "n 3"]:
         sizes = np.array([s.size_m for s in self.shapes]).reshape(-1, 3)
-        return np.log(np.maximum(sizes, _LEAST_SIZE_M))
+        return np.log(np.maximum(sizes, _MIN_SIZE_M))
 
-    def _comparative(self, asked: SizeWish) -> Float[np.ndarray, "n"]:
+    def _comparative(self, asked: SizeRequest) -> Float[np.ndarray, "n"]:
         """-1 to 1: how much less or more of the asked size a shape has than its category's average."""
         depth, width, height = self._log_sizes.T
         measure = {"volume": depth + width + height, "height": height, "width": width, "depth": depth}[asked.of]
@@ -155,7 +155,7 @@ class TextIndex:
 
     def _nearness(self, size_m: tuple[float, float, float]) -> Float[np.ndarray, "n"]:
         """1 for shapes of this size, falling to 0 as extents differ."""
-        wanted = np.log(np.maximum(size_m, _LEAST_SIZE_M))
+        wanted = np.log(np.maximum(size_m, _MIN_SIZE_M))
         return np.exp(-(((self._log_sizes - wanted) / 0.4) ** 2).sum(axis=1) / 2)
 
 

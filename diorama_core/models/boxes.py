@@ -52,14 +52,14 @@ def without_doubles(found: Detections, iou: float, *, across_classes: bool) -> D
     """
     order = np.argsort(-found.scores, kind="stable")
     area = areas(found.boxes)
-    kept: list[int] = []
+    retained: list[int] = []
     for i in order:
-        rivals = np.array([k for k in kept if across_classes or found.labels[k] == found.labels[i]], dtype=int)
+        rivals = np.array([k for k in retained if across_classes or found.labels[k] == found.labels[i]], dtype=int)
         shared = intersections(found.boxes[i], found.boxes[rivals])
         union = area[rivals] + area[i] - shared
         if not (shared > iou * np.maximum(union, 1e-9)).any():
-            kept.append(int(i))
-    return found.rows(np.array(kept, dtype=int))
+            retained.append(int(i))
+    return found.rows(np.array(retained, dtype=int))
 
 
 def without_parts_of_same(found: Detections, share: float) -> Detections:

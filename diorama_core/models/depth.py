@@ -26,7 +26,7 @@ USUAL_FOCAL = 0.8
 """Focal length over the longer side that cameras have."""
 FOCAL_PRIOR = 1e-8
 """Decides only where the points do not: a flat wall seen squarely fits every focal length."""
-MOST_PIXELS = 700 * 700
+MAX_PIXELS = 700 * 700
 """Larger pictures are reduced for MoGe-2: its tokens cover no more detail."""
 
 
@@ -42,7 +42,7 @@ class SeenDepth:
 class GeometryNetwork(Protocol):
     """Input: an upright RGB picture, eight bits, and its intrinsics where they are known."""
 
-    def see(self, rgb: UInt8[np.ndarray, "h w 3"], intrinsics: Intrinsics | None) -> SeenDepth:
+    def predict(self, rgb: UInt8[np.ndarray, "h w 3"], intrinsics: Intrinsics | None) -> SeenDepth:
         """Depth, normals and intrinsics in the picture's pixels."""
         ...
 
@@ -57,14 +57,14 @@ class Moge2:
     """Detail, 1200 to 2500."""
     pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
-    def see(self, rgb: UInt8[np.ndarray, "h w 3"], intrinsics: Intrinsics | None) -> SeenDepth:
+    def predict(self, rgb: UInt8[np.ndarray, "h w 3"], intrinsics: Intrinsics | None) -> SeenDepth:
         """Depth, normals and intrinsics; given intrinsics are kept and only the shift is recovered.
 
         Raises:
             UnavailableError: when the network tells nothing about the picture.
         """
         height, width = rgb.shape[:2]
-        factor = min(1.0, (MOST_PIXELS / (height * width)) ** 0.5)
+        factor = min(1.0, (MAX_PIXELS / (height * width)) ** 0.5)
         small = (max(16, round(height * factor)), max(16, round(width * factor)))
         picture = resized(rgb, small).astype(np.float32).transpose(2, 0, 1)[None] / np.float32(255.0)
         out = self.pool.get(self.graph).run({"image": picture, "num_tokens": np.array(self.tokens, np.int64)})
@@ -155,7 +155,7 @@ class Metric3d:
     """Horizontal, of pictures whose camera is unknown."""
     pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
-    def see(self, rgb: UInt8[np.ndarray, "h w 3"], intrinsics: Intrinsics | None) -> SeenDepth:
+    def predict(self, rgb: UInt8[np.ndarray, "h w 3"], intrinsics: Intrinsics | None) -> SeenDepth:
         """Depth and normals; without intrinsics a usual field of view is assumed."""
         height, width = rgb.shape[:2]
         k = intrinsics or Intrinsics.from_fov(width, height, self.usual_fov_rad)

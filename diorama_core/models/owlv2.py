@@ -18,7 +18,7 @@ from diorama_core.models.tokens import clip_tokens, load_tokenizer
 
 TOKENS = 16
 DEFAULT_SIDE = 960
-MOST_PHRASES = 64
+MAX_PHRASES = 64
 """Phrases in one run; more are asked in turns."""
 
 
@@ -43,8 +43,8 @@ class Owlv2:
         height, width = rgb.shape[:2]
         pixels = self.pixels(rgb)
         logits, boxes = [], np.zeros((0, 4))
-        for start in range(0, len(phrases), MOST_PHRASES):
-            some = phrases[start : start + MOST_PHRASES]
+        for start in range(0, len(phrases), MAX_PHRASES):
+            some = phrases[start : start + MAX_PHRASES]
             ids, mask = self.tokens(some)
             out = self.pool.get(self.graph).run({"input_ids": ids, "attention_mask": mask, "pixel_values": pixels})
             logits.append(out["logits"][0, :, : len(some)])

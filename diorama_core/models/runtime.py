@@ -19,7 +19,7 @@ from diorama_core.errors import UnavailableError
 
 _LOG = logging.getLogger(__name__)
 
-MOST_THREADS = 16
+MAX_THREADS = 16
 """More threads than this slow these networks down."""
 
 
@@ -146,7 +146,7 @@ def thread_count() -> int:
             raise UnavailableError(f"DIORAMA_THREADS={stated[:40]!r} is no number of threads; correct or unset it")
         return int(stated)
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return max(1, min(cores, MOST_THREADS))
+    return max(1, min(cores, MAX_THREADS))
 
 
 def providers() -> list[str]:

@@ -134,10 +134,10 @@ class ModelStore:
         expected = published or ((first[key],) if key in first and not network.conversion else ())
         if expected and found not in expected:
             arrived.unlink(missing_ok=True)
-            held = "expected" if published else "the first download had"
+            source = "expected" if published else "the first download had"
             raise UnavailableError(
                 f"{network.title}: {file.path} arrived with the wrong content (sha256 {found[:12]}…, "
-                f"{held} {expected[0][:12]}…); it was deleted: pull again, or from another mirror (HF_ENDPOINT)"
+                f"{source} {expected[0][:12]}…); it was deleted: pull again, or from another mirror (HF_ENDPOINT)"
             )
         if not published:
             write_json(self.folder / FIRST_SEEN, {**first, key: found})

@@ -173,10 +173,10 @@ def _without_specks(name: str, values: Int32[np.ndarray, "h w"]) -> tuple[Int32[
     instances = np.zeros(values.shape, dtype=np.int32)
     dropped = int((counts[ids != 0] < least).sum())
     for _, value in sorted(large):
-        kept, pieces = _large_pieces((values == value).astype(np.uint8), least)
+        retained, pieces = _large_pieces((values == value).astype(np.uint8), least)
         dropped += pieces
-        if kept.any():
-            instances[kept] = instances.max() + 1
+        if retained.any():
+            instances[retained] = instances.max() + 1
     if not instances.any():
         raise InputError(f"{name}: the masks hold no object; paint each object in its own colour on black")
     return instances, dropped

@@ -18,7 +18,7 @@ from jaxtyping import Bool, UInt8
 from diorama_core.artefacts import Box, DetectedObject, Inputs, LabelledBox
 from diorama_core.progress import Progress
 
-_LEAST_SHARE = 0.1
+_MIN_SHARE = 0.1
 """A vote that keeps less of the box than this has lost the object."""
 LOST_CONFIDENCE = 0.1
 _SEED = 7
@@ -68,12 +68,12 @@ class EmbeddedMasks:
         wide = crops[-1]
         starts = [(crop, crop.rectangle()) for crop in crops] + [(crops[0], None)]
         votes = [wide.carried(crop, self._grabcut(crop.of(rgb), crop, start)) for crop, start in starts]
-        kept = [vote for vote in votes if vote.sum() >= _LEAST_SHARE * wide.inner().sum()]
-        if not kept:
+        retained = [vote for vote in votes if vote.sum() >= _MIN_SHARE * wide.inner().sum()]
+        if not retained:
             return filled_box(rgb.shape[:2], box), LOST_CONFIDENCE
-        agreed = np.mean(kept, axis=0) >= 0.5
+        agreed = np.mean(retained, axis=0) >= 0.5
         mask = wide.to_photo(agreed, box)
-        if mask.sum() < _LEAST_SHARE * filled_box(rgb.shape[:2], box).sum():
+        if mask.sum() < _MIN_SHARE * filled_box(rgb.shape[:2], box).sum():
             return filled_box(rgb.shape[:2], box), LOST_CONFIDENCE
         agreement = float(np.mean([_iou(vote, agreed) for vote in votes]))
         return mask, max(LOST_CONFIDENCE, agreement)

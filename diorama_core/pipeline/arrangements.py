@@ -14,10 +14,10 @@ import numpy as np
 from diorama_core.scene import edits
 from diorama_core.scene.types import Candidate, Pose, Scene, SceneObject
 
-LEAST_PLAUSIBLE = 0.3
+MIN_PLAUSIBLE = 0.3
 """A shape is offered in another arrangement when it scores at least this share of its set's best."""
 SAME_FORM = 0.89
-"""Shapes as alike as this in form (`EmbeddedLikeness.form_agreement`) are told apart by their colours only."""
+"""Shapes as alike as this in form (`EmbeddedSimilarity.form_agreement`) are told apart by their colours only."""
 
 Alike = Callable[[str, str], float]
 """How alike two shapes are in form, 0 to 1, by their ids."""
@@ -68,14 +68,14 @@ def plausible_shapes(
             share = candidate.score / best if best > 0 else 0.0
             totals[candidate.shape_id] = totals.get(candidate.shape_id, 0.0) + share / len(members)
     others = sorted((s for s in totals if s != own), key=lambda s: (-totals[s], s))
-    likely = [s for s in others if totals[s] >= LEAST_PLAUSIBLE]
+    likely = [s for s in others if totals[s] >= MIN_PLAUSIBLE]
     if alike is None or any(item.colour is None for item in members):
         return (own, *likely)
-    kept = [own]
+    retained = [own]
     for shape_id in likely:
-        if all(alike(shape_id, k) < SAME_FORM for k in kept):
-            kept.append(shape_id)
-    return tuple(kept)
+        if all(alike(shape_id, k) < SAME_FORM for k in retained):
+            retained.append(shape_id)
+    return tuple(retained)
 
 
 def _sets(scene: Scene) -> list[list[SceneObject]]:

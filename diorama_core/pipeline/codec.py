@@ -17,7 +17,7 @@ import numpy as np
 
 from diorama_core import artefacts
 from diorama_core.errors import ProjectError
-from diorama_core.geometry import held
+from diorama_core.geometry import camera_attitude
 from diorama_core.scene import types
 
 _CLASSES: dict[str, type] = {
@@ -38,7 +38,7 @@ _CLASSES: dict[str, type] = {
         artefacts.RankedShapes,
         artefacts.PosedCandidates,
         artefacts.LayoutReport,
-        held.Held,
+        camera_attitude.CameraAttitude,
         types.Intrinsics,
         types.Camera,
         types.Pose,

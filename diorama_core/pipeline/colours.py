@@ -22,7 +22,7 @@ SETS = with_kin("chair", "office chair", "stool")
 """Categories whose equal shapes in one room are a set."""
 _BIN = 20.0
 _FEWEST_PIXELS = 60
-_LEAST_SHARE = 0.25
+_MIN_SHARE = 0.25
 """An object without a colour that covers this much of it is not painted."""
 
 Colour = tuple[float, float, float]
@@ -76,7 +76,7 @@ def _main_colour(rgb: UInt8[np.ndarray, "h w 3"], mask: Bool[np.ndarray, "h w"])
     )
     seed = np.median(lab[label.ravel() == int(np.argmax(counts))], axis=0)
     near = np.linalg.norm((lab - seed) / (2.0, 1.0, 1.0), axis=1) < _BIN
-    if near.mean() < _LEAST_SHARE:
+    if near.mean() < _MIN_SHARE:
         return None
     red, green, blue = (float(c) / 255.0 for c in np.median(pixels[near], axis=0))
     return (red, green, blue)

@@ -8,9 +8,9 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.models.clip import DuoduoClip, OpenClip
 from diorama_core.models.manifest import network
 from diorama_core.models.store import ModelStore
-from diorama_core.pipeline.build import Stages
+from diorama_core.pipeline.run import Stages
 from diorama_core.retrieval import HierarchicalRetrieval
-from diorama_core.retrieval.joint import ClipEmbedding, JointLikeness
+from diorama_core.retrieval.joint import ClipEmbedding, JointSimilarity
 
 
 def with_joint_retrieval(base: Stages, library: ShapeLibrary, store: ModelStore) -> Stages:
@@ -23,4 +23,4 @@ def with_joint_retrieval(base: Stages, library: ShapeLibrary, store: ModelStore)
     if store.has(tower):
         shapes = DuoduoClip(store.path(tower, tower.files[0].path), store.identity(tower))
     embedding = ClipEmbedding(OpenClip(text, image, tokenizer, store.identity(clip)), shapes)
-    return replace(base, retrieval=HierarchicalRetrieval(library, likeness=JointLikeness(library, embedding)))
+    return replace(base, retrieval=HierarchicalRetrieval(library, similarity=JointSimilarity(library, embedding)))

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from functools import partial
 
 from diorama_core.errors import DioramaError
-from diorama_core.geometry.looks import SHARED_LOOKS
-from diorama_core.layout.parts import parts_of_shape
+from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES
+from diorama_core.layout.problem.parts import parts_of_shape
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.store import BUILT_IN, open_library
 from diorama_core.progress import Progress
 from diorama_core.render.image_search import ImageSearch
 from diorama_core.render.template_cache import TemplateCache
-from diorama_core.retrieval.likeness import EmbeddedLikeness
+from diorama_core.retrieval.appearance_similarity import EmbeddedSimilarity
 from diorama_core.workers import Workers, workers
 
 _CHUNK = 12
@@ -78,21 +78,21 @@ def prepare_library(
 
 def _prepare(name: str, parts: bool, views: bool, templates: bool, shape_ids: Sequence[str]) -> list[tuple[str, str]]:
     """Prepare some shapes; returns those that could not be, and why."""
-    library, kept = open_library(name), TemplateCache(held=1)
-    likeness = EmbeddedLikeness(library)
+    library, retained = open_library(name), TemplateCache(cached=1)
+    similarity = EmbeddedSimilarity(library)
     looks = default_cache_dir() / "looks"
     failures = []
     for shape_id in shape_ids:
         try:
             shape = library.shape(shape_id)
             library.glb(shape_id)
-            SHARED_LOOKS.get(shape.content_hash, looks, partial(library.parts, shape_id))
+            SHARED_APPEARANCES.get(shape.content_hash, looks, partial(library.parts, shape_id))
             if parts:
                 parts_of_shape(library, shape)
             if views:
-                likeness.prepare(shape)
+                similarity.prepare(shape)
             if templates:
-                kept.get(library, shape)
+                retained.get(library, shape)
         except DioramaError as error:
             failures.append((shape_id, str(error)))
     return failures

@@ -24,7 +24,7 @@ log = logging.getLogger(__name__)
 
 CODE_VERSION = "3"
 """Raised when a change of code must invalidate every saved result."""
-KEPT_PER_STAGE = 4
+CACHED_PER_STAGE = 4
 """Results kept per stage on disk, so that going back to an earlier correction is instant."""
 
 
@@ -110,5 +110,5 @@ def _write(path: Path | None, result: Any) -> None:
     os.replace(part, path)
     stem = path.name.rsplit("-", 1)[0]
     siblings = sorted(path.parent.glob(f"{stem}-*.zip"), key=lambda p: p.stat().st_mtime, reverse=True)
-    for old in siblings[KEPT_PER_STAGE:]:
+    for old in siblings[CACHED_PER_STAGE:]:
         old.unlink(missing_ok=True)

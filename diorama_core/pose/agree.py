@@ -11,7 +11,7 @@ _ABSENT = -0.7
 _OVERLAP = 0.5
 _TIE = 0.15
 """Two shapes whose log ranks differ by less are as good for one thing of a set: then it takes what the set likes."""
-MOST_LOSS_WITH_DEPTH = 1.0
+MAX_LOSS_WITH_DEPTH = 1.0
 """What agreeing may cost where depth was measured: it shows when things of a kind are not the same."""
 SETS = with_kin("chair", "office chair", "stool", "armchair", "night stand", "ottoman", "lamp")
 """What comes in sets; books and pictures of one room are different ones."""
@@ -21,7 +21,7 @@ def agreed_ranks(
     categories: Sequence[str],
     ranks: Sequence[Mapping[str, float]],
     trust: Sequence[float],
-    most_loss: Sequence[float],
+    max_loss: Sequence[float],
 ) -> list[dict[str, float]]:
     """Each object's log ranks of shapes, mixed with those of objects of its kind.
 
@@ -38,7 +38,7 @@ def agreed_ranks(
     relative = [{key: value - max(own.values()) for key, value in own.items()} for own in ranks]
     groups = _groups(categories, relative)
     agreed = []
-    for group, own, name, most in zip(groups, relative, categories, most_loss, strict=True):
+    for group, own, name, most in zip(groups, relative, categories, max_loss, strict=True):
         alike = [i for i, other in enumerate(groups) if other == group]
         weight = sum(trust[i] + 1e-3 for i in alike)
         mean = {key: sum((trust[i] + 1e-3) * relative[i].get(key, _ABSENT) for i in alike) / weight for key in own}

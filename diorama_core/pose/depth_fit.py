@@ -23,14 +23,14 @@ from diorama_core.scene.types import Camera, yaw_rotation
 PARAMETERS = 7
 FEWEST_RAYS = 6
 """With fewer measured points a fit means nothing."""
-_MOST_RAYS = 260
+_MAX_RAYS = 260
 _DIRECTIONS = 16
 _WHOLE_CELL = 0.9
 """Cells that a mask covers by less lie on its edge, where depth belongs to either side."""
 _LOOSENESS = (4.0, 3.0, 2.0, 1.5, 1.0, 1.0, 1.0, 1.0)
 """Of every iteration: how many times wider than measured the tolerances are taken, so that far starts are drawn in."""
 _DAMPING = 0.01
-_MOST_SHIFT = 0.6
+_MAX_SHIFT = 0.6
 """A fit moves a pose by at most this share of its largest extent: farther ones lost hold of the object."""
 _GRAZING = 0.15
 NOISE_REACH = 1.8
@@ -73,7 +73,7 @@ class SeenPoints:
         chosen = np.flatnonzero((seen.covered >= _WHOLE_CELL) & (weight > 0))
         if len(chosen) < 12:
             chosen = np.flatnonzero(weight > 0)
-        chosen = chosen[:: max(1, -(-len(chosen) // _MOST_RAYS))]
+        chosen = chosen[:: max(1, -(-len(chosen) // _MAX_RAYS))]
         directions, depth = seen.directions_world[chosen], depth_m[chosen]
         return cls(directions, seen.origin_world + depth[:, None] * directions, depth, spread_m[chosen])
 
@@ -212,7 +212,7 @@ class DepthFit:
         x = x.copy()
         x[:, 4:] = np.log(self.limits.scale_for(wanted) / start.scale)
         x[:, 3] = np.clip(x[:, 3], -0.6, 0.6)
-        most = _MOST_SHIFT * (start.scale * self.limits.shape_size_m).max(axis=1)
+        most = _MAX_SHIFT * (start.scale * self.limits.shape_size_m).max(axis=1)
         length = np.linalg.norm(x[:, :3], axis=1)
         x[:, :3] *= np.minimum(1.0, most / np.maximum(length, 1e-9))[:, None]
         return np.nan_to_num(x)

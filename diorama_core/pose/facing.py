@@ -59,22 +59,22 @@ class WallSamples:
 class Facing:
     """Wished headings of one object."""
 
-    wishes: tuple[tuple[float, Float[np.ndarray, "2"]], ...]
+    preferences: tuple[tuple[float, Float[np.ndarray, "2"]], ...]
     """(weight, unit direction seen from above) of every reason to face somewhere."""
 
     def cost(self, R_world_object: Float[np.ndarray, "p 3 3"]) -> Float[np.ndarray, "p"]:
         """Sum of weight x (1 - cosine) / 2 over the wishes, for the front of every rotation."""
         front = R_world_object[:, :2, 0]
         front = front / np.maximum(np.linalg.norm(front, axis=1, keepdims=True), 1e-9)
-        return sum((w * (1 - front @ d) / 2 for w, d in self.wishes), np.zeros(len(front)))
+        return sum((w * (1 - front @ d) / 2 for w, d in self.preferences), np.zeros(len(front)))
 
 
 def wall_samples(depth: DepthMap, camera: Camera, objects: Sequence[DetectedObject]) -> WallSamples:
     """Pixels outside all boxes whose surface is upright: the walls, as far as they are seen."""
     normals = depth.normals_world
     free = np.isfinite(depth.depth_m) & (depth.depth_m > 0) & (np.abs(normals[..., 2]) < 0.25)
-    for thing in objects:
-        x1, y1, x2, y2 = (round(v) for v in thing.box)
+    for item in objects:
+        x1, y1, x2, y2 = (round(v) for v in item.box)
         free[max(y1, 0) : y2, max(x1, 0) : x2] = False
     rows, columns = np.nonzero(free)
     step = max(len(rows) // _WALL_SAMPLES, 1)
@@ -88,7 +88,7 @@ def wall_samples(depth: DepthMap, camera: Camera, objects: Sequence[DetectedObje
 
 
 def facing_of(
-    thing: DetectedObject,
+    item: DetectedObject,
     cuboid: Cuboid,
     cuboids: Sequence[Cuboid],
     categories: dict[str, str],
@@ -114,20 +114,20 @@ def facing_of(
         return Facing(((3.0, _unit(cuboid.R_world_object[:2, 0])),))
     if out_of_wall is not None:
         return Facing(((4.0, _unit(out_of_wall)),))
-    if thing.category in _NO_FRONT:
+    if item.category in _NO_FRONT:
         return Facing(())
-    if thing.category in _TOWARD_VIEWER:
+    if item.category in _TOWARD_VIEWER:
         return Facing(((2.0, toward_camera),))
-    table = _nearest_table(thing.category, cuboid, cuboids, categories)
+    table = _nearest_table(item.category, cuboid, cuboids, categories)
     if table is not None:
         return Facing(((1.2, _axis_toward(cuboid, table.centre[:2] - cuboid.centre[:2])), (0.1, toward_camera)))
-    wishes = [(_TOWARD_CAMERA.get(broad(thing.category), 2.0), toward_camera)]
-    wishes += [(weight, direction) for weight, direction in _away_from_walls(cuboid, walls) if weight > 0.05]
-    wishes += _away_from_pillows(cuboid, pillows)
+    preferences = [(_TOWARD_CAMERA.get(broad(item.category), 2.0), toward_camera)]
+    preferences += [(weight, direction) for weight, direction in _away_from_walls(cuboid, walls) if weight > 0.05]
+    preferences += _away_from_pillows(cuboid, pillows)
     middle = np.mean([c.centre[:2] for c in cuboids], axis=0) - cuboid.centre[:2]
     if len(cuboids) >= 3 and np.linalg.norm(middle) > 0.3:
-        wishes.append((0.3, _unit(middle)))
-    return Facing(tuple(wishes))
+        preferences.append((0.3, _unit(middle)))
+    return Facing(tuple(preferences))
 
 
 def _away_from_pillows(cuboid: Cuboid, pillows: Sequence[Cuboid]) -> list[tuple[float, Float[np.ndarray, "2"]]]:
@@ -187,7 +187,7 @@ def _nearest_table(
 
 def _away_from_walls(cuboid: Cuboid, walls: WallSamples) -> list[tuple[float, Float[np.ndarray, "2"]]]:
     """For each face direction, how strongly a wall behind the opposite face asks to face that way (0 to 1)."""
-    wishes = []
+    preferences = []
     for direction, half in _axes_xy(cuboid):
         back = cuboid.centre[:2] - direction * half
         offset = walls.points_xy - back
@@ -195,5 +195,5 @@ def _away_from_walls(cuboid: Cuboid, walls: WallSamples) -> list[tuple[float, Fl
         side = np.abs(offset @ np.array([-direction[1], direction[0]]))
         near = (walls.normals_xy @ direction > 0.9) & (gap > -0.3) & (gap < _WALL_REACH_M) & (side < _WALL_LATERAL_M)
         strength = np.exp(-np.abs(np.median(gap[near])) / 0.4) if near.sum() >= 10 else 0.0
-        wishes.append((float(strength), direction))
-    return wishes
+        preferences.append((float(strength), direction))
+    return preferences

@@ -111,12 +111,12 @@ def unlike_best(
     yaw = np.arctan2(poses.R[:, 1, 0], poses.R[:, 0, 0])
     reach = _SAME_PLACE * (poses.scale * shape_size_m).max(axis=1)
     fold = 2 * np.pi / symmetry
-    kept: list[int] = []
+    retained: list[int] = []
     for index in order:
-        turn = np.abs(np.mod(yaw[kept] - yaw[index] + fold / 2, fold) - fold / 2)
-        away = np.linalg.norm(poses.position[kept] - poses.position[index], axis=1)
+        turn = np.abs(np.mod(yaw[retained] - yaw[index] + fold / 2, fold) - fold / 2)
+        away = np.linalg.norm(poses.position[retained] - poses.position[index], axis=1)
         if not ((turn < _SAME_TURN_RAD) & (away < reach[index])).any():
-            kept.append(int(index))
-        if len(kept) == count:
+            retained.append(int(index))
+        if len(retained) == count:
             break
-    return np.array(kept)
+    return np.array(retained)

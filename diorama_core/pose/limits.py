@@ -46,8 +46,8 @@ class SizeLimits:
 
     shape_size_m: Float[np.ndarray, "3"]
     """At scale 1, never degenerate."""
-    least_m: Float[np.ndarray, "3"]
-    most_m: Float[np.ndarray, "3"]
+    min_m: Float[np.ndarray, "3"]
+    max_m: Float[np.ndarray, "3"]
     stretch_log: float
     """How far the logarithm of one axis' scale may be from the mean of the three."""
 
@@ -67,7 +67,7 @@ class SizeLimits:
     def scale_for(self, wanted_m: Float[np.ndarray, "*p 3"]) -> Float[np.ndarray, "*p 3"]:
         """Per-axis scales nearest to giving the shape the wanted size, within the limits."""
         free = self.shape_size_m > _DEGENERATE_M
-        wanted = np.clip(np.nan_to_num(wanted_m, nan=1.0), self.least_m, self.most_m)
+        wanted = np.clip(np.nan_to_num(wanted_m, nan=1.0), self.min_m, self.max_m)
         log_scale = np.log(wanted / np.maximum(self.shape_size_m, _DEGENERATE_M))
         shaped = free & ~self.thin
         if not shaped.any():

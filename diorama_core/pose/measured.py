@@ -11,9 +11,9 @@ from diorama_core.artefacts import Cuboid
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.record import SymmetryFold
 from diorama_core.pose.depth_fit import FEWEST_RAYS, NOISE_REACH, SURE_CONTACT_M, Contact, DepthFit, Outline, SeenPoints
-from diorama_core.pose.evidence import Evidence
 from diorama_core.pose.hypotheses import Anchor, Hypotheses
 from diorama_core.pose.limits import SizeLimits
+from diorama_core.pose.mask_observations import Evidence
 from diorama_core.scene.types import yaw_rotation
 
 _TURNS = 24
@@ -26,7 +26,7 @@ _FLOATS_M = 0.05
 class MeasuredObject:
     """One object's measured points, outline and where it stands."""
 
-    evidence: Evidence
+    observations: Evidence
     cuboid: Cuboid
     contact: Contact
     points: SeenPoints
@@ -34,7 +34,7 @@ class MeasuredObject:
 
     @classmethod
     def of(
-        cls, mask: Bool[np.ndarray, "h w"], evidence: Evidence, cuboid: Cuboid, anchor: Anchor, on_floor: bool
+        cls, mask: Bool[np.ndarray, "h w"], observations: Evidence, cuboid: Cuboid, anchor: Anchor, on_floor: bool
     ) -> MeasuredObject | None:
         """What can be used of the depth under a mask; None where hardly any was measured.
 
@@ -45,19 +45,21 @@ class MeasuredObject:
             anchor: the face of the box that touches what holds it.
             on_floor: whether that is the floor, whose height is known even where the object hides it.
         """
-        if evidence.surface is None:
+        if observations.surface is None:
             return None
         points = SeenPoints.of(
-            evidence.seen, evidence.surface.depth_m, evidence.surface.weight, evidence.surface.spread_m
+            observations.seen, observations.surface.depth_m, observations.surface.weight, observations.surface.spread_m
         )
         if len(points.depth_m) < FEWEST_RAYS:
             return None
-        outline = Outline.of(evidence.seen, mask)
-        return cls(evidence, cuboid, _contact(anchor, on_floor, points, outline), points, outline)
+        outline = Outline.of(observations.seen, mask)
+        return cls(observations, cuboid, _contact(anchor, on_floor, points, outline), points, outline)
 
     def fit(self, limits: SizeLimits) -> DepthFit:
         """The fit of a shape with these limits."""
-        return DepthFit(self.evidence.camera, self.evidence.seen, self.points, self.outline, self.contact, limits)
+        return DepthFit(
+            self.observations.camera, self.observations.seen, self.points, self.outline, self.contact, limits
+        )
 
     def hypotheses(self, symmetry: SymmetryFold, limits: SizeLimits) -> Hypotheses:
         """Turns all around, each set against the measured points; where a part may be hidden, also from behind."""

@@ -20,18 +20,18 @@ from diorama_core.artefacts import (
     PosedCandidates,
     RankedShapes,
 )
-from diorama_core.geometry.looks import SHARED_LOOKS, Look
 from diorama_core.geometry.observed import observe_among
+from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES, ShapeAppearance
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import ROUND, Shape, ShapeLibrary
 from diorama_core.library.taxonomy import category
-from diorama_core.pose.agree import MOST_LOSS_WITH_DEPTH, agreed_ranks
-from diorama_core.pose.close_look import CloseLook, cells_for
-from diorama_core.pose.evidence import Evidence
+from diorama_core.pose.agree import MAX_LOSS_WITH_DEPTH, agreed_ranks
+from diorama_core.pose.appearance_likelihood import AppearanceLikelihood, cells_for
 from diorama_core.pose.facing import facing_of, wall_samples
 from diorama_core.pose.hypotheses import Anchor, Hypotheses, anchor_of, hypotheses_for, unlike_best
 from diorama_core.pose.limits import SizeLimits
+from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.measured import MeasuredObject
 from diorama_core.pose.refine import BoxFit
 from diorama_core.pose.sets import shared_scales
@@ -43,8 +43,8 @@ from diorama_core.scene.types import Candidate, Pose
 _POWERS = (1.5, 0.6)
 """How much retrieval and pose say about which shape is best: the picture's outline alone would ignore colours."""
 _RETRIEVAL_WITH_DEPTH = 0.7
-"""What retrieval says beside `Evidence.log_likeness` where depth was measured: that tells shapes apart."""
-_MOST_THREADS = 4
+"""What retrieval says beside `Evidence.log_likelihood` where depth was measured: that tells shapes apart."""
+_MAX_THREADS = 4
 """Objects posed side by side: casting and array work let go of the interpreter, the rest of it does not."""
 _LOSS_FOR_A_SET = 0.02
 """By how much more a thing may disagree with the picture to be as large as the others of its set."""
@@ -54,14 +54,14 @@ _LOSS_FOR_A_SET = 0.02
 class _Task:
     """One object with everything its shapes are posed against."""
 
-    thing: DetectedObject
+    item: DetectedObject
     cuboid: Cuboid
     anchor: Anchor
     coarse: Evidence
     fine: Evidence
     measured: MeasuredObject | None
     """Where depth was measured."""
-    close: CloseLook | None
+    close: AppearanceLikelihood | None
     """Where depth was measured."""
 
 
@@ -72,7 +72,7 @@ class _Tried:
     shape: Shape
     liked: float
     """By retrieval: a logarithm, 0 for the shape it likes best."""
-    look: Look
+    appearance: ShapeAppearance
     limits: SizeLimits
     hypotheses: Hypotheses
     scores: Float[np.ndarray, "p"]
@@ -134,19 +134,19 @@ class RenderAndCompare:
         records = {s.id: s for s in self.library.shapes()}
         tasks = self._tasks(inputs, objects, geometry, depth, frozenset(ranked))
         found = []
-        with ThreadPoolExecutor(min(os.cpu_count() or 1, _MOST_THREADS)) as threads:
-            underway = [threads.submit(self._pose_object, task, ranked[task.thing.id], records) for task in tasks]
+        with ThreadPoolExecutor(min(os.cpu_count() or 1, _MAX_THREADS)) as threads:
+            underway = [threads.submit(self._pose_object, task, ranked[task.item.id], records) for task in tasks]
             try:
                 for index, (task, posed) in enumerate(zip(tasks, underway, strict=True)):
-                    progress.report(index / len(tasks), f"Posing: {task.thing.label}")
+                    progress.report(index / len(tasks), f"Posing: {task.item.label}")
                     found.append(posed.result())
             finally:
                 threads.shutdown(wait=False, cancel_futures=True)
         ranks = agreed_ranks(
-            [task.thing.category for task in tasks],
+            [task.item.category for task in tasks],
             [{posed.shape.id: posed.rank for posed in of_one} for of_one in found],
             [task.fine.confidence(0.0, 1.0) for task in tasks],
-            [np.inf if task.measured is None else MOST_LOSS_WITH_DEPTH for task in tasks],
+            [np.inf if task.measured is None else MAX_LOSS_WITH_DEPTH for task in tasks],
         )
         ordered = [_ordered(of_one, order) for of_one, order in zip(found, ranks, strict=True)]
         firsts = self._evened(tasks, [of_one[0] for of_one in ordered])
@@ -158,7 +158,7 @@ class RenderAndCompare:
         if not tasks:
             return []
         scales = shared_scales(
-            [task.thing.category for task in tasks],
+            [task.item.category for task in tasks],
             [posed.shape.id for posed in chosen],
             np.array([posed.pose.scale for posed in chosen]),
             [
@@ -174,12 +174,12 @@ class RenderAndCompare:
         R, axis = posed.pose.R_world_object, task.anchor.axis_world
         grown = 0.5 * float(np.abs(axis @ R) @ ((scale - posed.pose.scale) * posed.shape.size_m))
         poses = PoseBatch(R[None], (posed.pose.position + grown * axis)[None], scale[None])
-        error = float(task.fine.errors(self._look(posed.shape).caster, poses)[0])
+        error = float(task.fine.errors(self._compare(posed.shape).caster, poses)[0])
         return replace(posed, pose=_only(poses), error=error) if error <= posed.error + _LOSS_FOR_A_SET else posed
 
-    def _look(self, shape: Shape) -> Look:
+    def _compare(self, shape: Shape) -> ShapeAppearance:
         folder = default_cache_dir() / "looks"
-        return SHARED_LOOKS.get(shape.content_hash, folder, lambda: self.library.parts(shape.id))
+        return SHARED_APPEARANCES.get(shape.content_hash, folder, lambda: self.library.parts(shape.id))
 
     def _tasks(
         self,
@@ -190,35 +190,35 @@ class RenderAndCompare:
         wanted: frozenset[str],
     ) -> list[_Task]:
         cuboid_of = {c.object_id: c for c in geometry.cuboids}
-        things = [o for o in objects if o.id in cuboid_of]
-        cuboids = [cuboid_of[o.id] for o in things]
+        items = [o for o in objects if o.id in cuboid_of]
+        cuboids = [cuboid_of[o.id] for o in items]
         centres = np.array([c.centre for c in cuboids]).reshape(-1, 3)
-        positions = {o.id: i for i, o in enumerate(things)}
+        positions = {o.id: i for i, o in enumerate(items)}
         parent_of = {s.child: s.parent for s in geometry.supports}
-        parents = [positions.get(parent_of.get(o.id, "")) for o in things]
-        categories = {o.id: o.category for o in things}
-        walls = wall_samples(depth, geometry.camera, things)
+        parents = [positions.get(parent_of.get(o.id, "")) for o in items]
+        categories = {o.id: o.category for o in items}
+        walls = wall_samples(depth, geometry.camera, items)
         noise = noise_of(depth)
         tasks = []
-        for i, thing in enumerate(things):
-            if thing.id not in wanted:
+        for i, item in enumerate(items):
+            if item.id not in wanted:
                 continue
-            on_wall = parent_of.get(thing.id) == "wall" and category(thing.category).mount != "floor"
-            lying = [cuboids[j] for j, parent in enumerate(parents) if parent == i and things[j].category == "pillow"]
+            on_wall = parent_of.get(item.id) == "wall" and category(item.category).mount != "floor"
+            lying = [cuboids[j] for j, parent in enumerate(parents) if parent == i and items[j].category == "pillow"]
             anchor = anchor_of(cuboids[i], on_wall, geometry.camera.position[:2] - cuboids[i].centre[:2])
             out_of_wall = anchor.axis_world[:2] if on_wall else None
-            facing = facing_of(thing, cuboids[i], cuboids, categories, geometry.camera, walls, out_of_wall, lying)
+            facing = facing_of(item, cuboids[i], cuboids, categories, geometry.camera, walls, out_of_wall, lying)
             windows = [
-                observe_among(geometry.camera, things, centres, parents, i, cells)
-                for cells in (self.coarse_cells, self.fine_cells, cells_for(thing.box))
+                observe_among(geometry.camera, items, centres, parents, i, cells)
+                for cells in (self.coarse_cells, self.fine_cells, cells_for(item.box))
             ]
-            surfaces = [measured_surface(depth, seen, thing.mask, noise) for seen in windows]
+            surfaces = [measured_surface(depth, seen, item.mask, noise) for seen in windows]
             coarse, fine = (Evidence(geometry.camera, *of) for of in zip(windows[:2], [facing] * 2, surfaces[:2]))
-            measured = MeasuredObject.of(thing.mask, fine, cuboids[i], anchor, parent_of.get(thing.id) == "floor")
+            measured = MeasuredObject.of(item.mask, fine, cuboids[i], anchor, parent_of.get(item.id) == "floor")
             close = None
             if measured is not None and surfaces[2] is not None:
-                close = CloseLook.of(inputs.photo.rgb, thing.mask, windows[2], surfaces[2], cuboids[i].size_m)
-            tasks.append(_Task(thing, cuboids[i], anchor, coarse, fine, measured, close))
+                close = AppearanceLikelihood.of(inputs.photo.rgb, item.mask, windows[2], surfaces[2], cuboids[i].size_m)
+            tasks.append(_Task(item, cuboids[i], anchor, coarse, fine, measured, close))
         return tasks
 
     def _pose_object(
@@ -236,15 +236,15 @@ class RenderAndCompare:
         return tuple(posed)
 
     def _try_shape(self, task: _Task, shape: Shape, liked: float) -> _Tried:
-        look = self._look(shape)
-        name = task.thing.category
+        appearance = self._compare(shape)
+        name = task.item.category
         limits = SizeLimits.of(shape.size_m, name, task.cuboid.size_m)
         tried = hypotheses_for(task.cuboid, name, shape.symmetry, limits, task.anchor)
         if task.measured is not None:
             tried = tried.and_also(task.measured.hypotheses(shape.symmetry, limits))
-        errors = task.coarse.errors(look.caster, tried.poses)
+        errors = task.coarse.errors(appearance.caster, tried.poses)
         scores = task.coarse.log_scores(errors, tried.poses, tried.off_axis_rad, tried.misfit, limits)
-        return _Tried(shape, liked, look, limits, tried, scores)
+        return _Tried(shape, liked, appearance, limits, tried, scores)
 
     def _pose_by_outline(self, task: _Task, tried: _Tried) -> _Posed:
         best = np.argsort(-tried.scores, kind="stable")[: self.refined]
@@ -263,24 +263,24 @@ class RenderAndCompare:
             nothing = np.zeros(len(turned))
             other = self._chosen(task, tried, Hypotheses(turned, nothing, nothing))
             poses, error, score = max((poses, error, score), other, key=lambda found: found[2])
-        likeness = task.fine.log_likeness(error, poses.scale[0], tried.limits)
-        return _Posed(tried.shape, _only(poses), error, _RETRIEVAL_WITH_DEPTH * tried.liked + likeness)
+        similarity = task.fine.log_likelihood(error, poses.scale[0], tried.limits)
+        return _Posed(tried.shape, _only(poses), error, _RETRIEVAL_WITH_DEPTH * tried.liked + similarity)
 
     def _turned_all_around(self, task: _Task, measured: MeasuredObject, tried: _Tried, posed: _Posed) -> _Posed:
         """The pose with its turn compared closely."""
         if tried.shape.symmetry == ROUND or task.close is None:
             return posed
         start, fold = _batch(posed.pose), tried.shape.symmetry
-        search = TurnSearch.of(task.close, task.fine, measured, tried.look, tried.limits, fold, start)
+        search = TurnSearch.of(task.close, task.fine, measured, tried.appearance, tried.limits, fold, start)
         poses, doubt = search.best(start)
-        error = float(task.fine.errors(tried.look.caster, poses)[0])
-        likeness = task.fine.log_likeness(error, poses.scale[0], tried.limits)
-        return _Posed(tried.shape, _only(poses), error, _RETRIEVAL_WITH_DEPTH * tried.liked + likeness, doubt)
+        error = float(task.fine.errors(tried.appearance.caster, poses)[0])
+        similarity = task.fine.log_likelihood(error, poses.scale[0], tried.limits)
+        return _Posed(tried.shape, _only(poses), error, _RETRIEVAL_WITH_DEPTH * tried.liked + similarity, doubt)
 
     def _chosen(self, task: _Task, tried: _Tried, start: Hypotheses) -> tuple[PoseBatch, float, float]:
         """The best of some poses and their refinements, with its error and score."""
-        both = start.poses.and_also(self._refined(task, tried.look.caster, tried.limits, start.poses))
-        errors = task.fine.errors(tried.look.caster, both)
+        both = start.poses.and_also(self._refined(task, tried.appearance.caster, tried.limits, start.poses))
+        errors = task.fine.errors(tried.appearance.caster, both)
         off_axis, misfit = np.tile(start.off_axis_rad, 2), np.tile(start.misfit, 2)
         scores = task.fine.log_scores(errors, both, off_axis, misfit, tried.limits)
         chosen = int(np.argmax(scores))
@@ -289,7 +289,7 @@ class RenderAndCompare:
     def _refined(self, task: _Task, caster: ShapeCaster, limits: SizeLimits, start: PoseBatch) -> PoseBatch:
         if task.measured is not None:
             return task.measured.fit(limits).refined(caster, start)
-        yaw_sigma = np.deg2rad(9.0 if category(task.thing.category).quarter_turns_free else 4.0)
+        yaw_sigma = np.deg2rad(9.0 if category(task.item.category).quarter_turns_free else 4.0)
         return BoxFit(task.fine.camera, task.fine.seen, task.anchor, limits, float(yaw_sigma)).refined(caster, start)
 
 
@@ -314,4 +314,4 @@ def _candidates(task: _Task, ordered: Sequence[_Posed], ranks: Mapping[str, floa
         for p in ordered
     )
     confidence = task.fine.confidence(best.error, task.cuboid.confidence) * (1.0 - 0.5 * best.doubt)
-    return PosedCandidates(task.thing.id, candidates, confidence)
+    return PosedCandidates(task.item.id, candidates, confidence)

@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from diorama_core.pose.agree import SETS
 
-_MOST_LOG_DIFFERENCE = 0.3
+_MAX_LOG_DIFFERENCE = 0.3
 """Farther apart they are not the same thing, or one of them was measured wrongly altogether."""
 
 
@@ -33,7 +33,7 @@ def shared_scales(
         if len(alike) < 2:
             continue
         common = _weighted_median(logs[alike], np.array([trust[i] + 1e-3 for i in alike]))
-        near = alike[np.abs(logs[alike] - common).max(axis=1) <= _MOST_LOG_DIFFERENCE]
+        near = alike[np.abs(logs[alike] - common).max(axis=1) <= _MAX_LOG_DIFFERENCE]
         shared[near] = np.exp(common)
     return shared
 

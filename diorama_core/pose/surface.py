@@ -14,13 +14,13 @@ from diorama_core.geometry.window import Window
 
 RENDERED = "rendered from cuboids and room"
 _NORMALS_SHARE = 0.4
-_LEAST_NORMALS_SHARE = 0.05
+_MIN_NORMALS_SHARE = 0.05
 """Below which normals are not worth their price."""
 _CALM = 0.006
 """Noise (as a share of the depth) up to which single pixels say more than means, which blur thin parts."""
 _NORMALS_NOISE = 0.01
 """Noise at which normals say half as much."""
-_LEAST_CELLS = 4.0
+_MIN_CELLS = 4.0
 _NOISE_SAMPLES = 40000
 
 
@@ -62,7 +62,7 @@ class MeasuredSurface:
         """0 to 1: nearness of depth and of normals over the object's measured cells."""
         met = np.where(hits.covered, hits.depth_m, 0.0)
         near = np.where(hits.covered, np.exp(-(((met - self.depth_m) / self.tolerance_m) ** 2)), 0.0)
-        if self.normals_share < _LEAST_NORMALS_SHARE:
+        if self.normals_share < _MIN_NORMALS_SHARE:
             return (near @ self.weight) / max(float(self.weight.sum()), 1e-9)
         aligned = np.clip(np.einsum("pni,ni->pn", hits.normals_world, self.normals_world), 0.0, 1.0)
         score = (1 - self.normals_share) * near + self.normals_share * aligned
@@ -93,7 +93,7 @@ def measured_surface(
     normals = np.nan_to_num(seen.window.sample(depth.normals_world).astype(np.float64))
     known = np.isfinite(metres) & (metres > 0)
     weight = seen.covered * seen.weight * known
-    if weight.sum() < _LEAST_CELLS:
+    if weight.sum() < _MIN_CELLS:
         return None
     metres = np.where(known, metres, 1.0)
     spread_m = np.where(known, spread, 0.0) * metres

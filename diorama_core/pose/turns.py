@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.geometry.looks import Look
+from diorama_core.geometry.shape_appearance import ShapeAppearance
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.record import SymmetryFold
-from diorama_core.pose.close_look import CloseLook
-from diorama_core.pose.evidence import Evidence
+from diorama_core.pose.appearance_likelihood import AppearanceLikelihood
 from diorama_core.pose.hypotheses import unlike_best
 from diorama_core.pose.limits import SizeLimits
+from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.measured import MeasuredObject
 from diorama_core.scene.types import yaw_rotation
 
@@ -27,8 +27,8 @@ _HABIT_STRENGTH = 1.0
 _NEARBY_RAD = np.deg2rad(np.arange(-60.0, 61.0, 12.0))
 _RIGHT_RAD = float(np.deg2rad(20.0))
 """Headings this near are as good as right."""
-_HELD_YAW_RAD = float(np.deg2rad(1.0))
-_LEAST_LIKELY = 0.05
+_FIXED_YAW_RAD = float(np.deg2rad(1.0))
+_MIN_LIKELY = 0.05
 _STAYS = 1e-3
 _USUAL_MISFIT, _MISFIT_SCALE = 3.0, 6.0
 _WELL_BELIEVED = 0.5
@@ -40,10 +40,10 @@ _MARGIN = 1.0
 class TurnSearch:
     """Turns of one shape against one object's pixels."""
 
-    close: CloseLook
-    evidence: Evidence
+    close: AppearanceLikelihood
+    observations: Evidence
     measured: MeasuredObject
-    look: Look
+    appearance: ShapeAppearance
     limits: SizeLimits
     fold: SymmetryFold
     believed: float = 1.0
@@ -52,25 +52,27 @@ class TurnSearch:
     @classmethod
     def of(
         cls,
-        close: CloseLook,
-        evidence: Evidence,
+        close: AppearanceLikelihood,
+        observations: Evidence,
         measured: MeasuredObject,
-        look: Look,
+        appearance: ShapeAppearance,
         limits: SizeLimits,
         fold: SymmetryFold,
         start: PoseBatch,
     ) -> TurnSearch:
         """The search around one pose, believing pixels as far as they fit it."""
-        badly = max(close.misfit(look, start) - _USUAL_MISFIT, 0.0)
-        return cls(close, evidence, measured, look, limits, fold, 1.0 / (1.0 + badly / _MISFIT_SCALE))
+        badly = max(close.misfit(appearance, start) - _USUAL_MISFIT, 0.0)
+        return cls(close, observations, measured, appearance, limits, fold, 1.0 / (1.0 + badly / _MISFIT_SCALE))
 
     def best(self, start: PoseBatch) -> tuple[PoseBatch, float]:
         """The likeliest turn of a pose in its place, and how nearly as likely another one is, 0 to 1."""
         turns = np.arange(max(round(_STEPS / self.fold), 2)) * 2 * np.pi
         grid = self._turned(start, turns / (self.fold * len(turns)))
-        modes = unlike_best(grid, self._seen_closely(grid, exact=False), self.fold, self.limits.shape_size_m, _REFINED)
+        modes = unlike_best(
+            grid, self._compared_closely(grid, exact=False), self.fold, self.limits.shape_size_m, _REFINED
+        )
         tried = start.and_also(grid[modes]).and_also(
-            self.measured.fit(self.limits).refined(self.look.caster, grid[modes])
+            self.measured.fit(self.limits).refined(self.appearance.caster, grid[modes])
         )
         scores = self._scores(tried)
         chosen = 0 if scores[0] + _MARGIN >= scores.max() else int(np.argmax(scores))
@@ -83,21 +85,21 @@ class TurnSearch:
         """The heading with most likelihood near it: a handle that is out of sight may be anywhere behind its mug."""
         turns = _NEARBY_RAD[np.abs(_NEARBY_RAD) <= np.pi / self.fold]
         turned = self._turned(best, turns)
-        fit = replace(self.measured.fit(self.limits), yaw_sigma_rad=_HELD_YAW_RAD)
-        both = turned.and_also(fit.refined(self.look.caster, turned))
-        scores = self._seen_closely(both, exact=True)
+        fit = replace(self.measured.fit(self.limits), yaw_sigma_rad=_FIXED_YAW_RAD)
+        both = turned.and_also(fit.refined(self.appearance.caster, turned))
+        scores = self._compared_closely(both, exact=True)
         count = len(turns)
         better = np.where(scores[count:] > scores[:count], np.arange(count) + count, np.arange(count))
         likely = np.exp(scores[better] - scores[better].max())
         near = np.abs(turns[:, None] - turns) <= _RIGHT_RAD + 1e-6
         mass = near @ likely
         middle = int(np.argmax(mass - _STAYS * mass.max() * np.abs(turns)))
-        return both[better[middle : middle + 1]] if likely[middle] > _LEAST_LIKELY else best
+        return both[better[middle : middle + 1]] if likely[middle] > _MIN_LIKELY else best
 
     def _turned(self, start: PoseBatch, turns_rad: Float[np.ndarray, "k"]) -> PoseBatch:
         """One pose turned about the axis of the shape's body."""
         R = np.array([start.R[0] @ yaw_rotation(angle) for angle in turns_rad])
-        axis = np.array([*self.look.axis_xy, 0.0]) * start.scale[0]
+        axis = np.array([*self.appearance.axis_xy, 0.0]) * start.scale[0]
         position = start.position + start.R[0] @ axis - R @ axis
         return PoseBatch(R, position, np.tile(start.scale, (len(R), 1)))
 
@@ -107,13 +109,15 @@ class TurnSearch:
         half = np.pi / self.fold
         return np.abs(np.mod(yaw - yaw[index] + half, 2 * half) - half)
 
-    def _seen_closely(self, poses: PoseBatch, exact: bool) -> Float[np.ndarray, "p"]:
+    def _compared_closely(self, poses: PoseBatch, exact: bool) -> Float[np.ndarray, "p"]:
         """By pixels, habit and stretch alone: cheap."""
-        return self.close.log_likelihoods(self.look, poses, exact) - self.evidence.habit_cost(poses, self.limits)
+        return self.close.log_likelihoods(self.appearance, poses, exact) - self.observations.habit_cost(
+            poses, self.limits
+        )
 
     def _scores(self, poses: PoseBatch) -> Float[np.ndarray, "p"]:
         """By everything that is known."""
-        errors, nothing = self.evidence.errors(self.look.caster, poses), np.zeros(len(poses))
-        usual = self.evidence.log_scores(errors, poses, nothing, nothing, self.limits)
-        more_habit = _HABIT_STRENGTH * self.evidence.facing.cost(poses.R)
-        return usual + self.believed * self.close.log_likelihoods(self.look, poses) - more_habit
+        errors, nothing = self.observations.errors(self.appearance.caster, poses), np.zeros(len(poses))
+        usual = self.observations.log_scores(errors, poses, nothing, nothing, self.limits)
+        more_habit = _HABIT_STRENGTH * self.observations.facing.cost(poses.R)
+        return usual + self.believed * self.close.log_likelihoods(self.appearance, poses) - more_habit

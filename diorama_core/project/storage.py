@@ -19,15 +19,15 @@ from PIL import Image
 
 from diorama_core.artefacts import Inputs, Photo
 from diorama_core.errors import ProjectError
+from diorama_core.io.atomic import write_atomically
 from diorama_core.pipeline import codec
 from diorama_core.pipeline.runner import StageRun
-from diorama_core.project.files import write_atomically
 from diorama_core.scene.schema import scene_from_json, scene_to_json
 from diorama_core.scene.types import Scene
 
 FORMAT = "diorama-project"
 VERSION = 1
-BACKUPS_KEPT = 20
+MAX_BACKUPS = 20
 BACKUP_EVERY_S = 60.0
 
 
@@ -184,7 +184,7 @@ class Project:
             return
         stamp = time.strftime("%Y%m%d-%H%M%S") + f"-{time.time_ns() % 1_000_000_000:09d}"
         write_atomically(self.folder / "backups" / f"scene-{stamp}.json", self.scene_path.read_bytes())
-        for old in self.backups()[BACKUPS_KEPT:]:
+        for old in self.backups()[MAX_BACKUPS:]:
             old.unlink(missing_ok=True)
 
 

@@ -77,7 +77,7 @@ def shape_surfaces(
         colour_srgb: Override of the main material's colour; see `library.paint.painted`.
         finish: Override of how it throws light back, likewise.
     """
-    return _kept_surfaces(library.parts(shape_id), (colour_srgb, finish))
+    return _cached_surfaces(library.parts(shape_id), (colour_srgb, finish))
 
 
 def srgb_to_linear(colour: Float[np.ndarray, "*n"]) -> Float[np.ndarray, "*n"]:
@@ -92,25 +92,25 @@ def linear_to_srgb(light: Float[np.ndarray, "*n"]) -> Float[np.ndarray, "*n"]:
 
 Paint = tuple[Colour | None, Finish | None]
 
-_KEPT: OrderedDict[tuple[int, Paint], tuple[trimesh.Scene, tuple[Surface, ...]]] = OrderedDict()
-_KEPT_LOCK = threading.Lock()
-_KEPT_SHAPES = 128
+_CACHE: OrderedDict[tuple[int, Paint], tuple[trimesh.Scene, tuple[Surface, ...]]] = OrderedDict()
+_CACHE_LOCK = threading.Lock()
+_CACHED_SHAPES = 128
 
 
-def _kept_surfaces(parts: trimesh.Scene, paint: Paint) -> tuple[Surface, ...]:
+def _cached_surfaces(parts: trimesh.Scene, paint: Paint) -> tuple[Surface, ...]:
     """The surfaces of a scene of parts, read once while the same scene object keeps being asked for."""
     key = (id(parts), paint)
-    with _KEPT_LOCK:
-        kept = _KEPT.get(key)
-        if kept is not None:
-            _KEPT.move_to_end(key)
-            return kept[1]
+    with _CACHE_LOCK:
+        retained = _CACHE.get(key)
+        if retained is not None:
+            _CACHE.move_to_end(key)
+            return retained[1]
     shown = parts if paint == (None, None) else painted(parts, *paint)
     surfaces = tuple(s for s in _read_parts(shown) if len(s.faces))
-    with _KEPT_LOCK:
-        _KEPT[key] = (parts, surfaces)  # holding the scene keeps its id from being given to another
-        while len(_KEPT) > _KEPT_SHAPES:
-            _KEPT.popitem(last=False)
+    with _CACHE_LOCK:
+        _CACHE[key] = (parts, surfaces)  # holding the scene keeps its id from being given to another
+        while len(_CACHE) > _CACHED_SHAPES:
+            _CACHE.popitem(last=False)
     return surfaces
 
 
@@ -133,7 +133,7 @@ def _surface(
     faces = np.asarray(mesh.faces, dtype=np.int32)
     if np.linalg.det(matrix[:3, :3]) < 0:
         faces = faces[:, ::-1]
-    material, uv, colours = _look(mesh, materials)
+    material, uv, colours = _compare(mesh, materials)
     corner_normals = smooth_corner_normals(points, faces)
     corners = faces.reshape(-1)
     columns = [points[corners], corner_normals]
@@ -158,10 +158,10 @@ def _colour_rows(mesh: trimesh.Trimesh, colours: Float32[np.ndarray, "k 3"], fac
     return faces.reshape(-1) if per_vertex else np.repeat(np.arange(len(faces)), 3)
 
 
-Look = tuple[Material, Float32[np.ndarray, "n 2"] | None, Float32[np.ndarray, "k 3"] | None]
+ShapeAppearance = tuple[Material, Float32[np.ndarray, "n 2"] | None, Float32[np.ndarray, "k 3"] | None]
 
 
-def _look(mesh: trimesh.Trimesh, materials: dict[int, Material]) -> Look:
+def _compare(mesh: trimesh.Trimesh, materials: dict[int, Material]) -> ShapeAppearance:
     """Material, texture coordinates and vertex or face colours of a mesh."""
     visual = mesh.visual
     if isinstance(visual, ColorVisuals):
@@ -179,8 +179,10 @@ def _look(mesh: trimesh.Trimesh, materials: dict[int, Material]) -> Look:
 def _material(source: PBRMaterial) -> Material:
     rgba = [1.0] * 4 if source.baseColorFactor is None else [float(c) / 255.0 for c in source.baseColorFactor]
     emissive = (0.0, 0.0, 0.0) if source.emissiveFactor is None else tuple(float(c) for c in source.emissiveFactor)
-    kept = ("normalTexture", "metallicRoughnessTexture", "occlusionTexture", "emissiveTexture")
-    maps = {key: np.asarray(getattr(source, key).convert("RGB")) for key in kept if getattr(source, key) is not None}
+    retained = ("normalTexture", "metallicRoughnessTexture", "occlusionTexture", "emissiveTexture")
+    maps = {
+        key: np.asarray(getattr(source, key).convert("RGB")) for key in retained if getattr(source, key) is not None
+    }
     return Material(
         name=source.name or "material",
         colour=(rgba[0], rgba[1], rgba[2]),

@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int32, UInt8
 
-from diorama_core.geometry.looks import Look
+from diorama_core.geometry.shape_appearance import ShapeAppearance
 from diorama_core.render.templates import Templates
 from diorama_core.render.view_features import squared_around
 
@@ -19,7 +19,7 @@ LAYOUT_WIDTH = CELLS**2 * 4
 """Numbers in a layout: CIE Lab of every cell, and how much of it the thing covers."""
 _LIGHTNESS_WEIGHT = 0.5
 _TOLERANCE = 18.0
-_LEAST_SHARED = 0.5
+_MIN_SHARED = 0.5
 """Cells that both pictures must cover; with less nothing is known."""
 _NOTHING_KNOWN = 0.5
 _MIDDLE_LIGHT = 0.7
@@ -47,15 +47,15 @@ def layout_agreement(seen: Float[np.ndarray, "width"], views: Float[np.ndarray, 
     brighter = (difference[..., 0] * shared).sum(axis=-1) / total
     difference[..., 0] = _LIGHTNESS_WEIGHT * (difference[..., 0] - brighter[..., None])
     apart = (np.linalg.norm(difference, axis=-1) * shared).sum(axis=-1) / total
-    return np.where(total >= _LEAST_SHARED, np.exp(-apart / _TOLERANCE), _NOTHING_KNOWN)
+    return np.where(total >= _MIN_SHARED, np.exp(-apart / _TOLERANCE), _NOTHING_KNOWN)
 
 
 def painted_views(
-    templates: Templates, face_ids: Int32[np.ndarray, "v h w"], look: Look
+    templates: Templates, face_ids: Int32[np.ndarray, "v h w"], appearance: ShapeAppearance
 ) -> UInt8[np.ndarray, "v h w 3"]:
     """Templates in the shape's own colours, in the light of the templates; gray where it has none, black around it."""
-    known = look.face_rgba[:, 3:] > 0
-    linear = (np.where(known, look.face_rgba[:, :3], _COLOURLESS).astype(np.float32) / 255.0) ** 2.2
+    known = appearance.face_rgba[:, 3:] > 0
+    linear = (np.where(known, appearance.face_rgba[:, :3], _COLOURLESS).astype(np.float32) / 255.0) ** 2.2
     seen = face_ids >= 0
     lit = linear[face_ids[seen]] * (templates.gray[seen].astype(np.float32) / (255.0 * _MIDDLE_LIGHT))[:, None]
     rgb = np.zeros((*seen.shape, 3), np.uint8)

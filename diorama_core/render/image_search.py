@@ -16,8 +16,8 @@ import trimesh
 from jaxtyping import Float, Float32
 
 from diorama_core.errors import InputError
-from diorama_core.geometry.looks import SHARED_LOOKS, Look
-from diorama_core.geometry.palettes import palette_of_crop, palette_of_look
+from diorama_core.geometry.palettes import palette_of_appearance, palette_of_crop
+from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES, ShapeAppearance
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.naming import understand
 from diorama_core.library.record import Shape, ShapeLibrary
@@ -73,7 +73,7 @@ class ImageSearch:
             if worded.shapes:
                 return self._among(worded, crop, k, progress)
             found = self._all(crop, k, progress)
-            return Found(found.shapes, found.scores, worded.wish, worded.note)
+            return Found(found.shapes, found.scores, worded.query, worded.note)
         return self._all(crop, k, progress)
 
     def _among(self, worded: Found, crop: Crop, k: int, progress: Progress | None) -> Found:
@@ -87,7 +87,7 @@ class ImageSearch:
             scores.append(0.5 * (by_picture + by_words / worded.scores[0]))
         order = np.argsort(-np.array(scores), kind="stable")[:k]
         shapes = tuple(worded.shapes[i] for i in order)
-        return Found(shapes, tuple(scores[i] for i in order), worded.wish, worded.note)
+        return Found(shapes, tuple(scores[i] for i in order), worded.query, worded.note)
 
     def _all(self, crop: Crop, k: int, progress: Progress | None) -> Found:
         """The whole library by the picture alone."""
@@ -123,7 +123,7 @@ class ImageSearch:
         missing = [(key, by_key[key]) for key in matrix.missing(by_key)]
         batches = [missing[i : i + _BATCH] for i in range(0, len(missing), _BATCH)]
         if workers is None:
-            made = (_features(partial(_look, self.library), batch) for batch in batches)
+            made = (_features(partial(_appearance, self.library), batch) for batch in batches)
         else:
             task = partial(_features_of_named, name)
             made = (done.unwrap() for done in workers.map(task, batches))
@@ -149,11 +149,11 @@ def _query(crop: Crop) -> Float32[np.ndarray, "width"]:
     return feature
 
 
-def shape_features(look: Look) -> Float32[np.ndarray, "views width"]:
+def shape_features(appearance: ShapeAppearance) -> Float32[np.ndarray, "views width"]:
     """Features of all views of a shape; zeros for a view in which nothing is seen."""
-    mesh = trimesh.Trimesh(look.vertices, look.faces, process=False)
+    mesh = trimesh.Trimesh(appearance.vertices, appearance.faces, process=False)
     templates = render_templates(mesh, SEARCH_GRID)
-    colour = colour_feature(palette_of_look(look))
+    colour = colour_feature(palette_of_appearance(appearance))
     gray, mask = templates.gray, templates.mask
     rows = [view_feature(gray[i], mask[i], colour) for i in range(len(SEARCH_GRID))]
     return np.stack([np.zeros(WIDTH, np.float32) if row is None else row for row in rows])
@@ -163,23 +163,25 @@ def _key(shape: Shape) -> str:
     return shape.content_hash or shape.id
 
 
-def _look(library: ShapeLibrary, key: str, shape_id: str) -> Look:
-    return SHARED_LOOKS.get(key, default_cache_dir() / "looks", lambda: library.parts(shape_id))
+def _appearance(library: ShapeLibrary, key: str, shape_id: str) -> ShapeAppearance:
+    return SHARED_APPEARANCES.get(key, default_cache_dir() / "looks", lambda: library.parts(shape_id))
 
 
 def _features_of_named(
     name: str, batch: Sequence[tuple[str, str]]
 ) -> tuple[list[str], Float[np.ndarray, "n views width"]]:
     """In another process: features of shapes of a library that is opened there."""
-    return _features(partial(_look, open_library(name)), batch)
+    return _features(partial(_appearance, open_library(name)), batch)
 
 
-def _features(look_of: partial[Look], batch: Sequence[tuple[str, str]]) -> tuple[list[str], np.ndarray]:
+def _features(
+    appearance_of: partial[ShapeAppearance], batch: Sequence[tuple[str, str]]
+) -> tuple[list[str], np.ndarray]:
     """Keys and features of shapes given as (key, id); shapes without a surface are left out."""
     keys, rows = [], []
     for key, shape_id in batch:
-        look = look_of(key, shape_id)
-        if len(look.faces) and np.ptp(look.vertices, axis=0).max() > 0:
+        appearance = appearance_of(key, shape_id)
+        if len(appearance.faces) and np.ptp(appearance.vertices, axis=0).max() > 0:
             keys.append(key)
-            rows.append(shape_features(look))
+            rows.append(shape_features(appearance))
     return keys, np.array(rows).reshape(len(keys), len(SEARCH_GRID), WIDTH)

@@ -166,7 +166,7 @@ def _from_around(
     near = np.flatnonzero(hits.distance < light.reach_m)
     if len(near):
         chosen, toward = hits.chosen(near), direction.take(near, axis=0)
-        normals, colour = world.rough_look(chosen)
+        normals, colour = world.rough_appearance(chosen)
         normals = facing(normals, toward)
         points = origins.take(near, axis=0) + toward * chosen.distance[:, None]
         fade = (chosen.distance[:, None] / np.float32(light.reach_m)) ** 2

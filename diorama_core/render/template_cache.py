@@ -40,11 +40,11 @@ class TemplateCache:
         limit_bytes: Of all files together; by default four gigabytes, or `DIORAMA_TEMPLATES_GB`.
     """
 
-    def __init__(self, folder: Path | None = None, *, held: int = 8, limit_bytes: int | None = None) -> None:
+    def __init__(self, folder: Path | None = None, *, cached: int = 8, limit_bytes: int | None = None) -> None:
         self.folder = folder or default_cache_dir() / "templates"
-        self._most_held = held
+        self._max_cached = cached
         self._limit_bytes = _default_limit() if limit_bytes is None else limit_bytes
-        self._held: OrderedDict[str, Templates] = OrderedDict()
+        self._cached: OrderedDict[str, Templates] = OrderedDict()
         self._lock = threading.Lock()
         self._making: dict[str, threading.Lock] = {}
 
@@ -69,7 +69,7 @@ class TemplateCache:
             if found is None:
                 found = render_templates(library.mesh(shape.id), grid, progress)
                 self._write(name, found)
-            self._hold(name, found)
+            self._cache(name, found)
         return found
 
     def has(self, shape: Shape, grid: TemplateGrid = PAPER_GRID) -> bool:
@@ -78,14 +78,14 @@ class TemplateCache:
 
     def _recent(self, name: str) -> Templates | None:
         with self._lock:
-            return self._held.get(name)
+            return self._cached.get(name)
 
-    def _hold(self, name: str, templates: Templates) -> None:
+    def _cache(self, name: str, templates: Templates) -> None:
         with self._lock:
-            self._held[name] = templates
-            self._held.move_to_end(name)
-            while len(self._held) > self._most_held:
-                self._held.popitem(last=False)
+            self._cached[name] = templates
+            self._cached.move_to_end(name)
+            while len(self._cached) > self._max_cached:
+                self._cached.popitem(last=False)
             self._making.pop(name, None)
 
     def _read(self, name: str, grid: TemplateGrid) -> Templates | None:

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 from PIL import Image
 
+from diorama_core.io.cache import LruCache
 from diorama_core.library.catalogue import default_cache_dir
-from diorama_core.library.kept import Kept
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
 from diorama_core.library.sheet import contact_sheet
 from diorama_core.progress import Progress
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
-_KEPT: Kept[bytes] = Kept(2048)
+_CACHE: LruCache[bytes] = LruCache(2048)
 
 
 def thumbnail(
@@ -49,10 +49,10 @@ def thumbnail(
     """
     shape = record_of(library, shape_id)
     if not shape.content_hash or paint != (None, None):
-        return _KEPT.get(f"{id(library)} {shape_id} {size} {paint}", lambda: _rendered(library, shape_id, size, paint))
+        return _CACHE.get(f"{id(library)} {shape_id} {size} {paint}", lambda: _rendered(library, shape_id, size, paint))
     name = f"{shape.content_hash}-{_renderer()}-{size}.png"
     path = (folder or default_cache_dir() / "thumbnails") / name
-    return _KEPT.get(name, lambda: _read(path) or _written(path, _rendered(library, shape_id, size)))
+    return _CACHE.get(name, lambda: _read(path) or _written(path, _rendered(library, shape_id, size)))
 
 
 def shape_sheet(

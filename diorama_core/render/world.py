@@ -115,7 +115,7 @@ class World:
             photographed=table.photographed.take(surface),
         )
 
-    def rough_look(self, hits: Hits) -> tuple[Float32[np.ndarray, "n 3"], Float32[np.ndarray, "n 3"]]:
+    def rough_appearance(self, hits: Hits) -> tuple[Float32[np.ndarray, "n 3"], Float32[np.ndarray, "n 3"]]:
         """Face normals (as modelled) and mean colours of what was hit: enough for light that bounces."""
         surface = self._surface_of_face.take(hits.triangle)
         return self._face_normals.take(hits.triangle, axis=0), self._materials.mean_colour.take(surface, axis=0)

@@ -11,16 +11,21 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import Cuboid, DetectedObject, Inputs, ObjectGeometry, RankedShapes
-from diorama_core.geometry.looks import SHARED_LOOKS
 from diorama_core.geometry.observed import Observed, observe_among
+from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import UNKNOWN, with_kin
 from diorama_core.progress import Progress
-from diorama_core.retrieval.likeness import EMBEDDED_FEATURES, EmbeddedLikeness, Glimpse, Likeness
+from diorama_core.retrieval.appearance_similarity import (
+    EMBEDDED_FEATURES,
+    AppearanceSimilarity,
+    EmbeddedSimilarity,
+    ObjectCrop,
+)
 from diorama_core.retrieval.outlines import outline_agreement
-from diorama_core.retrieval.pools import Pool, Wish, pool_for, size_cost
+from diorama_core.retrieval.pools import Pool, RetrievalQuery, pool_for, size_cost
 from diorama_core.retrieval.words import described_share
 from diorama_core.scene.types import Support, yaw_rotation
 
@@ -31,10 +36,10 @@ _SEATS = with_kin("chair", "office chair", "stool", "armchair")
 _UNNAMED_OUTLINE, _UNNAMED_SIZE = 3.0, 0.5
 """How much more the outline, and how much less the guessed size, of a thing without a name counts."""
 _OWN_EVIDENCE = 0.4
-_LEAST_LIKENESS = 0.25
+_MIN_SIMILARITY = 0.25
 _GUESSED_SIZE = 0.5
 """How much less the size of a thing counts of which nothing is seen: it is what such things usually have."""
-_LEAST_VOICE = 0.1
+_MIN_VOICE = 0.1
 _OF_WORDS = 0.12
 """How much less a shape scores to which none of the words fit that describe the thing beside its kind."""
 
@@ -57,15 +62,17 @@ class HierarchicalRetrieval:
     size_weight: float = 0.3
     silhouette_weight: float = 0.4
     """Of a mask that can be trusted; less for doubtful ones."""
-    likeness_weight: float = 1.3
+    similarity_weight: float = 1.3
     """Of a thing that is seen whole; less, down to a quarter, for cut, hidden and badly outlined ones."""
-    likeness: Likeness | None = None
+    similarity: AppearanceSimilarity | None = None
     """Compares looks; by colours, outline and edges where None."""
 
     def __repr__(self) -> str:
-        numbers = (self.keep, self.cells, self.size_weight, self.silhouette_weight, self.likeness_weight)
-        looks = EMBEDDED_FEATURES if self.likeness is None else repr(self.likeness)  # other features, other results
-        return f"HierarchicalRetrieval({_fingerprint(self.library)}, {', '.join(map(str, numbers))}, {looks})"
+        numbers = (self.keep, self.cells, self.size_weight, self.silhouette_weight, self.similarity_weight)
+        appearances = (
+            EMBEDDED_FEATURES if self.similarity is None else repr(self.similarity)
+        )  # other features, other results
+        return f"HierarchicalRetrieval({_fingerprint(self.library)}, {', '.join(map(str, numbers))}, {appearances})"
 
     def retrieve(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
@@ -78,30 +85,30 @@ class HierarchicalRetrieval:
         pools = self._pools(measured, sizes, groups, geometry.supports)
         centres = np.array([cuboids[o.id].centre for o in measured]).reshape(-1, 3)
         parents = _parent_indices(measured, geometry.supports)
-        likeness = self.likeness or EmbeddedLikeness(self.library)
+        similarity = self.similarity or EmbeddedSimilarity(self.library)
         scores: list[dict[str, float]] = []
         sight: list[float] = []
-        for index, thing in enumerate(measured):
-            progress.report(index / len(measured), f"Looking for shapes: {thing.label}")
+        for index, item in enumerate(measured):
+            progress.report(index / len(measured), f"Looking for shapes: {item.label}")
             seen = observe_among(geometry.camera, measured, centres, parents, index, self.cells)
-            named = thing.category != UNKNOWN.name
+            named = item.category != UNKNOWN.name
             members = pools[groups[index]].members
             visible = (1 - seen.border_share) * (1 - seen.hidden_share) * seen.mask_trust
-            glimpse = Glimpse(inputs.photo.rgb, thing.mask, thing.label, visible, seen.mask_trust)
-            alike = likeness.of(glimpse, [m.shape for m in members])
-            said = described_share(self.library, thing.label, thing.category, [m.shape for m in members])
+            object_crop = ObjectCrop(inputs.photo.rgb, item.mask, item.label, visible, seen.mask_trust)
+            alike = similarity.of(object_crop, [m.shape for m in members])
+            said = described_share(self.library, item.label, item.category, [m.shape for m in members])
             factors = [m.kind_factor * (1 - _OF_WORDS * (1 - w)) for m, w in zip(members, said, strict=True)]
             sight.append(visible)
             scores.append(
                 {
-                    m.shape.id: factor * self._score(m.shape, cuboids[thing.id], seen, visible, float(like), named)
+                    m.shape.id: factor * self._score(m.shape, cuboids[item.id], seen, visible, float(like), named)
                     for m, like, factor in zip(members, alike, factors, strict=True)
                 }
             )
         means = _means(groups, scores, sight)
         return tuple(
-            RankedShapes(thing.id, _best(own, mean, self.keep), pools[group].note)
-            for thing, own, mean, group in zip(measured, scores, means, groups, strict=True)
+            RankedShapes(item.id, _best(own, mean, self.keep), pools[group].note)
+            for item, own, mean, group in zip(measured, scores, means, groups, strict=True)
         )
 
     def _pools(
@@ -118,31 +125,33 @@ class HierarchicalRetrieval:
         for group in range(max(groups, default=-1) + 1):
             members = [i for i, g in enumerate(groups) if g == group]
             first = measured[members[0]]
-            wish = Wish(
+            query = RetrievalQuery(
                 category=first.category,
                 size_m=np.exp(np.median([np.log(np.maximum(sizes_m[i], 1e-3)) for i in members], axis=0)),
-                holds_things=any(measured[i].id in holders for i in members),
-                held_by=parent_of.get(first.id, "floor"),
+                supports_objects=any(measured[i].id in holders for i in members),
+                supported_by=parent_of.get(first.id, "floor"),
             )
-            pools.append(pool_for(self.library, wish))
+            pools.append(pool_for(self.library, query))
         return pools
 
     def _score(self, shape: Shape, cuboid: Cuboid, seen: Observed, visible: float, like: float, named: bool) -> float:
         """0 to 1: the best of the shape's quarter turns in the cuboid, and its likeness."""
-        look = SHARED_LOOKS.get(shape.content_hash, default_cache_dir() / "looks", lambda: self.library.parts(shape.id))
+        appearance = SHARED_APPEARANCES.get(
+            shape.content_hash, default_cache_dir() / "looks", lambda: self.library.parts(shape.id)
+        )
         targets, poses = quarter_turns(shape, cuboid)
         cost = np.array([size_cost(shape.size_m, t) for t in targets])
-        outline = outline_agreement(seen, seen.silhouettes(look.caster, poses))
-        of_size, of_outline, of_looks = self._weights(seen, visible, named)
+        outline = outline_agreement(seen, seen.silhouettes(appearance.caster, poses))
+        of_size, of_outline, of_appearances = self._weights(seen, visible, named)
         fit = of_size * np.exp(-cost / 2) + of_outline * outline
-        return float((fit.max() + of_looks * like) / (of_size + of_outline + of_looks))
+        return float((fit.max() + of_appearances * like) / (of_size + of_outline + of_appearances))
 
     def _weights(self, seen: Observed, visible: float, named: bool) -> tuple[float, float, float]:
         """How much size, outline and looks say about a thing of which so much is seen."""
         return (
             self.size_weight * (1 - _GUESSED_SIZE * (1 - visible)) * (1.0 if named else _UNNAMED_SIZE),
             self.silhouette_weight * (0.25 + 0.75 * seen.mask_trust) * (1.0 if named else _UNNAMED_OUTLINE),
-            self.likeness_weight * (_LEAST_LIKENESS + (1 - _LEAST_LIKENESS) * visible),
+            self.similarity_weight * (_MIN_SIMILARITY + (1 - _MIN_SIMILARITY) * visible),
         )
 
 
@@ -192,7 +201,7 @@ def _means(
     """For each object the mean scores of its group, in which those that are seen best say most."""
     means = []
     for group, own in zip(groups, scores, strict=True):
-        alike = [(v + _LEAST_VOICE, s) for g, s, v in zip(groups, scores, visible, strict=True) if g == group]
+        alike = [(v + _MIN_VOICE, s) for g, s, v in zip(groups, scores, visible, strict=True) if g == group]
         voices = fsum(voice for voice, _ in alike)  # exact sums: the order of the objects must not show in a bit
         means.append({key: fsum(voice * s[key] for voice, s in alike) / voices for key in own})
     return means
@@ -208,8 +217,8 @@ def _best(own: dict[str, float], of_group: dict[str, float], keep: int) -> tuple
     """The best shapes by own and group's scores; most of them the group's, so that things of a kind can agree."""
     mixed = {key: _OWN_EVIDENCE * own[key] + (1 - _OWN_EVIDENCE) * of_group[key] for key in own}
     shared = _in_order(of_group)[: 3 * keep // 4]
-    kept = [*shared, *(key for key in _in_order(mixed) if key not in shared)][:keep]
-    return tuple((key, float(mixed[key])) for key in _in_order({key: mixed[key] for key in kept}))
+    retained = [*shared, *(key for key in _in_order(mixed) if key not in shared)][:keep]
+    return tuple((key, float(mixed[key])) for key in _in_order({key: mixed[key] for key in retained}))
 
 
 def _in_order(scores: dict[str, float]) -> list[str]:

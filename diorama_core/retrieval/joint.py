@@ -15,8 +15,8 @@ from jaxtyping import Float, Float32, UInt8
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.models.clip import DuoduoClip, OpenClip
 from diorama_core.render.views import StudioView, render_shape
-from diorama_core.retrieval.kept import kept_features
-from diorama_core.retrieval.likeness import NEUTRAL, SIDE_PX, Glimpse
+from diorama_core.retrieval.appearance_similarity import NEUTRAL, SIDE_PX, ObjectCrop
+from diorama_core.retrieval.feature_cache import cached_features
 
 _VIEWS = tuple(StudioView(float(np.radians(yaw)), float(np.radians(20.0))) for yaw in (32.0, -32.0, 100.0, 200.0))
 _SPREAD = 0.08
@@ -74,7 +74,7 @@ class ClipEmbedding:
 
 
 @dataclass(frozen=True)
-class JointLikeness:
+class JointSimilarity:
     """By words and picture, counting the same, in a joint embedding.
 
     A shape is looked at once; what was seen is kept by its content and the weights.
@@ -85,15 +85,15 @@ class JointLikeness:
     folder: Path | None = field(default=None, repr=False)
     """Where embeddings are kept; `features` in the cache folder by default."""
 
-    def of(self, thing: Glimpse, shapes: Sequence[Shape]) -> Float[np.ndarray, " n"]:
+    def of(self, item: ObjectCrop, shapes: Sequence[Shape]) -> Float[np.ndarray, " n"]:
         """Near 1 for what is most alike; falls with the cosine."""
         if not shapes:
             return np.zeros(0)
         kind = f"joint-{hashlib.sha256(self.embedding.weights.encode()).hexdigest()[:16]}-{len(_VIEWS)}"
-        known = np.stack([kept_features(kind, s, partial(self._made, s), self.folder)[0] for s in shapes])
-        cosine = known.astype(np.float32) @ self.embedding.text(_PROMPT.format(thing.label))
-        if thing.mask.any():
-            cosine = 0.5 * (cosine + known.astype(np.float32) @ self.embedding.picture(thing.crop))
+        known = np.stack([cached_features(kind, s, partial(self._made, s), self.folder)[0] for s in shapes])
+        cosine = known.astype(np.float32) @ self.embedding.text(_PROMPT.format(item.label))
+        if item.mask.any():
+            cosine = 0.5 * (cosine + known.astype(np.float32) @ self.embedding.picture(item.crop))
         return np.asarray(np.exp((cosine - cosine.max()) / _SPREAD), np.float64)
 
     def _made(self, shape: Shape) -> Float32[np.ndarray, "1 d"]:

@@ -11,7 +11,7 @@ from diorama_core.geometry.window import soft_iou
 
 _GAP_SHARE = 0.12
 """Of a thing's longer side: wider gaps stay open."""
-_MOST_OPEN = 0.5
+_MAX_OPEN = 0.5
 _DOUBTFUL = 0.5
 """Trust in a mask below which its gaps say nothing."""
 
@@ -33,7 +33,7 @@ def filled(mask: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
 
 def open_share(mask_trust: float) -> float:
     """How much the outline with its gaps counts beside the filled one: nothing for a doubtful mask."""
-    return _MOST_OPEN * float(np.clip((mask_trust - _DOUBTFUL) / (1 - _DOUBTFUL), 0.0, 1.0))
+    return _MAX_OPEN * float(np.clip((mask_trust - _DOUBTFUL) / (1 - _DOUBTFUL), 0.0, 1.0))
 
 
 def outline_agreement(seen: Observed, silhouettes: Bool[np.ndarray, "p n"]) -> Float[np.ndarray, " p"]:

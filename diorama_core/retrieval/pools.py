@@ -30,7 +30,7 @@ _SUBSTITUTES = 3
 _UNNAMED_POOL = 30
 _EACH_KIND = 2
 _SAME_SIZE_LOG = 0.4
-_LEAST_M = 0.01
+_MIN_M = 0.01
 
 RELATED: dict[str, tuple[str, ...]] = {
     "chair": ("office chair", "armchair", "stool"),
@@ -157,57 +157,59 @@ class Pool:
 
 
 @dataclass(frozen=True, eq=False)
-class Wish(ArrayValue):
+class RetrievalQuery(ArrayValue):
     """What is known of an object before any shape is looked at."""
 
     category: str
     """Canonical, or "object"."""
     size_m: Float[np.ndarray, "3"]
     """Observed extents along x, y, z of the object frame."""
-    holds_things: bool
+    supports_objects: bool
     """Whether something stands on it: then only shapes with a surface are taken, if any are."""
-    held_by: str
+    supported_by: str
     """What holds it up: "floor", "wall", "ceiling" or an object's id."""
 
 
-def pool_for(library: ShapeLibrary, wish: Wish) -> Pool:
+def pool_for(library: ShapeLibrary, query: RetrievalQuery) -> Pool:
     """Shapes worth comparing with the picture, some dozens; nearest sizes where there are more."""
-    if wish.category == UNKNOWN.name:
-        return Pool(_plausible(library, wish))
-    own = _nearest(_usable(library, library.in_category(wish.category), wish), wish.size_m, _NAMED_POOL)
+    if query.category == UNKNOWN.name:
+        return Pool(_plausible(library, query))
+    own = _nearest(_usable(library, library.in_category(query.category), query), query.size_m, _NAMED_POOL)
     special, loose = (
-        _better_fitting(library, wish, own, kinds)
-        for kinds in (special_kinds(wish.category), SAID_OF_MANY.get(wish.category, ()))
+        _better_fitting(library, query, own, kinds)
+        for kinds in (special_kinds(query.category), SAID_OF_MANY.get(query.category, ()))
     )
     own = [*own, *special]
     members = [Pooled(shape, 1.0) for shape in own] + [Pooled(shape, _LOOSE_FACTOR) for shape in loose]
     factor = _RELATED_FACTOR
-    for near in near_kinds(wish.category):
+    for near in near_kinds(query.category):
         if len(members) >= _ENOUGH:
             break
-        near_shapes = _nearest(_usable(library, library.in_category(near), wish), wish.size_m, _NAMED_POOL)
+        near_shapes = _nearest(_usable(library, library.in_category(near), query), query.size_m, _NAMED_POOL)
         members += [Pooled(shape, factor) for shape in near_shapes]
         factor *= _RELATED_FACTOR
     if own:
         return Pool(tuple(members))
-    note = f"no {wish.category} among the shapes; the nearest kinds were taken"
-    return Pool(tuple(members) or _plausible(library, wish), note)
+    note = f"no {query.category} among the shapes; the nearest kinds were taken"
+    return Pool(tuple(members) or _plausible(library, query), note)
 
 
-def _better_fitting(library: ShapeLibrary, wish: Wish, own: Sequence[Shape], kinds: Sequence[str]) -> list[Shape]:
+def _better_fitting(
+    library: ShapeLibrary, query: RetrievalQuery, own: Sequence[Shape], kinds: Sequence[str]
+) -> list[Shape]:
     """Shapes of other kinds that the word may mean, whose size fits better than that of any shape of its own kind."""
-    best = min((_fit_cost(shape, wish.size_m) for shape in own), default=np.inf)
+    best = min((_fit_cost(shape, query.size_m) for shape in own), default=np.inf)
     others = [shape for kind in kinds for shape in library.in_category(kind)]
-    fitting = [shape for shape in _usable(library, others, wish) if _fit_cost(shape, wish.size_m) < best]
-    return _nearest(fitting, wish.size_m, _SPECIAL_POOL)
+    fitting = [shape for shape in _usable(library, others, query) if _fit_cost(shape, query.size_m) < best]
+    return _nearest(fitting, query.size_m, _SPECIAL_POOL)
 
 
-def _usable(library: ShapeLibrary, shapes: Sequence[Shape], wish: Wish) -> Sequence[Shape]:
+def _usable(library: ShapeLibrary, shapes: Sequence[Shape], query: RetrievalQuery) -> Sequence[Shape]:
     """The shapes that may hold things up, where that is asked; all of them where none may.
 
     Built-in shapes are empty by design; of others the measured support surfaces tell.
     """
-    if not wish.holds_things:
+    if not query.supports_objects:
         return shapes
     return [s for s in shapes if s.source == "built in" or library.shape(s.id).surfaces] or shapes
 
@@ -218,23 +220,23 @@ def _nearest(shapes: Sequence[Shape], size_m: np.ndarray, most: int) -> list[Sha
     return [shapes[i] for i in sorted(order)]
 
 
-def _plausible(library: ShapeLibrary, wish: Wish) -> tuple[Pooled, ...]:
+def _plausible(library: ShapeLibrary, query: RetrievalQuery) -> tuple[Pooled, ...]:
     """For something unnamed: the two shapes nearest in size of every kind that is about as large.
 
     Kinds that hang or stand like it, the usual ones first in line; plain boxes always.
     """
-    mounts = {"wall": ("wall",), "ceiling": ("ceiling",)}.get(wish.held_by, ("floor", "surface"))
+    mounts = {"wall": ("wall",), "ceiling": ("ceiling",)}.get(query.supported_by, ("floor", "surface"))
     hung = [s for s in library.shapes() if category(s.category).mount in mounts] or list(library.shapes())
-    wanted = np.log(np.maximum(wish.size_m, _LEAST_M))
-    overall = [abs(float((np.log(np.maximum(s.size_m, _LEAST_M)) - wanted).mean())) for s in hung]
+    wanted = np.log(np.maximum(query.size_m, _MIN_M))
+    overall = [abs(float((np.log(np.maximum(s.size_m, _MIN_M)) - wanted).mean())) for s in hung]
     lifelike = [s for s, difference in zip(hung, overall, strict=True) if difference < _SAME_SIZE_LOG]
-    usable = _usable(library, lifelike or hung, wish)
+    usable = _usable(library, lifelike or hung, query)
     members: list[Pooled] = []
     for kind in dict.fromkeys(s.category for s in usable):
         factor = 1.0 if kind == "box" else _USUAL_FACTOR if kind in USUAL else _RARE_FACTOR
         same = [s for s in usable if s.category == kind]
-        members += [Pooled(s, factor) for s in _nearest(same, wish.size_m, _EACH_KIND)]
-    order = np.argsort([_fit_cost(m.shape, wish.size_m) for m in members], kind="stable")
+        members += [Pooled(s, factor) for s in _nearest(same, query.size_m, _EACH_KIND)]
+    order = np.argsort([_fit_cost(m.shape, query.size_m) for m in members], kind="stable")
     return tuple(members[i] for i in order[:_UNNAMED_POOL])
 
 
@@ -245,6 +247,6 @@ def _fit_cost(shape: Shape, size_m: np.ndarray) -> float:
 
 def size_cost(size_m: Sequence[float] | np.ndarray, wanted_m: Sequence[float] | np.ndarray) -> float:
     """How unlike two boxes are: mostly their proportions, gently their size (a shape may be scaled as a whole)."""
-    ratio = np.log(np.maximum(wanted_m, _LEAST_M)) - np.log(np.maximum(size_m, _LEAST_M))
+    ratio = np.log(np.maximum(wanted_m, _MIN_M)) - np.log(np.maximum(size_m, _MIN_M))
     overall = float(ratio.mean())
     return float(0.5 * (((ratio - overall) / 0.3) ** 2).sum() + 0.5 * (overall / 0.5) ** 2)

@@ -27,12 +27,12 @@ def described_share(
         category: The object's kind, whose own words describe nothing.
         shapes: Of the library.
     """
-    wish = understand(label)
-    said = tuple(w for w in wish.words if w not in category and not w.isdigit())  # an "arm chair" has no more arms
+    query = understand(label)
+    said = tuple(w for w in query.words if w not in category and not w.isdigit())  # an "arm chair" has no more arms
     if not said or not len(shapes):
         return np.ones(len(shapes))
     index = text_index(library)
-    points = index.scores(replace(wish, categories=(), words=said, naming=(), size_m=None))
+    points = index.scores(replace(query, categories=(), words=said, naming=(), size_m=None))
     of_shape = dict(zip((s.id for s in index.shapes), points, strict=True))
     share = np.array([min(of_shape.get(s.id, 0.0) / len(said), 1.0) for s in shapes])
     return share if share.any() else np.ones(len(shapes))

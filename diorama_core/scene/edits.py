@@ -23,7 +23,7 @@ from diorama_core.scene.room_edits import (
     rescale_by_edge,
     rescale_to_length,
     set_ceiling_height,
-    set_plane_look,
+    set_plane_material,
 )
 from diorama_core.scene.support import check_edge, descendants
 from diorama_core.scene.types import Candidate, Finish, Plane, Pose, Scene, SceneObject, Support
@@ -31,7 +31,7 @@ from diorama_core.scene.types import Candidate, Finish, Plane, Pose, Scene, Scen
 __all__ = [
     "attach", "ceiling_height", "detach", "duplicate", "edge_length_m", "floor_height", "fresh_id", "insert", "move",
     "move_plane", "place", "recolour", "refinish", "remove", "rename", "rescale", "rescale_by_edge",
-    "rescale_to_length", "set_ceiling_height", "set_hidden", "set_locked", "set_metrics", "set_plane_look",
+    "rescale_to_length", "set_ceiling_height", "set_hidden", "set_locked", "set_metrics", "set_plane_material",
     "set_planes", "swap",
 ]  # fmt: skip
 
@@ -178,12 +178,12 @@ def set_metrics(scene: Scene, metrics: Mapping[str, float]) -> Scene:
 def set_planes(scene: Scene, planes: Iterable[Plane]) -> Scene:
     """Replace the room's planes; support edges to planes that are gone are dropped."""
     changed = replace(scene, architecture=replace(scene.architecture, planes=tuple(planes)))
-    kept = tuple(
+    retained = tuple(
         replace(s, adheres_to=tuple(w for w in s.adheres_to if changed.has_plane(w)))
         for s in scene.supports
         if changed.has_object(s.parent) or changed.has_plane(s.parent)
     )
-    return replace(changed, supports=kept)
+    return replace(changed, supports=retained)
 
 
 def fresh_id(scene: Scene, category: str) -> str:

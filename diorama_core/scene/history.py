@@ -65,8 +65,8 @@ class History:
             and self.cursor > 0
             and entry.time_s - last.time_s <= merge_window_s
         )
-        kept = self.entries[: self.cursor if merges else self.cursor + 1]
-        entries = (*kept, entry)[-self.limit :]
+        retained = self.entries[: self.cursor if merges else self.cursor + 1]
+        entries = (*retained, entry)[-self.limit :]
         return replace(self, entries=entries, cursor=len(entries) - 1)
 
     def undo(self) -> History:

@@ -74,8 +74,8 @@ def set_ceiling_height(scene: Scene, height_m: float) -> Scene:
         return replace(plane, polygon=polygon)
 
     planes = tuple(_sound(p, raised(p)) for p in scene.architecture.planes)
-    held = _fastened(scene, {p.id for p in ceilings})
-    return _carry(_with_planes(scene, planes), held, np.array([0.0, 0.0, rise]))
+    attached = _fastened(scene, {p.id for p in ceilings})
+    return _carry(_with_planes(scene, planes), attached, np.array([0.0, 0.0, rise]))
 
 
 def rescale(scene: Scene, factor: float) -> Scene:
@@ -137,7 +137,7 @@ def ceiling_height(scene: Scene) -> float | None:
     return max(float(p.polygon[:, 2].max()) for p in upper) - floor_height(scene) if upper else None
 
 
-def set_plane_look(
+def set_plane_material(
     scene: Scene, plane_id: str, *, colour: tuple[float, float, float] | None = None, texture: str | None = None
 ) -> Scene:
     """A plane's picture by name, or its plain material with None; the colour is kept when none is given."""
@@ -206,9 +206,9 @@ def _with_planes(scene: Scene, planes: tuple[Plane, ...]) -> Scene:
 def _fastened(scene: Scene, plane_ids: Iterable[str]) -> frozenset[str]:
     """Objects that follow planes: held up by them or standing against them, with all they hold up; none locked."""
     ids = set(plane_ids)
-    held = {s.child for s in scene.supports if s.parent in ids or ids & set(s.adheres_to)}
-    held |= {below for top in held for below in descendants(scene, top)}
-    return frozenset(o for o in held if scene.has_object(o) and not scene.object(o).locked)
+    attached = {s.child for s in scene.supports if s.parent in ids or ids & set(s.adheres_to)}
+    attached |= {below for top in attached for below in descendants(scene, top)}
+    return frozenset(o for o in attached if scene.has_object(o) and not scene.object(o).locked)
 
 
 def _carry(scene: Scene, object_ids: frozenset[str], shift_world: Float[np.ndarray, "3"]) -> Scene:

@@ -8,19 +8,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diorama_core.evaluation.dataset import furnished_room, groups
-from diorama_core.evaluation.dataset.bodies import Item
-from diorama_core.evaluation.dataset.clutter import pillows
-from diorama_core.evaluation.dataset.finishes import choose_finishes
-from diorama_core.evaluation.dataset.furnisher import Furnisher
-from diorama_core.evaluation.dataset.grammar import RECIPES
-from diorama_core.evaluation.dataset.openings import add_door, add_window
-from diorama_core.evaluation.dataset.plan import room_plan
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import category, resolve
 from diorama_core.scene.support import check_scene
 from diorama_core.scene.types import Scene
-from diorama_core.text.prompt import Thing, Wishes, understood_prompt
+from diorama_core.synthesis import furnished_room, groups
+from diorama_core.synthesis.bodies import Item
+from diorama_core.synthesis.clutter import pillows
+from diorama_core.synthesis.finishes import choose_finishes
+from diorama_core.synthesis.furnisher import Furnisher
+from diorama_core.synthesis.grammar import RECIPES
+from diorama_core.synthesis.openings import add_door, add_window
+from diorama_core.synthesis.plan import room_plan
+from diorama_core.text.prompt import RequestedObject, RoomRequest, understood_prompt
 
 TRIES = 6
 """Rooms begun anew, each a little larger, until everything finds a place."""
@@ -52,14 +52,14 @@ def composed_room(prompt: str, library: ShapeLibrary, seed: int = 0) -> Composed
 
     A prompt that names only a kind of room gets one furnished as such rooms are.
     """
-    wishes = understood_prompt(prompt)
+    request = understood_prompt(prompt)
     digest = int.from_bytes(hashlib.sha256(f"{seed} {prompt}".encode()).digest()[:4], "big")
-    notes = tuple(f"'{words}' names nothing in the library and was left out" for words in wishes.ignored)
-    if not wishes.things:
-        return Composed(furnished_room(digest, wishes.room, library, outline="box", clutter=6), notes)
+    notes = tuple(f"'{words}' names nothing in the library and was left out" for words in request.ignored)
+    if not request.objects:
+        return Composed(furnished_room(digest, request.room, library, outline="box", clutter=6), notes)
     best: tuple[int, Scene, tuple[str, ...]] | None = None
     for attempt in range(TRIES):
-        scene, missing = _attempt(wishes, library, digest, attempt)
+        scene, missing = _attempt(request, library, digest, attempt)
         lacking = sum(n * _weight(label) for label, n in missing.items())
         if best is None or lacking < best[0]:
             said = tuple(f"no place was found for {n} x {label}" for label, n in missing.items())
@@ -75,26 +75,26 @@ def _weight(label: str) -> int:
     return 1 if resolve(label).category.mount == "surface" else 10
 
 
-def _attempt(wishes: Wishes, library: ShapeLibrary, digest: int, attempt: int) -> tuple[Scene, dict[str, int]]:
+def _attempt(request: RoomRequest, library: ShapeLibrary, digest: int, attempt: int) -> tuple[Scene, dict[str, int]]:
     rng = np.random.default_rng((digest, attempt))
-    recipe = RECIPES[wishes.room]
-    factor = wishes.size * (1.0 + 0.08 * attempt)
+    recipe = RECIPES[request.room]
+    factor = request.size * (1.0 + 0.08 * attempt)
     wide, deep = ((low * factor, 0.5 * (low + high) * factor) for low, high in (recipe.width_m, recipe.depth_m))
     f = Furnisher(room_plan(rng, wide, deep, "box"), library, rng)
     add_door(f)
-    if not any(t.category == "window" for t in wishes.things) and wishes.room != "corridor":
+    if not any(t.category == "window" for t in request.objects) and request.room != "corridor":
         add_window(f, groups.long_walls(f)[0])
     placed: dict[str, list[str]] = {}
     missing: dict[str, int] = {}
-    for thing in sorted(wishes.things, key=_rank):
-        for _ in range(thing.count):
-            name = _place(f, thing, placed)
+    for requested in sorted(request.objects, key=_rank):
+        for _ in range(requested.count):
+            name = _place(f, requested, placed)
             if name is None:
-                missing[thing.label] = missing.get(thing.label, 0) + 1
+                missing[requested.label] = missing.get(requested.label, 0) + 1
             else:
-                placed.setdefault(thing.category, []).append(name)
+                placed.setdefault(requested.category, []).append(name)
     scene = Scene(
-        architecture=f.plan.architecture(choose_finishes(rng, wishes.room)),
+        architecture=f.plan.architecture(choose_finishes(rng, request.room)),
         objects=tuple(f.objects),
         supports=tuple(f.supports),
     )
@@ -102,37 +102,37 @@ def _attempt(wishes: Wishes, library: ShapeLibrary, digest: int, attempt: int) -
     return scene, missing
 
 
-def _rank(thing: Thing) -> tuple[int, int]:
+def _rank(requested: RequestedObject) -> tuple[int, int]:
     """Large things of the floor first, then what stands by them, on them, at last what hangs."""
-    mount = {"floor": 0, "wall": 2, "surface": 3, "ceiling": 1}[category(thing.category).mount]
-    place = 1 if thing.place in ("beside", "before", "around", "under") else 0
-    order = _ORDER.index(thing.category) if thing.category in _ORDER else len(_ORDER)
-    return (10 if thing.place == "on" else 0) + 3 * mount + place, order
+    mount = {"floor": 0, "wall": 2, "surface": 3, "ceiling": 1}[category(requested.category).mount]
+    place = 1 if requested.place in ("beside", "before", "around", "under") else 0
+    order = _ORDER.index(requested.category) if requested.category in _ORDER else len(_ORDER)
+    return (10 if requested.place == "on" else 0) + 3 * mount + place, order
 
 
-def _place(f: Furnisher, thing: Thing, placed: dict[str, list[str]]) -> str | None:
+def _place(f: Furnisher, requested: RequestedObject, placed: dict[str, list[str]]) -> str | None:
     """One thing: where the prompt says, else where people put such things."""
-    item = _chosen(f, thing)
+    item = _chosen(f, requested)
     if item is None:
         return None
-    hosts = _least_used(f, placed.get(thing.target, []))
-    mount = category(thing.category).mount
+    hosts = _least_used(f, placed.get(requested.target, []))
+    mount = category(requested.category).mount
     ways: list[Callable[[], str | None]] = []
     for host in hosts:
-        if thing.place == "on":
+        if requested.place == "on":
             ways.append(lambda host=host: _on(f, item, host))  # type: ignore[misc]
-        elif thing.place in ("beside", "before", "around", "under"):
-            ways.append(lambda host=host: _by(f, item, host, thing))  # type: ignore[misc]
-        elif thing.place == "above":
+        elif requested.place in ("beside", "before", "around", "under"):
+            ways.append(lambda host=host: _by(f, item, host, requested))  # type: ignore[misc]
+        elif requested.place == "above":
             ways.append(lambda host=host: _above(f, item, host))  # type: ignore[misc]
-    if mount == "surface" or thing.place == "on":
+    if mount == "surface" or requested.place == "on":
         ways.append(lambda: _on_anything(f, item))
     elif mount == "wall":
         ways.append(lambda: _on_a_wall(f, item))
     elif mount == "ceiling":
         ways.append(lambda: groups.ceiling_light(f))
-    if mount == "floor" or thing.category == "mirror":
-        ways.append(lambda: _on_floor(f, item, thing, placed))
+    if mount == "floor" or requested.category == "mirror":
+        ways.append(lambda: _on_floor(f, item, requested, placed))
     return next((name for way in ways if (name := way())), None)
 
 
@@ -142,52 +142,52 @@ def _least_used(f: Furnisher, hosts: list[str]) -> list[str]:
     return sorted(hosts, key=lambda h: load[h])
 
 
-def _chosen(f: Furnisher, thing: Thing) -> Item | None:
+def _chosen(f: Furnisher, requested: RequestedObject) -> Item | None:
     """A shape of the category, of the asked looks where there is one; of a set, always the same shape."""
-    before = [o for o in f.objects if o.category == thing.category]
-    if before and thing.count > 1:
+    before = [o for o in f.objects if o.category == requested.category]
+    if before and requested.count > 1:
         return replace(f.items[before[-1].id])
 
     def has(words: tuple[str, ...]) -> Callable[[Shape], bool]:
         return lambda s: all(w in f"{s.caption} {s.style}".lower() for w in words) and s.size_m[2] < 2.3
 
-    if thing.category == "television":  # one that stands by itself
+    if requested.category == "television":  # one that stands by itself
         standing = f.pick("television", where=lambda s: s.size_m[0] > 0.12 and s.size_m[1] < 1.2)
         if standing is not None:
             return standing
-    if thing.category == "plant" and thing.label in ("plant", "plants") and thing.place != "on":
+    if requested.category == "plant" and requested.label in ("plant", "plants") and requested.place != "on":
         tall = f.pick("plant", where=lambda s: s.size_m[2] > TALL_PLANT_M and s.size_m[2] < 2.3)
         if tall is not None:
             return tall
-    tries = [thing.looks, *((w,) for w in thing.looks), ()]
-    named = tuple(thing.label.split())
+    tries = [requested.appearance, *((w,) for w in requested.appearance), ()]
+    named = tuple(requested.label.split())
     for words in (*((*t, *named) for t in tries), *tries):
-        item = f.pick(thing.category, where=has(words))
+        item = f.pick(requested.category, where=has(words))
         if item is not None:
             return item
     return None
 
 
-def _on_floor(f: Furnisher, item: Item, thing: Thing, placed: dict[str, list[str]]) -> str | None:
-    name = thing.category
+def _on_floor(f: Furnisher, item: Item, requested: RequestedObject, placed: dict[str, list[str]]) -> str | None:
+    name = requested.category
     if name == "rug":
         if placed.get("sofa") and (rug := groups.rug_before(f, placed["sofa"][0])):
             return rug
         return f.stand(item, f.rng.normal(0.0, 0.2, 2), 0.0) or f.anywhere(item)
     if name in ("chair", "stool", "bench") and placed.get("table"):
-        return _by(f, item, placed["table"][0], replace(thing, place="around"))
+        return _by(f, item, placed["table"][0], replace(requested, place="around"))
     if name in ("office chair", "chair") and placed.get("desk"):
-        return _by(f, item, placed["desk"][0], replace(thing, place="around")) or f.anywhere(item, margin_m=0.1)
+        return _by(f, item, placed["desk"][0], replace(requested, place="around")) or f.anywhere(item, margin_m=0.1)
     if name == "coffee table" and placed.get("sofa"):
-        return _by(f, item, placed["sofa"][0], replace(thing, place="before"))
+        return _by(f, item, placed["sofa"][0], replace(requested, place="before"))
     if name == "night stand" and placed.get("bed"):
-        return _by(f, item, placed["bed"][0], replace(thing, place="beside"))
+        return _by(f, item, placed["bed"][0], replace(requested, place="beside"))
     if name == "armchair":
         return _gathered(f, item, placed)
     if name in ("floor lamp", "plant", "basket", "trash can", "side table"):
         near = placed.get("armchair", []) + placed.get("sofa", [])
         near = near or [host for kind in _COMPANIONS for host in placed.get(kind, [])]
-        beside = (_by(f, item, host, replace(thing, place="beside")) for host in near)
+        beside = (_by(f, item, host, replace(requested, place="beside")) for host in near)
         found = next((n for n in beside if n), None)
         return found or f.against_wall(item, free_front_m=0.0, gap_m=0.08, corner=True)
     if name == "table":
@@ -226,7 +226,7 @@ def _gathered(f: Furnisher, item: Item, placed: dict[str, list[str]]) -> str | N
     return f.against_wall(item, free_front_m=0.5, gap_m=0.25) or f.anywhere(item, margin_m=0.2)
 
 
-def _by(f: Furnisher, item: Item, host_id: str, thing: Thing) -> str | None:
+def _by(f: Furnisher, item: Item, host_id: str, requested: RequestedObject) -> str | None:
     """Beside, before or around a host, facing it where people sit at it."""
     host = f.object(host_id)
     depth, width = host.size_m[0] / 2, host.size_m[1] / 2
@@ -235,16 +235,16 @@ def _by(f: Furnisher, item: Item, host_id: str, thing: Thing) -> str | None:
         "before": (0.0,),
         "around": (0.0, np.pi, np.pi / 2, -np.pi / 2),
         "under": (0.0, np.pi),
-    }[thing.place]
-    seats = thing.place == "around" or thing.category in ("chair", "office chair", "armchair")
+    }[requested.place]
+    seats = requested.place == "around" or requested.category in ("chair", "office chair", "armchair")
     for gap in (0.06, 0.25, 0.45, -0.12) if not seats else (-0.15, 0.0, 0.1, 0.3):
         spots = [(turn, slide) for slide in (0.0, 0.5, -0.5, 0.85, -0.85) for turn in turns]
         for turn, slide in spots:
             reach = abs(np.cos(turn)) * depth + abs(np.sin(turn)) * width
-            own = item.size_m[0] / 2 if seats or thing.place == "before" else item.size_m[1] / 2
-            out = float(reach + own + (0.35 if thing.place == "before" and not seats else gap))
+            own = item.size_m[0] / 2 if seats or requested.place == "before" else item.size_m[1] / 2
+            out = float(reach + own + (0.35 if requested.place == "before" and not seats else gap))
             along = width if abs(np.cos(turn)) > 0.5 else depth
-            back = -depth * 0.6 if thing.place == "beside" and abs(np.sin(turn)) > 0.5 else 0.0
+            back = -depth * 0.6 if requested.place == "beside" and abs(np.sin(turn)) > 0.5 else 0.0
             ahead = float(np.cos(turn) * out - np.sin(turn) * slide * along + back)
             left = float(np.sin(turn) * out + np.cos(turn) * slide * along)
             yaw = host.pose.yaw_rad + (turn + np.pi if seats else 0.0)
@@ -270,7 +270,7 @@ def _on_anything(f: Furnisher, item: Item) -> str | None:
     """On the carrier that people would choose: tables before shelves, the larger first."""
     liked = ("tv stand",) if item.category == "television" else ("desk",) if item.category == "monitor" else ()
     hosts = [
-        o for o in f.objects if category(o.category).supports_things and o.category not in ("rug", "stool", "chair")
+        o for o in f.objects if category(o.category).supports_objects and o.category not in ("rug", "stool", "chair")
     ]
     ranked = sorted(hosts, key=lambda o: (o.category not in liked, -float(np.prod(o.size_m[:2]))))
     if item.category == "pillow":

@@ -9,15 +9,15 @@ from dataclasses import dataclass, field, replace
 
 from diorama_core.artefacts import Inputs
 from diorama_core.errors import InputError, UnavailableError
-from diorama_core.evaluation.dataset import render_truth
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.inputs import read_inputs
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Camera, Scene, SceneObject
+from diorama_core.synthesis import render_truth
 from diorama_core.text.compose import Composed, composed_room
 from diorama_core.text.viewpoint import best_viewpoint, unseen
 
-MOST_PROMPT_CHARS = 2000
+MAX_PROMPT_CHARS = 2000
 OPENINGS = ("door", "window")
 """Every room has some; a picture may do without."""
 ROOMS = 5
@@ -85,8 +85,8 @@ def picture_of(
     words = " ".join(prompt.split())
     if not words:
         raise InputError('there is no text; describe a room, such as "a reading corner with two armchairs"')
-    if len(words) > MOST_PROMPT_CHARS:
-        raise InputError(f"the text has {len(words)} characters; {MOST_PROMPT_CHARS} are enough for a room")
+    if len(words) > MAX_PROMPT_CHARS:
+        raise InputError(f"the text has {len(words)} characters; {MAX_PROMPT_CHARS} are enough for a room")
     progress = progress or Progress()
     if endpoint is None:
         return _composed(words, library, seed, size, progress)

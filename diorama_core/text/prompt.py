@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, replace
 
-from diorama_core.evaluation.dataset import RoomKind
 from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN, resolve
+from diorama_core.synthesis import RoomKind
 
-MOST_OF_A_KIND = 12
+MAX_OF_A_KIND = 12
 _NUMBERS = {
     "a": 1, "an": 1, "the": 1, "one": 1, "single": 1, "another": 1, "two": 2, "pair": 2, "couple": 2, "both": 2,
     "three": 3, "few": 3, "some": 3, "several": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8,
@@ -32,26 +32,26 @@ _JOINTS = re.compile(r",|;|\.|\band\b|\bwith\b|\bplus\b|\bcontaining\b|\bfeaturi
 _FILLER = frozenset(
     {"of", "there", "is", "are", "it", "its", "which", "that", "this", "at", "to", "for", "each", "every"}
 )
-_LOOKS = (
+_APPEARANCES = (
     "red,orange,yellow,green,blue,purple,pink,brown,black,white,grey,gray,beige,cream,navy,teal,golden,silver,dark,"
     "light,bright,wooden,wood,oak,walnut,pine,birch,teak,bamboo,metal,steel,iron,brass,chrome,glass,marble,stone,leather,"
     "fabric,velvet,linen,wicker,rattan,plastic,upholstered,modern,scandinavian,rustic,vintage,classic,industrial,"
     "minimalist,traditional,mid-century,farmhouse,round,square,rectangular,oval,large,big,small,tiny,tall,low,long,wide,"
     "narrow,short,old,new,comfortable,cosy,cozy,elegant,beautiful,nice,simple,high,empty,open,matching"
 )
-LOOKS = frozenset(_LOOKS.split(","))
+APPEARANCES = frozenset(_APPEARANCES.split(","))
 """Words that say how a thing looks, not what it is."""
 
 
 @dataclass(frozen=True)
-class Thing:
+class RequestedObject:
     """One kind of thing that is asked for."""
 
     category: str
     label: str
     """The words that name it."""
     count: int = 1
-    looks: tuple[str, ...] = ()
+    appearance: tuple[str, ...] = ()
     """Adjectives: colours, materials, styles."""
     place: str = ""
     """"on", "beside", "before", "above", "around", "under"; empty where it does not matter."""
@@ -60,30 +60,30 @@ class Thing:
 
 
 @dataclass(frozen=True)
-class Wishes:
+class RoomRequest:
     """Everything a prompt asks for."""
 
     room: RoomKind
-    things: tuple[Thing, ...]
+    objects: tuple[RequestedObject, ...]
     ignored: tuple[str, ...] = ()
     """Words that named nothing known, for a note to the user."""
     size: float = 1.0
     """How large the room should be beside a usual one."""
 
 
-def understood_prompt(prompt: str) -> Wishes:
+def understood_prompt(prompt: str) -> RoomRequest:
     """Read a prompt in plain English; whatever is not understood is listed, never fatal."""
     text = " ".join(re.sub(r"[^a-z0-9' ,;.-]+", " ", prompt.lower()).split())
     room, rest = _room(text)
-    things: list[Thing] = []
+    objects: list[RequestedObject] = []
     ignored: list[str] = []
     for clause in _JOINTS.split(rest):
-        found, unknown = _clause(clause.strip(), things)
-        things += found
+        found, unknown = _clause(clause.strip(), objects)
+        objects += found
         ignored += unknown
     size = 1.25 if re.search(r"\b(large|big|spacious|huge)\b.{0,20}\broom\b", text) else 1.0
     size = 0.85 if re.search(r"\b(small|tiny|cosy|cozy|little|corner|nook)\b", text) else size
-    return Wishes(room, tuple(things), tuple(dict.fromkeys(ignored)), size)
+    return RoomRequest(room, tuple(objects), tuple(dict.fromkeys(ignored)), size)
 
 
 def _room(text: str) -> tuple[RoomKind, str]:
@@ -110,36 +110,36 @@ def _guessed_room(text: str) -> RoomKind:
     return next((kind for pattern, kind in hints if re.search(pattern, text)), "living")
 
 
-def _clause(clause: str, before: list[Thing]) -> tuple[list[Thing], list[str]]:
+def _clause(clause: str, before: list[RequestedObject]) -> tuple[list[RequestedObject], list[str]]:
     """The things of one clause: "two red chairs beside the table" names chairs, and a table unless it is known."""
     for words, place in _PLACES:
         parts = re.split(rf"\b{words}\b", clause, maxsplit=1)
         if len(parts) < 2:
             continue
-        thing, unknown = _phrase(parts[0])
+        requested, unknown = _phrase(parts[0])
         target, more = _phrase(parts[1])
-        if thing is not None and target is not None and re.match(r"\s*(each|every|both)\b", parts[1]):
+        if requested is not None and target is not None and re.match(r"\s*(each|every|both)\b", parts[1]):
             hosts = sum(t.count for t in before if t.category == target.category)
-            thing = replace(thing, count=thing.count * max(hosts, 1))
+            requested = replace(requested, count=requested.count * max(hosts, 1))
         if target is None and before and re.match(r"\s*(it|them|top)\b", parts[1]):
             target = before[-1]  # "a sideboard with a vase on it"
         if place == "in" or target is None:
-            return ([thing] if thing else []) + ([target] if target else []), unknown + more
+            return ([requested] if requested else []) + ([target] if target else []), unknown + more
         known = any(t.category == target.category for t in before)
         host = [] if known else [target]
-        if thing is None and before and not parts[0].strip():
+        if requested is None and before and not parts[0].strip():
             before[-1] = _placed(before[-1], place, target.category)
             return host, unknown + more
-        return [*host, *([_placed(thing, place, target.category)] if thing else [])], unknown + more
-    thing, unknown = _phrase(clause)
-    return ([thing] if thing else []), unknown
+        return [*host, *([_placed(requested, place, target.category)] if requested else [])], unknown + more
+    requested, unknown = _phrase(clause)
+    return ([requested] if requested else []), unknown
 
 
-def _placed(thing: Thing, place: str, target: str) -> Thing:
-    return replace(thing, place=place, target=target)
+def _placed(requested: RequestedObject, place: str, target: str) -> RequestedObject:
+    return replace(requested, place=place, target=target)
 
 
-def _phrase(phrase: str) -> tuple[Thing | None, list[str]]:
+def _phrase(phrase: str) -> tuple[RequestedObject | None, list[str]]:
     """A noun phrase: count, looks, noun."""
     left, of, _ = phrase.partition(" of ")
     if of and (head := _phrase(left))[0] is not None:
@@ -151,8 +151,8 @@ def _phrase(phrase: str) -> tuple[Thing | None, list[str]]:
         words = words[1:]
     if not words:
         return None, []
-    looks = tuple(w for w in words if w in LOOKS)
-    words = [w for w in words if w not in LOOKS] or words
+    appearance = tuple(w for w in words if w in APPEARANCES)
+    words = [w for w in words if w not in APPEARANCES] or words
     for start in range(len(words)):
         for end in range(len(words), start, -1):
             noun = " ".join(words[start:end])
@@ -162,5 +162,5 @@ def _phrase(phrase: str) -> tuple[Thing | None, list[str]]:
             if found.exact and found.category is not UNKNOWN:
                 plural = count == 1 and noun.endswith("s") and not found.category.name.endswith("s")
                 many = 2 if plural else count
-                return Thing(found.category.name, noun, min(many, MOST_OF_A_KIND), looks), []
+                return RequestedObject(found.category.name, noun, min(many, MAX_OF_A_KIND), appearance), []
     return None, [" ".join(words)]

@@ -8,11 +8,11 @@ import numpy as np
 import trimesh
 from jaxtyping import Float
 
-from diorama_core.evaluation.dataset.cameras import held
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.render.raycast import MeshCaster
 from diorama_core.render.slabs import plane_surfaces
 from diorama_core.scene.types import Camera, Intrinsics, Scene
+from diorama_core.synthesis.cameras import held
 
 PROBE_PX = (96, 72)
 EYE_M, FOV_RAD = 1.6, 1.45
@@ -21,7 +21,7 @@ PLACES = 9
 """A side of the grid of places."""
 TURNS_RAD = (-0.35, -0.18, 0.0, 0.18, 0.35)
 """Away from the middle of what was asked for."""
-WALL_CLEARANCE_M, THING_CLEARANCE_M = 0.15, 0.35
+WALL_CLEARANCE_M, OBJECT_CLEARANCE_M = 0.15, 0.35
 LOWEST_PITCH_RAD, HIGHEST_PITCH_RAD = 0.1, 0.42
 SEEN_PX = 5
 """Fewer pixels of the probe show nothing that could be found again."""
@@ -74,7 +74,7 @@ def _candidates(scene: Scene, size: tuple[int, int], worth: Float[np.ndarray, " 
     middle = np.array([*(low + high) / 2, 0.6])
     if worth.sum() > 0:
         middle = np.average([o.pose.position for o in scene.objects], axis=0, weights=worth)
-    for clearance in (THING_CLEARANCE_M, 0.15, 0.0):
+    for clearance in (OBJECT_CLEARANCE_M, 0.15, 0.0):
         free = [eye for eye in _places(low, high) if _stands_free(scene, eye, clearance)]
         for eye in free:
             away = middle - eye

@@ -10,21 +10,21 @@ from typing import Any
 import numpy as np
 import viser
 
-from diorama_app.guest import Guest
-from diorama_app.room import Room
+from diorama_app.session.client import Client
+from diorama_app.session.session import EditorSession
 
 
 class Drawer:
     """What a browser keeps for its pages."""
 
     def __init__(self) -> None:
-        self.kept: dict[str, str] = {}
+        self.retained: dict[str, str] = {}
 
     def set_item(self, key: str, value: str) -> None:
-        self.kept[key] = value
+        self.retained[key] = value
 
     def get_item(self, key: str, timeout: float | None = None) -> str | None:
-        return self.kept.get(key)
+        return self.retained.get(key)
 
 
 class LocalClient:
@@ -55,7 +55,7 @@ class LocalClient:
         self.told.append(body)
 
 
-def join(room: Room, client_id: int = 0) -> Guest:
+def join(session: EditorSession, client_id: int = 0) -> Client:
     """Somebody comes into the room."""
-    room.joined(LocalClient(room.server, client_id))  # type: ignore[arg-type]
-    return room.guests[client_id]
+    session.joined(LocalClient(session.server, client_id))  # type: ignore[arg-type]
+    return session.clients[client_id]

@@ -7,11 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
-from diorama_app import arranging, editing, swapping
-from diorama_app.clipboard import copied, pasted
-from diorama_app.inserting import insert_shape
-from diorama_app.room import Room
-from diorama_app.viser_adapter import Visitors, create_server, last_message_arrived, stop_server
+from diorama_app.commands import edit as editing
+from diorama_app.commands import swap as swapping
+from diorama_app.commands.insert import insert_shape
+from diorama_app.session.session import EditorSession
+from diorama_app.web.viser_adapter import Visitors, create_server, last_message_arrived, stop_server
+from diorama_core.editing import aligning as arranging
+from diorama_core.editing.clipboard import copied, pasted
 from diorama_core.errors import DioramaError
 from diorama_core.project.storage import Project
 from diorama_core.scene.schema import scene_from_json, scene_to_json
@@ -19,7 +21,7 @@ from diorama_core.scene.support import check_scene
 from tests.app.people import join
 from tests.app.small_room import SIZES, PlainLibrary, make_project
 
-MOST_OBJECTS = 60
+MAX_OBJECTS = 60
 
 
 class Soak:
@@ -27,9 +29,9 @@ class Soak:
 
     def __init__(self, folder: Path, seed: int) -> None:
         self.server = create_server(host="127.0.0.1", port=0, label="soak", visitors=Visitors("127.0.0.1"))
-        self.room = Room(self.server, PlainLibrary(), folder / "projects")
-        self.room.open_project(make_project(folder / "projects" / "demo"))
-        self.guest = join(self.room)
+        self.session = EditorSession(self.server, PlainLibrary(), folder / "projects")
+        self.session.open_project(make_project(folder / "projects" / "demo"))
+        self.client = join(self.session)
         self.rng = np.random.default_rng(seed)
         self.refused = 0
         self.done = 0
@@ -44,8 +46,8 @@ class Soak:
             except BaseException as error:
                 failed.append(error)
 
-        self.room.desk.post(all_of_them)
-        self.room.desk.wait(3600.0)
+        self.session.ui_thread.post(all_of_them)
+        self.session.ui_thread.wait(3600.0)
         if failed:
             raise failed[0]
 
@@ -79,93 +81,93 @@ class Soak:
                 self.check()
 
     def check(self) -> None:
-        check_scene(self.room.scene)
-        assert scene_from_json(scene_to_json(self.room.scene)) == self.room.scene
+        check_scene(self.session.scene)
+        assert scene_from_json(scene_to_json(self.session.scene)) == self.session.scene
 
     def saved(self) -> bool:
-        self.room.saver.flush()
-        assert isinstance(self.room.project, Project)
-        return self.room.project.load_scene() == self.room.scene
+        self.session.autosave.flush()
+        assert isinstance(self.session.project, Project)
+        return self.session.project.load_scene() == self.session.scene
 
     def memory_mb(self) -> float:
         import gc
 
-        self.room.checker.wait()
+        self.session.checker.wait()
         gc.collect()
         pages = int(Path("/proc/self/statm").read_text().split()[1])
         return pages * 4096 / 1e6
 
-    def kept_messages(self) -> int:
+    def retained_messages(self) -> int:
         return last_message_arrived(self.server)
 
     def close(self) -> None:
-        self.room.close()
+        self.session.close()
         stop_server(self.server)
 
     # -- edits ------------------------------------------------------------------------------------------------
 
     def _choose(self) -> None:
-        ids = [o.id for o in self.room.scene.objects]
+        ids = [o.id for o in self.session.scene.objects]
         count = min(len(ids), int(self.rng.integers(1, 4)))
-        self.guest.select(self.rng.choice(ids, count, replace=False).tolist() if ids else ())
+        self.client.select(self.rng.choice(ids, count, replace=False).tolist() if ids else ())
 
     def _move(self) -> None:
-        item = self.room.scene.object(self.guest.need_selected())
+        item = self.session.scene.object(self.client.need_selected())
         base = editing.base_position(item) + np.append(self.rng.normal(0, 0.4, 2), 0.0)
-        editing.set_base_position(self.guest, item.id, base)
+        editing.set_base_position(self.client, item.id, base)
 
     def _turn(self) -> None:
-        editing.turn_selected(self.guest, float(self.rng.uniform(-90, 90)))
+        editing.turn_selected(self.client, float(self.rng.uniform(-90, 90)))
 
     def _resize(self) -> None:
-        item = self.room.scene.object(self.guest.need_selected())
+        item = self.session.scene.object(self.client.need_selected())
         size = np.asarray(item.shape_size_m) * self.rng.uniform(0.7, 1.4, 3)
-        editing.set_size(self.guest, item.id, size)
+        editing.set_size(self.client, item.id, size)
 
     def _swap(self) -> None:
-        self.guest.settings = type(self.guest.settings)(
+        self.client.preferences = type(self.client.preferences)(
             size_mode=swapping.SIZE_MODES[self.rng.integers(4)], keep_colour=bool(self.rng.integers(2))
         )
-        swapping.swap(self.guest, self.guest.need_selected(), str(self.rng.choice(list(SIZES))))
+        swapping.swap(self.client, self.client.need_selected(), str(self.rng.choice(list(SIZES))))
 
     def _insert(self) -> None:
-        if len(self.room.scene.objects) < MOST_OBJECTS:
-            insert_shape(self.guest, str(self.rng.choice(list(SIZES))))
+        if len(self.session.scene.objects) < MAX_OBJECTS:
+            insert_shape(self.client, str(self.rng.choice(list(SIZES))))
 
     def _delete(self) -> None:
-        if len(self.room.scene.objects) > 6:
-            editing.delete_selected(self.guest)
+        if len(self.session.scene.objects) > 6:
+            editing.delete_selected(self.client)
 
     def _paste(self) -> None:
-        if len(self.room.scene.objects) < MOST_OBJECTS:
-            scene, heads = pasted(self.room.scene, copied(self.room.scene, self.guest.selection))
-            self.room.commit("paste", scene, by=self.guest, selection=heads)
+        if len(self.session.scene.objects) < MAX_OBJECTS:
+            scene, heads = pasted(self.session.scene, copied(self.session.scene, self.client.selection))
+            self.session.commit("paste", scene, by=self.client, selection=heads)
 
     def _attach(self) -> None:
-        scene = self.room.scene
+        scene = self.session.scene
         parents = [p.id for p in scene.architecture.planes] + [o.id for o in scene.objects]
-        editing.attach(self.guest, self.guest.need_selected(), str(self.rng.choice(parents)))
+        editing.attach(self.client, self.client.need_selected(), str(self.rng.choice(parents)))
 
     def _lock(self) -> None:
-        editing.set_locked(self.guest, self.guest.selection, bool(self.rng.integers(5) == 0))
+        editing.set_locked(self.client, self.client.selection, bool(self.rng.integers(5) == 0))
 
     def _hide(self) -> None:
-        editing.set_hidden(self.guest, self.guest.selection, bool(self.rng.integers(4) == 0))
+        editing.set_hidden(self.client, self.client.selection, bool(self.rng.integers(4) == 0))
 
     def _rename(self) -> None:
-        editing.rename(self.guest, self.guest.need_selected(), f"thing {self.rng.integers(1000)} <i>")
+        editing.rename(self.client, self.client.need_selected(), f"thing {self.rng.integers(1000)} <i>")
 
     def _paint(self) -> None:
         colour = None if self.rng.integers(3) == 0 else tuple(float(c) for c in self.rng.uniform(0, 1, 3).round(1))
-        editing.set_colour(self.guest, self.guest.selection, colour)  # type: ignore[arg-type]
+        editing.set_colour(self.client, self.client.selection, colour)  # type: ignore[arg-type]
 
     def _align(self) -> None:
-        chosen = self.guest.need_selection()
+        chosen = self.client.need_selection()
         axis = np.eye(3)[self.rng.integers(2)]
-        self.room.edit("align", lambda s: arranging.align(s, chosen, axis, "middle"), by=self.guest)
+        self.session.edit("align", lambda s: arranging.align(s, chosen, axis, "middle"), by=self.client)
 
     def _undo(self) -> None:
-        self.room.undo(self.guest)
+        self.session.undo(self.client)
 
     def _redo(self) -> None:
-        self.room.redo(self.guest)
+        self.session.redo(self.client)

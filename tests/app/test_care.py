@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 import trimesh
 
-from diorama_app import project_care
-from diorama_app.arrangements import Arrangements
-from diorama_app.importing import import_model
-from diorama_app.layout_run import LayoutRun
-from diorama_app.measuring import point_under
-from diorama_app.outlining import Outline
-from diorama_app.shelf import OWN, Shelf
+from diorama_app.commands.arrangements import Arrangements
+from diorama_app.commands.import_model import import_model
+from diorama_app.commands.measure import point_under
+from diorama_app.projects import manage as project_care
+from diorama_app.session.layout_run import LayoutRun
+from diorama_core.editing.outline import Outline
 from diorama_core.errors import EditRefused, ProjectError
+from diorama_core.library.user_library import OWN, UserLibrary
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
 from tests.app.small_room import PlainLibrary, furnished_scene, make_project
@@ -72,22 +72,22 @@ def test_clicks_add_to_an_outline_and_take_away_from_it() -> None:
 
 def test_a_shelf_grows_with_ones_own_models(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("DIORAMA_LIBRARIES", str(tmp_path))
-    shelf = Shelf(PlainLibrary())
-    known = shelf.shapes()
-    assert shelf.shape("chair_a") in known
-    shelf.own()
-    assert {s.id for s in shelf.shapes()} == {s.id for s in known}
+    user_library = UserLibrary(PlainLibrary())
+    known = user_library.shapes()
+    assert user_library.shape("chair_a") in known
+    user_library.own()
+    assert {s.id for s in user_library.shapes()} == {s.id for s in known}
     assert (tmp_path / OWN).is_dir()
-    assert isinstance(shelf.parts("table_a"), trimesh.Scene)
+    assert isinstance(user_library.parts("table_a"), trimesh.Scene)
 
 
 def test_a_library_that_cannot_grow_says_so() -> None:
-    class Guest:
-        class room:  # noqa: N801
+    class Client:
+        class session:  # noqa: N801
             library = PlainLibrary()
 
     with pytest.raises(EditRefused, match="cannot take models"):
-        import_model(Guest(), "x.glb", b"")  # type: ignore[arg-type]
+        import_model(Client(), "x.glb", b"")  # type: ignore[arg-type]
 
 
 def test_arrangements_leave_what_is_locked() -> None:
@@ -123,7 +123,7 @@ def test_costs_that_begin_late_or_end_early_keep_their_level() -> None:
     assert not run.paused
 
 
-def test_a_ray_meets_the_nearest_thing_and_passes_walls_from_behind() -> None:
+def test_a_ray_meets_the_nearest_object_and_passes_walls_from_behind() -> None:
     scene = furnished_scene()
     table = scene.object("table_1").pose.position
     above = point_under(scene, np.array([-0.4, 2.2, 2.4]), np.array([0.0, 0.0, -1.0]))

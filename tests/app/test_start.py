@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from diorama_app import warming
+from diorama_app.session import preload as warming
 from diorama_core.library.ingest import known_shapes
 
 HEAVY = (
@@ -19,14 +19,14 @@ HEAVY = (
     "cv2",
     "onnxruntime",
     "openai",
-    "diorama_core.pipeline.build",
-    "diorama_core.pipeline.profiles",
+    "diorama_core.pipeline.run",
+    "diorama_core.pipeline.presets",
     "diorama_core.evaluation",
 )
 
 
 def test_the_server_starts_without_the_pipeline_and_the_networks() -> None:
-    code = f"import sys, diorama_app.server; print(*[m for m in {HEAVY!r} if m in sys.modules])"
+    code = f"import sys, diorama_app.serve; print(*[m for m in {HEAVY!r} if m in sys.modules])"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
     assert loaded == []
 

@@ -100,7 +100,7 @@ def known_room(kind: str, seed: int) -> tuple[tuple[Plane, ...], Camera]:
     return prism(footprint, ceilings), look(yaw, pitch, u(1.3, 1.65), fov, SIZE)
 
 
-def furniture(planes: tuple[Plane, ...], camera: Camera, seed: int, count: int = 20, most_hidden: float = 0.6):
+def furniture(planes: tuple[Plane, ...], camera: Camera, seed: int, count: int = 20, max_hidden: float = 0.6):
     """Boxes, most of them along the walls, that hide at most a share of the visible feet of the walls."""
     rng = np.random.default_rng([seed, 77])
     feet = visible_feet(planes, camera)
@@ -121,7 +121,7 @@ def furniture(planes: tuple[Plane, ...], camera: Camera, seed: int, count: int =
         if not _inside(box, planes):
             continue
         covers = hidden | _hides(camera, box, feet[:, :3])
-        if covers.mean() <= most_hidden:
+        if covers.mean() <= max_hidden:
             chosen.append(box)
             hidden = covers
     return tuple(chosen)
@@ -157,9 +157,9 @@ def _hides(camera: Camera, box, points):
     return t < 0.99
 
 
-def photographed(kind: str, seed: int, *, things: int = 0, noise: float = 0.0) -> Shot:
+def photographed(kind: str, seed: int, *, items: int = 0, noise: float = 0.0) -> Shot:
     """A room of a kind with furniture; relative noise comes with a structured-light sensor's steps of depth."""
-    shot = _clean(kind, seed, things)
+    shot = _clean(kind, seed, items)
     if not noise:
         return shot
     depth = shot.inputs.depth_m.astype(float)
@@ -170,9 +170,9 @@ def photographed(kind: str, seed: int, *, things: int = 0, noise: float = 0.0) -
 
 
 @cache
-def _clean(kind: str, seed: int, things: int) -> Shot:
+def _clean(kind: str, seed: int, items: int) -> Shot:
     planes, camera = known_room(kind, seed)
-    return shoot(camera, planes, furniture(planes, camera, seed, things))
+    return shoot(camera, planes, furniture(planes, camera, seed, items))
 
 
 def all_rays_hit(planes, camera) -> bool:

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from diorama_core.architecture.closed_room import is_simple
-from diorama_core.architecture.from_depth import PlanarRoom
-from diorama_core.evaluation.architecture_metrics import architecture_scores, match_planes
+from diorama_core.architecture.from_depth.stage import PlanarRoom
+from diorama_core.evaluation.metrics.architecture import architecture_scores, match_planes
 from diorama_core.progress import Progress
 from tests.architecture.known_rooms import KINDS, all_rays_hit, known_room, photographed, visible_feet
 
 
 def reconstructed(kind, seed, noise):
-    shot = photographed(kind, seed, things=20, noise=noise)
+    shot = photographed(kind, seed, items=20, noise=noise)
     estimate = PlanarRoom().reconstruct(shot.inputs, shot.objects, shot.geometry, Progress())
     return shot, estimate.architecture.planes
 
@@ -52,7 +52,7 @@ def test_the_known_rooms_are_what_they_claim(kind):
 
 def test_furniture_hides_up_to_the_asked_share_of_the_feet():
     planes, camera = known_room("box", 0)
-    shot = photographed("box", 0, things=20)
+    shot = photographed("box", 0, items=20)
     feet = visible_feet(planes, camera)[:, :3]
     columns, rows = camera.project(feet).astype(int).T
     hidden = np.any([o.mask[rows, columns] for o in shot.objects], axis=0).mean()

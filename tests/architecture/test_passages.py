@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.architecture.from_depth import PlanarRoom
-from diorama_core.architecture.openings import Opening
-from diorama_core.architecture.passages import furniture, is_passage, with_passages
-from diorama_core.architecture.photo_room import PhotoRoom
+from diorama_core.architecture.from_depth.openings import Opening
+from diorama_core.architecture.from_depth.stage import PlanarRoom
+from diorama_core.architecture.passages import is_passage, with_passages, without_openings
+from diorama_core.architecture.single_view.stage import PhotoRoom
 from diorama_core.architecture.wall_sequence import WallPiece
 from diorama_core.artefacts import DetectedObject, ObjectGeometry
 from diorama_core.geometry.casting import cast_plane
@@ -101,7 +101,7 @@ def test_a_door_and_a_window_hang_on_a_whole_wall(stage, label):
     assert (support.relation, estimate.architecture.by_role("wall")[0].role) == ("mounted on", "wall")
 
 
-def test_a_doorway_in_a_photo_is_a_hole_and_no_thing():
+def test_a_doorway_in_a_photo_is_a_hole_and_no_object():
     shot, objects, geometry = _room_with("doorway")
     estimate = PhotoRoom().reconstruct(shot.inputs, objects, geometry, Progress())
     assert estimate.openings == ("it",)
@@ -110,8 +110,8 @@ def test_a_doorway_in_a_photo_is_a_hole_and_no_thing():
     eye = shot.camera.position
     rays = np.array([[0.6, 4.0, 1.0], [0.6, 4.0, 2.3], [-1.0, 4.0, 1.0]]) - eye
     np.testing.assert_array_equal(np.isfinite(cast_plane(eye, rays, wall)), [False, True, True])
-    things, left = furniture(objects, geometry, estimate)
-    assert (things, left.cuboids) == ((), ())
+    items, left = without_openings(objects, geometry, estimate)
+    assert (items, left.cuboids) == ((), ())
 
 
 def test_a_doorway_that_was_measured_to_be_shut_is_a_door():

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 from playwright.sync_api import BrowserContext, Locator, Page, expect
 
-from diorama_app.guest import Guest
-from diorama_app.server import Running
+from diorama_app.serve import Running
+from diorama_app.session.client import Client
 
 FLAGS = (
     "--no-sandbox",
@@ -70,19 +70,19 @@ class EditorPage:
     page: Page
     running: Running
     errors: list[str] = field(default_factory=list)
-    guest_id: int = -1
+    client_id: int = -1
     query: str = "?fixedDpr=1"
     """Of the address: as many pixels as the screen has, whatever the machine can afford."""
 
     @property
-    def guest(self) -> Guest:
+    def client(self) -> Client:
         """This tab, as the program knows it."""
-        return self.running.room.guests[self.guest_id]
+        return self.running.session.clients[self.client_id]
 
     @property
     def selection(self) -> tuple[str, ...]:
         """What is selected in this tab."""
-        return self.guest.selection
+        return self.client.selection
 
     @classmethod
     def open(
@@ -96,11 +96,11 @@ class EditorPage:
         return made
 
     def load(self) -> None:
-        joined = set(self.running.room.guests)
+        joined = set(self.running.session.clients)
         self.page.goto(f"http://127.0.0.1:{self.running.port}/{self.query}")
         self.settle()
-        self.until(lambda: bool(set(self.running.room.guests) - joined))
-        self.guest_id = max(self.running.room.guests)
+        self.until(lambda: bool(set(self.running.session.clients) - joined))
+        self.client_id = max(self.running.session.clients)
         self.settle()
         self.dismiss_notices()
 
@@ -111,7 +111,7 @@ class EditorPage:
 
     def at_board(self) -> None:
         """Wait until the photo is there to draw on, and the eye in front of it."""
-        self.until(lambda: self.guest.view.drawing, "the drawing board is open")
+        self.until(lambda: self.client.view.drawing, "the drawing board is open")
         self.page.wait_for_function(AT_BOARD)
         self.settle()
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from diorama_app.server import Running, start
-from diorama_app.settings import Settings
+from diorama_app.serve import Running, start
+from diorama_app.session.preferences import Preferences
 from diorama_core.library.record import ShapeLibrary
 from tests.app.small_room import PlainLibrary, make_project
 from tests.e2e.browser import FLAGS, SIZE, EditorPage, chromium
@@ -95,20 +95,20 @@ def visit(context, request: pytest.FixtureRequest) -> Iterator[Callable[[Running
 @pytest.fixture
 def editor(shared_page: EditorPage, tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[EditorPage]:
     """The furnished room in a browser, as somebody finds it who has just come."""
-    room = shared_page.running.room
+    session = shared_page.running.session
     project = make_project(tmp_path / "projects" / "demo")
 
     def begin() -> None:
-        room.projects_dir = tmp_path / "projects"
-        room.clip = room.binned = None
-        guest = shared_page.guest
-        guest.view.close_board()
-        guest.settings = Settings()
-        room.open_project(project)
+        session.projects_dir = tmp_path / "projects"
+        session.clip = session.binned = None
+        client = shared_page.client
+        client.view.close_board()
+        client.preferences = Preferences()
+        session.open_project(project)
 
-    room.jobs.wait(10.0)
-    room.desk.post(begin)
-    assert room.desk.wait()
+    session.jobs.wait(10.0)
+    session.ui_thread.post(begin)
+    assert session.ui_thread.wait()
     shared_page.dismiss_notices()
     for tab in ("Scene", "Object"):
         shared_page.tab(tab)
@@ -116,7 +116,7 @@ def editor(shared_page: EditorPage, tmp_path: Path, request: pytest.FixtureReque
     yield shared_page
     keep_picture(shared_page, request.node.name)
     errors, shared_page.errors = shared_page.errors, []
-    room.jobs.cancel()
+    session.jobs.cancel()
     shared_page.page.keyboard.press("Escape")
     assert not errors, errors
 

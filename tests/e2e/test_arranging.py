@@ -13,7 +13,7 @@ pytestmark = pytest.mark.browser
 
 
 def scene(editor: EditorPage) -> Scene:
-    return editor.running.room.scene
+    return editor.running.session.scene
 
 
 def selection(editor: EditorPage) -> tuple[str, ...]:
@@ -72,9 +72,9 @@ def test_swap_moves_undo_and_redo(editor: EditorPage) -> None:
 def test_the_gizmo_moves_by_mouse_as_one_undo_step_and_children_follow(editor: EditorPage) -> None:
     editor.row("dining table").click()
     editor.until(lambda: selection(editor) == ("table_1",))
-    room = editor.running.room
+    session = editor.running.session
     table, lamp = scene(editor).object("table_1"), scene(editor).object("lamp_1")
-    steps = len(room.document.history.entries)
+    steps = len(session.document.history.entries)
     along = table.pose.R_world_object[:, 0]
     gizmo = float(np.clip(0.62 * max(table.size_m), 0.3, 1.1))
     editor.settle()
@@ -86,7 +86,7 @@ def test_the_gizmo_moves_by_mouse_as_one_undo_step_and_children_follow(editor: E
     assert moved @ along == pytest.approx(0.5, abs=0.12)
     assert abs(moved[2]) < 1e-6
     np.testing.assert_allclose(scene(editor).object("lamp_1").pose.position - lamp.pose.position, moved, atol=1e-9)
-    assert len(room.document.history.entries) == steps + 1
+    assert len(session.document.history.entries) == steps + 1
     editor.page.keyboard.press("Control+z")
     editor.until(lambda: scene(editor).object("table_1").pose == table.pose, "undone at once")
 

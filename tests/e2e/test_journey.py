@@ -10,8 +10,8 @@ import pytest
 import trimesh
 from playwright.sync_api import expect
 
-from diorama_app.example import EXAMPLE
-from diorama_app.server import Running
+from diorama_app.projects.example import EXAMPLE
+from diorama_app.serve import Running
 from diorama_core.scene.types import Scene, SceneObject
 from tests.conftest import SHARED
 from tests.e2e.browser import EditorPage
@@ -32,30 +32,30 @@ def test_the_example_is_there_and_is_swapped_moved_undone_optimised_and_download
     with_example: Running, visit: Callable[[Running], EditorPage], tmp_path: Path
 ) -> None:
     editor = visit(with_example)
-    room = with_example.room
-    assert room.photo is not None
-    assert room.scene.architecture.floor is not None
+    session = with_example.session
+    assert session.photo is not None
+    assert session.scene.architecture.floor is not None
     names = editor.page.evaluate("Object.keys(window.__viserMutable.nodeRefFromName)")
-    assert sum("/objects/" in n and "/v" in n for n in names) >= len(room.scene.objects)
+    assert sum("/objects/" in n and "/v" in n for n in names) >= len(session.scene.objects)
     assert "/photo_camera" in names
 
-    chair = _swappable(room.scene)
+    chair = _swappable(session.scene)
     _click_on(editor, chair)
     editor.page.locator(".dio .tile:not(.on)[data-do=swap]").first.click()
-    editor.until(lambda: room.scene.object(chair.id).shape_id != chair.shape_id, "swapped")
+    editor.until(lambda: session.scene.object(chair.id).shape_id != chair.shape_id, "swapped")
     editor.settle()
-    swapped = room.scene.object(chair.id)
+    swapped = session.scene.object(chair.id)
     goal = round(float(swapped.pose.position[0]) - 0.2, 2)
     editor.page.get_by_label("Place (m)").fill(f"{goal:.2f}")
-    editor.until(lambda: abs(room.scene.object(chair.id).pose.position[0] - goal) < 1e-3, "moved")
+    editor.until(lambda: abs(session.scene.object(chair.id).pose.position[0] - goal) < 1e-3, "moved")
     editor.button("↶ Undo").click()
-    editor.until(lambda: room.scene.object(chair.id).pose == swapped.pose, "undone")
+    editor.until(lambda: session.scene.object(chair.id).pose == swapped.pose, "undone")
 
     editor.tab("Arrange")
-    before = room.scene
+    before = session.scene
     editor.button("Optimise layout").click()
-    editor.until(lambda: room.jobs.status is None and room.scene is not before, "arranged", seconds=BUILD_S)
-    assert room.document.history.current.label == "arrange the layout"
+    editor.until(lambda: session.jobs.status is None and session.scene is not before, "arranged", seconds=BUILD_S)
+    assert session.document.history.current.label == "arrange the layout"
     expect(editor.page.get_by_text("Before → after")).to_be_visible()
 
     editor.tab("Project")
@@ -63,32 +63,34 @@ def test_the_example_is_there_and_is_swapped_moved_undone_optimised_and_download
         editor.button("Download GLB").click()
     path = tmp_path / "room.glb"
     download.value.save_as(path)
-    _check_model(path, room.scene)
+    _check_model(path, session.scene)
 
 
 def test_a_photo_with_boxes_becomes_a_scene(with_example: Running, visit: Callable[[Running], EditorPage]) -> None:
     photo, boxes = _photo_with_boxes()
     editor = visit(with_example)
-    room = with_example.room
-    example = room.scene
+    session = with_example.session
+    example = session.scene
 
     editor.tab("Photo")
     editor.upload("Upload a photo", photo)
-    editor.until(lambda: room.draft.photo is not None and room.draft.photo.name == photo.name, "the photo is read")
+    editor.until(
+        lambda: session.draft.photo is not None and session.draft.photo.name == photo.name, "the photo is read"
+    )
     editor.page.get_by_text("More about this photo").click()
     editor.upload("Add boxes (JSON)", boxes)
-    editor.until(lambda: len(room.draft.boxes) > 2, "the boxes are read")
-    marked = len(room.draft.boxes)
-    assert room.scene is example, "the open scene stays until the new one is there"
+    editor.until(lambda: len(session.draft.boxes) > 2, "the boxes are read")
+    marked = len(session.draft.boxes)
+    assert session.scene is example, "the open scene stays until the new one is there"
     editor.dismiss_notices()
     editor.button("Build scene").click()
     expect(editor.page.get_by_text("Building the scene")).to_be_visible()
-    editor.until(lambda: room.jobs.status is None and room.scene is not example, "built", seconds=BUILD_S)
-    assert len(room.scene.objects) >= 0.9 * marked
-    assert room.scene.architecture.floor is not None
-    assert room.scene.architecture.by_role("wall")
+    editor.until(lambda: session.jobs.status is None and session.scene is not example, "built", seconds=BUILD_S)
+    assert len(session.scene.objects) >= 0.9 * marked
+    assert session.scene.architecture.floor is not None
+    assert session.scene.architecture.by_role("wall")
     editor.tab("Scene")
-    expect(editor.page.locator(".dio .row[data-arg]:visible")).to_have_count(len(room.scene.objects))
+    expect(editor.page.locator(".dio .row[data-arg]:visible")).to_have_count(len(session.scene.objects))
 
 
 def _photo_with_boxes() -> tuple[Path, Path]:

@@ -11,8 +11,8 @@ import trimesh
 from PIL import Image
 from playwright.sync_api import expect
 
-from diorama_app import viser_adapter
-from diorama_app.server import Running
+from diorama_app.serve import Running
+from diorama_app.web import viser_adapter
 from diorama_core.project.storage import Project
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene
@@ -35,43 +35,45 @@ WATCH = """(name) => {
 
 
 def test_boxes_drawn_on_the_photo_land_on_its_pixels(editor: EditorPage, tmp_path: Path) -> None:
-    room = editor.running.room
+    session = editor.running.session
     path = tmp_path / "my room.png"
     Image.fromarray(plain_photo().rgb).save(path)
     editor.tab("Photo")
     editor.upload("Upload a photo", path)
-    editor.until(lambda: room.draft.photo is not None and room.draft.photo.name == "my room.png", "the photo is read")
-    assert room.scene.objects, "the open scene stays"
+    editor.until(
+        lambda: session.draft.photo is not None and session.draft.photo.name == "my room.png", "the photo is read"
+    )
+    assert session.scene.objects, "the open scene stays"
     expect(editor.page.get_by_text("Draw a box around each piece of furniture.")).to_be_visible()
     expect(editor.button("Build scene")).to_be_disabled()
     editor.at_board()
     editor.dismiss_notices()
-    view = editor.guest.view
+    view = editor.client.view
     assert view.board is not None
     corners = np.array([[240.0, 200.0], [440.0, 420.0]])
     editor.settle()
     start, end = (editor.place_of(p) for p in view.board.to_world(corners))
     editor.drag(start, end)
-    editor.until(lambda: len(room.draft.boxes) == 1, "one box")
-    np.testing.assert_allclose(np.array(room.draft.boxes[0].box).reshape(2, 2), corners, atol=4.0)
-    assert room.draft.boxes[0].label == "chair"
+    editor.until(lambda: len(session.draft.boxes) == 1, "one box")
+    np.testing.assert_allclose(np.array(session.draft.boxes[0].box).reshape(2, 2), corners, atol=4.0)
+    assert session.draft.boxes[0].label == "chair"
     other = editor.page.get_by_label("or type")
     field = other if other.count() else editor.page.locator(".mantine-Flex-root", has_text="or type").locator("input")
     field.fill("couch")
-    editor.until(lambda: room.draft.boxes[0].label == "couch", "named")
-    assert room.draft.boxes[0].category == "sofa"
+    editor.until(lambda: session.draft.boxes[0].label == "couch", "named")
+    assert session.draft.boxes[0].category == "sofa"
     expect(editor.button("Build scene")).to_be_enabled()
     editor.page.get_by_title("Delete this box").click()
-    editor.until(lambda: room.draft.boxes == (), "deleted")
+    editor.until(lambda: session.draft.boxes == (), "deleted")
     editor.button("Done drawing").click()
-    editor.until(lambda: not editor.guest.view.drawing, "back in the room")
+    editor.until(lambda: not editor.client.view.drawing, "back in the room")
 
 
 def test_what_cannot_be_used_is_one_clear_notice_and_nothing_is_lost(
     editor: EditorPage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    room = editor.running.room
-    scene, draft = room.scene, room.draft
+    session = editor.running.session
+    scene, draft = session.scene, session.draft
     words = tmp_path / "words.jpg"
     words.write_text("this is no picture")
     empty = tmp_path / "empty.jpg"
@@ -80,19 +82,19 @@ def test_what_cannot_be_used_is_one_clear_notice_and_nothing_is_lost(
     for path in (words, empty):
         editor.upload("Upload a photo", path)
         editor.notice(path.name)
-        assert room.scene is scene
-        assert room.draft is draft
+        assert session.scene is scene
+        assert session.draft is draft
         editor.dismiss_notices()
     monkeypatch.setattr(viser_adapter, "MAX_UPLOAD_BYTES", 1000)
     large = tmp_path / "large.jpg"
     large.write_bytes(b"\xff" * 5000)
     editor.upload("Upload a photo", large)
     editor.notice("can be uploaded")
-    assert room.draft is draft
+    assert session.draft is draft
 
 
 def test_a_shape_found_by_words_is_inserted_on_the_selected_table(editor: EditorPage) -> None:
-    room = editor.running.room
+    session = editor.running.session
     editor.row("dining table").click()
     editor.until(lambda: editor.selection == ("table_1",))
     editor.tab("Library")
@@ -101,62 +103,62 @@ def test_a_shape_found_by_words_is_inserted_on_the_selected_table(editor: Editor
     tile = editor.page.locator(".dio .tile:visible", has_text="lamp a")
     expect(editor.page.locator(".dio .tile:visible", has_text="chair a")).to_have_count(0)
     tile.get_by_role("button", name="Insert").click()
-    editor.until(lambda: len(room.scene.objects) == 6, "inserted")
-    new = room.scene.object(editor.selection[0])
-    assert room.scene.support_of(new.id).parent == "table_1"
+    editor.until(lambda: len(session.scene.objects) == 6, "inserted")
+    new = session.scene.object(editor.selection[0])
+    assert session.scene.support_of(new.id).parent == "table_1"
     assert new.corners_world[:, 2].min() == pytest.approx(0.74, abs=1e-6)
     editor.settle()
     shown = editor.page.evaluate("Object.keys(window.__viserMutable.nodeRefFromName)")
-    assert any(n.startswith(str(room.viewport.node_name(new.id))) for n in shown)
+    assert any(n.startswith(str(session.viewport.node_name(new.id))) for n in shown)
 
 
 @pytest.mark.parametrize("recipe", ["Tidy up (feasible)", "As in the paper"])
 def test_the_layout_is_optimised_before_your_eyes_and_undone(editor: EditorPage, recipe: str) -> None:
-    room = editor.running.room
-    lifted = room.scene.object("chair_1").pose.moved((0.0, 0.0, 0.3))
-    room.desk.post(lambda: room.edit("lift", lambda s: _with_pose(s, "chair_1", lifted)))
-    editor.until(lambda: room.scene.object("chair_1").pose == lifted)
+    session = editor.running.session
+    lifted = session.scene.object("chair_1").pose.moved((0.0, 0.0, 0.3))
+    session.ui_thread.post(lambda: session.edit("lift", lambda s: _with_pose(s, "chair_1", lifted)))
+    editor.until(lambda: session.scene.object("chair_1").pose == lifted)
     editor.row("picture").click()
     editor.page.keyboard.press("l")
-    editor.until(lambda: room.scene.object("picture_1").locked)
-    picture = room.scene.object("picture_1").pose
-    before = room.scene
+    editor.until(lambda: session.scene.object("picture_1").locked)
+    picture = session.scene.object("picture_1").pose
+    before = session.scene
     editor.tab("Arrange")
     editor.page.get_by_label("Recipe").click()
     editor.page.get_by_role("option", name=recipe).click()
-    node = room.viewport.node_name("chair_1")
+    node = session.viewport.node_name("chair_1")
     editor.page.evaluate(WATCH, node)
     editor.button("Optimise layout").click()
-    editor.until(lambda: room.jobs.status is None and room.scene is not before, "arranged", seconds=90)
+    editor.until(lambda: session.jobs.status is None and session.scene is not before, "arranged", seconds=90)
     editor.settle()
-    assert room.scene.object("chair_1").corners_world[:, 2].min() == pytest.approx(0.0, abs=0.01)
-    assert room.scene.object("picture_1").pose == picture
+    assert session.scene.object("chair_1").corners_world[:, 2].min() == pytest.approx(0.0, abs=0.01)
+    assert session.scene.object("picture_1").pose == picture
     assert len(editor.page.evaluate("window.__heights")) > 2, "the chair is seen on its way"
     expect(editor.page.get_by_text("Before → after")).to_be_visible()
     editor.page.keyboard.press("Control+z")
-    editor.until(lambda: room.scene.object("chair_1").pose == lifted, "one undo takes it back")
+    editor.until(lambda: session.scene.object("chair_1").pose == lifted, "one undo takes it back")
 
 
 def test_cancelling_the_optimiser_restores_everything(editor: EditorPage) -> None:
-    room = editor.running.room
-    before = room.scene
+    session = editor.running.session
+    before = session.scene
     editor.tab("Arrange")
     editor.page.get_by_label("Recipe").click()
     editor.page.get_by_role("option", name="All in one").click()
     editor.button("Optimise layout").click()
     editor.button("Cancel").click()
-    editor.until(lambda: room.jobs.status is None, "stopped")
+    editor.until(lambda: session.jobs.status is None, "stopped")
     editor.notice("nothing was changed")
-    assert room.scene is before
+    assert session.scene is before
 
 
 def test_projects_are_saved_reopened_and_exported(editor: EditorPage, tmp_path: Path) -> None:
-    room = editor.running.room
+    session = editor.running.session
     projects = tmp_path / "projects"
     make_project(projects / "second", furnished_scene())
     editor.row("lamp").click()
     editor.button("Delete").click()
-    editor.until(lambda: not room.scene.has_object("lamp_1"))
+    editor.until(lambda: not session.scene.has_object("lamp_1"))
     saved = Project.open(projects / "demo")
     editor.until(lambda: not saved.load_scene().has_object("lamp_1"), "saved by itself", seconds=3)
     editor.tab("Project")
@@ -166,22 +168,22 @@ def test_projects_are_saved_reopened_and_exported(editor: EditorPage, tmp_path: 
     download.value.save_as(path)
     model = trimesh.load_scene(path)
     assert np.sort(model.extents)[-1] == pytest.approx(4.4, abs=0.3)
-    room.desk.post(room.refresh)
+    session.ui_thread.post(session.refresh)
     editor.page.locator(".dio .row", has_text="second").get_by_role("button", name="Open").click()
-    editor.until(lambda: room.project is not None and room.project.name == "second", "opened")
-    editor.until(lambda: room.scene.has_object("lamp_1"), "its scene is shown")
+    editor.until(lambda: session.project is not None and session.project.name == "second", "opened")
+    editor.until(lambda: session.scene.has_object("lamp_1"), "its scene is shown")
     expect(editor.page.locator(".dio .row", has_text="demo").get_by_role("button", name="Open")).to_be_visible()
 
 
 def test_the_photo_view_stands_where_the_photo_was_taken(editor: EditorPage) -> None:
-    room = editor.running.room
-    camera = room.scene.camera
+    session = editor.running.session
+    camera = session.scene.camera
     assert camera is not None
     editor.button("Photo view").click()
-    view = editor.guest.view
+    view = editor.client.view
     editor.until(lambda: view.through_photo)
     editor.settle()
-    for point in (room.scene.object("table_1").pose.position, np.array([1.0, 2.0, 0.0])):
+    for point in (session.scene.object("table_1").pose.position, np.array([1.0, 2.0, 0.0])):
         u, v = camera.project(point) - (camera.intrinsics.cx, camera.intrinsics.cy)
         box = editor.canvas_box()
         x, y = editor.place_of(point)

@@ -9,25 +9,14 @@ import numpy as np
 import pytest
 
 from diorama_core.artefacts import Inputs, Photo
-from diorama_core.evaluation import paper
-from diorama_core.evaluation.architecture_bench import RoomResult, architecture_table
-from diorama_core.evaluation.architecture_metrics import architecture_scores
-from diorama_core.evaluation.cases import STANDARD_SCENES, Case, recipe
-from diorama_core.evaluation.dataset.truth import TruthView, in_photo_world, moved
-from diorama_core.evaluation.pose_bench import with_true_architecture, with_true_graph
-from diorama_core.evaluation.pose_comparison import PoseScores
-from diorama_core.evaluation.pose_tables import (
-    GroupCounts,
-    ablation_table,
-    all_in_one_table,
-    category_table,
-    comparison_table,
-    groups_table,
-    retrievals_table,
-)
-from diorama_core.evaluation.retrieval_bench import ObjectResult, recall_table, retrieval_table
-from diorama_core.evaluation.rooms import box_library, generate_room, room_box
-from diorama_core.evaluation.scene_metrics import (
+from diorama_core.evaluation.benchmarks.architecture import RoomResult, architecture_table
+from diorama_core.evaluation.benchmarks.cases import STANDARD_SCENES, Case, recipe
+from diorama_core.evaluation.benchmarks.pose import with_true_architecture, with_true_graph
+from diorama_core.evaluation.benchmarks.pose_comparison import PoseScores
+from diorama_core.evaluation.benchmarks.retrieval import ObjectResult, recall_table, retrieval_table
+from diorama_core.evaluation.benchmarks.system import CaseResult, build_case, scene_table, system_table
+from diorama_core.evaluation.metrics.architecture import architecture_scores
+from diorama_core.evaluation.metrics.scene import (
     SceneScores,
     mean_mask_iou,
     out_of_bounds_share,
@@ -36,12 +25,23 @@ from diorama_core.evaluation.scene_metrics import (
     surface_agreement,
     without_unasked,
 )
-from diorama_core.evaluation.shape_metrics import chamfer, shape_distance
-from diorama_core.evaluation.speed_bench import Series, speed_table
-from diorama_core.evaluation.system_bench import CaseResult, build_case, scene_table, system_table
+from diorama_core.evaluation.metrics.shape import chamfer, shape_distance
+from diorama_core.evaluation.reports import paper
+from diorama_core.evaluation.reports.pose_tables import (
+    GroupCounts,
+    ablation_table,
+    all_in_one_table,
+    category_table,
+    comparison_table,
+    groups_table,
+    retrievals_table,
+)
+from diorama_core.evaluation.speed.bench import Series, speed_table
 from diorama_core.progress import Progress
 from diorama_core.render.raycast import MeshCaster
 from diorama_core.scene.types import Architecture, Camera, Intrinsics, Scene, yaw_rotation
+from diorama_core.synthesis.layout_rooms import box_library, generate_room, room_box
+from diorama_core.synthesis.truth import TruthView, in_photo_world, moved
 
 SIZE = (80, 60)
 
@@ -123,7 +123,7 @@ def test_points_stand_for_the_surface_of_a_posed_shape(library):
     assert np.allclose(np.abs(local).max(axis=0), item.size_m / 2, atol=0.03)
 
 
-def test_things_over_the_edge_of_the_floor_are_out_of_bounds(view):
+def test_objects_over_the_edge_of_the_floor_are_out_of_bounds(view):
     scene = without_unasked(view)
     assert out_of_bounds_share(scene) == 0
     first, *rest = scene.objects

@@ -110,7 +110,7 @@ def test_plane_texture_covers_the_face_only() -> None:
     assert len(document["images"]) == 1
 
 
-def test_camera_looks_where_the_photo_was_taken() -> None:
+def test_camera_faces_where_the_photo_was_taken() -> None:
     scene = furnished_room(LIBRARY)
     assert scene.camera is not None
     document = gltf_reader.check(glb_bytes(scene, LIBRARY))

@@ -6,7 +6,7 @@ import trimesh
 from scipy.spatial import ConvexHull
 
 from diorama_core.geometry.convex import (
-    MOST_PARTS,
+    MAX_PARTS,
     box_part,
     convex_parts,
     hull_part,
@@ -56,7 +56,7 @@ def test_a_table_of_boxes_is_its_boxes() -> None:
 )
 def test_parts_contain_the_mesh(mesh: trimesh.Trimesh) -> None:
     parts = convex_parts(mesh)
-    assert 1 <= len(parts) <= MOST_PARTS
+    assert 1 <= len(parts) <= MAX_PARTS
     points, _ = trimesh.sample.sample_surface(mesh, 500, seed=1)
     assert contains(parts, np.asarray(points)).all()
 
@@ -82,7 +82,7 @@ def test_a_bevelled_box_becomes_a_box() -> None:
     assert np.allclose(np.abs(part.vertices).max(axis=0), [0.5, 1, 0.25])
 
 
-def test_flat_things_get_a_thickness() -> None:
+def test_flat_objects_get_a_thickness() -> None:
     part = hull_part(np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]))
     assert np.ptp(part.vertices[:, 2]) > 0
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from diorama_core.geometry.looks import look_of
-from diorama_core.geometry.palettes import NOTHING_KNOWN, palette_agreement, palette_of_crop, palette_of_look
+from diorama_core.geometry.palettes import NOTHING_KNOWN, palette_agreement, palette_of_appearance, palette_of_crop
+from diorama_core.geometry.shape_appearance import appearance_of
 from tests.primitives import material
 
 RED, GREEN = (200, 30, 30), (30, 160, 40)
@@ -34,12 +34,12 @@ def test_only_what_the_mask_covers_counts() -> None:
     mask[:, :20] = True
     seen = palette_of_crop(crop(RED, GREEN), mask)
     assert len(seen.share) == 1
-    assert palette_agreement(seen, palette_of_look(look_of(painted(RED)))) > 0.9
+    assert palette_agreement(seen, palette_of_appearance(appearance_of(painted(RED)))) > 0.9
 
 
 def test_the_same_colour_agrees_more_than_another() -> None:
     seen = palette_of_crop(crop(RED, RED), np.ones((20, 40), bool))
-    same, other = (palette_agreement(seen, palette_of_look(look_of(painted(c)))) for c in (RED, GREEN))
+    same, other = (palette_agreement(seen, palette_of_appearance(appearance_of(painted(c)))) for c in (RED, GREEN))
     assert same > 2 * other
 
 
@@ -51,4 +51,4 @@ def test_shares_add_up_to_one() -> None:
 def test_nothing_known_is_neutral() -> None:
     empty = palette_of_crop(crop(RED, GREEN), np.zeros((20, 40), bool))
     assert empty == NOTHING_KNOWN
-    assert palette_agreement(empty, palette_of_look(look_of(painted(RED)))) == 0.5
+    assert palette_agreement(empty, palette_of_appearance(appearance_of(painted(RED)))) == 0.5

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from diorama_core.evaluation.rooms import BoxLibrary, box_library
+from diorama_core.synthesis.layout_rooms import BoxLibrary, box_library
 from tests.layout.small_rooms import Room
 
 

@@ -2,8 +2,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.evaluation.rooms import BoxLibrary, room_box
 from diorama_core.scene.types import Pose, Scene, SceneObject, Support
+from diorama_core.synthesis.layout_rooms import BoxLibrary, room_box
 
 
 class Room:

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from diorama_core.errors import UnavailableError
-from diorama_core.evaluation.rooms import box_library, generate_room
 from diorama_core.layout.exact import drift, mesh_overlap_m3, stable_share
-from diorama_core.layout.feasible import FeasibleRecipe
+from diorama_core.layout.feasible.recipe import FeasibleRecipe
 from diorama_core.progress import Progress
+from diorama_core.synthesis.layout_rooms import box_library, generate_room
 from tests.layout.small_rooms import Room
 
 LIBRARY = box_library()

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from diorama_core.errors import InputError
-from diorama_core.evaluation.rooms import box_library, generate_room
 from diorama_core.layout.recipes import NAMES, recipe
 from diorama_core.layout.weights import AS_IT_IS, DEFAULT_COSTS, PUBLISHED_COSTS, Weights, weighted_costs
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Camera, Intrinsics, Scene
+from diorama_core.synthesis.layout_rooms import box_library, generate_room
 
 LIBRARY = box_library()
 
@@ -46,7 +46,7 @@ def test_every_weight_makes_a_difference_to_its_recipe(name: str, cost: str) -> 
     assert max(far) > 1e-4
 
 
-def test_without_the_cost_of_touching_things_float() -> None:
+def test_without_the_cost_of_touching_objects_float() -> None:
     scene = observed()
     _, plain = recipe("paper", LIBRARY).optimise(scene, Progress())
     _, loose = recipe("paper", LIBRARY, weights=Weights(place=0.0)).optimise(scene, Progress())

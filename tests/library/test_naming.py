@@ -23,10 +23,10 @@ from diorama_core.library.near_names import near_names
     ],
 )  # fmt: skip
 def test_names_that_are_known(text: str, category: str) -> None:
-    wish = understand(text)
-    assert wish.categories == (category,)
-    assert wish.exact
-    assert wish.note == ""
+    query = understand(text)
+    assert query.categories == (category,)
+    assert query.exact
+    assert query.note == ""
 
 
 @pytest.mark.parametrize(
@@ -39,10 +39,10 @@ def test_names_that_are_known(text: str, category: str) -> None:
     ],
 )  # fmt: skip
 def test_unknown_nouns_fall_back_to_the_nearest_name_and_say_so(text: str, category: str, says: str) -> None:
-    wish = understand(text)
-    assert wish.categories == (category,)
-    assert not wish.exact
-    assert says in wish.note
+    query = understand(text)
+    assert query.categories == (category,)
+    assert not query.exact
+    assert says in query.note
 
 
 def test_without_any_likeness_the_size_decides_and_says_so() -> None:
@@ -56,14 +56,14 @@ def test_without_any_likeness_the_size_decides_and_says_so() -> None:
     assert written.categories != long_low.categories
 
 
-def test_two_things_at_once() -> None:
+def test_two_objects_at_once() -> None:
     assert understand("sofas and rugs").categories == ("sofa", "rug")
 
 
-def test_words_that_describe_are_kept_apart_from_the_noun() -> None:
-    wish = understand("grey armchairs with cushions")
-    assert wish.words == ("gray", "cushion")
-    assert wish.naming == ("armchair",)
+def test_words_that_describe_are_retained_apart_from_the_noun() -> None:
+    query = understand("grey armchairs with cushions")
+    assert query.words == ("gray", "cushion")
+    assert query.naming == ("armchair",)
     assert understand("desk lamp").words == ("desk",)
     assert understand("").words == ()
 
@@ -123,5 +123,5 @@ def test_size_distance_knows_both_ways_round() -> None:
 
 @given(st.text(max_size=60))
 def test_any_text_is_survived(text: str) -> None:
-    wish = understand(text)
-    assert set(wish.categories) <= {c.name for c in taxonomy.CATEGORIES}
+    query = understand(text)
+    assert set(query.categories) <= {c.name for c in taxonomy.CATEGORIES}

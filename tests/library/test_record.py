@@ -52,7 +52,7 @@ def test_a_broken_record_is_a_library_error(text: str) -> None:
         shape_from_json(text)
 
 
-def test_contact_faces_follow_where_things_are_found() -> None:
+def test_contact_faces_follow_where_objects_are_found() -> None:
     assert [usual_contact_faces(m)[0] for m in ("floor", "surface", "wall", "ceiling")] == [
         "bottom",
         "bottom",

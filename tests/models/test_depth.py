@@ -62,7 +62,7 @@ def test_noise_and_invalid_pixels_do_little_harm(rng: np.random.Generator) -> No
     assert np.median(np.abs(seen.depth_m[known] / points[..., 2][known] - 1)) < 0.05
 
 
-def test_a_given_focal_length_is_kept() -> None:
+def test_a_given_focal_length_is_retained() -> None:
     points, normals = _room(110.0)
     points[..., 2] -= 0.7
     k = Intrinsics(WIDTH, HEIGHT, 110.0, 110.0, WIDTH / 2, HEIGHT / 2)
@@ -106,7 +106,7 @@ def test_moge_end_to_end(tmp_path: Path) -> None:
     outputs = ["points", "normal", "mask", "metric_scale"]
     graph = export(_Moge(), arguments, tmp_path / "moge.onnx", ["image", "num_tokens"], outputs)
     picture = np.full((HEIGHT, WIDTH, 3), 90, np.uint8)
-    seen = Moge2(graph, pool=SessionPool()).see(picture, None)
+    seen = Moge2(graph, pool=SessionPool()).predict(picture, None)
     assert seen.depth_m.shape == (HEIGHT, WIDTH)
     assert seen.intrinsics.fx == pytest.approx(110.0, rel=1e-3)
     np.testing.assert_allclose(seen.depth_m, _room(110.0)[0][..., 2], rtol=2e-3)
@@ -129,7 +129,7 @@ def test_metric3d_undoes_padding_scale_and_canonical_camera(tmp_path: Path, size
     height, width = size
     k = Intrinsics(width, height, 400.0, 400.0, width / 2, height / 2)
     facade = Metric3d(graph, pool=SessionPool())
-    seen = facade.see(np.full((height, width, 3), 90, np.uint8), k)
+    seen = facade.predict(np.full((height, width, 3), 90, np.uint8), k)
     scale = min(616 / height, 1064 / width)
     left = (1064 - int(width * scale)) // 2
     inner = int(width * scale)
@@ -138,4 +138,6 @@ def test_metric3d_undoes_padding_scale_and_canonical_camera(tmp_path: Path, size
     np.testing.assert_allclose(seen.depth_m, np.broadcast_to(expected, size), rtol=2e-3)
     np.testing.assert_allclose(seen.normals_camera, np.broadcast_to([0, 0, -1.0], (*size, 3)), atol=1e-6)
     assert seen.intrinsics == k
-    assert facade.see(np.zeros((height, width, 3), np.uint8), None).intrinsics.horizontal_fov_rad == pytest.approx(1.05)
+    assert facade.predict(np.zeros((height, width, 3), np.uint8), None).intrinsics.horizontal_fov_rad == pytest.approx(
+        1.05
+    )

@@ -178,7 +178,7 @@ def test_openclip_embeds_the_same(tmp_path: Path, photo: np.ndarray) -> None:
     assert np.linalg.norm(shape.shape([photo])) == pytest.approx(1.0, abs=1e-5)
 
 
-def test_birefnet_gives_the_same_probabilities_and_looks_twice(tmp_path: Path, photo: np.ndarray) -> None:
+def test_birefnet_gives_the_same_probabilities_and_runs_twice(tmp_path: Path, photo: np.ndarray) -> None:
     network, graph = tiny_networks.birefnet(tmp_path / "model.onnx")
     facade = Foreground(graph, pool=SessionPool())
     size = photo.shape[:2]

@@ -189,7 +189,7 @@ def test_an_unpinned_revision_is_resolved_and_recorded(hub: Hub, store: ModelSto
         assert store.installed(unpinned).revision == SHA
 
 
-def test_without_a_published_checksum_later_downloads_are_held_to_the_first(hub: Hub, store: ModelStore) -> None:
+def test_without_a_published_checksum_later_downloads_are_supported_to_the_first(hub: Hub, store: ModelStore) -> None:
     unpublished = _network(files=(ModelFile("onnx/model.onnx", len(GRAPH)), ModelFile("tokenizer.json", len(TOKENS))))
     assert unpublished.checked_by.startswith("size checked; no published checksum")
     assert _network().checked_by.startswith("no published checksum")

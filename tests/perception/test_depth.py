@@ -13,12 +13,12 @@ from diorama_core.progress import Progress
 from diorama_core.scene.types import Architecture
 from tests.synthetic_rooms import box_room, cuboid, look, shoot
 
-THINGS = (cuboid("a", (-0.8, 2.5, 0), (0.6, 1.0, 0.8), 20), cuboid("b", (0.5, 2.0, 0), (0.5, 0.5, 0.9)))
+ITEMS = (cuboid("a", (-0.8, 2.5, 0), (0.6, 1.0, 0.8), 20), cuboid("b", (0.5, 2.0, 0), (0.5, 0.5, 0.9)))
 
 
 @pytest.fixture(scope="module")
 def shot():
-    return shoot(look(15, 12), box_room(-1.8, 2.2, 4.0, 2.6), THINGS)
+    return shoot(look(15, 12), box_room(-1.8, 2.2, 4.0, 2.6), ITEMS)
 
 
 def run(stage, shot):
@@ -43,7 +43,7 @@ def test_normals_are_unit_and_face_the_camera(shot, stage):
 def test_pixels_of_a_mask_that_miss_the_cuboid_get_its_depth(shot):
     grown = replace(shot.objects[0], mask=np.roll(shot.objects[0].mask, -40, axis=1) | shot.objects[0].mask)
     found = run(RenderedDepth(), replace(shot, objects=(grown,)))
-    centre_depth = shot.camera.to_camera(THINGS[0].centre)[2]
+    centre_depth = shot.camera.to_camera(ITEMS[0].centre)[2]
     extra = found.depth_m[grown.mask & ~shot.objects[0].mask]
     assert np.abs(extra - centre_depth).max() < 0.8
 

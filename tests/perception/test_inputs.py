@@ -343,7 +343,7 @@ class TestDepth:
 class TestBoxes:
     photo = encoded(picture())
 
-    def test_classes_are_understood_and_words_kept(self) -> None:
+    def test_classes_are_understood_and_words_retained(self) -> None:
         given = boxes_json(
             box(1, 1, 20, 20, word="night_stand"),
             box(1, 1, 20, 20, word="couches"),

@@ -31,10 +31,10 @@ def chair(*box: float) -> LabelledBox:
 
 def test_oval_is_found_inside_its_box() -> None:
     rgb, oval = picture()
-    (thing,) = EmbeddedMasks().segment(inputs(rgb, chair(100, 80, 220, 160)), Progress())
-    iou = (thing.mask & oval).sum() / (thing.mask | oval).sum()
+    (item,) = EmbeddedMasks().segment(inputs(rgb, chair(100, 80, 220, 160)), Progress())
+    iou = (item.mask & oval).sum() / (item.mask | oval).sum()
     assert iou > 0.9
-    assert thing.mask_confidence > 0.8
+    assert item.mask_confidence > 0.8
 
 
 def test_masks_stay_inside_their_boxes_and_repeat_exactly() -> None:
@@ -43,12 +43,12 @@ def test_masks_stay_inside_their_boxes_and_repeat_exactly() -> None:
     first = EmbeddedMasks().segment(inputs(rgb, *boxes), Progress())
     second = EmbeddedMasks().segment(inputs(rgb, *boxes), Progress())
     assert first == second
-    for thing in first:
-        rows, columns = np.nonzero(thing.mask)
-        assert columns.min() >= thing.box[0] - 1
-        assert columns.max() <= thing.box[2]
-        assert rows.min() >= thing.box[1] - 1
-        assert rows.max() <= thing.box[3]
+    for item in first:
+        rows, columns = np.nonzero(item.mask)
+        assert columns.min() >= item.box[0] - 1
+        assert columns.max() <= item.box[2]
+        assert rows.min() >= item.box[1] - 1
+        assert rows.max() <= item.box[3]
 
 
 def test_ids_are_snake_case_numbered_and_unique() -> None:
@@ -66,20 +66,20 @@ def test_ids_are_snake_case_numbered_and_unique() -> None:
 )
 def test_degenerate_boxes_give_a_mask(box: tuple[float, ...]) -> None:
     rgb, _ = picture()
-    (thing,) = EmbeddedMasks().segment(inputs(rgb, chair(*box)), Progress())
-    assert thing.mask.any()
-    assert 0 < thing.mask_confidence <= 1
+    (item,) = EmbeddedMasks().segment(inputs(rgb, chair(*box)), Progress())
+    assert item.mask.any()
+    assert 0 < item.mask_confidence <= 1
 
 
 def test_picture_of_one_colour_falls_back_to_the_box() -> None:
-    (thing,) = EmbeddedMasks().segment(inputs(np.full((60, 80, 3), 127, np.uint8), chair(10, 10, 40, 50)), Progress())
-    assert thing.mask.sum() > 0
-    assert thing.mask_confidence < 1
+    (item,) = EmbeddedMasks().segment(inputs(np.full((60, 80, 3), 127, np.uint8), chair(10, 10, 40, 50)), Progress())
+    assert item.mask.sum() > 0
+    assert item.mask_confidence < 1
 
 
 def test_picture_of_one_pixel() -> None:
-    (thing,) = EmbeddedMasks().segment(inputs(np.zeros((1, 1, 3), np.uint8), chair(0, 0, 1, 1)), Progress())
-    assert thing.mask.all()
+    (item,) = EmbeddedMasks().segment(inputs(np.zeros((1, 1, 3), np.uint8), chair(0, 0, 1, 1)), Progress())
+    assert item.mask.all()
 
 
 def test_given_instances_are_taken_as_they_are() -> None:

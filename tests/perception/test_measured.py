@@ -14,7 +14,7 @@ from diorama_core.progress import Progress
 from tests.synthetic_rooms import box_room, cuboid, look, shoot
 
 CATEGORIES = ("sofa", "coffee table", "box", "bookshelf", "chair")
-THINGS = (
+ITEMS = (
     cuboid("sofa", (-0.9, 3.4, 0), (0.9, 2.0, 0.8), -90),
     cuboid("table", (0.2, 2.2, 0), (0.7, 1.2, 0.45)),
     cuboid("box", (0.2, 2.2, 0.45), (0.2, 0.3, 0.2), 25),
@@ -28,10 +28,10 @@ def measure(shot):
 
 
 @pytest.mark.parametrize(("noise", "tolerance"), [(0.0, 0.08), (0.01, 0.12)])
-def test_cuboids_are_where_the_things_are(noise, tolerance):
-    shot = shoot(look(5, 18, 1.6), box_room(-2.2, 2.2, 4.4, 2.6), THINGS, CATEGORIES, noise=noise)
+def test_cuboids_are_where_the_objects_are(noise, tolerance):
+    shot = shoot(look(5, 18, 1.6), box_room(-2.2, 2.2, 4.4, 2.6), ITEMS, CATEGORIES, noise=noise)
     found = {c.object_id: c for c in measure(shot).cuboids}
-    for true in THINGS:
+    for true in ITEMS:
         cuboid_found = found[true.object_id]
         error = np.abs(cuboid_found.corners_world.mean(axis=0) - true.centre)
         assert error.max() < tolerance, true.object_id
@@ -39,7 +39,7 @@ def test_cuboids_are_where_the_things_are(noise, tolerance):
 
 
 def test_supports_follow_contact():
-    shot = shoot(look(5, 18, 1.6), box_room(-2.2, 2.2, 4.4, 2.6), THINGS, CATEGORIES)
+    shot = shoot(look(5, 18, 1.6), box_room(-2.2, 2.2, 4.4, 2.6), ITEMS, CATEGORIES)
     parents = {s.child: s.parent for s in measure(shot).supports}
     assert parents == {"sofa": "floor", "table": "floor", "box": "table", "shelf": "floor", "chair": "floor"}
 
@@ -66,7 +66,7 @@ def test_a_picture_hangs_on_the_wall():
 
 
 def test_a_mask_over_a_hole_in_the_depth_gives_a_doubtful_cuboid():
-    shot = shoot(look(0, 15), box_room(-2.0, 2.0, 4.0, 2.6), (THINGS[1],), ("coffee table",))
+    shot = shoot(look(0, 15), box_room(-2.0, 2.0, 4.0, 2.6), (ITEMS[1],), ("coffee table",))
     holed = np.where(shot.objects[0].mask, 0, shot.inputs.depth_m).astype(np.float32)
     shot = replace(shot, inputs=replace(shot.inputs, depth_m=holed))
     (found,) = measure(shot).cuboids

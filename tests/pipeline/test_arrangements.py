@@ -17,7 +17,7 @@ def candidate(shape_id: str, score: float, x: float, scale: float = 1.0) -> Cand
     return Candidate(shape_id, SIZE, score, Pose.upright((x, 0.0, 0.45 * scale), 0.3, (scale,) * 3))
 
 
-def thing(name: str, category: str, x: float, ranked: dict[str, float], scale: float = 1.0) -> SceneObject:
+def item(name: str, category: str, x: float, ranked: dict[str, float], scale: float = 1.0) -> SceneObject:
     candidates = tuple(candidate(s, v, x, scale) for s, v in ranked.items())
     best = candidates[0]
     return SceneObject(
@@ -26,16 +26,16 @@ def thing(name: str, category: str, x: float, ranked: dict[str, float], scale: f
     )  # fmt: skip
 
 
-def room(*things: SceneObject) -> Scene:
-    return Scene(camera=None, architecture=Architecture(()), objects=things)
+def room(*items: SceneObject) -> Scene:
+    return Scene(camera=None, architecture=Architecture(()), objects=items)
 
 
 CHAIRS = (
-    thing("c1", "chair", 0.0, {"a": 0.9, "b": 0.8, "x": 0.1}),
-    thing("c2", "chair", 1.0, {"a": 0.9, "c": 0.7, "b": 0.6}, 1.04),
-    thing("c3", "chair", 2.0, {"a": 0.9, "b": 0.5}, 0.98),
+    item("c1", "chair", 0.0, {"a": 0.9, "b": 0.8, "x": 0.1}),
+    item("c2", "chair", 1.0, {"a": 0.9, "c": 0.7, "b": 0.6}, 1.04),
+    item("c3", "chair", 2.0, {"a": 0.9, "b": 0.5}, 0.98),
 )
-LAMP = thing("l", "lamp", 3.0, {"p": 0.9, "q": 0.8})
+LAMP = item("l", "lamp", 3.0, {"p": 0.9, "q": 0.8})
 
 
 def test_a_set_changes_its_shape_as_one() -> None:
@@ -50,14 +50,14 @@ def test_a_set_changes_its_shape_as_one() -> None:
 
 def test_what_scores_too_little_is_no_alternative() -> None:
     assert plausible_shapes(CHAIRS) == ("a", "b")
-    assert plausible_shapes([thing("s", "sofa", 0, {"a": 0.9, "b": 0.2})]) == ("a",)
+    assert plausible_shapes([item("s", "sofa", 0, {"a": 0.9, "b": 0.2})]) == ("a",)
     assert arrangement_count(room(*CHAIRS)) == 2
     assert arrangement_count(room()) == 1
 
 
 def test_shapes_of_one_form_are_one_alternative_where_the_photo_gives_the_colour() -> None:
     red = replace(
-        thing("s", "sofa", 0.0, {"grey": 0.9, "tan": 0.8, "rolled": 0.7, "rolled blue": 0.6}), colour=(1, 0, 0)
+        item("s", "sofa", 0.0, {"grey": 0.9, "tan": 0.8, "rolled": 0.7, "rolled blue": 0.6}), colour=(1, 0, 0)
     )
     of_one_form = ({"grey", "tan"}, {"rolled", "rolled blue"})
 
@@ -72,26 +72,26 @@ def test_shapes_of_one_form_are_one_alternative_where_the_photo_gives_the_colour
 
 
 def test_shapes_take_the_pose_that_was_fitted_to_them() -> None:
-    alone = thing("s", "sofa", 0.0, {"a": 0.9, "b": 0.8})
+    alone = item("s", "sofa", 0.0, {"a": 0.9, "b": 0.8})
     better = replace(alone.candidates[1], pose=Pose.upright((0.2, 0.1, 0.4), 1.2, (1.1, 0.9, 0.95)))
     scene = room(replace(alone, candidates=(alone.candidates[0], better)))
     assert arrangement(scene, 1).objects[0].pose == better.pose
 
 
-def test_a_shape_lent_by_another_of_the_set_stands_where_the_thing_stood() -> None:
-    lender = thing("c1", "chair", 0.0, {"a": 0.9, "b": 0.9})
-    other = thing("c2", "chair", 1.0, {"a": 0.9})
+def test_a_shape_lent_by_another_of_the_set_stands_where_the_object_stood() -> None:
+    lender = item("c1", "chair", 0.0, {"a": 0.9, "b": 0.9})
+    other = item("c2", "chair", 1.0, {"a": 0.9})
     changed = arrangement(room(lender, other), 1).object("c2")
     assert changed.shape_id == "b"
     assert np.allclose(changed.pose.position[:2], [1.0, 0.0])
 
 
-def test_what_is_locked_stays_and_what_stands_on_a_thing_follows() -> None:
+def test_what_is_locked_stays_and_what_stands_on_a_object_follows() -> None:
     locked = replace(CHAIRS[0], locked=True)
     assert arrangement(room(locked, LAMP), 1).objects[0] == locked
-    table = thing("t", "table", 0.0, {"a": 0.9, "b": 0.8})
+    table = item("t", "table", 0.0, {"a": 0.9, "b": 0.8})
     taller = replace(table.candidates[1], pose=Pose.upright((0, 0, 0.55), 0.0, (1, 1, 0.55 / 0.45)))
-    cup = thing("k", "cup", 0.0, {"m": 0.9})
+    cup = item("k", "cup", 0.0, {"m": 0.9})
     scene = replace(
         room(replace(table, candidates=(table.candidates[0], taller)), cup),
         supports=(Support("k", "t", "placed on"),),
@@ -99,7 +99,7 @@ def test_what_is_locked_stays_and_what_stands_on_a_thing_follows() -> None:
     assert arrangement(scene, 1).object("k").pose.position[2] - cup.pose.position[2] == pytest.approx(0.2)
 
 
-def test_things_of_a_set_are_equally_large_on_their_bases() -> None:
+def test_objects_of_a_set_are_equally_large_on_their_bases() -> None:
     changed = arrangement(room(*CHAIRS), 1)
     scales = np.array([o.pose.scale for o in changed.objects])
     assert np.ptp(scales, axis=0).max() < 1e-12
@@ -108,7 +108,7 @@ def test_things_of_a_set_are_equally_large_on_their_bases() -> None:
 
 
 def test_a_size_that_does_not_agree_is_left() -> None:
-    high = thing("c4", "chair", 4.0, {"a": 0.9, "b": 0.8}, 1.5)
+    high = item("c4", "chair", 4.0, {"a": 0.9, "b": 0.8}, 1.5)
     changed = arrangement(room(*CHAIRS, high), 1)
     assert changed.object("c4").pose.scale[0] == 1.5
     assert changed.object("c1").pose.scale[0] == changed.object("c2").pose.scale[0] < 1.1

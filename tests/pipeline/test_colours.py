@@ -35,7 +35,7 @@ def test_shade_does_not_split_a_colour() -> None:
     assert red < green < blue
 
 
-def test_many_coloured_tiny_and_empty_things_are_left_as_they_are(rng: np.random.Generator) -> None:
+def test_many_coloured_tiny_and_empty_objects_are_left_as_they_are(rng: np.random.Generator) -> None:
     _, sofa, _ = _masks()
     noise = rng.integers(0, 255, (60, 80, 3), dtype=np.uint8)
     dot = np.zeros((60, 80), bool)

@@ -7,7 +7,7 @@ import pytest
 
 from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import Cancelled
-from diorama_core.pipeline.runner import KEPT_PER_STAGE, Runner
+from diorama_core.pipeline.runner import CACHED_PER_STAGE, Runner
 from diorama_core.progress import CancelToken, Progress, ProgressEvent
 
 BOX = LabelledBox((0, 0, 4, 4), "chair", "chair")
@@ -80,9 +80,9 @@ def test_a_cancelled_run_resumes_after_its_finished_stages(tmp_path: Path) -> No
 
 
 def test_old_results_are_cleaned_up(tmp_path: Path) -> None:
-    for i in range(3 * KEPT_PER_STAGE):
+    for i in range(3 * CACHED_PER_STAGE):
         run(tmp_path, Widen(by=float(i)), BOX)
-    assert len(list(tmp_path.glob("widen-*.zip"))) == KEPT_PER_STAGE
+    assert len(list(tmp_path.glob("widen-*.zip"))) == CACHED_PER_STAGE
 
 
 def test_progress_of_parts_is_on_the_whole_jobs_scale() -> None:

@@ -197,10 +197,10 @@ class Room:
     def geometry(self) -> ObjectGeometry:
         cuboids = []
         for i in self.seen:
-            thing, turn = self.placed[i], self.quarter_turns[i]
-            R = thing.pose.R_world_object @ yaw_rotation(turn * np.pi / 2)
-            size = thing.size_m if turn % 2 == 0 else thing.size_m[[1, 0, 2]]
-            cuboids.append(Cuboid(f"o{i}", R, thing.pose.position, size, 0.9))
+            item, turn = self.placed[i], self.quarter_turns[i]
+            R = item.pose.R_world_object @ yaw_rotation(turn * np.pi / 2)
+            size = item.size_m if turn % 2 == 0 else item.size_m[[1, 0, 2]]
+            cuboids.append(Cuboid(f"o{i}", R, item.pose.position, size, 0.9))
         supports = tuple(Support(c.object_id, "floor") for c in cuboids)
         return ObjectGeometry(self.camera, tuple(cuboids), supports, "known")
 

@@ -27,7 +27,7 @@ def test_between_shapes_that_are_as_good_a_set_takes_the_same() -> None:
     assert [best(r) for r in apart] == ["a", "b"]  # measured depth says that they differ
 
 
-def test_other_kinds_unnamed_things_and_other_choices_stand_alone() -> None:
+def test_other_kinds_unnamed_objects_and_other_choices_stand_alone() -> None:
     a, b = {"a": 0.0, "b": -1.0}, {"a": -1.0, "b": 0.0}
     for categories in (["chair", "stool"], ["object", "object"]):
         assert [best(r) for r in agreed_ranks(categories, [a, b], [1.0, 0.1], [ANY] * 2)] == ["a", "b"]

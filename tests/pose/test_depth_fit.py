@@ -13,10 +13,10 @@ from diorama_core.artefacts import DepthMap
 from diorama_core.geometry.observed import observe_among
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.pose.depth_fit import DepthFit, Outline, SeenPoints
-from diorama_core.pose.evidence import Evidence
 from diorama_core.pose.facing import Facing
 from diorama_core.pose.hypotheses import anchor_of
 from diorama_core.pose.limits import SizeLimits
+from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.measured import MeasuredObject
 from diorama_core.pose.surface import measured_surface, noise_of
 from diorama_core.scene.types import yaw_rotation
@@ -25,14 +25,14 @@ from tests.pose.rooms import LIBRARY, Room, camera_at, standing, yaw_error_deg
 
 def measured(room: Room, index: int = 0, depth: DepthMap | None = None) -> MeasuredObject:
     """The first thing of a room as depth shows it, with its true cuboid."""
-    thing, cuboid = room.objects[index], room.geometry.cuboids[index]
+    item, cuboid = room.objects[index], room.geometry.cuboids[index]
     centres = np.array([c.centre for c in room.geometry.cuboids])
     seen = observe_among(room.camera, room.objects, centres, [None] * len(centres), index, 56)
     depth = depth or room.depth(True)
-    surface = measured_surface(depth, seen, thing.mask, noise_of(depth))
+    surface = measured_surface(depth, seen, item.mask, noise_of(depth))
     evidence = Evidence(room.camera, seen, Facing(()), surface)
     anchor = anchor_of(cuboid, False, room.camera.position[:2] - cuboid.centre[:2])
-    found = MeasuredObject.of(thing.mask, evidence, cuboid, anchor, on_floor=False)
+    found = MeasuredObject.of(item.mask, evidence, cuboid, anchor, on_floor=False)
     assert found is not None
     return found
 
@@ -101,7 +101,7 @@ def test_turns_all_around_contain_the_truth() -> None:
     assert np.linalg.norm(tried.poses.position[best] - true.position) < 0.12
 
 
-def test_outlines_know_what_the_border_and_nearer_things_may_hide() -> None:
+def test_outlines_know_what_the_border_and_nearer_objects_may_hide() -> None:
     alone = Room(camera_at(), (standing("chair", 0.0, 3.0, 30.0),), (0,))
     outline = measured(alone).outline
     assert outline is not None
@@ -123,7 +123,7 @@ def test_outlines_reach_to_the_edges_of_the_pixels() -> None:
     assert Outline.of(measured(room).evidence.seen, np.zeros_like(room.objects[0].mask)) is None
 
 
-def test_where_its_foot_is_hidden_a_thing_may_stand_anywhere_below() -> None:
+def test_where_its_foot_is_hidden_a_object_may_stand_anywhere_below() -> None:
     seen_foot = Room(camera_at(), (standing("chair", 0.0, 3.0, 30.0),), (0,))
     hidden_foot = Room(camera_at(), (standing("chair", 0.0, 4.2, 30.0), standing("sofa", 0.0, 2.9, -90.0)), (0, 2))
     sure, unsure = measured(seen_foot).contact, measured(hidden_foot).contact

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from diorama_core.evaluation.pose_metrics import Alignment, Placed, pooled, scene_alignment
+from diorama_core.evaluation.metrics.pose import Alignment, Placed, pooled, scene_alignment
 from diorama_core.library.ingest.relief import relief
 from diorama_core.library.ingest.symmetry import symmetry_fold
 from diorama_core.library.record import Shape

@@ -26,7 +26,7 @@ def test_scales_are_finite_positive_and_evenly_stretched(shape, observed, name) 
 
 
 @given(st.floats(0.3, 3.0), st.floats(0.3, 3.0), st.floats(0.3, 3.0))
-def test_a_wish_within_the_limits_is_met_exactly(x, y, z) -> None:
+def test_a_request_within_the_limits_is_met_exactly(x, y, z) -> None:
     limits = SizeLimits.of((x, y, z), "object", np.array([x, y, z]))
     wanted = np.array([x, y, z]) * np.array([1.1, 0.95, 1.05])
     assert np.allclose(limits.scale_for(wanted) * [x, y, z], wanted)

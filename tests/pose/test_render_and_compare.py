@@ -40,9 +40,9 @@ def test_the_true_shape_is_turned_as_it_stands(measured: bool) -> None:
 def test_posed_shapes_land_on_their_boxes_and_keep_their_base() -> None:
     for seed in (1, 2, 3):
         room = random_room(seed)
-        for found, thing in zip(posed(room), room.objects, strict=True):
+        for found, item in zip(posed(room), room.objects, strict=True):
             best = found.candidates[0]
-            assert shape_box_iou(room, best.shape_id, best.pose, thing.box) > 0.85
+            assert shape_box_iou(room, best.shape_id, best.pose, item.box) > 0.85
             base = best.pose.position[2] - 0.5 * best.pose.scale[2] * best.shape_size_m[2]
             assert base == pytest.approx(0.0, abs=1e-6)
 
@@ -61,7 +61,7 @@ def test_the_shape_that_fits_the_picture_comes_first() -> None:
     assert len(candidates) == 3
 
 
-def test_what_a_nearer_thing_hides_is_not_held_against_a_shape() -> None:
+def test_what_a_nearer_object_hides_is_not_supported_against_a_shape() -> None:
     room = Room(camera_at(), (standing("desk", 0.0, 4.0, -60.0), standing("carton", 0.1, 2.6, 0.0)), (0, 0))
     found = posed(room)[0]
     assert yaw_error_deg(found.candidates[0].pose, room.placed[0].pose, 1) < 15.0
@@ -161,14 +161,14 @@ def test_chairs_of_a_set_are_equally_large_where_the_picture_allows_it() -> None
         assert best.pose.position[2] - 0.5 * best.pose.scale[2] * best.shape_size_m[2] == pytest.approx(0, abs=0.03)
 
 
-def test_a_thing_twice_as_large_is_no_part_of_the_set() -> None:
+def test_a_object_twice_as_large_is_no_part_of_the_set() -> None:
     chairs = (standing("chair", -0.7, 3.0, 40.0), standing("chair", 0.7, 3.0, 40.0, (1.3, 1.3, 1.3)))
     room = Room(camera_at(), chairs, (0, 0))
     small, large = (f.candidates[0].pose.scale for f in posed(room, room.depth(True)))
     assert (large > 1.15 * small).all()
 
 
-def test_a_tiny_box_and_a_thing_behind_the_camera_are_survived_with_low_confidence() -> None:
+def test_a_tiny_box_and_a_object_behind_the_camera_are_survived_with_low_confidence() -> None:
     room = Room(camera_at(), (standing("chair", 0.0, 3.0, 20.0),), (0,))
     tiny = (replace(room.objects[0], box=(100.0, 100.0, 101.0, 101.0), mask=np.zeros_like(room.objects[0].mask)),)
     behind = Cuboid("o0", np.eye(3), np.array([0.0, -3.0, 0.4]), np.array([0.5, 0.5, 0.8]), 0.1)
@@ -178,7 +178,7 @@ def test_a_tiny_box_and_a_thing_behind_the_camera_are_survived_with_low_confiden
     assert found[0].confidence < 0.1
 
 
-def test_a_thing_cut_by_the_border_is_believed_less() -> None:
+def test_a_object_cut_by_the_border_is_believed_less() -> None:
     whole = Room(camera_at(), (standing("sofa", 0.0, 4.0, -90.0),), (0,))
     cut = Room(camera_at(), (standing("sofa", 2.4, 4.0, -90.0),), (0,))
     assert cut.objects[0].box[2] >= 479.0
@@ -200,7 +200,7 @@ def test_the_same_input_gives_the_same_poses() -> None:
     assert posed(room) == posed(room)
 
 
-def test_things_without_cuboid_or_shapes_are_left_out() -> None:
+def test_objects_without_cuboid_or_shapes_are_left_out() -> None:
     room = random_room(7)
     geometry = replace(room.geometry, cuboids=room.geometry.cuboids[1:])
     ranked = (*room.ranked()[:-1], RankedShapes(room.ranked()[-1].object_id, ()))

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.geometry.looks import look_of
 from diorama_core.geometry.observed import observe
+from diorama_core.geometry.shape_appearance import appearance_of
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.pose import RenderAndCompare
-from diorama_core.pose.close_look import CloseLook, cells_for
+from diorama_core.pose.appearance_likelihood import AppearanceLikelihood, cells_for
 from diorama_core.pose.surface import measured_surface
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Pose
@@ -28,15 +28,15 @@ def alone(shape_id: str, yaw_deg: float, away_m: float = 2.2) -> Room:
 
 def photo_of(room: Room, light=WHITE) -> np.ndarray:
     """The thing in its own colours under some light, sRGB."""
-    thing = room.placed[0]
-    look = look_of(LIBRARY.parts(thing.shape_id))
+    item = room.placed[0]
+    appearance = appearance_of(LIBRARY.parts(item.shape_id))
     k = room.camera.intrinsics
     x, y = np.meshgrid(np.arange(k.width) + 0.5, np.arange(k.height) + 0.5)
     directions = room.camera.rays(np.stack([x.ravel(), y.ravel()], axis=1))
-    hits = look.caster.cast(room.camera.position, directions, batch(thing.pose))
+    hits = appearance.caster.cast(room.camera.position, directions, batch(item.pose))
     colour, slope = light
     strength = 1.0 - slope * hits.normals_world[0, :, 0]
-    linear = (look.face_rgba[np.where(hits.covered, hits.triangles, 0)[0], :3] / 255.0) ** 2.2 * colour
+    linear = (appearance.face_rgba[np.where(hits.covered, hits.triangles, 0)[0], :3] / 255.0) ** 2.2 * colour
     shown = 255 * np.clip(linear * strength[:, None], 0, 1) ** (1 / 2.2)
     return np.where(hits.covered[0][:, None], shown, 120).reshape(k.height, k.width, 3).astype(np.uint8)
 
@@ -56,9 +56,9 @@ def posed(room: Room, rgb: np.ndarray, noise: float = 0.0):
 
 
 def error_deg(room: Room, found) -> float:
-    thing = room.placed[0]
-    fold = LIBRARY.shape(thing.shape_id).symmetry
-    return yaw_error_deg(found.candidates[0].pose, thing.pose, fold)
+    item = room.placed[0]
+    fold = LIBRARY.shape(item.shape_id).symmetry
+    return yaw_error_deg(found.candidates[0].pose, item.pose, fold)
 
 
 @pytest.mark.parametrize("yaw_deg", [-160, -75, 10, 65])
@@ -97,30 +97,32 @@ def test_a_tripod_is_right_in_each_of_its_three_turns() -> None:
         assert found.confidence > 0.6
 
 
-def close_look(room: Room, rgb: np.ndarray) -> CloseLook:
-    thing = room.objects[0]
-    seen = observe(room.camera, thing.box, thing.mask, 1.0, (), cells_for(thing.box))
-    surface = measured_surface(room.depth(True), seen, thing.mask, 0.0)
+def appearance_likelihood(room: Room, rgb: np.ndarray) -> AppearanceLikelihood:
+    item = room.objects[0]
+    seen = observe(room.camera, item.box, item.mask, 1.0, (), cells_for(item.box))
+    surface = measured_surface(room.depth(True), seen, item.mask, 0.0)
     assert surface is not None
-    return CloseLook.of(rgb, thing.mask, seen, surface, room.placed[0].size_m)
+    return AppearanceLikelihood.of(rgb, item.mask, seen, surface, room.placed[0].size_m)
 
 
 def test_shapes_of_one_colour_are_compared_by_place_alone() -> None:
     room = alone("mug", 10)
-    look = look_of(LIBRARY.parts("mug"))
+    appearance = appearance_of(LIBRARY.parts("mug"))
     poses = batch(room.placed[0].pose).and_also(batch(Pose.upright(room.placed[0].pose.position, 1.0)))
     rng = np.random.default_rng(0)
     noise = rng.integers(0, 255, room.inputs.photo.rgb.shape).astype(np.uint8)
-    plain, wild = (close_look(room, rgb).log_likelihoods(look, poses) for rgb in (photo_of(room), noise))
+    plain, wild = (
+        appearance_likelihood(room, rgb).log_likelihoods(appearance, poses) for rgb in (photo_of(room), noise)
+    )
     assert np.array_equal(plain, wild)
     assert plain[0] > plain[1] + 1
 
 
 def test_broken_pictures_and_shapes_without_colours_say_nothing() -> None:
     room = alone("red front", 30)
-    look = look_of(LIBRARY.parts("red front"))
-    bare = replace(look, face_rgba=np.zeros_like(look.face_rgba))
-    black = close_look(room, np.zeros_like(room.inputs.photo.rgb))
+    appearance = appearance_of(LIBRARY.parts("red front"))
+    bare = replace(appearance, face_rgba=np.zeros_like(appearance.face_rgba))
+    black = appearance_likelihood(room, np.zeros_like(room.inputs.photo.rgb))
     poses = batch(room.placed[0].pose)
-    assert np.isfinite(black.log_likelihoods(look, poses)).all()
+    assert np.isfinite(black.log_likelihoods(appearance, poses)).all()
     assert np.isfinite(black.log_likelihoods(bare, poses)).all()

@@ -45,12 +45,12 @@ def test_an_emptied_scene_can_be_taken_back(tmp_path: Path) -> None:
 def test_backups_rotate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(storage, "BACKUP_EVERY_S", 0.0)
     project = Project.create(tmp_path / "room")
-    for _ in range(storage.BACKUPS_KEPT + 5):
+    for _ in range(storage.MAX_BACKUPS + 5):
         project.save_scene(_stack())
-    assert len(project.backups()) == storage.BACKUPS_KEPT
+    assert len(project.backups()) == storage.MAX_BACKUPS
 
 
-def test_a_folder_with_other_things_is_left_alone(tmp_path: Path) -> None:
+def test_a_folder_with_other_objects_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / "letter.txt").write_text("dear")
     with pytest.raises(ProjectError, match="holds other files"):
         Project.create(tmp_path)

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from jaxtyping import Bool, UInt8
 
-from diorama_core.geometry.looks import look_of
+from diorama_core.geometry.shape_appearance import appearance_of
 from diorama_core.render.colour_layout import LAYOUT_WIDTH, colour_layout, layout_agreement, painted_views
 from diorama_core.render.templates import TemplateGrid, render_templates, templates_with_faces
 from tests.primitives import material
@@ -52,7 +52,7 @@ def test_a_picture_agrees_with_itself_and_no_other_more(seed: int) -> None:
     assert (agreement > 0).all()
 
 
-def test_where_a_colour_is_counts_and_what_surrounds_the_thing_does_not() -> None:
+def test_where_a_colour_is_counts_and_what_surrounds_the_object_does_not() -> None:
     seen = layout(WHITE, BLACK)
     same, swapped = layout_agreement(seen, np.stack([layout((220, 220, 220), (40, 40, 40)), layout(BLACK, WHITE)]))
     assert same > 0.8 > 0.5 > swapped
@@ -79,13 +79,13 @@ def test_views_show_faces_in_their_colours_and_shade() -> None:
     box, top = trimesh.creation.box((0.5, 0.5, 0.4)), trimesh.creation.box((0.5, 0.5, 0.4))
     box.visual = trimesh.visual.TextureVisuals(material=material("red", (0.6, 0.02, 0.02)))
     top.apply_translation([0, 0, 0.4])
-    look = look_of(trimesh.Scene({"box": box, "top": top}))
-    mesh = trimesh.Trimesh(look.vertices, look.faces, process=False)
+    appearance = appearance_of(trimesh.Scene({"box": box, "top": top}))
+    mesh = trimesh.Trimesh(appearance.vertices, appearance.faces, process=False)
     templates, face_ids = templates_with_faces(mesh, GRID)
     plain = render_templates(mesh, GRID)
     assert (templates.depth_codes == plain.depth_codes).all()
     assert ((face_ids >= 0) == templates.mask).all()
-    views = painted_views(templates, face_ids, look)
+    views = painted_views(templates, face_ids, appearance)
     assert (views[~templates.mask] == 0).all()
     lower = np.isin(face_ids, np.arange(len(box.faces)))
     assert (views[lower][:, 0] > 2 * views[lower][:, 1].astype(int)).all()

@@ -18,7 +18,7 @@ from diorama_core.render.image_search import SEARCH_GRID, ImageSearch
 from diorama_core.render.template_cache import TemplateCache
 from diorama_core.render.view_features import WIDTH, colour_feature, view_feature
 from diorama_core.render.views import StudioView, render_shape
-from diorama_core.retrieval.likeness import EMBEDDED_FEATURES
+from diorama_core.retrieval.appearance_similarity import EMBEDDED_FEATURES
 from diorama_core.workers import LocalWorkers
 
 CHOSEN = (
@@ -86,8 +86,8 @@ def test_preparing_a_stored_library_on_processes(library: StoredLibrary, tmp_pat
     assert "damaged" in prepared.failures[0][1]
     assert TemplateCache().has(good)
     assert len(ImageSearch(mixed).prepared([good])) == 1
-    kept = default_cache_dir() / "features" / EMBEDDED_FEATURES / f"{good.content_hash}.npy"
-    assert kept.exists()  # what retrieval compares
+    retained = default_cache_dir() / "features" / EMBEDDED_FEATURES / f"{good.content_hash}.npy"
+    assert retained.exists()  # what retrieval compares
 
 
 def test_features_agree_with_themselves_and_not_with_others() -> None:

@@ -32,7 +32,7 @@ def redness(colour: np.ndarray) -> float:
     return float(colour[0]) - float(max(colour[1], colour[2]))
 
 
-def test_photo_view_puts_things_where_the_camera_sees_them() -> None:
+def test_photo_view_puts_objects_where_the_camera_sees_them() -> None:
     scene = furnished_room(LIBRARY)
     image = picture(scene, LIBRARY, size=SMALL, effort=QUICK)
     assert image.shape == (120, 160, 3)
@@ -115,7 +115,7 @@ def test_rooms_stay_open_toward_the_viewer(view: str) -> None:
     assert (image[0, 0] == BACKGROUND).all()
 
 
-def test_things_on_a_wall_seen_from_behind_go_with_it() -> None:
+def test_objects_on_a_wall_seen_from_behind_go_with_it() -> None:
     scene = furnished_room(LIBRARY)
     image = picture(scene, LIBRARY, view="orbit:180", size=SMALL, effort=QUICK)
     bare = picture(

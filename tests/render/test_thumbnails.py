@@ -43,12 +43,12 @@ def test_made_once() -> None:
     assert len(thumbnail(LIBRARY, "ball", 32)) < len(thumbnail(LIBRARY, "ball", 64))
 
 
-def test_kept_on_disk_by_content(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_retained_on_disk_by_content(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     library = built_in_library(tmp_path / "shapes")
     first = thumbnail(library, "cup-mug-white", 48, tmp_path / "pictures")
-    (kept,) = (tmp_path / "pictures").iterdir()
-    assert kept.read_bytes() == first
-    monkeypatch.setattr(thumbnails, "_KEPT", type(thumbnails._KEPT)(4))
+    (retained,) = (tmp_path / "pictures").iterdir()
+    assert retained.read_bytes() == first
+    monkeypatch.setattr(thumbnails, "_KEPT", type(thumbnails._CACHE)(4))
     monkeypatch.setattr(thumbnails, "_rendered", lambda *_: pytest.fail("rendered again"))
     assert thumbnail(library, "cup-mug-white", 48, tmp_path / "pictures") == first
 

@@ -32,7 +32,7 @@ def test_scores_are_finite_and_fall() -> None:
         assert all(0.0 < s <= 1.0 for s in scores)
 
 
-def test_no_more_than_asked_for_are_kept() -> None:
+def test_no_more_than_asked_for_are_retained() -> None:
     stage = HierarchicalRetrieval(LIBRARY, keep=2)
     assert all(len(found.ranked) <= 2 for found in ranked(random_room(2), stage))
 
@@ -52,7 +52,7 @@ def test_a_kind_without_shapes_takes_the_nearest_and_says_so() -> None:
     assert "piano" in found.note
 
 
-def test_an_unnamed_thing_is_taken_for_something_of_its_size_plain_boxes_first() -> None:
+def test_an_unnamed_object_is_taken_for_something_of_its_size_plain_boxes_first() -> None:
     room = Room(camera_at(), (standing("carton", 0.0, 3.0, 10.0), standing("sofa", 2.0, 4.0, -90.0)), (0, 0))
     objects = tuple(replace(o, category="object", label="thing") for o in room.objects)
     found = STAGE.retrieve(room.inputs, objects, room.geometry, Progress())
@@ -60,7 +60,7 @@ def test_an_unnamed_thing_is_taken_for_something_of_its_size_plain_boxes_first()
     assert len(found[1].ranked) > 1
 
 
-def test_alike_things_share_their_best_shape() -> None:
+def test_alike_objects_share_their_best_shape() -> None:
     chairs = tuple(standing("chair", x, 3.0 + abs(x) / 3, yaw) for x, yaw in ((-1.2, 10), (0.0, 190), (1.2, 100)))
     tops = {found.ranked[0][0] for found in ranked(Room(camera_at(), chairs, (0, 1, 2)))}
     assert tops == {"chair"}
@@ -90,7 +90,7 @@ def test_its_name_is_short_and_changes_with_the_library() -> None:
     assert repr(STAGE) == repr(HierarchicalRetrieval(LIBRARY)) != repr(HierarchicalRetrieval(Fewer()))
 
 
-def test_things_of_a_kind_choose_among_mostly_the_same_shapes() -> None:
+def test_objects_of_a_kind_choose_among_mostly_the_same_shapes() -> None:
     own = [{f"s{k}": 1.0 - abs(k - best) / 20 for k in range(20)} for best in (2, 17)]
     mean = {key: (own[0][key] + own[1][key]) / 2 for key in own[0]}
     first, second = (_best(scores, mean, 8) for scores in own)

@@ -11,7 +11,7 @@ from diorama_core.retrieval.pools import (
     _LOOSE_FACTOR,
     RELATED,
     SAID_OF_MANY,
-    Wish,
+    RetrievalQuery,
     near_kinds,
     pool_for,
     special_kinds,
@@ -20,8 +20,8 @@ from diorama_core.retrieval.pools import (
 LIBRARY = built_in_library()
 
 
-def pool(name: str, size, held_by: str = "floor", holds: bool = False):
-    return pool_for(LIBRARY, Wish(name, np.array(size), holds, held_by))
+def pool(name: str, size, supported_by: str = "floor", holds: bool = False):
+    return pool_for(LIBRARY, RetrievalQuery(name, np.array(size), holds, supported_by))
 
 
 def test_every_category_knows_its_near_kinds() -> None:
@@ -59,13 +59,15 @@ def test_a_chair_is_looked_for_among_chairs_only() -> None:
     assert {m.shape.category for m in found.members} == {"chair"}
 
 
-def test_unnamed_things_hang_or_stand_as_they_were_seen() -> None:
-    on_wall, below, standing = (pool("object", (0.1, 0.8, 0.7), held) for held in ("wall", "ceiling", "floor"))
+def test_unnamed_objects_hang_or_stand_as_they_were_seen() -> None:
+    on_wall, below, standing = (
+        pool("object", (0.1, 0.8, 0.7), supporter) for supporter in ("wall", "ceiling", "floor")
+    )
     assert {category(m.shape.category).mount for m in on_wall.members} == {"wall"}
     assert {category(m.shape.category).mount for m in below.members} == {"ceiling"}
     assert {category(m.shape.category).mount for m in standing.members} <= {"floor", "surface"}
 
 
-def test_unnamed_things_are_about_as_large_as_what_they_are_taken_for() -> None:
+def test_unnamed_objects_are_about_as_large_as_what_they_are_taken_for() -> None:
     for member in pool("object", (0.9, 1.9, 0.8)).members:
         assert abs(np.log(np.prod(member.shape.size_m) / (0.9 * 1.9 * 0.8))) < 1.3

@@ -14,13 +14,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diorama_core.evaluation.dataset.splits import Subset
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import Shape
 from diorama_core.perception.inputs import read_inputs
-from diorama_core.pipeline.build import embedded_stages
+from diorama_core.pipeline.run import embedded_stages
 from diorama_core.progress import Progress
 from diorama_core.retrieval import HierarchicalRetrieval
+from diorama_core.synthesis.splits import Subset
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLE = ROOT / "assets" / "example"
@@ -82,11 +82,11 @@ def test_ranks_and_scores_are_the_same_bits_in_every_process(artefacts: Path, tm
     cold = elsewhere(artefacts, shared, hash_seed=1, threads=1)
     assert len(cold) > len(LOOKED_FOR)
     assert all(len(ranked) >= EACH_KIND for _, ranked in cold)
-    kept = sorted(shared.rglob("*.npy"))
-    assert len(kept) >= len(LOOKED_FOR) * EACH_KIND
+    retained = sorted(shared.rglob("*.npy"))
+    assert len(retained) >= len(LOOKED_FOR) * EACH_KIND
     assert elsewhere(artefacts, shared, hash_seed=2, threads=4) == cold  # features and looks read back
     assert elsewhere(artefacts, own, hash_seed=3, threads=2) == cold  # and made again
-    assert [k.read_bytes() for k in kept] == [(own / k.relative_to(shared)).read_bytes() for k in kept]
+    assert [k.read_bytes() for k in retained] == [(own / k.relative_to(shared)).read_bytes() for k in retained]
 
 
 def test_the_order_in_which_objects_come_changes_nothing_for_any_of_them(artefacts: Path) -> None:

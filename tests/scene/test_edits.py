@@ -59,7 +59,7 @@ def test_any_sequence_of_edits_keeps_the_scene_valid(scene: Scene, calls: list) 
 
 @settings(deadline=None)
 @given(scenes().filter(lambda s: len(s.objects) > 1), poses(), st.data())
-def test_moving_carries_what_is_held_up(scene: Scene, pose: Pose, data: st.DataObject) -> None:
+def test_moving_carries_what_is_supported_up(scene: Scene, pose: Pose, data: st.DataObject) -> None:
     moved_id = data.draw(st.sampled_from([o.id for o in scene.objects]))
     moved = edits.move(scene, moved_id, pose)
     followers = set(descendants(scene, moved_id))

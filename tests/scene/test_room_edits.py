@@ -15,19 +15,19 @@ from diorama_core.scene.types import Architecture, Plane, Pose, Scene, SceneObje
 from tests.synthetic_rooms import box_room, look
 
 
-def thing(name, position, size=(0.5, 0.5, 0.8), **more):
+def item(name, position, size=(0.5, 0.5, 0.8), **more):
     return SceneObject(name, name, "cabinet", "shape", size, Pose.upright(position), **more)
 
 
 @pytest.fixture
 def scene():
     objects = (
-        thing("cabinet", (0.0, 3.7, 0.4)),
-        thing("vase", (0.0, 3.7, 0.9), (0.2, 0.2, 0.2)),
-        thing("picture", (1.0, 3.98, 1.5), (0.04, 0.6, 0.5)),
-        thing("chair", (0.5, 2.0, 0.45)),
-        thing("lamp", (0.0, 2.0, 2.4), (0.4, 0.4, 0.4)),
-        thing("bolted", (-1.0, 3.98, 1.5), (0.04, 0.6, 0.5), locked=True),
+        item("cabinet", (0.0, 3.7, 0.4)),
+        item("vase", (0.0, 3.7, 0.9), (0.2, 0.2, 0.2)),
+        item("picture", (1.0, 3.98, 1.5), (0.04, 0.6, 0.5)),
+        item("chair", (0.5, 2.0, 0.45)),
+        item("lamp", (0.0, 2.0, 2.4), (0.4, 0.4, 0.4)),
+        item("bolted", (-1.0, 3.98, 1.5), (0.04, 0.6, 0.5), locked=True),
     )
     supports = (
         Support("cabinet", "floor", adheres_to=("back",)),
@@ -151,7 +151,7 @@ def test_lengths_that_cannot_be_are_refused(scene, length):
 
 
 def test_photo_texture_or_plain_material(scene):
-    shown = edits.set_plane_look(scene, "back", texture="back")
+    shown = edits.set_plane_material(scene, "back", texture="back")
     assert shown.plane("back").texture == "back"
-    plain = edits.set_plane_look(shown, "back", colour=(0.2, 0.3, 0.4))
+    plain = edits.set_plane_material(shown, "back", colour=(0.2, 0.3, 0.4))
     assert (plain.plane("back").texture, plain.plane("back").colour) == (None, (0.2, 0.3, 0.4))

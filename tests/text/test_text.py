@@ -36,27 +36,27 @@ READINGS = {
 
 @pytest.mark.parametrize("prompt", list(READINGS))
 def test_prompts_are_understood(prompt: str) -> None:
-    wishes = understood_prompt(prompt)
+    request = understood_prompt(prompt)
     room, counts = READINGS[prompt]
-    assert wishes.room == room
-    assert {t.category: t.count for t in wishes.things} == counts
-    assert wishes.ignored == ()
+    assert request.room == room
+    assert {t.category: t.count for t in request.objects} == counts
+    assert request.ignored == ()
 
 
-def test_places_and_looks_are_read() -> None:
-    things = {t.category: t for t in understood_prompt("a blue sofa, a picture above the sofa").things}
-    assert things["sofa"].looks == ("blue",)
-    assert (things["picture"].place, things["picture"].target) == ("above", "sofa")
+def test_places_and_appearance_are_read() -> None:
+    objects = {t.category: t for t in understood_prompt("a blue sofa, a picture above the sofa").objects}
+    assert objects["sofa"].appearance == ("blue",)
+    assert (objects["picture"].place, objects["picture"].target) == ("above", "sofa")
     assert understood_prompt("an elephant beside a piano").ignored == ("elephant",)
-    vase = next(t for t in understood_prompt("a table and a sideboard with a vase on it").things if t.label == "vase")
+    vase = next(t for t in understood_prompt("a table and a sideboard with a vase on it").objects if t.label == "vase")
     assert (vase.place, vase.target) == ("on", "sideboard")
 
 
 @given(st.text(max_size=120))
 @settings(deadline=None, max_examples=80)
 def test_any_text_is_read_without_complaint(text: str) -> None:
-    wishes = understood_prompt(text)
-    assert all(1 <= t.count <= 12 for t in wishes.things)
+    request = understood_prompt(text)
+    assert all(1 <= t.count <= 12 for t in request.objects)
 
 
 @pytest.mark.parametrize("prompt", [p for p in READINGS if READINGS[p][1]])

@@ -50,7 +50,7 @@ class Added:
 
     added: tuple[str, ...]
     """Ids of new shapes."""
-    kept: int
+    retained: int
     """Files that were there already, unchanged."""
     failed: tuple[Trouble, ...]
     skipped: tuple[Trouble, ...]
@@ -101,8 +101,8 @@ def sources(
     made = []
     for path in paths:
         within = path.relative_to(folder).as_posix()
-        wished = (ids or {}).get(path) or _slug(within.rsplit(".", 1)[0])
-        shape_id = next(i for i in _variants(wished, path.suffix[1:].lower()) if i not in taken)
+        target = (ids or {}).get(path) or _slug(within.rsplit(".", 1)[0])
+        shape_id = next(i for i in _variants(target, path.suffix[1:].lower()) if i not in taken)
         taken.add(shape_id)
         known = table[within].over(given) if within in table else given
         made.append(Source(path, folder, shape_id, _key(path, within, shape_id, known), known))
@@ -170,7 +170,7 @@ def add_models(
     added.sort(key=lambda i: i.record.id)
     return Added(
         added=tuple(i.record.id for i in added),
-        kept=len(found) - len(waiting),
+        retained=len(found) - len(waiting),
         failed=tuple(sorted(failed, key=lambda t: t.path)),
         skipped=tuple(skipped),
         repaired=tuple((i.record.id, i.warnings) for i in added if i.warnings),
@@ -268,12 +268,12 @@ def _slug(text: str) -> str:
     return re.sub(r"[^a-z0-9]+", "-", re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "-", text).lower()).strip("-")[:120] or "shape"
 
 
-def _variants(wished: str, suffix: str) -> Iterator[str]:
-    yield wished
-    yield f"{wished}-{suffix}"
+def _variants(target: str, suffix: str) -> Iterator[str]:
+    yield target
+    yield f"{target}-{suffix}"
     number = 2
     while True:
-        yield f"{wished}-{number}"
+        yield f"{target}-{number}"
         number += 1
 
 

@@ -24,7 +24,7 @@ from diorama_core.library.record import Assumption, Guess
 AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
 UNITS = {1.0: "metres", 0.01: "centimetres", 0.001: "millimetres", 0.0254: "inches", 0.3048: "feet"}
 
-LIKENESS = 60.0
+SIMILARITY = 60.0
 """Log-probability lost per unit of mean relief difference to the likest known shapes."""
 MIRRORED = 6.0
 """Lost per unit of difference between left and right: most things are the same on both sides."""
@@ -132,7 +132,7 @@ def guess_frame(
     units = _unit_prior(convention, given)
     table = np.full((len(categories), len(turns), len(units) + 1), -np.inf)
     for row, (name, weight) in enumerate(categories.items()):
-        alike = -LIKENESS * _unlike(features, log_extents, name, known)
+        alike = -SIMILARITY * _unlike(features, log_extents, name, known)
         for column, (unit, prior) in enumerate(units.items()):
             table[row, :, column] = weight + alike + frame + np.log(prior) + _size_fit(log_extents + np.log(unit), name)
         if given.unit_m is None:
@@ -226,7 +226,7 @@ def _unlike(
     difference = np.stack([np.abs(known.features[rows] - f).mean(axis=1) for f in features])
     own = log_extents - log_extents.mean(axis=1, keepdims=True)
     theirs = known.log_extents[rows] - known.log_extents[rows].mean(axis=1, keepdims=True)
-    difference += PROPORTION / LIKENESS * np.abs(own[:, None] - theirs[None]).mean(axis=2)
+    difference += PROPORTION / SIMILARITY * np.abs(own[:, None] - theirs[None]).mean(axis=2)
     return np.sort(difference, axis=1)[:, :ALIKE].mean(axis=1)
 
 

@@ -60,11 +60,11 @@ def known_shapes(
     path = _place(shapes, cache_dir)
     categories = tuple(s.category for s in shapes)
     sizes = np.log([s.size_m for s in shapes])
-    kept = _read(path, len(shapes))
-    if kept is None:
-        kept = _taken(library, shapes, on_step)
-        _write(path, kept)
-    return KnownShapes(categories, relief_features(kept.astype(np.float32) / 255.0), sizes)
+    retained = _read(path, len(shapes))
+    if retained is None:
+        retained = _taken(library, shapes, on_step)
+        _write(path, retained)
+    return KnownShapes(categories, relief_features(retained.astype(np.float32) / 255.0), sizes)
 
 
 def are_known(cache_dir: Path | None = None) -> bool:

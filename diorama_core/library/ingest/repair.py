@@ -50,9 +50,9 @@ def repaired(scene: trimesh.Scene, limits: Limits) -> Repaired:
         LibraryError: when no triangle with area is left, or there are too many.
     """
     notes: list[str] = []
-    kept = []
+    retained = []
     total = 0
-    looks: dict[int, PBRMaterial] = {}
+    materials: dict[int, PBRMaterial] = {}
     for name, mesh, T in _placed(scene, notes):
         total += len(mesh.faces)
         if total > limits.triangles:
@@ -62,14 +62,14 @@ def repaired(scene: trimesh.Scene, limits: Limits) -> Repaired:
         if np.linalg.det(T[:3, :3]) < 0:
             faces = faces[:, ::-1]
         if len(faces):
-            kept.append(_compact(vertices, faces, _visual(mesh, faces, looks, limits), name))
-    if not kept:
+            retained.append(_compact(vertices, faces, _visual(mesh, faces, materials, limits), name))
+    if not retained:
         raise LibraryError("no triangle with area is in it")
-    whole = Repaired(tuple(kept), ())
+    whole = Repaired(tuple(retained), ())
     if not (whole.whole.extents > 0).any() or np.sort(whole.whole.extents)[1] < 1e-9:
         raise LibraryError("it has no extent")
     notes += _openness(whole.whole)
-    return Repaired(tuple(kept), tuple(dict.fromkeys(notes)))
+    return Repaired(tuple(retained), tuple(dict.fromkeys(notes)))
 
 
 def _placed(scene: trimesh.Scene, notes: list[str]) -> Iterator[tuple[str, trimesh.Trimesh, Float[np.ndarray, "4 4"]]]:
@@ -117,15 +117,15 @@ def _compact(vertices: np.ndarray, faces: np.ndarray, visual: Any, name: str) ->
     return trimesh.Trimesh(vertices[used], flat.reshape(-1, 3), visual=visual, process=False, metadata={"name": name})
 
 
-def _visual(mesh: trimesh.Trimesh, faces: np.ndarray, looks: dict[int, PBRMaterial], limits: Limits) -> Any:
+def _visual(mesh: trimesh.Trimesh, faces: np.ndarray, materials: dict[int, PBRMaterial], limits: Limits) -> Any:
     """Colours or a physically based material, whatever the file had."""
     visual = mesh.visual
     if isinstance(visual, TextureVisuals):
         key = id(visual.material)
-        if key not in looks:
-            looks[key] = _material(visual.material, limits)
+        if key not in materials:
+            materials[key] = _material(visual.material, limits)
         uv = visual.uv if visual.uv is not None and len(visual.uv) == len(mesh.vertices) else None
-        return TextureVisuals(uv=uv if uv is not None else np.zeros((len(mesh.vertices), 2)), material=looks[key])
+        return TextureVisuals(uv=uv if uv is not None else np.zeros((len(mesh.vertices), 2)), material=materials[key])
     if isinstance(visual, ColorVisuals) and visual.kind == "vertex":
         return visual
     colour = visual.main_color if isinstance(visual, ColorVisuals) and visual.kind == "face" else (190, 187, 182, 255)

@@ -62,8 +62,8 @@ class CombinedLibrary:
 
     def thumbnail(self, shape_id: str) -> bytes | None:
         """The picture that came with the shape, where its library keeps one."""
-        kept = getattr(self._of(shape_id), "thumbnail", None)
-        return None if kept is None else kept(shape_id)
+        retained = getattr(self._of(shape_id), "thumbnail", None)
+        return None if retained is None else retained(shape_id)
 
     def _of(self, shape_id: str) -> ShapeLibrary:
         self._refresh()
@@ -78,11 +78,11 @@ class CombinedLibrary:
         if all(a is b or a == b for a, b in zip(listed, self._listed)) and len(listed) == len(self._listed):
             return
         owner: dict[str, ShapeLibrary] = {}
-        kept: list[Shape] = []
+        retained: list[Shape] = []
         for library, shapes in zip(self._libraries, listed, strict=True):
             for shape in shapes:
                 if owner.setdefault(shape.id, library) is library:
-                    kept.append(shape)
+                    retained.append(shape)
                 else:
                     log.warning("two shapes are called '%s'; the one of %r is used", shape.id, owner[shape.id])
-        self._owner, self._shapes, self._listed = owner, tuple(kept), listed
+        self._owner, self._shapes, self._listed = owner, tuple(retained), listed

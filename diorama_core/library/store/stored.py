@@ -14,8 +14,8 @@ import numpy as np
 import trimesh
 
 from diorama_core.errors import LibraryError
+from diorama_core.io.cache import LruCache
 from diorama_core.library.ingest.sink import Ingested
-from diorama_core.library.kept import Kept
 from diorama_core.library.record import Shape
 from diorama_core.library.store.records import Records, StoredRow
 
@@ -39,8 +39,8 @@ class StoredLibrary:
     def __init__(self, folder: Path, *, create: bool = False) -> None:
         self.folder = folder
         self._records = Records(folder / "library.sqlite", create=create)
-        self._scenes: Kept[trimesh.Scene] = Kept(64)
-        self._meshes: Kept[trimesh.Trimesh] = Kept(256)
+        self._scenes: LruCache[trimesh.Scene] = LruCache(64)
+        self._meshes: LruCache[trimesh.Trimesh] = LruCache(256)
         self._lock = threading.Lock()
         self._listed: dict[str | None, tuple[Shape, ...]] = {}
         self._listed_state = -1

@@ -92,13 +92,13 @@ def _habitual_intrinsics(photo: Photo, focal: float) -> Intrinsics:
 
 def _distinct(fits: tuple[FrameFit, ...], count: int) -> tuple[FrameFit, ...]:
     """The best readings that differ from all better ones, and are not hopeless beside the first."""
-    kept: list[FrameFit] = []
+    retained: list[FrameFit] = []
     for fit in fits:
         if fit.score > fits[0].score - HOPELESS_GAP and all(
-            frame_difference_rad(fit.R_world_camera, k.R_world_camera) > DISTINCT_RAD for k in kept
+            frame_difference_rad(fit.R_world_camera, k.R_world_camera) > DISTINCT_RAD for k in retained
         ):
-            kept.append(fit)
-    return tuple(kept[:count])
+            retained.append(fit)
+    return tuple(retained[:count])
 
 
 def _from_lines(

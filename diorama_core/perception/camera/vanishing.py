@@ -25,7 +25,7 @@ from diorama_core.perception.camera.frames import (
 from diorama_core.scene.types import Intrinsics
 
 SIGMA_RAD = float(np.deg2rad(1.5))
-LEAST_SIGMA_RAD = float(np.deg2rad(0.3))
+MIN_SIGMA_RAD = float(np.deg2rad(0.3))
 PRIOR_WEIGHT = 0.03
 PITCH_PRIOR_RAD = (float(np.deg2rad(12.0)), float(np.deg2rad(20.0)))
 ROLL_SIGMA_RAD = float(np.deg2rad(5.0))
@@ -144,14 +144,14 @@ def _separated(
     frames = np.array([R for _, R, _ in ranked])
     log_focals = np.log([f for _, _, f in ranked])
     alive = np.ones(len(ranked), dtype=bool)
-    kept: list[tuple[float, np.ndarray, float]] = []
-    while alive.any() and len(kept) < count:
+    retained: list[tuple[float, np.ndarray, float]] = []
+    while alive.any() and len(retained) < count:
         first = int(alive.argmax())
-        kept.append(ranked[first])
+        retained.append(ranked[first])
         near = frame_difference_rad(frames, frames[first]) < _SEPARATION_RAD
         alive &= ~(near & (np.abs(log_focals - log_focals[first]) < 0.1))
         alive[first] = False
-    return kept
+    return retained
 
 
 def _refined(lines: Lines, R_start: Float[np.ndarray, "3 3"], focal_start: float, known: float | None) -> FrameFit:
@@ -184,7 +184,7 @@ def _own_sigma(lines: Lines, R: Float[np.ndarray, "3 3"], focal: float) -> float
     sines = np.abs(signed_sines(lines, R, focal)).min(axis=0)
     agreeing = sines[sines < 2.0 * SIGMA_RAD]
     spread = 1.48 * float(np.median(agreeing)) if len(agreeing) else SIGMA_RAD
-    return float(np.clip(spread, LEAST_SIGMA_RAD, SIGMA_RAD))
+    return float(np.clip(spread, MIN_SIGMA_RAD, SIGMA_RAD))
 
 
 def _gauss_newton_step(

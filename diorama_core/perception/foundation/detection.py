@@ -15,7 +15,7 @@ from diorama_core.perception.foundation.vocabulary import INDOOR_WORDS
 from diorama_core.progress import Progress
 
 TEMPLATE = "a photo of {}"
-MOST_OBJECTS = 80
+MAX_OBJECTS = 80
 MIN_SIDE_PX = 8.0
 _WORDS = {
     "couch": "sofa",
@@ -81,13 +81,13 @@ def _labelled(found: Detections, names: tuple[str, ...], part_share: float) -> t
     kinds = np.array([order[categories[k].category.name] for k in found.labels], dtype=int)
     alike = Detections(found.boxes, found.scores, kinds)
     whole = without_parts_of_same(alike, part_share)
-    kept = [i for i in range(len(found)) if any((whole.boxes == found.boxes[i]).all(axis=1))]
+    retained = [i for i in range(len(found)) if any((whole.boxes == found.boxes[i]).all(axis=1))]
     boxes = []
-    for i in kept:
+    for i in retained:
         name, resolution = names[found.labels[i]], categories[found.labels[i]]
         x1, y1, x2, y2 = (float(v) for v in found.boxes[i])
         if min(x2 - x1, y2 - y1) < MIN_SIDE_PX:
             continue
         category = resolution.category.name if resolution.exact else UNKNOWN.name
         boxes.append(LabelledBox((x1, y1, x2, y2), category, name, float(found.scores[i])))
-    return tuple(boxes[:MOST_OBJECTS])
+    return tuple(boxes[:MAX_OBJECTS])

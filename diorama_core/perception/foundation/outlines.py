@@ -14,7 +14,7 @@ from diorama_core.progress import Progress
 
 _MARGIN = 0.05
 """Share of a box's size by which its thing may reach beyond it."""
-_LEAST_SHARE = 0.02
+_MIN_SHARE = 0.02
 """A mask that covers less of its box has lost the object."""
 
 
@@ -38,7 +38,7 @@ class PromptedMasks:
             progress.report(done / len(boxes), f"Outlining objects ({done + 1} of {len(boxes)})")
             mask = prompted.mask & filled_box(rgb.shape[:2], _widened(box, rgb.shape[1], rgb.shape[0]))
             whole = filled_box(rgb.shape[:2], box.box)
-            lost = mask.sum() < _LEAST_SHARE * whole.sum()
+            lost = mask.sum() < _MIN_SHARE * whole.sum()
             results.append((whole, LOST_CONFIDENCE) if lost else (mask, max(prompted.quality, LOST_CONFIDENCE)))
         return results
 

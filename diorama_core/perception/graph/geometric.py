@@ -14,7 +14,7 @@ from jaxtyping import Float
 
 from diorama_core.artefacts import DetectedObject, Inputs, ObjectGeometry, SceneGraph
 from diorama_core.library.taxonomy import UNKNOWN, Category
-from diorama_core.perception.graph.evidence import Observed, observed
+from diorama_core.perception.graph.object_observations import Observed, observed
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Relation, Support
 
@@ -27,7 +27,7 @@ _PRIOR: dict[str, tuple[float, float, float, float]] = {
     "ceiling": (9.0, 9.0, 5.0, 0.0),
 }
 _UNNAMED_PRIOR = (1.0, 0.5, 2.0, 5.0)
-_NEVER_ON_THINGS = frozenset({"door", "window", "curtain", "radiator", "wardrobe", "bed", "sofa", "bathtub"}).union(
+_NEVER_ON_OBJECTS = frozenset({"door", "window", "curtain", "radiator", "wardrobe", "bed", "sofa", "bathtub"}).union(
     ["toilet", "refrigerator", "piano", "kitchen counter", "desk"]
 )
 _ALWAYS_ON_WALL = frozenset({"door", "window"})
@@ -36,7 +36,7 @@ _LARGER_COST = 4.0
 """Of lying on something whose footprint is much smaller."""
 _FLOOR_GAP_M, _TOP_GAP_M, _INNER_GAP_M = 0.10, 0.06, 0.10
 """Usual errors of an underside's height above the floor, a top, a shelf."""
-_MOST_GAP_COST = 8.0
+_MAX_GAP_COST = 8.0
 _BELOW_WEIGHT = 3.0
 """Of what is seen just below the object."""
 _BELIEF_COST = 1.5
@@ -55,16 +55,16 @@ class GeometricGraph:
     ) -> SceneGraph:
         """The graph that explains masks, cuboids and (where there is any) depth best."""
         progress.report(0.0, "Working out what stands on what")
-        things = observed(inputs, objects, geometry)
+        items = observed(inputs, objects, geometry)
         believed = {s.child: s for s in geometry.supports}
-        options = {t.id: _options(t, things, believed.get(t.id)) for t in things}
+        options = {t.id: _options(t, items, believed.get(t.id)) for t in items}
         chosen = _without_cycles(options)
         edges, scores = [], []
-        for thing in things:
-            parent, cost = chosen[thing.id]
+        for obj in items:
+            parent, cost = chosen[obj.id]
             relation: Relation = "mounted on" if parent in ("wall", "ceiling") else "placed on"
-            edges.append(Support(thing.id, parent, relation))
-            scores.append(_sureness(cost, options[thing.id], parent))
+            edges.append(Support(obj.id, parent, relation))
+            scores.append(_sureness(cost, options[obj.id], parent))
         return SceneGraph(tuple(edges), tuple(scores), source="geometry: contact, containment and usual places")
 
 
@@ -72,17 +72,17 @@ Options = tuple[tuple[str, float], ...]
 """(supporter, cost), cheapest first."""
 
 
-def _options(thing: Observed, things: tuple[Observed, ...], believed: Support | None) -> Options:
-    priors = _priors(thing.category)
+def _options(obj: Observed, items: tuple[Observed, ...], believed: Support | None) -> Options:
+    priors = _priors(obj.category)
     costs = {
-        "floor": priors[1] + _floor_cost(thing),
-        "wall": priors[2] + _wall_cost(thing),
-        "ceiling": priors[3] + _ceiling_cost(thing),
+        "floor": priors[1] + _floor_cost(obj),
+        "wall": priors[2] + _wall_cost(obj),
+        "ceiling": priors[3] + _ceiling_cost(obj),
     }
-    if thing.category.name not in _NEVER_ON_THINGS:
-        for other in things:
-            if other.id != thing.id:
-                costs[other.id] = priors[0] + _carried_cost(thing, other)
+    if obj.category.name not in _NEVER_ON_OBJECTS:
+        for other in items:
+            if other.id != obj.id:
+                costs[other.id] = priors[0] + _carried_cost(obj, other)
     if believed is not None:
         for key in costs:
             costs[key] += 0.0 if key == believed.parent else _BELIEF_COST
@@ -98,49 +98,49 @@ def _priors(category: Category) -> tuple[float, float, float, float]:
 
 def _gap_cost(gap_m: float, usual_m: float) -> float:
     """Square for small gaps, bounded for large ones."""
-    return float(_MOST_GAP_COST * (1.0 - np.exp(-0.5 * (gap_m / usual_m) ** 2 / _MOST_GAP_COST)))
+    return float(_MAX_GAP_COST * (1.0 - np.exp(-0.5 * (gap_m / usual_m) ** 2 / _MAX_GAP_COST)))
 
 
-def _floor_cost(thing: Observed) -> float:
+def _floor_cost(obj: Observed) -> float:
     """High for an underside seen in the air, or an object seen below."""
-    gap = max(thing.bottom_m, 0.0)
+    gap = max(obj.bottom_m, 0.0)
     seen = _gap_cost(gap, _FLOOR_GAP_M)
-    lenient = 1.0 - 0.7 * thing.hidden_below
-    return lenient * seen + _BELOW_WEIGHT * (1.0 - thing.below.get("floor", 0.0)) * lenient
+    lenient = 1.0 - 0.7 * obj.hidden_below
+    return lenient * seen + _BELOW_WEIGHT * (1.0 - obj.below.get("floor", 0.0)) * lenient
 
 
-def _wall_cost(thing: Observed) -> float:
-    on_floor = 2.0 if thing.bottom_m < 0.1 and thing.category.mount != "wall" else 0.0
-    return on_floor + _gap_cost(max(thing.behind_m, 0.0), 0.25) + 0.5 * _BELOW_WEIGHT * thing.below_objects
+def _wall_cost(obj: Observed) -> float:
+    on_floor = 2.0 if obj.bottom_m < 0.1 and obj.category.mount != "wall" else 0.0
+    return on_floor + _gap_cost(max(obj.behind_m, 0.0), 0.25) + 0.5 * _BELOW_WEIGHT * obj.below_objects
 
 
-def _ceiling_cost(thing: Observed) -> float:
-    return _gap_cost(max(2.0 - thing.top_m, 0.0), 0.3)
+def _ceiling_cost(obj: Observed) -> float:
+    return _gap_cost(max(2.0 - obj.top_m, 0.0), 0.3)
 
 
-def _carried_cost(thing: Observed, other: Observed) -> float:
+def _carried_cost(obj: Observed, other: Observed) -> float:
     """How badly an object would rest on another's top, seat or shelves."""
     if other.category.name in _RUGS:
-        return _on_rug_cost(thing, other)
-    cost = 0.0 if other.category.supports_things or other.category is UNKNOWN else _CARRIES_NOTHING_COST
+        return _on_rug_cost(obj, other)
+    cost = 0.0 if other.category.supports_objects or other.category is UNKNOWN else _CARRIES_NOTHING_COST
     levels = [(other.top_m, _TOP_GAP_M, 0.0)]
     seat = other.category.seat_height_m
     if seat is not None and seat < other.top_m:
         levels.append((seat, _INNER_GAP_M, 0.0))
-    if other.category.name in _OPEN and other.bottom_m + 0.05 < thing.bottom_m < other.top_m - 0.05:
-        levels.append((thing.bottom_m, _INNER_GAP_M, 0.8))
-    gap = min(_gap_cost(abs(thing.bottom_m - z), usual) + extra for z, usual, extra in levels)
-    outside = _outside(thing.footprint, other.footprint)
-    area, theirs = (float(np.prod(t.footprint[1] - t.footprint[0])) for t in (thing, other))
+    if other.category.name in _OPEN and other.bottom_m + 0.05 < obj.bottom_m < other.top_m - 0.05:
+        levels.append((obj.bottom_m, _INNER_GAP_M, 0.8))
+    gap = min(_gap_cost(abs(obj.bottom_m - z), usual) + extra for z, usual, extra in levels)
+    outside = _outside(obj.footprint, other.footprint)
+    area, theirs = (float(np.prod(t.footprint[1] - t.footprint[0])) for t in (obj, other))
     larger = _LARGER_COST * min(max(np.log(max(area, 1e-4) / max(theirs, 1e-4)), 0.0), 1.0)
-    return float(cost + gap + 5.0 * outside + larger + _BELOW_WEIGHT * (1.0 - thing.below.get(other.id, 0.0)))
+    return float(cost + gap + 5.0 * outside + larger + _BELOW_WEIGHT * (1.0 - obj.below.get(other.id, 0.0)))
 
 
-def _on_rug_cost(thing: Observed, rug: Observed) -> float:
+def _on_rug_cost(obj: Observed, rug: Observed) -> float:
     """A rug carries what stands within it, at the floor's height."""
-    outside = _outside(thing.footprint, rug.footprint)
-    on_rug = thing.below.get(rug.id, 0.0)
-    return float(_gap_cost(max(thing.bottom_m, 0.0), _FLOOR_GAP_M) - 3.0 + 8.0 * outside + _BELOW_WEIGHT * (1 - on_rug))
+    outside = _outside(obj.footprint, rug.footprint)
+    on_rug = obj.below.get(rug.id, 0.0)
+    return float(_gap_cost(max(obj.bottom_m, 0.0), _FLOOR_GAP_M) - 3.0 + 8.0 * outside + _BELOW_WEIGHT * (1 - on_rug))
 
 
 def _outside(child: Float[np.ndarray, "2 2"], parent: Float[np.ndarray, "2 2"]) -> float:

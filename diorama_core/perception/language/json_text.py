@@ -7,7 +7,7 @@ import re
 from typing import Any
 
 _FENCE = re.compile(r"```(?:json)?\s*\n?(.*?)```", re.DOTALL | re.IGNORECASE)
-_MOST_STARTS = 50
+_MAX_STARTS = 50
 
 
 def json_in(text: str) -> dict[str, Any] | None:
@@ -27,7 +27,7 @@ def _amid_prose(text: str) -> dict[str, Any] | None:
     decoder = json.JSONDecoder()
     best: tuple[int, dict[str, Any]] | None = None
     position = -1
-    for _ in range(_MOST_STARTS):
+    for _ in range(_MAX_STARTS):
         position = text.find("{", position + 1)
         if position < 0:
             break

@@ -10,8 +10,8 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 RELATIONS = ("placed on", "mounted on")
 FACING = ("toward camera", "away from camera", "left", "right", "unknown")
-MOST_WORDS = 80
-MOST_LABEL_CHARS = 60
+MAX_WORDS = 80
+MAX_LABEL_CHARS = 60
 
 RECOGNITION_PROMPT = """What are objects in the image? Includes architectural elements such as floor and wall if \
 applicable. Ensure that each class is singular and has no quantifiers.
@@ -23,7 +23,7 @@ Return the output in a JSON format according to the following format:
 def tidy_label(text: object) -> str:
     """One short line of letters, digits and plain punctuation: whatever was written in the photo, this is a label."""
     plain = re.sub(r"[^\w\s'&/,.()-]+", " ", str(text))
-    return " ".join(plain.split())[:MOST_LABEL_CHARS].strip()
+    return " ".join(plain.split())[:MAX_LABEL_CHARS].strip()
 
 
 def _relation(text: object) -> object:
@@ -51,7 +51,7 @@ class ClassesReply(BaseModel):
 
     def words(self) -> tuple[str, ...]:
         """Each once, lower case, without empty ones."""
-        return tuple(dict.fromkeys(c.lower() for c in self.classes if c))[:MOST_WORDS]
+        return tuple(dict.fromkeys(c.lower() for c in self.classes if c))[:MAX_WORDS]
 
 
 class ObjectEntry(BaseModel):

@@ -71,5 +71,5 @@ def largest_piece(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 3"]:
     joined = ndimage.binary_dilation(grid, np.ones((3, 3, 3), bool))
     labels = ndimage.label(joined)[0][tuple(cells.T)]
     sizes = np.bincount(labels)
-    kept = points[sizes[labels] >= 0.2 * sizes.max()]
-    return kept if len(kept) >= MIN_POINTS else np.zeros((0, 3))
+    retained = points[sizes[labels] >= 0.2 * sizes.max()]
+    return retained if len(retained) >= MIN_POINTS else np.zeros((0, 3))

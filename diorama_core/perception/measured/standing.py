@@ -43,7 +43,7 @@ def _below(key: str, extents: dict[str, Extent], categories: dict[str, Category]
     bottom = float(extent.low[2])
     best: tuple[float, str] | None = None
     for other, candidate in extents.items():
-        if other == key or not categories[other].supports_things or not _over(extent, candidate):
+        if other == key or not categories[other].supports_objects or not _over(extent, candidate):
             continue
         if candidate.low[2] >= bottom or _volume(candidate) <= _volume(extent):
             continue

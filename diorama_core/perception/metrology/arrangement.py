@@ -12,7 +12,7 @@ from jaxtyping import Float
 from diorama_core.library.taxonomy import Category, with_kin
 from diorama_core.perception.metrology.problem import Cuboids
 
-_MOST_READINGS = 5
+_MAX_READINGS = 5
 _DEAREST = 12.0
 """A reading that costs this much more than the cheapest is dropped."""
 _SAME_PLACE_M = 0.12
@@ -29,13 +29,13 @@ _ROUNDS = 6
 
 def distinct(boxes: Cuboids, costs: Float[np.ndarray, "n"]) -> list[int]:
     """The cheapest rows that differ from each other in place, heading or size, cheapest first."""
-    kept: list[int] = []
+    retained: list[int] = []
     for row in np.argsort(costs, kind="stable"):
-        if len(kept) == _MOST_READINGS or (kept and costs[row] > costs[kept[0]] + _DEAREST):
+        if len(retained) == _MAX_READINGS or (retained and costs[row] > costs[retained[0]] + _DEAREST):
             break
-        if not any(_alike(boxes, int(row), other) for other in kept):
-            kept.append(int(row))
-    return kept
+        if not any(_alike(boxes, int(row), other) for other in retained):
+            retained.append(int(row))
+    return retained
 
 
 def _alike(boxes: Cuboids, a: int, b: int) -> bool:

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.library.taxonomy import UNKNOWN, Category
-from diorama_core.perception.metrology.evidence import Evidence
+from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.priors import size_modes
 from diorama_core.perception.metrology.problem import UNTOLD, Problems, View, stacked
 from diorama_core.perception.metrology.rows import contact_start, row, size_start
@@ -44,27 +44,27 @@ def stands_on_floor(category: Category) -> bool:
     return category.mount == "floor" or category.name == "door"
 
 
-def scan_heights(evidence: Evidence, view: View) -> HeightScan:
+def scan_heights(observations: BoxObservations, view: View) -> HeightScan:
     """Find the camera's height at which the objects on the floor have the most plausible sizes.
 
     Without any, the prior decides.
     """
-    voters = [i for i in range(len(evidence)) if stands_on_floor(evidence.categories[i])]
+    voters = [i for i in range(len(observations)) if stands_on_floor(observations.categories[i])]
     log_heights = np.log(HEIGHTS_M)
     total = ((log_heights - np.log(HEIGHT_PRIOR_M)) / HEIGHT_LOG_SIGMA) ** 2
     if voters:
-        rows = stacked([p for i in voters for p in _scan_rows(evidence, i)])
-        total = total + _votes(rows, evidence, view)
+        rows = stacked([p for i in voters for p in _scan_rows(observations, i)])
+        total = total + _votes(rows, observations, view)
     log_height, log_sigma, cost = _minimum(log_heights, total)
     return HeightScan(float(np.exp(log_height)), log_sigma, cost)
 
 
-def place_on_floor(evidence: Evidence, index: int, height_m: float) -> list[Problems]:
+def place_on_floor(observations: BoxObservations, index: int, height_m: float) -> list[Problems]:
     """Rows for an object on the floor, with odd headings where its category stands freely."""
     rows = []
-    for mode in size_modes(evidence.categories[index].name):
-        for yaw, cost in _headings(evidence.categories[index]):
-            rows.append(row(evidence, index, mode, camera_height_m=height_m, yaw_rad=yaw, extra=mode.cost + cost))
+    for mode in size_modes(observations.categories[index].name):
+        for yaw, cost in _headings(observations.categories[index]):
+            rows.append(row(observations, index, mode, camera_height_m=height_m, yaw_rad=yaw, extra=mode.cost + cost))
     return rows
 
 
@@ -86,20 +86,20 @@ def _headings(category: Category) -> list[tuple[float, float]]:
     return headings
 
 
-def _scan_rows(evidence: Evidence, index: int) -> list[Problems]:
+def _scan_rows(observations: BoxObservations, index: int) -> list[Problems]:
     """Rows for one object at every height; the cut is left out, it would draw the camera up and away."""
-    category = evidence.categories[index]
+    category = observations.categories[index]
     return [
-        row(evidence, index, mode, camera_height_m=float(height), yaw_rad=yaw, cut_sigma=UNTOLD)
+        row(observations, index, mode, camera_height_m=float(height), yaw_rad=yaw, cut_sigma=UNTOLD)
         for mode in size_modes(category.name)
         for yaw in ((0.0,) if mode.square else (0.0, np.pi / 2))
         for height in HEIGHTS_M
     ]
 
 
-def _votes(rows: Problems, evidence: Evidence, view: View) -> Float[np.ndarray, "13"]:
+def _votes(rows: Problems, observations: BoxObservations, view: View) -> Float[np.ndarray, "13"]:
     """Sum over objects of their best cost at every height."""
-    named = np.array([evidence.categories[int(i)] is not UNKNOWN for i in rows.item])
+    named = np.array([observations.categories[int(i)] is not UNKNOWN for i in rows.item])
     doubled = stacked([rows, rows.rows(named)])
     starts = np.concatenate([contact_start(rows, view), size_start(rows.rows(named), view)])
     solved = solve(doubled, starts, view, _SCAN_ITERATIONS)
@@ -109,7 +109,7 @@ def _votes(rows: Problems, evidence: Evidence, view: View) -> Float[np.ndarray, 
         mine = doubled.item == index
         best = np.full(len(HEIGHTS_M), np.inf)
         np.minimum.at(best, slots[mine], solved.cost[mine])
-        doubtful = evidence.categories[index].name in _MAYBE_ELSEWHERE
+        doubtful = observations.categories[index].name in _MAYBE_ELSEWHERE
         total += np.minimum(best, _DOUBTFUL_CAP if doubtful else _CAP)
     return total
 

@@ -10,9 +10,12 @@ from jaxtyping import Float
 from diorama_core.geometry.projection import cuboid_corners
 from diorama_core.library.taxonomy import UNKNOWN, Category, with_kin
 from diorama_core.perception.metrology.arrangement import arrange, distinct
-from diorama_core.perception.metrology.evidence import Evidence
+from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.floor import place_on_floor, solve_all
-from diorama_core.perception.metrology.held import (
+from diorama_core.perception.metrology.problem import Cuboids, Problems, View, cuboids
+from diorama_core.perception.metrology.silhouette import corner_costs
+from diorama_core.perception.metrology.solver import Solutions
+from diorama_core.perception.metrology.supported_objects import (
     AGAINST_WALLS,
     Extent,
     extent_of,
@@ -21,9 +24,6 @@ from diorama_core.perception.metrology.held import (
     place_on_wall,
     supporters_of,
 )
-from diorama_core.perception.metrology.problem import Cuboids, Problems, View, cuboids
-from diorama_core.perception.metrology.silhouette import corner_costs
-from diorama_core.perception.metrology.solver import Solutions
 
 FLOOR, WALL, CEILING = -1, -2, -3
 """Supporters that are no objects."""
@@ -34,7 +34,7 @@ _FLOOR_COST = {"floor": 0.0, "surface": 6.0, "wall": 12.0, "ceiling": _NEVER}
 _WALL_COST = {"floor": 12.0, "surface": 8.0, "wall": 0.0, "ceiling": 6.0}
 _CEILING_COST = {"floor": _NEVER, "surface": _NEVER, "wall": _NEVER, "ceiling": 0.0}
 _UNNAMED_COSTS = {"on top": 4.0, "floor": 0.0, "wall": 5.0, "ceiling": 6.0}
-_LEAST_FLAT_FILL = 0.7
+_MIN_FLAT_FILL = 0.7
 _NOT_FLAT_COST = 6.0
 """Of an unnamed thing on a wall whose mask leaves much of its box empty: pictures and boards do not."""
 _SCREENS = frozenset({"television", "monitor"})
@@ -81,62 +81,64 @@ class _Readings:
         return Placement(int(self.problems.item[row]), supporter, self.problems.rows(one), box, float(self.costs[row]))
 
 
-def place_all(evidence: Evidence, view: View, height_m: float) -> tuple[Placement, ...]:
+def place_all(observations: BoxObservations, view: View, height_m: float) -> tuple[Placement, ...]:
     """Place every object: first on the floor, then on others, on walls and below the ceiling, the cheapest way each."""
-    floor = _on_floor(evidence, view, height_m)
-    standing = [p for p in floor.values() if _tells_the_room(p, evidence)]
-    doors = [i for i, category in enumerate(evidence.categories) if category.name == "door"]
-    others = [i for i in range(len(evidence)) if i not in doors]
+    floor = _on_floor(observations, view, height_m)
+    standing = [p for p in floor.values() if _tells_the_room(p, observations)]
+    doors = [i for i, category in enumerate(observations.categories) if category.name == "door"]
+    others = [i for i in range(len(observations)) if i not in doors]
     best = dict(floor)
-    best.update(_held(evidence, view, height_m, floor, _room(standing, evidence), doors))
+    best.update(_supported(observations, view, height_m, floor, _room(standing, observations), doors))
     telling = standing + [best[i] for i in doors if best[i].cost < _SURE_COST]
-    for index, challenger in _held(evidence, view, height_m, floor, _room(telling, evidence), others).items():
+    for index, challenger in _supported(
+        observations, view, height_m, floor, _room(telling, observations), others
+    ).items():
         if index not in best or challenger.cost < best[index].cost:
             best[index] = challenger
     needed = {p.supporter for p in best.values() if p.supporter >= 0}
-    return tuple(floor[i] if i in needed else best[i] for i in range(len(evidence)))
+    return tuple(floor[i] if i in needed else best[i] for i in range(len(observations)))
 
 
-def _on_floor(evidence: Evidence, view: View, height_m: float) -> dict[int, Placement]:
+def _on_floor(observations: BoxObservations, view: View, height_m: float) -> dict[int, Placement]:
     """Every object that may stand on the floor, arranged so that they fit together."""
     rows: list[Problems] = []
-    for index, category in enumerate(evidence.categories):
+    for index, category in enumerate(observations.categories):
         if category.mount != "ceiling" and category.name not in _FIXED_TO_WALLS:
-            cost = _floor_cost(evidence, index)
-            rows += [p.changed(extra=p.extra + cost) for p in place_on_floor(evidence, index, height_m)]
+            cost = _floor_cost(observations, index)
+            rows += [p.changed(extra=p.extra + cost) for p in place_on_floor(observations, index, height_m)]
     if not rows:
         return {}
-    readings = _readings(solve_all(rows, view), evidence, view)
-    standing = [i for i in readings if evidence.categories[i].mount == "floor"]
-    costs = [readings[i].costs + _children_costs(evidence, view, height_m, i, readings[i]) for i in standing]
-    chosen = arrange([readings[i].boxes for i in standing], costs, [evidence.categories[i] for i in standing])
+    readings = _readings(solve_all(rows, view), observations, view)
+    standing = [i for i in readings if observations.categories[i].mount == "floor"]
+    costs = [readings[i].costs + _children_costs(observations, view, height_m, i, readings[i]) for i in standing]
+    chosen = arrange([readings[i].boxes for i in standing], costs, [observations.categories[i] for i in standing])
     picked = dict(zip(standing, chosen, strict=True))
     return {i: r.placement(picked.get(i, 0), FLOOR) for i, r in readings.items()}
 
 
 def _children_costs(
-    evidence: Evidence, view: View, height_m: float, parent: int, readings: _Readings
+    observations: BoxObservations, view: View, height_m: float, parent: int, readings: _Readings
 ) -> Float[np.ndarray, "k"]:
     """How badly the things that rest in the parent's box would lie on each of its readings."""
     total = np.zeros(len(readings.costs))
     children = [
         i
-        for i, category in enumerate(evidence.categories)
-        if category.mount == "surface" and parent in supporters_of(evidence, i, [parent])
+        for i, category in enumerate(observations.categories)
+        if category.mount == "surface" and parent in supporters_of(observations, i, [parent])
     ]
     if not children or len(total) < 2:
         return total
     for reading in range(len(total)):
         box = readings.placement(reading, FLOOR).cuboid
-        rows = [p for i in children for p in place_on(evidence, i, parent, box, height_m, 0.0)]
+        rows = [p for i in children for p in place_on(observations, i, parent, box, height_m, 0.0)]
         solved = solve_all(rows, view)
         for child in children:
             total[reading] += min(float(solved.cost[solved.problems.item == child].min()), _CHILD_CAP)
     return total
 
 
-def _held(
-    evidence: Evidence,
+def _supported(
+    observations: BoxObservations,
     view: View,
     height_m: float,
     floor: dict[int, Placement],
@@ -147,76 +149,76 @@ def _held(
     best: dict[int, Placement] = {}
     groups: dict[int, list[Problems]] = {}
     for index in indices:
-        for supporter, rows in _held_rows(evidence, index, floor, room, height_m):
+        for supporter, rows in _supported_rows(observations, index, floor, room, height_m):
             groups.setdefault(supporter, []).extend(rows)
     for supporter, rows in groups.items():
-        for index, readings in _readings(solve_all(rows, view), evidence, view).items():
+        for index, readings in _readings(solve_all(rows, view), observations, view).items():
             challenger = readings.placement(0, supporter)
             if index not in best or challenger.cost < best[index].cost:
                 best[index] = challenger
     return best
 
 
-def _held_rows(
-    evidence: Evidence, index: int, floor: dict[int, Placement], room: Extent, height_m: float
+def _supported_rows(
+    observations: BoxObservations, index: int, floor: dict[int, Placement], room: Extent, height_m: float
 ) -> list[tuple[int, list[Problems]]]:
     """Rows for everything but the floor that may hold an object, by supporter."""
-    category = evidence.categories[index]
+    category = observations.categories[index]
     options: list[tuple[int, list[Problems]]] = []
     on_top = _cost(category, "on top", _ON_TOP_COST)
-    parents = _possible_parents(evidence, index)
+    parents = _possible_parents(observations, index)
     if np.isfinite(on_top) and category.name not in _LARGE:
         for parent in parents:
-            cost = on_top + _unlikely_parent_cost(evidence.categories[parent])
-            options.append((parent, place_on(evidence, index, parent, floor[parent].cuboid, height_m, cost)))
+            cost = on_top + _unlikely_parent_cost(observations.categories[parent])
+            options.append((parent, place_on(observations, index, parent, floor[parent].cuboid, height_m, cost)))
     on_wall = _SCREEN_ON_WALL_COST if category.name in _SCREENS else _cost(category, "wall", _WALL_COST)
-    if category is UNKNOWN and evidence.fill[index] < _LEAST_FLAT_FILL:
+    if category is UNKNOWN and observations.fill[index] < _MIN_FLAT_FILL:
         on_wall += _NOT_FLAT_COST
     if category.mount == "surface" and parents:
         on_wall += _BESIDE_ITS_SUPPORTER_COST
     if category.name not in _LARGE or category.name in _FIXED_TO_WALLS:
-        options.append((WALL, place_on_wall(evidence, index, height_m, room, on_wall)))
+        options.append((WALL, place_on_wall(observations, index, height_m, room, on_wall)))
     below = _cost(category, "ceiling", _CEILING_COST)
     if np.isfinite(below):
-        options.append((CEILING, place_below_ceiling(evidence, index, height_m, room, below)))
+        options.append((CEILING, place_below_ceiling(observations, index, height_m, room, below)))
     return options
 
 
-def _readings(solved: Solutions, evidence: Evidence, view: View) -> dict[int, _Readings]:
+def _readings(solved: Solutions, observations: BoxObservations, view: View) -> dict[int, _Readings]:
     """Distinct readings of every object in a batch, masks counted in."""
     boxes = cuboids(solved.unknowns, solved.problems, view)
-    names = tuple(c.name for c in evidence.categories)
-    masks = (evidence.mask_reach, evidence.corner_weight, evidence.mask_exact)
+    names = tuple(c.name for c in observations.categories)
+    masks = (observations.mask_reach, observations.corner_weight, observations.mask_exact)
     corners = corner_costs(solved.problems, boxes, view, *masks, names)
-    costs = solved.cost + corners + _averted_costs(solved.problems, boxes, evidence)
+    costs = solved.cost + corners + _averted_costs(solved.problems, boxes, observations)
     found = {}
     for index in np.unique(solved.problems.item).astype(int):
         mine = np.flatnonzero(solved.problems.item == index)
         own = Cuboids(boxes.centre[mine], boxes.yaw_rad[mine], boxes.size_m[mine])
-        kept = mine[distinct(own, costs[mine])]
-        kept_boxes = Cuboids(boxes.centre[kept], boxes.yaw_rad[kept], boxes.size_m[kept])
-        found[int(index)] = _Readings(solved.problems.rows(kept), kept_boxes, costs[kept])
+        retained = mine[distinct(own, costs[mine])]
+        remaining_boxes = Cuboids(boxes.centre[retained], boxes.yaw_rad[retained], boxes.size_m[retained])
+        found[int(index)] = _Readings(solved.problems.rows(retained), remaining_boxes, costs[retained])
     return found
 
 
-def _averted_costs(problems: Problems, boxes: Cuboids, evidence: Evidence) -> Float[np.ndarray, "n"]:
+def _averted_costs(problems: Problems, boxes: Cuboids, observations: BoxObservations) -> Float[np.ndarray, "n"]:
     """A little against things with a front that turn their side to the camera: people picture fronts."""
-    fronted = np.array([c.name in AGAINST_WALLS for c in evidence.categories])[problems.item.astype(int)]
+    fronted = np.array([c.name in AGAINST_WALLS for c in observations.categories])[problems.item.astype(int)]
     to_camera = boxes.centre[:, :2] / np.maximum(np.linalg.norm(boxes.centre[:, :2], axis=1, keepdims=True), 1e-6)
     facing = np.abs(np.cos(boxes.yaw_rad) * to_camera[:, 0] + np.sin(boxes.yaw_rad) * to_camera[:, 1])
     return np.where(fronted, _AVERTED_COST * (1.0 - facing), 0.0)
 
 
-def _floor_cost(evidence: Evidence, index: int) -> float:
-    category = evidence.categories[index]
+def _floor_cost(observations: BoxObservations, index: int) -> float:
+    category = observations.categories[index]
     cost = _SCREEN_ON_FLOOR_COST if category.name in _SCREENS else _cost(category, "floor", _FLOOR_COST)
-    misplaced = category.mount == "surface" and bool(_possible_parents(evidence, index))
+    misplaced = category.mount == "surface" and bool(_possible_parents(observations, index))
     return cost + _BESIDE_ITS_SUPPORTER_COST if misplaced else cost
 
 
-def _possible_parents(evidence: Evidence, index: int) -> list[int]:
-    standing = [i for i, c in enumerate(evidence.categories) if c.mount == "floor"]
-    return supporters_of(evidence, index, standing)
+def _possible_parents(observations: BoxObservations, index: int) -> list[int]:
+    standing = [i for i, c in enumerate(observations.categories) if c.mount == "floor"]
+    return supporters_of(observations, index, standing)
 
 
 def _cost(category: Category, where: str, table: dict[str, float]) -> float:
@@ -226,18 +228,18 @@ def _cost(category: Category, where: str, table: dict[str, float]) -> float:
 def _unlikely_parent_cost(category: Category) -> float:
     if category is UNKNOWN:
         return 0.5
-    return 0.0 if category.supports_things else 4.0
+    return 0.0 if category.supports_objects else 4.0
 
 
-def _tells_the_room(placement: Placement, evidence: Evidence) -> bool:
+def _tells_the_room(placement: Placement, observations: BoxObservations) -> bool:
     """Whether a thing surely stands on the floor where it was placed."""
-    category = evidence.categories[placement.index]
-    bottom_hidden = bool(evidence.hidden(placement.index)[3])
+    category = observations.categories[placement.index]
+    bottom_hidden = bool(observations.hidden(placement.index)[3])
     return category.mount == "floor" and placement.cost < _SURE_COST and not (category is UNKNOWN and bottom_hidden)
 
 
-def _room(telling: list[Placement], evidence: Evidence) -> Extent:
-    return extent_of(_corners(telling), tuple(evidence.categories[p.index].name for p in telling))
+def _room(telling: list[Placement], observations: BoxObservations) -> Extent:
+    return extent_of(_corners(telling), tuple(observations.categories[p.index].name for p in telling))
 
 
 def _corners(placements: list[Placement]) -> Float[np.ndarray, "n 8 3"]:

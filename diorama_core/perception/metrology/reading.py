@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.library.taxonomy import UNKNOWN, Category
-from diorama_core.perception.metrology.evidence import Evidence
+from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.placement import WALL, Placement
 
 _SQUARE = 0.15
@@ -38,10 +38,10 @@ def heading_and_size(placement: Placement, category: Category) -> tuple[float, F
     return float(np.arctan2(np.sin(turned), np.cos(turned))), size
 
 
-def confidence_of(placement: Placement, evidence: Evidence, height_log_sigma: float) -> float:
+def confidence_of(placement: Placement, observations: BoxObservations, height_log_sigma: float) -> float:
     """Between 0 and 1: low for implausible sizes, bad fits, hidden or cut boxes, and an unsure camera height."""
     index = placement.index
     parent = placement.supporter if placement.supporter >= 0 else None
-    unseen = int((evidence.hidden(index, parent) | evidence.truncated[index]).sum())
+    unseen = int((observations.hidden(index, parent) | observations.truncated[index]).sum())
     fit = np.exp(-placement.cost / _COST_SCALE)
     return float(np.clip(fit * _HIDDEN_FACTOR**unseen * np.exp(-height_log_sigma), 0.02, 1.0))

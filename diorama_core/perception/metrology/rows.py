@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.perception.metrology.evidence import Evidence
+from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.priors import SizeMode
 from diorama_core.perception.metrology.problem import UNKNOWNS, UNTOLD, Problems, View
 
@@ -15,7 +15,7 @@ _FARTHEST_M = 12.0
 
 
 def row(
-    evidence: Evidence,
+    observations: BoxObservations,
     index: int,
     mode: SizeMode,
     *,
@@ -39,9 +39,9 @@ def row(
         "item": float(index),
         "camera_height_m": camera_height_m,
         "yaw_rad": yaw_rad,
-        "box_px": evidence.box_px[index],
-        "edge_sigma_px": evidence.edge_sigma_px[index],
-        "hidden_beyond": evidence.hidden(index, parent),
+        "box_px": observations.box_px[index],
+        "edge_sigma_px": observations.edge_sigma_px[index],
+        "hidden_beyond": observations.hidden(index, parent),
         "log_size": mode.log_size,
         "log_size_sigma": mode.sigma,
         "base_m": 0.0,

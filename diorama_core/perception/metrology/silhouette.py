@@ -28,7 +28,7 @@ _SOLID = with_kin(
     "ottoman",
 )
 """Categories whose things fill their cuboids."""
-_LEAST_CONFIDENCE = 0.5
+_MIN_CONFIDENCE = 0.5
 _CAP = 10.0
 _UNSEEN_COST = 1.0
 """Per corner, of cuboids that reach behind the camera and whose corners cannot be compared."""
@@ -36,11 +36,11 @@ GUESSED_TRUST = 0.5
 """Of a mask that is not the user's own, at full agreement of its starts."""
 
 
-def mask_reach(thing: DetectedObject, box: Float[np.ndarray, "4"]) -> Float[np.ndarray, "4"]:
+def mask_reach(item: DetectedObject, box: Float[np.ndarray, "4"]) -> Float[np.ndarray, "4"]:
     """How far the mask reaches along the diagonals, in half box sizes from the box's centre; NaN without a mask."""
-    if thing.mask_confidence < _LEAST_CONFIDENCE or thing.mask.ndim != 2:
+    if item.mask_confidence < _MIN_CONFIDENCE or item.mask.ndim != 2:
         return np.full(4, np.nan)
-    rows, columns = np.nonzero(_outline_rows(thing.mask))
+    rows, columns = np.nonzero(_outline_rows(item.mask))
     if len(rows) < 8:
         return np.full(4, np.nan)
     ends = np.concatenate([np.column_stack([columns, rows]) + shift for shift in ([0, 0], [1, 0], [0, 1], [1, 1])])

@@ -12,9 +12,9 @@ from diorama_core.perception.metrology.problem import UNKNOWNS, Problems, View, 
 _STEP = 1e-5
 _LONGEST_STEP = 0.7
 """Largest change of any unknown in one iteration."""
-_LEAST_GAIN = 1e-3
+_MIN_GAIN = 1e-3
 """A row whose cost falls by less than this in an accepted step has settled."""
-_MOST_SIGMAS = 2.0
+_MAX_SIGMAS = 2.0
 _LOW = np.array([-8.0, np.log(0.15), np.log(0.005), np.log(0.01), np.log(0.005), -8.0])
 _HIGH = np.array([8.0, np.log(25.0), np.log(8.0), np.log(8.0), np.log(5.0), 8.0])
 
@@ -52,14 +52,14 @@ def solve(problems: Problems, start: Float[np.ndarray, "n 6"], view: View, itera
         unknowns[active] = np.where(better[:, None], there, here)
         cost[active] = np.where(better, reached, cost[active])
         damping[active] = np.where(better, damping[active] * 0.3, damping[active] * 6.0)
-        active = active[(~better & (damping[active] < 1e5)) | (gain > _LEAST_GAIN)]
+        active = active[(~better & (damping[active] < 1e5)) | (gain > _MIN_GAIN)]
     return Solutions(problems, unknowns, cost + problems.extra)
 
 
 def _bounds(problems: Problems) -> tuple[Float[np.ndarray, "n 6"], Float[np.ndarray, "n 6"]]:
     """Sizes stay within what the category allows, whatever the box says."""
     low, high = np.tile(_LOW, (len(problems), 1)), np.tile(_HIGH, (len(problems), 1))
-    reach = _MOST_SIGMAS * problems.log_size_sigma
+    reach = _MAX_SIGMAS * problems.log_size_sigma
     low[:, 2:5] = np.maximum(low[:, 2:5], problems.log_size - reach)
     high[:, 2:5] = np.minimum(high[:, 2:5], problems.log_size + reach)
     return low, high

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from diorama_core.artefacts import CameraEstimate, CameraHypothesis, Cuboid, DetectedObject, Inputs, ObjectGeometry
-from diorama_core.perception.metrology.evidence import Evidence, gather
+from diorama_core.perception.metrology.box_observations import BoxObservations, gather
 from diorama_core.perception.metrology.floor import HeightScan, scan_heights
 from diorama_core.perception.metrology.placement import CEILING, FLOOR, WALL, Placement, place_all
 from diorama_core.perception.metrology.problem import View
@@ -24,7 +24,7 @@ _PARENT_NAMES = {FLOOR: "floor", WALL: "wall", CEILING: "ceiling"}
 class SingleViewMetrology:
     """Metric scale and objects from one photo and boxes."""
 
-    most_hypotheses: int = 3
+    max_hypotheses: int = 3
     """Readings of the camera among which the objects decide."""
 
     def measure(
@@ -35,31 +35,31 @@ class SingleViewMetrology:
         Returns:
             One cuboid and one support edge per object, in the order given.
         """
-        evidence = gather(objects, inputs.photo.width, inputs.photo.height)
+        observations = gather(objects, inputs.photo.width, inputs.photo.height)
         progress.report(0.0, "Measuring the camera's height")
-        hypothesis, scan = self._choose(camera.hypotheses, evidence, progress)
+        hypothesis, scan = self._choose(camera.hypotheses, observations, progress)
         view = View(hypothesis.intrinsics, hypothesis.R_world_camera)
         progress.report(0.6, "Placing objects")
-        placements = place_all(evidence, view, scan.height_m)
+        placements = place_all(observations, view, scan.height_m)
         progress.report(1.0, "Objects measured")
         return ObjectGeometry(
             camera=_camera(hypothesis, scan.height_m),
-            cuboids=tuple(_cuboid(o, p, evidence, scan) for o, p in zip(objects, placements, strict=True)),
+            cuboids=tuple(_cuboid(o, p, observations, scan) for o, p in zip(objects, placements, strict=True)),
             supports=tuple(_support(p, objects) for p in placements),
             source=_source(len(objects)),
             confidence=_overall(camera, scan, len(objects)),
         )
 
     def _choose(
-        self, hypotheses: tuple[CameraHypothesis, ...], evidence: Evidence, progress: Progress
+        self, hypotheses: tuple[CameraHypothesis, ...], observations: BoxObservations, progress: Progress
     ) -> tuple[CameraHypothesis, HeightScan]:
         """The hypothesis under which vanishing points and objects are explained best."""
         scanned = []
-        tried = hypotheses[: self.most_hypotheses]
+        tried = hypotheses[: self.max_hypotheses]
         for done, hypothesis in enumerate(tried):
             progress.report(0.6 * done / len(tried), "Measuring the camera's height")
             view = View(hypothesis.intrinsics, hypothesis.R_world_camera)
-            scanned.append((hypothesis, scan_heights(evidence, view)))
+            scanned.append((hypothesis, scan_heights(observations, view)))
         return max(scanned, key=lambda pair: pair[0].score - _COST_WEIGHT * pair[1].cost)
 
 
@@ -70,14 +70,14 @@ def _camera(hypothesis: CameraHypothesis, height_m: float) -> Camera:
     return Camera(hypothesis.intrinsics, T)
 
 
-def _cuboid(thing: DetectedObject, placement: Placement, evidence: Evidence, scan: HeightScan) -> Cuboid:
-    yaw, size = heading_and_size(placement, evidence.categories[placement.index])
+def _cuboid(item: DetectedObject, placement: Placement, observations: BoxObservations, scan: HeightScan) -> Cuboid:
+    yaw, size = heading_and_size(placement, observations.categories[placement.index])
     return Cuboid(
-        object_id=thing.id,
+        object_id=item.id,
         R_world_object=yaw_rotation(yaw),
         centre=placement.cuboid.centre[0],
         size_m=size,
-        confidence=confidence_of(placement, evidence, scan.log_sigma),
+        confidence=confidence_of(placement, observations, scan.log_sigma),
     )
 
 

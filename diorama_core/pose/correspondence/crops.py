@@ -97,7 +97,7 @@ def crop_object(
         camera: The photo's camera.
         grid: How the templates are seen: the crop has their size.
     """
-    R = _looking_at(camera, box)
+    R = _camera_towards(camera, box)
     size = grid.size_px
     focal = _focal(camera, box, R, size)
     centres = np.arange(size) + 0.5
@@ -124,7 +124,7 @@ def crop_object(
     return Crop(view, R, float(focal), middle.astype(np.float32))
 
 
-def _looking_at(camera: Camera, box: tuple[float, float, float, float]) -> Float[np.ndarray, "3 3"]:
+def _camera_towards(camera: Camera, box: tuple[float, float, float, float]) -> Float[np.ndarray, "3 3"]:
     """The camera turned toward the middle of a box, without roll against the world: columns are its axes."""
     k = camera.intrinsics
     middle = np.array([(0.5 * (box[0] + box[2]) - k.cx) / k.fx, (0.5 * (box[1] + box[3]) - k.cy) / k.fy, 1.0])

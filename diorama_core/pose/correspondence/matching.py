@@ -13,10 +13,10 @@ from jaxtyping import Bool, Float, Float32, Int
 
 from diorama_core.pose.correspondence.crops import PATCHES
 
-MOST_CYCLE = 2.0
+MAX_CYCLE = 2.0
 """Patches between start and end of a believed cycle."""
-LEAST_SIMILARITY = 0.5
-MOST_MATCHES = 50
+MIN_SIMILARITY = 0.5
+MAX_MATCHES = 50
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +58,7 @@ def similarities(
 
 
 def cyclic_matches(
-    similarity: Float32[np.ndarray, "v q p"], query_patches: Int[np.ndarray, " q"], *, keep: int = MOST_MATCHES
+    similarity: Float32[np.ndarray, "v q p"], query_patches: Int[np.ndarray, " q"], *, keep: int = MAX_MATCHES
 ) -> Matches:
     """The believed matches of every view.
 
@@ -77,7 +77,7 @@ def cyclic_matches(
     home = query_patches[np.take_along_axis(back, there, axis=1)]
     start = np.broadcast_to(query_patches, home.shape)
     cycle = np.hypot(home % PATCHES - start % PATCHES, home // PATCHES - start // PATCHES)
-    good = (cycle < MOST_CYCLE) & (best >= LEAST_SIMILARITY)
+    good = (cycle < MAX_CYCLE) & (best >= MIN_SIMILARITY)
     order = np.argsort(np.where(good, -best, np.inf), axis=1, kind="stable")[:, :keep]
     return Matches(
         query=query_patches[order],

@@ -18,7 +18,7 @@ POOLED_VIEWS = 5
 _THRESHOLDS = (0.02, 0.05, 0.1)
 """Distances within which lifted matches agree, tightest first, as shares of the object's extent."""
 _ENOUGH_INLIERS = 0.35
-_LEAST_MATCHES = 3
+_MIN_MATCHES = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +38,7 @@ class Compared:
     crop: Crop
     templates: Templates
     matches: Matches
-    likeness: Float[np.ndarray, " v"]
+    similarity: Float[np.ndarray, " v"]
     """How like the whole picture is to each view."""
 
     def lifted(self, view: int) -> tuple[Float[np.ndarray, "m 3"], Float[np.ndarray, "m 3"]]:
@@ -113,7 +113,7 @@ def from_one_match(compared: Compared, view: int, scale_network: GigaPoseScale |
     query, patches = matches.query[view, :count], matches.template[view, :count]
     coarse = from_view(compared, view, float(matches.mean_similarity[view]))
     source, target = compared.lifted(view)
-    if coarse is None or count < _LEAST_MATCHES or len(target) == 0:
+    if coarse is None or count < _MIN_MATCHES or len(target) == 0:
         return coarse
     if scale_network is None:
         size2d, angle = _plane_similarity(templates.grid.size_px, patches, query)

@@ -26,7 +26,7 @@ from diorama_core.artefacts import (
     PosedCandidates,
     RankedShapes,
 )
-from diorama_core.library.kept import Kept
+from diorama_core.io.cache import LruCache
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.models.gigapose import GigaPoseScale
 from diorama_core.pose.correspondence.crops import Crop, crop_object, template_view
@@ -52,8 +52,8 @@ KINDS: tuple[Kind, ...] = ("correspondence", "zsp", "gigapose-like", "best-match
 HALF_GRID = TemplateGrid(size_px=112)
 """The paper's 180 views at half its resolution: embedded patch features are means over patches."""
 
-_SHAPES_HELD = 12
-_MOST_NUMBERS = 2**25
+_CACHED_SHAPES = 12
+_MAX_NUMBERS = 2**25
 """In one matrix of similarities: as many candidates are compared at once as that allows."""
 
 
@@ -71,7 +71,9 @@ class CorrespondencePose:
     """Predicts relative scale and in-plane turn; used by `correspondence` and `gigapose-like`."""
     grid: TemplateGrid = PAPER_GRID
     cache: TemplateCache = field(default_factory=TemplateCache, repr=False, compare=False)
-    _encoded: Kept[EncodedViews] = field(default_factory=lambda: Kept(_SHAPES_HELD), repr=False, compare=False)
+    _encoded: LruCache[EncodedViews] = field(
+        default_factory=lambda: LruCache(_CACHED_SHAPES), repr=False, compare=False
+    )
 
     def __repr__(self) -> str:
         network = "" if self.scale_network is None else f", {self.scale_network!r}"
@@ -104,16 +106,16 @@ class CorrespondencePose:
         records = {s.id: s for s in self.library.shapes()}
         wanted = [o for o in objects if o.id in ranked]
         found: dict[Kind, list[PosedCandidates]] = {kind: [] for kind in kinds}
-        for index, thing in enumerate(wanted):
-            progress.report(index / len(wanted), f"Matching: {thing.label}")
+        for index, obj in enumerate(wanted):
+            progress.report(index / len(wanted), f"Matching: {obj.label}")
             crop = crop_object(
-                inputs.photo.rgb, thing.mask, thing.box, depth.depth_m, depth.normals_world, geometry.camera, self.grid
+                inputs.photo.rgb, obj.mask, obj.box, depth.depth_m, depth.normals_world, geometry.camera, self.grid
             )
-            candidates = [records[i] for i, _ in ranked[thing.id]]
+            candidates = [records[i] for i, _ in ranked[obj.id]]
             compared = self._compare(crop, candidates)
             for kind in kinds:
                 poses = [(s, self._solve(kind, c)) for s, c in zip(candidates, compared, strict=False)]
-                found[kind].append(_candidates(thing, geometry.camera, [(s, p) for s, p in poses if p is not None]))
+                found[kind].append(_candidates(obj, geometry.camera, [(s, p) for s, p in poses if p is not None]))
         return {kind: tuple(f for f in of_kind if f.candidates) for kind, of_kind in found.items()}
 
     def _compare(self, crop: Crop, shapes: Sequence[Shape]) -> list[Compared]:
@@ -123,7 +125,7 @@ class CorrespondencePose:
             return []
         query = self.features.encode(crop.view)[0]
         width = max(len(inside), query.shape[-1]) * query.shape[0] * len(self.grid)
-        at_once = max(_MOST_NUMBERS // width, 1)
+        at_once = max(_MAX_NUMBERS // width, 1)
         found: list[Compared] = []
         for start in range(0, len(shapes), at_once):
             encoded = [self._views(s) for s in shapes[start : start + at_once]]
@@ -133,10 +135,10 @@ class CorrespondencePose:
                 crop.view.foreground[0],
                 np.concatenate([e.foreground for e in encoded]),
             )
-            matches, likeness = cyclic_matches(alike, inside), template_scores(alike)
+            matches, similarity = cyclic_matches(alike, inside), template_scores(alike)
             for k, e in enumerate(encoded):
                 views = slice(k * len(self.grid), (k + 1) * len(self.grid))
-                found.append(Compared(crop, e.templates, matches.of_views(views), likeness[views]))
+                found.append(Compared(crop, e.templates, matches.of_views(views), similarity[views]))
         return found
 
     def _solve(self, kind: Kind, compared: Compared) -> Rigid | None:
@@ -144,10 +146,10 @@ class CorrespondencePose:
             return from_matches(compared, compared.by_belief[:POOLED_VIEWS], self.scale_network)
         if kind == "zsp":
             return from_matches(compared, compared.by_belief[:1])
-        best = int(compared.likeness.argmax())
+        best = int(compared.similarity.argmax())
         if kind == "gigapose-like":
             return from_one_match(compared, best, self.scale_network)
-        return from_view(compared, best, float(compared.likeness[best]))
+        return from_view(compared, best, float(compared.similarity[best]))
 
     def _views(self, shape: Shape) -> EncodedViews:
         """Features of a shape's views, held for the next object that may be it."""
@@ -158,7 +160,7 @@ class CorrespondencePose:
         return EncodedViews.of(templates, template_view(templates), self.features, shape.content_hash)
 
 
-def _candidates(thing: DetectedObject, camera: Camera, posed: list[tuple[Shape, Rigid]]) -> PosedCandidates:
+def _candidates(obj: DetectedObject, camera: Camera, posed: list[tuple[Shape, Rigid]]) -> PosedCandidates:
     R_world, position = camera.T_world_camera[:3, :3], camera.position
     ordered = sorted(posed, key=lambda item: (-item[1].similarity, item[0].id))
     candidates = tuple(
@@ -170,5 +172,5 @@ def _candidates(thing: DetectedObject, camera: Camera, posed: list[tuple[Shape, 
         )
         for shape, found in ordered
     )
-    confidence = float(np.clip(ordered[0][1].similarity, 0.0, 1.0)) * thing.mask_confidence if ordered else 0.0
-    return PosedCandidates(thing.id, candidates, confidence)
+    confidence = float(np.clip(ordered[0][1].similarity, 0.0, 1.0)) * obj.mask_confidence if ordered else 0.0
+    return PosedCandidates(obj.id, candidates, confidence)

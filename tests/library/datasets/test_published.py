@@ -130,7 +130,7 @@ def test_an_empty_folder_says_what_is_missing(name: str, tmp_path: Path) -> None
         as_sources(dataset_named(name), tmp_path, Given())
 
 
-def test_captions_and_words_are_kept(tmp_path: Path) -> None:
+def test_captions_and_words_are_retained(tmp_path: Path) -> None:
     assert [s.given.caption for s in made("objaverse-lvis", tmp_path / "o")] == ["My old chair", "flugelhorn"]
     assert made("objaverse-lvis", tmp_path / "o")[1].given.synonyms == ("flugelhorn",)
     assert [s.given.caption for s in made("3d-future", tmp_path / "f")] == [

@@ -104,10 +104,10 @@ def test_a_folder_becomes_a_library(folder: Path, library: StoredLibrary) -> Non
 def test_a_second_run_reads_only_what_changed(folder: Path, library: StoredLibrary) -> None:
     added(folder, library)
     again = added(folder, library)
-    assert (again.added, again.kept) == ((), 3)
+    assert (again.added, again.retained) == ((), 3)
     os.utime(folder / "chair.glb", (1, 1))
     assert added(folder, library).added == ("chair",)
-    assert added(folder, library, Given(unit_m=0.5)).kept == 0
+    assert added(folder, library, Given(unit_m=0.5)).retained == 0
 
 
 def test_the_same_files_give_the_same_bytes(folder: Path, tmp_path: Path) -> None:
@@ -127,7 +127,7 @@ def test_a_stopped_run_goes_on_where_it_stopped(folder: Path, library: StoredLib
     before = len(library.shapes())
     assert 0 < before < 3
     report = added(folder, library)
-    assert (report.kept, len(report.added)) == (before, 3 - before)
+    assert (report.retained, len(report.added)) == (before, 3 - before)
 
 
 def test_flags_and_table(folder: Path, library: StoredLibrary, tmp_path: Path) -> None:

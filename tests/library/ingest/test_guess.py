@@ -61,7 +61,7 @@ def test_geometry_and_size_tell_up_front_and_unit(few: KnownShapes, turn: int, u
     assert frame.unit_m == pytest.approx(unit)
 
 
-def test_looks_tell_what_a_nameless_model_is(few: KnownShapes) -> None:
+def test_appearance_tells_what_a_nameless_model_is(few: KnownShapes) -> None:
     tall = trimesh.Trimesh(chair().vertices * [0.95, 1.0, 1.15], chair().faces, process=False)
     assert guessed(y_up(tall), few, GLTF).category == "chair"
     assert guessed(y_up(table()), few, GLTF).category == "table"

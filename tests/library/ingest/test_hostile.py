@@ -231,7 +231,7 @@ def test_a_flat_line_is_refused(tmp_path: Path) -> None:
         read(write_glb(tmp_path / "a.glb", document(), binary))
 
 
-def test_a_surface_that_is_not_manifold_is_kept_and_said(tmp_path: Path) -> None:
+def test_a_surface_that_is_not_manifold_is_retained_and_said(tmp_path: Path) -> None:
     fan = trimesh.Trimesh(
         [(0, 0, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0), (-1, -1, 0)], [(0, 1, 2), (0, 1, 3), (0, 1, 4)], process=False
     )

@@ -70,8 +70,8 @@ def segments_px(v: View, noise_px: float = 0.0, seed: int = 0) -> np.ndarray:
     pixels = camera[..., :2] / camera[..., 2:] * [k.fx, k.fy] + [k.cx, k.cy]
     inside = ((pixels > 2) & (pixels < np.array([k.width, k.height]) - 2)).all(axis=(1, 2))
     long = np.linalg.norm(pixels[:, 1] - pixels[:, 0], axis=1) > 0.025 * np.hypot(k.width, k.height)
-    kept = pixels[inside & long]
-    return (kept + rng.normal(0, noise_px, kept.shape)).reshape(-1, 4)
+    retained = pixels[inside & long]
+    return (retained + rng.normal(0, noise_px, retained.shape)).reshape(-1, 4)
 
 
 def depth(v: View, boxes: tuple = FURNITURE, noise: float = 0.0, seed: int = 0) -> np.ndarray:

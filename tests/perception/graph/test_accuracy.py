@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from diorama_core.evaluation import relations_bench
-from diorama_core.evaluation.dataset import ROOM_KINDS, TruthView, furnished_room, hold_cameras, render_truth
-from diorama_core.evaluation.relations import RelationCount, relations_of
+from diorama_core.evaluation.benchmarks import relations as relations_bench
+from diorama_core.evaluation.metrics.relations import RelationCount, relations_of
 from diorama_core.library.catalogue import built_in_library
+from diorama_core.synthesis import ROOM_KINDS, TruthView, furnished_room, hold_cameras, render_truth
 
 SIZE = (480, 360)
 SEEDS = range(6)

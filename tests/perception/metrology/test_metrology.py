@@ -19,7 +19,7 @@ K = Intrinsics(640, 480, 540.0, 540.0, 320.0, 240.0)
 
 
 @dataclass(frozen=True)
-class Thing:
+class RequestedObject:
     category: str
     centre: tuple[float, float, float]
     size: tuple[float, float, float]
@@ -27,13 +27,13 @@ class Thing:
 
 
 ROOM = (
-    Thing("sofa", (0.2, 4.0, 0.42), (0.95, 1.95, 0.84)),
-    Thing("chair", (-1.3, 3.0, 0.43), (0.56, 0.52, 0.86), 0.0),
-    Thing("coffee table", (0.1, 2.6, 0.225), (0.65, 1.1, 0.45)),
-    Thing("night stand", (1.5, 3.9, 0.3), (0.43, 0.5, 0.6)),
-    Thing("lamp", (1.5, 3.9, 0.89), (0.34, 0.34, 0.58)),
-    Thing("pillow", (-0.3, 4.0, 0.64), (0.2, 0.48, 0.38)),
-    Thing("picture", (0.3, 4.45, 1.6), (0.03, 0.75, 0.65)),
+    RequestedObject("sofa", (0.2, 4.0, 0.42), (0.95, 1.95, 0.84)),
+    RequestedObject("chair", (-1.3, 3.0, 0.43), (0.56, 0.52, 0.86), 0.0),
+    RequestedObject("coffee table", (0.1, 2.6, 0.225), (0.65, 1.1, 0.45)),
+    RequestedObject("night stand", (1.5, 3.9, 0.3), (0.43, 0.5, 0.6)),
+    RequestedObject("lamp", (1.5, 3.9, 0.89), (0.34, 0.34, 0.58)),
+    RequestedObject("pillow", (-0.3, 4.0, 0.64), (0.2, 0.48, 0.38)),
+    RequestedObject("picture", (0.3, 4.45, 1.6), (0.03, 0.75, 0.65)),
 )
 
 
@@ -45,18 +45,18 @@ def rotation(pitch_deg: float, yaw_deg: float = 0.0) -> np.ndarray:
     return np.column_stack([right, np.cross(forward, right), forward])
 
 
-def seen(things: tuple[Thing, ...], R: np.ndarray, height_m: float) -> tuple[DetectedObject, ...]:
-    arrays = [np.array([getattr(t, name) for t in things], dtype=float) for name in ("centre", "yaw", "size")]
+def seen(items: tuple[RequestedObject, ...], R: np.ndarray, height_m: float) -> tuple[DetectedObject, ...]:
+    arrays = [np.array([getattr(t, name) for t in items], dtype=float) for name in ("centre", "yaw", "size")]
     corners = cuboid_corners(*arrays) - [0, 0, height_m]
     bounds, visible = visible_bounds(corners @ R, K)
     assert visible.all()
     return tuple(
-        detected(f"{t.category.replace(' ', '_')}_{n}", t.category, tuple(b), n + 1)
-        for n, (t, b) in enumerate(zip(things, bounds, strict=True))
+        detect_boxes(f"{t.category.replace(' ', '_')}_{n}", t.category, tuple(b), n + 1)
+        for n, (t, b) in enumerate(zip(items, bounds, strict=True))
     )
 
 
-def detected(name: str, category: str, box: tuple, mask_id: int = 1) -> DetectedObject:
+def detect_boxes(name: str, category: str, box: tuple, mask_id: int = 1) -> DetectedObject:
     return DetectedObject(name, category, category, box, np.zeros((480, 640), dtype=bool), mask_id, 0.1)
 
 
@@ -80,9 +80,9 @@ def test_a_room_of_usual_sizes_is_recovered(height_m: float, pitch_deg: float, y
     geometry = measure(objects, R)
     assert geometry.camera.position[2] == pytest.approx(height_m, rel=0.1)
     assert ious(objects, geometry).mean() > 0.9
-    for thing, cuboid in list(zip(ROOM, geometry.cuboids, strict=True))[:4]:
-        np.testing.assert_allclose(cuboid.centre, thing.centre, rtol=0.12, atol=0.25)
-        np.testing.assert_allclose(np.sort(cuboid.size_m), np.sort(thing.size), rtol=0.3)
+    for item, cuboid in list(zip(ROOM, geometry.cuboids, strict=True))[:4]:
+        np.testing.assert_allclose(cuboid.centre, item.centre, rtol=0.12, atol=0.25)
+        np.testing.assert_allclose(np.sort(cuboid.size_m), np.sort(item.size), rtol=0.3)
 
 
 def test_supporters_are_found() -> None:
@@ -102,10 +102,10 @@ def test_fronts_face_the_camera() -> None:
         assert cuboid.R_world_object[:2, 0] @ -cuboid.centre[:2] > 0
 
 
-def test_unnamed_things_are_placed_plausibly() -> None:
+def test_unnamed_objects_are_placed_plausibly() -> None:
     R = rotation(2.0)
-    floor = tuple(Thing("object", t.centre, t.size, t.yaw) for t in ROOM[:4])
-    hung = (Thing("object", (-0.6, 3.2, 2.35), (0.45, 0.45, 0.4)),)
+    floor = tuple(RequestedObject("object", t.centre, t.size, t.yaw) for t in ROOM[:4])
+    hung = (RequestedObject("object", (-0.6, 3.2, 2.35), (0.45, 0.45, 0.4)),)
     objects = seen((*floor, *hung), R, 1.4)
     geometry = measure(objects, R)
     assert [s.parent for s in geometry.supports[:4]] == ["floor"] * 4
@@ -117,7 +117,9 @@ def test_unnamed_things_are_placed_plausibly() -> None:
 def test_mirrored_picture_gives_the_mirrored_room() -> None:
     R = rotation(14.0, 4.0)
     objects = seen(ROOM[:5], R, 1.4)
-    mirrored = tuple(detected(o.id, o.category, (640 - o.box[2], o.box[1], 640 - o.box[0], o.box[3])) for o in objects)
+    mirrored = tuple(
+        detect_boxes(o.id, o.category, (640 - o.box[2], o.box[1], 640 - o.box[0], o.box[3])) for o in objects
+    )
     one, other = measure(objects, R), measure(mirrored, rotation(14.0, -4.0))
     assert one.camera.position[2] == pytest.approx(other.camera.position[2], rel=0.02)
     for a, b in zip(one.cuboids, other.cuboids, strict=True):
@@ -166,7 +168,7 @@ boxes = st.tuples(st.floats(-5, 640), st.floats(-5, 480), st.floats(-5, 645), st
 )
 def test_any_boxes_give_finite_cuboids(given_boxes: list, names: list, pitch: float) -> None:
     objects = tuple(
-        detected(f"thing_{n}", name, box) for n, (box, name) in enumerate(zip(given_boxes, names, strict=False))
+        detect_boxes(f"thing_{n}", name, box) for n, (box, name) in enumerate(zip(given_boxes, names, strict=False))
     )
     geometry = measure(objects, rotation(pitch))
     assert [c.object_id for c in geometry.cuboids] == [o.id for o in objects]

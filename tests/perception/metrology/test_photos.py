@@ -26,8 +26,8 @@ def test_cuboids_explain_the_boxes_with_plausible_sizes(name: str, photos: list[
     bounds, _ = visible_bounds(corners, geometry.camera.intrinsics)
     assert box_iou(bounds, np.array([o.box for o in objects])).mean() >= 0.8
     assert 0.6 < geometry.camera.position[2] < 2.0
-    for thing, cuboid in zip(objects, geometry.cuboids, strict=True):
-        low, high = USUAL_HEIGHTS_M.get(thing.category, (0.0, 3.0))
+    for item, cuboid in zip(objects, geometry.cuboids, strict=True):
+        low, high = USUAL_HEIGHTS_M.get(item.category, (0.0, 3.0))
         assert low <= cuboid.size_m[2] <= high
-        low, high = USUAL_WIDTHS_M.get(thing.category, (0.0, 4.0))
+        low, high = USUAL_WIDTHS_M.get(item.category, (0.0, 4.0))
         assert low <= max(cuboid.size_m[:2]) <= high

@@ -43,7 +43,7 @@ def test_patches_are_the_networks_of_unit_length(features: NetworkFeatures) -> N
     assert np.allclose(found[3, at], own[at] / np.linalg.norm(own[at]), atol=1e-4)
 
 
-def test_features_of_views_are_kept_by_content_and_weights(features: NetworkFeatures, tmp_path: Path) -> None:
+def test_features_of_views_are_retained_by_content_and_weights(features: NetworkFeatures, tmp_path: Path) -> None:
     templates = render_templates(LIBRARY.mesh("chair"), GRID)
     view = template_view(templates)
     first = EncodedViews.of(templates, view, features, "abc", tmp_path)
@@ -86,9 +86,9 @@ class _Turner:
 def test_the_scale_network_says_how_large_and_how_far_turned() -> None:
     room = chairs()[1]
     stage = CorrespondencePose(LIBRARY, grid=GRID)
-    thing, depth = room.objects[0], room.depth(True)
+    item, depth = room.objects[0], room.depth(True)
     crop = crop_object(
-        room.inputs.photo.rgb, thing.mask, thing.box, depth.depth_m, depth.normals_world, room.camera, GRID
+        room.inputs.photo.rgb, item.mask, item.box, depth.depth_m, depth.normals_world, room.camera, GRID
     )
     compared = stage._compare(crop, [LIBRARY.shape("chair")])[0]
     view = int(compared.by_belief[0])

@@ -60,9 +60,9 @@ def test_the_picture_of_a_view_finds_that_view() -> None:
 
 def test_the_crop_looks_straight_at_the_object() -> None:
     room = chairs()[1]
-    thing, depth = room.objects[0], room.depth(True)
+    item, depth = room.objects[0], room.depth(True)
     crop = crop_object(
-        room.inputs.photo.rgb, thing.mask, thing.box, depth.depth_m, depth.normals_world, room.camera, GRID
+        room.inputs.photo.rgb, item.mask, item.box, depth.depth_m, depth.normals_world, room.camera, GRID
     )
     rows, columns = np.nonzero(crop.view.mask[0])
     assert abs(0.5 * (rows.min() + rows.max()) - GRID.size_px / 2) < 8

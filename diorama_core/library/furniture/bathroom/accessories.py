@@ -24,7 +24,7 @@ TISSUE = Material("tissue", "paper", "#eeece7", 0.95, 0.0, 0.2)
 BRISTLE = m.paint("bristles", "#d9d6cf", 0.95)
 
 
-def toilet_brush(size: Size, holder: Material, handle: Material, square: bool = False) -> Parts:
+def toilet_brush(size: Size, supporter: Material, handle: Material, square: bool = False) -> Parts:
     """A brush in its pot, only the handle in sight."""
     d, w, h = size
     tall = 0.36 * h
@@ -39,7 +39,7 @@ def toilet_brush(size: Size, holder: Material, handle: Material, square: bool = 
         lathe([(0.012, 0), (0.2 * d, 0.004), (0.19 * d, 0.012), (0.01, 0.016)], 24).moved(z=tall),
         cylinder(0.011, 0.09, 0.005, 16).moved(z=h - 0.09),
     ]
-    return of(holder, pot) + of(handle, *stem)
+    return of(supporter, pot) + of(handle, *stem)
 
 
 def paper_roll(radius: float, width: float) -> Parts:
@@ -189,9 +189,9 @@ def scales(size: Size, top: Material, rim: Material) -> Parts:
 
 
 DESIGNS: tuple[Design, ...] = (
-    design("toilet brush", "steel", "steel toilet brush", (0.10, 0.10, 0.40), "modern", toilet_brush, 36, holder=m.STAINLESS, handle=m.CHROME),
-    design("toilet brush", "white", "white toilet brush", (0.11, 0.11, 0.37), "minimal", toilet_brush, 36, holder=m.WHITE, handle=m.WHITE),
-    design("toilet brush", "stone", "toilet brush in a square stone pot", (0.10, 0.10, 0.39), "rustic", toilet_brush, 4, holder=m.STONEWARE, handle=m.BLACK_STEEL, square=True),
+    design("toilet brush", "steel", "steel toilet brush", (0.10, 0.10, 0.40), "modern", toilet_brush, 36, supporter=m.STAINLESS, handle=m.CHROME),
+    design("toilet brush", "white", "white toilet brush", (0.11, 0.11, 0.37), "minimal", toilet_brush, 36, supporter=m.WHITE, handle=m.WHITE),
+    design("toilet brush", "stone", "toilet brush in a square stone pot", (0.10, 0.10, 0.39), "rustic", toilet_brush, 4, supporter=m.STONEWARE, handle=m.BLACK_STEEL, square=True),
     design("toilet paper", "chrome", "toilet roll on a chrome arm", (0.14, 0.14, 0.12), "modern", roll_holder, metal=m.CHROME),
     design("toilet paper", "shelf", "toilet roll under a walnut shelf", (0.13, 0.16, 0.16), "rustic", roll_holder, metal=m.BLACK_STEEL, plate=m.WALNUT),
     design("toilet paper", "stand", "brass toilet-roll stand", (0.18, 0.18, 0.62), "classic", roll_stand, metal=m.BRASS),

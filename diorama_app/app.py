@@ -1,0 +1,215 @@
+"""The editor: a room, its panels, its gestures and its commands, put together in one place."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import viser
+
+from diorama_app.commands.camera_presets import Views
+from diorama_app.commands.definitions import build_commands
+from diorama_app.commands.import_model import import_model
+from diorama_app.commands.registry import Command
+from diorama_app.interaction.gestures import Gestures
+from diorama_app.panels.alternatives import Alternatives
+from diorama_app.panels.compare import Compare
+from diorama_app.panels.dropping import take_dropped_files
+from diorama_app.panels.help import show_help
+from diorama_app.panels.job import JobStrip
+from diorama_app.panels.library import LibraryPanel
+from diorama_app.panels.measure import Tape
+from diorama_app.panels.networks import Networks
+from diorama_app.panels.optimiser import Optimiser
+from diorama_app.panels.outliner import Outliner
+from diorama_app.panels.overlays import Overlays
+from diorama_app.panels.own_model import OwnModel
+from diorama_app.panels.photo import PhotoPanel
+from diorama_app.panels.photo_camera import PhotoCamera
+from diorama_app.panels.photo_correction import PhotoCorrection
+from diorama_app.panels.projects import Projects
+from diorama_app.panels.properties import Properties
+from diorama_app.panels.room_size import RoomSize
+from diorama_app.panels.supports import Supports
+from diorama_app.panels.tabs import Tabs
+from diorama_app.panels.toast import Toasts
+from diorama_app.panels.toolbar import Toolbar
+from diorama_app.panels.unsaved import UnsavedChanges
+from diorama_app.panels.walls import Walls
+from diorama_app.projects.example import example_project
+from diorama_app.reconstruction.photo_outlines import PhotoOutlines
+from diorama_app.session.client import Client, Panel
+from diorama_app.session.preferences import Preferences, remembered
+from diorama_app.session.session import EditorSession
+from diorama_app.viewport.client_view import set_theme
+from diorama_app.web.viser_adapter import MAX_UPLOAD_BYTES
+from diorama_core.editing.collisions import Collisions
+from diorama_core.errors import DioramaError
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.user_library import UserLibrary
+from diorama_core.project.storage import Project
+
+log = logging.getLogger(__name__)
+
+LEFT_WIDTH_PX = 292
+RIGHT_WIDTH_PX = 312
+LEFT_TABS = ("Scene", "Photo", "Arrange", "Project")
+RIGHT_TABS = ("Object", "Library")
+
+
+class Editor:
+    """Everything behind one page."""
+
+    def __init__(
+        self, server: viser.ViserServer, library: ShapeLibrary, projects_dir: Path, *, low_graphics: bool
+    ) -> None:
+        self.server = server
+        library = UserLibrary(library)
+        self.session = EditorSession(server, library, projects_dir, low_graphics=low_graphics)
+        self.session.viewport.light(low_graphics=low_graphics)
+        self.views = Views(self.session)
+        self._collisions = Collisions(library)
+        self._gestures: dict[int, Gestures] = {}
+        session = self.session
+        session.on_client = self._lay_out
+        session.on_photo_camera = self.views.photo
+        session.on_pick = lambda object_id, event: self._hand(event, lambda g: g.picked(object_id, event))
+        session.on_drag = lambda object_id, event: self._hand(event, lambda g: g.dragged(object_id, event))
+        self._outlines = PhotoOutlines(session)
+        self.commands = build_commands(session, self.views, self._outlines, self._cancel, self._help)
+        self.commands.register(server.gui, self._asked)
+        server.gui.set_panel_label("Diorama")
+        set_theme(server.gui, dark=False)
+        server.on_client_connect(self._joined)
+        server.on_client_disconnect(self._left)
+
+    def _asked(self, command: Command, client_id: int | None) -> None:
+        client = None if client_id is None else self.session.clients.get(client_id)
+        if client is not None:
+            client.post(lambda: command.run(client))
+
+    def _hand(self, event: Any, act: Callable[[Gestures], None]) -> None:
+        gestures = self._gestures.get(event.client_id)
+        if gestures is not None:
+            act(gestures)
+
+    def _cancel(self, client: Client) -> bool:
+        return self._gestures[client.id].cancel()
+
+    def _help(self, client: Client) -> None:
+        show_help(client, self.commands)
+
+    def open_first(self, project: Project | None) -> None:
+        """Show a project; without one the bundled example, or at least an empty room that says what to do."""
+        done: list[BaseException] = []
+
+        def open_it() -> None:
+            try:
+                if project is not None:
+                    self.session.open_project(project)
+                else:
+                    self._open_example()
+            except BaseException as error:
+                done.append(error)
+
+        self.session.ui_thread.post(open_it)
+        self.session.ui_thread.wait(60.0)
+        if done:
+            raise done[0]
+
+    def _open_example(self) -> None:
+        session = self.session
+        try:
+            example = example_project(session.projects_dir)
+            if example is not None:
+                session.open_project(example)
+                return
+        except DioramaError as error:
+            log.warning("the example cannot be opened: %s", error)
+        session.refresh()
+
+    def refuse_upload(self, client_id: int, name: str, size: int) -> None:
+        """Tell a person that a file was too large. May be called from any thread."""
+        message = (
+            f"{name} has {size / 1e6:.0f} MB; files up to {MAX_UPLOAD_BYTES / 1e6:.0f} MB can be uploaded. "
+            "Make the picture smaller."
+        )
+        self.session.ui_thread.post(lambda: self.session.notice(client_id, message, "bad"))
+
+    def close(self) -> None:
+        """Save and end everything that runs."""
+        self.session.close()
+
+    def _lay_out(self, client: Client) -> None:
+        """Make the panels of somebody who came."""
+        gui = client.viser_client.gui
+        gui.main_panel.dock_left()
+        gui.main_panel.set_width(LEFT_WIDTH_PX)
+        gestures = self._gestures[client.id] = Gestures(client, self._collisions)
+        toolbar = Toolbar(gui, client, self.commands)
+        client.job_panel = job_strip = JobStrip(gui, client)
+        panels: list[Panel] = [
+            gestures,
+            toolbar,
+            job_strip,
+            UnsavedChanges(gui, client),
+            Tape(gui, client),
+            Compare(gui, client, self.views),
+            Overlays(client, self._outlines),
+            Toasts(gui, client),
+            Walls(gui, client),
+        ]
+        client.open_tab = Tabs(gui, (LEFT_TABS, RIGHT_TABS)).open
+        left = gui.add_tab_group()
+        scene, from_photo, arrange, projects = (left.add_tab(name) for name in LEFT_TABS)
+        with scene:
+            panels += [Outliner(gui, client), RoomSize(gui, client)]
+        with from_photo:
+            photo = PhotoPanel(gui, client, self.views, self.commands)
+            panels += [photo, PhotoCamera(gui, client, self.views)]
+        with arrange:
+            client.curves = optimiser = Optimiser(gui, client)
+            panels.append(optimiser)
+        with projects:
+            panels += [Projects(gui, client, self.commands, photo.take), Networks(gui, client)]
+        right = gui.add_panel()
+        about, library = (right.add_tab(name) for name in RIGHT_TABS)
+        with about:
+            panels += [
+                Properties(gui, client, self.commands),
+                OwnModel(gui, client),
+                Alternatives(gui, client),
+                Supports(gui, client),
+                PhotoCorrection(gui, client),
+            ]
+        with library:
+            panels.append(LibraryPanel(gui, client))
+        take_dropped_files(gui, client, photo.take, lambda name, content: import_model(client, name, content))
+        right.dock_right()
+        right.set_width(RIGHT_WIDTH_PX)
+        client.panels = panels
+
+    async def _joined(self, viser_client: viser.ClientHandle) -> None:
+        self.session.ui_thread.post(lambda: self.session.joined(viser_client))
+        threading.Thread(target=self._recall, args=(viser_client,), daemon=True, name="settings").start()
+
+    def _recall(self, viser_client: viser.ClientHandle) -> None:
+        """Let somebody work as they did the last time, unless they were quicker to choose."""
+        retained = remembered(viser_client)
+
+        def take() -> None:
+            client = self.session.clients.get(viser_client.client_id)
+            if client is not None and client.preferences == Preferences() != retained:
+                client.take_preferences(retained)
+
+        self.session.ui_thread.post(take)
+
+    async def _left(self, viser_client: viser.ClientHandle) -> None:
+        def leave() -> None:
+            self._gestures.pop(viser_client.client_id, None)
+            self.session.left(viser_client)
+
+        self.session.ui_thread.post(leave)

@@ -1,0 +1,107 @@
+"""What this machine has and lacks for Diorama."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.metadata
+import os
+import shutil
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+PACKAGES = {
+    "viser": "viser",
+    "trimesh": "trimesh",
+    "open3d": "open3d",
+    "torch": "torch",
+    "onnxruntime": "onnxruntime",
+    "opencv-python-headless": "cv2",
+    "python-fcl": "fcl",
+    "numpy": "numpy",
+    "scipy": "scipy",
+    "scikit-learn": "sklearn",
+    "manifold3d": "manifold3d",
+}
+OPTIONAL_PACKAGES = {"mujoco": "mujoco"}
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that was looked at."""
+
+    name: str
+    ok: bool
+    detail: str
+    needed: bool = True
+
+
+def examine() -> tuple[Finding, ...]:
+    """Everything Diorama depends on, in the order a person would mend it."""
+    version = ".".join(map(str, sys.version_info[:3]))
+    return (
+        Finding("python", sys.version_info >= (3, 11), f"{version} (3.11 or later)"),
+        *(_package(name, module, needed=True) for name, module in PACKAGES.items()),
+        *(_package(name, module, needed=False) for name, module in OPTIONAL_PACKAGES.items()),
+        _library(),
+        _cache(),
+        _cores(),
+        _accelerator(),
+        _browser(),
+    )
+
+
+def _package(name: str, module: str, *, needed: bool) -> Finding:
+    try:
+        importlib.import_module(module)
+    except (ImportError, OSError) as error:
+        hint = " (run: sudo apt-get install -y libusb-1.0-0 libgl1)" if name == "open3d" else ""
+        return Finding(name, False, f"does not load: {error}{hint}", needed)
+    return Finding(name, True, importlib.metadata.version(name), needed)
+
+
+def _library() -> Finding:
+    from diorama_app.projects.report import library_named
+
+    shapes = library_named("built-in").shapes()
+    return Finding(
+        "shape library", bool(shapes), f"{len(shapes)} shapes, {len({s.category for s in shapes})} categories"
+    )
+
+
+def _cache() -> Finding:
+    from diorama_core.library.catalogue import default_cache_dir
+
+    folder = default_cache_dir()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        return Finding(
+            "cache folder", False, f"{folder}: {error.strerror}; set DIORAMA_CACHE to a folder you may write to"
+        )
+    return Finding("cache folder", True, f"{folder}, {shutil.disk_usage(folder).free / 1e9:.0f} GB free")
+
+
+def _cores() -> Finding:
+    memory = Path("/proc/meminfo")
+    total = f", {int(memory.read_text().split()[1]) / 1e6:.0f} GB memory" if memory.exists() else ""
+    return Finding("processor", True, f"{os.cpu_count()} cores{total}")
+
+
+def _accelerator() -> Finding:
+    import torch
+
+    if torch.cuda.is_available():
+        return Finding("accelerator", True, torch.cuda.get_device_name(0), needed=False)
+    return Finding("accelerator", False, "none found; none is needed", needed=False)
+
+
+def _browser() -> Finding:
+    names = ("chromium", "chromium-browser", "google-chrome", "firefox")
+    found = next((path for name in names if (path := shutil.which(name))), None)
+    return Finding(
+        "browser", found is not None, found or "none on this machine; open the page from another", needed=False
+    )

@@ -1,0 +1,1 @@
+"""What buttons, hotkeys and the palette do, one module a command group."""

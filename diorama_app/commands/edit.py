@@ -1,0 +1,249 @@
+"""What buttons, hotkeys and fields do to objects of the open room, each as one undo step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_app.session.client import Client
+from diorama_core.errors import EditRefused
+from diorama_core.scene import edits
+from diorama_core.scene.support import descendants
+from diorama_core.scene.types import Finish, Pose, Scene, SceneObject, Support, yaw_rotation
+
+NUDGE_MERGE = "fields"
+BESIDE_M = 0.08
+
+
+def names_of(scene: Scene, ids: Iterable[str]) -> str:
+    """What a label says of several objects: the name of one, or how many."""
+    chosen = tuple(ids)
+    return scene.object(chosen[0]).label[:40] if len(chosen) == 1 else f"{len(chosen)} objects"
+
+
+def delete_selected(client: Client) -> None:
+    """Delete what is selected; what stood on it is handed to the next supporter."""
+    chosen = client.need_selection()
+    names = names_of(client.session.scene, chosen)
+    client.session.edit(f"delete {names}", lambda scene: edits.remove(scene, chosen), by=client, selection=())
+
+
+def duplicate_selected(client: Client) -> None:
+    """Copy the selected objects beside themselves and select the copies."""
+    scene, copies = client.session.scene, []
+    chosen = client.need_selection()
+    for object_id in chosen:
+        size = scene.object(object_id).size_m
+        offset = scene.object(object_id).pose.R_world_object @ np.array([0.0, size[1] + BESIDE_M, 0.0])
+        scene, copy = edits.duplicate(scene, object_id, offset_world=(offset[0], offset[1], 0.0))
+        copies.append(copy)
+    client.session.commit(f"duplicate {names_of(client.session.scene, chosen)}", scene, by=client, selection=copies)
+
+
+def set_locked(client: Client, ids: Iterable[str], locked: bool) -> None:
+    """Lock or unlock objects."""
+    _each(client, "lock" if locked else "unlock", ids, lambda s, i: edits.set_locked(s, i, locked))
+
+
+def set_hidden(client: Client, ids: Iterable[str], hidden: bool) -> None:
+    """Hide or show objects."""
+    _each(client, "hide" if hidden else "show", ids, lambda s, i: edits.set_hidden(s, i, hidden))
+
+
+def show_all(client: Client) -> None:
+    """Show everything that is hidden."""
+    hidden = tuple(o.id for o in client.session.scene.objects if o.hidden)
+    if not hidden:
+        raise EditRefused("nothing is hidden")
+    set_hidden(client, hidden, False)
+
+
+def set_colour(client: Client, ids: Iterable[str], colour: tuple[float, float, float] | None) -> None:
+    """Paint objects, or give back the shape's own colours with None."""
+    chosen = tuple(ids)
+    client.session.edit(
+        f"{'paint' if colour is not None else 'own colours of'} {names_of(client.session.scene, chosen)}",
+        lambda s: _fold(s, chosen, lambda scene, i: edits.recolour(scene, i, colour)),
+        by=client,
+        merge_key=f"{NUDGE_MERGE} colour {' '.join(chosen)}",
+    )
+
+
+def set_finish(client: Client, ids: Iterable[str], finish: Finish | None) -> None:
+    """Make objects matt, glossy..., or give back the shape's own finish with None."""
+    chosen = tuple(ids)
+    names = names_of(client.session.scene, chosen)
+    client.session.edit(
+        f"{finish} {names}" if finish is not None else f"own finish of {names}",
+        lambda s: _fold(s, chosen, lambda scene, i: edits.refinish(scene, i, finish)),
+        by=client,
+    )
+
+
+def rename(client: Client, object_id: str, label: str) -> None:
+    """Call an object something else."""
+    if label.strip() and label != client.session.scene.object(object_id).label:
+        client.session.edit(
+            f"rename to {label.strip()[:40]}",
+            lambda s: edits.rename(s, object_id, label),
+            by=client,
+            merge_key=f"{NUDGE_MERGE} {object_id} name",
+        )
+
+
+def set_base_position(client: Client, object_id: str, base: Float[np.ndarray, "3"]) -> None:
+    """Put the middle of an object's underside at a place in the world."""
+    item = client.session.scene.object(object_id)
+    offset = np.asarray(base, dtype=np.float64) - base_position(item)
+    if np.abs(offset).max() < 5e-4:
+        return
+    _move(client, item, item.pose.moved(offset), "at")
+
+
+def set_yaw(client: Client, object_id: str, yaw_deg: float) -> None:
+    """Turn an object about world up until its front has this heading."""
+    item = client.session.scene.object(object_id)
+    turn = np.radians(yaw_deg) - item.pose.yaw_rad
+    if abs(np.arctan2(np.sin(turn), np.cos(turn))) < 1e-4:
+        return
+    _turn(client, item, float(turn))
+
+
+def turn_selected(client: Client, by_deg: float) -> None:
+    """Turn what is selected about world up, each about itself."""
+    for object_id in client.need_selection():
+        _turn(client, client.session.scene.object(object_id), np.radians(by_deg))
+
+
+def _turn(client: Client, item: SceneObject, turn_rad: float) -> None:
+    pose = replace(item.pose, R_world_object=yaw_rotation(turn_rad) @ item.pose.R_world_object)
+    client.session.edit(
+        f"turn {item.label}",
+        lambda s: edits.move(s, item.id, pose),
+        by=client,
+        merge_key=f"{NUDGE_MERGE} {item.id} yaw",
+    )
+
+
+def set_size(client: Client, object_id: str, size_m: Float[np.ndarray, "3"]) -> None:
+    """Give an object these extents along its own axes, standing where it stands."""
+    session, item = client.session, client.session.scene.object(object_id)
+    size = np.asarray(size_m, dtype=np.float64)
+    if np.abs(size - item.size_m).max() < 5e-4:
+        return
+    if (size <= 0).any():
+        client.refresh()
+        raise EditRefused(f"{item.label} must be larger than nothing; give sizes above 0")
+    session.edit(
+        f"resize {item.label}",
+        lambda s: resized(s, object_id, size),
+        by=client,
+        merge_key=f"{NUDGE_MERGE} {object_id} size",
+    )
+
+
+def resized(scene: Scene, object_id: str, size_m: Float[np.ndarray, "3"]) -> Scene:
+    """The scene with an object of this size on the same base; what stands on it keeps standing on its new top."""
+    item = scene.object(object_id)
+    rise = item.pose.R_world_object[:, 2] * (size_m[2] - item.size_m[2]) / 2
+    pose = Pose(item.pose.R_world_object, item.pose.position + rise, size_m / np.asarray(item.shape_size_m))
+    # What stands on it rises with the new top: a rigid move alone carries it only half of the way.
+    moved = edits.move(scene, object_id, pose)
+    return edits.place(moved, {i: moved.object(i).pose.moved(rise) for i in descendants(scene, object_id)})
+
+
+def base_position(item: SceneObject) -> Float[np.ndarray, "3"]:
+    """Middle of an object's underside in the world."""
+    return item.pose.position - item.pose.R_world_object[:, 2] * item.size_m[2] / 2
+
+
+def attach(client: Client, object_id: str, parent_id: str) -> None:
+    """Say that an object stands on another, or on (or against) a plane; it goes there at once."""
+    from diorama_core.editing.placing import seated
+
+    session = client.session
+    scene = session.scene
+    if not scene.has_object(object_id):
+        raise EditRefused("that object is gone")
+    wall = scene.has_plane(parent_id) and scene.plane(parent_id).role != "floor"
+    support = scene.support_of(object_id)
+    edge = Support(
+        object_id,
+        parent_id,
+        "mounted on" if wall else "placed on",
+        adheres_to=support.adheres_to if support is not None and not wall else (),
+    )
+    label = scene.object(object_id).label
+    session.edit(
+        f"{label} onto {supporter_name(scene, parent_id)}",
+        lambda s: seated(edits.attach(s, edge), session.library, object_id),
+        by=client,
+    )
+
+
+def detach(client: Client, object_id: str) -> None:
+    """Say that nothing holds an object up."""
+    label = client.session.scene.object(object_id).label
+    client.session.edit(f"support of {label}", lambda s: edits.detach(s, object_id), by=client)
+
+
+def set_relation(client: Client, object_id: str, mounted: bool) -> None:
+    """Say whether an object lies on its supporter or is fastened to it."""
+    edge = client.session.scene.support_of(object_id)
+    if edge is None:
+        raise EditRefused("nothing holds it up; choose a supporter first")
+    changed = replace(edge, relation="mounted on" if mounted else "placed on", child_face=None, parent_surface=None)
+    label = client.session.scene.object(object_id).label
+    client.session.edit(f"support of {label}", lambda s: edits.attach(s, changed), by=client)
+
+
+def set_adherence(client: Client, object_id: str, wall_id: str | None) -> None:
+    """Say against which wall an object also stands (none: no wall); it goes there at once."""
+    from diorama_core.editing.placing import against_wall
+
+    scene = client.session.scene
+    edge = scene.support_of(object_id)
+    if edge is None:
+        raise EditRefused("nothing holds it up; choose a supporter first")
+    changed = replace(edge, adheres_to=() if wall_id is None else (wall_id,))
+    label = scene.object(object_id).label
+
+    def apply(s: Scene) -> Scene:
+        attached = edits.attach(s, changed)
+        return attached if wall_id is None else against_wall(attached, object_id, attached.plane(wall_id))
+
+    client.session.edit(f"{label} against the wall" if wall_id else f"{label} off the wall", apply, by=client)
+
+
+def supporter_name(scene: Scene, any_id: str) -> str:
+    """What people call a supporter."""
+    if scene.has_object(any_id):
+        return scene.object(any_id).label
+    plane = scene.plane(any_id)
+    same = scene.architecture.by_role(plane.role)
+    number = f" {[p.id for p in same].index(plane.id) + 1}" if len(same) > 1 else ""
+    return plane.role + number
+
+
+def _move(client: Client, item: SceneObject, pose: Pose, field: str) -> None:
+    client.session.edit(
+        f"move {item.label}",
+        lambda s: edits.move(s, item.id, pose),
+        by=client,
+        merge_key=f"{NUDGE_MERGE} {item.id} {field}",
+    )
+
+
+def _each(client: Client, verb: str, ids: Iterable[str], change: Callable[[Scene, str], Scene]) -> None:
+    chosen = tuple(ids)
+    names = names_of(client.session.scene, chosen)
+    client.session.edit(f"{verb} {names}", lambda s: _fold(s, chosen, change), by=client)
+
+
+def _fold(scene: Scene, ids: Iterable[str], change: Callable[[Scene, str], Scene]) -> Scene:
+    for object_id in ids:
+        scene = change(scene, object_id)
+    return scene

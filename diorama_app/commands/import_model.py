@@ -1,0 +1,133 @@
+"""A model file that somebody uploads: checked, put the right way up, sized, kept in a library of one's own, placed."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from diorama_app.commands.insert import start_placing
+from diorama_app.commands.swap import candidate_for, swapped
+from diorama_app.session.client import Client
+from diorama_app.session.session import EditorSession
+from diorama_core.errors import EditRefused, InputError
+from diorama_core.library.user_library import OWN, UserLibrary
+from diorama_core.progress import Progress
+from diorama_core.project.storage import Project
+from diorama_core.scene.types import Scene
+
+
+def import_model(client: Client, name: str, content: bytes) -> None:
+    """Take a model file into the library of one's own models; the next click in the view puts it there."""
+    session = client.session
+    user_library = session.library
+    if not isinstance(user_library, UserLibrary):
+        raise EditRefused("this library cannot take models in")
+    file_name = Path(name).name or "model.glb"
+
+    def work(progress: Progress) -> None:
+        shape_id = _taken_in(user_library, file_name, content, progress)
+
+        def show() -> None:
+            if session.project is not None:
+                _note_library(session.project)
+            client.toast(f"{file_name} is in the library", False)
+            start_placing(client, shape_id)
+
+        client.post(show)
+
+    session.jobs.start("import", f"Reading {file_name}", work)
+
+
+def _taken_in(user_library: UserLibrary, name: str, content: bytes, progress: Progress) -> str:
+    from diorama_core.library.ingest.adding import add_models, model_files, sources
+    from diorama_core.library.ingest.guess import Given
+    from diorama_core.workers import workers
+
+    with tempfile.TemporaryDirectory(prefix="upload-") as folder:
+        (Path(folder) / name).write_bytes(content)
+        paths, skipped = model_files(Path(folder))
+        if not paths:
+            reason = (
+                skipped[0].reason if skipped else "this is no model that can be read; upload a GLB, OBJ, PLY or STL"
+            )
+            raise InputError(f"{name}: {reason}")
+        found = sources(Path(folder), paths, Given(), {})
+        library = user_library.own()
+        report = add_models(found, library, workers(None, 1), progress=progress)
+        if report.failed:
+            raise InputError(f"{name}: {report.failed[0].reason}")
+        return report.added[0] if report.added else found[0].id
+
+
+@dataclass(frozen=True)
+class Fix:
+    """One way in which a model was taken wrongly, and the change that mends it."""
+
+    name: str
+    hint: str
+    up: str = "+z"
+    """Axis of the shape as it stands that ought to point up."""
+    front: str | None = None
+    """Axis of the shape as it stands that ought to be the front."""
+    scale: float = 1.0
+
+
+FIXES: dict[str, Fix] = {
+    "left": Fix("Front is left", "Its left side is really its front", front="+y"),
+    "back": Fix("Front is back", "Its back is really its front", front="-x"),
+    "tip": Fix("Tip over", "What is its back now ought to be on top", up="-x", front="+z"),
+    "roll": Fix("Roll over", "What is its left side now ought to be on top", up="+y", front="+x"),
+    "flip": Fix("Upside down", "What is at the bottom now ought to be on top", up="-z", front="+x"),
+    "metres": Fix("x 100", "Its sizes were meant in metres, not centimetres", scale=100.0),
+    "centimetres": Fix("/ 100", "Its sizes were meant in centimetres, not metres", scale=0.01),
+    "inches": Fix("x 2.54", "Its sizes were meant in inches, not centimetres", scale=2.54),
+}
+"""The corrections that a person can choose from."""
+
+
+def is_own_model(session: EditorSession, shape_id: str) -> bool:
+    """Whether a shape is one that somebody uploaded, so that it may be corrected."""
+    user_library = session.library
+    return isinstance(user_library, UserLibrary) and user_library.has_own(shape_id)
+
+
+def correct_model(client: Client, object_id: str, fix: Fix | None = None, *, category: str | None = None) -> None:
+    """Take a model of one's own as it was meant, and show the object in it, in the size it then has.
+
+    The corrected model gets an id of its own: undo leads back to the one before.
+
+    Raises:
+        EditRefused: when the shape is not one of one's own.
+        InputError: when the category is unknown.
+    """
+    from diorama_core.library.ingest.correct import corrected
+
+    session = client.session
+    item, user_library = session.scene.object(object_id), session.library
+    if not isinstance(user_library, UserLibrary) or not user_library.has_own(item.shape_id):
+        raise EditRefused("only models of your own can be corrected; upload one under Library")
+    own, change = user_library.own(), fix or Fix("", "")
+    found = corrected(own, item.shape_id, up=change.up, front=change.front, scale=change.scale, category=category)
+    stem = item.shape_id.partition("~")[0]
+    record = replace(
+        found.record, id=f"{stem}~{found.record.content_hash[:6]}-{found.record.category.replace(' ', '-')}"
+    )
+    own.add(replace(found, record=record))
+    what = change.name.lower() if fix is not None else record.category
+
+    def take(scene: Scene) -> Scene:
+        return swapped(scene, item, candidate_for(session.library, item, record.id, "catalogue"), keep_colour=True)
+
+    try:
+        session.edit(f"correct the model ({what})", take, by=client)
+    except EditRefused:
+        own.remove([record.id])
+        raise
+
+
+def _note_library(project: Project) -> None:
+    """Commands that open this project must find the shape too."""
+    named = str(project.info().get("library", "built-in"))
+    if OWN not in named.split("+"):
+        project.update_info(library=f"{named}+{OWN}")

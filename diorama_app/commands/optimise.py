@@ -1,0 +1,159 @@
+"""Run a layout recipe beside the desk: live preview, pause, cancel, one undo step; before and after to compare."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from functools import partial
+
+import numpy as np
+import viser.transforms as vtf
+
+from diorama_app.session.client import Client
+from diorama_app.session.layout_run import Costs, LayoutRun, Samples
+from diorama_app.session.session import EditorSession
+from diorama_core.artefacts import LayoutReport
+from diorama_core.errors import EditRefused
+from diorama_core.layout.weights import AS_IT_IS, Weights
+from diorama_core.progress import Progress
+from diorama_core.scene import edits
+from diorama_core.scene.types import Pose, Scene
+
+PREVIEW_EVERY_S = 0.05
+"""Twenty pictures a second are what reaches a browser."""
+
+GLIDE_S = 0.9
+"""How long a layout that was found at once takes to settle before people's eyes."""
+
+GLIDE_BELOW = 10
+"""A run with fewer pictures than this is too abrupt to be followed."""
+
+PAUSE_POLL_S = 0.05
+
+
+def optimise(client: Client, recipe_name: str, only: tuple[str, ...] = (), weights: Weights = AS_IT_IS) -> LayoutRun:
+    """Optimise the layout of everything unlocked, or of `only` these and what they hold up; one undo step."""
+    session = client.session
+    start = session.scene
+    if not start.objects:
+        raise EditRefused("there is nothing to arrange; insert furniture first")
+    run = LayoutRun(recipe_name, time.monotonic(), start, only)
+
+    def work(progress: Progress) -> None:
+        from diorama_core.layout.recipes import recipe
+
+        shown, pictures = 0.0, 0
+        samples: Samples = []
+
+        def preview(scene: Scene, costs: Costs) -> None:
+            nonlocal shown, pictures
+            now = time.monotonic()
+            samples.append((now - run.started_at, tuple(costs)))
+            if now - shown >= PREVIEW_EVERY_S:
+                shown, pictures = now, pictures + 1
+                session.ui_thread.post(lambda: _show_step(session, scene, run, samples), key="preview")
+            while not run.going.wait(PAUSE_POLL_S):
+                progress.check()
+
+        try:
+            stage = recipe(recipe_name, session.library, frozenset(only) if only else None, weights=weights)
+            final, report = stage.optimise(start, progress, preview)
+        except BaseException:
+            session.ui_thread.post(session.refresh)  # cancelled or failed: everything goes back to the document
+            raise
+        session.ui_thread.post(lambda: run.read(samples))
+        if pictures < GLIDE_BELOW:
+            _glide(session, start, final, progress)
+        client.post(lambda: _arranged(client, final, report, run))
+
+    session.jobs.start("optimise", "Arranging the layout", work)
+    session.layout_run = run
+    return run
+
+
+def pause(session: EditorSession, paused: bool) -> None:
+    """Let the running optimisation wait, or go on."""
+    run = session.layout_run
+    if run is not None:
+        if paused:
+            run.going.clear()
+        else:
+            run.going.set()
+        session.refresh_panels()
+
+
+def show_before(session: EditorSession, before: bool) -> None:
+    """Show where everything was before the last optimisation, or where it is now; the document stays."""
+    run = session.layout_run
+    if run is None or run.final is None:
+        raise EditRefused("no layout was optimised yet")
+    run.showing_before = before
+    poses = {o.id: o.pose for o in session.scene.objects}
+    if before:
+        poses |= {o.id: o.pose for o in run.start.objects if o.id in poses}
+    session.preview(poses)
+    session.refresh_panels()
+
+
+def put_back(client: Client) -> None:
+    """Take the last optimisation back, with one more undo step when something else was done since."""
+    session, run = client.session, client.session.layout_run
+    if run is None or run.final is None:
+        raise EditRefused("no layout was optimised yet")
+    run.showing_before = False
+    if session.scene is run.final:
+        session.undo(client)
+    else:
+        there = {o.id: o.pose for o in run.start.objects if session.scene.has_object(o.id)}
+        session.edit("put the layout back", lambda s: edits.place(s, there), by=client)
+    session.layout_run = None
+    session.refresh_panels()
+
+
+def _glide(session: EditorSession, start: Scene, final: Scene, progress: Progress) -> None:
+    """A recipe that finds its answer at once is still watched on its way there."""
+    frames = int(GLIDE_S / PREVIEW_EVERY_S)
+    for frame in range(1, frames + 1):
+        share = 0.5 - 0.5 * np.cos(np.pi * frame / frames)
+        between = {o.id: _between(start.object(o.id).pose, o.pose, float(share)) for o in final.objects}
+        session.ui_thread.post(partial(session.preview, between), key="preview")
+        time.sleep(PREVIEW_EVERY_S)
+        progress.report(1.0, "Settling")
+
+
+def _between(a: Pose, b: Pose, share: float) -> Pose:
+    turn = vtf.SO3.from_matrix(b.R_world_object @ a.R_world_object.T)
+    R = vtf.SO3.exp(share * turn.log()).as_matrix() @ a.R_world_object
+    u, _, vt = np.linalg.svd(R)
+    return Pose(u @ vt, a.position + share * (b.position - a.position), a.scale + share * (b.scale - a.scale))
+
+
+def _show_step(session: EditorSession, scene: Scene, run: LayoutRun, samples: Samples) -> None:
+    session.preview(untouched(session.scene, run.start, scene))
+    run.read(samples)
+    for client in session.clients.values():
+        if client.curves is not None:
+            client.curves.refresh()
+
+
+def _arranged(client: Client, final: Scene, report: LayoutReport, run: LayoutRun) -> None:
+    session = client.session
+    current = session.scene
+    if current is run.start:
+        scene = edits.set_metrics(final, report.after)
+    else:
+        scene = edits.set_metrics(edits.place(current, untouched(current, run.start, final)), report.after)
+    run.report, run.final = report, scene
+    session.commit("arrange the layout", scene, by=client)
+
+
+def untouched(current: Scene, start: Scene, final: Scene) -> Mapping[str, Pose]:
+    """The final poses of objects that nobody has edited since the start; locked ones stay where they are."""
+    return {
+        o.id: o.pose
+        for o in final.objects
+        if current.has_object(o.id)
+        and start.has_object(o.id)
+        and current.object(o.id) == start.object(o.id)
+        and not current.object(o.id).locked
+    }

@@ -1,0 +1,283 @@
+"""What a person does with the mouse in the 3D view: pick, frame, drag an object, drag the gizmo, click a place.
+
+A drag shows a preview while it lasts and becomes one undo step when it ends; Esc puts everything back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import viser
+
+from diorama_app.commands.insert import place_at
+from diorama_app.commands.measure import measure_at
+from diorama_app.interaction.marquee import objects_in
+from diorama_app.interaction.resize_handles import SizeHandles
+from diorama_app.session.client import Client, Measuring, Placing
+from diorama_app.session.preferences import GizmoMode
+from diorama_app.viewport.scene_view import quaternion, rotation
+from diorama_core.editing.collisions import Collisions
+from diorama_core.editing.dragging import Slide, snapped_pose
+from diorama_core.editing.stretching import changed_poses
+from diorama_core.scene import edits
+from diorama_core.scene.support import descendants
+from diorama_core.scene.types import Pose, Scene
+
+NODE = "/gizmo"
+
+
+@dataclass(frozen=True)
+class Turn:
+    """A gizmo drag under way: where everything was when it began."""
+
+    object_id: str
+    scene: Scene
+
+
+@dataclass
+class _Drag:
+    """An object dragged by itself, and where it has got to."""
+
+    slide: Slide
+    scene: Scene
+
+
+class Gestures:
+    """Turns one browser's pointer events into document edits. Used from the desk's thread, except where it says so."""
+
+    def __init__(self, client: Client, collisions: Collisions) -> None:
+        self._client = client
+        self._session = client.session
+        self._collisions = collisions
+        self._drag: Turn | _Drag | None = None
+        self._gizmo: viser.TransformControlsHandle | None = None
+        self._gizmo_key: tuple[str, GizmoMode, float] | None = None
+        self._last_pick: tuple[float, float] | None = None
+        self._handles = SizeHandles(client, self._resizing, self._end_collisions)
+        scene = client.viser_client.scene
+
+        async def clicked(event: viser.SceneClickEvent) -> None:
+            # A click on an object also arrives here, after the object's own event.
+            ray = np.array(event.ray_origin), np.array(event.ray_direction)
+            on_object = self._last_pick == event.screen_pos
+            client.post(lambda: self._clicked(*ray, on_object=on_object))
+
+        async def framed(event: viser.SceneRectSelectEvent) -> None:
+            low, high = event.screen_min, event.screen_max
+            client.post(lambda: self._framed(low, high))
+
+        scene.on_click()(clicked)
+        scene.on_rect_select(modifier="shift")(framed)
+
+    # -- pointing ---------------------------------------------------------------------------------------------
+
+    def picked(self, object_id: str, event: viser.SceneNodePointerEvent[Any]) -> None:
+        """An object was clicked. Called from viser's event loop."""
+        self._last_pick = event.screen_pos
+        add = event.modifier is not None
+
+        def pick() -> None:
+            if self._client.doing is not None:
+                return  # the scene's own click says where
+            if add:
+                self._client.toggle(object_id)
+            else:
+                self._client.select((object_id,))
+
+        self._client.post(pick)
+
+    def _clicked(self, origin: np.ndarray, direction: np.ndarray, *, on_object: bool) -> None:
+        doing = self._client.doing
+        if self._client.view.drawing:
+            return
+        if isinstance(doing, Placing):
+            place_at(self._client, doing.shape_id, origin, direction)
+        elif isinstance(doing, Measuring):
+            measure_at(self._client, doing, origin, direction)
+        elif not on_object:
+            self._client.select(())
+
+    def _framed(self, low: tuple[float, float], high: tuple[float, float]) -> None:
+        client, camera = self._client, self._client.viser_client.camera
+        if client.view.drawing:
+            return
+        inside = objects_in(
+            self._session.scene,
+            low,
+            high,
+            rotation(np.asarray(camera.wxyz)),
+            np.asarray(camera.position),
+            float(camera.fov),
+            float(camera.aspect),
+        )
+        client.select((*client.selection, *inside))
+
+    # -- dragging an object ------------------------------------------------------------------------------------
+
+    def dragged(self, object_id: str, event: viser.SceneNodeDragEvent[Any]) -> None:
+        """An object is dragged. Called from viser's event loop."""
+        phase, inverted = event.phase, event.modifier == "alt"
+        grabbed, hand = np.array(event.start_position), np.array(event.end_position)
+        self._client.post(
+            lambda: self._slid(object_id, phase, grabbed, hand, inverted),
+            key="slide" if phase == "update" else None,
+        )
+
+    def _slid(self, object_id: str, phase: str, grabbed: np.ndarray, hand: np.ndarray, inverted: bool) -> None:
+        client, session = self._client, self._session
+        if phase == "start":
+            if client.doing is not None or client.view.drawing or not session.scene.has_object(object_id):
+                return
+            if object_id not in client.selection:
+                client.select((object_id,))
+            slide = Slide.begin(session.scene, session.library, object_id, grabbed, client.selection)
+            self._remove()
+            self._handles.show(None)
+            self._drag = _Drag(slide, session.scene)
+            return
+        drag = self._drag
+        if not isinstance(drag, _Drag):
+            return
+        if phase == "update":
+            eye = np.asarray(client.viser_client.camera.position, dtype=np.float64)
+            snap = client.preferences.snap != inverted
+            # Until every shape is prepared, things go through each other (and are shown colliding).
+            prepared = session.preparer.ready(o.shape_id for o in drag.slide.scene.objects)
+            drag.scene, poses = drag.slide.to(eye, hand - eye, snap=snap, slide=client.preferences.slide and prepared)
+            self._show(drag.slide.scene, poses, drag.scene)
+            return
+        self._drag = None
+        self._end_collisions()
+        label = drag.slide.item.label
+        if drag.scene is drag.slide.scene:
+            session.refresh()
+            return
+        start, now = drag.slide.scene, drag.scene
+        before, after = start.support_of(object_id), now.support_of(object_id)
+        moved = {o.id: o.pose for o in now.objects if o is not start.object(o.id)}
+
+        def apply(scene: Scene) -> Scene:
+            # Onto the scene as it is now: somebody else may have edited it meanwhile.
+            scene = edits.place(scene, {i: p for i, p in moved.items() if scene.has_object(i)})
+            if after is not None and after != before and scene.has_object(object_id):
+                scene = edits.attach(scene, after)
+            return scene
+
+        session.edit(f"move {label}", apply, by=client)
+
+    def _show(self, start: Scene, poses: Mapping[str, Pose], scene: Scene) -> None:
+        self._session.preview(poses)
+        moving = [i for i in poses if i in {*self._moving()}] or list(poses)
+        pairs = self._collisions.of(scene, moving)
+        if self._client.marks.collide({i for pair in pairs for i in pair}):
+            self._client.show_marks()
+
+    def _resizing(self, start: Scene, now: Scene) -> None:
+        poses = changed_poses(start, now)
+        self._session.preview(poses)
+        self._client.marks.collide({i for pair in self._collisions.of(now, list(poses)) for i in pair})
+        self._client.show_marks(now)
+
+    def _moving(self) -> Iterable[str]:
+        drag = self._drag
+        if isinstance(drag, _Drag):
+            item = drag.slide.item
+            return (item.id, *descendants(drag.slide.scene, item.id), *drag.slide.along)
+        return () if drag is None else (drag.object_id, *descendants(drag.scene, drag.object_id))
+
+    def _end_collisions(self) -> None:
+        if self._client.marks.collide(()):
+            self._client.show_marks()
+
+    # -- the gizmo --------------------------------------------------------------------------------------------
+
+    def refresh(self) -> None:
+        """Put the gizmo where the selected object is; take it away when there is none to move."""
+        item = self._client.selected
+        if (
+            item is None
+            or item.locked
+            or item.hidden
+            or isinstance(self._drag, _Drag)
+            or self._client.doing is not None
+        ):
+            item = None
+        sizing = self._client.preferences.gizmo == "size"
+        if not self._handles.pulling:
+            self._handles.show(item if sizing else None)
+        if item is None or sizing:
+            self._remove()
+            return
+        scale = float(np.clip(0.62 * max(item.size_m), 0.3, 1.1))
+        key = (item.id, self._client.preferences.gizmo, round(scale, 2))
+        if self._gizmo is None or self._gizmo_key != key:
+            if self._drag is not None:
+                return
+            self._remove()
+            self._gizmo = self._add(item.pose, scale)
+            self._gizmo_key = key
+        elif self._drag is None:
+            self._gizmo.wxyz = quaternion(item.pose.R_world_object)
+            self._gizmo.position = item.pose.position
+
+    def _add(self, pose: Pose, scale: float) -> viser.TransformControlsHandle:
+        gizmo = self._client.viser_client.scene.add_transform_controls(
+            NODE,
+            scale=scale,
+            line_width=3.0,
+            active_axes=(True, True, self._client.preferences.gizmo == "free"),
+            depth_test=False,
+            opacity=0.85,
+            wxyz=quaternion(pose.R_world_object),
+            position=pose.position,
+        )
+
+        async def dragged(event: viser.TransformControlsEvent) -> None:
+            wxyz, position, phase = np.array(event.target.wxyz), np.array(event.target.position), event.phase
+            self._client.post(lambda: self._turned(phase, wxyz, position), key="gizmo" if phase == "update" else None)
+
+        gizmo.on_update(dragged)
+        return gizmo
+
+    def _remove(self) -> None:
+        if self._gizmo is not None and not isinstance(self._drag, Turn):
+            self._gizmo.remove()
+            self._gizmo = self._gizmo_key = None
+
+    def _turned(self, phase: str, wxyz: np.ndarray, position: np.ndarray) -> None:
+        item = self._client.selected
+        if self._drag is None:
+            if item is None or phase != "start":
+                return
+            self._drag = Turn(item.id, self._session.scene)
+        drag = self._drag
+        if not isinstance(drag, Turn):
+            return
+        start = drag.scene.object(drag.object_id)
+        pose = Pose(rotation(wxyz), position, start.pose.scale)
+        if self._client.preferences.snap:
+            pose = snapped_pose(start.pose, pose)
+        if phase != "end":
+            moved = edits.move(drag.scene, drag.object_id, pose)
+            poses = {o.id: o.pose for o in moved.objects if o is not drag.scene.object(o.id)}
+            self._show(drag.scene, poses, moved)
+            return
+        self._drag = None
+        self._end_collisions()
+        if pose == start.pose or not self._session.scene.has_object(drag.object_id):
+            self._session.refresh()
+            return
+        self._session.edit(f"move {start.label}", lambda s: edits.move(s, drag.object_id, pose), by=self._client)
+
+    def cancel(self) -> bool:
+        """Put back what is being dragged, or stop waiting for a click; False when there is nothing to stop."""
+        if not self._handles.cancel() and self._drag is None and self._client.doing is None:
+            return False
+        self._drag = None
+        self._client.doing = None
+        self._end_collisions()
+        self._session.refresh()
+        return True

@@ -1,0 +1,104 @@
+"""What the photo says of the selected object, and ways to put it right: its name, its box, its outline."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import viser
+
+from diorama_app.reconstruction.object_correction import redraw_box, rename_class, start_outline, use_outline
+from diorama_app.session.client import Client
+from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_core.artefacts import Box, LabelledBox
+from diorama_core.errors import EditRefused
+
+if TYPE_CHECKING:
+    from diorama_core.editing.outline import Outline
+
+
+class PhotoCorrection:
+    """Shown for objects that were found in the photo."""
+
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self._client = client
+        self._html = LiveHtml(gui, self._act)
+        self._outline: Outline | None = None
+        self._of: str | None = None
+
+    def refresh(self) -> None:
+        """Draw what can be corrected about the selected object."""
+        item, session = self._client.selected, self._client.session
+        if item is None or item.box_px is None or session.photo is None:
+            self._html.show("")
+            return
+        if self._of is not None and not self._client.view.drawing:
+            self._of = self._outline = None
+        if self._outline is not None:
+            self._html.show(
+                '<h4>From the photo</h4><div class="card">Click what belongs to it; Shift-click what does not.'
+                f'<div class="bar tight" style="margin:6px 0 0 0">{button("Use this outline", "use")}'
+                f"{button('Never mind', 'stop')}</div></div>"
+            )
+        elif self._of is not None:
+            self._html.show(
+                '<h4>From the photo</h4><div class="card">Draw a box around it in the photo.'
+                f'<div class="bar tight" style="margin:6px 0 0 0">{button("Never mind", "stop")}</div></div>'
+            )
+        else:
+            self._html.show(
+                '<h4>From the photo</h4><div style="display:flex;gap:4px;margin-bottom:4px">'
+                f'<input data-change="is" aria-label="What it is" value="{text(item.category)}" '
+                'title="Say what it is and press Enter: shapes of that kind are looked for"></div>'
+                '<div class="bar tight">'
+                + button("Redraw box", "box", title="Show where it is in the photo")
+                + button("Fix outline", "outline", title="Click what belongs to it and what does not")
+                + "</div>"
+            )
+
+    def _act(self, action: Action) -> None:
+        self._client.post(lambda: self._do(action))
+
+    def _do(self, action: Action) -> None:
+        client = self._client
+        object_id = client.need_selected()
+        if action.do == "is":
+            rename_class(client, object_id, action.pair[1])
+        elif action.do == "box":
+            self._of = object_id
+            client.view.open_board(self._photo(), lambda box: client.post(lambda: self._boxed(object_id, box)))
+            item = client.session.scene.object(object_id)
+            if item.box_px is not None:
+                client.view.show_boxes([LabelledBox(item.box_px, item.category, item.label)], 0)
+        elif action.do == "outline":
+            self._outline, self._of = start_outline(client, object_id), object_id
+            client.view.open_board(
+                self._photo(), None, lambda x, y, part: client.post(lambda: self._clicked(x, y, part))
+            )
+            client.view.show_mask(self._outline.mask)
+        elif action.do == "use" and self._outline is not None:
+            use_outline(client, object_id, self._outline)
+            self._close()
+        elif action.do == "stop":
+            self._close()
+        client.refresh()
+
+    def _boxed(self, object_id: str, box: Box) -> None:
+        self._close()
+        redraw_box(self._client, object_id, box)
+
+    def _clicked(self, x: float, y: float, part: bool) -> None:
+        if self._outline is not None:
+            self._outline = self._outline.clicked(x, y, part=part)
+            self._client.view.show_mask(self._outline.mask)
+
+    def _close(self) -> None:
+        self._outline = self._of = None
+        self._client.view.leave_board()
+        self._client.refresh()
+
+    def _photo(self) -> np.ndarray:
+        photo = self._client.session.photo
+        if photo is None:
+            raise EditRefused("this project has no photo")
+        return photo.rgb

@@ -1,0 +1,1 @@
+"""Long jobs that read the photo: building, correcting, describing, fetching networks."""

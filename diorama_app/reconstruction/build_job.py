@@ -1,0 +1,130 @@
+"""The long jobs: build a scene from a photo, export. Each runs beside the desk."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+from diorama_app.session.client import Client
+from diorama_app.session.draft import Draft
+from diorama_app.session.session import EditorSession
+from diorama_core.errors import EditRefused, InputError
+from diorama_core.progress import Progress
+from diorama_core.project.storage import Project
+from diorama_core.scene.types import Scene
+
+
+def build(client: Client) -> None:
+    """Build the draft's scene: in the open project when it came from there, else in a new one."""
+    session = client.session
+    draft = session.draft
+    if not draft.ready:
+        raise InputError(
+            "there is no photo yet; upload one first"
+            if draft.photo is None
+            else "nothing is marked in the photo yet; draw a box around each piece of furniture first"
+        )
+    inputs = draft.to_build()
+
+    def work(progress: Progress) -> None:
+        from diorama_core.project.build import build_project
+
+        own = draft.from_project and session.project is not None
+        project = (
+            session.project
+            if own
+            else Project.create(fresh_folder(session.projects_dir, draft.name), name=Path(draft.name).stem)
+        )
+        assert project is not None
+        session.autosave.flush()
+        built = build_project(project, inputs, session.library, warnings=draft.warnings, progress=progress)
+        client.post(lambda: show_built(session, draft, project, built.scene, own=own))
+
+    session.jobs.start("build", "Building the scene", work)
+
+
+def show_built(
+    session: EditorSession,
+    draft: Draft,
+    project: Project,
+    scene: Scene,
+    *,
+    own: bool,
+    message: str = "",
+    label: str = "build the scene",
+) -> None:
+    """Show everyone what a build made.
+
+    Args:
+        room: where.
+        draft: what was handed in when the build began; a newer one is kept.
+        project: where the scene lies.
+        scene: what was built.
+        own: whether it was built in the open project, as one undo step there.
+        message: what to say instead of the number of objects.
+        label: what the undo step is called.
+    """
+    newer = session.draft if session.draft is not draft else None
+    if newer is None:
+        for client in session.clients.values():
+            client.view.close_board()
+    if own and project == session.project:
+        inputs = project.load_inputs()
+        session.textures = project.textures(scene)
+        session.read_notes()
+        session.draft = Draft(inputs, inputs.boxes if inputs else (), from_project=True, name=project.name)
+        session.commit(label, scene, inputs=inputs)
+        session.show_whole_room()
+    else:
+        session.open_project(project)
+    if newer is not None:
+        session.draft = newer  # what somebody handed in meanwhile is not lost
+        session.refresh_panels()
+    session.notice_all(message or f"The scene has {len(scene.objects)} objects. Click one to change it.", "good")
+
+
+def fresh_folder(projects_dir: Path, name: str) -> Path:
+    """A folder for a new project, named after the photo; one without a scene yet is taken up again."""
+    stem = re.sub(r"[^A-Za-z0-9._-]+", "-", Path(name).stem).strip("-.")[:60] or "room"
+    for number in range(1, 10_000):
+        folder = projects_dir / (stem if number == 1 else f"{stem}-{number}")
+        begun = (folder / "project.json").exists() and not (folder / "scene.json").exists()
+        if begun or not folder.exists():
+            return folder  # one that was begun is resumed
+    raise InputError(f"{projects_dir} holds too many projects called {stem}; rename the photo")
+
+
+def export_glb(client: Client) -> None:
+    """Write the scene as GLB and hand it to the browser that asked."""
+    session = client.session
+    scene, project, textures = session.scene, session.project, dict(session.textures)
+    if not scene.objects and not scene.architecture.planes:
+        raise EditRefused("there is nothing to export yet; build or open a scene first")
+    visible = replace_hidden(scene)
+    name = f"{project.folder.name if project is not None else 'scene'}.glb"
+
+    def work(progress: Progress) -> None:
+        from diorama_core.export.gltf import glb_bytes
+
+        progress.report(0.2, "Gathering meshes and materials")
+        data = glb_bytes(visible, session.library, textures=textures)
+        progress.check()
+
+        def hand_over() -> None:
+            client.view.download(name, data)
+            client.notice(f"{name} ({len(data) / 1e6:.1f} MB) is in your downloads.", "good")
+
+        client.post(hand_over)
+
+    session.jobs.start("export", "Exporting GLB", work)
+
+
+def replace_hidden(scene: Scene) -> Scene:
+    """The scene without hidden objects; what they hold up stays where it is."""
+    gone = {o.id for o in scene.objects if o.hidden}
+    return replace(
+        scene,
+        objects=tuple(o for o in scene.objects if o.id not in gone),
+        supports=tuple(s for s in scene.supports if s.child not in gone and s.parent not in gone),
+    )

@@ -1,0 +1,112 @@
+"""The photo's camera put right by hand: its field of view, how it is tilted against the floor, how high it stands."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from diorama_app.session.client import Client
+from diorama_core.artefacts import Inputs
+from diorama_core.errors import EditRefused, InputError
+from diorama_core.geometry.camera_attitude import CameraAttitude
+from diorama_core.progress import Progress
+from diorama_core.scene.room_edits import floor_height, rescale_to_length
+from diorama_core.scene.types import Camera, Intrinsics, Scene
+
+MIN_FOV_DEG, MAX_FOV_DEG = 15.0, 130.0
+MAX_TILT_DEG, MAX_ROLL_DEG = 80.0, 45.0
+
+
+def rebuild_with_camera(client: Client, fov_deg: float | None, camera_attitude: CameraAttitude | None) -> None:
+    """Build the open project's scene anew with what a person says of its camera, as one undo step.
+
+    Only what depends on the camera runs again: boxes and outlines stay. What was said holds for later builds, too.
+
+    Args:
+        guest: who asks.
+        fov_deg: horizontal field of view; as it was when None.
+        held: against the floor; as it was when None.
+    """
+    inputs = client.session.document.inputs
+    if inputs is None:
+        raise EditRefused("the open scene was not built from this photo; build it first")
+    if fov_deg is not None:
+        check_fov(fov_deg)
+        photo = inputs.photo
+        seen = Intrinsics.from_fov(photo.width, photo.height, float(np.radians(fov_deg)))
+        inputs = replace(inputs, intrinsics=seen)
+    _rebuild(client, inputs if camera_attitude is None else replace(inputs, camera_attitude=camera_attitude))
+
+
+def rebuild_as_found(client: Client) -> None:
+    """Build the scene anew with the tilt that the photo tells, not what a person said."""
+    inputs = client.session.document.inputs
+    if inputs is None or inputs.camera_attitude is None:
+        raise EditRefused("nobody said how this camera was held")
+    _rebuild(client, replace(inputs, camera_attitude=None))
+
+
+def _rebuild(client: Client, inputs: Inputs) -> None:
+    session = client.session
+    project, draft = session.project, session.draft
+    if project is None or not draft.from_project:
+        raise EditRefused("the open scene was not built from this photo; build it first")
+    told = replace(draft, inputs=inputs).to_build()
+
+    def work(progress: Progress) -> None:
+        from diorama_app.reconstruction.build_job import show_built
+        from diorama_core.project.build import build_project
+
+        session.autosave.flush()
+        built = build_project(project, told, session.library, progress=progress)
+        message = "Built again with this camera. Undo brings back what was there."
+        client.post(
+            lambda: show_built(session, draft, project, built.scene, own=True, message=message, label="set the camera")
+        )
+
+    session.jobs.start("build", "Building with this camera", work)
+
+
+def trial_camera(camera: Camera, fov_deg: float, camera_attitude: CameraAttitude) -> Camera:
+    """A camera at the same place with another field of view, held otherwise."""
+    k, T = camera.intrinsics, np.array(camera.T_world_camera)
+    T[:3, :3] = camera_attitude.rotation(T[:3, 2])
+    return Camera(Intrinsics.from_fov(k.width, k.height, float(np.radians(fov_deg))), T)
+
+
+def set_camera_height(client: Client, height_m: float) -> None:
+    """Say how high above the floor the photo was taken: everything takes that scale, at once."""
+    now = camera_height_m(client.session.scene)
+    if now is None:
+        raise EditRefused("this scene has no photo camera; build it from a photo first")
+    rescale_room(client, f"camera {height_m:.2f} m above the floor", now, height_m)
+
+
+def rescale_room(client: Client, label: str, now_m: float, true_m: float) -> None:
+    """Say how long something of the room is: everything takes that scale, and so does every later build."""
+    session = client.session
+    height, inputs = camera_height_m(session.scene), session.document.inputs
+    said = None if height is None or inputs is None else replace(inputs, camera_height_m=height * true_m / now_m)
+    session.edit(label, lambda s: rescale_to_length(s, now_m, true_m), by=client, inputs=said)
+
+
+def camera_height_m(scene: Scene) -> float | None:
+    """How high the photo's camera is above the floor; None without one."""
+    return None if scene.camera is None else float(scene.camera.position[2]) - floor_height(scene)
+
+
+def check_fov(fov_deg: float) -> None:
+    """Raises `InputError` when no camera sees so much or so little."""
+    if not MIN_FOV_DEG <= fov_deg <= MAX_FOV_DEG:
+        raise InputError(f"a field of view of {fov_deg:g}° is no camera's; give {MIN_FOV_DEG:g} to {MAX_FOV_DEG:g}°")
+
+
+def checked_angles(tilt_deg: float, roll_deg: float) -> CameraAttitude:
+    """How a camera is held; raises `InputError` when nobody holds one so."""
+    if abs(tilt_deg) > MAX_TILT_DEG or abs(roll_deg) > MAX_ROLL_DEG:
+        raise InputError(
+            f"tilted by {tilt_deg:g}° and rolled by {roll_deg:g}° is no photo of a room; "
+            f"give up to {MAX_TILT_DEG:g}° and {MAX_ROLL_DEG:g}°"
+        )
+    return CameraAttitude(float(np.radians(tilt_deg)), float(np.radians(roll_deg)))

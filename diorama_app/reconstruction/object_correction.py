@@ -1,0 +1,174 @@
+"""What the editor does with the photo's evidence: add what was missed, rename, redraw and re-outline what is there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from jaxtyping import Bool
+
+from diorama_app.session.client import Client
+from diorama_core.artefacts import Box, Inputs, LabelledBox
+from diorama_core.editing.input_corrections import given_outline, with_correction
+from diorama_core.editing.placing import seated
+from diorama_core.errors import EditRefused
+from diorama_core.library.taxonomy import resolve
+from diorama_core.progress import Progress
+from diorama_core.scene import edits
+from diorama_core.scene.types import Scene, SceneObject
+
+if TYPE_CHECKING:
+    from diorama_core.editing.outline import Outline
+    from diorama_core.pipeline.reconstruct_object import Found  # the whole pipeline; opening a project does without it
+
+
+def add_from_photo(client: Client, box: Box, label: str) -> None:
+    """Outline, retrieve, pose and place what a box of the photo shows; nothing else changes."""
+    session = client.session
+    new_id = edits.fresh_id(session.scene, resolve(label).category.name)
+
+    def put(scene: Scene, found: Found) -> Scene:
+        item = replace(found.item, id=edits.fresh_id(scene, found.item.category))
+        edge = None if found.support is None else replace(found.support, child=item.id)
+        if edge is not None and not (scene.has_object(edge.parent) or scene.has_plane(edge.parent)):
+            edge = None
+        return seated(edits.insert(scene, item, edge), session.library, item.id)
+
+    _reconstruct(client, None, _labelled(box, label), new_id, f"insert {label} from the photo", put, select_new=True)
+
+
+def rename_class(client: Client, object_id: str, label: str) -> None:
+    """Say what an object is: shapes of that kind are retrieved for its box, and the best one stands where it stood."""
+    item = _seen(client, object_id)
+    words = label.strip()
+    if not words:
+        raise EditRefused("say what it is, for example armchair")
+
+    def put(scene: Scene, found: Found) -> Scene:
+        now = scene.object(object_id)
+        swapped = edits.swap(scene, object_id, found.item.candidates[0], keep_pose=True)
+        return _with_found(swapped, object_id, found, colour=now.colour)
+
+    assert item.box_px is not None
+    _reconstruct(client, item.box_px, _labelled(item.box_px, words), object_id, f"{item.label} is a {words}", put)
+
+
+def redraw_box(client: Client, object_id: str, box: Box) -> None:
+    """Say where in the photo an object is: it is outlined, retrieved and posed again."""
+    item = client.session.scene.object(object_id)
+    now, label = _labelled(box, item.label), f"look again at {item.label}"
+    _reconstruct(client, item.box_px, now, object_id, label, _replaced(client, object_id))
+
+
+def use_outline(client: Client, object_id: str, outline: Outline) -> None:
+    """Say which pixels an object has: it is retrieved and posed again."""
+    item = client.session.scene.object(object_id)
+    if not outline.mask.any():
+        raise EditRefused("the outline is empty; click on the thing first")
+    box = _labelled(outline.bounds, item.label)
+    label = f"outline of {item.label}"
+    _reconstruct(client, item.box_px, box, object_id, label, _replaced(client, object_id), drawn=outline.mask)
+
+
+def start_outline(client: Client, object_id: str) -> Outline:
+    """The present outline of an object: as it was given, or as far as its box tells."""
+    item, inputs = _seen(client, object_id), _inputs(client)
+    from diorama_core.editing.outline import Outline
+    from diorama_core.perception.masks import EmbeddedMasks
+
+    assert item.box_px is not None
+    mask = given_outline(inputs, item.box_px)
+    if mask is None:
+        mask, _ = EmbeddedMasks().inside_box(inputs.photo.rgb, item.box_px)
+    return Outline(inputs.photo.rgb, item.box_px, mask)
+
+
+def _reconstruct(
+    client: Client,
+    before: Box | None,
+    box: LabelledBox,
+    object_id: str,
+    label: str,
+    put: Callable[[Scene, Found], Scene],
+    *,
+    drawn: Bool[np.ndarray, "h w"] | None = None,
+    select_new: bool = False,
+) -> None:
+    """Look at a box of the photo anew, put what is found into the scene, and keep what was said for the next build."""
+    session = client.session
+    inputs, scene, project = _inputs(client), session.scene, session.project
+
+    def work(progress: Progress) -> None:
+        from diorama_core.pipeline.reconstruct_object import reconstruct_object
+
+        found = reconstruct_object(
+            scene,
+            inputs,
+            session.library,
+            box,
+            object_id,
+            mask=given_outline(inputs, box.box) if drawn is None else drawn,
+            cache=None if project is None else project.stages_folder,
+            progress=progress,
+        )
+
+        def show() -> None:
+            there = {o.id for o in session.scene.objects}
+            said = with_correction(_inputs(client), before, box, drawn)
+            session.edit(label, lambda s: put(s, found), by=client, inputs=said)
+            new = [o.id for o in session.scene.objects if o.id not in there]
+            if select_new and new:
+                client.view.close_board()
+                client.select(new)
+
+        client.post(show)
+
+    session.jobs.start("look", f"Looking at the {box.label}", work)
+
+
+def _replaced(client: Client, object_id: str) -> Callable[[Scene, Found], Scene]:
+    def put(scene: Scene, found: Found) -> Scene:
+        best = found.item.candidates[0]
+        changed = edits.swap(scene, object_id, best)
+        changed = _with_found(changed, object_id, found, colour=found.item.colour)
+        return seated(changed, client.session.library, object_id)
+
+    return put
+
+
+def _with_found(scene: Scene, object_id: str, found: Found, *, colour: tuple[float, float, float] | None) -> Scene:
+    def renewed(item: SceneObject) -> SceneObject:
+        new = found.item
+        return replace(
+            item,
+            label=new.label,
+            category=new.category,
+            candidates=new.candidates,
+            box_px=new.box_px,
+            confidence=new.confidence,
+            colour=colour,
+        )
+
+    return replace(scene, objects=tuple(renewed(o) if o.id == object_id else o for o in scene.objects))
+
+
+def _labelled(box: Box, label: str) -> LabelledBox:
+    return LabelledBox(box, resolve(label).category.name, label)
+
+
+def _inputs(client: Client) -> Inputs:
+    inputs = client.session.document.inputs
+    if inputs is None:
+        raise EditRefused("this project has no photo; upload one in the Photo panel")
+    return inputs
+
+
+def _seen(client: Client, object_id: str) -> SceneObject:
+    item = client.session.scene.object(object_id)
+    if item.box_px is None:
+        raise EditRefused(f"{item.label} was not found in the photo; draw a box around it in the Photo panel instead")
+    if item.locked:
+        raise EditRefused(f"{item.label} is locked; unlock it first")
+    return item

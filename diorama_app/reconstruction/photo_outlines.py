@@ -1,0 +1,49 @@
+"""The outlines of what was found in the open project's photo, worked out once when somebody wants to see them."""
+
+from __future__ import annotations
+
+from diorama_app.session.client import Client
+from diorama_app.session.session import EditorSession
+from diorama_core.artefacts import DetectedObject, Inputs
+from diorama_core.errors import EditRefused
+from diorama_core.progress import Progress
+
+
+class PhotoOutlines:
+    """Used from the desk's thread only."""
+
+    def __init__(self, session: EditorSession) -> None:
+        self._session = session
+        self._of: Inputs | None = None
+        self._found: tuple[DetectedObject, ...] = ()
+
+    @property
+    def found(self) -> tuple[DetectedObject, ...] | None:
+        """What was outlined in the photo that is open; None while that is not known."""
+        return self._found if self._of is not None and self._of.photo is self._session.photo else None
+
+    def find(self, client: Client) -> None:
+        """Outline what is in the photo as the build did, from the project's saved results where they are."""
+        session = self._session
+        project, inputs = session.project, session.document.inputs
+        if project is None or inputs is None:
+            raise EditRefused("this scene has no photo; upload one in the Photo panel")
+        if inputs is self._of:
+            return
+
+        def work(progress: Progress) -> None:
+            from diorama_core.pipeline.network_inputs import with_network_inputs
+            from diorama_core.pipeline.presets import stages_for
+            from diorama_core.pipeline.runner import Runner
+
+            stages, runner = stages_for("auto", inputs, session.library), Runner(project.stages_folder)
+            seen = with_network_inputs(inputs, stages, runner, progress.part(0.0, 0.2)).of_any_camera
+            found = runner.run("objects", stages.objects, stages.objects.segment, (seen,), progress.part(0.2, 1.0))
+
+            def keep() -> None:
+                self._of, self._found = inputs, found
+                session.refresh_panels()
+
+            client.post(keep)
+
+        session.jobs.start("look", "Outlining what is in the photo", work)

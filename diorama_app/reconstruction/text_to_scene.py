@@ -1,0 +1,52 @@
+"""A scene from words: a picture of what they describe, and the same build as for a photo."""
+
+from __future__ import annotations
+
+from diorama_app.reconstruction.build_job import fresh_folder, show_built
+from diorama_app.session.client import Client
+from diorama_core.errors import DioramaError, InputError
+from diorama_core.progress import Progress
+from diorama_core.project.storage import Project
+
+COMPOSED = "No image endpoint is set up: the room is composed from the library, photographed and rebuilt."
+
+
+def how_pictures_come() -> str:
+    """One sentence on who makes the picture of a described room."""
+    from diorama_core.text.pictures import ImageSettings  # the room grammar; opening a project does without it
+
+    try:
+        endpoint = ImageSettings.from_environment()
+    except DioramaError as error:
+        return str(error)
+    return COMPOSED if endpoint is None else f"{endpoint.model} draws the picture."
+
+
+def describe_room(client: Client, words: str) -> None:
+    """Make a project of a description, in the background, and open it."""
+    from diorama_core.text.pictures import ImageSettings, picture_of
+
+    session, draft = client.session, client.session.draft
+    said = " ".join(words.split())
+    if not said:
+        raise InputError("say what the room is, such as: a reading corner with two armchairs")
+    endpoint = ImageSettings.from_environment()
+
+    def work(progress: Progress) -> None:
+        from diorama_core.project.build import build_project
+
+        made = picture_of(said, session.library, endpoint=endpoint, progress=progress.part(0.0, 0.2))
+        name = said[:1].upper() + said[1:60]
+        project = Project.create(fresh_folder(session.projects_dir, said.replace(".", " ")), name=name)
+        session.autosave.flush()
+        built = build_project(
+            project, made.inputs, session.library, warnings=made.notes, progress=progress.part(0.2, 1.0)
+        )
+        how = (
+            "its picture was composed from the library, not drawn" if endpoint is None else f"drawn by {endpoint.model}"
+        )
+        count = len(built.scene.objects)
+        what = f"The scene has {count} objects" if count else "No furniture was found; draw boxes"
+        client.post(lambda: show_built(session, draft, project, built.scene, own=False, message=f"{what}; {how}."))
+
+    session.jobs.start("text", "Making the room you described", work)

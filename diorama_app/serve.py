@@ -1,0 +1,139 @@
+"""The editor's server: start it, stop it."""
+
+from __future__ import annotations
+
+import signal
+import threading
+import webbrowser
+from dataclasses import dataclass
+from pathlib import Path
+
+import viser
+
+from diorama_app.app import Editor
+from diorama_app.session.preload import warm_up
+from diorama_app.session.session import EditorSession
+from diorama_app.web.viser_adapter import ANY_HOST, Visitors, create_server, stop_server
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.project.storage import Project
+
+
+@dataclass(frozen=True)
+class Running:
+    """A server that runs."""
+
+    server: viser.ViserServer
+    editor: Editor
+    url: str
+    """Where to open it, token included."""
+    stopped: threading.Event
+    """Set when it has been stopped."""
+
+    @property
+    def session(self) -> EditorSession:
+        """The open room."""
+        return self.editor.session
+
+    @property
+    def port(self) -> int:
+        """The port it listens on."""
+        return int(self.server.get_port())
+
+    def stop(self) -> None:
+        """Save, end jobs, close the port."""
+        self.stopped.set()
+        self.editor.close()
+        stop_server(self.server)
+
+
+def start(
+    *,
+    project: Path | None = None,
+    projects_dir: Path,
+    host: str = "127.0.0.1",
+    port: int = 0,
+    low_graphics: bool = False,
+    token: str | None = None,
+    library: ShapeLibrary | None = None,
+) -> Running:
+    """Start the editor in the background.
+
+    Args:
+        project: folder to open; the bundled example when None.
+        projects_dir: where new projects are made and recent ones are found.
+        host: address to listen on; loopback unless asked otherwise.
+        port: 0 lets the system choose.
+        low_graphics: no shadows, no environment map.
+        token: when set, visitors must bring it.
+        library: where shapes come from; the built-in one when None.
+
+    Raises:
+        InputError: the port is taken.
+        ProjectError, SceneError: the project cannot be opened.
+    """
+    if library is None:
+        from diorama_core.library.catalogue import built_in_library
+
+        library = built_in_library()
+    opened = None if project is None else Project.open(project)
+    made: list[Editor] = []
+
+    def too_large(client_id: int, name: str, size: int) -> None:
+        for editor in made:
+            editor.refuse_upload(client_id, name, size)
+
+    server = create_server(
+        host=host,
+        port=port,
+        label="Diorama",
+        visitors=Visitors(host, token),
+        too_large=too_large,
+        pictures=lambda name: made[0].session.thumbnails.png(name),
+    )
+    try:
+        editor = Editor(server, library, projects_dir, low_graphics=low_graphics)
+        made.append(editor)
+        editor.open_first(opened)
+    except BaseException:
+        stop_server(server)
+        raise
+    stopped = threading.Event()
+    threading.Thread(target=warm_up, args=(stopped,), daemon=True, name="warm up").start()
+    shown_host = "127.0.0.1" if host in ANY_HOST else host
+    address = f"http://{f'[{shown_host}]' if ':' in shown_host else shown_host}:{server.get_port()}/"
+    return Running(server, editor, address if token is None else f"{address}?token={token}", stopped)
+
+
+def serve(
+    *,
+    project: Path | None,
+    projects_dir: Path,
+    host: str,
+    port: int,
+    open_browser: bool,
+    low_graphics: bool,
+    token: str | None,
+    library: ShapeLibrary | None = None,
+) -> None:
+    """Run the editor until Ctrl+C."""
+    running = start(
+        project=project,
+        projects_dir=projects_dir,
+        host=host,
+        port=port,
+        low_graphics=low_graphics,
+        token=token,
+        library=library,
+    )
+    print(f"Diorama is at {running.url} (Ctrl+C stops it)", flush=True)
+    if open_browser:
+        threading.Thread(target=webbrowser.open, args=(running.url,), daemon=True).start()
+    asked = threading.Event()
+    signal.signal(signal.SIGTERM, lambda *_: asked.set())
+    try:
+        while not asked.wait(3600):
+            pass
+    except KeyboardInterrupt:
+        print("Saving and stopping.", flush=True)
+    finally:
+        running.stop()

@@ -1,0 +1,1 @@
+"""One open document and the people who edit it."""

@@ -1,0 +1,164 @@
+"""One browser and the person at it: what is selected there, how they like to work, and their panels.
+
+The document is shared; a selection is a person's own and is shown to the others as a cursor in that person's colour.
+Holds nothing that a reload must not lose.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Protocol
+
+import viser
+
+from diorama_app.session.preferences import Preferences, remember
+from diorama_app.viewport.client_view import ClientView, NoticeKind
+from diorama_app.viewport.decorations import Decorations
+from diorama_core.errors import EditRefused
+from diorama_core.scene.types import Camera, Scene, SceneObject
+
+if TYPE_CHECKING:
+    from diorama_app.session.session import EditorSession
+
+COLOURS = ((38, 150, 96), (160, 80, 200), (20, 130, 190), (200, 60, 110), (150, 120, 20), (90, 100, 120))
+"""Of the others' cursors; one's own selection is orange."""
+
+
+class Panel(Protocol):
+    """A part of the page that shows something of the room."""
+
+    def refresh(self) -> None:
+        """Draw what differs from what is drawn."""
+        ...
+
+
+@dataclass(frozen=True)
+class Placing:
+    """The next click in the view puts a shape there."""
+
+    shape_id: str
+
+
+@dataclass(frozen=True)
+class Measuring:
+    """The next clicks in the view are the ends of a known length."""
+
+    points: tuple[tuple[float, float, float], ...] = ()
+
+
+Doing = Placing | Measuring | None
+"""What the next click means; None: it selects."""
+
+
+class Client:
+    """Used from the desk's thread only, except where a method says otherwise."""
+
+    def __init__(self, session: EditorSession, viser_client: viser.ClientHandle, number: int) -> None:
+        self.session = session
+        self.viser_client = viser_client
+        self.id = viser_client.client_id
+        self.name = f"Guest {number}"
+        self.colour = COLOURS[(number - 1) % len(COLOURS)]
+        self.view = ClientView(viser_client)
+        self.marks = Decorations(viser_client)
+        self.selection: tuple[str, ...] = ()
+        self.preferences = Preferences()
+        self.doing: Doing = None
+        self.panels: list[Panel] = []
+        self.job_panel: Panel | None = None
+        self.curves: Panel | None = None
+        """What is redrawn while a layout is optimised."""
+        self.trial_camera: Camera | None = None
+        """The photo's camera as it is being set by hand; seen as a grid on its floor."""
+        self.dialog: Callable[[], None] | None = None
+        """Closes the dialog that is open over the page, if one is."""
+        self.toast: Callable[[str, bool], None] = lambda message, undo: None
+        """Shows a line at the foot of the view, with a button that undoes when asked."""
+        self.open_tab: Callable[[str], None] = lambda name: None
+        """Brings a tab of the panels to the front."""
+        self.open_board: Callable[[], None] = lambda: None
+        """Shows the photo with its boxes, to draw on."""
+
+    # -- selection --------------------------------------------------------------------------------------------
+
+    @property
+    def selected(self) -> SceneObject | None:
+        """The object selected last, or None."""
+        return self.session.scene.object(self.selection[-1]) if self.selection else None
+
+    def need_selected(self) -> str:
+        """The object selected last; refuses with advice when there is none."""
+        if not self.selection:
+            raise EditRefused("nothing is selected; click an object first")
+        return self.selection[-1]
+
+    def need_selection(self) -> tuple[str, ...]:
+        """Everything selected; refuses with advice when there is nothing."""
+        self.need_selected()
+        return self.selection
+
+    def select(self, ids: Iterable[str]) -> None:
+        """Select exactly these objects, in this order."""
+        self.selection = tuple(i for i in dict.fromkeys(ids) if self.session.scene.has_object(i))
+        if len(self.session.clients) == 1:  # where several work, undo must not select what another one had selected
+            self.session.document.note_selection(self.selection)
+        self.session.refresh_cursors()
+
+    def toggle(self, object_id: str) -> None:
+        """Add an object to the selection, or take it out."""
+        rest = tuple(i for i in self.selection if i != object_id)
+        self.select(rest if object_id in self.selection else (*rest, object_id))
+
+    def drop_missing(self) -> None:
+        """Forget what is no longer there."""
+        self.selection = tuple(i for i in self.selection if self.session.scene.has_object(i))
+
+    # -- page -------------------------------------------------------------------------------------------------
+
+    def change_preferences(self, **changes: Any) -> None:
+        """Work differently from now on."""
+        self.preferences = replace(self.preferences, **changes)
+        remember(self.viser_client, self.preferences)
+        self.refresh()
+
+    def take_preferences(self, preferences: Preferences) -> None:
+        """Work as this browser did the last time."""
+        self.preferences = preferences
+        self.view.set_dark(preferences.dark)
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Bring this browser's own marks and panels in line with the document."""
+        with self.viser_client.atomic():  # one parcel: every one of them would wake the thread that sends
+            self.show_marks()
+            for panel in self.panels:
+                panel.refresh()
+
+    def show_marks(self, scene: Scene | None = None) -> None:
+        """Outlines, name tags and the others' cursors; around a preview where one is given."""
+        session = self.session
+        others = [(g.name, g.colour, g.selection) for g in session.clients.values() if g is not self]
+        # Over the photo, marks would seem to be the photo's.
+        warned = self.preferences.badges and self.view.overlay_opacity < 0.5
+        badges = session.badges if warned else {}
+        self.marks.show(
+            scene or session.scene,
+            session.viewport.node_name,
+            self.selection,
+            others,
+            badges,
+            names=self.preferences.names,
+            unsure=warned,
+        )
+
+    def notice(self, message: str, kind: NoticeKind = "info") -> None:
+        """Tell the person something."""
+        if kind == "bad":
+            self.view.notice(message, kind)
+        else:
+            self.toast(message, False)
+
+    def post(self, task: Callable[[], None], *, key: str | None = None) -> None:
+        """Do `task` on the desk; the person is told when it fails. May be called from any thread."""
+        self.session.post(self.id, task, key=None if key is None else f"{self.id} {key}")

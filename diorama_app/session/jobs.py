@@ -1,0 +1,110 @@
+"""Long work: one job at a time, in a thread of its own, with progress and cancel."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from diorama_app.session.preload import load_open3d
+from diorama_core.errors import Cancelled, DioramaError, EditRefused
+from diorama_core.progress import CancelToken, Progress, ProgressEvent
+
+log = logging.getLogger(__name__)
+
+JobKind = Literal["build", "optimise", "export", "look", "import", "text", "pull", "find"]
+PERCEIVING: frozenset[JobKind] = frozenset({"build", "look", "text"})
+"""Kinds that run the pipeline, which needs Open3D."""
+
+
+@dataclass(frozen=True)
+class JobStatus:
+    """What a job says of itself, as shown to people."""
+
+    kind: JobKind
+    title: str
+    fraction: float = 0.0
+    message: str = "Starting"
+    cancelling: bool = False
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a job ended."""
+
+    kind: JobKind
+    error: str | None = None
+    cancelled: bool = False
+
+
+class Jobs:
+    """Runs at most one job. `on_change` and `on_end` are called from the job's thread."""
+
+    def __init__(self, on_change: Callable[[JobStatus], None], on_end: Callable[[Outcome], None]) -> None:
+        self._on_change = on_change
+        self._on_end = on_end
+        self._lock = threading.Lock()
+        self._status: JobStatus | None = None
+        self._token = CancelToken()
+        self._thread: threading.Thread | None = None
+
+    @property
+    def status(self) -> JobStatus | None:
+        """The running job, or None."""
+        return self._status
+
+    def start(self, kind: JobKind, title: str, work: Callable[[Progress], None]) -> None:
+        """Run `work` in the background; refused while another job runs."""
+        with self._lock:
+            if self._status is not None:
+                raise EditRefused(f"{self._status.title} is still running; cancel it or wait")
+            self._status = JobStatus(kind, title)
+            self._token = CancelToken()
+        progress = Progress(on_event=self._report, token=self._token)
+        self._thread = threading.Thread(target=self._run, args=(work, progress), daemon=True, name=f"job {kind}")
+        self._on_change(self._status)
+        self._thread.start()
+
+    def cancel(self) -> None:
+        """Ask the running job to stop; it does at its next check."""
+        self._token.cancel()
+        status = self._status
+        if status is not None:
+            self._status = replace(status, cancelling=True, message="Stopping")
+            self._on_change(self._status)
+
+    def wait(self, timeout_s: float) -> bool:
+        """Block until no job runs; False when that took too long."""
+        thread = self._thread
+        if thread is not None:
+            thread.join(timeout_s)
+        return self._status is None
+
+    def _report(self, event: ProgressEvent) -> None:
+        status = self._status
+        if status is not None and not status.cancelling:
+            self._status = replace(status, fraction=event.fraction, message=event.message)
+            self._on_change(self._status)
+
+    def _run(self, work: Callable[[Progress], None], progress: Progress) -> None:
+        status = self._status
+        assert status is not None
+        outcome = Outcome(status.kind)
+        try:
+            if status.kind in PERCEIVING:
+                load_open3d()
+            work(progress)
+        except Cancelled:
+            outcome = Outcome(status.kind, cancelled=True)
+        except DioramaError as error:
+            outcome = Outcome(status.kind, error=str(error))
+        except Exception:
+            log.exception("%s failed", status.title)
+            outcome = Outcome(
+                status.kind, error=f"{status.title} failed unexpectedly; nothing was changed (see the log)"
+            )
+        finally:
+            self._status = None
+        self._on_end(outcome)

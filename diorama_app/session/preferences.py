@@ -1,0 +1,88 @@
+"""How one person likes to work, kept in their browser: a reload and another start of the server find it again.
+
+Browsers keep it per address, so every person who opens a shared server has settings of their own.
+"""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import viser
+from pydantic import TypeAdapter, ValidationError
+
+from diorama_app.session.units import Unit
+
+log = logging.getLogger(__name__)
+
+SizeMode = Literal["as found", "same box", "in proportion", "catalogue"]
+GizmoMode = Literal["floor", "free", "size"]
+RecipeName = Literal["feasible", "paper", "all-in-one"]
+
+KEY = "diorama-settings"
+ANSWER_WITHIN_S = 20.0
+"""A browser that loads the scene in software answers late."""
+
+
+@dataclass(frozen=True)
+class Preferences:
+    """How one person likes to work."""
+
+    unit: Unit = "m"
+    snap: bool = False
+    """Places to the grid, headings to steps; Alt inverts it while dragging."""
+    slide: bool = True
+    """While dragging, slide along what is in the way instead of going through it."""
+    names: bool = False
+    """Name tags on everything."""
+    badges: bool = True
+    """Marks on what collides, floats, is outside the room or unsure."""
+    masks: bool = False
+    """The outlines of what was found, over the photo."""
+    planes: bool = False
+    """The edges of floor, walls and ceiling, with their names."""
+    dark: bool = False
+    gizmo: GizmoMode = "floor"
+    recipe: RecipeName = "feasible"
+    """How a layout is found."""
+    size_mode: SizeMode = "as found"
+    """What size a swapped shape takes."""
+    keep_colour: bool = True
+    """Whether a swapped shape takes the colour of what it replaces."""
+    all_alike: bool = False
+    """Whether a swap goes to every object of the same shape."""
+
+
+_JSON = TypeAdapter(Preferences)
+
+
+def preferences_text(preferences: Preferences) -> str:
+    """As a browser keeps it."""
+    # Outlines are looked for anew in every photo, and only when somebody asks.
+    return _JSON.dump_json(replace(preferences, masks=False)).decode()
+
+
+def read_preferences(retained: str | None) -> Preferences:
+    """What a browser kept; as for somebody new when it kept nothing, or nothing that this program understands."""
+    if retained is None:
+        return Preferences()
+    try:
+        return _JSON.validate_json(retained)
+    except ValidationError as error:
+        log.info("the settings of a browser are not understood: %s", error)
+        return Preferences()
+
+
+def remember(viser_client: viser.ClientHandle, preferences: Preferences) -> None:
+    """Have the browser keep the settings."""
+    viser_client.local_storage.set_item(KEY, preferences_text(preferences))
+
+
+def remembered(viser_client: viser.ClientHandle) -> Preferences:
+    """What the browser kept. Waits for its answer: neither for viser's event loop nor for the desk."""
+    try:
+        return read_preferences(viser_client.local_storage.get_item(KEY, timeout=ANSWER_WITHIN_S))
+    except (RuntimeError, TimeoutError) as error:  # it left, or keeps nothing for any page
+        log.info("the settings of a browser are not known: %s", error)
+        return Preferences()

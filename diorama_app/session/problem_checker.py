@@ -1,0 +1,142 @@
+"""What is wrong with objects just now: collisions, floating, out of the room. Looked for beside the desk."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from diorama_core.editing.collisions import Collisions
+from diorama_core.editing.placing import places_of
+from diorama_core.errors import DioramaError
+from diorama_core.layout.problem.supports import outside_m
+from diorama_core.library import taxonomy
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.scene.types import Scene, SceneObject
+
+log = logging.getLogger(__name__)
+
+FLOATING_M = 0.03
+OUTSIDE_M = 0.06
+SETTLE_S = 0.15
+"""An edit reaches the screens first, and of quick edits in a row only the last one is looked at."""
+COLLIDES, FLOATS, OUTSIDE = "collides", "floats", "outside"
+
+Problems = Mapping[str, tuple[str, ...]]
+
+
+def problems(scene: Scene, library: ShapeLibrary, collisions: Collisions) -> Problems:
+    """By object id, what is wrong with it, in a word each; nothing for objects that are fine."""
+    found: dict[str, list[str]] = {}
+    for pair in collisions.of(scene, [o.id for o in scene.objects]):
+        for object_id in pair:
+            if COLLIDES not in found.setdefault(object_id, []):
+                found[object_id].append(COLLIDES)
+    for item in scene.objects:
+        if item.hidden:
+            continue
+        if floats(scene, library, item):
+            found.setdefault(item.id, []).append(FLOATS)
+        if outside_room(scene, item):
+            found.setdefault(item.id, []).append(OUTSIDE)
+    return {i: tuple(sorted(words)) for i, words in found.items()}
+
+
+def floats(scene: Scene, library: ShapeLibrary, item: SceneObject) -> bool:
+    """Whether a gap is seen between an object and what holds it up."""
+    edge = scene.support_of(item.id)
+    if taxonomy.resolve(item.category).category.soft:
+        return False
+    if edge is None:
+        return bool(scene.architecture.planes) and item.corners_world[:, 2].min() > FLOATING_M
+    if scene.has_plane(edge.parent):
+        plane = scene.plane(edge.parent)
+        return float((item.corners_world @ plane.normal).min()) - plane.offset > FLOATING_M
+    if edge.relation == "mounted on":
+        return False
+    low = float(item.corners_world[:, 2].min())
+    foot = item.pose.position
+    parent = scene.object(edge.parent)
+    tops = [
+        p.surface.level
+        for p in places_of(Scene(objects=(parent,)), library)
+        if p.upward and outside_m(p.surface, foot) < 0.05
+    ]
+    below = [t for t in tops if t <= low + FLOATING_M] or [float(parent.corners_world[:, 2].max())]
+    return low - max(below) > FLOATING_M
+
+
+def outside_room(scene: Scene, item: SceneObject) -> bool:
+    """Whether an object's middle is beyond the floor's outline, or it sticks far through a wall."""
+    corners = item.corners_world
+    for plane in scene.architecture.planes:
+        within = plane.polygon.min(axis=0) - 0.2 <= item.pose.position
+        within &= item.pose.position <= plane.polygon.max(axis=0) + 0.2
+        across = np.abs(plane.normal) > 0.9
+        if not within[~across].all():
+            continue
+        if float((corners @ plane.normal).min()) - plane.offset < -OUTSIDE_M:
+            return True
+    return False
+
+
+class Checker:
+    """A thread that looks for problems in the newest scene and tells when they changed."""
+
+    def __init__(self, library: ShapeLibrary, on_problems: Callable[[Problems], None]) -> None:
+        self._library = library
+        self._on_problems = on_problems
+        self._collisions = Collisions(library)
+        self._condition = threading.Condition()
+        self._scene: Scene | None = None
+        self._stopping = False
+        self._busy = False
+        self._thread: threading.Thread | None = None
+
+    def look_at(self, scene: Scene) -> None:
+        """Look at this scene soon; an older one that waits is passed over."""
+        with self._condition:
+            self._scene = scene
+            if self._thread is None:
+                self._thread = threading.Thread(target=self._work, daemon=True, name="checker")
+                self._thread.start()
+            self._condition.notify_all()
+
+    def wait(self, timeout_s: float = 10.0) -> bool:
+        """Block until the newest scene was looked at."""
+        with self._condition:
+            return self._condition.wait_for(lambda: self._scene is None and not self._busy, timeout_s)
+
+    def stop(self) -> None:
+        """End the thread."""
+        with self._condition:
+            self._stopping = True
+            self._condition.notify_all()
+
+    def _work(self) -> None:
+        last: Problems = {}
+        while True:
+            with self._condition:
+                self._condition.wait_for(lambda: self._scene is not None or self._stopping)
+                self._condition.wait_for(lambda: self._stopping, SETTLE_S)
+                if self._stopping:
+                    return
+                scene, self._scene = self._scene, None
+                self._busy = True
+            assert scene is not None
+            try:
+                found = problems(scene, self._library, self._collisions)
+            except DioramaError as error:
+                log.warning("the scene cannot be checked: %s", error)
+                found = {}
+            except Exception:
+                log.exception("the scene cannot be checked")
+                found = {}
+            if found != last:
+                last = found
+                self._on_problems(found)
+            with self._condition:
+                self._busy = False
+                self._condition.notify_all()

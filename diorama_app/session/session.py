@@ -1,0 +1,352 @@
+"""One open project: the document, its jobs, and the people who look at it.
+
+Everything here runs on the desk's thread, except where a method says otherwise. A change goes through `edit`; then
+`refresh` brings the page in line with the document, and the project's folder follows within a second.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+
+import numpy as np
+import viser
+from jaxtyping import UInt8
+
+from diorama_app.session.autosave import Autosave
+from diorama_app.session.client import Client
+from diorama_app.session.document import Document
+from diorama_app.session.draft import Draft
+from diorama_app.session.jobs import Jobs, JobStatus, Outcome
+from diorama_app.session.layout_run import LayoutRun
+from diorama_app.session.problem_checker import Checker, Problems
+from diorama_app.session.shape_preparation import Preparer
+from diorama_app.session.ui_thread import UiThread
+from diorama_app.viewport.client_view import NoticeKind
+from diorama_app.viewport.framing import DEFAULT_FOV_RAD, room_view
+from diorama_app.viewport.mesh_assets import ShapeBytes
+from diorama_app.viewport.scene_view import Viewport
+from diorama_app.viewport.thumbnails import Thumbnails
+from diorama_core.artefacts import Inputs, Photo
+from diorama_core.editing.clipboard import Clip
+from diorama_core.errors import DioramaError
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.user_library import ShapeRecords
+from diorama_core.project.storage import Project
+from diorama_core.scene.types import Pose, Scene
+
+JOB_TOLD_EVERY_S = 0.15
+MESH_OVERLAP_S = 0.45
+"""How long an old mesh stays while the browser parses its successor."""
+
+
+class EditorSession:
+    """The open project and everyone in it."""
+
+    def __init__(
+        self, server: viser.ViserServer, library: ShapeLibrary, projects_dir: Path, *, low_graphics: bool = False
+    ) -> None:
+        self.server = server
+        self.library: ShapeLibrary = library
+        self.projects_dir = projects_dir
+        self.low_graphics = low_graphics
+        self.document = Document()
+        self.draft = Draft()
+        self.project: Project | None = None
+        self._inputs_saved: Inputs | None = None
+        """What is said of the photo, as it is in the project's folder."""
+        self.photo: Photo | None = None
+        self.notes: tuple[str, ...] = ()
+        """What the pipeline had to say of how the scene was made."""
+        self.textures: Mapping[str, UInt8[np.ndarray, "h w 3"]] = {}
+        self.clients: dict[int, Client] = {}
+        self.badges: Problems = {}
+        """What is wrong with objects just now, in a word or two each."""
+        self.on_client: Callable[[Client], None] | None = None
+        """Lays out the page of somebody who came."""
+        self._clients_so_far = 0
+        self.clip: Clip | None = None
+        """What was copied last, in whichever project."""
+        self.binned: Path | None = None
+        """The project deleted last, until it is brought back."""
+        self.layout_run: LayoutRun | None = None
+        """The last optimisation, as the panels show it."""
+        self._job_told_at = 0.0
+        self.ui_thread = UiThread(lambda message: self.notice_all(message, "bad"))
+        self.jobs = Jobs(self._job_changed, self._job_ended)
+        self.autosave = Autosave(on_error=lambda message: self.notice_all(message, "bad"))
+        self.shapes = ShapeBytes(library, light=low_graphics)
+        self.preparer = Preparer(library)
+        self.checker = Checker(library, lambda found: self.ui_thread.post(lambda: self._badged(found)))
+        self.records = ShapeRecords(library)
+        self.thumbnails = Thumbnails(library, self.records)
+        self.viewport = Viewport(server, self.shapes, pick=self._picked, drag=self._dragged, later=self._later)
+        self.on_photo_camera: Callable[[Client], None] | None = None
+        self.on_pick: Callable[[str, viser.SceneNodePointerEvent], None] | None = None
+        self.on_drag: Callable[[str, viser.SceneNodeDragEvent], None] | None = None
+
+    # -- the document -----------------------------------------------------------------------------------------
+
+    @property
+    def scene(self) -> Scene:
+        """The scene as it is now."""
+        return self.document.scene
+
+    def edit(
+        self,
+        label: str,
+        change: Callable[[Scene], Scene],
+        *,
+        by: Client | None = None,
+        selection: Iterable[str] | None = None,
+        merge_key: str | None = None,
+        inputs: Inputs | None = None,
+    ) -> None:
+        """Apply a pure edit as one undo step, show it and save it. A refused edit changes nothing.
+
+        Args:
+            label: what is done, as the undo button and the toast say it.
+            change: the edit.
+            by: who does it.
+            selection: what that person has selected afterwards; as before when None.
+            merge_key: quick edits of the same key become one step.
+            inputs: what is said of the photo from now on; as before when None.
+        """
+        try:
+            scene = self._with_pictures_refitted(change(self.scene))
+        except DioramaError:
+            self.refresh()  # fields and gizmo go back to what the document says
+            raise
+        if scene == self.scene and inputs is None:
+            self.refresh()
+            return
+        self.commit(label, scene, by=by, selection=selection, merge_key=merge_key, inputs=inputs)
+
+    def _with_pictures_refitted(self, scene: Scene) -> Scene:
+        """The edited scene with the pictures of resized planes cut and continued, not stretched."""
+        if not self.textures or scene.architecture is self.scene.architecture:
+            return scene
+        from diorama_core.architecture.texture.refit import (
+            refitted_textures,  # OpenCV; opening a project does without it
+        )
+
+        scene, made = refitted_textures(self.scene, scene, self.textures)
+        if made:
+            self.textures = {**self.textures, **made}
+            if self.project is not None:
+                self.project.save_textures(made)
+        return scene
+
+    def commit(
+        self,
+        label: str,
+        scene: Scene,
+        *,
+        by: Client | None = None,
+        selection: Iterable[str] | None = None,
+        merge_key: str | None = None,
+        inputs: Inputs | None = None,
+    ) -> None:
+        """Make a whole scene the current state as one undo step, show it and save it."""
+        if by is not None and selection is not None:
+            by.selection = tuple(selection)
+        chosen = () if by is None else tuple(i for i in by.selection if scene.has_object(i))
+        self.document.commit(label, scene, selection=chosen, merge_key=merge_key, inputs=inputs)
+        self.changed()
+        for client in self.clients.values():
+            who = "" if client is by or by is None else f"{by.name}: "
+            client.toast(f"{who}{label[:1].upper()}{label[1:]}", True)
+
+    def undo(self, by: Client) -> None:
+        """Take back the last change, whoever made it."""
+        undone = self.document.undo()
+        self._time_travelled(by, f"Undone: {undone.label}", self.document.history.current.selection)
+
+    def redo(self, by: Client) -> None:
+        """Do again what was undone."""
+        done = self.document.redo()
+        self._time_travelled(by, f"Done again: {done.label}", done.selection)
+
+    def _time_travelled(self, by: Client, message: str, selection: tuple[str, ...]) -> None:
+        by.selection = selection or by.selection
+        self.changed()
+        for client in self.clients.values():
+            client.toast(message, False)
+
+    def changed(self) -> None:
+        """The document changed: show and save it."""
+        self._follow_inputs()
+        self.refresh()
+        self.checker.look_at(self.scene)
+        if self.project is not None:
+            self.autosave.save_soon(self.project, self.scene)
+
+    def _follow_inputs(self) -> None:
+        """What is said of the photo changed: the next build starts from that, in this session and in later ones."""
+        inputs = self.document.inputs
+        if inputs is None or inputs is self._inputs_saved:
+            return
+        try:
+            if self.project is not None:
+                self.project.save_inputs(inputs, self.project.info().get("warnings", ()))
+        except DioramaError as error:
+            self.notice_all(f"what you said of the photo is not saved: {error}", "bad")
+        if self.draft.from_project:
+            self.draft = self.draft.following(inputs)
+        self._inputs_saved, self.photo = inputs, inputs.photo
+
+    def _badged(self, found: Problems) -> None:
+        self.badges = found
+        self.refresh_panels()
+
+    def preview(self, poses: Mapping[str, Pose]) -> None:
+        """Show poses that are not (yet) part of the document."""
+        self.viewport.preview(poses)
+
+    def refresh(self) -> None:
+        """Bring every browser in line with the document."""
+        self.viewport.show(self.scene, self.textures)
+        self.preparer.want(o.shape_id for o in self.scene.objects)
+        for client in self.clients.values():
+            client.drop_missing()
+            self._show_photo_camera(client)
+            client.refresh()
+
+    def refresh_panels(self) -> None:
+        """Redraw the panels only."""
+        for client in self.clients.values():
+            client.refresh()
+
+    def refresh_cursors(self) -> None:
+        """Redraw what everyone sees of the others' selections."""
+        for client in self.clients.values():
+            client.refresh()
+
+    # -- projects ---------------------------------------------------------------------------------------------
+
+    def open_project(self, project: Project) -> None:
+        """Show another project; the one that was open is on disk already. Raises with nothing changed."""
+        scene = project.load_scene()
+        inputs = project.load_inputs()
+        textures = project.textures(scene)
+        self.autosave.flush()
+        self.project, self.textures = project, textures
+        self.read_notes()
+        self.photo = None if inputs is None else inputs.photo
+        self.draft = Draft()
+        self.shapes.expect(len(scene.objects))
+        if inputs is not None:
+            self.draft = Draft(inputs, inputs.boxes, from_project=True, name=project.name)
+        self.document.open(scene, inputs)
+        self._inputs_saved = inputs
+        self.layout_run = None
+        self.show_whole_room()
+        self.refresh()
+        self.checker.look_at(scene)
+
+    def read_notes(self) -> None:
+        """Learn what the project's build had to say."""
+        notes = self.project.info().get("notes", []) if self.project is not None else []
+        self.notes = tuple(dict.fromkeys(str(note) for note in notes))
+
+    def show_whole_room(self) -> None:
+        """New visitors and all who are here look at the whole room."""
+        position, target = room_view(self.scene)
+        self.server.initial_camera.position = position
+        self.server.initial_camera.look_at = target
+        self.server.initial_camera.fov = float(DEFAULT_FOV_RAD)
+        for client in self.clients.values():
+            client.selection = ()
+            client.doing = None
+            client.view.show_backdrop(None, None, 1.0)
+            client.view.show_overlay(None, None, 0.0)
+            if not client.view.drawing:
+                client.view.move_camera(*room_view(self.scene, client.view.aspect))
+
+    # -- people -----------------------------------------------------------------------------------------------
+
+    def joined(self, viser_client: viser.ClientHandle) -> None:
+        """A browser connected (or reloaded): the shared scene is replayed to it by the server, its panels are made."""
+        self._clients_so_far += 1
+        client = self.clients[viser_client.client_id] = Client(self, viser_client, self._clients_so_far)
+        with viser_client.atomic():
+            if self.on_client is not None:
+                self.on_client(client)
+            self._show_photo_camera(client)
+            client.refresh()
+
+    def left(self, viser_client: viser.ClientHandle) -> None:
+        """A browser went away."""
+        self.clients.pop(viser_client.client_id, None)
+        self.refresh_cursors()
+
+    def notice(self, client_id: int | None, message: str, kind: NoticeKind = "info") -> None:
+        """Tell one person, or all when it is not known which."""
+        client = self.clients.get(client_id) if client_id is not None else None
+        for one in [client] if client is not None else list(self.clients.values()):
+            one.notice(message, kind)
+
+    def notice_all(self, message: str, kind: NoticeKind = "info") -> None:
+        """Tell every browser."""
+        self.notice(None, message, kind)
+
+    def post(self, client_id: int | None, task: Callable[[], None], *, key: str | None = None) -> None:
+        """Do `task` on the desk for one browser, which is told when it fails. May be called from any thread."""
+        self.ui_thread.post(task, key=key, on_error=lambda message: self.notice(client_id, message, "bad"))
+
+    def close(self) -> None:
+        """Stop jobs, write what is unsaved, end the threads. Called from outside the desk."""
+        self.jobs.cancel()
+        self.jobs.wait(5.0)
+        self.ui_thread.stop()
+        self.autosave.stop()
+        self.checker.stop()
+        self.preparer.stop()
+        self.thumbnails.stop()
+
+    def _show_photo_camera(self, client: Client) -> None:
+        photo = None if self.photo is None else self.photo.rgb
+
+        def through_it() -> None:
+            if self.on_photo_camera is not None:
+                ask = self.on_photo_camera
+                client.post(lambda: ask(client))
+
+        client.view.show_photo_camera(self.scene.camera, photo, through_it)
+
+    def _picked(self, object_id: str, event: viser.SceneNodePointerEvent) -> None:
+        if self.on_pick is not None:
+            self.on_pick(object_id, event)
+
+    def _dragged(self, object_id: str, event: viser.SceneNodeDragEvent) -> None:
+        if self.on_drag is not None:
+            self.on_drag(object_id, event)
+
+    def _later(self, task: Callable[[], None]) -> None:
+        timer = threading.Timer(MESH_OVERLAP_S, lambda: self.ui_thread.post(task))
+        timer.daemon = True
+        timer.start()
+
+    def _job_changed(self, status: JobStatus) -> None:
+        now = time.monotonic()
+        begins = status.fraction == 0.0
+        if begins or status.cancelling or now - self._job_told_at > JOB_TOLD_EVERY_S:
+            self._job_told_at = now
+            self.ui_thread.post(self.refresh_panels if begins else self._refresh_job, key="job")
+
+    def _refresh_job(self) -> None:
+        for client in self.clients.values():
+            if client.job_panel is not None:
+                client.job_panel.refresh()
+
+    def _job_ended(self, outcome: Outcome) -> None:
+        def tell() -> None:
+            self.refresh()
+            if outcome.cancelled:
+                self.notice_all("Stopped; nothing was changed.")
+            elif outcome.error is not None:
+                self.notice_all(outcome.error, "bad")
+
+        self.ui_thread.post(tell)

@@ -1,0 +1,160 @@
+"""What one browser sees around objects: outlines of the selection, name tags, the others' cursors, collisions."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import viser
+
+from diorama_core.scene.types import Scene, SceneObject, box_corners
+
+SELECTED_COLOUR = (255, 122, 26)
+LOCKED_COLOUR = (120, 130, 150)
+COLLIDING_COLOUR = (224, 44, 44)
+OUTLINE_MARGIN_M = 0.012
+UNSURE = 0.35
+"""Below this confidence a place is worth comparing with the photo."""
+SECOND_LINE_M = 0.006
+"""A dark line just inside the bright one keeps the outline visible on any colour."""
+BOX_EDGES = [(a, a | bit) for bit in (1, 2, 4) for a in range(8) if not a & bit]
+
+Colour = tuple[int, int, int]
+NodeName = Callable[[str], str | None]
+
+
+@dataclass(frozen=True)
+class _Mark:
+    """Everything drawn around one object."""
+
+    node: str
+    size_m: tuple[float, float, float]
+    colour: Colour | None = None
+    thickness: float = 2.0
+    tag: str = ""
+
+
+class Decorations:
+    """Nodes of one browser below the shared frames of the objects. Used from the desk's thread only."""
+
+    def __init__(self, viser_client: viser.ClientHandle) -> None:
+        self._viser_client = viser_client
+        self._shown: dict[str, tuple[_Mark, list[viser.SceneNodeHandle]]] = {}
+        self._colliding: frozenset[str] = frozenset()
+
+    def show(
+        self,
+        scene: Scene,
+        node_name: NodeName,
+        selection: tuple[str, ...],
+        others: Sequence[tuple[str, Colour, tuple[str, ...]]],
+        badges: Mapping[str, Sequence[str]],
+        *,
+        names: bool,
+        unsure: bool = False,
+    ) -> None:
+        """Draw what differs from what is drawn.
+
+        Args:
+            scene: where everything is.
+            node_name: the shared frame of an object, by id.
+            selection: one's own, the last one drawn boldest.
+            others: name, colour and selection of everyone else.
+            badges: what is wrong with an object, in a word or two each.
+            names: whether everything has a name tag.
+            unsure: whether what the photo hardly supports has a question mark.
+        """
+        wanted: dict[str, _Mark] = {}
+        for item in scene.objects:
+            node = node_name(item.id)
+            if node is None or item.hidden:
+                continue
+            doubt = " ?" if unsure and is_unsure(item) else ""
+            mark = self._mark(item, node, selection, others, badges.get(item.id, ()), names=names, doubt=doubt)
+            if mark is not None:
+                wanted[item.id] = mark
+        with self._viser_client.atomic():
+            for object_id in [i for i, (mark, _) in self._shown.items() if wanted.get(i) != mark]:
+                for handle in self._shown.pop(object_id)[1]:
+                    remove_quietly(handle)
+            for object_id, mark in wanted.items():
+                if object_id not in self._shown:
+                    self._shown[object_id] = (mark, self._draw(mark))
+
+    def collide(self, ids: Iterable[str]) -> bool:
+        """What is in something else's way just now; whether that changed (then `show` again)."""
+        changed = self._colliding != (colliding := frozenset(ids))
+        self._colliding = colliding
+        return changed
+
+    def _mark(
+        self,
+        item: SceneObject,
+        node: str,
+        selection: tuple[str, ...],
+        others: Sequence[tuple[str, Colour, tuple[str, ...]]],
+        badges: Sequence[str],
+        *,
+        names: bool,
+        doubt: str,
+    ) -> _Mark | None:
+        x, y, z = item.size_m.round(5).tolist()
+        size = (x, y, z)
+        name = item.label[:40] + (" (locked)" if item.locked else "")
+        problems = "".join(f" ⚠ {badge}" for badge in badges) + doubt
+        if item.id in self._colliding:
+            return _Mark(node, size, COLLIDING_COLOUR, 3.5, name if item.id in selection else "")
+        if item.id in selection:
+            colour = LOCKED_COLOUR if item.locked else SELECTED_COLOUR
+            return _Mark(node, size, colour, 3.0 if selection[-1] == item.id else 2.0, name + problems)
+        for who, colour, theirs in others:
+            if item.id in theirs:
+                return _Mark(node, size, colour, 2.0, who)
+        if names or problems:
+            short = ("⚠" if badges else "") + doubt
+            return _Mark(node, size, None, 0.0, name + problems if names else short)
+        return None
+
+    def _draw(self, mark: _Mark) -> list[viser.SceneNodeHandle]:
+        scene, made = self._viser_client.scene, []
+        if mark.colour is not None:
+            for margin, colour in ((OUTLINE_MARGIN_M, mark.colour), (SECOND_LINE_M, (40, 24, 12))):
+                corners = box_corners(np.asarray(mark.size_m) + 2 * margin)
+                made.append(
+                    scene.add_line_segments(
+                        f"{mark.node}/mark/{'outer' if colour is mark.colour else 'inner'}",
+                        points=np.array([[corners[a], corners[b]] for a, b in BOX_EDGES]),
+                        colors=colour,
+                        thickness=mark.thickness if colour is mark.colour else 1.0,
+                        thickness_units="screen",
+                    )
+                )
+        if mark.tag:
+            made.append(
+                scene.add_label(
+                    f"{mark.node}/mark/tag",
+                    text=mark.tag.strip(),
+                    position=(0.0, 0.0, mark.size_m[2] / 2 + 0.06),
+                    anchor="bottom-center",
+                    font_screen_scale=1.0,
+                )
+            )
+        return made
+
+
+def is_unsure(item: SceneObject) -> bool:
+    """Whether the photo hardly supports where an object is."""
+    return item.box_px is not None and item.confidence < UNSURE
+
+
+def remove_quietly(handle: Any) -> None:
+    """Remove a node that may have gone with its parent."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            handle.remove()
+    except Exception:  # its parent went first, and took it along
+        return

@@ -1,0 +1,226 @@
+"""The scene on the page: differences between what is shown and what should be become viser nodes.
+
+Every object is a frame `/objects/<n>` in its pose, with the mesh as a child (`marks` adds what each browser sees).
+Nodes belong to the server, so that all browsers see the same and a reload shows it again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import viser
+import viser.transforms as vtf
+from jaxtyping import Float, UInt8
+
+from diorama_app.viewport.decorations import remove_quietly
+from diorama_app.viewport.mesh_assets import ShapeBytes, plane_glb, plane_triangles
+from diorama_core.scene.types import Finish, Plane, Pose, Scene, SceneObject
+
+MESH_NAMES = 8
+"""An object's meshes take turns among so many names, so that what is on its way out keeps its own."""
+
+SHADOW_ON_PLANES = 0.25
+"""How dark."""
+
+Appearance = tuple[str, tuple[float, float, float] | None, Finish | None]
+Pick = Callable[[str, Any], None]
+Later = Callable[[Callable[[], None]], None]
+
+
+@dataclass
+class _Shown:
+    """One object as it is on the page."""
+
+    frame: viser.FrameHandle
+    item: SceneObject
+    mesh: viser.GlbHandle | None = None
+    version: int = 0
+    appearance: Appearance | None = None
+    pose: Pose | None = None
+    """Where it is shown: the document's place, or a preview's."""
+
+
+class Viewport:
+    """What all browsers see. Used from the desk's thread only."""
+
+    def __init__(self, server: viser.ViserServer, shapes: ShapeBytes, *, pick: Pick, drag: Pick, later: Later) -> None:
+        """Set up an empty view.
+
+        Args:
+            server: the page.
+            shapes: where GLB bytes come from.
+            pick: told (object id, click event) from viser's event loop when an object is clicked.
+            drag: told (object id, drag event) likewise while an object is dragged.
+            later: runs a task on the desk a moment later (an old mesh goes when the new one is loaded).
+        """
+        self._server = server
+        self._shapes = shapes
+        self._pick = pick
+        self._drag = drag
+        self._later = later
+        self._objects: dict[str, _Shown] = {}
+        self._planes: dict[str, tuple[Plane, viser.SceneNodeHandle]] = {}
+        self._shadow_on_planes: float | bool = SHADOW_ON_PLANES
+
+    def light(self, *, low_graphics: bool) -> None:
+        """Soft light from all sides; shadows and an environment where the browser can afford them."""
+        scene = self._server.scene
+        scene.configure_default_lights(enabled=True, cast_shadow=not low_graphics)
+        if low_graphics:
+            self._shadow_on_planes = False  # even without shadows, every plane would be drawn twice for them
+            scene.configure_environment_map(None)
+            scene.add_light_hemisphere(
+                "/lights/sky", sky_color=(255, 252, 246), ground_color=(176, 170, 162), intensity=1.0
+            )
+            scene.add_light_ambient("/lights/around", color=(255, 250, 244), intensity=0.9)
+        else:
+            scene.configure_environment_map("apartment", environment_intensity=0.35)
+            scene.add_light_hemisphere(
+                "/lights/sky", sky_color=(255, 252, 246), ground_color=(176, 170, 162), intensity=0.75
+            )
+            scene.add_light_ambient("/lights/around", color=(255, 250, 244), intensity=0.55)
+
+    def show(self, scene: Scene, textures: Mapping[str, UInt8[np.ndarray, "h w 3"]]) -> None:
+        """Make the page show this scene, changing only what differs."""
+        with self._server.atomic():
+            self._show_planes(scene, textures)
+            for gone in [i for i in self._objects if not scene.has_object(i)]:
+                self._objects.pop(gone).frame.remove()
+            for item in scene.objects:
+                self._show_object(item)
+        self._server.flush()  # ahead of the panels, which take longer
+
+    def preview(self, poses: Mapping[str, Pose]) -> None:
+        """Put objects into poses that are not part of the document (a drag, a running optimiser)."""
+        with self._server.atomic():
+            for object_id, pose in poses.items():
+                shown = self._objects.get(object_id)
+                if shown is not None:
+                    self._set_pose(shown, pose)
+        self._server.flush()
+
+    def preview_item(self, item: SceneObject) -> None:
+        """Show an object as it would be; the next `show` takes it back."""
+        with self._server.atomic():
+            if item.id in self._objects:
+                self._show_object(item)
+
+    def mesh_name(self, object_id: str) -> str | None:
+        """The node of an object's present mesh."""
+        shown = self._objects.get(object_id)
+        return None if shown is None or shown.mesh is None else shown.mesh.name
+
+    def node_name(self, object_id: str) -> str | None:
+        """The frame that carries an object, for tests and for gizmos."""
+        shown = self._objects.get(object_id)
+        return None if shown is None else shown.frame.name
+
+    def plane_name(self, plane_id: str) -> str | None:
+        """The node of a plane."""
+        shown = self._planes.get(plane_id)
+        return None if shown is None else shown[1].name
+
+    def _show_planes(self, scene: Scene, textures: Mapping[str, UInt8[np.ndarray, "h w 3"]]) -> None:
+        wanted = {p.id: p for p in scene.architecture.planes}
+        for plane_id, (plane, handle) in list(self._planes.items()):
+            if wanted.get(plane_id) != plane:
+                handle.remove()
+                del self._planes[plane_id]
+        for plane_id, plane in wanted.items():
+            if plane_id not in self._planes:
+                picture = textures.get(plane.texture) if plane.texture is not None else None
+                self._planes[plane_id] = (plane, self._add_plane(plane, picture))
+
+    def _add_plane(self, plane: Plane, texture: UInt8[np.ndarray, "h w 3"] | None) -> viser.SceneNodeHandle:
+        name = self._fresh_name("/room")
+        if texture is not None:
+            return self._server.scene.add_glb(
+                name, plane_glb(plane, reduced(texture, 1024)), cast_shadow=False, receive_shadow=self._shadow_on_planes
+            )
+        return self._server.scene.add_mesh_simple(
+            name,
+            vertices=plane.polygon,
+            faces=plane_triangles(plane),
+            color=plane.colour,
+            flat_shading=True,
+            side="front",
+            cast_shadow=False,
+            receive_shadow=self._shadow_on_planes,
+        )
+
+    def _show_object(self, item: SceneObject) -> None:
+        shown = self._objects.get(item.id)
+        if shown is None:
+            frame = self._server.scene.add_frame(self._fresh_name("/objects"), show_axes=False)
+            shown = self._objects[item.id] = _Shown(frame, item)
+        shown.item = item
+        replaced = shown.appearance != (item.shape_id, item.colour, item.finish)
+        if replaced:
+            self._replace_mesh(shown, item)
+        if shown.pose is not item.pose or replaced:
+            self._set_pose(shown, item.pose)
+        shown.frame.visible = not item.hidden
+
+    def _replace_mesh(self, shown: _Shown, item: SceneObject) -> None:
+        # A node whose bytes change vanishes until the browser has parsed them, so the old one stays for a moment.
+        data = self._shapes.glb(item.shape_id, item.colour, item.finish)
+        old = shown.mesh
+        shown.version = (shown.version + 1) % MESH_NAMES
+        mesh = self._server.scene.add_glb(
+            f"{shown.frame.name}/v{shown.version}", data, scale=tuple(float(s) for s in item.pose.scale)
+        )
+        shown.mesh = mesh
+        shown.appearance = (item.shape_id, item.colour, item.finish)
+        object_id = item.id
+
+        async def clicked(event: viser.SceneNodePointerEvent[Any]) -> None:
+            self._pick(object_id, event)
+
+        mesh.on_click(clicked)
+        for modifier in ("shift", "cmd/ctrl"):
+            mesh.on_click(modifier=modifier)(clicked)
+
+        async def dragged(event: viser.SceneNodeDragEvent[Any]) -> None:
+            self._drag(object_id, event)
+
+        for modifier_key in (None, "alt"):
+            mesh.on_drag("left", modifier=modifier_key)(dragged)
+        if old is not None:
+            self._later(lambda: remove_quietly(old))
+
+    def _set_pose(self, shown: _Shown, pose: Pose) -> None:
+        before, shown.pose = shown.pose, pose
+        if before is None or not np.array_equal(before.R_world_object, pose.R_world_object):
+            shown.frame.wxyz = quaternion(pose.R_world_object)
+        if before is None or not np.array_equal(before.position, pose.position):
+            shown.frame.position = pose.position
+        scale = tuple(float(s) for s in pose.scale)
+        if shown.mesh is not None and shown.mesh.scale != scale:
+            shown.mesh.scale = scale
+
+    def _fresh_name(self, stem: str) -> str:
+        """A name not in use. Names are used again: the server keeps a few messages for every name there ever was."""
+        taken = {h.name for _, h in self._planes.values()} | {s.frame.name for s in self._objects.values()}
+        return next(name for n in range(1, len(taken) + 2) if (name := f"{stem}/{n}") not in taken)
+
+
+def quaternion(R: Float[np.ndarray, "3 3"]) -> Float[np.ndarray, "4"]:
+    """(w, x, y, z) of a rotation."""
+    return np.asarray(vtf.SO3.from_matrix(np.array(R)).wxyz, dtype=np.float64)
+
+
+def rotation(wxyz: Float[np.ndarray, "4"]) -> Float[np.ndarray, "3 3"]:
+    """The rotation of a quaternion."""
+    return np.asarray(vtf.SO3(np.asarray(wxyz, dtype=np.float64)).normalize().as_matrix(), dtype=np.float64)
+
+
+def reduced(picture: UInt8[np.ndarray, "h w 3"], longest: int) -> UInt8[np.ndarray, "h2 w2 3"]:
+    """The picture with its longer side at most `longest` pixels."""
+    from PIL import Image
+
+    image = Image.fromarray(picture)
+    image.thumbnail((longest, longest), Image.Resampling.LANCZOS)
+    return np.asarray(image)

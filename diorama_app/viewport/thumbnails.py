@@ -1,0 +1,85 @@
+"""Small pictures of shapes: the panels name them, the browser fetches those that it shows."""
+
+from __future__ import annotations
+
+import hashlib
+import logging
+import threading
+import time
+from collections import OrderedDict
+from concurrent.futures import Future, ThreadPoolExecutor
+
+from diorama_app.web.viser_adapter import PICTURES
+from diorama_core.errors import DioramaError
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.user_library import ShapeRecords
+from diorama_core.scene.types import Finish
+
+log = logging.getLogger(__name__)
+
+Paint = tuple[tuple[float, float, float] | None, Finish | None]
+"""Overrides of colour (sRGB, 0 to 1) and finish."""
+
+OWN: Paint = (None, None)
+
+SIDE_PX = 112
+CACHE_SIZE = 1024
+"""The oldest names of painted shapes are forgotten beyond so many."""
+
+PAINTED_WAIT_S = 0.1
+"""Pictures in another colour are not urgent: what a person does just now goes before them."""
+
+
+class Thumbnails:
+    """Hands out `<img>` elements at once and makes the pictures when a browser asks for them. Safe between threads."""
+
+    def __init__(self, library: ShapeLibrary, records: ShapeRecords) -> None:
+        self._library = library
+        self._records = records
+        self._own: dict[str, str] = {}
+        self._painted: OrderedDict[str, tuple[str, Paint]] = OrderedDict()
+        self._lock = threading.Lock()
+        self._worker = ThreadPoolExecutor(1, thread_name_prefix="thumbnails")
+
+    def html(self, shape_id: str, paint: Paint = OWN) -> str:
+        """HTML of the shape's picture, painted or in its own colours."""
+        try:
+            content = self._records.shape(shape_id).content_hash
+        except DioramaError:
+            return '<span class="blank"></span>'
+        name = hashlib.sha256(f"{shape_id} {content} {paint}".encode()).hexdigest()[:20]
+        with self._lock:
+            if paint == OWN:
+                self._own[name] = shape_id
+            else:
+                self._painted[name] = (shape_id, paint)
+                self._painted.move_to_end(name)
+                while len(self._painted) > CACHE_SIZE:
+                    self._painted.popitem(last=False)
+        return f'<img alt="" loading="lazy" src="{PICTURES}{name}.png">'
+
+    def png(self, name: str) -> Future[bytes | None]:
+        """The picture called so, made beside everything else; None where there is none."""
+        name = name.removesuffix(".png")
+        with self._lock:
+            asked = (self._own[name], OWN) if name in self._own else self._painted.get(name)
+        if asked is None:
+            nothing: Future[bytes | None] = Future()
+            nothing.set_result(None)
+            return nothing
+        return self._worker.submit(self._made, *asked)
+
+    def stop(self) -> None:
+        """End the thread; pictures that wait are not made."""
+        self._worker.shutdown(wait=False, cancel_futures=True)
+
+    def _made(self, shape_id: str, paint: Paint) -> bytes | None:
+        from diorama_core.render.thumbnails import thumbnail  # only once pictures are asked for
+
+        if paint != OWN:
+            time.sleep(PAINTED_WAIT_S)
+        try:
+            return thumbnail(self._library, shape_id, size=SIDE_PX, paint=paint)
+        except Exception:
+            log.exception("no thumbnail of %s", shape_id)
+            return None

@@ -1,0 +1,1 @@
+"""What viser does not do: access control, uploads, pictures over HTTP, panels drawn as HTML."""

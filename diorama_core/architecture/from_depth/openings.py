@@ -1,0 +1,136 @@
+"""Doorways and windows of measured walls: where a wall is seen through, in rectangles.
+
+A wall with openings stays one polygon: a doorway is a notch in its foot, a window is reached by a cut from the foot.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float
+
+from diorama_core.architecture.from_depth.surface import MeasuredSurface
+from diorama_core.architecture.from_depth.wall_candidates import WallCandidate, crossings, tolerance_m
+from diorama_core.architecture.wall_sequence import WallPiece
+
+CELL_M = 0.06
+BEYOND_M = 0.25
+"""What is seen less far behind a wall is a niche, a frame or noise."""
+MIN_AREA_M2, MIN_SIDE_M = 0.35, 0.35
+MIN_FILL = 0.75
+"""Share of its rectangle that an opening fills."""
+SEEN_THROUGH = 0.6
+"""Share of a cell's rays that must pass."""
+FRAME_M = 0.10
+"""Openings this near an end or the top of the wall are its end, not an opening."""
+SILL_M = 0.3
+"""Openings that come down lower than this are doorways and reach the floor."""
+
+
+@dataclass(frozen=True)
+class Opening:
+    """A rectangle of a wall: metres along its foot from its left end, and heights."""
+
+    left: float
+    right: float
+    bottom: float
+    top: float
+
+    @property
+    def is_doorway(self) -> bool:
+        """Whether it reaches the floor."""
+        return self.bottom == 0.0
+
+
+def find_openings(surface: MeasuredSurface, piece: WallPiece, top_m: float) -> tuple[Opening, ...]:
+    """Rectangles of a wall through which farther things are measured, from left to right.
+
+    Args:
+        surface: The measured points.
+        piece: The wall; one that was only assumed has no openings.
+        top_m: Its height.
+    """
+    if piece.candidate is None or piece.length_m < 3 * MIN_SIDE_M:
+        return ()
+    passed, stopped = _rays(surface, piece, piece.candidate, top_m)
+    share = passed / np.maximum(passed + stopped, 1e-9)
+    through = ((share > SEEN_THROUGH) & (passed >= 2)).astype(np.uint8)
+    through = cv2.morphologyEx(through, cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
+    through = cv2.morphologyEx(through, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
+    count, _, stats, _ = cv2.connectedComponentsWithStats(through, connectivity=4)
+    found = [_opening(stats[i], piece, top_m) for i in range(1, count)]
+    return tuple(sorted((o for o in found if o is not None), key=lambda o: o.left))
+
+
+def is_shut(surface: MeasuredSurface, piece: WallPiece, opening: Opening, top_m: float) -> bool:
+    """Whether more of what is measured within a rectangle lies on the wall than behind it."""
+    if piece.candidate is None:
+        return False
+    passed, stopped = _rays(surface, piece, piece.candidate, top_m)
+    rows = slice(int(opening.bottom / CELL_M), int(opening.top / CELL_M) + 1)
+    columns = slice(int(opening.left / CELL_M), int(opening.right / CELL_M) + 1)
+    return bool(stopped[rows, columns].sum() > passed[rows, columns].sum())
+
+
+def counted(openings: tuple[tuple[Opening, ...], ...]) -> str:
+    """How many doorways and windows the walls have, to go on with a sentence; nothing where there is none."""
+    doors, cut = sum(o.is_doorway for wall in openings for o in wall), sum(len(wall) for wall in openings)
+    named = ((doors, "doorway"), (cut - doors, "window"))
+    return "".join(f", {n} {name}{'s' * (n > 1)}" for n, name in named if n)
+
+
+def _rays(
+    surface: MeasuredSurface, piece: WallPiece, wall: WallCandidate, top_m: float
+) -> tuple[Float[np.ndarray, "v u"], Float[np.ndarray, "v u"]]:
+    """How many rays pass and how many stop in each cell of the wall, row 0 at the floor."""
+    along = (piece.end - piece.start) / piece.length_m
+    crossing, share = crossings(surface, wall.normal, wall.offset)
+    u, v = (crossing[:, :2] - piece.start) @ along, crossing[:, 2]
+    depth_behind = wall.offset - surface.points[:, :2] @ wall.normal
+    inside = (share > 0) & (u > 0) & (u < piece.length_m) & (v > 0) & (v < top_m)
+    beyond = inside & (depth_behind > BEYOND_M + 2.0 * tolerance_m(surface.depth_m))
+    on = inside & (np.abs(depth_behind) < tolerance_m(surface.depth_m))
+    shape = (int(np.ceil(top_m / CELL_M)), int(np.ceil(piece.length_m / CELL_M)))
+
+    def counted(chosen: Bool[np.ndarray, "n"]) -> Float[np.ndarray, "v u"]:
+        index = (v[chosen] / CELL_M).astype(int) * shape[1] + (u[chosen] / CELL_M).astype(int)
+        return np.bincount(index, minlength=shape[0] * shape[1]).reshape(shape).astype(np.float64)
+
+    return counted(beyond), counted(on)
+
+
+def _opening(stats: np.ndarray, piece: WallPiece, top_m: float) -> Opening | None:
+    """The rectangle of a component, if it can be a doorway or a window."""
+    column, row, width, height, cells = (int(v) for v in stats[:5])
+    left, right = column * CELL_M, (column + width) * CELL_M
+    bottom, top = row * CELL_M, (row + height) * CELL_M
+    large = min(width, height) * CELL_M >= MIN_SIDE_M and cells * CELL_M**2 >= MIN_AREA_M2
+    framed = left > FRAME_M and right < piece.length_m - FRAME_M and top < top_m - FRAME_M
+    if not (large and framed and cells >= MIN_FILL * width * height):
+        return None
+    return Opening(left, right, 0.0 if bottom < SILL_M else bottom, top)
+
+
+def with_openings(polygon: Float[np.ndarray, "n 3"], openings: tuple[Opening, ...]) -> Float[np.ndarray, "m 3"]:
+    """A wall's polygon, whose first edge is its foot from left to right, with openings cut out of it.
+
+    Args:
+        polygon: Corners, counter-clockwise seen from inside the room.
+        openings: From left to right, not overlapping.
+    """
+    start, end = polygon[:2]
+    along = (end - start) / max(float(np.linalg.norm(end - start)), 1e-9)
+    up = np.array([0.0, 0.0, 1.0])
+    cut: list[np.ndarray] = []
+    reached = 0.0
+    for o in openings:
+        if o.left <= reached:
+            continue
+        corners = [(o.left, 0.0)] * (not o.is_doorway)
+        corners += [(o.left, o.bottom), (o.left, o.top), (o.right, o.top), (o.right, o.bottom)]
+        corners += [(o.left, o.bottom), (o.left, 0.0)] * (not o.is_doorway)
+        cut += [start + u * along + v * up for u, v in corners]
+        reached = o.right
+    return np.array([start, *cut, *polygon[1:]])

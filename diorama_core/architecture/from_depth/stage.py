@@ -1,0 +1,141 @@
+"""The room from measured depth: floor, walls and ceiling as planes of the points, closed at their corners."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from diorama_core.architecture.closed_room import GUESS_CONFIDENCE, room_planes
+from diorama_core.architecture.from_depth.ceilings import CeilingPiece, find_ceilings
+from diorama_core.architecture.from_depth.openings import Opening, counted, find_openings, is_shut
+from diorama_core.architecture.from_depth.surface import MeasuredSurface, measured_surface
+from diorama_core.architecture.from_depth.wall_candidates import find_walls, tolerance_m
+from diorama_core.architecture.from_depth.wall_path import heading
+from diorama_core.architecture.passages import is_passage, with_passages
+from diorama_core.architecture.supports import resolve_supports
+from diorama_core.architecture.texture.colours import coloured, object_pixels
+from diorama_core.architecture.wall_sequence import WallPiece, outline
+from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry
+from diorama_core.progress import Progress
+from diorama_core.scene.types import Architecture, Camera
+
+USUAL_CEILING_M = 2.6
+MIN_FLAT_SHARE = 0.004
+"""The floor counts as seen when this share of the measured points lies on it."""
+
+
+@dataclass(frozen=True)
+class PlanarRoom:
+    """PlainRecon (Diorama, section 3.1) on measured points, with walls checked by visibility.
+
+    Directions that much vertical surface shares give parallel wall candidates; a candidate through which farther
+    things are measured is furniture and dropped. The walls that lead in each heading form a chain whose neighbours
+    meet in corners or are joined by hidden pieces.
+    """
+
+    def reconstruct(
+        self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
+    ) -> ArchitectureEstimate:
+        """Floor always, at least one wall always, ceiling where it is measured.
+
+        Raises:
+            ValueError: when the inputs hold no measured depth.
+        """
+        if inputs.depth_m is None:
+            raise ValueError("PlanarRoom needs measured depth; use PhotoRoom for a photo alone")
+        progress.report(0.0, "Looking for planes in the measured depth")
+        solid = tuple(o for o in objects if not is_passage(o))
+        hidden = object_pixels((inputs.photo.height, inputs.photo.width), solid)
+        surface = measured_surface(inputs.depth_m, geometry.camera, hidden)
+        ceilings = find_ceilings(surface)
+        top_m = _top(surface, ceilings)
+        walls = find_walls(surface, top_m)
+        progress.report(0.6, "Closing the room at its corners")
+        pieces = outline(surface, walls, view_headings(geometry.camera), top_m)
+        guessed = not pieces
+        pieces = pieces or (_guessed_wall(surface, geometry.camera),)
+        floor_seen = _share(surface, 0.0, 1.0) > MIN_FLAT_SHARE
+        openings: tuple[tuple[Opening, ...], ...] = ((),) * len(pieces)
+        pointed: tuple[str, ...] = ()
+        if not _sloped(ceilings):
+            measured = tuple(find_openings(surface, p, top_m) for p in pieces)
+            openings, pointed = with_passages(
+                measured,
+                objects,
+                pieces,
+                geometry.camera,
+                top_m,
+                lambda wall, opening: is_shut(surface, pieces[wall], opening, top_m),
+            )
+        sure = 0.95 if floor_seen else GUESS_CONFIDENCE
+        planes = room_planes(pieces, ceilings, geometry.camera, top_m, sure, openings)
+        planes = coloured(planes, inputs.photo.rgb, geometry.camera, objects)
+        architecture = Architecture(planes)
+        progress.report(1.0, "The room is closed")
+        return ArchitectureEstimate(
+            architecture=architecture,
+            supports=resolve_supports(geometry, architecture),
+            confidence=float(np.mean([p.confidence for p in architecture.planes])),
+            source=_source(pieces, guessed, floor_seen, ceilings) + counted(openings),
+            openings=pointed,
+        )
+
+
+def _top(surface: MeasuredSurface, ceilings: tuple[CeilingPiece, ...]) -> float:
+    """Where walls end: at the flat ceiling, else at the usual height or above everything measured."""
+    flat = [-c.offset for c in ceilings if c.is_flat]
+    seen = float(np.quantile(surface.points[:, 2], 0.99)) + 0.05 if len(surface.points) else 0.0
+    return flat[0] if flat else max(USUAL_CEILING_M, seen)
+
+
+def _share(surface: MeasuredSurface, height_m: float, facing: float) -> float:
+    """Share of the points on a horizontal plane that faces up (1) or down (-1)."""
+    if len(surface.points) == 0:
+        return 0.0
+    near = np.abs(surface.points[:, 2] - height_m) < 0.05 + tolerance_m(surface.depth_m)
+    return float((near & (surface.normals[:, 2] * facing > 0.85)).mean())
+
+
+def view_headings(camera: Camera) -> tuple[float, float]:
+    """Headings of the left and right side of the picture, where it looks about level."""
+    k = camera.intrinsics
+    rows = np.linspace(0, k.height, 9)
+    sides = []
+    for column in (0.0, float(k.width)):
+        rays = camera.rays(np.stack([np.full_like(rows, column), rows], axis=-1))
+        level = np.linalg.norm(rays[:, :2], axis=1) > 0.5 * np.linalg.norm(rays, axis=1)
+        rays = rays[level] if level.any() else rays[:1]
+        sides.append(heading(rays[:, :2], np.zeros(2)))
+    return float(sides[0].min()), float(max(sides[1].max(), sides[0].min() + 0.1))
+
+
+def _guessed_wall(surface: MeasuredSurface, camera: Camera) -> WallPiece:
+    """A wall behind everything measured, square to the room axis that the camera faces."""
+    origin = camera.position[:2]
+    reach = surface.points[:, 1] - origin[1]
+    y = origin[1] + (max(float(np.quantile(reach, 0.98)) + 0.05, 1.0) if len(reach) else 3.5)
+    left, right = view_headings(camera)
+    span = (y - origin[1]) * np.tan(np.clip([left, right], -1.2, 1.2))
+    return WallPiece(np.array([origin[0] + span[0] - 0.3, y]), np.array([origin[0] + span[1] + 0.3, y]), None)
+
+
+def _sloped(ceilings: tuple[CeilingPiece, ...]) -> bool:
+    return any(not c.is_flat for c in ceilings)
+
+
+def _source(
+    pieces: tuple[WallPiece, ...],
+    guessed: bool,
+    floor_seen: bool,
+    ceilings: tuple[CeilingPiece, ...],
+) -> str:
+    seen = sum(p.candidate is not None for p in pieces)
+    walls = "no wall was measured; one is assumed behind everything seen" if guessed else f"{seen} walls measured"
+    assumed = "" if guessed or seen == len(pieces) else f" and {len(pieces) - seen} assumed to close the room"
+    floor = "floor measured" if floor_seen else "floor not seen, its height assumed"
+    slopes = sum(not c.is_flat for c in ceilings)
+    overhead = [f"ceiling at {-c.offset:.2f} m" for c in ceilings if c.is_flat]
+    overhead += [f"{slopes} sloped ceiling{'s' * (slopes > 1)}"] * bool(slopes)
+    above = " and ".join(overhead) or "ceiling not seen"
+    return f"planes of the measured depth: {floor}, {walls}{assumed}, {above}"

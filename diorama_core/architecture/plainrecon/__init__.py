@@ -1,0 +1,1 @@
+"""PlainRecon as published: the baseline."""

@@ -1,0 +1,96 @@
+"""PlainRecon as published (Diorama, section 3.1 and supplement): the baseline beside `from_depth.PlanarRoom`.
+
+It reads the measured depth of what no object hides; the publication reads a network's depth of an inpainted picture.
+As published it gives floor and walls only: what faces down is left out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.architecture.closed_room import GUESS_CONFIDENCE
+from diorama_core.architecture.from_depth.surface import MeasuredSurface, measured_surface
+from diorama_core.architecture.plainrecon.bounds import Sheet, fitted_sheet, joined, upright
+from diorama_core.architecture.plainrecon.clusters import MIN_POINTS, planar_clusters
+from diorama_core.architecture.supports import resolve_supports
+from diorama_core.architecture.texture.colours import coloured, object_pixels
+from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry
+from diorama_core.progress import Progress
+from diorama_core.scene.types import Architecture, Plane
+
+UP_COSINE = 0.7
+"""A cluster whose mean normal is at least so much upward may be the floor; so much downward, it is a ceiling."""
+CONFIDENCE = 0.6
+ASSUMED_FLOOR_M = 3.0
+
+
+@dataclass(frozen=True)
+class PlainRecon:
+    """Voxels, outliers, K-means on normals, growth, DBSCAN; RANSAC planes, smallest rectangles, joined corners."""
+
+    seed: int = 0
+
+    def reconstruct(
+        self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
+    ) -> ArchitectureEstimate:
+        """Floor and walls; an assumed floor below the camera when none is found.
+
+        Raises:
+            ValueError: when the inputs hold no measured depth.
+        """
+        if inputs.depth_m is None:
+            raise ValueError("PlainRecon needs measured depth; use PhotoRoom for a photo alone")
+        progress.report(0.0, "Clustering the measured points by their normals")
+        hidden = object_pixels((inputs.photo.height, inputs.photo.width), objects)
+        surface = measured_surface(inputs.depth_m, geometry.camera, hidden)
+        floor, walls = self._sheets(surface)
+        progress.report(0.7, "Bounding the planes")
+        base = _assumed_floor(geometry.camera.position) if floor is None else floor
+        planes = [_plane("floor", base, GUESS_CONFIDENCE if floor is None else CONFIDENCE)]
+        standing = joined(base, [upright(w, base) for w in walls])
+        planes += [_plane(f"wall_{k}", w, CONFIDENCE) for k, w in enumerate(standing, 1)]
+        architecture = Architecture(coloured(tuple(planes), inputs.photo.rgb, geometry.camera, objects))
+        progress.report(1.0, "Floor and walls are bounded")
+        found = "floor" if floor is not None else "no floor (one is assumed)"
+        return ArchitectureEstimate(
+            architecture=architecture,
+            supports=resolve_supports(geometry, architecture),
+            confidence=float(np.mean([p.confidence for p in architecture.planes])),
+            source=f"PlainRecon as published: {found} and {len(walls)} walls from clusters of normals",
+        )
+
+    def _sheets(self, surface: MeasuredSurface) -> tuple[Sheet | None, list[Sheet]]:
+        free = ~surface.is_object & (surface.normals != 0).any(axis=1)
+        points, normals = surface.points[free], surface.normals[free]
+        labels = planar_clusters(points, normals, self.seed)
+        sizes = np.bincount(labels[labels >= 0], minlength=1)
+        facing = [float(normals[labels == k][:, 2].mean()) if sizes[k] else 0.0 for k in range(len(sizes))]
+        level = [k for k in range(len(sizes)) if facing[k] > UP_COSINE]
+        standing = [k for k in range(len(sizes)) if abs(facing[k]) <= UP_COSINE and sizes[k] >= MIN_POINTS]
+
+        def sheet(k: int) -> Sheet:
+            return fitted_sheet(points[labels == k], surface.camera_position)
+
+        floor = sheet(max(level, key=lambda k: int(sizes[k]))) if level else None
+        return floor, [sheet(k) for k in standing]
+
+
+def _assumed_floor(eye: Float[np.ndarray, "3"]) -> Sheet:
+    reach = ASSUMED_FLOOR_M * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    corners = np.concatenate([eye[:2] + reach, np.zeros((4, 1))], axis=1)
+    return Sheet(np.array([0.0, 0.0, 1.0]), 0.0, corners)
+
+
+def _plane(name: str, sheet: Sheet, confidence: float) -> Plane:
+    """Corners counter-clockwise seen from inside; a wall starts at its lower left."""
+    corners = sheet.corners
+    area = np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0)
+    corners = corners if area @ sheet.normal > 0 else corners[::-1]
+    if name != "floor":
+        # Lower left seen from inside: lowest together with least along.
+        along = np.cross([0.0, 0.0, 1.0], sheet.normal)
+        corners = np.roll(corners, -int((corners @ along + corners[:, 2]).argmin()), axis=0)
+    return Plane(name, "floor" if name == "floor" else "wall", corners, confidence=confidence)

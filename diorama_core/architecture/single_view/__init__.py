@@ -1,0 +1,1 @@
+"""The room from one photo without depth."""

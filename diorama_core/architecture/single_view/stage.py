@@ -1,0 +1,199 @@
+"""The room from one photo without depth: a chain of walls from lines, edges, colours and the things inside it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.architecture.closed_room import GUESS_CONFIDENCE, room_planes
+from diorama_core.architecture.from_depth.ceilings import CeilingPiece
+from diorama_core.architecture.from_depth.openings import Opening, counted
+from diorama_core.architecture.from_depth.wall_candidates import WallCandidate
+from diorama_core.architecture.from_depth.wall_path import Run, heading
+from diorama_core.architecture.passages import with_passages
+from diorama_core.architecture.single_view.box_search import find_box
+from diorama_core.architecture.single_view.level_view import level_view
+from diorama_core.architecture.single_view.room_cues import MAX_CEILING_M, RoomCues, gather_room_cues
+from diorama_core.architecture.single_view.wall_chain import (
+    DISTANCES,
+    FARTHEST_M,
+    NEAREST_M,
+    Chain,
+    ChainScorer,
+    PhotoWalls,
+    best_ceiling,
+    best_chain,
+    refined,
+)
+from diorama_core.architecture.supports import resolve_supports
+from diorama_core.architecture.texture.colours import coloured, visible_planes
+from diorama_core.architecture.wall_sequence import CORNER_SLACK_RAD, WallPiece, chained, meeting_point
+from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry
+from diorama_core.progress import Progress
+from diorama_core.scene.types import Architecture, Plane
+
+CEILINGS_M = np.geomspace(2.1, MAX_CEILING_M, 28)
+FLOOR_CONFIDENCE = 0.6
+LINES = 14
+"""So many of the longest lines along an axis are tried as feet of walls."""
+SURE = 0.4
+MAX_PUSH_M, MAX_SURE_PUSH_M = 2.0, 1.0
+"""Walls give way to things by at most this, those that are clearly seen by less; what is farther out is a mistake."""
+CLEARANCE_M = 0.02
+MEASURED = 0.95
+"""A wall candidate's confidence is this less what is seen through it."""
+MIN_VISIBLE_SHARE = 0.004
+"""A ceiling seen in less of the picture than this is left out."""
+CEILING_STEP = 8
+"""Every so many pixels it is looked whether a ceiling shows."""
+
+
+@dataclass(frozen=True)
+class PhotoRoom:
+    """Walls by dynamic programming over headings (Flint et al. 2010), started from a room box (Hedau et al. 2009).
+
+    The floor is z = 0 of the metric camera. Boxes, L-shapes and rooms with a slanted wall are one kind of thing: a
+    chain of upright planes that lines, edges, colours and the things in the room support best.
+    """
+
+    def reconstruct(
+        self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
+    ) -> ArchitectureEstimate:
+        """Floor, walls and ceiling, with "floor" and "wall" supports resolved."""
+        progress.report(0.0, "Looking for the room's walls")
+        cues = gather_room_cues(inputs.photo.rgb, geometry.camera, objects, geometry.cuboids)
+        box = find_box(cues)[0]
+        progress.report(0.4, "Following the walls from left to right")
+        scorer = ChainScorer(cues, level_view(inputs.photo.rgb, cues, objects))
+        chain = found_chain(scorer, box)
+        sure = GUESS_CONFIDENCE + (0.9 - GUESS_CONFIDENCE) * scorer.support(chain)
+        pieces = _pieces(chain, scorer, sure)
+        top_m = max(chain.ceiling_m, _highest(cues))
+        hung = any(s.parent == "ceiling" for s in geometry.supports)
+        openings, pointed = with_passages(((),) * len(pieces), objects, pieces, geometry.camera, top_m)
+        planes = coloured(_planes(pieces, top_m, geometry, hung, openings), inputs.photo.rgb, geometry.camera, objects)
+        architecture = Architecture(planes)
+        progress.report(1.0, "The room is closed")
+        walls = architecture.by_role("wall")
+        return ArchitectureEstimate(
+            architecture=architecture,
+            supports=resolve_supports(geometry, architecture),
+            confidence=float(np.mean([w.confidence for w in walls])),
+            source=_source(pieces, top_m, float(sure.max())) + counted(openings),
+            openings=pointed,
+        )
+
+
+def found_chain(scorer: ChainScorer, box: Float[np.ndarray, "4"]) -> Chain:
+    """The best chain of walls, its ceiling first taken from a room box (x0, x1, y1, ceiling)."""
+    walls = candidate_walls(scorer.cues, box)
+    chain = best_chain(scorer, walls, float(box[3]))
+    chain = best_chain(scorer, walls, best_ceiling(scorer, chain, CEILINGS_M))
+    return refined(scorer, chain, CEILINGS_M)
+
+
+def candidate_walls(cues: RoomCues, box: Float[np.ndarray, "4"]) -> PhotoWalls:
+    """Walls across the room's axes and the slanted direction, at many distances and at those of the box."""
+    eye = cues.camera.position[:2]
+    away = np.geomspace(NEAREST_M, FARTHEST_M, DISTANCES)
+    facing = [
+        (np.array([1.0, 0.0]), 0, float(eye[0] - box[0])),
+        (np.array([-1.0, 0.0]), 0, float(box[1] - eye[0])),
+        (np.array([0.0, -1.0]), 1, float(box[2] - eye[1])),
+    ]
+    for number, angle in enumerate(cues.slants_rad):
+        square = np.array([-np.sin(angle), np.cos(angle)])
+        facing += [(sign * square, 2 + number, NEAREST_M) for sign in (1.0, -1.0)]
+    normals, offsets, directions = [], [], []
+    for normal, direction, own in facing:
+        seen = _distances_of_lines(cues, normal, 1 - direction) if direction < 2 else np.zeros(0)
+        distances = np.unique(np.concatenate([away, [own], seen]))
+        normals.append(np.repeat(normal[None], len(distances), axis=0))
+        offsets.append(float(normal @ eye) - distances)
+        directions.append(np.full(len(distances), direction))
+    return PhotoWalls(np.concatenate(normals), np.concatenate(offsets), np.concatenate(directions))
+
+
+def _distances_of_lines(cues: RoomCues, normal: Float[np.ndarray, "2"], axis: int) -> Float[np.ndarray, "n"]:
+    """How far away a wall is whose foot is one of the longest lines along an axis."""
+    rays = cues.segment_rays[cues.segment_axes == axis]
+    rays = rays[rays[:, 2] < -1e-3][:LINES]
+    reach = cues.camera.position[2] / -rays[:, 2]
+    found = -reach * (rays[:, :2] @ normal)
+    return np.asarray(found[(found > NEAREST_M) & (found < FARTHEST_M)])
+
+
+def _pieces(chain: Chain, scorer: ChainScorer, sure: Float[np.ndarray, "r"]) -> tuple[WallPiece, ...]:
+    """The chain's walls as pieces that meet, with room for the things that stand before them."""
+    view = scorer.view
+    eye = scorer.cues.camera.position[:2]
+    ends = view.edges_rad[chain.borders]
+    runs = []
+    for k in range(len(chain.walls)):
+        first, last = float(ends[k]), float(ends[k + 1])
+        wall = _as_candidate(chain.walls, k, float(sure[k]))
+        runs.append(Run(_pushed(wall, first, last, scorer.cues, sure=sure[k] > SURE), first, last))
+    for k in range(len(runs) - 1):
+        corner = meeting_point(runs[k].wall, runs[k + 1].wall)
+        before = meeting_point(_as_candidate(chain.walls, k), _as_candidate(chain.walls, k + 1))
+        if corner is None or before is None or abs(float(heading(before, eye)) - runs[k].last) > CORNER_SLACK_RAD:
+            continue
+        at = float(heading(corner, eye))
+        runs[k], runs[k + 1] = replace(runs[k], last=at), replace(runs[k + 1], first=at)
+    return chained(runs, (float(view.edges_rad[0]), float(view.edges_rad[-1])), eye)
+
+
+def _as_candidate(walls: PhotoWalls, k: int, sure: float = 0.0) -> WallCandidate:
+    return WallCandidate(walls.normals[k], float(walls.offsets[k]), np.zeros(0, dtype=bool), MEASURED - sure, 1.0)
+
+
+def _pushed(wall: WallCandidate, first: float, last: float, cues: RoomCues, *, sure: bool) -> WallCandidate:
+    """The wall moved outward until no believable thing within its headings sticks through it."""
+    eye = cues.camera.position[:2]
+    out = 0.0
+    for low, high in zip(cues.object_low, cues.object_high, strict=True):
+        corners = np.array([[x, y] for x in (low[0], high[0]) for y in (low[1], high[1])])
+        towards = heading(corners, eye)
+        through = wall.offset - corners @ wall.normal
+        beside = towards.max() < first or towards.min() > last or np.ptp(towards) > np.pi
+        if not beside and through.max() < (MAX_SURE_PUSH_M if sure else MAX_PUSH_M):
+            out = max(out, float(through.max()) + CLEARANCE_M)
+    return replace(wall, offset=wall.offset - out)
+
+
+def _highest(cues: RoomCues) -> float:
+    """Top of the highest thing, which is below the ceiling."""
+    tops = cues.object_high[:, 2]
+    return float(tops.max()) + CLEARANCE_M if len(tops) else 0.0
+
+
+def _planes(
+    pieces: tuple[WallPiece, ...],
+    top_m: float,
+    geometry: ObjectGeometry,
+    hung: bool,
+    openings: tuple[tuple[Opening, ...], ...],
+) -> tuple[Plane, ...]:
+    """The closed room; without a ceiling where none shows and nothing hangs from it."""
+    ceiling = CeilingPiece(np.array([0.0, 0.0, -1.0]), -top_m, np.inf)
+    planes = room_planes(pieces, (ceiling,), geometry.camera, top_m, FLOOR_CONFIDENCE, openings)
+    seen = visible_planes(planes, geometry.camera, CEILING_STEP)
+    retained = []
+    for index, plane in enumerate(planes):
+        if plane.role == "ceiling" and not hung and float((seen == index).mean()) < MIN_VISIBLE_SHARE:
+            continue
+        retained.append(plane)
+    known = [None if p.candidate is None else MEASURED - p.candidate.seen_through for p in pieces]
+    mean = float(np.mean([c for c in known if c is not None]))
+    sure = {f"wall_{k}": GUESS_CONFIDENCE if c is None else c for k, c in enumerate(known, 1)} | {"ceiling": mean}
+    return tuple(replace(p, confidence=sure.get(p.id, p.confidence)) for p in retained)
+
+
+def _source(pieces: tuple[WallPiece, ...], top_m: float, sure: float) -> str:
+    seen = [p for p in pieces if p.candidate is not None]
+    count = f"{len(seen)} wall{'s' * (len(seen) > 1)}, {top_m:.1f} m high,"
+    if sure <= 2 * GUESS_CONFIDENCE:
+        return f"{count} from the objects and usual room sizes; few lines were seen"
+    return f"{count} from lines, edges and colours of the photo and the objects"

@@ -1,0 +1,316 @@
+"""The chain of walls that a photo supports best, boxes or not: dynamic programming over the level view's headings.
+
+Candidates are upright planes of a few directions at many distances. In a heading each costs what it makes of the
+column: floor-coloured wall, lines that stand out of their surface, missing edges at its foot and top, things that
+would stick through it. Going over from one wall to another costs a corner, less where an upright edge is seen.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from diorama_core.architecture.single_view.level_view import LevelView, projected, response
+from diorama_core.architecture.single_view.room_cues import (
+    EDGE_THRESHOLD,
+    MAX_CEILING_M,
+    PRIOR_LOG_SIGMA,
+    PRIOR_MEDIAN_M,
+    RoomCues,
+)
+
+REGION_WEIGHT = 6.0
+LINE_WEIGHT = 2.5
+EDGE_WEIGHT = 1.0
+UPRIGHT_WEIGHT = 1.5
+OBJECT_WEIGHT = 0.5
+PRIOR_WEIGHT = 0.1
+PROTRUSION_M = 0.25
+UNSURE_SHARE = 0.2
+"""Of its distance, by which a thing may be nearer than its cuboid."""
+CORNER_COST, PROTRUDING_COST, JUMP_COST = 0.05, 0.2, 0.3
+"""Of a corner that the room folds in at, of one that stands into the room, and of a wall that ends in the open."""
+MIN_SHARE = 0.3
+"""However clear the upright edge, going over costs at least this share: pictures are full of upright edges."""
+NEAREST_M, FARTHEST_M = 0.5, 12.0
+DISTANCES = 32
+FINE = np.linspace(-0.08, 0.08, 9)
+CORNER_BINS = 1.5
+ENOUGH_EDGE, EDGE_TRUST = 0.25, 0.7
+"""Edges free to be seen over so many picture diagonals can be relied on; and how much they count for confidence."""
+ENOUGH_COLOUR, COLOUR_TRUST = 0.004, 0.45
+"""Floor and wall that show on so much of the picture can be told apart; and how much that counts."""
+GRAZING = 0.06
+"""Walls are not looked for where they are seen more aslant than this, nor beyond"""
+REACH_M = 15.0
+
+
+@dataclass(frozen=True, eq=False)
+class PhotoWalls:
+    """Candidate walls: planes in plan `normal . p = offset`, normals toward the camera."""
+
+    normals: Float[np.ndarray, "w 2"]
+    offsets: Float[np.ndarray, "w"]
+    directions: Int[np.ndarray, "w"]
+    """Of the normal: 0 along x, 1 along y, 2 and more aslant."""
+
+    def __len__(self) -> int:
+        return len(self.offsets)
+
+    def chosen(self, index: Int[np.ndarray, "v"]) -> PhotoWalls:
+        """Some of them."""
+        return PhotoWalls(self.normals[index], self.offsets[index], self.directions[index])
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """The walls that lead in the headings, from left to right."""
+
+    walls: PhotoWalls
+    """One a run, neighbours differ."""
+    borders: Int[np.ndarray, "r1"]
+    """Numbers of the headings' borders where runs begin and end."""
+    ceiling_m: float
+    cost: float
+
+
+@dataclass(frozen=True, eq=False)
+class ChainScorer:
+    """Costs of walls in headings, of corners, and of ceilings."""
+
+    cues: RoomCues
+    view: LevelView
+
+    def costs(self, walls: PhotoWalls, ceiling_m: float) -> Float[np.ndarray, "w m"]:
+        """Of every wall in every heading."""
+        reach = self.reach(walls)
+        eye = self.cues.camera.position
+        met = np.isfinite(reach)
+        near = np.where(met, reach, 1.0)
+        foot, top = -eye[2] / near, (ceiling_m - eye[2]) / near
+        total = self._surfaces(walls, foot, top)
+        total -= EDGE_WEIGHT * (self._edge(walls, near, 0.0)[0] + self._edge(walls, near, ceiling_m)[0])
+        total += self._objects(near) + self._usual(walls, near)
+        return np.where(met & (near > NEAREST_M * 0.5), total, 1e3)
+
+    def reach(self, walls: PhotoWalls) -> Float[np.ndarray, "w m"]:
+        """Level distance of walls in the headings' middles; `inf` where they are not met."""
+        return self._reach_at(walls, self.view.middles_rad)
+
+    def _reach_at(self, walls: PhotoWalls, headings: Float[np.ndarray, "m"]) -> Float[np.ndarray, "w m"]:
+        across = np.stack([np.sin(headings), np.cos(headings)])
+        slope = walls.normals @ across
+        gap = walls.offsets - walls.normals @ self.cues.camera.position[:2]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            distance = gap[:, None] / slope
+        return np.where((slope < -GRAZING) & (distance > 0) & (distance < REACH_M), distance, np.inf)
+
+    def _surfaces(
+        self, walls: PhotoWalls, foot: Float[np.ndarray, "w m"], top: Float[np.ndarray, "w m"]
+    ) -> Float[np.ndarray, "w m"]:
+        """Floor, wall and ceiling, each where the candidate puts it, against colours and lines."""
+        v = self.view
+        colour = REGION_WEIGHT * v.floor_ratio * v.share
+        level = _summed(-0.5 * colour + LINE_WEIGHT * v.lines[..., 2])
+        overhead = _summed(0.5 * colour + LINE_WEIGHT * v.lines[..., 2])
+        rows_foot, rows_top = v.row_of(foot), v.row_of(top)
+        total = np.zeros(foot.shape)
+        for direction in np.unique(walls.directions):
+            mine = walls.directions == direction
+            along = v.lines[..., direction] if direction < 2 else v.lines[..., 0] + v.lines[..., 1]
+            upright = _summed(0.5 * colour + LINE_WEIGHT * along)
+            at_foot, at_top = rows_foot[mine], rows_top[mine]
+            total[mine] = _upto(level, at_foot) + _upto(upright, at_top) - _upto(upright, at_foot)
+            total[mine] += overhead[:, -1] - _upto(overhead, at_top)
+        return total
+
+    def support(self, chain: Chain) -> Float[np.ndarray, "r"]:
+        """How far each wall of a chain is seen, 0 to 1: foot and top as edges, and colours that change at the foot."""
+        reach = self.reach(chain.walls)
+        near = np.where(np.isfinite(reach), reach, FARTHEST_M)
+        sides = [self._edge(chain.walls, near, height) for height in (0.0, chain.ceiling_m)]
+        eye = float(self.cues.camera.position[2])
+        colour, known = (_summed(x) for x in (self.view.floor_ratio * self.view.share, self._coloured()))
+        found = []
+        for run, (first, last) in enumerate(pairwise(chain.borders)):
+            columns = slice(first, last)
+            over, length = (sum(float(side[k][run, columns].sum()) for side in sides) for k in (0, 1))
+            edge = (EDGE_THRESHOLD + over / max(length, 1e-9)) * min(1.0, length / ENOUGH_EDGE)
+            foot = self.view.row_of(-eye / near[run : run + 1, columns])
+            below, every = (_upto(x[columns], foot)[0] for x in (colour, known))
+            apart = float((2.0 * below - colour[columns, -1]).sum()) / max(float(known[columns, -1].sum()), 1e-9)
+            both = min(float(every.sum()), float((known[columns, -1] - every).sum())) > ENOUGH_COLOUR
+            found.append(min(1.0, EDGE_TRUST * edge + COLOUR_TRUST * max(apart, 0.0) * both))
+        return np.array(found)
+
+    def _coloured(self) -> Float[np.ndarray, "m k"]:
+        return np.where(self.view.floor_ratio != 0, self.view.share, 0.0)
+
+    def _edge(
+        self, walls: PhotoWalls, near: Float[np.ndarray, "w m"], height_m: float
+    ) -> tuple[Float[np.ndarray, "w m"], Float[np.ndarray, "w m"]]:
+        """How much of a wall's foot or top is an edge, over the threshold, and how much of it is free to be seen.
+
+        Both in picture diagonals.
+        """
+        v, e = self.view, self.cues
+        across = np.stack([np.sin(v.middles_rad), np.cos(v.middles_rad)], axis=-1)
+        rise = height_m - e.camera.position[2]
+        directions = np.concatenate([near[..., None] * across, np.full((*near.shape, 1), rise)], axis=-1)
+        pixels, inside = projected(e.camera, directions)
+        # The boundary's course from one heading to the next, as long as it is in the picture.
+        step = np.linalg.norm(np.diff(pixels, axis=1, append=pixels[:, -1:]), axis=-1)
+        step[:, -1] = step[:, -2] if step.shape[1] > 1 else 0.0
+        k = e.camera.intrinsics
+        step = np.minimum(step / np.hypot(k.width, k.height), 0.08)
+        found = np.zeros(near.shape)
+        for direction in np.unique(walls.directions):
+            mine = walls.directions == direction
+            # A wall across x runs along y.
+            edge_map = e.edge_maps[1 - direction] if direction < 2 else e.slant_maps[direction - 2]
+            found[mine] = response(edge_map, pixels[mine], inside[mine], e.map_scale) - EDGE_THRESHOLD
+        free = inside & (np.abs(found) > 1e-6)
+        return np.where(free, found * step, 0.0), np.where(free, step, 0.0)
+
+    def _objects(self, near: Float[np.ndarray, "w m"]) -> Float[np.ndarray, "w m"]:
+        """Things that would stick through a wall, in the headings of their corners."""
+        e = self.cues
+        total = np.zeros(near.shape)
+        if len(e.object_low) == 0:
+            return total
+        weights = e.object_weights / e.object_weights.sum()
+        eye = e.camera.position[:2]
+        edges = self.view.edges_rad
+        for low, high, weight in zip(e.object_low, e.object_high, weights, strict=True):
+            corners = np.array([[x, y] for x in (low[0], high[0]) for y in (low[1], high[1])]) - eye
+            for x, y in corners:
+                column = int(np.searchsorted(edges, np.arctan2(x, y))) - 1
+                if 0 <= column < near.shape[1]:
+                    away = np.hypot(x, y)
+                    out = away * (1.0 - UNSURE_SHARE) - near[:, column]
+                    total[:, column] += OBJECT_WEIGHT * weight / 4.0 * np.clip(out / PROTRUSION_M, 0.0, 2.0)
+        return total
+
+    def _usual(self, walls: PhotoWalls, near: Float[np.ndarray, "w m"]) -> Float[np.ndarray, "w m"]:
+        """Walls of rooms are so far away."""
+        gap = np.abs(walls.offsets - walls.normals @ self.cues.camera.position[:2])
+        sideways = np.abs(walls.normals[:, 0]) > np.abs(walls.normals[:, 1])
+        usual = np.where(sideways, 0.5 * PRIOR_MEDIAN_M[0], PRIOR_MEDIAN_M[1])
+        odd = 0.5 * np.minimum((np.log(gap / usual) / 0.5) ** 2, 9.0)
+        return np.broadcast_to((PRIOR_WEIGHT * odd / near.shape[1])[:, None], near.shape)
+
+    def ceiling_prior(self, ceiling_m: float) -> float:
+        """Cost of a height, and of things that hang from above it."""
+        odd = float(0.5 * min((np.log(ceiling_m / PRIOR_MEDIAN_M[2]) / PRIOR_LOG_SIGMA[2]) ** 2, 9.0))
+        e = self.cues
+        highest = max(float(e.object_high[:, 2].max()) if len(e.object_high) else 0.0, e.hung_top_m)
+        return PRIOR_WEIGHT * odd + 0.5 * float(np.clip((highest - ceiling_m) / PROTRUSION_M, 0.0, 2.0))
+
+    def going_over(self, walls: PhotoWalls, ceiling_m: float) -> Float[np.ndarray, "b w w"]:
+        """Cost of going from each wall to each other at the inner borders of the headings."""
+        v = self.view
+        borders = v.edges_rad[1:-1]
+        reach = self._reach_at(walls, borders).T
+        nearest = np.where(np.isfinite(reach), reach, 50.0)
+        eye = float(self.cues.camera.position[2])
+        summed = _summed(v.upright[1:-1])
+        seen = _upto_rows(summed, v.row_of((ceiling_m - eye) / nearest)) - _upto_rows(summed, v.row_of(-eye / nearest))
+        seen = UPRIGHT_WEIGHT * np.maximum(seen, 0.0)
+        nearer = nearest[:, :, None] <= nearest[:, None, :]
+        edge = np.where(nearer, seen[:, :, None], seen[:, None, :])
+        width = float(v.edges_rad[1] - v.edges_rad[0])
+        corner = _corner_headings(walls, self.cues.camera.position[:2])
+        meet = np.abs(corner[None] - borders[:, None, None]) < CORNER_BINS * width
+        usual = np.where(meet, np.where(_folds_in(walls)[None], CORNER_COST, PROTRUDING_COST), JUMP_COST)
+        cost = np.maximum(usual - edge, MIN_SHARE * usual)
+        same = np.arange(len(walls))
+        cost[:, same, same] = 0.0
+        return np.asarray(cost)
+
+
+def best_chain(scorer: ChainScorer, walls: PhotoWalls, ceiling_m: float) -> Chain:
+    """The cheapest path of walls over the headings (Viterbi)."""
+    costs, over = scorer.costs(walls, ceiling_m), scorer.going_over(walls, ceiling_m)
+    count = costs.shape[1]
+    total, came_from = costs[:, 0].copy(), np.zeros((count, len(walls)), dtype=int)
+    for number in range(1, count):
+        step = total[:, None] + over[number - 1]
+        came_from[number] = step.argmin(axis=0)
+        total = step[came_from[number], np.arange(len(walls))] + costs[:, number]
+    labels = np.zeros(count, dtype=int)
+    labels[-1] = int(total.argmin())
+    for number in range(count - 1, 0, -1):
+        labels[number - 1] = came_from[number, labels[number]]
+    breaks = np.array([0, *(np.flatnonzero(np.diff(labels)) + 1).tolist(), count])
+    return Chain(
+        walls.chosen(labels[breaks[:-1]]), breaks, ceiling_m, float(total.min()) + scorer.ceiling_prior(ceiling_m)
+    )
+
+
+def refined(scorer: ChainScorer, chain: Chain, heights_m: Float[np.ndarray, "c"]) -> Chain:
+    """The chain with its ceiling and its walls' places set more finely, in turns."""
+    for share in (1.0, 0.4, 0.15):
+        chain = best_chain(scorer, around(scorer, chain.walls, share), best_ceiling(scorer, chain, heights_m))
+        heights_m = chain.ceiling_m * (1.0 + share * FINE)
+    return chain
+
+
+def around(scorer: ChainScorer, walls: PhotoWalls, share: float) -> PhotoWalls:
+    """Walls a little nearer and farther than the given ones."""
+    eye = walls.normals @ scorer.cues.camera.position[:2]
+    offsets = eye[:, None] + (walls.offsets - eye)[:, None] * (1.0 + share * FINE)
+    repeat = np.repeat(np.arange(len(walls)), len(FINE))
+    _, first = np.unique(np.stack([repeat, offsets.ravel().round(5)], axis=1), axis=0, return_index=True)
+    return PhotoWalls(walls.normals[repeat], offsets.ravel(), walls.directions[repeat]).chosen(first)
+
+
+def best_ceiling(scorer: ChainScorer, chain: Chain, heights_m: Float[np.ndarray, "c"]) -> float:
+    """The height at which the chain costs least."""
+    columns = np.concatenate([np.arange(a, b) for a, b in pairwise(chain.borders)])
+    runs = np.repeat(np.arange(len(chain.walls)), np.diff(chain.borders))
+    eye = float(scorer.cues.camera.position[2])
+    possible = heights_m[(heights_m > eye + 0.15) & (heights_m < MAX_CEILING_M + 1e-9)]
+    if len(possible) == 0:
+        return chain.ceiling_m
+
+    def cost(height: float) -> float:
+        return float(scorer.costs(chain.walls, height)[runs, columns].sum()) + scorer.ceiling_prior(height)
+
+    return float(min(possible, key=cost))
+
+
+def _summed(cells: Float[np.ndarray, "m k"]) -> Float[np.ndarray, "m k1"]:
+    return np.concatenate([np.zeros((len(cells), 1)), np.cumsum(cells, axis=1)], axis=1)
+
+
+def _upto(summed: Float[np.ndarray, "m k1"], rows: Float[np.ndarray, "w m"]) -> Float[np.ndarray, "w m"]:
+    """Sums below fractional rows."""
+    return _upto_rows(summed, rows.T).T
+
+
+def _upto_rows(summed: Float[np.ndarray, "m k1"], rows: Float[np.ndarray, "m w"]) -> Float[np.ndarray, "m w"]:
+    below = np.minimum(rows.astype(int), summed.shape[1] - 2)
+    part = rows - below
+    return np.asarray(
+        np.take_along_axis(summed, below, axis=1) * (1.0 - part) + np.take_along_axis(summed, below + 1, axis=1) * part
+    )
+
+
+def _corner_headings(walls: PhotoWalls, eye: Float[np.ndarray, "2"]) -> Float[np.ndarray, "w w"]:
+    """Heading of the corner of every two walls; `nan` for nearly parallel ones."""
+    offsets = walls.offsets - walls.normals @ eye
+    a, b = walls.normals[:, None], walls.normals[None]
+    determinant = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    safe = np.where(np.abs(determinant) < 0.17, np.nan, determinant)
+    x = (offsets[:, None] * b[..., 1] - offsets[None, :] * a[..., 1]) / safe
+    y = (a[..., 0] * offsets[None, :] - b[..., 0] * offsets[:, None]) / safe
+    return np.asarray(np.arctan2(x, y))
+
+
+def _folds_in(walls: PhotoWalls) -> np.ndarray:
+    """Whether the corner from a wall on the left to one on the right is an inner corner of the room."""
+    a, b = walls.normals[:, None], walls.normals[None]
+    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0] < 0)

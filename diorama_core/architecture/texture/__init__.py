@@ -1,0 +1,1 @@
+"""The planes' own pictures."""

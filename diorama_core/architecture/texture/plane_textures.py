@@ -1,0 +1,336 @@
+"""Each plane's own picture: the photo rectified onto it, completed where something hides it or it is out of view."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float, Float32, UInt8
+
+from diorama_core.architecture.texture.colours import object_pixels
+from diorama_core.architecture.texture.empty_room import EmptyRoomFiller
+from diorama_core.architecture.texture.quilting import broad_shading, detail_continued
+from diorama_core.artefacts import DetectedObject, Inputs
+from diorama_core.geometry.casting import cast_planes
+from diorama_core.geometry.planes import plane_rectangle
+from diorama_core.scene.types import Architecture, Camera, Plane
+
+MAX_SIDE_PX = 512
+PIXELS_PER_M = 150.0
+MIN_SEEN_SHARE = 0.06
+"""A plane seen in less of its area keeps its plain colour."""
+MIN_SEEN_PX = 400
+MIN_FLOOR_M2 = 0.15
+"""Except a floor, of which so much is enough to continue its material from."""
+MAX_GRAZING_COSINE = 0.06
+"""Where the plane is seen more edge-on than this the photo is smeared and not used."""
+FRAME = 0.014
+"""Rim of the picture that is not used, as a share of its longer side: undistorted photos have pale frames there."""
+ISLAND_M = 0.22
+"""Pieces of a plane narrower than this are mostly rims, shadows and leaves of what stands before it."""
+ISLAND_SHARE = 0.04
+"""Pieces apart from the rest with a smaller share of all that is seen are given up too."""
+RIM = 0.008
+"""Widening of what hides the room beyond its masks' own margin, as a share of the picture's longer side."""
+SURE_MASK = 0.95
+COLOUR_CELL_LAB = np.array([14.0, 8.0, 8.0])
+"""Colours within about this much are one material in light and shade."""
+EXPECTED_LAB = 8.0
+"""Colours that differ by this from the expected one count less by a factor of e."""
+FOREIGN_SPREADS = 2.5
+FOREIGN_MIN_LAB = np.array([14.0, 9.0, 9.0])
+"""A texel is foreign when it differs by more than this many typical deviations, and by this much at least."""
+FADE_M = 1.2
+"""Far from what is seen, shading fades to the plane's plain colour over this length."""
+FLOOR_SHADING_M, WALL_SHADING_M = 0.10, 0.08
+"""Variation broader than this is light and shade, finer is the material's own."""
+SMALL_M2, CUT_SHARE = 0.4, 0.1
+"""A foreign piece smaller than this is given up where so much of its outline borders on what was not seen."""
+STANDING_M2, FOOT_SHARE = 0.8, 0.25
+"""Larger ones up to this only where so much of their width ends below at what was not seen, or on the floor."""
+STRAY_SHARE = 0.25
+"""None that is more of all that is seen: there may be two materials."""
+STRAY_RIM_M = 0.03
+"""So much around them is given up too."""
+EDGE_M, SKIRTING = 0.18, 4.0
+"""Except skirtings and mouldings: within so much of a wall's foot or top, so many times as long as high."""
+SEAM_M = 0.25
+"""Over about this length beside what is seen, what is made up has its light and shade."""
+SEAM_LEVELS = 40.0
+"""Not that of what differs by more levels of 255 from the plane's own."""
+MIN_TYPICAL = 0.06
+"""Where less than this share of what is seen has about one colour, all of it is continued."""
+FLOOR_DETAIL, WALL_DETAIL = 45.0, 14.0
+"""Detail that deviates by more levels of 255 is no part of the material."""
+
+
+def plane_textures(
+    inputs: Inputs,
+    objects: tuple[DetectedObject, ...],
+    camera: Camera,
+    architecture: Architecture,
+    filler: EmptyRoomFiller | None = None,
+) -> dict[str, UInt8[np.ndarray, "h w 3"]]:
+    """RGB pictures of the planes that are seen well enough, by plane id.
+
+    Texture coordinates are `geometry.planes.plane_uv`: row 0 is v = 1. At most `MAX_SIDE_PX` a side.
+
+    Args:
+        inputs: The photo.
+        objects: What hides the room; their masks are painted out.
+        camera: The photo's camera.
+        architecture: The room, with its plain colours.
+        filler: Paints what stands in the room out of the photo; without one every plane is continued by itself.
+    """
+    shape = (inputs.photo.height, inputs.photo.width)
+    unsure = [o for o in objects if o.mask_confidence < SURE_MASK]
+    masked = _grown(object_pixels(shape, objects))
+    hidden = masked | _boxes(shape, unsure)
+    rgb = inputs.photo.rgb
+    if filler is not None and hidden.any():
+        rgb, unsure = filler.fill(rgb, hidden), []
+        masked = hidden = np.zeros(shape, dtype=bool)
+    found: dict[str, np.ndarray] = {}
+    for plane in architecture.planes:
+        points, pixel_m = _texel_points(plane)
+        # Boxes of things hide nearly all of a floor; there, what an unsure mask left over is told by its colour.
+        behind = masked if plane.role == "floor" else hidden
+        colours, seen = _seen_colours(rgb, behind, camera, architecture.planes, plane, points)
+        weight = _photo_share(points, plane, camera)
+        expected = None if plane.role == "floor" and not unsure else plane.colour
+        if unsure and plane.role == "floor":
+            seen &= ~_foreign(colours, seen, weight, expected)
+        seen = _without_islands(seen, ISLAND_M / pixel_m)
+        enough_m2 = MIN_FLOOR_M2 if plane.role == "floor" else np.inf
+        if seen.sum() >= MIN_SEEN_PX and (seen.mean() >= MIN_SEEN_SHARE or seen.sum() * pixel_m**2 >= enough_m2):
+            own = _own(colours, seen, weight, expected)
+            seen = _without_islands(seen & ~strays(seen, own, pixel_m, wall=plane.role == "wall"), ISLAND_M / pixel_m)
+            own &= seen
+            found[plane.id] = completed(colours, seen, plane.colour, pixel_m, own, ground=plane.role == "floor")
+    return found
+
+
+def _without_islands(seen: Bool[np.ndarray, "h w"], width_px: float) -> Bool[np.ndarray, "h w"]:
+    """What is left when narrow pieces between things that hide the plane, and small separate ones, are given up."""
+    side = max(3, round(width_px) | 1)
+    opened = cv2.morphologyEx(seen.astype(np.uint8), cv2.MORPH_OPEN, np.ones((side, side), np.uint8))
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(opened)
+    large = stats[:, cv2.CC_STAT_AREA] >= ISLAND_SHARE * max(int(opened.sum()), 1)
+    large[0] = False
+    return large[labels] if count > 1 else opened.astype(bool)
+
+
+def _grown(hidden: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+    """A wider margin, and gaps between legs and leaves closed: what shows there is mostly shadow and rims."""
+    rim = max(2, round(RIM * max(hidden.shape)))
+    gap = 2 * rim
+    wide = cv2.dilate(hidden.astype(np.uint8), np.ones((2 * (rim + gap) + 1,) * 2, np.uint8))
+    return cv2.erode(wide, np.ones((2 * gap + 1,) * 2, np.uint8), borderValue=1).astype(bool)
+
+
+def _boxes(shape: tuple[int, int], objects: list[DetectedObject]) -> Bool[np.ndarray, "h w"]:
+    """Whole boxes of objects whose masks may have missed legs and arms, with a margin."""
+    covered = np.zeros(shape, dtype=bool)
+    margin = 0.012 * max(shape)
+    for found in objects:
+        x1, y1, x2, y2 = found.box
+        rows = slice(max(0, int(y1 - margin)), int(y2 + margin) + 1)
+        covered[rows, max(0, int(x1 - margin)) : int(x2 + margin) + 1] = True
+    return covered
+
+
+def _foreign(
+    colours: Float32[np.ndarray, "h w 3"],
+    seen: Bool[np.ndarray, "h w"],
+    weight: Float[np.ndarray, "h w"],
+    expected: tuple[float, float, float] | None = None,
+) -> Bool[np.ndarray, "h w"]:
+    """Texels unlike the plane's own colour: things nobody pointed at, rugs, posters.
+
+    Its own colour is the one that covers much of the photo and is about what was expected; without an expectation,
+    that covers much and lies far apart: a floor shows on all sides of a rug.
+
+    Args:
+        colours: 0 to 255.
+        seen: Which texels are.
+        weight: How much of the photo each texel covers.
+        expected: About the plane's colour, 0 to 1.
+    """
+    if not seen.any():
+        return np.zeros(seen.shape, dtype=bool)
+    rows, columns = np.nonzero(seen)
+    lab = cv2.cvtColor(colours[rows, columns][:, None] / 255.0, cv2.COLOR_RGB2LAB)[:, 0]
+    every = max(1, len(rows) // 4000)
+    sample = lab[::every]
+    places = np.stack([rows[::every], columns[::every]], axis=1).astype(np.float64)
+    share = weight[rows[::every], columns[::every]]
+    cells, index = np.unique(np.round(sample / COLOUR_CELL_LAB), axis=0, return_inverse=True)
+    covered = np.bincount(index.ravel(), weights=share)
+    best, own = -1.0, np.median(sample, axis=0)
+    for cell in cells[np.argsort(-covered, kind="stable")][:8]:
+        alike = (np.abs(sample - cell * COLOUR_CELL_LAB) < COLOUR_CELL_LAB).all(axis=1)
+        score = float(share[alike].sum())
+        if expected is None:
+            score *= float(places[alike].var(axis=0).sum()) if alike.sum() > 1 else 0.0
+        else:
+            hoped = cv2.cvtColor(np.array([[expected]], np.float32), cv2.COLOR_RGB2LAB)[0, 0]
+            score *= float(np.exp(-np.linalg.norm(cell * COLOUR_CELL_LAB - hoped) / EXPECTED_LAB))
+        if score > best:
+            best, own = score, np.median(sample[alike], axis=0)
+    deviation = np.abs(lab - own)
+    alike = (deviation < 2.0 * COLOUR_CELL_LAB).all(axis=-1)
+    typical = np.median(deviation[alike] if alike.any() else deviation, axis=0)
+    far = np.zeros(seen.shape, np.uint8)
+    far[rows, columns] = (deviation > np.maximum(FOREIGN_SPREADS * typical, FOREIGN_MIN_LAB)).any(axis=-1)
+    compact = cv2.morphologyEx(far, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
+    return cv2.dilate(compact, np.ones((9, 9), np.uint8)).astype(bool)
+
+
+def _photo_share(points: Float[np.ndarray, "h w 3"], plane: Plane, camera: Camera) -> Float[np.ndarray, "h w"]:
+    """How much of the photo each texel covers, up to one factor: it shrinks with distance and with slant."""
+    rays = points - camera.position
+    distance = np.maximum(np.sqrt(np.einsum("hwk,hwk->hw", rays, rays)), 0.1)
+    return np.asarray(np.maximum(-(rays @ plane.normal), 0.0) / distance**3)
+
+
+def _texel_points(plane: Plane) -> tuple[Float[np.ndarray, "h w 3"], float]:
+    """World points of the texels' centres, top row first, and a texel's size in metres."""
+    origin, axes, extents = plane_rectangle(plane)
+    pixel_m = max(1.0 / PIXELS_PER_M, float(extents.max()) / MAX_SIDE_PX)
+    width, height = np.maximum(np.ceil(extents / pixel_m - 1e-6), 2).astype(int)
+    across = (np.arange(width) + 0.5) / width * extents[0]
+    up = (1.0 - (np.arange(height) + 0.5) / height) * extents[1]
+    grid = np.stack(np.meshgrid(across, up), axis=-1)
+    return origin + grid @ axes.T, pixel_m
+
+
+def _seen_colours(
+    rgb: UInt8[np.ndarray, "hp wp 3"],
+    hidden: Bool[np.ndarray, "hp wp"],
+    camera: Camera,
+    planes: tuple[Plane, ...],
+    plane: Plane,
+    points: Float[np.ndarray, "h w 3"],
+) -> tuple[Float32[np.ndarray, "h w 3"], Bool[np.ndarray, "h w"]]:
+    """The photo's colour at each texel, and whether that is the plane: in view, unhidden and not too aslant."""
+    pixels = camera.project(points).astype(np.float32)
+    depth = camera.to_camera(points)[..., 2]
+    k = camera.intrinsics
+    frame = 1.0 + FRAME * max(k.width, k.height)
+    x, y = pixels[..., 0], pixels[..., 1]
+    seen = (depth > 0.05) & (x > frame) & (y > frame) & (x < k.width - frame) & (y < k.height - frame)
+    rays = points[seen] - camera.position
+    seen[seen] = -(rays @ plane.normal) > MAX_GRAZING_COSINE * np.linalg.norm(rays, axis=-1)
+    if seen.any():
+        rays = points[seen] - camera.position
+        nearest = cast_planes(camera.position, rays, tuple(p for p in planes if p.id != plane.id))[0]
+        seen[seen] = nearest > 0.995
+    columns, rows = np.moveaxis(np.where(seen[..., None], pixels, 0).astype(int), -1, 0)
+    seen &= ~hidden[rows, columns]
+    lookup = np.where(seen[..., None], pixels - 0.5, 0).astype(np.float32)
+    colours = cv2.remap(rgb, lookup, None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    return colours.astype(np.float32), seen
+
+
+def _own(
+    colours: Float32[np.ndarray, "h w 3"],
+    seen: Bool[np.ndarray, "h w"],
+    weight: Float[np.ndarray, "h w"],
+    expected: tuple[float, float, float] | None,
+) -> Bool[np.ndarray, "h w"]:
+    """What is seen of the plane's own material; all of it where hardly anything has one colour."""
+    own = seen & ~_foreign(colours, seen, weight, expected)
+    return own if own.sum() >= MIN_TYPICAL * seen.sum() else seen
+
+
+def strays(
+    seen: Bool[np.ndarray, "h w"], own: Bool[np.ndarray, "h w"], pixel_m: float, *, wall: bool
+) -> Bool[np.ndarray, "h w"]:
+    """Foreign pieces that are cut off by what was not seen: things before the plane, their rims, shadows and glow.
+
+    A poster or a socket has the plane's own material all around; a plant nobody pointed at goes on below the rim of a
+    mask or stands on the floor, the glow around a lamp and the shadow at a table's foot go on behind the mask.
+    """
+    pieces = (seen & ~own).astype(np.uint8)
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(pieces, connectivity=8)
+    _, top, width, height, area = (stats[:, k] for k in range(5))
+    unseen = cv2.dilate((~seen).astype(np.uint8), np.ones((3, 3), np.uint8)).astype(bool)
+    outline = (pieces > 0) & (cv2.erode(pieces, np.ones((3, 3), np.uint8), borderValue=1) == 0)
+    cut = np.bincount(labels[unseen & outline], minlength=count)
+    below = np.full_like(seen, wall)
+    below[:-1] = ~seen[1:]
+    foot = np.bincount(labels[below & (pieces > 0)], minlength=count)
+    small = (area < SMALL_M2 / pixel_m**2) & (cut > CUT_SHARE * np.bincount(labels[outline], minlength=count))
+    standing = (area < STANDING_M2 / pixel_m**2) & (foot > FOOT_SHARE * width)
+    stray = (small | standing) & (area < STRAY_SHARE * float(seen.sum()))
+    if wall:
+        edge = EDGE_M / pixel_m
+        at_edge = (top + height < edge) | (top > len(pieces) - edge)
+        stray &= ~(at_edge & (width > SKIRTING * height))
+    stray[0] = False
+    rim = round(STRAY_RIM_M / pixel_m)
+    return cv2.dilate(stray[labels].astype(np.uint8), np.ones((2 * rim + 1,) * 2, np.uint8)).astype(bool)
+
+
+def completed(
+    colours: Float32[np.ndarray, "h w 3"],
+    seen: Bool[np.ndarray, "h w"],
+    plain: tuple[float, float, float],
+    pixel_m: float,
+    own: Bool[np.ndarray, "h w"],
+    *,
+    ground: bool = False,
+) -> UInt8[np.ndarray, "h w 3"]:
+    """The plane's picture: as seen, and where it was not seen, its shading spread smoothly and its detail continued.
+
+    Shading spreads through an image pyramid (pull-push, Gortler et al. 1996), which leaves no streaks, and fades to
+    the plain colour; detail is quilted, where enough was seen to copy from.
+
+    Args:
+        colours: 0 to 255, meaningful where seen.
+        seen: Which texels are.
+        plain: The plane's colour, 0 to 1.
+        pixel_m: Size of a texel.
+        own: Which of the seen texels show the plane's material: what may be continued.
+        ground: Whether it is a floor: boards and rugs vary more, and more broadly, than walls.
+    """
+    breadth_m, strongest = (FLOOR_SHADING_M, FLOOR_DETAIL) if ground else (WALL_SHADING_M, WALL_DETAIL)
+    if ground:
+        red, green, blue = (float(c) / 255.0 for c in np.median(colours[own], axis=0))
+        plain = (red, green, blue)
+    shading = broad_shading(colours, own, breadth_m / pixel_m)
+    smooth = _pull_push(shading * own[..., None], own.astype(np.float32))
+    distance = cv2.distanceTransform((~seen).astype(np.uint8), cv2.DIST_L2, 5)
+    keep = np.exp(-distance * pixel_m / FADE_M)[..., None]
+    filled = keep * smooth + (1.0 - keep) * (np.array(plain, np.float32) * 255.0)
+    near = np.exp(-distance * pixel_m / SEAM_M)[..., None]
+    beside = broad_shading(colours, seen, breadth_m / pixel_m)
+    alike = seen & (np.abs(beside - smooth).max(axis=-1) < SEAM_LEVELS)
+    filled = near * _pull_push(beside * alike[..., None], alike.astype(np.float32)) + (1.0 - near) * filled
+    detail = detail_continued(colours - shading, own, strongest)
+    if detail is not None:
+        filled = filled + detail
+    # The first texels inside a mask's border still carry its rim; a soft seam hides the step.
+    inner = cv2.erode(seen.astype(np.float32), np.ones((5, 5), np.uint8))
+    mixed = cv2.GaussianBlur(inner, (0, 0), 2.0)[..., None] * seen[..., None]
+    return (mixed * colours + (1.0 - mixed) * filled).clip(0, 255).astype(np.uint8)
+
+
+def _pull_push(
+    weighted: Float32[np.ndarray, "h w 3"], weight: Float32[np.ndarray, "h w"]
+) -> Float32[np.ndarray, "h w 3"]:
+    """Average colours from ever coarser levels where finer ones know none."""
+    height, width = weight.shape
+    average = weighted / np.maximum(weight, 1e-6)[..., None]
+    if min(height, width) <= 2:
+        total = float(weight.sum())
+        mean = weighted.reshape(-1, 3).sum(axis=0) / max(total, 1e-6)
+        return np.where(weight[..., None] > 1e-3, average, mean).astype(np.float32)
+    size = ((width + 1) // 2, (height + 1) // 2)
+    share = cv2.resize(weight, size, interpolation=cv2.INTER_AREA)
+    # One known texel of four makes a coarser one known: what is near the seam must not be thinned by what is far.
+    sure = np.minimum(4.0 * share, 1.0)
+    total_colour = cv2.resize(weighted, size, interpolation=cv2.INTER_AREA)
+    coarse = _pull_push(total_colour * (sure / np.maximum(share, 1e-6))[..., None], sure)
+    above = cv2.resize(coarse, (width, height), interpolation=cv2.INTER_LINEAR)
+    known = np.clip(weight, 0.0, 1.0)[..., None]
+    return (known * average + (1.0 - known) * above).astype(np.float32)

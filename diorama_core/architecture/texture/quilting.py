@@ -1,0 +1,168 @@
+"""Continues the look of a surface where nobody saw it: image quilting (Efros and Freeman 2001) of its fine detail.
+
+Broad shading and fine detail are told apart first. Shading spreads smoothly and calms down away from what was seen;
+detail (boards, weave, panelling, plaster) is copied in blocks that match what is already there, outward from it.
+"""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float32
+
+BLOCKS_PX = ((48, 24), (32, 60), (20, 400))
+"""Sizes of the copied squares and how many must have been seen: copies of few small ones show as a weave."""
+BROADEST = 0.1
+"""Detail broader than this share of a block is not copied."""
+MIN_SOURCE = 0.01
+"""A material seen on a smaller share of the surface is not continued."""
+OVERLAP = 0.34
+"""Share of a block that lies on what is already known."""
+SEARCH_STEP = 2
+"""Matches are looked for at half resolution."""
+TOLERANCE = 0.1
+"""Of the places whose match is worse than the best by at most this share, one is drawn."""
+ODD_SHARE = 0.3
+"""Where more than this share of the texels around deviate too much, there is a thing."""
+REUSE_COST = 0.1
+"""A place costs so much more for every time it was copied from."""
+
+
+def detail_continued(
+    detail: Float32[np.ndarray, "h w 3"],
+    seen: Bool[np.ndarray, "h w"],
+    strongest: float,
+    seed: int = 0,
+) -> Float32[np.ndarray, "h w 3"] | None:
+    """Detail everywhere: as seen, else copied from where it was seen; none where too little was seen to copy from.
+
+    Args:
+        detail: What is left of the colours without their broad shading, in levels of 255.
+        seen: Where it is known and the surface's own.
+        strongest: Detail beyond this many levels is a thing and not the surface.
+        seed: Of the draw among equally good places.
+    """
+    source = seen & ~_odd(detail, seen, strongest)
+    size = next((b for b, enough in BLOCKS_PX if min(seen.shape) > b and _places(source, b).sum() >= enough), None)
+    if size is None or source.mean() < MIN_SOURCE:
+        return None
+    given = detail
+    # What is nearly as broad as a block shows as a weave when the block is copied side by side.
+    detail = detail - broad_shading(detail, source, BROADEST * size)
+    out = np.where(source[..., None], detail, 0.0).astype(np.float32)
+    # What hides or decorates the surface stays in its own picture but is not continued.
+    known = source.copy()
+    finder = _Finder(detail, source, size, np.random.default_rng(seed))
+    for row, column in _outward(source, size):
+        window = (slice(row, row + size), slice(column, column + size))
+        wanted = ~known[window]
+        if not wanted.any():
+            continue
+        y, x = finder.best(out[window], known[window])
+        block = detail[y : y + size, x : x + size]
+        out[window] = np.where(wanted[..., None], block, _blended(out[window], block, known[window], source[window]))
+        known[window] = True
+    return np.asarray(np.where(seen[..., None], given, out), dtype=np.float32)
+
+
+def _odd(
+    detail: Float32[np.ndarray, "h w 3"], seen: Bool[np.ndarray, "h w"], strongest: float
+) -> Bool[np.ndarray, "h w"]:
+    """Pictures, sockets, cables, and whatever else must not be copied, with a margin."""
+    strength = np.abs(detail).max(axis=-1)
+    odd = cv2.blur(((strength > strongest) & seen).astype(np.float32), (5, 5)) > ODD_SHARE
+    return cv2.dilate(odd.astype(np.uint8), np.ones((9, 9), np.uint8)).astype(bool)
+
+
+def _places(source: Bool[np.ndarray, "h w"], size: int) -> Bool[np.ndarray, "p q"]:
+    """Top-left corners of blocks that hold nothing but source."""
+    total = cv2.integral(source.astype(np.uint8))
+    count = total[size:, size:] - total[:-size, size:] - total[size:, :-size] + total[:-size, :-size]
+    return np.asarray(count == size * size)
+
+
+def _outward(seen: Bool[np.ndarray, "h w"], size: int) -> list[tuple[int, int]]:
+    """Corners of overlapping blocks that cover what was not seen, nearest to what was seen first."""
+    height, width = seen.shape
+    step = max(1, round(size * (1.0 - OVERLAP)))
+    rows, columns = ([*range(0, n - size, step), n - size] for n in (height, width))
+    distance = cv2.distanceTransform((~seen).astype(np.uint8), cv2.DIST_L2, 5)
+    found = [
+        (float(distance[r : r + size, c : c + size].min()), float(distance[r : r + size, c : c + size].mean()), r, c)
+        for r in rows
+        for c in columns
+        if not seen[r : r + size, c : c + size].all()
+    ]
+    return [(r, c) for _, _, r, c in sorted(found)]
+
+
+def _blended(
+    old: Float32[np.ndarray, "b b 3"],
+    new: Float32[np.ndarray, "b b 3"],
+    known: Bool[np.ndarray, "b b"],
+    seen: Bool[np.ndarray, "b b"],
+) -> Float32[np.ndarray, "b b 3"]:
+    """Known detail that turns into the new block's over a few texels; what was really seen stays."""
+    inward = cv2.distanceTransform(np.pad(known.astype(np.uint8), 1, mode="edge"), cv2.DIST_L2, 3)[1:-1, 1:-1]
+    keep = np.clip(inward / 5.0, 0.0, 1.0)
+    keep[seen] = 1.0
+    return np.asarray(keep[..., None] * old + (1.0 - keep[..., None]) * new, dtype=np.float32)
+
+
+class _Finder:
+    """Looks up where in the source a block fits best."""
+
+    def __init__(
+        self,
+        detail: Float32[np.ndarray, "h w 3"],
+        source: Bool[np.ndarray, "h w"],
+        size: int,
+        rng: np.random.Generator,
+    ) -> None:
+        rows, columns = np.flatnonzero(source.any(axis=1)), np.flatnonzero(source.any(axis=0))
+        self._top, self._left = int(rows[0]), int(columns[0])
+        bottom, right = max(int(rows[-1]) + 1, self._top + size), max(int(columns[-1]) + 1, self._left + size)
+        part = (slice(self._top, bottom), slice(self._left, right))
+        self._places = _places(source[part], size)[::SEARCH_STEP, ::SEARCH_STEP]
+        grey = cv2.cvtColor(np.where(source[part][..., None], detail[part], 0.0).astype(np.float32), cv2.COLOR_RGB2GRAY)
+        self._picture = grey[::SEARCH_STEP, ::SEARCH_STEP].copy()
+        self._squares = self._picture**2
+        self._rng = rng
+        self._rows, self._columns = np.nonzero(self._places)
+        self._uses = np.zeros(self._places.shape, np.float32)
+
+    def best(self, block: Float32[np.ndarray, "b b 3"], known: Bool[np.ndarray, "b b"]) -> tuple[int, int]:
+        """Top-left corner of a block of the source that continues what is known of a block."""
+        rows, columns = self._rows, self._columns
+        if known.any():
+            grey = cv2.cvtColor(block, cv2.COLOR_RGB2GRAY)[::SEARCH_STEP, ::SEARCH_STEP]
+            weight = known[::SEARCH_STEP, ::SEARCH_STEP].astype(np.float32)
+            cross = cv2.matchTemplate(self._picture, grey * weight, cv2.TM_CCORR)
+            square = cv2.matchTemplate(self._squares, weight, cv2.TM_CCORR)
+            misfit = self._fitted(square - 2.0 * cross + float((weight * grey**2).sum()))
+            costs = np.maximum(misfit[rows, columns], 0.0)
+        else:
+            costs = np.zeros(len(rows))
+        costs = (costs + 1e-3) * (1.0 + REUSE_COST * self._uses[rows, columns])
+        good = np.flatnonzero(costs <= float(costs.min()) * (1.0 + TOLERANCE) + 1e-6)
+        pick = int(good[self._rng.integers(len(good))])
+        row, column = int(rows[pick]), int(columns[pick])
+        self._uses[max(0, row - 3) : row + 4, max(0, column - 3) : column + 4] += 1.0
+        return self._top + SEARCH_STEP * row, self._left + SEARCH_STEP * column
+
+    def _fitted(self, misfit: Float32[np.ndarray, "a b"]) -> Float32[np.ndarray, "p q"]:
+        """The misfits at the places' grid: reduced sizes may differ by one at the far ends."""
+        wanted: tuple[int, int] = (self._places.shape[0], self._places.shape[1])
+        padded = np.full(wanted, np.float32(np.inf))
+        rows, columns = min(wanted[0], misfit.shape[0]), min(wanted[1], misfit.shape[1])
+        padded[:rows, :columns] = misfit[:rows, :columns]
+        return padded
+
+
+def broad_shading(
+    colours: Float32[np.ndarray, "h w 3"], seen: Bool[np.ndarray, "h w"], width_px: float
+) -> Float32[np.ndarray, "h w 3"]:
+    """The colours without detail finer than about `width_px`, from what was seen only."""
+    weight = cv2.GaussianBlur(seen.astype(np.float32), (0, 0), width_px)[..., None]
+    blurred = cv2.GaussianBlur((colours * seen[..., None]).astype(np.float32), (0, 0), width_px)
+    return np.asarray(blurred / np.maximum(weight, 1e-4), dtype=np.float32)

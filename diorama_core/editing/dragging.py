@@ -1,0 +1,210 @@
+"""Dragging an object itself: it slides over the floor, climbs onto a table, sticks to a wall.
+
+Pure: built once when a drag begins, asked for every position of the hand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.editing.placing import Place, fits, hits_along, inside, places_of, to_wall
+from diorama_core.errors import EditRefused
+from diorama_core.layout.feasible.local import DragSolver
+from diorama_core.layout.problem.supports import Surface, plane_surface
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.taxonomy import resolve
+from diorama_core.scene import edits
+from diorama_core.scene.support import descendants
+from diorama_core.scene.types import Pose, Scene, SceneObject, yaw_rotation
+
+GRID_M = 0.05
+ANGLE_STEP_RAD = float(np.radians(15.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Slide:
+    """One drag, from where it began."""
+
+    scene: Scene
+    library: ShapeLibrary
+    item: SceneObject
+    grabbed: Float[np.ndarray, "3"]
+    """The point of the object under the hand when the drag began, world."""
+    along: tuple[str, ...] = ()
+    """Other selected objects, which move by the same amount."""
+
+    @classmethod
+    def begin(
+        cls,
+        scene: Scene,
+        library: ShapeLibrary,
+        object_id: str,
+        grabbed: Float[np.ndarray, "3"],
+        selection: tuple[str, ...] = (),
+    ) -> Slide:
+        """A drag of an object (and, when it is among several selected, of those too); refused when it is locked."""
+        item = scene.object(object_id)
+        if item.locked:
+            raise EditRefused(f"{item.label} is locked; unlock it first")
+        riding = {object_id, *descendants(scene, object_id)}
+        along = (
+            [i for i in selection if i not in riding and not scene.object(i).locked] if object_id in selection else []
+        )
+        nested = {d for i in along for d in descendants(scene, i)}
+        along = [i for i in along if i not in nested and object_id not in descendants(scene, i)]
+        return cls(scene, library, item, np.asarray(grabbed, dtype=np.float64), tuple(along))
+
+    @cached_property
+    def places(self) -> tuple[Place, ...]:
+        """Where it may go: what hangs stays on walls or ceiling, what stands on the floor leaves tables alone."""
+        own = {self.item.id, *descendants(self.scene, self.item.id), *self.along}
+        places = places_of(self.scene, self.library, own)
+        edge = self.scene.support_of(self.item.id)
+        parent = None if edge is None else edge.parent
+        if edge is not None and parent is not None and self.scene.has_plane(parent):
+            role = self.scene.plane(parent).role
+            if role != "floor":
+                planes = {p.id for p in self.scene.architecture.by_role(role)}
+                return tuple(p for p in places if p.parent in planes)
+        climbs = resolve(self.item.category).category.mount != "floor"
+        return tuple(p for p in places if p.upward and (climbs or not p.of_object or p.parent == parent))
+
+    @cached_property
+    def solver(self) -> DragSolver:
+        """Keeps it out of walls and other things."""
+        return DragSolver.prepare(self.scene, self.library, self.item.id)
+
+    def to(
+        self, eye: Float[np.ndarray, "3"], direction: Float[np.ndarray, "3"], *, snap: bool, slide: bool
+    ) -> tuple[Scene, Mapping[str, Pose]]:
+        """Where everything is with the hand on this ray.
+
+        Args:
+            eye: where the person looks from, world.
+            direction: through the pointer.
+            snap: keep to the grid, and flush to a wall right behind.
+            slide: go along what is in the way instead of into it.
+
+        Returns:
+            The scene as it would be committed, and the poses that differ from the start.
+        """
+        pose, place = self._target(np.asarray(eye), np.asarray(direction))
+        if snap:
+            pose = self._snapped(pose, place)
+        if slide and not self.along and (place is None or place.upward):
+            scene = self.solver.solve(pose)
+        else:
+            scene = self._moved(pose, place)
+        start = {o.id: o for o in self.scene.objects}
+        return scene, {o.id: o.pose for o in scene.objects if o is not start.get(o.id)}
+
+    def _moved(self, pose: Pose, place: Place | None) -> Scene:
+        scene = edits.move(self.scene, self.item.id, pose)
+        edge = self.scene.support_of(self.item.id)
+        if place is not None and (edge is None or edge.parent != place.parent):
+            scene = edits.attach(scene, place.edge(self.item.id))
+        shift = pose.position - self.item.pose.position
+        for other in self.along:
+            scene = edits.move(scene, other, scene.object(other).pose.moved(shift * (1.0, 1.0, 0.0)))
+        return scene
+
+    def _target(self, eye: np.ndarray, direction: np.ndarray) -> tuple[Pose, Place | None]:
+        edge = self.scene.support_of(self.item.id)
+        hung = edge is not None and bool(self.places) and not self.places[0].upward
+        if hung:
+            return self._on_walls(eye, direction)
+        return self._standing(eye, direction)
+
+    def _standing(self, eye: np.ndarray, direction: np.ndarray) -> tuple[Pose, Place | None]:
+        item = self.item
+        base = item.pose.position - item.pose.R_world_object[:, 2] * item.size_m[2] / 2
+        reach = self.grabbed - base
+        lift = max(float(reach[2]), 0.0)
+        for hit in hits_along(eye, direction, self.places, lift_m=lift):
+            target = np.array([*(hit.point - reach)[:2], hit.place.surface.level])
+            if fits(hit.place, item.size_m, target, item.pose.R_world_object):
+                return item.pose.moved(target - base), hit.place
+        ground = [p for p in self.places if not p.of_object]
+        for hit in hits_along(eye, direction, ground, lift_m=lift, slack_m=100.0):
+            point = inside(hit.place.surface, hit.point)
+            target = np.array([*(point - reach)[:2], hit.place.surface.level])
+            return item.pose.moved(target - base), hit.place
+        level = self._level(eye, direction)
+        return (item.pose, None) if level is None else (item.pose.moved(level - self.grabbed), None)
+
+    def _level(self, eye: np.ndarray, direction: np.ndarray) -> np.ndarray | None:
+        """The hand in the level plane of the grabbed point, where there is no floor."""
+        if abs(float(direction[2])) < 1e-6:
+            return None
+        distance = (self.grabbed[2] - eye[2]) / direction[2]
+        return eye + distance * direction if 0 < distance < 50.0 else None
+
+    def _on_walls(self, eye: np.ndarray, direction: np.ndarray) -> tuple[Pose, Place | None]:
+        item, start = self.item, self._start_surface()
+        lift = float(start.normal @ self.grabbed) - start.level
+        hits = hits_along(eye, direction, self.places, lift_m=lift) or hits_along(
+            eye, direction, self.places, lift_m=lift, slack_m=1.5
+        )
+        if not hits:
+            return item.pose, None
+        hit = hits[0]
+        turn = _turn(start.normal, hit.place.surface.normal)
+        offset = turn @ (item.pose.position - self.grabbed)
+        point = hit.point + lift * hit.place.surface.normal
+        position = point + offset
+        outward = hit.place.surface
+        position = _clamped_to(outward, position, item)
+        return Pose(turn @ item.pose.R_world_object, position, item.pose.scale), hit.place
+
+    def _start_surface(self) -> Surface:
+        edge = self.scene.support_of(self.item.id)
+        assert edge is not None
+        return plane_surface(self.scene.plane(edge.parent))
+
+    def _snapped(self, pose: Pose, place: Place | None) -> Pose:
+        if place is not None and not place.upward and abs(float(place.surface.normal[2])) < 0.7:
+            n = place.surface.normal
+            across = np.array([-n[1], n[0], 0.0])
+            shift = (_grid(float(across @ pose.position)) - float(across @ pose.position)) * across
+            shift = shift + np.array([0.0, 0.0, _grid(float(pose.position[2])) - float(pose.position[2])])
+            return pose.moved(shift)
+        snapped = pose.moved(
+            (_grid(float(pose.position[0])) - pose.position[0], _grid(float(pose.position[1])) - pose.position[1], 0.0)
+        )
+        walls = [plane_surface(p) for p in self.scene.architecture.by_role("wall")]
+        return to_wall(replace(self.item, pose=snapped), walls)
+
+
+def snapped_pose(start: Pose, pose: Pose) -> Pose:
+    """A gizmo's pose on the grid: places to 5 cm, headings to 15 degrees, each only where the hand changed it."""
+    if not np.allclose(start.position, pose.position, atol=1e-6):
+        moved = np.abs(start.position - pose.position) > 1e-6
+        position = np.where(moved, np.round(pose.position / GRID_M) * GRID_M, pose.position)
+        pose = replace(pose, position=position)
+    turn = pose.yaw_rad - start.yaw_rad
+    if abs(np.arctan2(np.sin(turn), np.cos(turn))) > 1e-6:
+        stepped = round(pose.yaw_rad / ANGLE_STEP_RAD) * ANGLE_STEP_RAD
+        pose = replace(pose, R_world_object=yaw_rotation(stepped - pose.yaw_rad) @ pose.R_world_object)
+    return pose
+
+
+def _grid(value: float) -> float:
+    return float(round(value / GRID_M) * GRID_M)
+
+
+def _turn(before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """The turn about up that brings one level direction to another; none for ceilings."""
+    if abs(float(before[2])) > 0.7 or abs(float(after[2])) > 0.7:
+        return np.eye(3)
+    return yaw_rotation(float(np.arctan2(after[1], after[0]) - np.arctan2(before[1], before[0])))
+
+
+def _clamped_to(surface: Surface, position: np.ndarray, item: SceneObject) -> np.ndarray:
+    """The centre moved so that the thing's middle stays over the surface."""
+    foot = position - (float(surface.normal @ position) - surface.level) * surface.normal
+    return position + inside(surface, foot) - foot

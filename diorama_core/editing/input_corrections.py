@@ -1,0 +1,78 @@
+"""What a person puts right about the photo goes into the inputs, where the next build finds it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from jaxtyping import Bool
+
+from diorama_core.artefacts import Box, Inputs, LabelledBox
+from diorama_core.geometry.projection import box_iou
+
+SAME_BOX_IOU = 0.98
+"""Boxes that overlap so much are the same one, written with fewer digits."""
+
+
+def with_correction(
+    inputs: Inputs, before: Box | None, now: LabelledBox, mask: Bool[np.ndarray, "h w"] | None = None
+) -> Inputs:
+    """The inputs with one thing in the photo put right.
+
+    Args:
+        inputs: as they are.
+        before: the box that the thing had; None for something that was missed until now.
+        now: its box and what it is.
+        mask: its outline, where a person drew it. A given outline stays with an unchanged box and goes with a new one.
+    """
+    index = None if before is None else box_index(inputs, before)
+    old = None if index is None else inputs.boxes[index]
+    if index is None and now.box in (b.box for b in inputs.boxes):
+        index = box_index(inputs, now.box)
+        old = inputs.boxes[index] if index is not None else None
+    boxes = list(inputs.boxes)
+    if index is None:
+        boxes.append(now)
+    else:
+        boxes[index] = now
+    changed = replace(inputs, boxes=tuple(boxes))
+    if mask is None and old is not None and old.box == now.box:
+        renamed = tuple((i, now if b.box == now.box else b) for i, b in inputs.instance_boxes)
+        return replace(changed, instance_boxes=renamed)
+    changed = _without_outline(changed, old)
+    return changed if mask is None else _with_outline(changed, now, mask)
+
+
+def given_outline(inputs: Inputs, box: Box) -> Bool[np.ndarray, "h w"] | None:
+    """The outline that was given for a box; None where it is to be found."""
+    known = [i for i, b in inputs.instance_boxes if b.box == box]
+    if inputs.instances is None or not known:
+        return None
+    mask: Bool[np.ndarray, "h w"] = inputs.instances == known[0]
+    return mask if mask.any() else None
+
+
+def box_index(inputs: Inputs, box: Box) -> int | None:
+    """Which of the given boxes this is; None when it is none of them."""
+    overlaps = [float(box_iou(np.asarray([b.box]), np.asarray([box])).max()) for b in inputs.boxes]
+    best = int(np.argmax(overlaps)) if overlaps else 0
+    return best if overlaps and overlaps[best] >= SAME_BOX_IOU else None
+
+
+def _without_outline(inputs: Inputs, box: LabelledBox | None) -> Inputs:
+    gone = {i for i, b in inputs.instance_boxes if box is not None and b.box == box.box}
+    if not gone or inputs.instances is None:
+        return inputs
+    instances = np.where(np.isin(inputs.instances, list(gone)), 0, inputs.instances).astype(np.int32)
+    retained = tuple((i, b) for i, b in inputs.instance_boxes if i not in gone)
+    return replace(inputs, instances=instances if retained else None, instance_boxes=retained)
+
+
+def _with_outline(inputs: Inputs, box: LabelledBox, mask: Bool[np.ndarray, "h w"]) -> Inputs:
+    """With one outline more, in front of the others."""
+    empty = np.zeros(mask.shape, dtype=np.int32)
+    instances = empty if inputs.instances is None else inputs.instances.copy()
+    new = max([0, int(instances.max()), *(i for i, _ in inputs.instance_boxes)]) + 1
+    instances[mask] = new
+    instances.setflags(write=False)
+    return replace(inputs, instances=instances, instance_boxes=(*inputs.instance_boxes, (new, box)))

@@ -1,0 +1,235 @@
+"""Where things go: the surface under a ray, sitting down on a support, against a wall, a free spot.
+
+Pure geometry over the scene; what is dragged, clicked in or dropped asks here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.layout.problem.supports import Surface, object_surfaces, outside_m, plane_surface
+from diorama_core.library.record import Shape, ShapeLibrary
+from diorama_core.scene import edits
+from diorama_core.scene.support import descendants
+from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, Support, yaw_rotation
+
+UPWARD = 0.7
+"""A surface is a place to stand on when its normal's z is at least this."""
+FITS_SHARE = 0.5
+"""At least this share of a footprint's corners must be over a surface for a thing to be put there."""
+TALLER_M = 0.01
+WALL_MAGNET_M = 0.09
+WALL_MAGNET_RAD = float(np.radians(12.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """A surface in the world, and the edge's parent for what stands on or hangs at it."""
+
+    surface: Surface
+    parent: str
+    of_object: bool
+    index: int | None = None
+    """Of the surface among its owner's."""
+
+    @property
+    def upward(self) -> bool:
+        """Whether things stand on it."""
+        return float(self.surface.normal[2]) >= UPWARD
+
+    def edge(self, child: str) -> Support:
+        """The support edge of something put here."""
+        return Support(child, self.parent, "placed on" if self.upward else "mounted on", parent_surface=self.index)
+
+
+@dataclass(frozen=True, eq=False)
+class Hit:
+    """Where a ray meets a place."""
+
+    place: Place
+    point: Float[np.ndarray, "3"]
+    distance: float
+
+
+def places_of(scene: Scene, library: ShapeLibrary, without: Iterable[str] = ()) -> tuple[Place, ...]:
+    """Every surface of the room and of its visible objects, apart from some objects' own."""
+    gone = frozenset(without)
+    places = [Place(plane_surface(p), p.id, of_object=False) for p in scene.architecture.planes]
+    for item in scene.objects:
+        if item.id in gone or item.hidden:
+            continue
+        shape = library.shape(item.shape_id)
+        if not shape.surfaces:
+            continue
+        for index, surface in enumerate(object_surfaces(shape, item)):
+            places.append(Place(surface.in_world(item.pose), item.id, of_object=True, index=index))
+    return tuple(places)
+
+
+def hits_along(
+    origin: Float[np.ndarray, "3"],
+    direction: Float[np.ndarray, "3"],
+    places: Iterable[Place],
+    *,
+    lift_m: float = 0.0,
+    slack_m: float = 1e-6,
+) -> list[Hit]:
+    """Places that a ray meets from their visible side, nearest first.
+
+    `lift_m` raises every surface along its normal: the plane in which the grabbed point of a thing that stands on it
+    would move.
+    """
+    found = []
+    for place in places:
+        surface = place.surface
+        slope = float(surface.normal @ direction)
+        if slope > -1e-6:
+            continue
+        distance = (surface.level + lift_m - float(surface.normal @ origin)) / slope
+        if distance <= 0:
+            continue
+        point = origin + distance * direction - lift_m * surface.normal
+        if outside_m(surface, point) <= slack_m:
+            found.append(Hit(place, point, distance))
+    return sorted(found, key=lambda hit: hit.distance)
+
+
+def fits(place: Place, size_m: Float[np.ndarray, "3"], base: Float[np.ndarray, "3"], R: np.ndarray) -> bool:
+    """Whether a thing of this size with its base here may stand on an object's surface."""
+    if not place.of_object:
+        return True
+    if not place.upward or size_m[2] > place.surface.clearance_m + TALLER_M:
+        return False
+    corners = np.array([[sx * size_m[0] / 2, sy * size_m[1] / 2, 0.0] for sx in (-1, 1) for sy in (-1, 1)]) @ R.T + base
+    over = np.mean([outside_m(place.surface, c) <= 0.02 for c in corners])
+    return bool(over >= FITS_SHARE)
+
+
+def seated(scene: Scene, library: ShapeLibrary, object_id: str) -> Scene:
+    """The object on the surface of its supporter that is nearest to where it is, its load along with it."""
+    edge = scene.support_of(object_id)
+    if edge is None:
+        return scene
+    item = scene.object(object_id)
+    own = {object_id, *descendants(scene, object_id)}
+    options = [p for p in places_of(scene, library, own) if p.parent == edge.parent]
+    if scene.has_object(edge.parent):
+        options = [p for p in options if p.upward] or [_box_top(scene.object(edge.parent))]
+    if not options:
+        return scene
+    if scene.has_plane(edge.parent) and not options[0].upward:
+        return edits.move(scene, object_id, _hung(item, options[0].surface))
+    base = item.pose.position - item.pose.R_world_object[:, 2] * item.size_m[2] / 2
+
+    def far(place: Place) -> tuple[bool, float]:
+        tight = item.size_m[2] > place.surface.clearance_m + TALLER_M
+        return tight, outside_m(place.surface, base) + abs(place.surface.level - float(base[2]))
+
+    place = min(options, key=far)
+    target = inside(place.surface, base)
+    target = target + (place.surface.level - float(place.surface.normal @ target)) * place.surface.normal
+    return edits.move(scene, object_id, item.pose.moved(target - base))
+
+
+def _box_top(item: SceneObject) -> Place:
+    from diorama_core.layout.problem.supports import convex_outline
+
+    corners = item.corners_world
+    top = corners[corners[:, 2] > corners[:, 2].max() - 0.01]
+    up = np.array([0.0, 0.0, 1.0])
+    outline = convex_outline(np.column_stack([top[:, :2], np.full(len(top), corners[:, 2].max())]), up)
+    return Place(Surface.of(outline, up, float("inf"), of_plane=False), item.id, of_object=True)
+
+
+def inside(surface: Surface, point: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
+    """The point of a surface nearest to a point above or beside it (a few projections: outlines are convex)."""
+    found = np.array(point, dtype=np.float64)
+    for _ in range(12):
+        over = surface.outward @ found - surface.offset
+        worst = int(np.argmax(over))
+        if over[worst] <= 0:
+            break
+        found = found - (over[worst] + 1e-6) * surface.outward[worst]
+    return found
+
+
+def _hung(item: SceneObject, surface: Surface) -> Pose:
+    """An object flat against a wall (its back to it) or below a ceiling, as near as possible."""
+    n = surface.normal
+    if abs(float(n[2])) > UPWARD:
+        R, reach = item.pose.R_world_object, float(item.size_m[2]) / 2
+    else:
+        R, reach = yaw_rotation(float(np.arctan2(n[1], n[0]))), float(item.size_m[0]) / 2
+    position = inside(surface, item.pose.position)
+    position = position + (surface.level + reach - float(n @ position)) * n
+    return Pose(R, position, item.pose.scale)
+
+
+def against_wall(scene: Scene, object_id: str, wall: Plane) -> Scene:
+    """The object turned with its back to a wall and pushed against it, its load along with it."""
+    return edits.move(scene, object_id, backed(scene.object(object_id), plane_surface(wall)))
+
+
+def backed(item: SceneObject, wall: Surface) -> Pose:
+    """The pose with its back flat against a wall, at the same height."""
+    n = wall.normal
+    R = yaw_rotation(float(np.arctan2(n[1], n[0])))
+    gap = float(n @ item.pose.position) - wall.level - item.size_m[0] / 2
+    flat = n * (1.0, 1.0, 0.0)
+    return Pose(R, item.pose.position - gap * flat / max(float(flat @ n), 1e-6), item.pose.scale)
+
+
+def to_wall(item: SceneObject, walls: Iterable[Surface], reach_m: float = WALL_MAGNET_M) -> Pose:
+    """The pose pulled flush to a wall right behind it; unchanged when there is none."""
+    for wall in walls:
+        n = wall.normal
+        turn = item.pose.yaw_rad - np.arctan2(n[1], n[0])
+        if abs(np.arctan2(np.sin(turn), np.cos(turn))) > WALL_MAGNET_RAD:
+            continue
+        gap = float(n @ item.pose.position) - wall.level - item.size_m[0] / 2
+        if abs(gap) <= reach_m and outside_m(wall, item.pose.position) <= 0.0:
+            return backed(item, wall)
+    return item.pose
+
+
+def insertion(scene: Scene, shape: Shape, object_id: str, hit: Hit, yaw_rad: float) -> tuple[SceneObject, Support]:
+    """A shape put where a ray met a place: standing on it, or hung with its back to it."""
+    n = hit.place.surface.normal
+    item = SceneObject(
+        object_id, shape.category, shape.category, shape.id, shape.size_m, Pose.upright(hit.point, yaw_rad)
+    )
+    if hit.place.upward:
+        pose = Pose.upright(hit.point + np.array([0.0, 0.0, shape.size_m[2] / 2]), yaw_rad)
+    else:
+        pose = _hung(replace(item, pose=Pose.upright(hit.point + n * 0.01, yaw_rad)), hit.place.surface)
+    return replace(item, pose=pose), hit.place.edge(object_id)
+
+
+def free_spot(scene: Scene, shape: Shape, target_point: Float[np.ndarray, "3"] | None) -> tuple[float, float]:
+    """The place on the floor nearest to where the person looks that no other footprint covers."""
+    floor = scene.architecture.floor
+    middle = np.zeros(2) if floor is None else floor.centre[:2]
+    wanted = middle if target_point is None else np.asarray(target_point[:2], dtype=np.float64)
+    if floor is not None:
+        low, high = floor.polygon[:, :2].min(axis=0) + 0.3, floor.polygon[:, :2].max(axis=0) - 0.3
+        wanted = np.where(low < high, np.clip(wanted, low, high), middle)
+    radius = max(shape.size_m[:2]) / 2
+    taken = [(o.pose.position[:2], float(max(o.size_m[:2])) / 2) for o in scene.objects if o.category != "rug"]
+    for reach in np.arange(0.0, 3.0, 0.25):
+        for angle in np.arange(0.0, 2 * np.pi, np.pi / 6):
+            spot = wanted + reach * np.array([np.cos(angle), np.sin(angle)])
+            if all(np.linalg.norm(spot - place) > radius + other for place, other in taken):
+                return float(spot[0]), float(spot[1])
+    return float(wanted[0]), float(wanted[1])
+
+
+def facing(scene: Scene, x: float, y: float) -> float:
+    """A heading toward the photo's camera, in quarter turns."""
+    if scene.camera is None:
+        return -np.pi / 2
+    toward = scene.camera.position[:2] - (x, y)
+    return float(np.round(np.arctan2(toward[1], toward[0]) / (np.pi / 2)) * np.pi / 2)

@@ -1,0 +1,1 @@
+"""What is run to measure it, one module a `diorama bench` subject."""

@@ -1,0 +1,163 @@
+"""The empty room from rendered pictures: with true and noisy depth, as published, and from the picture alone."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+
+import numpy as np
+from jaxtyping import Float32
+
+from diorama_core.architecture.plainrecon.stage import PlainRecon
+from diorama_core.artefacts import Inputs
+from diorama_core.errors import Cancelled
+from diorama_core.evaluation.benchmarks.cases import recipe, views_of
+from diorama_core.evaluation.metrics.architecture import ArchitectureScores, architecture_scores
+from diorama_core.evaluation.reports import paper
+from diorama_core.evaluation.reports.tables import Column, Row, Table, paper_rows
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.pipeline.run import embedded_stages
+from diorama_core.progress import Progress
+from diorama_core.protocols import ArchitectureStage
+from diorama_core.synthesis.artefacts import photo_only
+from diorama_core.synthesis.truth import TruthView
+
+DEPTH_NOISE = 0.02
+"""Relative, per pixel."""
+BASELINE_STEPS = 8 * 580 * 0.075
+"""A structured-light sensor's focal length in pixels times its baseline in metres, in eighths of a pixel."""
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class RoomResult:
+    """One reconstructed room; None where the stage failed."""
+
+    case: str
+    scores: ArchitectureScores | None
+    seconds: float
+
+
+@dataclass(frozen=True)
+class ArchitectureBench:
+    """Results by what was given."""
+
+    seed: int
+    results: tuple[tuple[str, tuple[RoomResult, ...]], ...]
+
+    def tables(self) -> tuple[Table, ...]:
+        """The paper's architecture table."""
+        return (architecture_table(self.results),)
+
+    def to_json(self) -> dict[str, object]:
+        """Tables and every case."""
+        cases = {name: [asdict(r) for r in rows] for name, rows in self.results}
+        return {
+            "bench": "architecture",
+            "seed": self.seed,
+            "tables": [t.to_json() for t in self.tables()],
+            "cases": cases,
+        }
+
+
+def run(library: ShapeLibrary, scenes: int = 20, seed: int = 0, progress: Progress | None = None) -> ArchitectureBench:
+    """Reconstruct every room from what each row of the table is given."""
+    progress = progress or Progress()
+    results: dict[str, list[RoomResult]] = {}
+    cases = recipe(scenes, 1, seed)
+    for k, (case, view) in enumerate(views_of(cases, library)):
+        progress.report(k / len(cases), case.name)
+        noisy = replace(view.inputs, depth_m=sensed(view.inputs.depth_m, case.seed))
+        rows: tuple[tuple[str, Inputs, ArchitectureStage | None], ...] = (
+            ("true masks and depth", view.inputs, None),
+            ("true masks, depth with 2 % noise", noisy, None),
+            ("PlainRecon as published, true masks and depth", view.inputs, PlainRecon()),
+            ("PlainRecon as published, true masks, depth with 2 % noise", noisy, PlainRecon()),
+            ("PlainRecon as published, depth of the empty room", _emptied(view), PlainRecon()),
+            ("picture and boxes", photo_only(view), None),
+        )
+        for name, inputs, stage in rows:
+            results.setdefault(name, []).append(_room(case.name, view, inputs, library, stage))
+    return ArchitectureBench(seed, tuple((name, tuple(rooms)) for name, rooms in results.items()))
+
+
+def sensed(depth_m: Float32[np.ndarray, "h w"] | None, seed: int) -> Float32[np.ndarray, "h w"]:
+    """True depth as a sensor would give it: relative noise at every pixel, and steps of disparity."""
+    if depth_m is None:
+        raise ValueError("there is no depth to add noise to")
+    noise = np.random.default_rng(seed).standard_normal(depth_m.shape)
+    depth = depth_m.astype(np.float64) * (1.0 + DEPTH_NOISE * noise)
+    steps = np.round(BASELINE_STEPS / np.maximum(depth, 1e-6))
+    return np.where(depth_m > 0, BASELINE_STEPS / np.maximum(steps, 1.0), 0.0).astype(np.float32)
+
+
+def _emptied(view: TruthView) -> Inputs:
+    """What perfect inpainting and a perfect depth network would give PlainRecon: the room without its objects."""
+    return replace(view.inputs, depth_m=view.room_depth_m, instances=None, instance_boxes=(), boxes=())
+
+
+def _room(
+    case: str, view: TruthView, inputs: Inputs, library: ShapeLibrary, stage: ArchitectureStage | None
+) -> RoomResult:
+    stages, quiet = embedded_stages(inputs, library), Progress()
+    stage = stage or stages.architecture
+    begun = time.process_time()
+    try:
+        camera = stages.camera.estimate(inputs, quiet)
+        objects = stages.objects.segment(inputs, quiet)
+        geometry = stages.geometry.measure(inputs, camera, objects, quiet)
+        begun = time.process_time()
+        room = stage.reconstruct(inputs, objects, geometry, quiet)
+        spent = time.process_time() - begun
+        scores = architecture_scores(
+            room.architecture.planes, view.scene.architecture.planes, view.camera, found_camera=geometry.camera
+        )
+        return RoomResult(case, scores, spent)
+    except Cancelled:
+        raise
+    except Exception as error:  # whatever goes wrong, the room counts as failed
+        log.warning("%s failed: %s", case, error)
+        return RoomResult(case, None, time.process_time() - begun)
+
+
+def architecture_table(results: Sequence[tuple[str, Sequence[RoomResult]]]) -> Table:
+    """IoU, pixel and edge error, depth error, centred chamfer and time (paper, table 3)."""
+    columns = (
+        Column("success", ".2f", "↑"), Column("IoU", ".1f", "↑"), Column("PE", ".1f", "↓"), Column("EE", ".1f", "↓"),
+        Column("RMSE m", ".2f", "↓"), Column("CDb", ".3f", "↓"), Column("CDb seen", ".3f", "↓"),
+        Column("time s", ".2f", "↓"),
+    )  # fmt: skip
+    rows = []
+    for name, rooms in results:
+        done = [r.scores for r in rooms if r.scores is not None]
+        count = max(len(rooms), 1)
+        rows.append(
+            Row(
+                name,
+                (
+                    len(done) / count,
+                    100 * sum(s.iou for s in done) / count,
+                    100 * (sum(s.pixel_error for s in done) + len(rooms) - len(done)) / count,
+                    _mean([s.edge_error_px for s in done]),
+                    _mean([s.depth_rmse_m for s in done]),
+                    _mean([s.cdb_m for s in done]),
+                    _mean([s.cdb_seen_m for s in done]),
+                    _mean([r.seconds for r in rooms]),
+                ),
+            )
+        )
+    note = (
+        f"{len(results[0][1]) if results else 0} rooms. IoU and PE in percent of pixels, a failed room counting as "
+        "0 and 100; EE in pixels; EE, RMSE and CDb over the rooms that succeeded. CDb compares the whole rooms, with "
+        "what lies behind the camera; CDb seen what the picture shows of either. Time: processor seconds of the stage."
+    )
+    published = {name: (*values[:-1], None, values[-1]) for name, values in paper.ARCHITECTURE.items()}
+    return Table("Architecture", columns, (*rows, *paper_rows(published)), note)
+
+
+def _mean(values: Sequence[float]) -> float | None:
+    finite = [v for v in values if np.isfinite(v)]
+    return float(np.mean(finite)) if finite else None

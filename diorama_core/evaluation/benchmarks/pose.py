@@ -1,0 +1,302 @@
+"""Poses and the optimiser on rendered rooms: our solver beside the published ones, groups, shape counts, ablations."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import TypeVar
+
+import numpy as np
+
+from diorama_core.artefacts import RankedShapes
+from diorama_core.errors import Cancelled
+from diorama_core.evaluation.benchmarks.cases import recipe, views_of
+from diorama_core.evaluation.benchmarks.pose_comparison import (
+    BASELINES,
+    COMPARED_SHAPES,
+    CONDITIONS,
+    ESTIMATED_DEPTH,
+    GIVEN,
+    OURS,
+    TRUE_DEPTH,
+    PoseScores,
+    Seen,
+    SideBySide,
+    inputs_with,
+    pose_scores,
+    predict,
+    shapes_of,
+)
+from diorama_core.evaluation.benchmarks.retrieval import object_groups
+from diorama_core.evaluation.metrics.pose import object_alignment, pair_checks
+from diorama_core.evaluation.metrics.scene import as_placed, in_true_world, matched
+from diorama_core.evaluation.reports import paper
+from diorama_core.evaluation.reports.pose_tables import (
+    GroupCounts,
+    ablation_table,
+    all_in_one_table,
+    category_table,
+    comparison_table,
+    groups_table,
+    retrievals_table,
+)
+from diorama_core.evaluation.reports.tables import Table
+from diorama_core.layout.published.recipes import AllInOneRecipe, PaperRecipe
+from diorama_core.layout.recipes import recipe as layout_recipe
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.progress import Progress
+from diorama_core.protocols import LayoutStage
+from diorama_core.scene.types import Scene, Support
+from diorama_core.synthesis.artefacts import LeaveAsIs, true_supports
+from diorama_core.synthesis.truth import TruthView
+
+log = logging.getLogger(__name__)
+
+RETRIEVALS = (1, 4, 8)
+CATEGORY_NAMES = {"trash can": "bin", "television": "display", "monitor": "display", "desk": "table"}
+"""Scan2CAD's names of categories, where they differ."""
+_PUBLISHED = {(TRUE_DEPTH, GIVEN): paper.POSE_TRUE_DEPTH, (ESTIMATED_DEPTH, GIVEN): paper.POSE_ESTIMATED_DEPTH}
+
+Result = TypeVar("Result")
+
+
+@dataclass(frozen=True)
+class PoseBench:
+    """Named results; every list has one entry per room."""
+
+    seed: int
+    compared: tuple[tuple[str, str, tuple[tuple[str, tuple[PoseScores, ...]], ...]], ...]
+    """(depth, shapes, solvers by name)."""
+    retrievals: tuple[tuple[int, tuple[PoseScores, ...], tuple[PoseScores, ...]], ...]
+    """(shapes kept, with true depth, with estimated depth)."""
+    ablation: tuple[tuple[str, tuple[PoseScores, ...]], ...]
+    groups: tuple[tuple[str, GroupCounts], ...]
+    """With true depth and true shapes, by group and by "category: ..."."""
+
+    def tables(self) -> tuple[Table, ...]:
+        """The solvers under every condition, then the paper's group, retrieval-count, ablation and category tables."""
+        return (
+            *(
+                comparison_table(f"Pose, {depth}, {shapes}", solvers, _PUBLISHED.get((depth, shapes)))
+                for depth, shapes, solvers in self.compared
+            ),
+            groups_table(self.groups),
+            retrievals_table(self.retrievals),
+            ablation_table(self.ablation),
+            all_in_one_table(self.ablation),
+            category_table(self.groups),
+        )
+
+    def to_json(self) -> dict[str, object]:
+        """Tables and every room."""
+        compared = {
+            f"{depth}, {shapes}: {name}": [asdict(s) for s in rows]
+            for depth, shapes, solvers in self.compared
+            for name, rows in solvers
+        }
+        return {
+            "bench": "pose",
+            "seed": self.seed,
+            "tables": [t.to_json() for t in self.tables()],
+            "rooms": compared | {name: [asdict(s) for s in rows] for name, rows in self.ablation},
+        }
+
+
+class _Tally:
+    """Results of the rooms so far."""
+
+    def __init__(self) -> None:
+        solvers = (OURS, *BASELINES)
+        self.compared: dict[tuple[str, str], dict[str, list[PoseScores]]] = {
+            condition: {name: [] for name in solvers} for condition in CONDITIONS
+        }
+        self.retained: dict[str, dict[int, list[PoseScores]]] = {
+            depth: {k: [] for k in RETRIEVALS} for depth in (TRUE_DEPTH, ESTIMATED_DEPTH)
+        }
+        self.ablation: dict[str, list[PoseScores]] = {}
+        self.groups: dict[str, list[tuple[float, ...]]] = {}
+
+    def finished(self, seed: int) -> PoseBench:
+        """All of them."""
+        true, estimated = self.retained[TRUE_DEPTH], self.retained[ESTIMATED_DEPTH]
+        retained = tuple((k, tuple(true[k]), tuple(estimated[k])) for k in RETRIEVALS)
+        return PoseBench(
+            seed,
+            tuple(
+                (*condition, tuple((name, tuple(rows)) for name, rows in solvers.items()))
+                for condition, solvers in self.compared.items()
+            ),
+            retained,
+            tuple((name, tuple(rows)) for name, rows in self.ablation.items()),
+            tuple((name, _counted(rows)) for name, rows in sorted(self.groups.items())),
+        )
+
+
+def run(library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progress | None = None) -> PoseBench:
+    """Pose every room by every solver, with few and many retrieved shapes, and arrange it every way.
+
+    What cannot be done counts as a room in which everything is wrong.
+    """
+    progress = progress or Progress()
+    tally = _Tally()
+    solvers = SideBySide.embedded(library)
+    cases = recipe(scenes, 1, seed)
+    for number, (case, view) in enumerate(views_of(cases, library)):
+        step = progress.part(number / len(cases), (number + 1) / len(cases))
+        _one_room(view, solvers, tally, step, case.name)
+    progress.report(1.0, "done")
+    return tally.finished(seed)
+
+
+def _one_room(view: TruthView, solvers: SideBySide, tally: _Tally, progress: Progress, name: str) -> None:
+    library = solvers.library
+    depths = tuple(dict.fromkeys(depth for depth, _ in CONDITIONS))
+    progress.report(0.0, f"{name}: perception")
+    seen = {d: _tried(predict, inputs_with(view, d), library) for d in depths}
+    asked_for = {*tally.retained, *(depth for depth, shapes in CONDITIONS if shapes != GIVEN)}
+    retrieved = {d: _retrieved(solvers, seen[d]) for d in depths if d in asked_for}
+    for turn, (depth, shapes) in enumerate(CONDITIONS):
+        progress.report(0.1 + 0.1 * turn, f"{name}: {depth}, {shapes}")
+        scenes = _scenes(view, solvers, seen[depth], retrieved.get(depth), shapes)
+        for solver, rows in tally.compared[depth, shapes].items():
+            rows.append(pose_scores(view, scenes.get(solver), library))
+        if (depth, shapes) == (TRUE_DEPTH, GIVEN):
+            _count_groups(view, scenes.get(OURS), library, tally.groups)
+            _arrange(view, scenes.get(OURS), library, tally.ablation, progress)
+    for depth, by_count in tally.retained.items():
+        for k, rows in by_count.items():
+            progress.report(0.8, f"{name}: {k} shapes kept, {depth}")
+            first = _firsts(retrieved[depth], k)
+            at_hand = seen[depth]
+            scene = None if at_hand is None or first is None else _tried(solvers.our_scene, at_hand, first)
+            rows.append(pose_scores(view, scene, library))
+
+
+def _retrieved(solvers: SideBySide, seen: Seen | None) -> tuple[RankedShapes, ...] | None:
+    """One more shape of every object than any table keeps."""
+    return None if seen is None else _tried(solvers.retrieved, seen, max(RETRIEVALS) + 1)
+
+
+def _firsts(retrieved: tuple[RankedShapes, ...] | None, count: int) -> tuple[RankedShapes, ...] | None:
+    return None if retrieved is None else tuple(replace(r, ranked=r.ranked[:count]) for r in retrieved)
+
+
+def _scenes(
+    view: TruthView, solvers: SideBySide, seen: Seen | None, retrieved: tuple[RankedShapes, ...] | None, shapes: str
+) -> Mapping[str, Scene]:
+    if seen is None or (retrieved is None and shapes != GIVEN):
+        return {}
+    chosen = shapes_of(solvers.given(view, seen), retrieved or (), shapes, COMPARED_SHAPES)
+    return _tried(solvers.scenes, seen, chosen) or {}
+
+
+def _tried(work: Callable[..., Result], *given: object) -> Result | None:
+    """The result, or None when a stage failed."""
+    try:
+        return work(*given)
+    except Cancelled:
+        raise
+    except Exception as error:  # whatever goes wrong, the room counts as failed
+        log.warning("a room failed: %s", error)
+        return None
+
+
+def _arrange(
+    view: TruthView,
+    observed: Scene | None,
+    library: ShapeLibrary,
+    ablation: dict[str, list[PoseScores]],
+    progress: Progress,
+) -> None:
+    """Every row of the optimiser's ablation for one room."""
+    rows: list[tuple[str, LayoutStage, Scene | None]] = [("none", LeaveAsIs(), observed)]
+    rows += [
+        (name, PaperRecipe(library, stages=k), observed)
+        for k, name in enumerate(("O", "O, P", "O, P, S", "O, P, S, R"), start=1)
+    ]
+    feasible = layout_recipe("feasible", library)
+    rows += [
+        ("all-in-one", AllInOneRecipe(library), observed),
+        ("feasible", feasible, observed),
+        ("true graph", feasible, None if observed is None else with_true_graph(view, observed)),
+        ("true architecture", feasible, None if observed is None else with_true_architecture(view, observed)),
+    ]
+    for name, stage, scene in rows:
+        progress.report(0.3, f"layout: {name}")
+        arranged = None if scene is None else _tried(stage.optimise, scene, Progress())
+        ablation.setdefault(name, []).append(pose_scores(view, None if arranged is None else arranged[0], library))
+
+
+def with_true_graph(view: TruthView, scene: Scene) -> Scene:
+    """The prediction with the true support edges among the objects that were found; planes by role and nearness."""
+    scene = in_true_world(scene, view)
+    truth = [view.scene.objects[k] for k in view.asked]
+    names = {t.id: m.id for t, m in zip(truth, matched(truth, scene)) if m is not None}
+    edges = []
+    for edge in true_supports(view):
+        if edge.child in names:
+            parent = names.get(edge.parent) or _same_plane(view, scene, edge.parent)
+            if parent:
+                edges.append(Support(names[edge.child], parent, edge.relation, None, edge.child_face))
+    given = {e.child for e in edges}
+    rest = tuple(s for s in scene.supports if s.child not in given and s.child not in names.values())
+    return replace(scene, supports=(*edges, *rest))
+
+
+def _same_plane(view: TruthView, scene: Scene, plane_id: str) -> str | None:
+    if not view.scene.has_plane(plane_id):
+        return None
+    true = view.scene.plane(plane_id)
+    options = [p for p in scene.architecture.by_role(true.role) if p.normal @ true.normal > 0.8]
+    return min(options, key=lambda p: abs(p.offset - true.offset)).id if options else None
+
+
+def with_true_architecture(view: TruthView, scene: Scene) -> Scene:
+    """The prediction in the true room; edges to planes go to the true plane that faces most alike and is nearest."""
+    scene = in_true_world(scene, view)
+    true = view.scene.architecture
+    renamed = {}
+    for plane in scene.architecture.planes:
+        options = true.by_role(plane.role)
+        if options:
+            near = min(
+                options, key=lambda p: (round(1 - float(p.normal @ plane.normal), 1), abs(p.offset - plane.offset))
+            )
+            renamed[plane.id] = near.id
+    edges = [
+        replace(
+            s,
+            parent=renamed.get(s.parent, s.parent),
+            adheres_to=tuple(renamed[w] for w in s.adheres_to if w in renamed),
+        )
+        for s in scene.supports
+        if not scene.has_plane(s.parent) or s.parent in renamed
+    ]
+    return replace(scene, architecture=true, supports=tuple(edges))
+
+
+def _count_groups(
+    view: TruthView, scene: Scene | None, library: ShapeLibrary, groups: dict[str, list[tuple[float, ...]]]
+) -> None:
+    truth = [view.scene.objects[k] for k in view.asked]
+    match = [None] * len(truth) if scene is None else matched(truth, in_true_world(scene, view))
+    true = [as_placed(t, library.shape(t.shape_id).symmetry) for t in truth]
+    placed = [None if m is None else as_placed(m) for m in match]
+    checks = pair_checks(true, placed)
+    others = max(len(truth) - 1, 1)
+    for row, index in enumerate(view.asked):
+        grids = (checks.rotation[row], checks.translation[row], checks.scale[row])
+        every = grids[0] & grids[1] & grids[2]
+        shares = [(float(g.sum()) - 1) / others for g in (*grids, every)]
+        own = object_alignment([true[row]], [placed[row]]).acc
+        item = view.scene.objects[index]
+        name = CATEGORY_NAMES.get(item.category, item.category)
+        name = name if name in paper.CATEGORIES else "others"
+        for group in (*object_groups(view, index), f"category: {name}"):
+            groups.setdefault(group, []).append((*shares, own))
+
+
+def _counted(rows: Sequence[tuple[float, ...]]) -> GroupCounts:
+    r, t, s, every, own = (float(x) for x in np.mean(rows, axis=0))
+    return GroupCounts(len(rows), r, t, s, every, own)

@@ -1,0 +1,209 @@
+"""Pose solvers side by side: the same pictures, masks, depth and shapes for every one of them.
+
+Perception runs once for each picture and kind of depth; retrieval once for each picture. What differs between the rows
+of a table is the solver alone.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from diorama_core.architecture.mounting import snap_mounted_objects
+from diorama_core.artefacts import (
+    ArchitectureEstimate,
+    DepthMap,
+    DetectedObject,
+    Inputs,
+    ObjectGeometry,
+    PosedCandidates,
+    RankedShapes,
+)
+from diorama_core.evaluation.metrics.pose import Alignment, object_alignment, scene_alignment
+from diorama_core.evaluation.metrics.scene import as_placed, in_true_world, matched, relation_accuracy, structure_of
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.pipeline.assemble import assemble
+from diorama_core.pipeline.network_inputs import with_graph
+from diorama_core.pipeline.run import embedded_stages
+from diorama_core.pose import RenderAndCompare
+from diorama_core.pose.correspondence.solvers import HALF_GRID, CorrespondencePose, Kind
+from diorama_core.progress import Progress
+from diorama_core.protocols import PoseStage
+from diorama_core.retrieval import HierarchicalRetrieval
+from diorama_core.scene.types import Scene
+from diorama_core.synthesis.artefacts import TrueShapes
+from diorama_core.synthesis.truth import TruthView
+
+OURS = "render and compare"
+BASELINES: dict[str, Kind] = {
+    "correspondence": "correspondence",
+    "GigaPose-like": "gigapose-like",
+    "ZSP": "zsp",
+    "best match": "best-match",
+}
+"""Names in the tables."""
+TRUE_DEPTH, ESTIMATED_DEPTH, NOISY_DEPTH = "true depth", "estimated depth", "depth with 5 % noise"
+GIVEN, IN_LIBRARY, REMOVED = "true shape given", "true shape in the library", "true shape removed"
+CONDITIONS = (
+    (TRUE_DEPTH, GIVEN),
+    (ESTIMATED_DEPTH, GIVEN),
+    (NOISY_DEPTH, GIVEN),
+    (TRUE_DEPTH, IN_LIBRARY),
+    (TRUE_DEPTH, REMOVED),
+    (NOISY_DEPTH, IN_LIBRARY),
+)
+"""(depth, shapes) of every comparison."""
+COMPARED_SHAPES = 4
+"""Retrieved shapes that every solver chooses from."""
+NOISE = 0.05
+
+
+@dataclass(frozen=True)
+class PoseScores:
+    """One picture's poses against the truth, before any layout; figures as in `scene_metrics.SceneScores`."""
+
+    asked: int
+    pairs: Alignment
+    every: Alignment
+    own: Alignment
+    relation: float
+    orientation: float
+    placement: float
+    structure: float
+    box_overlap_cm: float
+
+    @classmethod
+    def failed(cls, asked: int) -> PoseScores:
+        """Nothing came out."""
+        pairs, every, own = (
+            Alignment(reading, asked, 0.0, 0.0, 0.0, 0.0)
+            for reading in ("mean over pairs", "against every other object", "object-focus")
+        )
+        return cls(asked, pairs, every, own, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+def pose_scores(view: TruthView, scene: Scene | None, library: ShapeLibrary) -> PoseScores:
+    """Alignment, relations and overlap of a predicted scene; everything wrong where there is none."""
+    if scene is None:
+        return PoseScores.failed(len(view.asked))
+    scene = in_true_world(scene, view)
+    truth = [view.scene.objects[k] for k in view.asked]
+    match = matched(truth, scene)
+    placed = [None if m is None else as_placed(m) for m in match]
+    true = [as_placed(t, library.shape(t.shape_id).symmetry) for t in truth]
+    pairs, every = scene_alignment(true, placed)
+    layout = structure_of(scene, library)
+    return PoseScores(
+        asked=len(truth),
+        pairs=pairs,
+        every=every,
+        own=object_alignment(true, placed),
+        relation=relation_accuracy(view, scene, match),
+        orientation=layout["orientation"],
+        placement=layout["placement"],
+        structure=layout["structure"],
+        box_overlap_cm=100 * layout["box_overlap_m"],
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """What a pose stage is given of one picture, with the room that its poses are put into."""
+
+    inputs: Inputs
+    objects: tuple[DetectedObject, ...]
+    geometry: ObjectGeometry
+    room: ArchitectureEstimate
+    depth: DepthMap
+
+    def scene(self, posed: tuple[PosedCandidates, ...], library: ShapeLibrary) -> Scene:
+        """The scene before any layout."""
+        return assemble(self.objects, self.geometry, self.room, posed, library, {})
+
+
+def predict(inputs: Inputs, library: ShapeLibrary) -> Seen:
+    """Run the embedded stages up to depth.
+
+    Raises:
+        DioramaError: with the reason, when a stage cannot do its work.
+    """
+    stages, quiet = embedded_stages(inputs, library), Progress()
+    camera = stages.camera.estimate(inputs, quiet)
+    objects = stages.objects.segment(inputs, quiet)
+    geometry = stages.geometry.measure(inputs, camera, objects, quiet)
+    if stages.graph is not None:
+        geometry = with_graph(geometry, stages.graph.relate(inputs, objects, geometry, quiet))
+    room = stages.architecture.reconstruct(inputs, objects, geometry, quiet)
+    geometry = snap_mounted_objects(geometry, room)
+    depth = stages.depth.depth(inputs, objects, geometry, room, quiet)
+    return Seen(inputs, objects, geometry, room, depth)
+
+
+def inputs_with(view: TruthView, depth: str) -> Inputs:
+    """The picture with true masks, and with this kind of depth."""
+    given = view.inputs
+    if depth == ESTIMATED_DEPTH:
+        return replace(given, depth_m=None)
+    if depth == TRUE_DEPTH or given.depth_m is None:
+        return given
+    digest = hashlib.sha256(given.depth_m.tobytes()).digest()
+    rng = np.random.default_rng(int.from_bytes(digest[:4], "little"))
+    noisy = given.depth_m * (1 + NOISE * rng.standard_normal(given.depth_m.shape))
+    return replace(given, depth_m=noisy.astype(np.float32))
+
+
+def shapes_of(
+    given: tuple[RankedShapes, ...], retrieved: tuple[RankedShapes, ...], shapes: str, keep: int
+) -> tuple[RankedShapes, ...]:
+    """The shapes to choose from: the true one alone, the best retrieved, or the best retrieved without the true one.
+
+    Args:
+        given: The true shape of every object.
+        retrieved: Ranked shapes of every object, at least one more than are kept.
+        shapes: `GIVEN`, `IN_LIBRARY` or `REMOVED`.
+        keep: Most shapes of an object.
+    """
+    if shapes == GIVEN:
+        return given
+    gone = {r.object_id: r.ranked[0][0] for r in given} if shapes == REMOVED else {}
+    return tuple(
+        replace(r, ranked=tuple(s for s in r.ranked if s[0] != gone.get(r.object_id))[:keep]) for r in retrieved
+    )
+
+
+@dataclass(frozen=True)
+class SideBySide:
+    """Our solver and the baselines over one library; features of shapes are shared between them."""
+
+    library: ShapeLibrary
+    ours: PoseStage
+    baselines: CorrespondencePose = field(repr=False)
+
+    @classmethod
+    def embedded(cls, library: ShapeLibrary) -> SideBySide:
+        """The solvers that need no networks."""
+        return cls(library, RenderAndCompare(library), CorrespondencePose(library, grid=HALF_GRID))
+
+    def retrieved(self, seen: Seen, keep: int) -> tuple[RankedShapes, ...]:
+        """Ranked shapes of every object."""
+        stage = HierarchicalRetrieval(self.library, keep=keep)
+        return stage.retrieve(seen.inputs, seen.objects, seen.geometry, Progress())
+
+    def given(self, view: TruthView, seen: Seen) -> tuple[RankedShapes, ...]:
+        """The true shape of every object."""
+        return TrueShapes.of(view).retrieve(seen.inputs, seen.objects, seen.geometry, Progress())
+
+    def our_scene(self, seen: Seen, shapes: tuple[RankedShapes, ...]) -> Scene:
+        """Our solver's scene."""
+        posed = self.ours.pose(seen.inputs, seen.objects, seen.geometry, seen.depth, shapes, Progress())
+        return seen.scene(posed, self.library)
+
+    def scenes(self, seen: Seen, shapes: tuple[RankedShapes, ...]) -> dict[str, Scene]:
+        """The scene of every solver, by name."""
+        given = (seen.inputs, seen.objects, seen.geometry, seen.depth, shapes, Progress())
+        posed = {OURS: self.ours.pose(*given)}
+        by_kind = self.baselines.pose_by(tuple(BASELINES.values()), *given)
+        posed |= {name: by_kind[kind] for name, kind in BASELINES.items()}
+        return {name: seen.scene(candidates, self.library) for name, candidates in posed.items()}

@@ -1,0 +1,190 @@
+"""Retrieval alone, given true masks and boxes: shapes that were offered, and shapes that never were.
+
+Rooms are furnished from the library's test shapes. "Same source" retrieves from the whole library, so the true shape
+can be found; "out of distribution" retrieves from the other shapes only.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from diorama_core.errors import DioramaError
+from diorama_core.evaluation.benchmarks.cases import recipe, views_of
+from diorama_core.evaluation.metrics.shape import is_household, shape_distance
+from diorama_core.evaluation.reports import paper
+from diorama_core.evaluation.reports.tables import Column, Row, Table, paper_rows
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.taxonomy import broad
+from diorama_core.progress import Progress
+from diorama_core.retrieval import HierarchicalRetrieval
+from diorama_core.synthesis.artefacts import true_geometry, true_objects
+from diorama_core.synthesis.splits import split_library
+from diorama_core.synthesis.truth import TruthView
+
+log = logging.getLogger(__name__)
+
+CACHE_SIZE = 5
+"""The paper takes the best of five."""
+OCCLUDED = 0.95
+"""An object with less of it visible is occluded (paper, supplement: an occlusion ratio above 5 %)."""
+MISSED = 100.0
+"""Distance of an object for which nothing was retrieved (that of a lamp from a bed is about 60)."""
+GROUPS = ("household", "furniture", "occluded", "complete", "supported", "supporting")
+
+
+@dataclass(frozen=True)
+class ObjectResult:
+    """What was retrieved for one object."""
+
+    case: str
+    object_id: str
+    category: str
+    groups: tuple[str, ...]
+    same_first: float
+    """Chamfer of the first retrieved shape to the true one, times 1000; the whole library offered."""
+    same_best: float
+    """Of the best of five."""
+    unseen_first: float
+    unseen_best: float
+    rank: int | None
+    """Place of the true shape, 1 for the first; None when it is not among those kept."""
+    same_kind: bool
+    """Whether the first shape is of the true category, or of the same broad one; the whole library offered."""
+    unseen_kind: bool
+
+
+@dataclass(frozen=True)
+class RetrievalBench:
+    """All objects of all rooms."""
+
+    seed: int
+    objects: tuple[ObjectResult, ...]
+
+    def tables(self) -> tuple[Table, ...]:
+        """The paper's retrieval table, and how often the very shape was found."""
+        return retrieval_table(self.objects), recall_table(self.objects)
+
+    def to_json(self) -> dict[str, object]:
+        """Tables and every object."""
+        return {
+            "bench": "retrieval",
+            "seed": self.seed,
+            "tables": [t.to_json() for t in self.tables()],
+            "objects": [asdict(o) for o in self.objects],
+        }
+
+
+def run(library: ShapeLibrary, scenes: int = 20, seed: int = 0, progress: Progress | None = None) -> RetrievalBench:
+    """Retrieve for every object asked for, from the whole library and from its training and validation shapes."""
+    progress = progress or Progress()
+    tested = split_library(library, "test")
+    everything = HierarchicalRetrieval(library)
+    others = HierarchicalRetrieval(split_library(library, "train", "validation"))
+    results: list[ObjectResult] = []
+    cases = recipe(scenes, 1, seed)
+    for k, (case, view) in enumerate(views_of(cases, tested)):
+        progress.report(k / len(cases), case.name)
+        same, unseen = _ranked(everything, view), _ranked(others, view)
+        results += [_result(case.name, view, index, same, unseen, library) for index in view.asked]
+    return RetrievalBench(seed, tuple(results))
+
+
+def _ranked(stage: HierarchicalRetrieval, view: TruthView) -> dict[str, tuple[str, ...]]:
+    try:
+        found = stage.retrieve(view.inputs, true_objects(view), true_geometry(view), Progress())
+    except DioramaError as error:
+        log.warning("retrieval failed: %s", error)
+        return {}
+    return {r.object_id: tuple(shape for shape, _ in r.ranked) for r in found}
+
+
+def _result(
+    case: str,
+    view: TruthView,
+    index: int,
+    same: dict[str, tuple[str, ...]],
+    unseen: dict[str, tuple[str, ...]],
+    library: ShapeLibrary,
+) -> ObjectResult:
+    item = view.scene.objects[index]
+
+    def distances(ranked: tuple[str, ...]) -> tuple[float, float]:
+        near = [shape_distance(library, item.shape_id, s) for s in ranked[:CACHE_SIZE]]
+        return (near[0], min(near)) if near else (MISSED, MISSED)
+
+    def right_kind(ranked: tuple[str, ...]) -> bool:
+        return bool(ranked) and broad(library.shape(ranked[0]).category) == broad(item.category)
+
+    ranked, others = same.get(item.id, ()), unseen.get(item.id, ())
+    rank = ranked.index(item.shape_id) + 1 if item.shape_id in ranked else None
+    groups = object_groups(view, index)
+    return ObjectResult(
+        case,
+        item.id,
+        item.category,
+        groups,
+        *distances(ranked),
+        *distances(others),
+        rank,
+        right_kind(ranked),
+        right_kind(others),
+    )
+
+
+def object_groups(view: TruthView, index: int) -> tuple[str, ...]:
+    """The paper's groups that an object belongs to."""
+    item = view.scene.objects[index]
+    edge = view.scene.support_of(item.id)
+    groups = ["household" if is_household(item.category) else "furniture"]
+    groups.append("occluded" if view.visible_fraction[index] < OCCLUDED else "complete")
+    if edge is not None and view.scene.has_object(edge.parent):
+        groups.append("supported")
+    if view.scene.children_of(item.id):
+        groups.append("supporting")
+    return tuple(groups)
+
+
+def retrieval_table(objects: Sequence[ObjectResult]) -> Table:
+    """Chamfer distance by group, same source and out of distribution (paper, table 4)."""
+    columns = tuple(Column(f"{g} {s}", ".1f", "↓") for g in GROUPS for s in ("SS", "OOD"))
+
+    def row(name: str, same: str, unseen: str) -> Row:
+        values = []
+        for group in GROUPS:
+            inside = [o for o in objects if group in o.groups]
+            values += [_mean([getattr(o, same) for o in inside]), _mean([getattr(o, unseen) for o in inside])]
+        return Row(name, tuple(values))
+
+    rows = (
+        row("embedded, first", "same_first", "unseen_first"),
+        row("embedded, best of 5", "same_best", "unseen_best"),
+    )
+    note = (
+        f"{len(objects)} objects. Two-way mean squared chamfer of normalised shapes x 1000. SS: the true shape "
+        "is in the library; OOD: it is not."
+    )
+    return Table("Retrieval", columns, (*rows, *paper_rows(paper.RETRIEVAL)), note)
+
+
+def recall_table(objects: Sequence[ObjectResult]) -> Table:
+    """How often the very shape is first, or among the first five or eight, and the first is of the right kind."""
+    columns = (
+        Column("objects", "d"),
+        *(Column(n, better="↑") for n in ("first", "first five", "first eight", "right kind", "right kind OOD")),
+    )
+    rows = []
+    for group in ("all", *GROUPS):
+        inside = [o for o in objects if group == "all" or group in o.groups]
+        ranks = [o.rank for o in inside]
+        shares = [_mean([float(r is not None and r <= most) for r in ranks]) for most in (1, CACHE_SIZE, 8)]
+        kinds = [_mean([float(o.same_kind) for o in inside]), _mean([float(o.unseen_kind) for o in inside])]
+        rows.append(Row(group, (len(inside), *shares, *kinds)))
+    return Table("The very shape found", columns, tuple(rows))
+
+
+def _mean(values: Sequence[float]) -> float | None:
+    return float(np.mean(values)) if values else None

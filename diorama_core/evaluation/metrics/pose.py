@@ -1,0 +1,171 @@
+"""How well objects are placed: the paper's scene-aware alignment in both readings, and object-focus alignment.
+
+Scene-aware alignment (paper, section 4) compares objects with one another, so that one wrong global scale or depth does
+not count against everything: relative rotation and the direction of relative translation within 20 degrees, relative
+size within 20 %. "Counts when right against every other object" can be read strictly, or as the mean over pairs; both
+are given, always under their names. Object-focus alignment (Scan2CAD: 20 cm, 20 degrees, 20 %) compares each object
+with its own truth. Rotations are compared up to the true shape's symmetry about its up axis. What is missing is wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from diorama_core.scene.types import yaw_rotation
+from diorama_core.scene.values import ArrayValue
+
+MAX_ANGLE_RAD = float(np.deg2rad(20.0))
+MAX_RATIO = 0.2
+MAX_DISTANCE_M = 0.2
+
+
+@dataclass(frozen=True, eq=False)
+class Placed(ArrayValue):
+    """Where an object is and how large: rotation, centre and extents, all predictions and truths in one frame."""
+
+    R: Float[np.ndarray, "3 3"]
+    centre: Float[np.ndarray, "3"]
+    size_m: Float[np.ndarray, "3"]
+    symmetry: int = 1
+    """Turns about its up axis that leave the true shape looking the same."""
+
+
+@dataclass(frozen=True)
+class Alignment:
+    """Shares of objects (or pairs) whose rotation, translation and scale are right, and all three."""
+
+    reading: str
+    """How "right" is counted: "mean over pairs", "against every other object" or "object-focus"."""
+    count: int
+    """Objects that should have been placed."""
+    r_acc: float
+    t_acc: float
+    s_acc: float
+    acc: float
+
+    def to_json(self) -> dict[str, object]:
+        """Plain values for JSON."""
+        return asdict(self)
+
+
+@dataclass(frozen=True, eq=False)
+class PairChecks(ArrayValue):
+    """For every ordered pair of objects whether its relative pose is right; the diagonal is True."""
+
+    rotation: Bool[np.ndarray, "n n"]
+    translation: Bool[np.ndarray, "n n"]
+    scale: Bool[np.ndarray, "n n"]
+
+
+def pair_checks(truth: Sequence[Placed], predicted: Sequence[Placed | None]) -> PairChecks:
+    """Compare all relative poses.
+
+    Args:
+        truth: every object of the scene.
+        predicted: in the same order; None where an object is missing, and then all its pairs are wrong.
+    """
+    n = len(truth)
+    rotation, translation, scale = (np.eye(n, dtype=bool) for _ in range(3))
+    for i in range(n):
+        for j in range(i + 1, n):
+            a, b = predicted[i], predicted[j]
+            if a is None or b is None:
+                continue
+            right = _pair(truth[i], truth[j], a, b)
+            for grid, value in zip((rotation, translation, scale), right):
+                grid[i, j] = grid[j, i] = value
+    return PairChecks(rotation, translation, scale)
+
+
+def scene_alignment(truth: Sequence[Placed], predicted: Sequence[Placed | None]) -> tuple[Alignment, Alignment]:
+    """Both readings of the paper's scene-aware alignment: the mean over pairs, and against every other object.
+
+    A scene of one object has no pairs: it is right when the object is there.
+    """
+    checks = pair_checks(truth, predicted)
+    n = len(truth)
+    grids = [checks.rotation, checks.translation, checks.scale]
+    grids.append(grids[0] & grids[1] & grids[2])
+    if n < 2:
+        there = float(all(p is not None for p in predicted)) if n else 0.0
+        return (
+            Alignment("mean over pairs", n, there, there, there, there),
+            Alignment("against every other object", n, there, there, there, there),
+        )
+    off = ~np.eye(n, dtype=bool)
+    pairs = [float(g[off].mean()) for g in grids]
+    every = [float(g.all(axis=1).mean()) for g in grids]
+    return Alignment("mean over pairs", n, *pairs), Alignment("against every other object", n, *every)
+
+
+def object_alignment(truth: Sequence[Placed], predicted: Sequence[Placed | None]) -> Alignment:
+    """Scan2CAD's alignment of each object with its own truth: 20 cm, 20 degrees, 20 %."""
+    right = np.zeros((len(truth), 3), dtype=bool)
+    for k, (true, found) in enumerate(zip(truth, predicted, strict=True)):
+        if found is not None:
+            angle, ratio = _own_errors(true, found)
+            distance = float(np.linalg.norm(found.centre - true.centre))
+            right[k] = angle <= MAX_ANGLE_RAD, distance <= MAX_DISTANCE_M, ratio <= MAX_RATIO
+    shares = [float(column.mean()) if len(truth) else 0.0 for column in (*right.T, right.all(axis=1))]
+    return Alignment("object-focus", len(truth), *shares)
+
+
+def pooled(alignments: Sequence[Alignment]) -> Alignment:
+    """The mean over scenes, each counting by its objects."""
+    weights = np.array([a.count for a in alignments], dtype=float)
+    if weights.sum() == 0:
+        return Alignment(alignments[0].reading if alignments else "", 0, 0.0, 0.0, 0.0, 0.0)
+    shares = np.array([(a.r_acc, a.t_acc, a.s_acc, a.acc) for a in alignments])
+    r, t, s, every = (float(x) for x in weights @ shares / weights.sum())
+    return Alignment(alignments[0].reading, int(weights.sum()), r, t, s, every)
+
+
+def rotation_angle(a: Float[np.ndarray, "*n 3 3"], b: Float[np.ndarray, "*n 3 3"]) -> Float[np.ndarray, "*n"]:
+    """Geodesic angle between rotations, radians."""
+    trace = np.einsum("...ij,...ij->...", a, b)
+    return np.arccos(np.clip((trace - 1.0) / 2.0, -1.0, 1.0))
+
+
+def symmetry_turns(fold: int) -> Float[np.ndarray, "k 3 3"]:
+    """The turns about up that leave a shape of this symmetry looking the same."""
+    return np.array([yaw_rotation(2 * np.pi * k / fold) for k in range(fold)])
+
+
+def _pair(true_a: Placed, true_b: Placed, a: Placed, b: Placed) -> tuple[bool, bool, bool]:
+    relative = a.R.T @ b.R
+    wanted = true_a.R.T @ true_b.R
+    turned = np.einsum("aji,jk,bkl->abil", symmetry_turns(true_a.symmetry), relative, symmetry_turns(true_b.symmetry))
+    rotation = float(rotation_angle(turned, wanted).min()) <= MAX_ANGLE_RAD
+    way, true_way = b.centre - a.centre, true_b.centre - true_a.centre
+    translation = _angle_between(way, true_way) <= MAX_ANGLE_RAD
+    size_a, size_b = _matched_size(true_a, a), _matched_size(true_b, b)
+    ratio = (size_a / size_b) / (true_a.size_m / true_b.size_m)
+    return rotation, translation, bool(np.abs(ratio - 1.0).mean() <= MAX_RATIO)
+
+
+def _angle_between(a: np.ndarray, b: np.ndarray) -> float:
+    lengths = float(np.linalg.norm(a) * np.linalg.norm(b))
+    if lengths < 1e-12:
+        return 0.0 if np.linalg.norm(a - b) < 1e-6 else float(np.pi)
+    return float(np.arccos(np.clip(a @ b / lengths, -1.0, 1.0)))
+
+
+def _own_errors(true: Placed, found: Placed) -> tuple[float, float]:
+    """Angle up to symmetry, and mean relative error of the extents."""
+    turned = found.R @ symmetry_turns(true.symmetry)
+    angle = float(rotation_angle(turned, true.R).min())
+    return angle, float(np.abs(_matched_size(true, found) / true.size_m - 1.0).mean())
+
+
+def _matched_size(true: Placed, found: Placed) -> Float[np.ndarray, "3"]:
+    """The found extents along the true object's axes: where symmetry allows a quarter turn, width may be depth."""
+    if true.symmetry % 4:
+        return found.size_m
+    turns = symmetry_turns(true.symmetry)
+    best = turns[int(rotation_angle(found.R @ turns, true.R).argmin())]
+    swapped = abs(best[0, 1]) > abs(best[0, 0])
+    return found.size_m[[1, 0, 2]] if swapped else found.size_m

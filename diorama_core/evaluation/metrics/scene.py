@@ -1,0 +1,308 @@
+"""What a predicted scene is worth against the true one: placement, structure, relations, room for all, the picture.
+
+Everything of a prediction is compared in the true camera's world: the two cameras are laid on each other, so an error
+of the estimated camera counts. Objects that are asked for and absent are wrong in every share.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Bool, Float
+from scipy.spatial import cKDTree
+
+from diorama_core.evaluation.metrics.pose import Alignment, Placed, object_alignment, scene_alignment
+from diorama_core.evaluation.metrics.shape import shape_distance, shape_points
+from diorama_core.geometry.casting import in_polygon
+from diorama_core.geometry.projection import box_iou
+from diorama_core.layout.exact import drift, mesh_overlap_m3, stable_share
+from diorama_core.layout.problem.problem import build_problem
+from diorama_core.layout.report import measure
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.render.raycast import Caster, MeshCaster
+from diorama_core.scene.types import Camera, Intrinsics, Scene, SceneObject
+from diorama_core.synthesis.artefacts import true_supports
+from diorama_core.synthesis.truth import TruthView, moved
+
+SAME_BOX = 0.5
+"""Boxes that overlap less than this are of different objects."""
+SUPPORT_M = 0.01
+"""SceneEval: an object within this of what holds it up is supported."""
+PROBE_M = 0.05
+"""Supporters are looked for from this far above an object's foot."""
+INSIDE_SHARE = 0.99
+"""SceneEval: an object with less of its footprint over the floor is out of bounds."""
+NEAR_M = 0.1
+"""Surfaces within this of one another agree (F-score@0.1)."""
+OBJECT_POINTS = 400
+"""Points that stand for the surface of an object."""
+
+
+@dataclass(frozen=True)
+class SceneScores:
+    """One scene against its truth."""
+
+    asked: int
+    """Objects that should be there."""
+    found: int
+    pairs: Alignment
+    """Scene-aware alignment, mean over pairs."""
+    every: Alignment
+    """Scene-aware alignment, against every other object."""
+    own: Alignment
+    """Object-focus alignment."""
+    shape_distance: float | None
+    """Mean chamfer of the chosen shapes to the true ones, times 1000, over found objects; None without any."""
+    relation: float
+    """Share of the true support edges among the objects asked for whose parent and relation were found."""
+    orientation: float
+    placement: float
+    structure: float
+    """The layout report's shares (1 degree, 0.1 cm, both)."""
+    box_overlap_cm: float | None
+    """Overlap of bounding boxes per object; None without any."""
+    mesh_overlap_l: float | None
+    """Volume in litres shared by meshes of objects that do not hold each other up; None without any."""
+    supported: float
+    """SceneEval: share of found objects within 1 cm of their supporter."""
+    out_of_bounds: float
+    """SceneEval: share of found objects with a part of their footprint not over the scene's own floor."""
+    stable: float | None
+    """Share that stays put under gravity; None when not asked for."""
+    drift_cm: float | None
+    """Mean distance that objects move in two seconds of gravity; None when not asked for."""
+    image_iou: float
+    """Mean intersection over union of rendered and true masks over the objects asked for; absent ones are 0."""
+    chamfer_cm: float | None
+    """Mean distance from the surfaces of either scene to the nearest of the other, both ways averaged; None without
+    any."""
+    f_score: float
+    """Of the surfaces of both scenes, within `NEAR_M`."""
+
+    @classmethod
+    def failed(cls, asked: int) -> SceneScores:
+        """Nothing came out."""
+        pairs, every, own = (
+            Alignment(reading, asked, 0.0, 0.0, 0.0, 0.0)
+            for reading in ("mean over pairs", "against every other object", "object-focus")
+        )
+        return cls(
+            asked, 0, pairs, every, own, None, relation=0.0, orientation=0.0, placement=0.0, structure=0.0,
+            box_overlap_cm=None, mesh_overlap_l=None, supported=0.0, out_of_bounds=1.0, stable=None, drift_cm=None,
+            image_iou=0.0, chamfer_cm=None, f_score=0.0,
+        )  # fmt: skip
+
+
+def scene_scores(view: TruthView, scene: Scene, library: ShapeLibrary, *, physics: bool = False) -> SceneScores:
+    """Every metric of one predicted scene.
+
+    Args:
+        view: The truth.
+        scene: The prediction, with its camera.
+        library: Where the shapes of both are.
+        physics: Whether to switch on gravity (seconds a scene; needs MuJoCo).
+    """
+    truth = [view.scene.objects[k] for k in view.asked]
+    if not scene.objects:
+        return SceneScores.failed(len(truth))
+    scene = in_true_world(scene, view)
+    match = matched(truth, scene)
+    placed = [None if m is None else as_placed(m) for m in match]
+    true = [as_placed(t, library.shape(t.shape_id).symmetry) for t in truth]
+    pairs, every = scene_alignment(true, placed)
+    known = [m for m in match if m is not None]
+    distances = [shape_distance(library, t.shape_id, m.shape_id) for t, m in zip(truth, match) if m is not None]
+    layout = structure_of(scene, library)
+    moved_by = drift(scene, library) if physics else None
+    chamfer_m, f_score = surface_agreement(scene_points(scene.objects, library), scene_points(truth, library))
+    return SceneScores(
+        asked=len(truth),
+        found=len(known),
+        pairs=pairs,
+        every=every,
+        own=object_alignment(true, placed),
+        shape_distance=float(np.mean(distances)) if distances else None,
+        relation=relation_accuracy(view, scene, match),
+        orientation=layout["orientation"],
+        placement=layout["placement"],
+        structure=layout["structure"],
+        box_overlap_cm=100 * layout["box_overlap_m"],
+        mesh_overlap_l=1000 * mesh_overlap_m3(scene, library),
+        supported=supported_share(scene, library),
+        out_of_bounds=out_of_bounds_share(scene),
+        stable=None if moved_by is None else stable_share(moved_by),
+        drift_cm=None if moved_by is None else 100 * float(np.mean([d for d, _ in moved_by.values()])),
+        image_iou=image_iou(view, scene, match, library),
+        chamfer_cm=100 * chamfer_m,
+        f_score=f_score,
+    )
+
+
+def in_true_world(scene: Scene, view: TruthView) -> Scene:
+    """A prediction moved so that its camera is the true one."""
+    if scene.camera is None:
+        return scene
+    return moved(scene, view.camera.T_world_camera @ scene.camera.T_camera_world)
+
+
+def matched(truth: list[SceneObject], scene: Scene) -> list[SceneObject | None]:
+    """For every true object the predicted one with the same box in the photo; each is used once."""
+    left = {o.id: o for o in scene.objects if o.box_px is not None}
+    found: list[SceneObject | None] = []
+    for item in truth:
+        scored = [(float(box_iou(np.array(o.box_px), np.array(item.box_px))), o.id) for o in left.values()]
+        best = max(scored, default=(0.0, ""))
+        found.append(left.pop(best[1]) if best[0] >= SAME_BOX else None)
+    return found
+
+
+def as_placed(item: SceneObject, symmetry: int = 1) -> Placed:
+    """An object's pose and size as the alignment metrics read them."""
+    return Placed(item.pose.R_world_object, item.pose.position, item.size_m, symmetry)
+
+
+def relation_accuracy(view: TruthView, scene: Scene, match: list[SceneObject | None]) -> float:
+    """Share of true edges found: the same parent object, or a plane of the same role, and the same relation."""
+    names = {t: m.id for t, m in zip((view.scene.objects[k].id for k in view.asked), match) if m is not None}
+    edges = true_supports(view)
+    right = 0
+    for edge in edges:
+        found = scene.support_of(names[edge.child]) if edge.child in names else None
+        if found is None or found.relation != edge.relation:
+            continue
+        if view.scene.has_plane(edge.parent):
+            role = view.scene.plane(edge.parent).role
+            right += scene.has_plane(found.parent) and scene.plane(found.parent).role == role
+        else:
+            right += found.parent == names.get(edge.parent)
+    return right / len(edges) if edges else 1.0
+
+
+def supported_share(scene: Scene, library: ShapeLibrary) -> float:
+    """SceneEval's support: share of objects whose lowest point (or back) is within 1 cm of what the graph says."""
+    good = 0
+    for item in scene.objects:
+        edge = scene.support_of(item.id)
+        if edge is not None:
+            good += _gap(item, edge.parent, scene, library) <= SUPPORT_M
+    return good / max(len(scene.objects), 1)
+
+
+def _gap(item: SceneObject, parent: str, scene: Scene, library: ShapeLibrary) -> float:
+    corners = item.corners_world
+    if scene.has_plane(parent):
+        plane = scene.plane(parent)
+        return float(np.abs(corners @ plane.normal - plane.offset).min())
+    carrier = scene.object(parent)
+    steps = np.linspace(-0.45, 0.45, 7)
+    grid = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
+    spots = item.pose.apply(np.column_stack([grid * np.asarray(item.shape_size_m)[:2], np.zeros(len(grid))]))
+    spots[:, 2] = corners[:, 2].min() + PROBE_M
+    rays = np.concatenate([spots, np.tile([0.0, 0.0, -1.0], (len(spots), 1))], axis=1).astype(np.float32)
+    mesh = library.mesh(carrier.shape_id)
+    caster = Caster(carrier.pose.apply(np.asarray(mesh.vertices)), np.asarray(mesh.faces, np.int32))
+    return float(np.abs(caster.first_hits(rays).distance - PROBE_M).min())
+
+
+def out_of_bounds_share(scene: Scene, samples: int = 12) -> float:
+    """SceneEval's out-of-bounds rate: objects with under 99 % of their footprint's samples over the scene's floor."""
+    floor = scene.architecture.floor
+    if floor is None or not scene.objects:
+        return 1.0
+    steps = (np.arange(samples) + 0.5) / samples - 0.5
+    grid = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
+    out = 0
+    for item in scene.objects:
+        local = np.column_stack([grid * np.asarray(item.shape_size_m)[:2], np.zeros(len(grid))])
+        points = item.pose.apply(local)
+        out += float(in_polygon(points, floor).mean()) < INSIDE_SHARE
+    return out / len(scene.objects)
+
+
+def image_iou(view: TruthView, scene: Scene, match: list[SceneObject | None], library: ShapeLibrary) -> float:
+    """Mean mask agreement of the objects asked for when the prediction is seen by its own camera, hiding included.
+
+    Its own, because that is the picture its user sees; an error of the camera counts in every metric in space.
+    """
+    pairs = [
+        (view.object_ids == k, None if found is None else found.id) for k, found in zip(view.asked, match, strict=True)
+    ]
+    return mean_mask_iou(pairs, scene, library, view.camera.intrinsics)
+
+
+def mean_mask_iou(
+    pairs: Sequence[tuple[Bool[np.ndarray, "h w"], str | None]],
+    scene: Scene,
+    library: ShapeLibrary,
+    intrinsics: Intrinsics | None,
+) -> float:
+    """Mean agreement of true masks with the objects (by id, None where absent) seen by the scene's own camera.
+
+    Args:
+        pairs: true masks and the objects they should be.
+        scene: the prediction, with its camera.
+        library: where its shapes are.
+        intrinsics: whose picture size the masks have; the scene camera's by default.
+    """
+    if not pairs:
+        return 1.0
+    if scene.camera is None:
+        return 0.0
+    k = intrinsics or scene.camera.intrinsics
+    items = [o for o in scene.objects if not o.hidden]
+    caster = MeshCaster([(library.mesh(o.shape_id), o.pose.matrix) for o in items])
+    own = Camera(scene.camera.intrinsics.scaled(k.width, k.height), scene.camera.T_world_camera)
+    seen = caster.buffers(own).instance
+    index = {o.id: number for number, o in enumerate(items)}
+    total = 0.0
+    for true, name in pairs:
+        if name in index:
+            mask = seen == index[name]
+            total += float((mask & true).sum() / max((mask | true).sum(), 1))
+    return total / len(pairs)
+
+
+def scene_points(
+    objects: Sequence[SceneObject], library: ShapeLibrary, count: int = OBJECT_POINTS
+) -> Float[np.ndarray, "n 3"]:
+    """Points on the surfaces of objects in the world, as many on each."""
+    points = [np.zeros((0, 3))]
+    for item in objects:
+        low, high = library.mesh(item.shape_id).bounds
+        local = shape_points(library, item.shape_id, count) * (high - low).max() + (low + high) / 2
+        points.append(item.pose.apply(local))
+    return np.concatenate(points)
+
+
+def surface_agreement(
+    found: Float[np.ndarray, "n 3"], true: Float[np.ndarray, "m 3"], near_m: float = NEAR_M
+) -> tuple[float, float]:
+    """Mean distance to the other points, both ways averaged, and the F-score: the harmonic mean of the shares of
+    either side's points that have one of the other side within `near_m`.
+    """
+    there, back = np.asarray(cKDTree(true).query(found)[0]), np.asarray(cKDTree(found).query(true)[0])
+    precision, recall = float((there <= near_m).mean()), float((back <= near_m).mean())
+    both = precision + recall
+    return 0.5 * float(there.mean() + back.mean()), 2 * precision * recall / both if both else 0.0
+
+
+def structure_of(scene: Scene, library: ShapeLibrary) -> dict[str, float]:
+    """The layout report's shares and overlaps of a scene as it is; all 0 for an empty one."""
+    if not scene.objects:
+        return {"orientation": 0.0, "placement": 0.0, "structure": 0.0, "box_overlap_m": 0.0}
+    problem = build_problem(scene, library)
+    poses = [scene.object(i).pose for i in problem.ids]
+    return measure(
+        problem,
+        np.array([p.R_world_object for p in poses]),
+        np.array([p.position for p in poses]),
+        np.array([p.scale for p in poses]),
+    )
+
+
+def without_unasked(view: TruthView) -> Scene:
+    """The true scene of the objects asked for only: what a perfect system would return."""
+    retained = tuple(view.scene.objects[k] for k in view.asked)
+    return replace(view.scene, objects=retained, supports=true_supports(view))

@@ -1,0 +1,1 @@
+"""Tables and pictures, beside the paper's."""

@@ -1,0 +1,222 @@
+"""How time and memory grow, in tables, and against the committed figures. `diorama bench speed`.
+
+Processor time of all threads, so that a busy machine changes little; see `speed_meter` for the yardstick.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from diorama_core.evaluation.reports.tables import Column, Row, Table, Value
+from diorama_core.evaluation.speed import series as measure
+from diorama_core.evaluation.speed.eager import BATCHED_GPU, EAGER, NO_GPU, OURS, WAYS
+from diorama_core.evaluation.speed.meter import check_ascending, process_peak_mb, yardstick_s
+from diorama_core.evaluation.speed.regression import (
+    GAIN,
+    GROWTH,
+    MEMORY,
+    committed_figures,
+    regression_bytes,
+    regression_table,
+    slower,
+)
+from diorama_core.evaluation.speed.series import OBJECTS, Series
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.progress import Progress
+
+__all__ = [
+    "FULL",
+    "QUICK",
+    "Extent",
+    "Series",
+    "SpeedBench",
+    "committed_figures",
+    "memory_table",
+    "regression_bytes",
+    "regression_table",
+    "run",
+    "slower",
+    "speed_table",
+]
+
+MIN_RECORDED_S = 0.004
+"""Shorter times are mostly the clock's noise and are not kept."""
+
+
+@dataclass(frozen=True)
+class Extent:
+    """How far a run goes."""
+
+    sizes: tuple[tuple[int, int], ...]
+    large_scene_objects: tuple[int, ...]
+    layout_objects: tuple[int, ...]
+    step_objects: tuple[int, ...]
+    feature_shapes: tuple[int, ...]
+    word_shapes: tuple[int, ...]
+
+    def check(self) -> None:
+        """Raise `InputError` for quantities that do not ascend."""
+        check_ascending("picture sizes", tuple(float(w * h) for w, h in self.sizes))
+        for name in ("hall_objects", "layout_objects", "step_objects", "feature_shapes", "word_shapes"):
+            check_ascending(name.replace("_", " "), tuple(map(float, getattr(self, name))))
+
+
+FULL = Extent(
+    sizes=((320, 240), (640, 480), (1280, 960), (1920, 1440)),
+    large_scene_objects=(1, 5, 20, 60, 200),
+    layout_objects=(1, 5, 20, 50, 100, 200),
+    step_objects=(5, 20, 50, 100, 200),
+    feature_shapes=(1_000, 10_000, 100_000, 1_000_000),
+    word_shapes=(1_000, 10_000, 100_000),
+)
+QUICK = Extent(
+    sizes=((320, 240), (640, 480)),
+    large_scene_objects=(1, 5, 20),
+    layout_objects=(5, 20, 50),
+    step_objects=(5, 20),
+    feature_shapes=(1_000, 10_000, 100_000),
+    word_shapes=(1_000, 10_000),
+)
+
+
+@dataclass(frozen=True)
+class SpeedBench:
+    """All series of one run."""
+
+    seed: int
+    series: tuple[Series, ...]
+    yardstick_s: float
+    """Of this machine, while the run went on."""
+    peak_memory_mb: float
+    before: Mapping[str, float]
+    """Figures to compare with."""
+
+    def tables(self) -> tuple[Table, ...]:
+        """Time and memory against each quantity, the optimiser's step, and what has become slower."""
+        steps = tuple(s for s in self.series if s.what in WAYS)
+        others = tuple(s for s in self.series if s.what not in WAYS)
+        against = tuple(dict.fromkeys(s.against for s in others))
+        return (
+            *(speed_table(others, quantity) for quantity in against),
+            *(memory_table(others, quantity) for quantity in against),
+            step_table(steps),
+            regression_table(self.figures(), self.before),
+        )
+
+    def figures(self) -> dict[str, float]:
+        """What the regression file keeps."""
+        retained: dict[str, float] = {}
+        for s in self.series:
+            if s.points and s.points[-1][1] >= MIN_RECORDED_S:
+                quantity = f"{s.points[-1][0]:g} {s.against}"
+                retained[f"{s.what} at {quantity}"] = s.points[-1][1] / self.yardstick_s
+                retained[f"{GROWTH}{s.what} from {s.points[0][0]:g} to {quantity}"] = s.exponent
+                if s.peaks_mb and s.peaks_mb[-1] is not None:
+                    retained[f"{MEMORY}{s.what} at {quantity}"] = s.peaks_mb[-1]
+        return {**retained, **_gains(self.series)}
+
+    def to_json(self) -> dict[str, object]:
+        """Tables and figures."""
+        return {
+            "bench": "speed",
+            "seed": self.seed,
+            "tables": [t.to_json() for t in self.tables()],
+            "figures": self.figures(),
+            "exponents": {f"{s.what} against {s.against}": s.exponent for s in self.series if s.points},
+            "yardstick_s": self.yardstick_s,
+            "peak_memory_mb": self.peak_memory_mb,
+        }
+
+
+def run(
+    library: ShapeLibrary,
+    seed: int = 0,
+    progress: Progress | None = None,
+    extent: Extent = FULL,
+    *,
+    before: Mapping[str, float] | None = None,
+) -> SpeedBench:
+    """Measure all series; some minutes on two cores, stopped at any point by `progress`.
+
+    Args:
+        library: What the stages build from.
+        seed: Of rooms, halls and features.
+        progress: Reports and cancellation.
+        extent: How far to go.
+        before: Figures to compare with; None takes the committed ones.
+    """
+    extent.check()
+    known = committed_figures() if before is None else before
+    progress = progress or Progress()
+    sticks = [yardstick_s()]
+    series = measure.stages_by_objects(library, seed, extent.large_scene_objects, progress.part(0.0, 0.55))
+    sticks.append(yardstick_s())
+    series += measure.stages_by_size(library, seed, extent.sizes, progress.part(0.55, 0.75))
+    series += measure.layout_by_objects(seed, extent.layout_objects, progress.part(0.75, 0.8))
+    series += measure.steps_by_objects(seed, extent.step_objects, progress.part(0.8, 0.87))
+    sticks.append(yardstick_s())
+    series += measure.features_by_library(seed, extent.feature_shapes, progress.part(0.87, 0.95))
+    series += measure.words_by_library(library, extent.word_shapes, progress.part(0.95, 1.0))
+    sticks.append(yardstick_s())
+    progress.report(1.0, "done")
+    return SpeedBench(seed, tuple(series), float(np.mean(sticks)), process_peak_mb(), known)
+
+
+def speed_table(series: Sequence[Series], against: str) -> Table:
+    """Milliseconds at every quantity, and the growth exponent."""
+    return _table(f"Processor milliseconds against {against}", series, against, ".1f", _milliseconds, exponent=True)
+
+
+def memory_table(series: Sequence[Series], against: str) -> Table:
+    """Megabytes at every quantity: the highest resident memory above what was held before."""
+    return _table(f"Memory in MB against {against}", series, against, ".0f", lambda s: s.peaks_mb, exponent=False)
+
+
+def step_table(series: Sequence[Series]) -> Table:
+    """One step of the optimiser, ours and others."""
+    chosen = [s for s in series if s.points or s.missing]
+    note = "" if any(s.what == BATCHED_GPU and s.points for s in chosen) else f"GPU: {NO_GPU}."
+    title = "Milliseconds of one refinement step against objects"
+    table = _table(title, chosen, OBJECTS, ".2f", _milliseconds, exponent=True)
+    return Table(table.title, table.columns, table.rows, note)
+
+
+def _milliseconds(series: Series) -> tuple[float | None, ...]:
+    return tuple(1000 * seconds for _, seconds in series.points)
+
+
+def _table(
+    title: str,
+    series: Sequence[Series],
+    against: str,
+    form: str,
+    values_of: Callable[[Series], Sequence[float | None]],
+    *,
+    exponent: bool,
+) -> Table:
+    chosen = [s for s in series if s.against == against]
+    quantities = sorted({q for s in chosen for q, _ in s.points})
+    columns = tuple(Column(_quantity(q), form) for q in quantities)
+    rows = []
+    for s in chosen:
+        values = values_of(s)
+        if not values and not s.missing:
+            continue
+        known: dict[float, Value] = {q: v for (q, _), v in zip(s.points, values, strict=True)}
+        cells: list[Value] = [s.missing or known.get(q) for q in quantities]
+        rows.append(Row(s.what, (*cells, None if s.missing else s.exponent) if exponent else tuple(cells)))
+    return Table(title, (*columns, Column("exponent", ".2f")) if exponent else columns, tuple(rows))
+
+
+def _quantity(value: float) -> str:
+    return f"{value:,.0f}" if value == round(value) else f"{value:.2f}"
+
+
+def _gains(series: Sequence[Series]) -> dict[str, float]:
+    """Times by which our step beats the pair by pair one, at each number of objects."""
+    by_name = {s.what: dict(s.points) for s in series}
+    ours, eager = by_name.get(OURS, {}), by_name.get(EAGER, {})
+    return {f"{GAIN}ours, a step at {n:g} {OBJECTS}": eager[n] / ours[n] for n in eager if n in ours and ours[n] > 0}

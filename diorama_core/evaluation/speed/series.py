@@ -1,0 +1,201 @@
+"""What a speed run measures: stages against picture size and objects, layout, optimiser steps, libraries."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import cast
+
+import numpy as np
+from jaxtyping import Float32
+
+from diorama_core.artefacts import Inputs
+from diorama_core.evaluation.benchmarks.cases import Case, furnished
+from diorama_core.evaluation.speed.eager import WAYS, step_seconds
+from diorama_core.evaluation.speed.large_scene import PICTURE, large_scene
+from diorama_core.evaluation.speed.meter import Cost, StageClock, cost_of, growth_exponent
+from diorama_core.export.gltf import glb_bytes
+from diorama_core.layout.recipes import recipe as layout_recipe
+from diorama_core.library.record import Shape, ShapeLibrary
+from diorama_core.library.search import TextIndex, find
+from diorama_core.library.store.features import FeatureMatrix
+from diorama_core.pipeline.run import build_scene
+from diorama_core.progress import Progress
+from diorama_core.scene.types import Scene
+from diorama_core.synthesis.cameras import hold_cameras
+from diorama_core.synthesis.layout_rooms import box_library, generate_room
+from diorama_core.synthesis.truth import Studio
+
+STAGES = ("camera", "objects", "geometry", "graph", "architecture", "depth", "retrieval", "pose", "layout")
+MEGAPIXELS, OBJECTS, SHAPES = "megapixels", "objects", "shapes"
+FEATURES = 512
+"""Numbers in a shape's feature, as the picture networks give."""
+BLOCK = 10_000
+NEAREST = 50
+
+
+@dataclass(frozen=True)
+class Series:
+    """Costs against one quantity."""
+
+    what: str
+    against: str
+    points: tuple[tuple[float, float], ...]
+    """(quantity, processor seconds)."""
+    peaks_mb: tuple[float | None, ...] = ()
+    """Memory at each point, above what was held before; empty where it was not measured."""
+    missing: str = ""
+    """Why there are no points."""
+
+    @property
+    def exponent(self) -> float:
+        """Growth: the slope of log time over log quantity."""
+        return growth_exponent(list(self.points))
+
+
+class Collected:
+    """Costs as they come in, by what was done."""
+
+    def __init__(self, against: str) -> None:
+        self._against = against
+        self._costs: dict[str, list[tuple[float, Cost]]] = {}
+
+    def add(self, what: str, quantity: float, cost: Cost) -> None:
+        """One more point."""
+        self._costs.setdefault(what, []).append((quantity, cost))
+
+    def series(self) -> list[Series]:
+        """All of them, in the order in which they came first."""
+        return [
+            Series(what, self._against, tuple((q, c.seconds) for q, c in found), tuple(c.peak_mb for _, c in found))
+            for what, found in self._costs.items()
+        ]
+
+
+def stages_by_size(
+    library: ShapeLibrary, seed: int, sizes: Sequence[tuple[int, int]], progress: Progress
+) -> list[Series]:
+    """The renderer, and every stage of a build with true masks and depth, for one room at several picture sizes."""
+    found = Collected(MEGAPIXELS)
+    scene = furnished(Case(seed, "living"), library)
+    camera = hold_cameras(scene, library, seed, 1)[0]
+    studio = Studio(scene, library)
+    build_scene(studio.view(camera, sizes[0]).inputs, library)  # makes ready the shapes that later builds find ready
+    for k, size in enumerate(sizes):
+        progress.report(k / len(sizes), f"{size[0]} x {size[1]} pixels")
+        pixels = size[0] * size[1] / 1e6
+        found.add("render with truth", pixels, cost_of(partial(studio.view, camera, size)))
+        _build(studio.view(camera, size, with_empty_room=False).inputs, library, pixels, found, progress)
+    return found.series()
+
+
+def stages_by_objects(library: ShapeLibrary, seed: int, counts: Sequence[int], progress: Progress) -> list[Series]:
+    """The renderer, every stage of a build, and export, for halls of more and more objects; pictures of one size."""
+    found = Collected(OBJECTS)
+    weights = np.cumsum([5.0, *(float(c) for c in counts)]) / (5.0 + sum(counts))
+    _build(_large_scene_inputs(library, 12, seed), library, 0.0, Collected(OBJECTS), progress)  # makes ready the shapes
+    for count, done in zip(counts, weights, strict=False):
+        progress.report(float(done), f"a hall of {count} objects")
+        scene, camera = large_scene(library, count, seed)
+        studio = Studio(scene, library)
+        render = partial(studio.view, camera, PICTURE, with_empty_room=False)
+        found.add("render with truth", count, cost_of(render))
+        built = _build(render().inputs, library, count, found, progress)
+        found.add("export GLB", count, cost_of(partial(glb_bytes, built, library)))
+    return found.series()
+
+
+def _large_scene_inputs(library: ShapeLibrary, count: int, seed: int) -> Inputs:
+    scene, camera = large_scene(library, count, seed)
+    return Studio(scene, library).view(camera, PICTURE, with_empty_room=False).inputs
+
+
+def _build(inputs: Inputs, library: ShapeLibrary, quantity: float, found: Collected, progress: Progress) -> Scene:
+    """Build once and note what each stage took, and the whole."""
+    clock = StageClock(STAGES)
+    scenes: list[Scene] = []
+    whole = cost_of(lambda: scenes.append(build_scene(inputs, library, progress=clock.watched(progress)).scene))
+    for stage in STAGES:
+        if stage in clock.costs:
+            found.add(stage, quantity, clock.costs[stage])
+    found.add("whole build", quantity, replace(whole, peak_mb=max(c.peak_mb or 0 for c in clock.costs.values())))
+    return scenes[0]
+
+
+def layout_by_objects(seed: int, counts: Sequence[int], progress: Progress) -> list[Series]:
+    """The default and the paper's recipe on generated rooms."""
+    found = Collected(OBJECTS)
+    library = box_library()
+    for name in ("feasible", "paper"):
+        stage = layout_recipe(name, library)
+        for k, count in enumerate(counts):
+            progress.report(k / len(counts), f"layout '{name}', {count} objects")
+            observed = generate_room(seed + 500, count).observed
+            found.add(f"layout '{name}'", count, cost_of(partial(stage.optimise, observed, Progress()), 2))
+    return found.series()
+
+
+def steps_by_objects(seed: int, counts: Sequence[int], progress: Progress) -> list[Series]:
+    """One step of the optimiser's last stage, ours and others (`speed_eager`)."""
+    found = []
+    for n, way in enumerate(WAYS):
+        points = []
+        for k, count in enumerate(counts):
+            progress.report((n + k / len(counts)) / len(WAYS), f"a step {way}, {count} objects")
+            seconds = step_seconds(way, count, seed)
+            if seconds is not None:
+                points.append((float(count), seconds))
+        found.append(Series(way, OBJECTS, tuple(points), missing="" if points else "no GPU here"))
+    return found
+
+
+def features_by_library(seed: int, counts: Sequence[int], progress: Progress) -> list[Series]:
+    """Opening a feature store on disk, and the nearest 50 of all its rows; features are synthetic."""
+    found = Collected(SHAPES)
+    block, signs = _block_of_features(seed), np.random.default_rng(seed + 1)
+    with tempfile.TemporaryDirectory(prefix="diorama-speed-") as folder:
+        store = FeatureMatrix(Path(folder), FEATURES)
+        for k, count in enumerate(counts):
+            progress.report(k / len(counts), f"features of {count:,} shapes")
+            while len(store) < count:
+                rows = min(BLOCK, count - len(store))
+                flipped = block[:rows] * signs.choice(np.array([-1, 1], np.float32), FEATURES)
+                store.append([f"shape_{len(store) + r:07d}" for r in range(rows)], flipped[:, None])
+                progress.check()
+            found.add("open the features", count, cost_of(partial(FeatureMatrix, Path(folder), FEATURES), 2))
+            found.add(f"nearest {NEAREST} by features", count, cost_of(partial(store.top, block[0], NEAREST), 5))
+    return found.series()
+
+
+def _block_of_features(seed: int) -> Float32[np.ndarray, "n d"]:
+    """Unit rows; other blocks are the same with signs of columns changed, which is cheaper than drawing them."""
+    rows = np.random.default_rng(seed).standard_normal((BLOCK, FEATURES), dtype=np.float32)
+    return rows / np.linalg.norm(rows, axis=1, keepdims=True)
+
+
+def words_by_library(library: ShapeLibrary, counts: Sequence[int], progress: Progress) -> list[Series]:
+    """Indexing the words of a library, and a search in them; records are those of the library under more names."""
+    found = Collected(SHAPES)
+    records = library.shapes()
+    for k, count in enumerate(counts):
+        progress.report(k / len(counts), f"words of {count:,} shapes")
+        renamed = (replace(records[i % len(records)], id=f"shape_{i:07d}") for i in range(count))
+        listed = cast(ShapeLibrary, _Listed(tuple(renamed)))  # a search in words asks for nothing but records
+        found.add("index the words", count, cost_of(partial(TextIndex, listed.shapes())))
+        search: Callable[[], object] = partial(find, listed, "a small oak bookcase", NEAREST)
+        search()
+        found.add("find by words", count, cost_of(search, 3))
+    return found.series()
+
+
+class _Listed:
+    """A library of records alone."""
+
+    def __init__(self, shapes: tuple[Shape, ...]) -> None:
+        self._shapes = shapes
+
+    def shapes(self) -> tuple[Shape, ...]:
+        return self._shapes

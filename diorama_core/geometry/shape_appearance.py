@@ -1,0 +1,290 @@
+"""What comparing pictures needs to know of a shape: its triangles and its colours, remembered in memory and on disk.
+
+Building a shape from its design takes much longer than reading its triangles back, so every shape is built at most
+once per machine.
+"""
+
+from __future__ import annotations
+
+import io
+import logging
+import os
+import tempfile
+import threading
+import zipfile
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import trimesh
+from jaxtyping import Float, Float32, Int, Int32, UInt8
+from scipy.spatial import cKDTree
+
+from diorama_core.geometry.silhouette import ShapeCaster
+
+log = logging.getLogger(__name__)
+
+_FORMAT = "4"
+_CACHE = 512
+_MIN_AREA_M2 = 1e-12
+_READ_ALONG_EDGE = 5
+"""Rows of points at which a face's picture is read."""
+_AXIS_POINTS = 500
+_MAIN_SHARES = (0.9, 0.8)
+"""Of the surface that belongs to the body, without handles and spouts."""
+_KEEPS_MIDDLE = 0.95
+_OPAQUE = 200
+"""Opacity from which on nothing behind a face is seen."""
+
+
+@dataclass(frozen=True, eq=False)
+class ShapeAppearance:
+    """One shape at scale 1 in its own frame."""
+
+    vertices: Float32[np.ndarray, "v 3"]
+    faces: Int32[np.ndarray, "f 3"]
+    colours_srgb: UInt8[np.ndarray, "k 3"]
+    """One colour per part whose material has one."""
+    areas_m2: Float[np.ndarray, "k"]
+    """Surface of those parts."""
+    face_rgba: UInt8[np.ndarray, "f 4"]
+    """sRGB colour of every face, the mean of its picture, and its opacity; all 0 where no colour is known."""
+    face_spread: UInt8[np.ndarray, "f"]
+    """Standard deviation of the picture on every face, as an sRGB value: what a single colour does not tell."""
+
+    @cached_property
+    def caster(self) -> ShapeCaster:
+        """The triangles, prepared for rays."""
+        return ShapeCaster(trimesh.Trimesh(self.vertices, self.faces, process=False))
+
+    @cached_property
+    def axis_xy(self) -> Float[np.ndarray, "2"]:
+        """Where the upright axis of its body is, about which it turns in place: a mug's handle is beside that.
+
+        Of the middle and the middles of its main parts the one about which it looks most alike when turned.
+        """
+        points = self._spread_points(_AXIS_POINTS)
+        if len(points) < 2:
+            return np.zeros(2)
+        tree = cKDTree(points)
+        options = [np.zeros(2), *(_trimmed_middle(points[:, :2], share) for share in _MAIN_SHARES)]
+        unlike = [_unlike_when_turned(tree, points, option) for option in options]
+        unlike[0] *= _KEEPS_MIDDLE
+        return options[int(np.argmin(unlike))]
+
+    def _spread_points(self, count: int) -> Float[np.ndarray, "n 3"]:
+        """Points spread evenly over the surface, the same ones every time; none where there is no surface."""
+        triangles = self.vertices[self.faces].astype(np.float64)
+        area = np.linalg.norm(np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), axis=1)
+        total = np.cumsum(area)
+        if not len(total) or not np.isfinite(total[-1]) or total[-1] <= _MIN_AREA_M2:
+            return np.zeros((0, 3))
+        steps = np.arange(count) + 0.5
+        face = np.minimum(np.searchsorted(total, steps / count * total[-1]), len(total) - 1)
+        u, v = np.sqrt(np.mod(steps * 0.7548776662466927, 1.0)), np.mod(steps * 0.5698402909980532, 1.0)
+        shares = np.stack([1 - u, u * (1 - v), u * v], axis=1)
+        return np.asarray((shares[:, :, None] * triangles[face]).sum(axis=1))
+
+    @cached_property
+    def opaque_faces(self) -> Int[np.ndarray, "o"]:
+        """Faces that hide what is behind them and whose colour is known."""
+        return np.flatnonzero(self.face_rgba[:, 3] >= _OPAQUE)
+
+    @cached_property
+    def opaque_caster(self) -> ShapeCaster:
+        """Those faces alone, in their order: what is seen through glass."""
+        if len(self.opaque_faces) == len(self.faces):
+            return self.caster
+        opaque = trimesh.Trimesh(self.vertices, self.faces[self.opaque_faces], process=False)
+        opaque.remove_unreferenced_vertices()
+        return ShapeCaster(opaque)
+
+
+def _trimmed_middle(xy: Float[np.ndarray, "n 2"], share: float) -> Float[np.ndarray, "2"]:
+    """The middle of the points' extent without the farthest ones."""
+    middle = np.median(xy, axis=0)
+    for _ in range(8):
+        away = np.linalg.norm(xy - middle, axis=1)
+        retained = xy[away <= np.quantile(away, share)]
+        middle = 0.5 * (retained.min(axis=0) + retained.max(axis=0))
+    return middle
+
+
+def _unlike_when_turned(tree: cKDTree, points: Float[np.ndarray, "n 3"], axis_xy: Float[np.ndarray, "2"]) -> float:
+    """How far points turned about an axis come to lie from the others, those of handles and the like left out."""
+    total = 0.0
+    for angle in np.deg2rad(np.arange(40.0, 360.0, 40.0)):
+        c, s = np.cos(angle), np.sin(angle)
+        moved = points.copy()
+        moved[:, :2] = (points[:, :2] - axis_xy) @ np.array([[c, s], [-s, c]]) + axis_xy
+        away = np.sort(tree.query(moved)[0])
+        total += float(away[: max(int(_MAIN_SHARES[0] * len(away)), 1)].mean())
+    return total
+
+
+def appearance_of(parts: trimesh.Scene) -> ShapeAppearance:
+    """The triangles and colours of a shape's parts."""
+    vertices, faces, colours, areas = [np.zeros((0, 3))], [np.zeros((0, 3), int)], [], []
+    of_faces, spreads = [np.zeros((0, 4), np.uint8)], [np.zeros(0, np.uint8)]
+    count = 0
+    for node in parts.graph.nodes_geometry:
+        T, name = parts.graph[node]
+        mesh = parts.geometry[name]
+        vertices.append(trimesh.transform_points(mesh.vertices, T))
+        faces.append(np.asarray(mesh.faces) + count)
+        rgba, spread = face_colours(mesh)
+        of_faces.append(rgba)
+        spreads.append(spread)
+        count += len(mesh.vertices)
+        colour = material_rgb(mesh.visual)
+        if colour is not None and mesh.area > _MIN_AREA_M2:
+            colours.append(colour)
+            areas.append(float(mesh.area))
+    return ShapeAppearance(
+        np.concatenate(vertices).astype(np.float32),
+        np.concatenate(faces).astype(np.int32),
+        np.array(colours, dtype=np.uint8).reshape(-1, 3),
+        np.array(areas),
+        np.concatenate(of_faces),
+        np.concatenate(spreads),
+    )
+
+
+def face_colours(mesh: trimesh.Trimesh) -> tuple[UInt8[np.ndarray, "f 4"], UInt8[np.ndarray, "f"]]:
+    """`Look.face_rgba` and `Look.face_spread` of one part."""
+    visual: Any = mesh.visual
+    count = len(mesh.faces)
+    spread = np.zeros(count, np.uint8)
+    if visual is None or not visual.defined:
+        return np.zeros((count, 4), np.uint8), spread
+    if visual.kind == "face":
+        return np.asarray(visual.face_colors, dtype=np.uint8), spread
+    if visual.kind == "vertex":
+        return np.rint(np.asarray(visual.vertex_colors, float)[mesh.faces].mean(axis=1)).astype(np.uint8), spread
+    material: Any = visual.material
+    texture = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
+    whole = material_rgb(visual)
+    rgb = np.tile(np.zeros(3) if whole is None else whole, (count, 1))
+    if texture is not None and visual.uv is not None and len(visual.uv) == len(mesh.vertices):
+        factor = getattr(material, "baseColorFactor", None)
+        pixels = _read_picture(texture, np.asarray(visual.uv, float)[mesh.faces])
+        light = _to_linear(pixels.mean(axis=1) / 255.0) * (
+            np.ones(3) if factor is None else np.asarray(factor, float)[:3] / 255.0
+        )
+        rgb = np.clip(np.rint(255.0 * _to_srgb(light)), 0, 255)
+        spread = np.rint(pixels.std(axis=1).mean(axis=1)).astype(np.uint8)
+    return np.concatenate([rgb, np.full((count, 1), _opacity(material))], axis=1).astype(np.uint8), spread
+
+
+def _opacity(material: Any) -> int:
+    """0 to 255; at least 1, since 0 says that nothing is known."""
+    factor = getattr(material, "baseColorFactor", None)
+    if factor is None or len(factor) < 4 or getattr(material, "alphaMode", None) in (None, "OPAQUE"):
+        return 255
+    return max(int(factor[3]), 1)
+
+
+def _read_picture(picture: Any, uv: Float[np.ndarray, "f 3 2"]) -> Float[np.ndarray, "f s 3"]:
+    """sRGB, 0 to 255, at evenly spread points of every face; pictures repeat beyond their edges."""
+    pixels = np.asarray(picture.convert("RGB"))
+    height, width = pixels.shape[:2]
+    at = np.nan_to_num(np.einsum("sc,fck->fsk", _even_shares(), uv))
+    column = np.floor(np.mod(at[..., 0], 1.0) * width).astype(int) % width
+    row = np.floor(np.mod(1.0 - at[..., 1], 1.0) * height).astype(int) % height
+    return np.asarray(pixels[row, column], dtype=np.float64)
+
+
+def _even_shares() -> Float[np.ndarray, "s 3"]:
+    """Points inside a triangle as shares of its corners."""
+    n = _READ_ALONG_EDGE
+    steps = [(i + 1 / 3, j + 1 / 3, n - i - j - 2 / 3) for i in range(n) for j in range(n - i)]
+    return np.array(steps) / n
+
+
+def material_rgb(visual: Any) -> UInt8[np.ndarray, "3"] | None:
+    """One sRGB colour for one part: its material's, or the main one of its vertices or faces."""
+    if visual is None or not visual.defined:
+        return None
+    if visual.kind in ("face", "vertex"):
+        return np.asarray(visual.main_color, dtype=np.uint8)[:3]
+    material: Any = visual.material
+    texture = getattr(material, "baseColorTexture", None)
+    factor = getattr(material, "baseColorFactor", None)
+    if texture is None and factor is None:
+        return np.asarray(material.main_color, dtype=np.uint8)[:3]
+    picture = np.ones(3) if texture is None else np.asarray(texture.convert("RGB").resize((1, 1)), float)[0, 0] / 255.0
+    # glTF: the factor is linear light, the picture is sRGB; a material without a factor shows its picture as it is.
+    light = _to_linear(picture) * (np.ones(3) if factor is None else np.asarray(factor, float)[:3] / 255.0)
+    return np.asarray(np.clip(np.rint(255.0 * _to_srgb(light)), 0, 255), dtype=np.uint8)
+
+
+def _to_linear(srgb: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
+    return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+
+
+def _to_srgb(light: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
+    light = np.maximum(light, 0.0)
+    return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+
+
+class AppearanceStore:
+    """Looks by the content hash of their shapes; safe to share between threads."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._retained: OrderedDict[str, ShapeAppearance] = OrderedDict()
+
+    def get(self, key: str, folder: Path, parts: Callable[[], trimesh.Scene]) -> ShapeAppearance:
+        """The look kept under `key`: from memory, from a file in `folder`, or made from `parts()` and written there.
+
+        A folder that cannot be written costs time, nothing else. Without a key nothing is remembered.
+        """
+        if not key:
+            return appearance_of(parts())
+        with self._lock:
+            if key not in self._retained:
+                self._retained[key] = _read(folder / f"{key}.{_FORMAT}.npz") or _made(folder, key, parts())
+                while len(self._retained) > _CACHE:
+                    self._retained.popitem(last=False)
+            self._retained.move_to_end(key)
+            return self._retained[key]
+
+
+SHARED_APPEARANCES = AppearanceStore()
+"""One memory for all stages: retrieval and pose look at the same shapes."""
+
+
+def _read(path: Path) -> ShapeAppearance | None:
+    try:
+        with np.load(path, allow_pickle=False) as data:
+            return ShapeAppearance(
+                data["vertices"], data["faces"], data["colours"], data["areas"], data["of_faces"], data["spread"]
+            )
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        return None  # absent, or half a file from another program: it is made again
+
+
+def _made(folder: Path, key: str, parts: trimesh.Scene) -> ShapeAppearance:
+    appearance = appearance_of(parts)
+    data = io.BytesIO()
+    np.savez(
+        data,
+        vertices=appearance.vertices,
+        faces=appearance.faces,
+        colours=appearance.colours_srgb,
+        areas=appearance.areas_m2,
+        of_faces=appearance.face_rgba,
+        spread=appearance.face_spread,
+    )
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=folder, delete=False) as part:
+            part.write(data.getvalue())
+        os.replace(part.name, folder / f"{key}.{_FORMAT}.npz")  # so that no reader ever sees half a file
+    except OSError as error:
+        log.warning("cannot keep shapes in %s (%s); they are built again each time", folder, error)
+    return appearance

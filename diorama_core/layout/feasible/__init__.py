@@ -1,0 +1,1 @@
+"""The default recipe: exact structure, then the least move."""

@@ -1,0 +1,140 @@
+"""Re-solving one object while it is dragged: it follows the hand as closely as the room allows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diorama_core.layout.feasible.relocate import relocate
+from diorama_core.layout.feasible.separate import build_program, separate
+from diorama_core.layout.feasible.structure import Structure, exact_structure
+from diorama_core.layout.problem.problem import Problem, build_problem
+from diorama_core.layout.problem.supports import Surface, object_surfaces, outside_m, plane_surface
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.scene import edits
+from diorama_core.scene.types import Pose, Scene, Support
+
+_LEAVES_M = 0.02
+"""A thing dragged this far past the edge of its supporter looks for another."""
+
+
+@dataclass(frozen=True, eq=False)
+class DragSolver:
+    """What dragging one object needs, prepared once; `solve` is fast and leaves everything else where it is."""
+
+    scene: Scene
+    problem: Problem
+    index: int
+    """Of the dragged object in the problem."""
+    places: tuple[tuple[Surface, Support], ...]
+    """Every surface it could be put down on, in the world, with the edge that would then hold it."""
+    rounds: int = 4
+
+    @classmethod
+    def prepare(cls, scene: Scene, library: ShapeLibrary, object_id: str) -> DragSolver:
+        """Gather what stays the same during a drag."""
+        problem = build_problem(scene, library, only=frozenset({object_id}))
+        index = problem.ids.index(object_id)
+        return cls(scene, problem, index, _places(scene, library, problem, index))
+
+    def solve(self, pose: Pose) -> Scene:
+        """The scene with the object as near to `pose` as its support, the walls and its neighbours allow.
+
+        What it holds up rides along. Dragged off its supporter, it is put down on what is below, and its support edge
+        follows. A locked object stays.
+        """
+        i = self.index
+        if not self.problem.free[i]:
+            return self.scene
+        problem, edge = self._at(pose)
+        structure = self._settled(problem)
+        weight = np.tile(np.eye(2), (problem.count, 1, 1))
+        program = build_program(problem, structure, weight)
+        found = separate(program, rounds=self.rounds, check=lambda y, depth: None)
+        if found.stuck:
+            found = relocate(program, found)
+        p = structure.p + program.moves(found.y)
+        moved = edits.place(self.scene, problem.poses(structure.R, p, structure.scale))
+        return moved if edge is None else edits.attach(moved, edge)
+
+    def _at(self, pose: Pose) -> tuple[Problem, Support | None]:
+        """The problem with the object at the hand's pose, its load along with it, and its new edge if any."""
+        old, i = self.problem, self.index
+        R, p, scale = old.R.copy(), old.p.copy(), old.scale.copy()
+        turn = pose.R_world_object @ old.R[i].T
+        for k in old.rides(i):
+            R[k] = turn @ old.R[k]
+            p[k] = pose.position + turn @ (old.p[k] - old.p[i])
+        R[i], p[i], scale[i] = pose.R_world_object, pose.position, pose.scale
+        moved = replace(old, R=R, p=p, scale=scale, adheres=tuple(a for a in old.adheres if a[0] not in old.rides(i)))
+        return self._put_down(moved)
+
+    def _settled(self, problem: Problem) -> Structure:
+        """The object on its support, its load carried along as it lies; put anew only where the object was resized."""
+        i, load = self.index, self.problem.rides(self.index)[1:]
+        structure = exact_structure(problem, only=(i,))
+        if not load:
+            return structure
+        if not np.array_equal(structure.scale[i], self.problem.scale[i]):
+            return exact_structure(problem)
+        R, p = structure.R.copy(), structure.p.copy()
+        turn = structure.R[i] @ self.problem.R[i].T
+        R[load] = turn @ self.problem.R[load]
+        p[load] = structure.p[i] + (self.problem.p[load] - self.problem.p[i]) @ turn.T
+        return replace(structure, R=R, p=p)
+
+    def _put_down(self, problem: Problem) -> tuple[Problem, Support | None]:
+        i = self.index
+        supported = problem.surface[i]
+        if supported is None or problem.contact[i][2] != -1.0:
+            return problem, None
+        j = int(problem.parent[i])
+        world = supported if j < 0 else supported.at(problem.R[j], problem.p[j], problem.scale[j])
+        foot = problem.p[i] - 0.5 * problem.R[i][:, 2] * problem.shape_size[i][2] * problem.scale[i][2]
+        if j >= 0 and outside_m(world, foot) <= _LEAVES_M:
+            return problem, None
+        under = [
+            (surface, edge)
+            for surface, edge in self.places
+            if outside_m(surface, foot) <= 0.0 and surface.level <= float(foot[2]) + 0.15
+        ]
+        if not under:
+            return problem, None
+        surface, edge = max(under, key=lambda place: place[0].level)
+        present = self.scene.support_of(problem.ids[i])
+        if present is not None and present.parent == edge.parent and present.parent_surface == edge.parent_surface:
+            return problem, None
+        parent = problem.parent.copy()
+        parent[i] = problem.ids.index(edge.parent) if edge.parent in problem.ids else -1
+        surfaces, planes = list(problem.surface), list(problem.on_plane)
+        # Surfaces of places are in the world already, and their owners stay.
+        surfaces[i] = replace(surface, of_plane=True)
+        planes[i] = None if parent[i] >= 0 else edge.parent
+        kin = problem.kin.copy()
+        for k in problem.rides(i):
+            kin[k, :] = kin[:, k] = False
+        changed = replace(problem, parent=parent, surface=tuple(surfaces), on_plane=tuple(planes))
+        for k in problem.rides(i):
+            for above in changed.chain(k):
+                kin[k, above] = kin[above, k] = True
+        return replace(changed, kin=kin | (problem.kin & problem.yielding)), edge
+
+
+def resolve_drag(scene: Scene, library: ShapeLibrary, object_id: str, pose: Pose) -> Scene:
+    """One step of a drag; keep a `DragSolver` for several."""
+    return DragSolver.prepare(scene, library, object_id).solve(pose)
+
+
+def _places(scene: Scene, library: ShapeLibrary, problem: Problem, index: int) -> tuple[tuple[Surface, Support], ...]:
+    own = {problem.ids[k] for k in problem.rides(index)}
+    child = problem.ids[index]
+    found = [(plane_surface(p), Support(child, p.id)) for p in scene.architecture.by_role("floor")]
+    for item in scene.objects:
+        if item.id in own:
+            continue
+        for number, surface in enumerate(object_surfaces(library.shape(item.shape_id), item)):
+            world = surface.in_world(item.pose)
+            if world.normal[2] > 0.98:
+                found.append((world, Support(child, item.id, parent_surface=number)))
+    return tuple(found)

@@ -1,0 +1,152 @@
+"""The default recipe: exact structure first, then the least move that takes collisions away."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.artefacts import LayoutReport
+from diorama_core.layout.feasible.photo_observations import PhotoObservations, photo_observations
+from diorama_core.layout.feasible.relocate import relocate
+from diorama_core.layout.feasible.separate import Program, Separation, build_program, separate
+from diorama_core.layout.feasible.structure import Structure, exact_structure
+from diorama_core.layout.problem.problem import Problem, build_problem
+from diorama_core.layout.report import measure
+from diorama_core.layout.weights import AS_IT_IS, Weights
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.progress import Progress
+from diorama_core.protocols import Preview
+from diorama_core.scene import edits
+from diorama_core.scene.types import Camera, Scene
+
+MEASURED_WEIGHT, REASONED_WEIGHT = 2.0, 0.3
+"""What leaving the observed distance costs against leaving the observed outline: for a measured distance, and for one
+that was reasoned from a photo alone."""
+SHRINK = 0.95
+"""What a stuck object's footprint is multiplied by, each attempt."""
+
+
+@dataclass(frozen=True)
+class FeasibleRecipe:
+    """Support is exact by construction; what remains moves as little as possible until nothing overlaps.
+
+    With a camera, moves that would be seen in the photo cost more than moves along the viewing ray.
+    """
+
+    library: ShapeLibrary
+    only: frozenset[str] | None = None
+    """Ids free to move (with what they hold up); all when None."""
+    rounds: int = 12
+    """Most rounds of choosing axes."""
+    attempts: int = 3
+    """How often stuck objects are made a little smaller before giving up."""
+    observations: float = 4.0
+    """Cost of moving across the viewing ray relative to along it, when the scene has a camera; 1 is indifferent."""
+    depth_weight: float = REASONED_WEIGHT
+    """How much leaving the observed distance counts against leaving the observed outline; for the objects that their
+    support or wall moved, when the scene has a camera."""
+    adherence_m: float = 0.0
+    """Faces parallel to a wall and nearer than this are set against it, besides those whose support edge says so. Above
+    0 a second run may change a layout: the first can bring things near walls."""
+    weights: Weights = AS_IT_IS
+    """Of the costs in `weights.DEFAULT_COSTS`."""
+
+    def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
+        """Returns the scene with every free object's pose made feasible, and what was achieved.
+
+        Raises:
+            Cancelled: when asked to stop; nothing was changed then.
+        """
+        begun = time.perf_counter()
+        progress.report(0.0, "reading the layout")
+        problem = build_problem(scene, self.library, only=self.only, adherence_m=self.adherence_m)
+        before = measure(problem, problem.R, problem.p, problem.scale)
+        observations = self._observations(problem, scene.camera)
+        wanted = problem
+        for attempt in range(self.attempts):
+            seen = None if observations is None else observations.limited(wanted.scale)
+            structure = exact_structure(wanted, self._rays(wanted, scene.camera), seen)
+            program = build_program(wanted, structure, self._weights(wanted, structure, scene.camera))
+            found = separate(program, rounds=self.rounds, check=self._watcher(scene, program, progress, preview))
+            found = relocate(program, found) if found.stuck else found
+            if not found.stuck or attempt == self.attempts - 1:
+                break
+            wanted = _smaller(wanted, structure, found)
+        p = structure.p + program.moves(found.y)
+        after = measure(problem, structure.R, p, structure.scale)
+        reasons = (
+            problem.reasons + structure.reasons + _shrunk_reasons(problem, wanted) + _stuck_reasons(problem, found)
+        )
+        report = LayoutReport("feasible", before, after, time.perf_counter() - begun, reasons)
+        settled = edits.place(scene, problem.poses(structure.R, p, structure.scale))
+        return edits.set_metrics(settled, after), report
+
+    @property
+    def _across(self) -> float:
+        """Cost of moving across the viewing ray relative to along it, as weighted; 1 is indifferent."""
+        return 1.0 + (self.observations - 1.0) * self.weights.outline
+
+    def _watcher(
+        self, scene: Scene, program: Program, progress: Progress, preview: Preview | None
+    ) -> Callable[[np.ndarray, float], None]:
+        turn = 0
+        structure, problem = program.structure, program.problem
+
+        def check(y: np.ndarray, depth: float) -> None:
+            nonlocal turn
+            turn += 1
+            progress.report(turn / (self.rounds + 1), "taking collisions away")
+            if preview is not None:
+                poses = problem.poses(structure.R, structure.p + program.moves(y), structure.scale)
+                moved = np.linalg.norm(structure.p + program.moves(y) - problem.p, axis=1)
+                costs = (("overlap_m", max(depth, 0.0)), ("moved_m", float(moved.mean())))
+                preview(edits.place(scene, poses), costs)
+
+        return check
+
+    def _rays(self, problem: Problem, camera: Camera | None) -> Float[np.ndarray, "n 3"] | None:
+        if camera is None or self._across <= 1.0:
+            return None
+        away = problem.p - camera.position
+        return away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-9)
+
+    def _observations(self, problem: Problem, camera: Camera | None) -> PhotoObservations | None:
+        if camera is None or self._across <= 1.0:
+            return None
+        return photo_observations(problem, camera, depth_weight=self.depth_weight * self.weights.distance)
+
+    def _weights(self, problem: Problem, structure: Structure, camera: Camera | None) -> Float[np.ndarray, "n 2 2"]:
+        """What a move costs: things that hold up much move less; moves across the viewing ray cost more."""
+        load = np.array([float(len(problem.rides(i))) for i in range(problem.count)])
+        rays = self._rays(problem, camera)
+        weights = np.tile(np.eye(2), (problem.count, 1, 1))
+        if rays is not None:
+            for i in range(problem.count):
+                along = structure.basis[i].T @ rays[i]
+                weights[i] = self._across * np.eye(2) - (self._across - 1.0) * np.outer(along, along)
+        return weights * load[:, None, None]
+
+
+def _smaller(problem: Problem, structure: Structure, found: Separation) -> Problem:
+    """The lighter object of each stuck pair a little smaller across."""
+    scale = problem.scale.copy()
+    for pair in found.stuck:
+        free = [k for k in pair if problem.free[k]]
+        volume = {k: float(np.prod(problem.shape_size[k] * structure.scale[k])) for k in free}
+        if free:
+            k = min(free, key=lambda k: (volume[k], k))
+            scale[k] *= np.where(np.abs(problem.contact[k]) > 0.5, 1.0, SHRINK)
+    return replace(problem, scale=scale)
+
+
+def _shrunk_reasons(problem: Problem, wanted: Problem) -> tuple[str, ...]:
+    shrunk = np.flatnonzero((wanted.scale < problem.scale - 1e-12).any(axis=1))
+    return tuple(f"tight: {problem.labels[i]} was made a little smaller to fit" for i in shrunk)
+
+
+def _stuck_reasons(problem: Problem, found: Separation) -> tuple[str, ...]:
+    return tuple(f"no room: {problem.labels[i]} and {problem.labels[j]} still overlap" for i, j in found.stuck)

@@ -1,0 +1,321 @@
+"""Exact structure: from the top of the support tree down, every object gets the one orientation, size and height that
+its supporter allows; what stays free is two coordinates on the support surface.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass, field
+from itertools import combinations
+from math import hypot, sqrt
+
+import numpy as np
+from jaxtyping import Float
+from scipy.optimize import linprog
+
+from diorama_core.geometry.cross import cross
+from diorama_core.layout.feasible.photo_observations import PhotoObservations
+from diorama_core.layout.feasible.quadratic import HARD, least_distance
+from diorama_core.layout.problem.problem import Problem
+from diorama_core.layout.problem.supports import Surface, is_wall_like, plane_axes
+
+SMALLEST_SHRINK = 0.8
+"""An object that does not fit is made smaller by at most this factor; beyond, it stays large and is named."""
+UPRIGHT_WITHIN = float(np.cos(np.deg2rad(35.0)))
+"""Things hung within this angle of upright hang upright; others keep their roll."""
+_FEW_SIDES = 10
+"""Of a surface; with more, a linear program is quicker than all corners."""
+INSET_M = 2e-4
+"""Kept between a contact face and the edge of its support, and under a shelf's ceiling."""
+
+
+_IDENTITY = np.eye(3)
+_FRONT_FIRST = np.array([2.25, 1.0, 1.0])
+
+
+@dataclass(frozen=True, eq=False)
+class Structure:
+    """A layout that is structurally exact, and the coordinates in which it can still move.
+
+    Object i moves by w_i = sum over its chain of supporters a of basis_a @ r_a, so children ride along.
+    """
+
+    R: Float[np.ndarray, "n 3 3"]
+    p: Float[np.ndarray, "n 3"]
+    scale: Float[np.ndarray, "n 3"]
+    basis: Float[np.ndarray, "n 3 2"]
+    """World directions of each object's two coordinates; zero columns where it cannot move."""
+    bound_owner: np.ndarray
+    bound_normal: Float[np.ndarray, "b 3"]
+    bound_slack: Float[np.ndarray, " b"]
+    """Rows m . (basis_i @ r_i) <= slack: the contact face stays on its surface."""
+    reasons: tuple[str, ...]
+
+
+@dataclass
+class _Walk:
+    """The structure while it grows."""
+
+    R: np.ndarray
+    p: np.ndarray
+    scale: np.ndarray
+    basis: np.ndarray
+    owners: list[int] = field(default_factory=list)
+    normals: list[np.ndarray] = field(default_factory=list)
+    slacks: list[float] = field(default_factory=list)
+    reasons: list[str] = field(default_factory=list)
+
+
+def exact_structure(
+    problem: Problem,
+    ray: Float[np.ndarray, "n 3"] | None = None,
+    observations: PhotoObservations | None = None,
+    *,
+    only: Collection[int] | None = None,
+) -> Structure:
+    """Walk the support tree from the top and fix what the supporters determine.
+
+    Args:
+        problem: the observed poses and the graph.
+        ray: unit viewing directions per object; where given, an object that must rise or sink slides along its ray so
+            that it stays where the photo shows it.
+        evidence: what the camera saw, for objects that their support moved.
+        only: indices of the objects to settle; the others keep their poses and cannot move. All free ones when None.
+    """
+    n = problem.count
+    walk = _Walk(problem.R.copy(), problem.p.copy(), problem.scale.copy(), np.zeros((n, 3, 2)))
+    against: dict[int, list[tuple[int, np.ndarray]]] = {}
+    for i, w, face in problem.adheres:
+        against.setdefault(i, []).append((w, face))
+    for i in problem.top_down:
+        if problem.free[i] and (only is None or i in only):
+            surface = problem.surface[i]
+            if surface is None:
+                walk.basis[i] = np.eye(3)[:, :2]
+            else:
+                _settle(problem, walk, i, _posed(walk, problem, i, surface), against.get(i, []), ray, observations)
+    owners = np.array(walk.owners, dtype=int)
+    return Structure(
+        walk.R, walk.p, walk.scale, walk.basis, owners,
+        np.array(walk.normals).reshape(-1, 3), np.array(walk.slacks), tuple(walk.reasons),
+    )  # fmt: skip
+
+
+def _posed(walk: _Walk, problem: Problem, i: int, surface: Surface) -> Surface:
+    j = int(problem.parent[i])
+    return surface if j < 0 else surface.at(walk.R[j], walk.p[j], walk.scale[j])
+
+
+def _settle(
+    problem: Problem,
+    walk: _Walk,
+    i: int,
+    surface: Surface,
+    against: list[tuple[int, np.ndarray]],
+    ray: np.ndarray | None,
+    observations: PhotoObservations | None,
+) -> None:
+    n = surface.normal
+    walk.R[i] = _aligned(walk.R[i], problem.contact[i], surface, [(problem.walls[w].normal, f) for w, f in against])
+    u, v = plane_axes(n)
+    _on_support(problem, walk, i, surface, None if ray is None else ray[i])
+    grounded = problem.grounded[i] and is_wall_like(surface)
+    walk.basis[i] = np.column_stack([u, np.zeros(3) if grounded else v])
+    _against_walls(problem, walk, i, against)
+    if grounded:
+        _reach_floor(problem, walk, i)
+    if observations is not None:
+        pinned = problem.contact[i] + sum((face for _, face in against), np.zeros(3))
+        pinned[2] -= float(grounded)
+        walk.p[i], walk.scale[i] = observations.fitted(i, walk.R[i], walk.p[i], walk.scale[i], walk.basis[i], pinned)
+    m, h = surface.outward, surface.offset
+    reach = _fit(problem, walk, i, surface, m, h)
+    walk.p[i] = walk.p[i] + _lift(problem, walk, i, surface) * n
+    contact = _contact_centre(problem, walk, i)
+    slack = h - m @ contact - reach - INSET_M
+    rows = m @ walk.basis[i]
+    mobile = (rows * rows).sum(axis=1) > 1e-12
+    m, slack, rows = m[mobile], slack[mobile], rows[mobile]
+    if (slack < 0).any():
+        move = walk.basis[i] @ _into(rows, slack)
+        walk.p[i] = walk.p[i] + move
+        slack = slack - m @ move
+    walk.owners += [i] * len(m)
+    walk.normals += list(m)
+    walk.slacks += [max(float(s), 0.0) for s in slack]
+
+
+def _reach_floor(problem: Problem, walk: _Walk, i: int) -> None:
+    """Stretch a door to the floor, keeping its top where it was seen; lower it where that would change it too much."""
+    height = float(_size(problem, walk, i)[2])
+    top = float(walk.p[i][2]) + height / 2
+    factor = (top - problem.floor_m) / height
+    if SMALLEST_SHRINK <= factor <= 1.0 / SMALLEST_SHRINK:
+        walk.scale[i, 2] *= factor
+    walk.p[i] = [*walk.p[i][:2], problem.floor_m + float(_size(problem, walk, i)[2]) / 2]
+
+
+def _size(problem: Problem, walk: _Walk, i: int) -> np.ndarray:
+    return problem.shape_size[i] * walk.scale[i]
+
+
+def _contact_centre(problem: Problem, walk: _Walk, i: int) -> np.ndarray:
+    return walk.p[i] + walk.R[i] @ (problem.contact[i] * _size(problem, walk, i) / 2)
+
+
+def _lift(problem: Problem, walk: _Walk, i: int, surface: Surface) -> float:
+    """How far the contact face is below the surface."""
+    return surface.level - float(surface.normal @ _contact_centre(problem, walk, i))
+
+
+def _on_support(problem: Problem, walk: _Walk, i: int, surface: Surface, ray: np.ndarray | None) -> None:
+    """Move the object onto its surface: along the normal, or along its viewing ray where that meets it decently."""
+    lift = _lift(problem, walk, i, surface)
+    shift = lift * surface.normal
+    if ray is not None and abs(lift) > 1e-6:
+        meets = float(ray @ surface.normal)
+        if abs(meets) > 0.15:
+            slide = lift / meets * ray
+            limit = max(0.5 * float(_size(problem, walk, i).max()), 0.15)
+            sideways = slide - shift
+            far = float(np.linalg.norm(sideways))
+            shift = shift + sideways * min(1.0, limit / max(far, 1e-9))
+    walk.p[i] = walk.p[i] + shift
+
+
+def _aligned(
+    R: np.ndarray, contact: np.ndarray, surface: Surface, against: list[tuple[np.ndarray, np.ndarray]]
+) -> np.ndarray:
+    """Swing the contact face onto the support, then twist about the normal to the observed front, or to a wall."""
+    n = surface.normal
+    swung = swing(R @ contact, -n) @ R
+    if against:
+        wall, face = against[0]
+        return _twist(swung, n, face, -wall)
+    if is_wall_like(surface):
+        up = np.array([0.0, 0.0, 1.0])
+        flat_up = up - (up @ n) * n
+        own = swung[:, 2] - (swung[:, 2] @ n) * n
+        if float(own @ flat_up) > UPRIGHT_WITHIN * float(np.linalg.norm(own) * np.linalg.norm(flat_up)):
+            return _twist(swung, n, np.array([0.0, 0.0, 1.0]), up)
+        return swung
+    # The front, unless another axis lies much flatter on the support.
+    axis = int(((1.0 - (n @ swung) ** 2) * _FRONT_FIRST).argmax())
+    return _twist(swung, n, _IDENTITY[axis], R[:, axis])
+
+
+def swing(a: Float[np.ndarray, "3"], b: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
+    """The smallest rotation that takes unit vector a to unit vector b."""
+    c = float(a @ b)
+    if c < -1.0 + 1e-9:
+        perpendicular = cross(a, np.eye(3)[int(np.abs(a).argmin())])
+        perpendicular /= np.linalg.norm(perpendicular)
+        return 2.0 * np.outer(perpendicular, perpendicular) - np.eye(3)
+    x, y, z = cross(a, b)
+    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return _IDENTITY + K + K @ K / (1.0 + c)
+
+
+def _twist(R: np.ndarray, n: np.ndarray, axis_object: np.ndarray, toward: np.ndarray) -> np.ndarray:
+    """Turn about n until an object axis points toward a world direction, both seen along n."""
+    have, want = R @ axis_object, np.asarray(toward)
+    have, want = have - (have @ n) * n, want - (want @ n) * n
+    length = sqrt(float(have @ have) * float(want @ want))
+    if length < 1e-9:
+        return R
+    sine, cosine = float(n @ cross(have, want)) / length, float(have @ want) / length
+    if abs(sine) < 1e-12 and cosine > 0:
+        return R
+    norm = hypot(sine, cosine)
+    sine, cosine = sine / norm, cosine / norm
+    x, y, z = n.tolist()
+    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return (_IDENTITY + sine * K + (1.0 - cosine) * (K @ K)) @ R
+
+
+def _against_walls(problem: Problem, walk: _Walk, i: int, against: list[tuple[int, np.ndarray]]) -> None:
+    """Bring faces to their walls and give up the coordinate that would leave them."""
+    basis = walk.basis[i]
+    for w, _ in against[:2]:
+        wall = problem.walls[w]
+        slope = basis.T @ wall.normal
+        steepness = float(slope @ slope)
+        if steepness < 0.25:
+            continue
+        half = 0.5 * np.abs((wall.normal @ walk.R[i]) * _size(problem, walk, i)).sum()
+        gap = float(wall.normal @ walk.p[i]) - wall.offset - half
+        walk.p[i] = walk.p[i] - basis @ (slope * gap / steepness)
+        along = basis @ (np.array([-slope[1], slope[0]]) / np.sqrt(steepness))
+        free = np.linalg.norm(basis, axis=0).min() > 1e-9
+        basis = np.column_stack([along, np.zeros(3)]) if free else np.zeros((3, 2))
+    walk.basis[i] = basis
+
+
+def _fit(problem: Problem, walk: _Walk, i: int, surface: Surface, m: np.ndarray, h: np.ndarray) -> np.ndarray:
+    """Shrink only what does not fit; returns the reach of the contact face along each outward normal."""
+    label = problem.labels[i]
+    normal_axis = int(np.abs(problem.contact[i]).argmax())
+    tall = float(_size(problem, walk, i)[normal_axis])
+    if tall > surface.clearance_m - INSET_M:
+        factor = max((surface.clearance_m - INSET_M) / tall, 1e-3)
+        if factor >= SMALLEST_SHRINK:
+            walk.scale[i, normal_axis] *= factor
+        else:
+            walk.reasons.append(f"too tall: {label} does not fit in the {surface.clearance_m:.2f} m above its support")
+    footprint = [k for k in range(3) if k != normal_axis]
+    middle = m @ (surface.polygon.sum(axis=0) / len(surface.polygon))
+    reach = _reach(problem, walk, i, m)
+    room = _room(m, h - middle, reach)
+    if room < 1.0:
+        for k in footprint:
+            axis = walk.R[i][:, k]
+            width = float(np.ptp(surface.polygon @ axis)) - 2 * INSET_M
+            factor = max(width, 1e-6) / float(_size(problem, walk, i)[k])
+            if SMALLEST_SHRINK <= factor < 1.0:
+                walk.scale[i, k] *= factor
+        room = _room(m, h - middle, _reach(problem, walk, i, m))
+        if SMALLEST_SHRINK <= room < 1.0:
+            walk.scale[i, footprint] *= room
+            room = 1.0
+        reach = _reach(problem, walk, i, m)
+    if room < 1.0:
+        walk.reasons.append(f"larger than its support: {label} overhangs by {100 * (1 - room):.0f} %")
+    return max(min(room, 1.0), 0.0) * reach
+
+
+def _reach(problem: Problem, walk: _Walk, i: int, m: np.ndarray) -> np.ndarray:
+    half = problem.firm[i] * _size(problem, walk, i) * (1.0 - np.abs(problem.contact[i])) / 2
+    return np.abs((m @ walk.R[i]) * half).sum(axis=1)
+
+
+def _room(m: np.ndarray, h: np.ndarray, reach: np.ndarray) -> float:
+    """The largest share t of a footprint that fits somewhere on a surface: m x <= h - t reach; at most 1."""
+    h = h - INSET_M
+    if (h - reach >= 0).all():
+        return 1.0
+    u, v = plane_axes(cross(m[0], m[1]) / max(float(np.linalg.norm(cross(m[0], m[1]))), 1e-9))
+    A = np.column_stack([m @ u, m @ v, reach])
+    share = _highest_vertex(A, h) if len(A) <= _FEW_SIDES else _highest(A, h)
+    return share if share < 1.0 - 1e-9 else 1.0
+
+
+def _highest(A: np.ndarray, h: np.ndarray) -> float:
+    found = linprog([0.0, 0.0, -1.0], A_ub=A, b_ub=h, bounds=[(None, None), (None, None), (0.0, 1.0)])
+    return float(np.asarray(found.x)[2]) if found.status == 0 else 0.0
+
+
+def _highest_vertex(A: np.ndarray, h: np.ndarray) -> float:
+    """The same through all corners of A x <= h at once: a tenth of the time for the few sides that most tops have."""
+    triples = np.array(list(combinations(range(len(A)), 3)))
+    corners, bounds = A[triples], h[triples]
+    firm = np.abs(np.linalg.det(corners)) > 1e-9
+    x = np.linalg.solve(corners[firm], bounds[firm][..., None])[..., 0]
+    inside = (x @ A.T <= h + 1e-9).all(axis=1)
+    return float(np.clip(x[inside, 2].max(initial=0.0), 0.0, 1.0))
+
+
+def _into(rows: np.ndarray, slack: np.ndarray) -> Float[np.ndarray, "2"]:
+    """The shortest move r with rows r <= slack."""
+    if not len(rows) or (slack >= 0).all():
+        return np.zeros(2)
+    return least_distance(-rows, -slack, np.full(len(slack), HARD))

@@ -1,0 +1,239 @@
+"""What the layout optimisers solve: a scene and its shapes, reduced to arrays.
+
+Objects are sorted by id, so that no result depends on the order in which a scene lists them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from diorama_core.geometry.convex import ConvexPart
+from diorama_core.geometry.sat import PackedParts, pack_parts
+from diorama_core.layout.problem.parts import parts_of_shape
+from diorama_core.layout.problem.supports import (
+    Surface,
+    choose_contact,
+    choose_surface,
+    complete_edges,
+    is_soft,
+    is_wall_like,
+    wall_faces,
+)
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.scene.support import descendants
+from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, Support
+
+FIRM_SHARE = 0.55
+"""Share of a soft thing's extent that does not give way: pillows lean on and sink into one another."""
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """Everything an optimiser needs, indexed by object (sorted by id)."""
+
+    ids: tuple[str, ...]
+    labels: tuple[str, ...]
+    R: Float[np.ndarray, "n 3 3"]
+    """Observed rotations, world from object."""
+    p: Float[np.ndarray, "n 3"]
+    """Observed centres in the world, metres."""
+    scale: Float[np.ndarray, "n 3"]
+    """Observed scales."""
+    shape_size: Float[np.ndarray, "n 3"]
+    """Extents at scale 1, metres."""
+    firm: Float[np.ndarray, " n"]
+    """Share of the extents that does not give way: 1, less for soft things."""
+    parent: Int[np.ndarray, " n"]
+    """Index of the supporting object, or -1."""
+    on_plane: tuple[str | None, ...]
+    """Id of the supporting plane, where one supports."""
+    surface: tuple[Surface | None, ...]
+    """Where each object rests; None when nothing holds it."""
+    contact: Float[np.ndarray, "n 3"]
+    """Outward normal of the touching face, in the object frame."""
+    free: Bool[np.ndarray, " n"]
+    """False for constants: locked, or outside the selection."""
+    adheres: tuple[tuple[int, int, Float[np.ndarray, "3"]], ...]
+    """(object, wall, outward normal of the object's face against that wall, in the object frame)."""
+    grounded: Bool[np.ndarray, " n"]
+    """Doors: they hang on a wall and reach down to the floor."""
+    floor_m: float
+    """Height of the floor; 0 without one."""
+    floor_outline: Float[np.ndarray, "k 2"]
+    """The floor's outline in plan, empty without one; with walls that stand into the room it is not convex."""
+    walls: tuple[Plane, ...]
+    relations: Int[np.ndarray, "m 2"]
+    """Pairs that are near each other and should stay so."""
+    kin: Bool[np.ndarray, "n n"]
+    """Pairs that never collide: an object and its direct or indirect supporters, and `yielding` ones."""
+    yielding: Bool[np.ndarray, "n n"]
+    """Pairs of which one is a rug: things stand over its edge."""
+    parts: tuple[tuple[ConvexPart, ...], ...]
+    packed: PackedParts
+    """The same parts, ready to be posed."""
+    reasons: tuple[str, ...] = ()
+
+    @property
+    def count(self) -> int:
+        """Number of objects."""
+        return len(self.ids)
+
+    @cached_property
+    def top_down(self) -> tuple[int, ...]:
+        """Object indices, supporters before what they support."""
+        depth = [len(self.chain(i)) for i in range(self.count)]
+        return tuple(sorted(range(self.count), key=lambda i: (depth[i], i)))
+
+    def chain(self, index: int) -> list[int]:
+        """The object and its supporting objects, nearest first."""
+        found = [index]
+        while self.parent[found[-1]] >= 0:
+            found.append(int(self.parent[found[-1]]))
+        return found
+
+    @cached_property
+    def _riders(self) -> tuple[tuple[int, ...], ...]:
+        riders: list[list[int]] = [[] for _ in range(self.count)]
+        for k in range(self.count):
+            for i in self.chain(k):
+                riders[i].append(k)
+        return tuple(tuple(r) for r in riders)
+
+    def rides(self, index: int) -> list[int]:
+        """The object and everything it holds up, directly or not."""
+        return list(self._riders[index])
+
+    def poses(
+        self, R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]
+    ) -> dict[str, Pose]:
+        """Poses of the objects that were free to move."""
+        return {self.ids[i]: Pose(R[i], p[i], scale[i]) for i in range(self.count) if self.free[i]}
+
+
+def build_problem(
+    scene: Scene, library: ShapeLibrary, *, only: frozenset[str] | None = None, adherence_m: float = 0.1
+) -> Problem:
+    """Reduce a scene to arrays.
+
+    Args:
+        scene: with any support graph: missing edges are completed from geometry, cycles are cut, with a reason.
+        library: where shapes come from.
+        only: ids free to move, with what they hold up; all when None.
+        adherence_m: faces parallel to a wall and nearer than this are taken to stand against it.
+    """
+    objects = sorted(scene.objects, key=lambda o: o.id)
+    shapes = [library.shape(o.shape_id) for o in objects]
+    edges, reasons = complete_edges(scene, objects, shapes)
+    index = {o.id: k for k, o in enumerate(objects)}
+    free = _free(scene, objects, only)
+    parent = np.full(len(objects), -1)
+    for k, edge in enumerate(edges):
+        if edge is not None and edge.parent in index:
+            parent[k] = index[edge.parent]
+    surfaces: list[Surface | None] = []
+    contacts = np.zeros((len(objects), 3))
+    for k, (item, edge) in enumerate(zip(objects, edges)):
+        supported_by = shapes[parent[k]] if parent[k] >= 0 else None
+        surfaces.append(choose_surface(scene, item, edge, supported_by) if edge is not None else None)
+        contacts[k] = choose_contact(scene, item, edge, surfaces[-1])
+    walls = tuple(sorted(scene.architecture.by_role("wall"), key=lambda w: w.id))
+    floor = scene.architecture.floor
+    yielding = _yielding_pairs(objects)
+    firm = np.array([FIRM_SHARE if is_soft(o) else 1.0 for o in objects]).reshape(-1)
+    parts = tuple(_scaled(parts_of_shape(library, s), share) for s, share in zip(shapes, firm))
+    on_plane = tuple(e.parent if e is not None and e.parent not in index else None for e in edges)
+    p = np.array([o.pose.position for o in objects]).reshape(-1, 3)
+    R = np.array([o.pose.R_world_object for o in objects]).reshape(-1, 3, 3)
+    sizes = np.array([o.size_m for o in objects]).reshape(-1, 3)
+    return Problem(
+        ids=tuple(o.id for o in objects),
+        labels=tuple(o.label for o in objects),
+        R=R,
+        p=p,
+        scale=np.array([o.pose.scale for o in objects]).reshape(-1, 3),
+        shape_size=np.array([o.shape_size_m for o in objects]).reshape(-1, 3),
+        firm=firm,
+        parent=parent,
+        on_plane=on_plane,
+        surface=tuple(surfaces),
+        contact=contacts,
+        free=free,
+        adheres=_adherences(R, p, sizes, edges, surfaces, walls, adherence_m),
+        grounded=np.array([o.category == "door" for o in objects], dtype=bool),
+        floor_m=0.0 if floor is None else float(floor.centre[2]),
+        floor_outline=np.zeros((0, 2)) if floor is None else floor.polygon[:, :2],
+        walls=walls,
+        relations=_relations(parent, on_plane, p, sizes),
+        kin=_kin(parent, yielding),
+        yielding=yielding,
+        parts=parts,
+        packed=pack_parts(parts),
+        reasons=reasons,
+    )
+
+
+def _scaled(parts: tuple[ConvexPart, ...], share: float) -> tuple[ConvexPart, ...]:
+    return parts if share == 1.0 else tuple(replace(part, vertices=part.vertices * share) for part in parts)
+
+
+def _free(scene: Scene, objects: Sequence[SceneObject], only: frozenset[str] | None) -> Bool[np.ndarray, " n"]:
+    chosen = None if only is None else set(only).union(*(descendants(scene, i) for i in only if scene.has_object(i)))
+    return np.array([not o.locked and (chosen is None or o.id in chosen) for o in objects], dtype=bool)
+
+
+def _adherences(
+    R: np.ndarray,
+    p: np.ndarray,
+    sizes: np.ndarray,
+    edges: Sequence[Support | None],
+    surfaces: Sequence[Surface | None],
+    walls: tuple[Plane, ...],
+    within_m: float,
+) -> tuple[tuple[int, int, np.ndarray], ...]:
+    """Stated adherences, and faces that already are parallel to a wall and near it."""
+    found = []
+    for w, wall in enumerate(walls):
+        faces, gap, facing = wall_faces(R, p, sizes, wall)
+        for k, edge in enumerate(edges):
+            surface = surfaces[k]
+            if edge is None or surface is None or is_wall_like(surface):
+                continue
+            near = gap[k] < within_m and facing[k] > 0.97 and surface.of_plane
+            if near or wall.id in edge.adheres_to:
+                found.append((k, w, faces[k]))
+    return tuple(sorted(found, key=lambda a: a[:2]))
+
+
+def _relations(
+    parent: np.ndarray, on_plane: Sequence[str | None], p: np.ndarray, sizes: np.ndarray
+) -> Int[np.ndarray, "m 2"]:
+    """Support edges between objects, and each object with its nearest three siblings closer than a metre."""
+    pairs = {(k, int(j)) for k, j in enumerate(parent) if j >= 0}
+    names = {name: -2 - k for k, name in enumerate(sorted({n for n in on_plane if n is not None}))}
+    supporter = np.where(parent >= 0, parent, [names[n] if n is not None else -1 for n in on_plane])
+    radius = 0.5 * np.linalg.norm(sizes, axis=1)
+    gap = np.linalg.norm(p[:, None] - p[None], axis=2) - radius[:, None] - radius[None]
+    gap[(supporter[:, None] != supporter[None]) | np.eye(len(parent), dtype=bool) | (gap > 1.0)] = np.inf
+    for k, order in enumerate(np.argsort(gap, axis=1, kind="stable")[:, :3]):
+        pairs |= {(max(k, int(j)), min(k, int(j))) for j in order if np.isfinite(gap[k, j])}
+    return np.array(sorted(pairs), dtype=int).reshape(-1, 2)
+
+
+def _kin(parent: np.ndarray, yielding: Bool[np.ndarray, "n n"]) -> Bool[np.ndarray, "n n"]:
+    kin = np.eye(len(parent), dtype=bool) | yielding
+    for k in range(len(parent)):
+        above = int(parent[k])
+        while above >= 0:
+            kin[k, above] = kin[above, k] = True
+            above = int(parent[above])
+    return kin
+
+
+def _yielding_pairs(objects: Sequence[SceneObject]) -> Bool[np.ndarray, "n n"]:
+    rugs = np.array([o.category == "rug" and o.size_m[2] < 0.06 for o in objects], dtype=bool).reshape(-1)
+    return rugs[:, None] | rugs[None]

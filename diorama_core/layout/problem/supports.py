@@ -1,0 +1,336 @@
+"""Where things rest: surfaces of supporters, touching faces, and edges that the graph leaves out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.geometry.cross import cross
+from diorama_core.library import taxonomy
+from diorama_core.library.record import Shape, SupportSurface
+from diorama_core.scene.frames import FACE_NORMALS_OBJECT
+from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, Support, box_corners
+
+BOTTOM_FAVOURED = float(np.cos(np.deg2rad(55.0)))
+"""The bottom face touches when it faces the support within this angle, even if another face does better."""
+SMALLEST_SHARE = 0.35
+"""A supporter narrower than this share of what it should hold cannot be meant."""
+SMALLEST_CLEARANCE = 0.75
+"""A place with less than this share of a thing's height above it is chosen only where there is no other."""
+FLAT = 0.7
+"""A surface counts as upward when its normal's z is at least this."""
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """A flat convex place to rest on, in its owner's frame (the world for planes)."""
+
+    polygon: Float[np.ndarray, "k 3"]
+    """Counter-clockwise about `normal`; at scale 1 where the owner is an object."""
+    normal: Float[np.ndarray, "3"]
+    """Unit, out of the supporter."""
+    outward: Float[np.ndarray, "s 3"]
+    """Unit in-plane normals of its sides."""
+    offset: Float[np.ndarray, " s"]
+    """Inside is where outward . x <= offset."""
+    level: float
+    """The surface lies where normal . x = level."""
+    clearance_m: float
+    """Free depth along the normal at scale 1."""
+    of_plane: bool
+
+    @classmethod
+    def of(cls, polygon: np.ndarray, normal: np.ndarray, clearance_m: float, *, of_plane: bool) -> Surface:
+        """A surface from its convex outline."""
+        sides = np.roll(polygon, -1, axis=0) - polygon
+        lengths = np.linalg.norm(sides, axis=1)
+        long = lengths > 1e-9
+        outward = cross(sides[long] / lengths[long, None], normal)
+        offset = (outward * polygon[long]).sum(axis=1)
+        return cls(polygon, normal, outward, offset, float(normal @ polygon.mean(axis=0)), clearance_m, of_plane)
+
+    def in_world(self, pose: Pose | None) -> Surface:
+        """The surface at its owner's pose."""
+        return self if pose is None else self.at(pose.R_world_object, pose.position, pose.scale)
+
+    def at(self, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> Surface:
+        """The surface of an owner with this rotation, centre and scale."""
+        if self.of_plane:
+            return self
+        axis = int(np.abs(self.normal).argmax())
+        normal = R @ self.normal
+        outward = self.outward / scale
+        length = np.sqrt((outward * outward).sum(axis=1))
+        outward = (outward / length[:, None]) @ R.T
+        return Surface(
+            polygon=(self.polygon * scale) @ R.T + p,
+            normal=normal,
+            outward=outward,
+            offset=self.offset / length + outward @ p,
+            level=self.level * float(scale[axis]) + float(normal @ p),
+            clearance_m=self.clearance_m * float(scale[axis]),
+            of_plane=False,
+        )
+
+
+def is_soft(item: SceneObject) -> bool:
+    """Whether a thing gives way: it sinks into its neighbours and leans over edges."""
+    return taxonomy.resolve(item.category).category.soft
+
+
+def is_wall_like(surface: Surface | None) -> bool:
+    """Whether things are mounted on a surface rather than placed on it."""
+    return surface is not None and surface.of_plane and abs(float(surface.normal[2])) < FLAT
+
+
+@lru_cache(maxsize=256)
+def plane_surface(plane: Plane) -> Surface:
+    """A plane of the room as a place to rest on (its convex hull)."""
+    return Surface.of(convex_outline(plane.polygon, plane.normal), plane.normal, float("inf"), of_plane=True)
+
+
+def convex_outline(polygon: Float[np.ndarray, "n 3"], normal: Float[np.ndarray, "3"]) -> Float[np.ndarray, "k 3"]:
+    """The convex hull of a planar polygon, counter-clockwise about its normal."""
+    u, v = plane_axes(normal)
+    flat = np.column_stack([polygon @ u, polygon @ v])
+    ordered = flat[np.lexsort((flat[:, 1], flat[:, 0]))]
+    chains = []
+    for run in (ordered, ordered[::-1]):
+        chain: list[np.ndarray] = []
+        for point in run:
+            while len(chain) > 1 and _cross(chain[-1] - chain[-2], point - chain[-1]) <= 1e-12:
+                chain.pop()
+            chain.append(point)
+        chains += chain[:-1]
+    hull = np.array(chains)
+    return hull[:, :1] * u + hull[:, 1:] * v + (normal @ polygon.mean(axis=0)) * normal
+
+
+def plane_axes(normal: Float[np.ndarray, "3"]) -> tuple[np.ndarray, np.ndarray]:
+    """Two unit axes that with the normal form a right-handed frame; the first is horizontal."""
+    x, y, z = (float(c) for c in normal)
+    length = float(np.hypot(x, y))
+    if length <= 1e-6:
+        return np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0 if z > 0 else -1.0, 0.0])
+    u0, u1 = -y / length, x / length
+    return np.array([u0, u1, 0.0]), np.array([-z * u1, z * u0, x * u1 - y * u0])
+
+
+def _cross(a: np.ndarray, b: np.ndarray) -> float:
+    return float(a[0] * b[1] - a[1] * b[0])
+
+
+def object_surfaces(shape: Shape, item: SceneObject) -> tuple[Surface, ...]:
+    """Upward places of an object, in its frame; the top of its box when the shape has none."""
+    return tuple(_shape_surface(s) for s in shape.surfaces) or (_box_face(item.shape_size_m, 2, 1.0),)
+
+
+@lru_cache(maxsize=4096)
+def _shape_surface(surface: SupportSurface) -> Surface:
+    return Surface.of(np.asarray(surface.polygon), np.array([0.0, 0.0, 1.0]), surface.clearance_m, of_plane=False)
+
+
+@lru_cache(maxsize=1024)
+def _box_face(size: tuple[float, float, float], axis: int, sign: float) -> Surface:
+    normal = np.zeros(3)
+    normal[axis] = sign
+    corners = box_corners(size)
+    face = corners[corners[:, axis] * sign > 0]
+    return Surface.of(convex_outline(face, normal), normal, float("inf"), of_plane=False)
+
+
+def choose_surface(scene: Scene, item: SceneObject, edge: Support, supporter: Shape | None) -> Surface:
+    """The surface on which the child of an edge rests."""
+    if supporter is None:
+        return plane_surface(scene.plane(edge.parent))
+    parent = scene.object(edge.parent)
+    if edge.relation == "mounted on":
+        return _nearest_side(item, parent)
+    options = object_surfaces(supporter, parent)
+    if edge.parent_surface is not None and 0 <= edge.parent_surface < len(options):
+        return options[edge.parent_surface]
+    if is_soft(item):
+        return _spread(options)
+    return min(options, key=lambda s: misfit(item, s.in_world(parent.pose)))
+
+
+def _spread(options: Sequence[Surface]) -> Surface:
+    """The largest place, widened over all others at its height: where pillows lie, those of the shape give way."""
+    largest = max(options, key=lambda s: float(np.prod(np.ptp(s.polygon, axis=0)[:2])))
+    points = np.vstack([s.polygon for s in options])
+    points[:, 2] = largest.level
+    outline = convex_outline(points, largest.normal)
+    return Surface.of(outline, largest.normal, largest.clearance_m, of_plane=False)
+
+
+def _nearest_side(item: SceneObject, parent: SceneObject) -> Surface:
+    sides = [_box_face(parent.shape_size_m, axis, sign) for axis in (0, 1) for sign in (1.0, -1.0)]
+
+    def gap(side: Surface) -> float:
+        world = side.in_world(parent.pose)
+        return outside_m(world, item.pose.position) + abs(float(world.normal @ item.pose.position) - world.level)
+
+    return min(sides, key=gap)
+
+
+def misfit(item: SceneObject, surface: Surface) -> float:
+    """How badly an object's observed pose agrees with resting on a surface (world): metres, lower is better."""
+    n = surface.normal
+    along = item.corners_world @ n
+    low, height = float(along.min()), float(np.ptp(along))
+    gap = abs(low - surface.level)
+    over = max(height - surface.clearance_m, 0.0)
+    squeezed = 1.0 if surface.clearance_m < SMALLEST_CLEARANCE * height else 0.0
+    return gap + outside_m(surface, item.pose.position) + 0.5 * over + squeezed + 0.5 * _too_wide(item, surface)
+
+
+def _too_wide(item: SceneObject, surface: Surface) -> float:
+    """How much the object's box exceeds the surface in the narrower direction, metres."""
+    widths = sorted(item.size_m)[1:]
+    u, v = plane_axes(surface.normal)
+    room = sorted([float(np.ptp(surface.polygon @ u)), float(np.ptp(surface.polygon @ v))])
+    return max(min(widths) - room[0], 0.0) + max(max(widths) - room[1], 0.0)
+
+
+def outside_m(surface: Surface, point: Float[np.ndarray, "3"]) -> float:
+    """Distance (in the plane) by which a point's projection misses the surface; 0 inside."""
+    return max(float((surface.outward @ point - surface.offset).max()), 0.0)
+
+
+def choose_contact(
+    scene: Scene, item: SceneObject, edge: Support | None, surface: Surface | None
+) -> Float[np.ndarray, "3"]:
+    """Outward normal of the face that touches the supporter, in the object frame."""
+    if edge is None or surface is None:
+        return np.array(FACE_NORMALS_OBJECT["bottom"])
+    if edge.child_face is not None:
+        return np.array(FACE_NORMALS_OBJECT[edge.child_face])
+    supporter = scene.object(edge.parent).pose if scene.has_object(edge.parent) else None
+    normal = surface.normal if supporter is None else supporter.R_world_object @ surface.normal
+    if abs(float(normal[2])) < FLAT and taxonomy.resolve(item.category).category.mount == "wall":
+        return np.array(FACE_NORMALS_OBJECT["back"])
+    down = -(item.pose.R_world_object.T @ normal)
+    if -down[2] >= BOTTOM_FAVOURED:
+        return np.array(FACE_NORMALS_OBJECT["bottom"])
+    face = np.zeros(3)
+    axis = int(np.abs(down).argmax())
+    face[axis] = np.sign(down[axis])
+    return face
+
+
+def wall_faces(
+    R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], sizes: Float[np.ndarray, "n 3"], wall: Plane
+) -> tuple[Float[np.ndarray, "n 3"], Float[np.ndarray, " n"], Float[np.ndarray, " n"]]:
+    """How objects stand to a wall: the face that looks at it, its gap in metres (inf beside it), how parallel it is."""
+    toward = -(wall.normal @ R)
+    axis = np.abs(toward[:, :2]).argmax(axis=1)
+    rows = np.arange(len(R))
+    faces = np.zeros((len(R), 3))
+    faces[rows, axis] = np.sign(toward[rows, axis])
+    # The back goes to the wall unless another face looks at it much more plainly.
+    faces[toward[:, 0] <= -0.7] = FACE_NORMALS_OBJECT["back"]
+    centre = p + np.matmul(R, (faces * sizes / 2)[..., None])[..., 0]
+    surface = plane_surface(wall)
+    beside = (centre @ surface.outward.T - surface.offset).max(axis=1)
+    gap = np.abs(centre @ wall.normal - wall.offset)
+    return faces, np.where(beside < 0.5, gap, np.inf), (toward * faces).sum(axis=1)
+
+
+def holds(item: SceneObject, edge: Support, supporter: SceneObject, shape: Shape) -> bool:
+    """Whether some surface of a supporter is at least `SMALLEST_SHARE` as wide as the thing on it."""
+    if edge.relation == "mounted on":
+        return True
+    widths = sorted(np.sort(item.size_m)[1:] if edge.child_face else item.size_m[:2])
+    for surface in object_surfaces(shape, supporter):
+        spans = sorted(np.ptp(surface.polygon, axis=0)[:2] * supporter.pose.scale[:2])
+        if spans[0] >= SMALLEST_SHARE * widths[0] and spans[1] >= SMALLEST_SHARE * widths[1]:
+            return True
+    return False
+
+
+def complete_edges(
+    scene: Scene, objects: Sequence[SceneObject], shapes: Sequence[Shape]
+) -> tuple[list[Support | None], tuple[str, ...]]:
+    """One support edge per object where there is anything to rest on: the graph's own, or the most plausible one.
+
+    Edges that close a cycle or lead nowhere are replaced. The reasons say what was assumed.
+    """
+    reasons: list[str] = []
+    edges: dict[str, Support | None] = {}
+    by_id = {o.id: s for o, s in zip(objects, shapes)}
+    for item in objects:
+        edge = scene.support_of(item.id)
+        if edge is not None and not (scene.has_object(edge.parent) or scene.has_plane(edge.parent)):
+            edge = None
+        if edge is not None and _closes_cycle(edges, item.id, edge.parent):
+            reasons.append(
+                f"cycle: {item.label} and {_label(scene, edge.parent)} support each other; one edge was left out"
+            )
+            edge = None
+        if edge is not None and scene.has_object(edge.parent):
+            supporter = scene.object(edge.parent)
+            if not holds(item, edge, supporter, by_id[edge.parent]):
+                reasons.append(f"larger than its support: {item.label} cannot stand on {supporter.label}")
+                edge = None
+        edges[item.id] = edge
+    for k, item in enumerate(objects):
+        if edges[item.id] is None:
+            edges[item.id] = _most_plausible(scene, item, objects, shapes, edges)
+            found = edges[item.id]
+            on = f"taken to rest on {_label(scene, found.parent)}" if found is not None else "left at its height"
+            reasons.append(f"no support edge: {objects[k].label} was {on}")
+    return [edges[o.id] for o in objects], tuple(reasons)
+
+
+def _label(scene: Scene, any_id: str) -> str:
+    return scene.object(any_id).label if scene.has_object(any_id) else f"the {scene.plane(any_id).role}"
+
+
+def _closes_cycle(edges: dict[str, Support | None], child: str, parent: str) -> bool:
+    above: str | None = parent
+    while above is not None:
+        if above == child:
+            return True
+        edge = edges.get(above)
+        above = edge.parent if edge is not None else None
+    return False
+
+
+def _most_plausible(
+    scene: Scene,
+    item: SceneObject,
+    objects: Sequence[SceneObject],
+    shapes: Sequence[Shape],
+    edges: dict[str, Support | None],
+) -> Support | None:
+    """The supporter whose surface the observed pose agrees with best; None when there is nothing to rest on."""
+    mount = taxonomy.resolve(item.category).category.mount
+    options: list[tuple[float, str, Support]] = []
+    for plane in scene.architecture.planes:
+        usual = {"floor": "floor", "surface": "floor", "wall": "wall", "ceiling": "ceiling"}[mount]
+        if plane.role != usual and not (plane.role == "floor" and mount != "ceiling"):
+            continue
+        edge = Support(item.id, plane.id, "placed on" if plane.role == "floor" else "mounted on")
+        cost = _resting_cost(scene, item, edge, plane_surface(plane))
+        options.append((cost + (0.0 if plane.role == usual else 0.3), plane.id, edge))
+    for other, shape in zip(objects, shapes):
+        if other.id == item.id or mount == "ceiling" or other.pose.position[2] >= item.pose.position[2]:
+            continue
+        if _closes_cycle(edges, item.id, other.id):
+            continue
+        for surface in object_surfaces(shape, other):
+            world = surface.in_world(other.pose)
+            if outside_m(world, item.pose.position) < 0.1:
+                cost = misfit(item, world) + (0.15 if mount == "surface" else 0.4)
+                options.append((cost, other.id, Support(item.id, other.id)))
+    return min(options, key=lambda o: o[:2])[2] if options else None
+
+
+def _resting_cost(scene: Scene, item: SceneObject, edge: Support, surface: Surface) -> float:
+    contact = choose_contact(scene, item, edge, surface)
+    centre = item.pose.position + item.pose.R_world_object @ (contact * item.size_m / 2)
+    return abs(float(surface.normal @ centre) - surface.level) + outside_m(surface, item.pose.position)

@@ -1,0 +1,82 @@
+"""Supporting volumes of all objects at once: where contact faces may be, and how high things may reach."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from diorama_core.layout.problem.problem import Problem
+
+
+@dataclass(frozen=True, eq=False)
+class WorldVolumes:
+    """Volumes at given poses of their owners."""
+
+    outward: Float[np.ndarray, "e k 3"]
+    """Unit normals of the sides, padded with zeros."""
+    offset: Float[np.ndarray, "e k"]
+    """Inside is where outward . x <= offset."""
+    normal: Float[np.ndarray, "e 3"]
+    """Of the supporting surfaces."""
+    level: Float[np.ndarray, " e"]
+    """The surfaces lie where normal . x = level."""
+    clearance: Float[np.ndarray, " e"]
+    """Heights of the volumes; inf where open."""
+
+
+@dataclass(frozen=True, eq=False)
+class Volumes:
+    """The volumes of all supported objects, in their owners' frames."""
+
+    supported: Int[np.ndarray, " e"]
+    """Indices of the supported objects."""
+    supporter: Int[np.ndarray, " e"]
+    """Indices of the supporting objects; -1 for planes."""
+    local: WorldVolumes
+    axis: Int[np.ndarray, " e"]
+    """The owner's axis along which the clearance scales."""
+
+    @classmethod
+    def of(cls, problem: Problem) -> Volumes:
+        """The volumes of a problem."""
+        surfaces = [(i, s) for i, s in enumerate(problem.surface) if s is not None]
+        k = max((len(s.offset) for _, s in surfaces), default=0)
+        outward, offset = np.zeros((len(surfaces), k, 3)), np.zeros((len(surfaces), k))
+        for row, (_, s) in enumerate(surfaces):
+            outward[row, : len(s.offset)], offset[row, : len(s.offset)] = s.outward, s.offset
+        normal = np.array([s.normal for _, s in surfaces]).reshape(-1, 3)
+        supported = np.array([i for i, _ in surfaces], dtype=int)
+        local = WorldVolumes(
+            outward,
+            offset,
+            normal,
+            np.array([s.level for _, s in surfaces]),
+            np.array([s.clearance_m for _, s in surfaces]),
+        )
+        return cls(supported, problem.parent[supported], local, np.abs(normal).argmax(axis=1))
+
+    def at(
+        self, R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]
+    ) -> WorldVolumes:
+        """The volumes when objects are at these poses."""
+        on_object = self.supporter >= 0
+        owner_R = np.where(on_object[:, None, None], R[self.supporter], np.eye(3))
+        owner_p = np.where(on_object[:, None], p[self.supporter], 0.0)
+        owner_s = np.where(on_object[:, None], scale[self.supporter], 1.0)
+        to_world = owner_R.transpose(0, 2, 1)
+        local = self.local
+        outward = local.outward / owner_s[:, None, :]
+        length = np.sqrt((outward * outward).sum(axis=2))
+        length = np.where(length > 0, length, 1.0)
+        outward = np.matmul(outward / length[..., None], to_world)
+        normal = np.matmul(local.normal[:, None, :], to_world)[:, 0]
+        stretch = owner_s[np.arange(len(self.supported)), self.axis]
+        return WorldVolumes(
+            outward=outward,
+            offset=local.offset / length + np.matmul(outward, owner_p[..., None])[..., 0],
+            normal=normal,
+            level=local.level * stretch + (normal * owner_p).sum(axis=1),
+            clearance=local.clearance * stretch,
+        )

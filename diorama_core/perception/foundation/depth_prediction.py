@@ -1,0 +1,108 @@
+"""Depth from a network, and the stages that go on from it as they would from measured depth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from diorama_core.artefacts import (
+    ArchitectureEstimate,
+    CameraEstimate,
+    DepthMap,
+    DepthPrediction,
+    DetectedObject,
+    Inputs,
+    ObjectGeometry,
+    Photo,
+)
+from diorama_core.models.depth import GeometryNetwork
+from diorama_core.perception.camera.estimate import EmbeddedCamera
+from diorama_core.perception.depth import render_geometry
+from diorama_core.perception.measured import MeasuredGeometry
+from diorama_core.progress import Progress
+from diorama_core.scene.types import Intrinsics
+
+
+@dataclass(frozen=True)
+class NetworkDepthPrediction:
+    """Reads a photo's depth with MoGe-2 or Metric3D v2."""
+
+    network: GeometryNetwork
+
+    def predict(self, photo: Photo, intrinsics: Intrinsics | None, progress: Progress) -> DepthPrediction:
+        """Depth, normals and intrinsics; given intrinsics are kept."""
+        progress.report(0.0, "Reading depth from the photo")
+        seen = self.network.predict(photo.rgb, intrinsics)
+        return DepthPrediction(seen.depth_m, seen.normals_camera, seen.intrinsics)
+
+
+def with_depth(inputs: Inputs, seen: DepthPrediction) -> Inputs:
+    """The inputs as if somebody had measured what the network saw, but saying who did."""
+    return replace(
+        inputs,
+        depth_m=seen.depth_m,
+        normals_camera=seen.normals_camera,
+        intrinsics=inputs.intrinsics or seen.intrinsics,
+        depth_source="network",
+    )
+
+
+@dataclass(frozen=True)
+class NetworkCamera:
+    """Gravity and height from a network's depth, read as measured depth is."""
+
+    reader: EmbeddedCamera = field(default_factory=EmbeddedCamera)
+
+    def estimate(self, inputs: Inputs, progress: Progress) -> CameraEstimate:
+        """The readings of one photo, best first."""
+        found = self.reader.estimate(inputs, progress)
+        given = "focal length given", "focal length from the network"
+        return replace(found, source=with_network_wording(found.source.replace(*given)))
+
+
+@dataclass(frozen=True)
+class NetworkGeometry:
+    """Objects in metres from a network's depth, measured as in measured depth."""
+
+    reader: MeasuredGeometry = field(default_factory=MeasuredGeometry)
+
+    def measure(
+        self, inputs: Inputs, camera: CameraEstimate, objects: tuple[DetectedObject, ...], progress: Progress
+    ) -> ObjectGeometry:
+        """The posed camera, a cuboid for every object, and what stands on what."""
+        found = self.reader.measure(inputs, camera, objects, progress)
+        return replace(found, source=with_network_wording(found.source))
+
+
+@dataclass(frozen=True)
+class NetworkDepth:
+    """The network's map; what it left open is rendered from the room and the cuboids."""
+
+    def depth(
+        self,
+        inputs: Inputs,
+        objects: tuple[DetectedObject, ...],
+        geometry: ObjectGeometry,
+        architecture: ArchitectureEstimate,
+        progress: Progress,
+    ) -> DepthMap:
+        """Depth and normals of every pixel.
+
+        Raises:
+            ValueError: when the inputs hold no depth.
+        """
+        if inputs.depth_m is None or inputs.normals_camera is None:
+            raise ValueError("NetworkDepth needs depth and normals from a network; use RenderedDepth without them")
+        progress.report(0.0, "Filling holes of the depth")
+        rendered, rendered_normals = render_geometry(geometry, objects, architecture.architecture)
+        seen = inputs.normals_camera @ geometry.camera.T_world_camera[:3, :3].T
+        known = np.any(inputs.normals_camera != 0, axis=-1)
+        depth = np.where(inputs.depth_m > 0, inputs.depth_m, rendered).astype(np.float32)
+        normals = np.where(known[..., None], seen, rendered_normals).astype(np.float32)
+        return DepthMap(depth, normals, "network")
+
+
+def with_network_wording(words: str) -> str:
+    """What the readers of measured depth say, of depth that nobody measured."""
+    return words.replace("measured depth", "depth read from the photo").replace("measured", "seen")

@@ -1,0 +1,106 @@
+"""What the picture says about every object: its box, how sure each edge is, and what hides it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from diorama_core.artefacts import DetectedObject
+from diorama_core.library.taxonomy import Category, category
+from diorama_core.perception.metrology.silhouette import CORNER_EDGES, GUESSED_TRUST, mask_reach
+
+_SHARE_SIGMA = 0.03
+_PIXEL_SIGMA = 3.0
+"""Of a picture 640 pixels wide."""
+_MIN_BOX_PX = 2.0
+_COVERED = 0.65
+"""Share of an edge that something in front must cover to hide it."""
+_CLEARLY_LOWER = 0.03
+"""How much lower, as a share of the picture, a thing's box must end to be in front."""
+
+
+def _bottom_lower(boxes: Float[np.ndarray, "n 4"], height: int) -> Bool[np.ndarray, "n n"]:
+    """Whether j's box ends clearly lower than i's: on the same floor, j is in front."""
+    return boxes[None, :, 3] > boxes[:, None, 3] + _CLEARLY_LOWER * height
+
+
+@dataclass(frozen=True, eq=False)
+class BoxObservations:
+    """All objects of a picture, as arrays over objects."""
+
+    categories: tuple[Category, ...]
+    box_px: Float[np.ndarray, "n 4"]
+    edge_sigma_px: Float[np.ndarray, "n 4"]
+    covered_by: Bool[np.ndarray, "n n 4"]
+    """Whether edge e of object i is covered by object j's box, j being in front."""
+    in_front: Bool[np.ndarray, "n n"]
+    """Whether object j is in front of object i, if both stand on the floor."""
+    truncated: Bool[np.ndarray, "n 4"]
+    """Whether an edge lies on the picture's border."""
+    mask_reach: Float[np.ndarray, "n 4"]
+    """How far masks reach into their boxes' corners (`silhouette.mask_reach`)."""
+    corner_weight: Float[np.ndarray, "n 4"]
+    """Trust in that, 0 where a corner is hidden or cut."""
+    mask_exact: Bool[np.ndarray, "n"]
+    """Whether the mask is the user's own."""
+    fill: Float[np.ndarray, "n"]
+    """Share of the box that the user's own mask fills; 1 where there is only a guess."""
+
+    def __len__(self) -> int:
+        return len(self.categories)
+
+    def hidden(self, index: int, parent: int | None = None) -> Bool[np.ndarray, "4"]:
+        """Edges of an object that others hide.
+
+        What rests on a parent is not hidden by it, nor by things on the floor that are not in front of the parent.
+        """
+        others = [j for j in range(len(self)) if j != index and (parent is None or self._may_hide(j, parent))]
+        return self.covered_by[index][others].any(axis=0) if others else np.zeros(4, dtype=bool)
+
+    def _may_hide(self, other: int, parent: int) -> bool:
+        on_floor = self.categories[other].mount == "floor"
+        return other != parent and (not on_floor or bool(self.in_front[parent, other]))
+
+
+def gather(objects: tuple[DetectedObject, ...], width: int, height: int) -> BoxObservations:
+    """The evidence of the objects of a picture of `width` x `height` pixels."""
+    boxes = np.array([_proper(o.box, width, height) for o in objects]).reshape(-1, 4)
+    extent = np.tile(boxes[:, 2:] - boxes[:, :2], 2)
+    sigma = _SHARE_SIGMA * extent + _PIXEL_SIGMA * max(width, height) / 640
+    border = np.array([0.0, 0.0, width, height])
+    truncated = np.abs(boxes - border) <= 0.006 * max(width, height)
+    categories = tuple(category(o.category) for o in objects)
+    covered = _covered(boxes, height)
+    unseen = truncated | covered.any(axis=1).reshape(-1, 4)
+    exact = np.array([o.mask_confidence >= 1 for o in objects], dtype=bool)
+    trust = np.array([o.mask_confidence**2 for o in objects]).reshape(-1, 1)
+    trust = trust * np.where(exact, 1.0, GUESSED_TRUST)[:, None]
+    weight = np.column_stack([np.where(unseen[:, e].any(axis=1), 0.0, 1.0) for e in CORNER_EDGES]) * trust
+    reach = np.array([mask_reach(o, b) for o, b in zip(objects, boxes, strict=True)]).reshape(-1, 4)
+    area = np.array([float(o.mask.sum()) for o in objects]) / (boxes[:, 2:] - boxes[:, :2]).prod(axis=1)
+    fill = np.where(exact, np.minimum(area, 1.0), 1.0)
+    in_front = _bottom_lower(boxes, height)
+    return BoxObservations(categories, boxes, sigma, covered, in_front, truncated, reach, weight, exact, fill)
+
+
+def _proper(box: tuple[float, float, float, float], width: int, height: int) -> tuple[float, float, float, float]:
+    """The box inside the picture, at least two pixels large."""
+    x1, y1 = min(max(box[0], 0.0), width - _MIN_BOX_PX), min(max(box[1], 0.0), height - _MIN_BOX_PX)
+    return x1, y1, min(max(box[2], x1 + _MIN_BOX_PX), width), min(max(box[3], y1 + _MIN_BOX_PX), height)
+
+
+def _covered(boxes: Float[np.ndarray, "n 4"], height: int) -> Bool[np.ndarray, "n n 4"]:
+    """For objects i, j and edges: j's box covers at least half of i's edge and ends clearly lower."""
+    n = len(boxes)
+    low, high = boxes[:, None, :2], boxes[:, None, 2:]
+    shared = np.minimum(high, boxes[None, :, 2:]) - np.maximum(low, boxes[None, :, :2])
+    share = np.clip(shared, 0, None) / (high - low)
+    covered = np.zeros((n, n, 4), dtype=bool)
+    for edge in range(4):
+        across = edge % 2
+        at = boxes[:, None, edge]
+        strictly_inside = (boxes[None, :, across] < at) & (at < boxes[None, :, across + 2])
+        covered[:, :, edge] = strictly_inside & (share[..., 1 - across] >= _COVERED)
+    return covered & _bottom_lower(boxes, height)[..., None] & ~np.eye(n, dtype=bool)[..., None]

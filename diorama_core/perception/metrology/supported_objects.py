@@ -1,0 +1,228 @@
+"""Things that are not on the floor: on other things, on walls, below the ceiling."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.library.taxonomy import UNKNOWN, with_kin
+from diorama_core.perception.metrology.box_observations import BoxObservations
+from diorama_core.perception.metrology.priors import (
+    SizeMode,
+    hanging_modes,
+    hung_modes,
+    supported_modes,
+)
+from diorama_core.perception.metrology.problem import Cuboids, Problems
+from diorama_core.perception.metrology.rows import row
+
+CEILING_M = 2.6
+CEILING_SIGMA_M = 0.25
+_TOP_SIGMA_M = 0.04
+_SEAT_SIGMA_M = 0.08
+_FOOTPRINT_SIGMA_M = 0.06
+_INNER_LEVEL_COST = 1.5
+_BACK_COST = 2.5
+"""Of lying on a backrest or headboard."""
+_ABOVE_PARENT = 0.5
+"""Share of a thing's width that must lie within its supporter's box."""
+AGAINST_WALLS = with_kin(
+    *("bed", "dresser", "cabinet", "sideboard", "console table", "tv stand", "bookshelf", "wardrobe", "refrigerator"),
+    *("stove", "night stand", "kitchen counter", "washing machine", "toilet", "piano"),
+) - {"kitchen island", "bar cart"}
+"""Categories whose backs stand at walls."""
+_SEATS_WITHOUT_SUPPORT_FLAG_COST = 2.0
+_FLAT_M = 0.2
+"""A door thinner than this along an axis is in the wall across that axis."""
+_BACK_SHARE = {("bed", "pillow"): 0.45}
+"""Pillows lie at the head of a bed: in this share of its depth."""
+_SEATS = frozenset({"pillow", "toy", "books", "laptop", "basket", "box"})
+_ODD_ON_SEAT_COST = 2.0
+"""Of anything else lying on a seat or a bed."""
+_SHELVED = with_kin("bookshelf", "shelves", "tv stand", "cabinet", "desk")
+_USUAL_MIDDLE_M = {
+    "picture": 1.5,
+    "mirror": 1.45,
+    "clock": 1.8,
+    "window": 1.5,
+    "curtain": 1.2,
+    "shelves": 1.5,
+    "radiator": 0.4,
+}
+_WALL_TOP_M, _WALL_TOP_SIGMA_M = 2.0, 0.5
+_MIDDLE_M, _MIDDLE_SIGMA_M = 1.4, 0.4
+
+
+@dataclass(frozen=True)
+class Extent:
+    """How far the things on the floor reach, seen from below the camera: the room is at least as large."""
+
+    left_m: float
+    right_m: float
+    back_m: float
+    left_sigma: float
+    right_sigma: float
+    back_sigma: float
+    """Of the logarithms: small where something stands far out, large where nothing is known."""
+
+    @property
+    def footprint(self) -> Float[np.ndarray, "5"]:
+        """Centre, heading and half sizes of the floor, as `Problems.footprint`."""
+        middle_x, half_x = (self.right_m - self.left_m) / 2, (self.right_m + self.left_m) / 2
+        return np.array([middle_x, self.back_m / 2, 0.0, half_x, self.back_m / 2])
+
+
+def extent_of(corners_world: Float[np.ndarray, "n 8 3"], names: tuple[str, ...]) -> Extent:
+    """The extent of cuboids of named categories; of an ordinary room where there are none.
+
+    Where a thing that usually stands against a wall is the farthest, or a door in that wall, the wall is right there.
+    """
+    if not len(corners_world):
+        return Extent(2.0, 2.0, 3.5, 0.4, 0.4, 0.4)
+    sides = (-corners_world[..., 0].min(axis=1), corners_world[..., 0].max(axis=1), corners_world[..., 1].max(axis=1))
+    reach, sigmas = [], []
+    for side, least, axis in zip(sides, (1.0, 1.0, 1.5), (0, 0, 1), strict=True):
+        farthest = int(np.argmax(side))
+        flat = np.ptp(corners_world[farthest, :, axis]) < _FLAT_M
+        against = names[farthest] in AGAINST_WALLS or (names[farthest] == "door" and flat)
+        reach.append((max(float(side[farthest]), least) + 0.05) * (1.0 if against else 1.1))
+        sigmas.append(0.12 if against else 0.3)
+    return Extent(reach[0], reach[1], reach[2], sigmas[0], sigmas[1], sigmas[2])
+
+
+def supporters_of(observations: BoxObservations, index: int, candidates: list[int]) -> list[int]:
+    """Candidates whose boxes an object may rest in: most of its width lies within, and its bottom not below."""
+    box = observations.box_px[index]
+    found = []
+    for other in candidates:
+        theirs = observations.box_px[other]
+        shared = min(box[2], theirs[2]) - max(box[0], theirs[0])
+        reach = 0.15 * (theirs[3] - theirs[1])
+        within = theirs[1] - reach < box[3] <= theirs[3] + 0.1 * reach
+        if other != index and shared >= _ABOVE_PARENT * (box[2] - box[0]) and within:
+            found.append(other)
+    return found
+
+
+def place_on(
+    observations: BoxObservations, index: int, parent: int, parent_cuboid: Cuboids, height_m: float, cost: float
+) -> list[Problems]:
+    """Rows for an object on another's top, seat or shelves; `parent_cuboid` is a batch of one."""
+    tall = float(parent_cuboid.size_m[0, 2])
+    bottom = float(parent_cuboid.base_m[0])
+    names = (observations.categories[parent].name, observations.categories[index].name)
+    footprint = _resting_place(parent_cuboid, _BACK_SHARE.get(names, 1.0))
+    rows = []
+    soft = (
+        observations.categories[parent].seat_height_m is not None and observations.categories[index].name not in _SEATS
+    )
+    for base, sigma, level_cost in _levels(observations, parent, tall):
+        for mode in supported_modes(observations.categories[index].name):
+            for turn in (0.0,) if mode.square else (0.0, np.pi / 2):
+                rows.append(
+                    row(
+                        observations,
+                        index,
+                        mode,
+                        camera_height_m=height_m,
+                        yaw_rad=float(parent_cuboid.yaw_rad[0]) + turn,
+                        parent=parent,
+                        base_m=bottom + base,
+                        base_sigma_m=sigma,
+                        footprint=footprint,
+                        footprint_sigma_m=_FOOTPRINT_SIGMA_M,
+                        extra=mode.cost + level_cost + cost + (_ODD_ON_SEAT_COST if soft else 0.0),
+                    )
+                )
+    return rows
+
+
+def _resting_place(parent_cuboid: Cuboids, back_share: float) -> Float[np.ndarray, "5"]:
+    """The parent's footprint, or the share of it that is farthest from its front, which faces the camera."""
+    depth, width, _ = parent_cuboid.size_m[0]
+    yaw, centre = float(parent_cuboid.yaw_rad[0]), parent_cuboid.centre[0, :2]
+    front = np.array([np.cos(yaw), np.sin(yaw)])
+    toward = -np.sign(front @ centre) or 1.0
+    moved = centre - toward * front * depth * (1.0 - back_share) / 2
+    return np.array([*moved, yaw, depth * back_share / 2, width / 2])
+
+
+def _levels(observations: BoxObservations, parent: int, tall: float) -> list[tuple[float, float, float]]:
+    """Heights above the supporter's base at which things lie on it: (height, sigma, cost)."""
+    category = observations.categories[parent]
+    top = (tall, _TOP_SIGMA_M, 0.0)
+    if category.seat_height_m is not None:
+        seat = min(category.seat_height_m, 0.95 * tall)
+        cost = 0.0 if category.supports_objects else _SEATS_WITHOUT_SUPPORT_FLAG_COST
+        leaning = (seat + 0.15, _SEAT_SIGMA_M, cost + _INNER_LEVEL_COST)
+        return [(seat, _SEAT_SIGMA_M, cost), leaning, (tall, _SEAT_SIGMA_M, cost + _BACK_COST)]
+    if category.name in _SHELVED:
+        inner = [(share * tall, 0.06 * tall, _INNER_LEVEL_COST) for share in (0.15, 0.4, 0.65)]
+        return [top, *inner]
+    if category is UNKNOWN:
+        return [top, (0.55 * tall, 0.05, _INNER_LEVEL_COST)]
+    return [top]
+
+
+def place_on_wall(
+    observations: BoxObservations, index: int, height_m: float, room: Extent, cost: float
+) -> list[Problems]:
+    """Rows for an object on the wall ahead, on the left and on the right."""
+    category = observations.categories[index]
+    door = category.name == "door"
+    walls = (
+        (-np.pi / 2, room.back_m, room.back_sigma, 0.0),
+        (0.0, room.left_m, room.left_sigma, 0.5),
+        (np.pi, room.right_m, room.right_sigma, 0.5),
+    )
+    return [
+        row(
+            observations,
+            index,
+            mode,
+            camera_height_m=height_m,
+            yaw_rad=yaw,
+            base_m=0.0 if door else _usual_base(category.name, mode),
+            base_sigma_m=0.0 if door else _MIDDLE_SIGMA_M,
+            top_m=_WALL_TOP_M,
+            top_sigma_m=_WALL_TOP_SIGMA_M,
+            wall_m=wall,
+            wall_sigma=3.0 * sigma if door else sigma,
+            footprint=room.footprint,
+            footprint_sigma_m=0.4,
+            extra=mode.cost + side_cost + cost,
+        )
+        for mode in hung_modes(category.name)
+        for yaw, wall, sigma, side_cost in walls
+    ]
+
+
+def _usual_base(name: str, mode: SizeMode) -> float:
+    middle = _USUAL_MIDDLE_M.get(name, _MIDDLE_M)
+    return max(0.05, middle - float(np.exp(mode.log_size[2])) / 2)
+
+
+def place_below_ceiling(
+    observations: BoxObservations, index: int, height_m: float, room: Extent, cost: float
+) -> list[Problems]:
+    """Rows for an object hanging from the ceiling, over the things on the floor."""
+    return [
+        row(
+            observations,
+            index,
+            mode,
+            camera_height_m=height_m,
+            yaw_rad=yaw,
+            base_m=CEILING_M - float(np.exp(mode.log_size[2])),
+            base_sigma_m=0.4,
+            top_m=CEILING_M,
+            top_sigma_m=CEILING_SIGMA_M,
+            footprint=room.footprint,
+            footprint_sigma_m=0.4,
+            extra=mode.cost + cost,
+        )
+        for mode in hanging_modes(observations.categories[index].name)
+        for yaw in ((0.0,) if mode.square else (0.0, np.pi / 2))
+    ]

@@ -1,0 +1,221 @@
+"""Which implementation takes which stage: the best network that is on this machine, or the embedded way.
+
+`auto` mixes stage by stage and needs nothing; `embedded` uses no network; `foundation` insists on the paper's networks
+and takes the paper's way to poses, by correspondences of patch features.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Literal, TypeVar
+
+from diorama_core.architecture.from_depth.stage import PlanarRoom
+from diorama_core.architecture.texture.empty_room import EmptyRoomFiller
+from diorama_core.artefacts import Inputs, LabelledBox, Photo
+from diorama_core.errors import UnavailableError
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.models.depth import GeometryNetwork, Metric3d, Moge2
+from diorama_core.models.features import Dinov2
+from diorama_core.models.foreground import Foreground
+from diorama_core.models.gigapose import GigaPoseScale
+from diorama_core.models.inpainting import Lama, Migan
+from diorama_core.models.manifest import Network, network
+from diorama_core.models.owlv2 import Owlv2
+from diorama_core.models.segment_anything import BoxSegmenter, Sam2, SlimSam
+from diorama_core.models.store import ModelStore, how_to_get
+from diorama_core.models.yolox import Yolox
+from diorama_core.perception.camera.given_attitude import with_given_attitude
+from diorama_core.perception.foundation.depth_prediction import (
+    NetworkCamera,
+    NetworkDepth,
+    NetworkDepthPrediction,
+    NetworkGeometry,
+)
+from diorama_core.perception.foundation.detection import EverydayDetection, OpenVocabularyDetection
+from diorama_core.perception.foundation.empty_room import EmptyRoomArchitecture
+from diorama_core.perception.foundation.outlines import PromptedMasks
+from diorama_core.perception.graph.geometric import GeometricGraph
+from diorama_core.perception.language.client import LmmSettings
+from diorama_core.perception.language.stages import LanguageGraph, LanguageRecognition
+from diorama_core.pipeline.choices import (
+    DEPTH_NETWORKS,
+    DETECTORS,
+    FOREGROUNDS,
+    INPAINTERS,
+    PATCH_FEATURES,
+    SEGMENTERS,
+)
+from diorama_core.pipeline.learned_retrieval import with_joint_retrieval
+from diorama_core.pipeline.network_inputs import detect_boxes
+from diorama_core.pipeline.run import DEFAULT_RECIPE, Stages, embedded_stages
+from diorama_core.pipeline.runner import Runner
+from diorama_core.pose.correspondence.features import NetworkFeatures
+from diorama_core.pose.correspondence.solvers import CorrespondencePose
+from diorama_core.progress import Progress
+from diorama_core.protocols import DetectionStage
+
+Profile = Literal["auto", "embedded", "foundation"]
+PUBLISHED_BLOCK = 17
+"""Of DINOv2 large, whose features the publication matches; a smaller network's last block is read."""
+
+T = TypeVar("T")
+
+
+def stages_for(
+    profile: Profile,
+    inputs: Inputs,
+    library: ShapeLibrary,
+    *,
+    recipe: str = DEFAULT_RECIPE,
+    store: ModelStore | None = None,
+    lmm: LmmSettings | None = None,
+) -> Stages:
+    """The stages of a profile for what the user gave.
+
+    Args:
+        profile: see the module.
+        inputs: boxes, masks, depth and intrinsics that are given are never replaced by a network's.
+        library: where shapes come from.
+        recipe: of the layout optimiser.
+        store: where networks lie; this machine's by default.
+        lmm: a language model to ask; by default the one that the environment names, if any.
+
+    Raises:
+        UnavailableError: the foundation profile, where a network it needs is not on this machine.
+    """
+    base = embedded_stages(inputs, library, recipe=recipe)
+    if profile == "embedded":
+        return base
+    store = store or ModelStore.default()
+    base = with_joint_retrieval(base, library, store)
+    if profile == "foundation":
+        _insist(inputs, store)
+        base = _posed_as_published(base, library, store)
+    return foundation_stages(base, inputs, store, lmm or LmmSettings.from_environment())
+
+
+def foundation_stages(base: Stages, inputs: Inputs, store: ModelStore, lmm: LmmSettings | None) -> Stages:
+    """`base` with every stage replaced for which a network is on this machine."""
+    stages = base
+    if not inputs.boxes and inputs.instances is None:
+        stages = replace(stages, detection=detection_stage(store))
+        if lmm is not None and isinstance(stages.detection, OpenVocabularyDetection):
+            stages = replace(stages, recognition=LanguageRecognition(lmm))
+    segmenter = _best(store, SEGMENTERS, _segmenter)
+    if segmenter is not None:
+        stages = replace(stages, objects=PromptedMasks(segmenter))
+    filler = _best(store, INPAINTERS, _inpainter)
+    stages = replace(stages, filler=filler)
+    depth_prediction = _best(store, DEPTH_NETWORKS, _depth_network) if inputs.depth_m is None else None
+    if depth_prediction is not None:
+        stages = replace(
+            stages,
+            depth_prediction=NetworkDepthPrediction(depth_prediction),
+            camera=with_given_attitude(NetworkCamera(), inputs.camera_attitude),
+            geometry=NetworkGeometry(),
+            architecture=PlanarRoom()
+            if filler is None
+            else EmptyRoomArchitecture(PlanarRoom(), filler, depth_prediction, _foregrounds(store)),
+            depth=NetworkDepth(),
+            graph=GeometricGraph(),
+        )
+    return stages if lmm is None else replace(stages, graph=LanguageGraph(lmm))
+
+
+def detection_stage(store: ModelStore) -> DetectionStage | None:
+    """The best detector on this machine, as a stage."""
+    return _best(store, DETECTORS, _detector)
+
+
+def propose_boxes(
+    photo: Photo, *, store: ModelStore | None = None, progress: Progress | None = None
+) -> tuple[LabelledBox, ...] | None:
+    """Boxes for a photo, to be corrected by a person; None where no detector is on this machine.
+
+    Raises:
+        UnavailableError: when a network is damaged.
+        Cancelled: on request.
+    """
+    store = store or ModelStore.default()
+    stage = detection_stage(store)
+    if stage is None:
+        return None
+    lmm = LmmSettings.from_environment()
+    recognition = LanguageRecognition(lmm) if lmm is not None and isinstance(stage, OpenVocabularyDetection) else None
+    return detect_boxes(photo, stage, recognition, Runner(None), progress or Progress())
+
+
+def _insist(inputs: Inputs, store: ModelStore) -> None:
+    needed: list[tuple[str, ...]] = [SEGMENTERS]
+    if not inputs.boxes and inputs.instances is None:
+        needed.append(DETECTORS)
+    if inputs.depth_m is None:
+        needed.append(DEPTH_NETWORKS)
+    for choices in needed:
+        if not any(store.has(network(i)) for i in choices):
+            lite = next(network(i) for i in reversed(choices) if "lite" in network(i).tiers)
+            raise UnavailableError(
+                f"the foundation profile needs {lite.title} or better, which is not on this machine; "
+                f"{how_to_get(lite)} (or use --profile auto)"
+            )
+
+
+def _posed_as_published(base: Stages, library: ShapeLibrary, store: ModelStore) -> Stages:
+    """Poses by DINOv2's patches, and the scale network's where the user has converted one."""
+    features = _best(store, PATCH_FEATURES, _patch_features)
+    if features is None:
+        return base
+    scale = _best(store, ("gigapose-scale",), _scale_network)
+    return replace(base, pose=CorrespondencePose(library, features=NetworkFeatures(features), scale_network=scale))
+
+
+def _foregrounds(store: ModelStore) -> tuple[Foreground, ...]:
+    found = (_best(store, kinds, _foreground) for kinds in FOREGROUNDS)
+    return tuple(f for f in found if f is not None)
+
+
+def _best(store: ModelStore, choices: tuple[str, ...], make: Callable[[ModelStore, Network], T]) -> T | None:
+    here = next((network(i) for i in choices if store.has(network(i))), None)
+    return None if here is None else make(store, here)
+
+
+def _detector(store: ModelStore, chosen: Network) -> DetectionStage:
+    weights = store.identity(chosen)
+    graph = store.path(chosen, chosen.files[0].path)
+    if chosen.id.startswith("yolox"):
+        return EverydayDetection(Yolox(graph, weights))
+    return OpenVocabularyDetection(Owlv2(graph, store.path(chosen, "tokenizer.json"), weights))
+
+
+def _segmenter(store: ModelStore, chosen: Network) -> BoxSegmenter:
+    weights = store.identity(chosen)
+    encoder, decoder = (
+        store.path(chosen, next(f.path for f in chosen.files if part in f.path and f.path.endswith(".onnx")))
+        for part in ("vision_encoder", "mask_decoder")
+    )
+    return SlimSam(encoder, decoder, weights) if chosen.id == "slimsam" else Sam2(encoder, decoder, weights)
+
+
+def _inpainter(store: ModelStore, chosen: Network) -> EmptyRoomFiller:
+    graph, weights = store.path(chosen, chosen.files[0].path), store.identity(chosen)
+    return Lama(graph, weights) if chosen.id == "lama" else Migan(graph, weights)
+
+
+def _depth_network(store: ModelStore, chosen: Network) -> GeometryNetwork:
+    graph, weights = store.path(chosen, chosen.files[0].path), store.identity(chosen)
+    return Metric3d(graph, weights) if chosen.id.startswith("metric3d") else Moge2(graph, weights)
+
+
+def _foreground(store: ModelStore, chosen: Network) -> Foreground:
+    return Foreground(store.path(chosen, chosen.files[0].path), store.identity(chosen))
+
+
+def _patch_features(store: ModelStore, chosen: Network) -> Dinov2:
+    block = PUBLISHED_BLOCK if chosen.id == "dinov2-large" else None
+    return Dinov2(store.path(chosen, chosen.files[0].path), store.identity(chosen), block)
+
+
+def _scale_network(store: ModelStore, chosen: Network) -> GigaPoseScale:
+    features, regressor = (store.path(chosen, f.path) for f in chosen.files)
+    return GigaPoseScale(features, regressor, store.identity(chosen))

@@ -1,0 +1,107 @@
+"""How well posed shapes agree with the picture."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.geometry.observed import Observed
+from diorama_core.geometry.projection import box_iou
+from diorama_core.geometry.silhouette import Hits, PoseBatch, ShapeCaster
+from diorama_core.geometry.window import soft_iou
+from diorama_core.pose.facing import Facing
+from diorama_core.pose.limits import SizeLimits
+from diorama_core.pose.surface import MeasuredSurface
+from diorama_core.scene.types import Camera
+
+_SILHOUETTE_WEIGHT = 0.7
+_BOX_WEIGHT = 0.5
+_SILHOUETTE_WEIGHT_WITH_DEPTH = 0.7
+_DEPTH_WEIGHT = 0.7
+_STRENGTH_WITH_DEPTH = 2.0
+"""How much more than an outline alone measured depth says against what things usually do."""
+_NOISE_FLOOR = 0.03
+"""Error below which two poses are not told apart: the resolution of the silhouettes."""
+_FACING_STRENGTH = 0.7
+_STRETCH_SIGMA = 0.3
+_ENLARGED_SIGMA = 0.2
+_LIKELIHOOD_SIGMA = 0.15
+_LIKELIHOOD_FLOOR = 0.02
+_MISFIT_SIGMA = 0.2
+_OFF_AXIS_SIGMA_RAD = float(np.deg2rad(35.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """Everything that speaks for or against a pose of one object."""
+
+    camera: Camera
+    seen: Observed
+    facing: Facing
+    surface: MeasuredSurface | None
+    """None where depth was not measured."""
+
+    def errors(self, caster: ShapeCaster, poses: PoseBatch) -> Float[np.ndarray, "p"]:
+        """0 (agrees entirely) to 1: weighted disagreement of silhouette, box, depth and normals."""
+        hits = caster.cast(self.seen.origin_world, self.seen.directions_world, poses)
+        if self.surface is not None:
+            weights = [_SILHOUETTE_WEIGHT_WITH_DEPTH * (0.3 + 0.7 * self.seen.mask_trust), _DEPTH_WEIGHT]
+            terms = [self._outline_with_depth(self.surface, hits), self.surface.agreement(hits)]
+        else:
+            weights = [_SILHOUETTE_WEIGHT * self.seen.mask_trust, _BOX_WEIGHT]
+            boxes = box_iou(caster.bounds_px(self.camera, poses), np.asarray(self.seen.box))
+            terms = [self.seen.agreement(hits.covered), np.nan_to_num(boxes)]
+        agreement = sum(w * t for w, t in zip(weights, terms, strict=True)) / sum(weights)
+        return np.clip(1.0 - np.nan_to_num(agreement), 0.0, 1.0)
+
+    def _outline_with_depth(self, surface: MeasuredSurface, hits: Hits) -> Float[np.ndarray, "p"]:
+        """Intersection over union with the mask where nothing that was measured is in front of the shape."""
+        k = self.camera.intrinsics
+        inside = self.seen.window.inside(k.width, k.height).astype(np.float64)
+        before = np.where(surface.known, inside, self.seen.weight)
+        weight = np.where(surface.hides(hits), 0.0, before)
+        return soft_iou(self.seen.covered, hits.covered.astype(np.float64), weight)
+
+    def log_scores(
+        self,
+        errors: Float[np.ndarray, "p"],
+        poses: PoseBatch,
+        off_axis_rad: Float[np.ndarray, "p"],
+        misfit: Float[np.ndarray, "p"],
+        limits: SizeLimits,
+    ) -> Float[np.ndarray, "p"]:
+        """Scores by which poses of this object are compared; higher is better.
+
+        The logarithm lets a nearly perfect silhouette overrule what things usually do, and lets habit decide
+        between silhouettes that fit equally badly.
+        """
+        cost = self.habit_cost(poses, limits)
+        cost = cost + 0.5 * (misfit / _MISFIT_SIGMA) ** 2
+        cost = cost + 0.5 * (off_axis_rad / _OFF_AXIS_SIGMA_RAD) ** 2
+        strength = 1.0 if self.surface is None else _STRENGTH_WITH_DEPTH
+        return -strength * np.log(errors + _NOISE_FLOOR) - cost
+
+    def habit_cost(self, poses: PoseBatch, limits: SizeLimits) -> Float[np.ndarray, "p"]:
+        """What speaks against poses whatever the picture shows: unusual headings and uneven stretching."""
+        stretched = 0.5 * (limits.stretch(poses.scale) / _STRETCH_SIGMA) ** 2
+        return _FACING_STRENGTH * self.facing.cost(poses.R) + stretched
+
+    def log_likelihood(self, error: float, scale: Float[np.ndarray, "3"], limits: SizeLimits) -> float:
+        """How well one shape at its best pose explains the object, to compare shapes where depth was measured.
+
+        Shapes are made in metres: the right one fits without being enlarged or stretched much.
+        """
+        logs = np.log(scale[~limits.thin]) if not limits.thin.all() else np.log(scale)
+        cost = 0.5 * (float(logs.mean()) / _ENLARGED_SIGMA) ** 2 + 0.5 * (float(logs.std()) / _LIKELIHOOD_SIGMA) ** 2
+        return -_STRENGTH_WITH_DEPTH * float(np.log(error + _LIKELIHOOD_FLOOR)) - cost
+
+    def confidence(self, error: float, cuboid_confidence: float) -> float:
+        """0 to 1: lower for cut, hidden, tiny or badly masked objects and for poses that fit badly."""
+        x1, y1, x2, y2 = self.seen.box
+        large_enough = min(max((x2 - x1) * (y2 - y1), 0.0) ** 0.5 / 24.0, 1.0)
+        visible = (1.0 - 0.6 * self.seen.border_share) * (1.0 - 0.7 * self.seen.hidden_share)
+        believed = (0.3 + 0.7 * self.seen.mask_trust) * (0.5 + 0.5 * float(np.clip(cuboid_confidence, 0.0, 1.0)))
+        value = (1.0 - error) * large_enough * visible * believed
+        return float(np.clip(np.nan_to_num(value), 0.0, 1.0))

@@ -1,0 +1,66 @@
+"""Features of shapes, made once: kept in memory and, under the shapes' content hashes, on disk."""
+
+from __future__ import annotations
+
+import logging
+import os
+import tempfile
+from collections.abc import Callable
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float, Float16
+
+from diorama_core.io.cache import LruCache
+from diorama_core.library.catalogue import default_cache_dir
+from diorama_core.library.record import Shape
+
+log = logging.getLogger(__name__)
+
+_CACHE: LruCache[np.ndarray] = LruCache(4096)
+
+
+def cached_features(
+    kind: str, shape: Shape, make: Callable[[], Float[np.ndarray, "rows width"]], folder: Path | None = None
+) -> Float16[np.ndarray, "rows width"]:
+    """The features of one kind of one shape: from memory, from its file, or made now and written.
+
+    One file a shape, replaced whole, so that any number of processes may share the folder. A folder that cannot be
+    written only costs time; a shape without a content hash is not remembered.
+
+    Args:
+        kind: What and by which weights: a word fit for a folder's name.
+        shape: Whose.
+        make: Makes them.
+        folder: Where kinds are kept; `features` in the cache folder by default.
+    """
+    if not shape.content_hash:
+        return make().astype(np.float16)
+    path = (folder or default_cache_dir() / "features") / kind / f"{shape.content_hash}.npy"
+
+    def found_or_made() -> np.ndarray:
+        found = _read(path)
+        return _written(path, make().astype(np.float16)) if found is None else found
+
+    return _CACHE.get(str(path), found_or_made)
+
+
+def _read(path: Path) -> np.ndarray | None:
+    try:
+        return np.asarray(np.load(path, allow_pickle=False))
+    except (OSError, ValueError, EOFError):
+        return None  # absent, or damaged: it is made again
+
+
+def _written(path: Path, values: np.ndarray) -> np.ndarray:
+    data = BytesIO()
+    np.save(data, values)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as part:
+            part.write(data.getvalue())
+        os.replace(part.name, path)  # so that no reader ever sees half a file
+    except OSError as error:
+        log.warning("cannot keep features in %s (%s); they are made again each time", path.parent, error)
+    return values

@@ -1,0 +1,295 @@
+"""The document and what the editor does to it, without a browser."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from diorama_app.commands import edit as editing
+from diorama_app.commands import swap as swapping
+from diorama_app.commands.insert import insert_shape
+from diorama_app.commands.optimise import untouched
+from diorama_app.panels.fields import unique_names
+from diorama_app.panels.outliner import tree_html
+from diorama_app.panels.room_size import RoomSize
+from diorama_app.panels.supports import supporters
+from diorama_app.reconstruction.build_job import fresh_folder
+from diorama_app.session.client import Client
+from diorama_app.session.draft import Draft, boxes_json
+from diorama_app.session.jobs import Jobs, Outcome
+from diorama_app.session.session import EditorSession
+from diorama_app.session.ui_thread import UiThread
+from diorama_app.viewport.client_view import Board, fitting_fov, screen_rays
+from diorama_app.viewport.framing import room_view
+from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
+from diorama_core.artefacts import Inputs
+from diorama_core.errors import DioramaError, EditRefused, InputError
+from diorama_core.perception.inputs import read_inputs
+from diorama_core.progress import Progress
+from diorama_core.scene import edits
+from diorama_core.scene.support import check_scene
+from tests.app.people import join
+from tests.app.small_room import PlainLibrary, furnished_scene, make_project, photo_camera, plain_photo
+
+
+@pytest.fixture
+def session(tmp_path: Path) -> Iterator[EditorSession]:
+    server = create_server(host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1"))
+    made = EditorSession(server, PlainLibrary(), tmp_path / "projects")
+    made.checker.look_at = lambda scene: None  # type: ignore[method-assign]  # its thread would post to the desk
+    made.open_project(make_project(tmp_path / "projects" / "demo"))
+    yield made
+    made.close()
+    stop_server(server)
+
+
+@pytest.fixture
+def client(session: EditorSession) -> Client:
+    return join(session)
+
+
+def test_undo_restores_scene_and_selection(session: EditorSession, client: Client) -> None:
+    client.select(["chair_1"])
+    editing.delete_selected(client)
+    assert not session.scene.has_object("chair_1")
+    assert client.selection == ()
+    session.undo(client)
+    assert client.selection == ("chair_1",)
+    assert session.scene.has_object("chair_1")
+    session.redo(client)
+    assert not session.scene.has_object("chair_1")
+    with pytest.raises(EditRefused):
+        session.redo(client)
+
+
+def test_a_selection_is_ones_own_and_the_history_is_everyones(session: EditorSession, client: Client) -> None:
+    other = join(session, 1)
+    client.select(["chair_1"])
+    other.select(["lamp_1", "chair_2"])
+    assert client.selection == ("chair_1",)
+    editing.delete_selected(other)
+    assert other.selection == ()
+    session.undo(client)
+    assert session.scene.has_object("lamp_1")
+    assert other.selection == ()
+    editing.delete_selected(client)
+    assert other.session.scene is client.session.scene
+
+
+def test_a_refused_edit_changes_nothing(session: EditorSession, client: Client) -> None:
+    editing.set_locked(client, ["chair_1"], True)
+    before = session.document.history
+    client.select(["chair_1"])
+    with pytest.raises(EditRefused, match="locked"):
+        editing.delete_selected(client)
+    assert session.scene is before.current.scene
+
+
+def test_resizing_keeps_the_base_and_lifts_what_stands_on_it(session: EditorSession, client: Client) -> None:
+    lamp = session.scene.object("lamp_1").corners_world[:, 2].min()
+    editing.set_size(client, "table_1", np.array([0.8, 1.4, 1.0]))
+    table = session.scene.object("table_1")
+    np.testing.assert_allclose(table.size_m, [0.8, 1.4, 1.0])
+    assert table.corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-9)
+    assert session.scene.object("lamp_1").corners_world[:, 2].min() == pytest.approx(lamp + 0.26)
+    with pytest.raises(EditRefused):
+        editing.set_size(client, "table_1", np.array([0.8, 0.0, 1.0]))
+
+
+def test_fields_write_place_and_turn(session: EditorSession, client: Client) -> None:
+    editing.set_base_position(client, "table_1", np.array([0.5, 2.0, 0.1]))
+    table, lamp = session.scene.object("table_1"), session.scene.object("lamp_1")
+    np.testing.assert_allclose(editing.base_position(table), [0.5, 2.0, 0.1], atol=1e-9)
+    assert lamp.corners_world[:, 2].min() == pytest.approx(0.84)
+    steps = len(session.document.history.entries)
+    for degrees in (10.0, 20.0, 30.0):
+        editing.set_yaw(client, "table_1", degrees)
+    assert np.degrees(session.scene.object("table_1").pose.yaw_rad) == pytest.approx(30.0)
+    assert len(session.document.history.entries) == steps + 1, "quick nudges are one undo step"
+
+
+@pytest.mark.parametrize("shape_id", ["chair_a", "lamp_a", "table_b"])
+def test_inserted_objects_stand_on_the_floor_clear_of_others(
+    session: EditorSession, client: Client, shape_id: str
+) -> None:
+    insert_shape(client, shape_id)
+    new = session.scene.object(client.selection[0])
+    check_scene(session.scene)
+    assert session.scene.support_of(new.id).parent == "floor"
+    assert new.corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-9)
+    low, high = session.scene.plane("floor").polygon.min(axis=0), session.scene.plane("floor").polygon.max(axis=0)
+    assert (new.pose.position[:2] > low[:2]).all()
+    assert (new.pose.position[:2] < high[:2]).all()
+
+
+def test_a_swap_keeps_the_photos_colour_unless_told_otherwise(session: EditorSession, client: Client) -> None:
+    blue = (0.1, 0.2, 0.9)
+    editing.set_colour(client, ["chair_1"], blue)
+    swapping.swap(client, "chair_1", "chair_b")
+    assert session.scene.object("chair_1").shape_id == "chair_b"
+    assert session.scene.object("chair_1").colour == blue
+    client.change_preferences(keep_colour=False)
+    swapping.swap(client, "chair_1", "chair_c")
+    assert session.scene.object("chair_1").colour is None
+    session.undo(client)
+    assert session.scene.object("chair_1").colour == blue
+
+
+def test_sizes_of_a_swap_and_all_that_are_alike(session: EditorSession, client: Client) -> None:
+    editing.set_size(client, "chair_1", np.array([0.6, 0.6, 1.2]))
+    item = session.scene.object("chair_1")
+    for mode, expected in (("same box", item.size_m), ("catalogue", [0.48, 0.5, 0.95])):
+        candidate = swapping.candidate_for(session.library, item, "chair_c", mode)
+        np.testing.assert_allclose(np.array(candidate.shape_size_m) * candidate.pose.scale, expected)
+    even = swapping.candidate_for(session.library, item, "chair_c", "in proportion").pose.scale
+    assert np.ptp(even) == pytest.approx(0.0)
+    assert np.prod(even * (0.48, 0.5, 0.95)) == pytest.approx(np.prod(item.size_m))
+    swapping.swap(client, "chair_1", "chair_b")
+    client.change_preferences(all_alike=True)
+    swapping.swap(client, "chair_1", "chair_c")
+    assert {session.scene.object(i).shape_id for i in ("chair_1", "chair_2")} == {"chair_c"}
+    session.undo(client)
+    assert {session.scene.object(i).shape_id for i in ("chair_1", "chair_2")} == {"chair_b"}
+
+
+def test_the_room_is_made_higher_and_a_wall_is_moved_with_what_hangs_on_it(
+    session: EditorSession, client: Client
+) -> None:
+    panel = RoomSize(session.server.gui, client)
+    panel._do("height", "", "3 m")
+    assert session.scene.plane("ceiling").polygon[:, 2] == pytest.approx(3.0)
+    picture = session.scene.object("picture_1").pose.position[1]
+    client.change_preferences(unit="cm")
+    panel._do("wall", "wall_3", "40")
+    assert session.scene.object("picture_1").pose.position[1] == pytest.approx(picture + 0.4)
+    session.undo(client)
+    assert session.scene.object("picture_1").pose.position[1] == pytest.approx(picture)
+    panel.refresh()
+    with pytest.raises(InputError, match="not a length"):
+        panel._do("height", "", "tall")
+
+
+def test_every_commit_is_on_disk_within_a_second(session: EditorSession, client: Client) -> None:
+    editing.set_yaw(client, "chair_1", 77.0)
+    until = time.monotonic() + 1.5
+    while time.monotonic() < until:
+        if abs(np.degrees(session.project.load_scene().object("chair_1").pose.yaw_rad) - 77.0) < 1e-6:
+            return
+        time.sleep(0.05)
+    pytest.fail("not saved")
+
+
+def test_names_are_escaped_and_supporters_are_named_apart() -> None:
+    scene = edits.rename(furnished_scene(), "chair_1", "<script>alert(1)</script>")
+    assert "<script>" not in tree_html(scene, ())
+    assert unique_names(["chair", "chair", "table"]) == ["chair", "chair (2)", "table"]
+    assert supporters(scene, "lamp_1")["dining table"] == "table_1"
+    assert "lamp_1" not in supporters(scene, "lamp_1").values()
+
+
+def test_an_optimiser_result_leaves_what_was_edited_meanwhile_and_what_is_locked() -> None:
+    start = furnished_scene()
+    raised = {o.id: o.pose.moved((0, 0, 1.0)) for o in start.objects}
+    final = edits.place(start, raised)
+    current = edits.set_locked(edits.rename(start, "chair_1", "mine"), "lamp_1", True)
+    assert set(untouched(current, start, final)) == {"table_1", "chair_2", "picture_1"}
+
+
+def test_the_desk_works_in_order_and_keeps_only_the_newest_of_a_key() -> None:
+    errors: list[str] = []
+    ui_thread = UiThread(errors.append)
+    gate, done = threading.Event(), []
+    ui_thread.post(gate.wait)
+    for i in range(50):
+        ui_thread.post(lambda i=i: done.append(i), key="drag")
+    ui_thread.post(lambda: done.append("end"))
+
+    def refuse() -> None:
+        raise EditRefused("no")
+
+    ui_thread.post(refuse)
+    ui_thread.post(lambda: 1 / 0)
+    gate.set()
+    assert ui_thread.wait()
+    assert done == [49, "end"]
+    assert errors[0] == "no"
+    assert "log" in errors[1]
+    ui_thread.stop()
+
+
+def test_one_job_at_a_time_and_cancel_ends_it() -> None:
+    ended: list[Outcome] = []
+    jobs = Jobs(lambda status: None, ended.append)
+
+    def work(progress: Progress) -> None:
+        while True:
+            progress.report(0.5, "working")
+            time.sleep(0.005)
+
+    jobs.start("build", "Building", work)
+    with pytest.raises(EditRefused, match="still running"):
+        jobs.start("export", "Exporting", work)
+    jobs.cancel()
+    assert jobs.wait(5.0)
+    assert ended == [Outcome("build", cancelled=True)]
+
+    def fail(progress: Progress) -> None:
+        raise InputError("the photo is no photo")
+
+    jobs.start("build", "Building", fail)
+    assert jobs.wait(5.0)
+    assert ended[-1].error == "the photo is no photo"
+
+
+def test_drawn_boxes_go_back_to_the_files_pixels() -> None:
+    photo = plain_photo()
+    draft = Draft(Inputs(photo)).with_box((10.0, 20.0, 110.0, 220.0), "couch").with_box((5.0, 5.0, 50.0, 60.0), "chair")
+    assert [b.category for b in draft.boxes] == ["sofa", "chair"]
+    assert draft.without_box(0).relabelled(0, "couch").boxes[0].category == "sofa"
+    path_bytes = boxes_json(draft.boxes, photo)
+    again = read_inputs(_png(photo.rgb), name="p.png", boxes=path_bytes)
+    assert [b.box for b in again.inputs.boxes] == [b.box for b in draft.boxes]
+    with pytest.raises(DioramaError):
+        Draft().to_build()
+
+
+def _png(rgb: np.ndarray) -> bytes:
+    import io
+
+    from PIL import Image
+
+    buffer = io.BytesIO()
+    Image.fromarray(rgb).save(buffer, "PNG")
+    return buffer.getvalue()
+
+
+def test_screen_to_photo_pixels_is_exact_from_any_place_before_the_board(rng: np.random.Generator) -> None:
+    board = Board(640, 480)
+    for _ in range(20):
+        pixels = rng.uniform((0, 0), (640, 480), (6, 2))
+        origin = board.to_world(np.array([320.0, 240.0]), lift_m=1.2) + rng.normal(0, 0.2, 3)
+        np.testing.assert_allclose(board.to_pixels(origin, board.to_world(pixels) - origin), pixels, atol=1e-6)
+    R = np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]])
+    centre = screen_rays(np.array([[0.5, 0.5]]), R, np.radians(50), 1.2)
+    np.testing.assert_allclose(centre, [[0, 1, 0]], atol=1e-12)
+
+
+def test_the_whole_photo_and_the_whole_room_fit_the_view() -> None:
+    k = photo_camera().intrinsics
+    for aspect in (0.6, 1.0, 1.33, 2.2):
+        fov = fitting_fov(k.width, k.height, k.fx, k.fy, k.cx, k.cy, aspect)
+        assert np.tan(fov / 2) >= k.height / 2 / k.fy - 1e-12
+        assert np.tan(fov / 2) * aspect >= k.width / 2 / k.fx - 1e-12
+    position, target = room_view(furnished_scene(), 0.7)
+    assert np.linalg.norm(position - target) > 5.0
+
+
+def test_projects_get_a_folder_of_their_own(tmp_path: Path) -> None:
+    assert fresh_folder(tmp_path, "../my room.jpg").parent == tmp_path
+    make_project(tmp_path / "my-room")
+    assert fresh_folder(tmp_path, "my room.jpg").name == "my-room-2"

@@ -1,0 +1,23 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+from diorama_app.projects.example import example_inputs, example_project
+
+
+def test_the_example_is_copied_with_its_photo_and_retained_as_edited(tmp_path: Path) -> None:
+    project = example_project(tmp_path)
+    assert project is not None
+    scene, inputs = project.load_scene(), project.load_inputs()
+    assert inputs is not None
+    assert len(scene.objects) >= 0.9 * len(example_inputs().inputs.boxes)
+    assert scene.architecture.floor is not None
+    assert scene.architecture.by_role("wall")
+    assert (inputs.photo.width, inputs.photo.height) == (
+        scene.camera.intrinsics.width,  # type: ignore[union-attr]
+        scene.camera.intrinsics.height,  # type: ignore[union-attr]
+    )
+    project.scene_path.write_text(project.scene_path.read_text().replace('"label": "sofa"', '"label": "settee"'))
+    again = example_project(tmp_path)
+    assert again is not None
+    assert "settee" in [o.label for o in again.load_scene().objects]

@@ -1,0 +1,48 @@
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, preferences
+from hypothesis import strategies as st
+
+from diorama_app.session.units import UNITS, format_length, from_unit, in_unit, parse_length, parse_lengths
+from diorama_core.errors import InputError
+
+
+@preferences(deadline=None)
+@given(metres=st.floats(-50, 50), unit=st.sampled_from(UNITS))
+def test_what_is_written_reads_as_the_same_length(metres: float, unit: str) -> None:
+    assert parse_length(format_length(metres, unit), unit) == pytest.approx(metres, abs=1.1e-3)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("words", "unit", "metres"),
+    [
+        ("1.2", "m", 1.2),
+        ("85", "cm", 0.85),
+        ("85 cm", "m", 0.85),
+        ("5' 3\"", "m", 1.6002),
+        ("6ft 2in", "cm", 1.8796),
+        ("5' 3 1/2\"", "m", 1.6129),
+        ("5 3", "ft-in", 1.6002),
+        ("5' 3", "ft-in", 1.6002),
+        ("-40mm", "m", -0.04),
+        ("1,25", "m", 1.25),
+    ],
+    ids=str,
+)
+def test_lengths_as_people_write_them(words: str, unit: str, metres: float) -> None:
+    assert parse_length(words, unit) == pytest.approx(metres)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("words", ["", "two", "1.2 parsecs", "3/0"])
+def test_what_is_no_length_is_said_so(words: str) -> None:
+    with pytest.raises(InputError):
+        parse_length(words, "m")
+
+
+def test_three_at_once_and_fields() -> None:
+    assert parse_lengths("1 m, 20 cm, 2'", "m") == pytest.approx((1.0, 0.2, 0.6096))
+    with pytest.raises(InputError, match="3 lengths"):
+        parse_lengths("1, 2", "m")
+    assert in_unit(1.2346, "cm") == 123.5
+    assert from_unit(in_unit(1.234, "cm"), "cm") == pytest.approx(1.234)

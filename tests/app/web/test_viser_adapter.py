@@ -1,0 +1,193 @@
+"""The hardened server, and viser's private names that the adapter leans on."""
+
+from __future__ import annotations
+
+import gzip
+import socket
+import time
+import urllib.error
+import urllib.request
+from collections.abc import Iterator
+from concurrent.futures import Future
+
+import pytest
+import viser
+import websockets
+from viser import _messages
+from websockets.sync.client import connect
+
+from diorama_app.web import viser_adapter
+from diorama_app.web.viser_adapter import Visitors, component_uuid, create_server, stop_server
+from diorama_core.errors import InputError
+
+
+@pytest.fixture
+def server() -> Iterator[viser.ViserServer]:
+    made = create_server(host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1"))
+    yield made
+    stop_server(made)
+
+
+@pytest.fixture
+def guarded() -> Iterator[viser.ViserServer]:
+    made = create_server(host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1", "s3cret"))
+    yield made
+    stop_server(made)
+
+
+def fetch(server: viser.ViserServer, path: str = "/", **headers: str) -> tuple[int, dict[str, str]]:
+    request = urllib.request.Request(f"http://127.0.0.1:{server.get_port()}{path}", headers=headers)
+    try:
+        with urllib.request.urlopen(request, timeout=10) as reply:
+            return reply.status, dict(reply.headers)
+    except urllib.error.HTTPError as error:
+        return error.code, dict(error.headers)
+
+
+def connects(server: viser.ViserServer, **headers: str) -> bool:
+    try:
+        with connect(
+            f"ws://127.0.0.1:{server.get_port()}/",
+            additional_headers=headers,
+            subprotocols=[websockets.Subprotocol(f"viser-v{viser.__version__}")],
+        ):
+            return True
+    except websockets.InvalidStatus as refused:
+        return refused.response.status_code != 403
+
+
+def test_it_is_the_version_that_was_measured() -> None:
+    assert viser.__version__ == "1.1.1"
+
+
+def test_pages_of_its_own_origin_are_served(server: viser.ViserServer) -> None:
+    status, headers = fetch(server)
+    assert status == 200
+    assert headers["X-Frame-Options"] == "SAMEORIGIN"
+    assert connects(server, Origin=f"http://127.0.0.1:{server.get_port()}")
+
+
+@pytest.mark.parametrize("encoding", ["gzip", "identity"])
+def test_our_scripts_run_before_the_page_and_the_page_is_whole(server: viser.ViserServer, encoding: str) -> None:
+    address = f"http://127.0.0.1:{server.get_port()}/"
+    with urllib.request.urlopen(urllib.request.Request(address, headers={"Accept-Encoding": encoding})) as reply:
+        body = reply.read()
+        assert int(reply.headers["Content-Length"]) == len(body)
+    page = gzip.decompress(body) if encoding == "gzip" else body
+    assert len(viser_adapter.HEAD_SCRIPTS) == 2
+    for path in viser_adapter.HEAD_SCRIPTS:
+        script = path.read_bytes()
+        assert page.count(script) == 1
+        assert page.index(script) < page.index(b"<script data-p")
+    assert page.rstrip().endswith(b"</html>")
+
+
+def test_foreign_origins_and_foreign_names_are_refused(server: viser.ViserServer) -> None:
+    assert not connects(server, Origin="https://evil.example")
+    assert not connects(server, Origin=f"http://127.0.0.1:{server.get_port() + 1}")
+    assert fetch(server, Host="evil.example")[0] == 403
+    assert fetch(server, Host=f"localhost:{server.get_port()}")[0] == 200
+
+
+def test_with_a_token_only_those_who_bring_it_get_in(guarded: viser.ViserServer) -> None:
+    origin = f"http://127.0.0.1:{guarded.get_port()}"
+    assert fetch(guarded)[0] == 403
+    assert fetch(guarded, "/?token=wrong")[0] == 403
+    status, headers = fetch(guarded, "/?token=s3cret")
+    assert status == 200
+    cookie = headers["Set-Cookie"].partition(";")[0]
+    assert "HttpOnly" in headers["Set-Cookie"]
+    assert not connects(guarded, Origin=origin)
+    assert not connects(guarded, Origin=origin, Cookie="diorama_token=wrong")
+    assert connects(guarded, Origin=origin, Cookie=cookie)
+
+
+def test_a_taken_port_is_one_clear_line() -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        with pytest.raises(InputError, match="cannot listen on"):
+            create_server(host="127.0.0.1", port=taken.getsockname()[1], label="x", visitors=Visitors("127.0.0.1"))
+
+
+def test_it_listens_on_loopback_only(server: viser.ViserServer) -> None:
+    assert server.get_host() == "127.0.0.1"
+
+
+def test_no_public_tunnel_is_ever_opened(server: viser.ViserServer) -> None:
+    assert server.request_share_url() is None
+    handlers = server._websock_server._incoming_handlers[_messages.ShareUrlRequest]
+    for handler in handlers:
+        handler(0, _messages.ShareUrlRequest())
+    time.sleep(0.2)
+    assert server._share_tunnel is None
+
+
+def test_uploads_larger_than_the_cap_are_dropped_and_told() -> None:
+    told: list[tuple[int, str, int]] = []
+    server = create_server(
+        host="127.0.0.1",
+        port=0,
+        label="x",
+        visitors=Visitors("127.0.0.1"),
+        too_large=lambda *what: told.append(what),
+    )
+    try:
+        upload = server.gui.add_upload_button("Upload")
+        uuid = component_uuid(upload)
+        start = server._websock_server._incoming_handlers[_messages.FileTransferStartUpload]
+        part = server._websock_server._incoming_handlers[_messages.FileTransferPart]
+
+        def begin(name: str, size: int, parts: int) -> None:
+            for handler in start:
+                handler(3, _messages.FileTransferStartUpload(uuid, name, name, "image/png", parts, size))
+
+        begin("huge.png", viser_adapter.MAX_UPLOAD_BYTES + 1, 500)
+        assert told == [(3, "huge.png", viser_adapter.MAX_UPLOAD_BYTES + 1)]
+        begin("small.png", 10, 2)
+        states = server.gui._current_file_upload_states
+        assert list(states) == ["small.png"]
+        for handler in part:
+            handler(3, _messages.FileTransferPart(uuid, "small.png", 0, b"x" * 11))
+        assert not states, "more bytes than announced end the transfer"
+    finally:
+        stop_server(server)
+
+
+def test_stopping_returns_at_once(server: viser.ViserServer) -> None:
+    began = time.monotonic()
+    stop_server(server)
+    assert time.monotonic() - began < 0.5
+
+
+def test_pictures_are_served_beside_the_page_to_those_who_may_see_it() -> None:
+    def picture(name: str) -> Future[bytes | None]:
+        asked: Future[bytes | None] = Future()
+        asked.set_result(b"\x89PNG" if name == "chair.png" else None)
+        return asked
+
+    made = create_server(
+        host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1", "s3cret"), pictures=picture
+    )
+    status, headers = fetch(made, "/pictures/chair.png?token=s3cret")
+    assert (status, headers["Content-Type"]) == (200, "image/png")
+    assert headers["X-Content-Type-Options"] == "nosniff"
+    assert fetch(made, "/pictures/none.png?token=s3cret")[0] == 404
+    assert fetch(made, "/pictures/chair.png")[0] == 403
+    assert fetch(made, "/?token=s3cret")[0] == 200
+    stop_server(made)
+
+
+def test_a_page_that_is_closed_while_its_picture_is_made_is_no_error(caplog: pytest.LogCaptureFixture) -> None:
+    asked: Future[bytes | None] = Future()
+    made = create_server(
+        host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1"), pictures=lambda name: asked
+    )
+    with socket.create_connection(("127.0.0.1", made.get_port())) as page:
+        page.sendall(f"GET /pictures/chair.png HTTP/1.1\r\nHost: 127.0.0.1:{made.get_port()}\r\n\r\n".encode())
+        time.sleep(0.2)
+    time.sleep(0.2)
+    asked.set_result(b"\x89PNG")
+    assert fetch(made, "/pictures/table.png")[0] == 200
+    stop_server(made)
+    assert not [record.message for record in caplog.records if record.levelname == "ERROR"]

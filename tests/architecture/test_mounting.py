@@ -1,0 +1,56 @@
+"""Wall things touch their wall and look the same in the photo."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diorama_core.architecture.mounting import MAX_SCALE, mounted_on_ceiling, mounted_on_walls
+from diorama_core.artefacts import ArchitectureEstimate, ObjectGeometry
+from diorama_core.scene.types import Architecture, Support
+from tests.synthetic_rooms import box_room, cuboid, look
+
+CAMERA = look(10, 5)
+ROOM = box_room(-2.0, 2.0, 4.0, 2.6)
+
+
+def hung(item, relation="mounted on", parent="back"):
+    edge = Support(item.object_id, parent, relation)
+    geometry = ObjectGeometry(CAMERA, (item,), (edge,), "known")
+    (found,) = mounted_on_walls(geometry, ArchitectureEstimate(Architecture(ROOM), (edge,), 1.0, "known")).cuboids
+    return found
+
+
+@pytest.mark.parametrize("y", [3.2, 3.6, 4.5])
+def test_touches_the_wall_and_projects_alike(y):
+    picture = cuboid("picture", (0.3, y, 1.4), (0.04, 0.8, 0.5), yaw_deg=-90)
+    found = hung(picture)
+    assert found.corners_world[:, 1].max() == pytest.approx(4.0, abs=1e-9)
+    np.testing.assert_allclose(CAMERA.project(found.corners_world), CAMERA.project(picture.corners_world), atol=1e-6)
+
+
+def test_does_not_grow_beyond_belief():
+    picture = cuboid("picture", (0.1, 1.0, 1.6), (0.04, 0.4, 0.3), yaw_deg=-90)
+    np.testing.assert_allclose(hung(picture).size_m, MAX_SCALE * picture.size_m)
+
+
+def test_a_door_stays_on_the_floor():
+    door = cuboid("door", (0.3, 3.0, 0.0), (0.06, 0.85, 2.03), yaw_deg=-90)
+    assert hung(door).corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-9)
+
+
+def test_standing_objects_stay():
+    chair = cuboid("chair", (0.3, 3.0, 0.0), (0.5, 0.5, 0.9))
+    assert hung(chair, "placed on", "floor") == chair
+
+
+@pytest.mark.parametrize("z", [1.9, 2.2, 2.5])
+def test_a_lamp_reaches_the_ceiling_inside_the_room(z):
+    lamp = cuboid("lamp", (0.1, 2.6, z), (0.4, 0.4, 0.3))
+    edge = Support("lamp", "ceiling", "mounted on")
+    geometry = ObjectGeometry(CAMERA, (lamp,), (edge,), "known")
+    room = ArchitectureEstimate(Architecture(ROOM), (edge,), 1.0, "known")
+    (found,) = mounted_on_ceiling(geometry, room).cuboids
+    assert found.corners_world[:, 2].max() == pytest.approx(2.6, abs=1e-9)
+    assert found.corners_world[:, 1].max() < 4.0
+    assert (found.size_m <= 1.8 * MAX_SCALE * lamp.size_m).all()

@@ -1,0 +1,103 @@
+"""Points 8 and 9: weights, curves of every cost, pause and cancel, the report, arrangements mixed."""
+
+from __future__ import annotations
+
+import pytest
+from playwright.sync_api import expect
+
+from diorama_core.scene import edits
+from diorama_core.scene.types import Scene
+from tests.e2e.browser import EditorPage
+
+pytestmark = pytest.mark.browser
+
+
+def choose_recipe(editor: EditorPage, name: str) -> None:
+    editor.page.get_by_label("Recipe").click()
+    editor.page.get_by_role("option", name=name).click()
+
+
+def lift_chair(editor: EditorPage) -> Scene:
+    session = editor.running.session
+    lifted = session.scene.object("chair_1").pose.moved((0.0, 0.0, 0.3))
+    session.ui_thread.post(lambda: session.edit("lift", lambda s: edits.move(s, "chair_1", lifted)))
+    editor.until(lambda: session.scene.object("chair_1").pose == lifted)
+    return session.scene
+
+
+def test_a_cost_left_out_is_not_followed_and_every_cost_has_a_curve(editor: EditorPage) -> None:
+    session = editor.running.session
+    before = lift_chair(editor)
+    editor.tab("Arrange")
+    choose_recipe(editor, "As in the paper")
+    editor.page.get_by_text("Weights", exact=True).click()
+    touching = editor.page.locator(".mantine-Flex-root", has_text="Touching").locator("input[type=text]")
+    expect(touching).to_be_visible()
+    expect(editor.page.get_by_text("As far away", exact=True)).not_to_be_visible()
+    touching.fill("0")
+    touching.press("Tab")
+    expect(editor.button("All back to 1")).to_be_enabled()
+    editor.button("Optimise layout").click()
+    editor.until(lambda: session.jobs.status is None and session.scene is not before, "arranged", seconds=90)
+    assert session.scene.object("chair_1").corners_world[:, 2].min() > 0.2, "nothing asked it to touch the floor"
+    run = session.layout_run
+    assert run is not None
+    assert {"align", "heading", "place", "neighbours", "volume", "collision"} == set(run.costs)
+    editor.page.wait_for_function("!!document.querySelector('.u-legend')")
+    legend = editor.page.locator(".u-legend").first
+    for name in ("Upright", "Facing", "Neighbours", "Apart"):
+        expect(legend).to_contain_text(name)
+    expect(editor.page.get_by_text("Moved, mean")).to_be_visible()
+    expect(editor.page.get_by_text("Overlapping pairs")).to_be_visible()
+    editor.button("Put back").click()
+    editor.until(lambda: session.scene == before, "put back")
+    editor.button("All back to 1").click()
+    expect(touching).to_have_value("1")
+    editor.button("Optimise layout").click()
+    editor.until(lambda: session.jobs.status is None and session.scene != before, "arranged", seconds=90)
+    assert session.scene.object("chair_1").corners_world[:, 2].min() == pytest.approx(0.0, abs=0.02)
+    editor.button("Keep").click()
+    expect(editor.button("Put back")).to_have_count(0)
+
+
+def test_an_optimisation_is_paused_gone_on_with_and_cancelled(editor: EditorPage) -> None:
+    session = editor.running.session
+    before = lift_chair(editor)
+    editor.tab("Arrange")
+    choose_recipe(editor, "All in one")
+    editor.button("Optimise layout").click()
+    editor.button("Pause").click()
+    expect(editor.button("Go on")).to_be_visible()
+    run = session.layout_run
+    assert run is not None
+    assert run.paused
+    editor.page.wait_for_timeout(300)
+    seen = len(run.times_s)
+    editor.page.wait_for_timeout(500)
+    assert len(run.times_s) == seen, "it waits"
+    editor.button("Go on").click()
+    editor.until(lambda: len(run.times_s) > seen, "it goes on")
+    editor.button("Cancel").click()
+    editor.until(lambda: session.jobs.status is None, "stopped")
+    assert session.scene is before
+    node = session.viewport.node_name("chair_1")
+    z = before.object("chair_1").pose.position[2]
+    editor.page.wait_for_function(f"Math.abs(window.__viserMutable.nodeRefFromName['{node}'].position.z - {z}) < 1e-4")
+
+
+def test_arrangements_are_mixed_by_what_is_selected(editor: EditorPage) -> None:
+    session = editor.running.session
+    editor.tab("Arrange")
+    expect(editor.page.locator('.dio button[data-do="arrangement"].on')).to_have_text("1")
+    editor.page.locator('.dio button[data-do="arrangement"]', has_text="2").click()
+    editor.until(lambda: session.scene.object("chair_1").shape_id == "chair_b", "the whole room")
+    assert session.scene.object("table_1").shape_id == "table_b"
+    editor.tab("Scene")
+    editor.row("dining table").click()
+    editor.tab("Arrange")
+    editor.page.locator('.dio button[data-do="mix"]', has_text="1st").click()
+    editor.until(lambda: session.scene.object("table_1").shape_id == "table_a", "only the table")
+    assert session.scene.object("chair_1").shape_id == "chair_b"
+    assert session.document.history.current.label == "arrangement 1 for dining table"
+    editor.page.keyboard.press("Control+z")
+    editor.until(lambda: session.scene.object("table_1").shape_id == "table_b", "one undo step")

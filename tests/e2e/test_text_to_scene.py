@@ -1,0 +1,54 @@
+"""A room typed as words becomes a furnished scene; the networks that would do more are offered with their licences."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import expect
+
+from diorama_app.serve import Running
+from diorama_core.scene.types import Scene
+from tests.app.small_room import make_project
+from tests.e2e.browser import EditorPage
+
+pytestmark = pytest.mark.browser
+
+BUILD_S = 300
+"""A dozen seconds of a free core; test machines are often busy."""
+
+
+def test_a_described_room_is_furnished_and_networks_are_offered(
+    serve: Callable[..., Running],
+    visit: Callable[[Running], EditorPage],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("DIORAMA_MODELS", str(tmp_path / "models"))
+    for name in ("DIORAMA_IMAGE_BASE_URL", "DIORAMA_LMM_BASE_URL"):
+        monkeypatch.delenv(name, raising=False)
+    running = serve(make_project(tmp_path / "projects" / "empty", Scene()).folder)
+    editor, session = visit(running), running.session
+    editor.tab("Photo")
+    expect(editor.button("Make this room")).to_be_disabled()
+    words = editor.page.locator(".mantine-Flex-root", has_text="Describe a room").locator("input, textarea").first
+    words.fill("a sofa and an armchair")
+    expect(editor.page.get_by_text("No image endpoint is set up")).to_be_visible()
+    editor.button("Make this room").click()
+    expect(editor.page.get_by_text("Making the room you described")).to_be_visible()
+    editor.until(lambda: session.jobs.status is None and bool(session.scene.objects), "made", seconds=BUILD_S)
+    assert {"sofa", "armchair"} <= {o.category for o in session.scene.objects}
+    editor.notice("composed from the library")
+    expect(editor.page.get_by_text("Finding furniture needs a network")).to_be_visible()
+    expect(editor.button("Find furniture")).to_be_disabled()
+
+    editor.tab("Project")
+    expect(editor.page.get_by_text("the room was composed from the library by rules")).to_be_visible()
+    editor.page.get_by_text("Networks", exact=True).click()
+    expect(editor.page.get_by_text("What each stage uses now")).to_be_visible()
+    expect(editor.page.get_by_text("outlines by colour (GrabCut)")).to_be_visible()
+    expect(editor.page.get_by_text("1.1 GB to fetch.")).to_be_visible()
+    expect(editor.button("Get networks")).to_be_disabled()
+    editor.page.get_by_role("checkbox").last.click()
+    expect(editor.button("Get networks")).to_be_enabled()

@@ -1,0 +1,172 @@
+"""What people said of the photo outlives undo and redo, saving and opening, and the next build."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from diorama_app.reconstruction.camera_correction import camera_height_m, set_camera_height
+from diorama_app.session.client import Client
+from diorama_app.session.session import EditorSession
+from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
+from diorama_core.artefacts import Inputs, LabelledBox
+from diorama_core.editing.input_corrections import given_outline, with_correction
+from diorama_core.geometry.camera_attitude import CameraAttitude
+from diorama_core.perception.camera.given_attitude import GivenAttitudeCamera
+from diorama_core.pipeline import codec
+from diorama_core.pipeline.presets import stages_for
+from diorama_core.pipeline.run import embedded_stages
+from diorama_core.progress import Progress
+from diorama_core.project.build import build_project
+from diorama_core.project.storage import Project
+from diorama_core.scene import edits
+from tests.app.people import join
+from tests.app.small_room import PlainLibrary, make_project, plain_photo
+
+TABLE = LabelledBox((240.0, 200.0, 440.0, 420.0), "table", "dining table")
+CHAIR = LabelledBox((40.0, 250.0, 160.0, 440.0), "chair", "chair")
+
+
+def disc(x: float, y: float, radius: float) -> np.ndarray:
+    rows, columns = np.mgrid[:480, :640]
+    return (columns - x) ** 2 + (rows - y) ** 2 < radius**2
+
+
+ROUND = disc(340.0, 310.0, 80.0)
+
+
+@pytest.fixture
+def inputs() -> Inputs:
+    return Inputs(plain_photo(), (TABLE, CHAIR))
+
+
+@pytest.fixture
+def client(tmp_path: Path) -> Iterator[Client]:
+    server = create_server(host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1"))
+    session = EditorSession(server, PlainLibrary(), tmp_path / "projects")
+    session.open_project(make_project(tmp_path / "projects" / "demo"))
+    yield join(session)
+    session.close()
+    stop_server(server)
+
+
+def retained(client: Client) -> Inputs:
+    """What a later session finds."""
+    assert client.session.project is not None
+    found = Project.open(client.session.project.folder).load_inputs()
+    assert found is not None
+    return found
+
+
+def test_another_word_keeps_box_and_outline(inputs: Inputs) -> None:
+    outlined = with_correction(inputs, TABLE.box, TABLE, ROUND)
+    ui_thread = replace(TABLE, category="desk", label="desk")
+    renamed = with_correction(outlined, TABLE.box, ui_thread)
+    assert renamed.boxes == (ui_thread, CHAIR)
+    mask = given_outline(renamed, ui_thread.box)
+    assert mask is not None
+    np.testing.assert_array_equal(mask, ROUND)
+
+
+def test_a_box_drawn_anew_takes_the_place_of_the_old_one_and_drops_its_outline(inputs: Inputs) -> None:
+    outlined = with_correction(inputs, TABLE.box, TABLE, ROUND)
+    moved = replace(TABLE, box=(250.0, 190.0, 450.0, 400.0))
+    redrawn = with_correction(outlined, TABLE.box, moved)
+    assert redrawn.boxes == (moved, CHAIR)
+    assert redrawn.instances is None
+    assert redrawn.instance_boxes == ()
+
+
+def test_a_later_outline_lies_in_front_and_leaves_the_others(inputs: Inputs) -> None:
+    both = with_correction(with_correction(inputs, TABLE.box, TABLE, ROUND), CHAIR.box, CHAIR, disc(250, 310, 40))
+    assert both.boxes == (TABLE, CHAIR)
+    table, chair = given_outline(both, TABLE.box), given_outline(both, CHAIR.box)
+    assert table is not None
+    assert chair is not None
+    np.testing.assert_array_equal(chair, disc(250, 310, 40))
+    np.testing.assert_array_equal(table, ROUND & ~chair)
+
+
+def test_what_was_missed_is_added_once(inputs: Inputs) -> None:
+    lamp = LabelledBox((500.0, 50.0, 560.0, 150.0), "lamp", "lamp")
+    more = with_correction(inputs, None, lamp)
+    assert more.boxes == (TABLE, CHAIR, lamp)
+    assert with_correction(more, None, lamp) == more
+
+
+def test_the_next_build_takes_the_outline_as_it_was_drawn(inputs: Inputs) -> None:
+    outlined = with_correction(inputs, TABLE.box, TABLE, ROUND)
+    found = embedded_stages(outlined, PlainLibrary()).objects.segment(outlined, Progress())
+    table = next(o for o in found if o.label == "dining table")
+    np.testing.assert_array_equal(table.mask, ROUND)
+    assert table.mask_confidence == 1.0
+    assert {o.label for o in found} == {"dining table", "chair"}
+
+
+def test_corrections_are_undone_redone_and_found_by_the_next_session(client: Client) -> None:
+    session = client.session
+    before = session.document.inputs
+    assert before is not None
+    bench = replace(TABLE, category="bench", label="bench")
+    said = with_correction(before, TABLE.box, bench, ROUND)
+    session.edit("outline", lambda s: edits.rename(s, "table_1", "bench"), by=client, inputs=said)
+    assert retained(client) == said
+    assert session.draft.boxes == (bench,), "the list of boxes follows"
+    session.undo(client)
+    assert retained(client) == before
+    assert session.draft.boxes == (TABLE,)
+    session.redo(client)
+    assert retained(client) == said
+    project = session.project
+    assert project is not None
+    session.open_project(Project.open(project.folder))
+    assert session.document.inputs == said
+
+
+def test_boxes_that_wait_for_a_build_stay_when_something_else_is_corrected(client: Client) -> None:
+    session = client.session
+    session.draft = session.draft.with_box(CHAIR.box, "chair")
+    before = session.document.inputs
+    assert before is not None
+    said = with_correction(before, TABLE.box, replace(TABLE, category="desk", label="desk"))
+    session.edit("it is a desk", lambda s: edits.rename(s, "table_1", "desk"), by=client, inputs=said)
+    assert [b.label for b in session.draft.boxes] == ["desk", "chair"]
+    added = with_correction(said, None, CHAIR)
+    session.edit("insert", lambda s: edits.rename(s, "lamp_1", "other lamp"), by=client, inputs=added)
+    assert [b.label for b in session.draft.boxes] == ["desk", "chair"]
+    session.undo(client)
+    assert [b.label for b in session.draft.boxes] == ["desk", "chair"], "a box that was drawn is not lost by undo"
+
+
+def test_tilt_and_scale_hold_for_every_later_build(tmp_path: Path, inputs: Inputs) -> None:
+    said = replace(inputs, camera_attitude=CameraAttitude(0.31, 0.02), camera_height_m=1.8)
+    for stages in (embedded_stages(said, PlainLibrary()), stages_for("auto", said, PlainLibrary())):
+        assert isinstance(stages.camera, GivenAttitudeCamera)
+    project = Project.create(tmp_path / "room")
+    build_project(project, said, PlainLibrary())
+    again = project.load_inputs()
+    assert again is not None
+    assert again.camera_attitude == said.camera_attitude
+    scene = build_project(project, again, PlainLibrary()).scene
+    assert scene.camera is not None
+    assert CameraAttitude.of(scene.camera.T_world_camera[:3, :3]).pitch_rad == pytest.approx(0.31, abs=1e-6)
+    assert camera_height_m(scene) == pytest.approx(1.8)
+
+
+def test_a_known_length_is_retained_as_the_height_of_the_camera(client: Client) -> None:
+    set_camera_height(client, 1.9)
+    assert retained(client).camera_height_m == pytest.approx(1.9)
+    client.session.undo(client)
+    assert retained(client).camera_height_m is None
+
+
+def test_inputs_about_whose_camera_nothing_was_said_are_the_bytes_they_were(inputs: Inputs) -> None:
+    assert b"held" not in codec.dump(inputs)
+    assert b"camera_height" not in codec.dump(inputs)
+    said = replace(inputs, camera_attitude=CameraAttitude(0.1, 0.0), camera_height_m=1.5)
+    assert codec.load(codec.dump(said)) == said
+    assert said.of_any_camera == inputs

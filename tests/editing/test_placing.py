@@ -1,0 +1,174 @@
+"""Dragging, dropping, aligning, copying: the geometry behind the mouse."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from diorama_app.interaction.marquee import objects_in
+from diorama_app.session.problem_checker import problems
+from diorama_core.editing import aligning as arranging
+from diorama_core.editing.clipboard import copied, pasted
+from diorama_core.editing.collisions import Collisions
+from diorama_core.editing.dragging import GRID_M, Slide, snapped_pose
+from diorama_core.editing.placing import against_wall, seated
+from diorama_core.errors import EditRefused
+from diorama_core.scene import edits
+from diorama_core.scene.support import check_scene
+from diorama_core.scene.types import Pose, Scene, Support
+from tests.app.small_room import PlainLibrary, furnished_scene
+
+LIBRARY = PlainLibrary()
+EYE = np.array([0.0, -2.5, 2.2])
+
+
+def under_hand(scene: Scene, object_id: str, grabbed: np.ndarray, target: np.ndarray, **options: bool) -> Scene:
+    slide = Slide.begin(scene, LIBRARY, object_id, grabbed)
+    return slide.to(EYE, target - EYE, **{"snap": False, "slide": False} | options)[0]
+
+
+@settings(deadline=None, max_examples=40)
+@given(x=st.floats(-1.8, 1.8), y=st.floats(0.0, 3.0))
+def test_what_is_dragged_over_the_floor_stays_under_the_hand(x: float, y: float) -> None:
+    scene = furnished_scene()
+    chair = scene.object("chair_1")
+    grabbed = chair.pose.position + np.array([0.0, -0.1, 0.1])
+    to = np.array([x, y, grabbed[2]])
+    moved = under_hand(scene, "chair_1", grabbed, to)
+    np.testing.assert_allclose(moved.object("chair_1").pose.position - chair.pose.position, to - grabbed, atol=1e-6)
+    assert moved.object("chair_1").corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-6)
+    assert moved.support_of("chair_1") == scene.support_of("chair_1")
+
+
+def test_a_lamp_climbs_down_to_the_floor_and_onto_the_table_again() -> None:
+    scene = furnished_scene()
+    lamp = scene.object("lamp_1")
+    down = under_hand(scene, "lamp_1", lamp.pose.position, np.array([-1.2, 0.6, 0.225]))
+    assert down.support_of("lamp_1").parent == "floor"
+    assert down.object("lamp_1").corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-6)
+    up = under_hand(down, "lamp_1", down.object("lamp_1").pose.position, np.array([0.1, 2.2, 0.74 + 0.225]))
+    assert up.support_of("lamp_1").parent == "table_1"
+    assert up.object("lamp_1").corners_world[:, 2].min() == pytest.approx(0.74, abs=1e-6)
+
+
+def test_a_chair_does_not_climb_a_table_and_a_table_takes_its_lamp_along() -> None:
+    scene = furnished_scene()
+    chair = scene.object("chair_1")
+    moved = under_hand(scene, "chair_1", chair.pose.position, np.array([0.1, 2.2, 0.8]))
+    assert moved.object("chair_1").corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-6)
+    table = scene.object("table_1")
+    shifted = under_hand(scene, "table_1", table.pose.position, table.pose.position + np.array([0.3, -0.2, 0.0]))
+    shift = shifted.object("lamp_1").pose.position - scene.object("lamp_1").pose.position
+    np.testing.assert_allclose(shift, (0.3, -0.2, 0.0), atol=1e-6)
+
+
+def test_a_picture_slides_on_its_wall_and_turns_onto_the_next() -> None:
+    scene = furnished_scene()
+    picture = scene.object("picture_1")
+    moved = under_hand(scene, "picture_1", picture.pose.position, np.array([0.5, 3.4, 1.7]))
+    assert moved.object("picture_1").pose.position[1] == pytest.approx(picture.pose.position[1], abs=0.01)
+    assert moved.object("picture_1").pose.position[2] > picture.pose.position[2] + 0.1
+    other = under_hand(scene, "picture_1", picture.pose.position, np.array([2.2, 1.5, 1.4]))
+    wall = other.plane(other.support_of("picture_1").parent)
+    assert wall.id != "wall_3"
+    item = other.object("picture_1")
+    np.testing.assert_allclose(item.pose.R_world_object[:, 0], wall.normal, atol=1e-6)
+    gap = float((item.corners_world @ wall.normal).min()) - wall.offset
+    assert gap == pytest.approx(
+        scene.plane("wall_3").normal @ (picture.pose.position) - scene.plane("wall_3").offset - 0.015, abs=1e-3
+    )
+
+
+def test_sliding_stops_at_the_table_and_snapping_keeps_to_the_grid() -> None:
+    scene = furnished_scene()
+    chair = scene.object("chair_2")
+    into = np.array([0.5, 2.2, chair.pose.position[2]])
+    through = under_hand(scene, "chair_2", chair.pose.position, into)
+    assert Collisions(LIBRARY).of(through, ["chair_2"])
+    slid = under_hand(scene, "chair_2", chair.pose.position, into, slide=True)
+    assert not Collisions(LIBRARY).of(slid, ["chair_2"])
+    snapped = under_hand(scene, "chair_2", chair.pose.position, np.array([1.013, 0.484, 0.4]), snap=True)
+    x, y = snapped.object("chair_2").pose.position[:2] / GRID_M
+    assert (x - round(x), y - round(y)) == pytest.approx((0.0, 0.0), abs=1e-6)
+    turned = snapped_pose(chair.pose, Pose.upright(chair.pose.position, chair.pose.yaw_rad + 0.4))
+    assert (np.degrees(turned.yaw_rad) / 15.0) == pytest.approx(round(np.degrees(turned.yaw_rad) / 15.0))
+
+
+def test_locked_objects_are_not_dragged_and_others_come_along() -> None:
+    scene = edits.set_locked(furnished_scene(), "chair_1", True)
+    with pytest.raises(EditRefused, match="locked"):
+        Slide.begin(scene, LIBRARY, "chair_1", np.zeros(3))
+    slide = Slide.begin(
+        scene, LIBRARY, "chair_2", scene.object("chair_2").pose.position, ("chair_1", "table_1", "lamp_1", "chair_2")
+    )
+    assert slide.along == ("table_1",)
+
+
+def test_aligned_distributed_and_mirrored() -> None:
+    scene = furnished_scene()
+    x = np.array([1.0, 0.0, 0.0])
+    ids = ["chair_1", "chair_2", "table_1"]
+    for anchor, pick in (("low", np.min), ("high", np.max)):
+        made = arranging.align(scene, ids, x, anchor)  # type: ignore[arg-type]
+        ends = [pick(made.object(i).corners_world[:, 0]) for i in ids]
+        assert np.ptp(ends) == pytest.approx(0.0, abs=1e-9)
+        assert made.object("table_1").pose == scene.object("table_1").pose
+    even = arranging.distribute(scene, ids, x)
+    spans = sorted((even.object(i).corners_world[:, 0].min(), even.object(i).corners_world[:, 0].max()) for i in ids)
+    assert spans[1][0] - spans[0][1] == pytest.approx(spans[2][0] - spans[1][1])
+    twice = arranging.mirror(arranging.mirror(scene, ids, x), ids, x)
+    for i in ids:
+        np.testing.assert_allclose(twice.object(i).pose.matrix, scene.object(i).pose.matrix, atol=1e-9)
+    with pytest.raises(EditRefused, match="select three"):
+        arranging.distribute(scene, ids[:2], x)
+
+
+def test_copies_keep_standing_on_copies_and_paste_into_another_room() -> None:
+    scene = furnished_scene()
+    clip = copied(scene, ["table_1"])
+    assert [o.id for o in clip.objects] == ["table_1", "lamp_1"]
+    again, heads = pasted(scene, clip)
+    check_scene(again)
+    assert len(heads) == 1
+    lamp = next(o for o in again.objects if o.category == "lamp" and o.id != "lamp_1")
+    assert again.support_of(lamp.id).parent == heads[0]
+    elsewhere, _ = pasted(Scene(architecture=scene.architecture), copied(scene, ["lamp_1"]))
+    check_scene(elsewhere)
+    assert elsewhere.support_of("lamp_1").parent == "floor"
+
+
+def test_a_new_supporter_and_a_wall_are_followed_at_once() -> None:
+    scene = furnished_scene()
+    on_table = seated(edits.attach(scene, Support("chair_1", "table_1")), LIBRARY, "chair_1")
+    assert on_table.object("chair_1").corners_world[:, 2].min() == pytest.approx(0.74)
+    wall = scene.plane("wall_2")
+    backed = against_wall(scene, "chair_2", wall).object("chair_2")
+    assert float((backed.corners_world @ wall.normal).min()) == pytest.approx(wall.offset, abs=1e-9)
+    np.testing.assert_allclose(backed.pose.R_world_object[:, 0], wall.normal, atol=1e-9)
+
+
+def test_what_is_wrong_is_found_and_what_is_right_is_not() -> None:
+    scene = furnished_scene()
+    collisions = Collisions(LIBRARY)
+    assert problems(scene, LIBRARY, collisions) == {}
+    raised = edits.move(scene, "chair_1", scene.object("chair_1").pose.moved((0, 0, 0.2)))
+    assert problems(raised, LIBRARY, collisions) == {"chair_1": ("floats",)}
+    away = edits.move(scene, "chair_1", scene.object("chair_1").pose.moved((-3.0, 0, 0)))
+    assert problems(away, LIBRARY, collisions) == {"chair_1": ("outside",)}
+    into = edits.move(scene, "chair_1", scene.object("chair_2").pose)
+    assert set(problems(into, LIBRARY, collisions)) == {"chair_1", "chair_2"}
+
+
+def test_a_frame_takes_in_what_is_seen_inside_it() -> None:
+    scene = furnished_scene()
+    camera = scene.camera
+    assert camera is not None
+    fov = camera.intrinsics.vertical_fov_rad
+    aspect = camera.intrinsics.width / camera.intrinsics.height
+    seen = (camera.T_world_camera[:3, :3], camera.position, fov, aspect)
+    everything = objects_in(scene, (0.0, 0.0), (1.0, 1.0), *seen)
+    assert set(everything) == {o.id for o in scene.objects}
+    u, v = camera.project(scene.object("chair_2").pose.position) / (camera.intrinsics.width, camera.intrinsics.height)
+    assert objects_in(scene, (u - 0.02, v - 0.02), (u + 0.02, v + 0.02), *seen) == ("chair_2",)

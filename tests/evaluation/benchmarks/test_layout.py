@@ -1,0 +1,30 @@
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from diorama_core.errors import Cancelled
+from diorama_core.evaluation.benchmarks.layout import run
+from diorama_core.progress import CancelToken, Progress
+
+
+@pytest.mark.slow
+def test_tables_are_whole() -> None:
+    result = run(scenes=1, seed=3)
+    feasible = result.ablation[-1]
+    assert feasible.name == "feasible"
+    assert feasible.structure == 1.0
+    assert feasible.part_overlap_mm < 1.0
+    assert [r.name for r in result.ablation][:2] == ["observed", "O"]
+    assert json.loads(json.dumps(result.to_json()))["seed"] == 3
+    text = result.to_markdown()
+    assert text.count("| feasible |") >= 6
+    assert "nan" not in text
+
+
+def test_cancels() -> None:
+    token = CancelToken()
+    token.cancel()
+    with pytest.raises(Cancelled):
+        run(scenes=1, progress=Progress(token=token))

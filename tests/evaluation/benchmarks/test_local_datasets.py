@@ -1,0 +1,100 @@
+"""Other people's pictures end to end: a folder in the layout of SSDB made from a room of ours, and Scan2CAD by hand."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from diorama_core.artefacts import Inputs, Photo
+from diorama_core.errors import InputError
+from diorama_core.evaluation.adapters.scan2cad import AlignedModel, ScanFrame
+from diorama_core.evaluation.benchmarks.local_datasets import LocalResult, aligned, aligned_table, local_cases, run
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.scene.types import Camera, Intrinsics, Pose, Scene, SceneObject, yaw_rotation
+from diorama_core.synthesis import furnished_room, hold_cameras, render_truth
+from diorama_core.synthesis.artefacts import true_supports
+from diorama_core.synthesis.truth import moved
+
+SIZE = (320, 240)
+
+
+@pytest.fixture(scope="module")
+def ssdb(tmp_path_factory):
+    """One picture of a small room."""
+    library = built_in_library()
+    room = furnished_room(16, "bathroom", library, clutter=2)
+    view = render_truth(room, hold_cameras(room, library, 1, 1, SIZE)[0], library, SIZE, with_empty_room=False)
+    folder = tmp_path_factory.mktemp("ssdb") / "scene_01"
+    folder.mkdir()
+    Image.fromarray(view.inputs.photo.rgb).save(folder / "scene.png")
+    np.save(folder / "seg.npy", view.inputs.instances)
+    number = {o.id: o.mask_id for o in view.scene.objects}
+    records = {
+        str(number[e.child]): {"class": view.scene.object(e.child).category, "parent_id": number.get(e.parent, 0)}
+        for e in true_supports(view)
+    }
+    (folder / "gt.json").write_text(json.dumps(records))
+    return folder.parent, len(records)
+
+
+def test_a_folder_of_ssdb_is_built_and_measured(ssdb):
+    folder, count = ssdb
+    bench = run("ssdb", folder, built_in_library(), 3)
+    (result,) = bench.results
+    assert result.failure == ""
+    assert (result.asked, result.found) == (count, count)
+    assert result.image_iou > 0.3
+    assert result.relation > 0.4
+    assert "ssdb" in bench.tables()[0].to_markdown()
+    assert json.loads(json.dumps(bench.to_json()))["cases"][0]["case"] == "scene_01"
+
+
+def test_parents_are_named_by_mask(ssdb):
+    (case,) = local_cases("ssdb", ssdb[0])
+    masks = {number for number, _ in case.inputs.instance_boxes}
+    assert {child for child, _ in case.parents} == masks
+    assert any(parent is None for _, parent in case.parents)
+
+
+def test_an_empty_folder_is_named(tmp_path):
+    with pytest.raises(InputError, match="no picture of sunrgbd"):
+        run("sunrgbd", tmp_path, built_in_library())
+
+
+def _frame(models) -> ScanFrame:
+    T = np.eye(4)
+    T[:3, :3] = yaw_rotation(0.8) @ np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0.0]])
+    T[:3, 3] = [1.0, -2.0, 1.5]
+    photo = Photo(np.zeros((48, 64, 3), np.uint8), "x.png", (64, 48))
+    return ScanFrame("s/0", Inputs(photo), Camera(Intrinsics.from_fov(64, 48, 1.2), T), tuple(models))
+
+
+def test_models_are_aligned_in_the_world_of_the_scan():
+    model = AlignedModel(
+        "m", "chair", yaw_rotation(0.3), np.array([1.0, 1.0, 0.45]), np.array([0.5, 0.5, 0.9]), symmetry=1
+    )
+    frame = _frame([model])
+    pose = Pose(model.R_world_object, model.centre, np.ones(3))
+    item = SceneObject("a", "chair", "chair", "s", (0.5, 0.5, 0.9), pose)
+    elsewhere = np.eye(4)
+    elsewhere[:3, :3], elsewhere[:3, 3] = yaw_rotation(-1.0), [4, 5, 0]
+    scene = moved(Scene(camera=frame.camera, objects=(item,)), elsewhere)
+    assert aligned([model], scene, frame) == (("chair", True),)
+    assert aligned([model, model], scene, frame) == (("chair", True), ("chair", False))
+    shifted = moved(Scene(camera=frame.camera, objects=(item,)), elsewhere)
+    far = SceneObject("a", "chair", "chair", "s", (0.5, 0.5, 0.9), shifted.objects[0].pose.moved([0.3, 0, 0]))
+    assert aligned([model], Scene(camera=shifted.camera, objects=(far,)), frame) == (("chair", False),)
+    stool = SceneObject("a", "stool", "stool", "s", (0.5, 0.5, 0.9), shifted.objects[0].pose)
+    assert aligned([model], Scene(camera=shifted.camera, objects=(stool,)), frame) == (("chair", False),)
+
+
+def test_the_table_by_category_stands_beside_the_papers():
+    models = (("chair", True), ("chair", False), ("monitor", True), ("lamp", False))
+    table = aligned_table([LocalResult("a", 4, 2, 0.5, None, models, 1.0, 1.0, 0.0, 0.0, 1.0)])
+    row = table.row("embedded")
+    assert (row["chair"], row["display"], row["others"], row["sofa"]) == (50.0, 100.0, 0.0, None)
+    assert (row["class mean"], row["instance mean"]) == (50.0, 50.0)
+    assert "other dataset" in table.to_markdown()

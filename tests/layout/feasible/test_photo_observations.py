@@ -1,0 +1,142 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from diorama_core.geometry.projection import box_iou
+from diorama_core.layout.feasible.photo_observations import MAX_STRETCH, PhotoObservations, photo_observations
+from diorama_core.layout.feasible.recipe import FeasibleRecipe
+from diorama_core.layout.problem.problem import build_problem
+from diorama_core.progress import Progress
+from diorama_core.scene.types import Camera, Intrinsics, Scene
+from diorama_core.synthesis.layout_rooms import box_library, generate_room
+from tests.layout.small_rooms import Room
+
+LIBRARY = box_library()
+
+
+def looking_north(distance_m: float = 2.4, height_m: float = 1.5) -> Camera:
+    """A camera behind the origin that looks along +Y."""
+    T = np.eye(4)
+    T[:3, :3] = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
+    T[:3, 3] = [0.0, -distance_m, height_m]
+    return Camera(Intrinsics(640, 480, 500, 500, 320, 240), T)
+
+
+def outline(scene: Scene, name: str) -> np.ndarray:
+    assert scene.camera is not None
+    flat = scene.camera.project(scene.object(name).corners_world)
+    return np.array([*flat.min(axis=0), *flat.max(axis=0)])
+
+
+def solve(scene: Scene, **settings) -> Scene:
+    return FeasibleRecipe(LIBRARY, **settings).optimise(scene, Progress())[0]
+
+
+def observations_of(scene: Scene, **settings) -> PhotoObservations:
+    assert scene.camera is not None
+    settings.setdefault("depth_weight", 0.3)
+    return photo_observations(build_problem(scene, LIBRARY), scene.camera, **settings)
+
+
+def shelf_away_from_its_wall(room: Room, gap_m: float = 0.35) -> tuple[Scene, str]:
+    name = room.put("bookshelf_6", (0.6, 2.35 - gap_m, 0.9), yaw=-np.pi / 2, adheres_to=("wall_2",))
+    return room.scene(camera=looking_north()), name
+
+
+def test_what_a_wall_moved_keeps_its_outline(room: Room) -> None:
+    scene, shelf = shelf_away_from_its_wall(room)
+    seen = outline(scene, shelf)
+    alike = {e: float(box_iou(outline(solve(scene, observations=e), shelf), seen)) for e in (4.0, 0.0)}
+    assert alike[4.0] > alike[0.0] + 0.04
+    assert alike[4.0] > 0.85
+    stood = solve(scene).object(shelf)
+    assert stood.pose.position[1] + stood.size_m[0] / 2 == pytest.approx(2.5)
+    assert stood.pose.position[2] - stood.size_m[2] / 2 == pytest.approx(0.0, abs=1e-9)
+
+
+def test_sizes_stay_within_limits(room: Room) -> None:
+    scene, shelf = shelf_away_from_its_wall(room, gap_m=1.5)
+    ratio = solve(scene).object(shelf).pose.scale / scene.object(shelf).pose.scale
+    assert (ratio <= MAX_STRETCH + 1e-9).all()
+    assert (ratio >= 1 / MAX_STRETCH - 1e-9).all()
+    assert ratio.max() > 1.01
+
+
+def test_a_measured_distance_weighs_more(room: Room) -> None:
+    box = room.put("box_24", (0.0, 1.0, 0.45))
+    scene = room.scene(camera=looking_north())
+    away = {
+        weight: float(np.linalg.norm(solve(scene, depth_weight=weight).object(box).pose.position - [0.0, -2.4, 1.5]))
+        for weight in (0.0, 5.0)
+    }
+    observed = float(np.linalg.norm(scene.object(box).pose.position - [0.0, -2.4, 1.5]))
+    assert abs(away[5.0] - observed) < 0.5 * abs(away[0.0] - observed)
+
+
+def test_what_agrees_already_is_left_alone(room: Room) -> None:
+    scene, shelf = shelf_away_from_its_wall(room)
+    stood = solve(scene)
+    pushed = replace(stood, camera=looking_north(4.0, 1.0))
+    assert np.allclose(solve(pushed).object(shelf).pose.matrix, stood.object(shelf).pose.matrix, atol=1e-9)
+
+
+@settings(max_examples=6, deadline=None)
+@given(st.integers(0, 200), st.integers(3, 14))
+def test_with_a_photo_too_a_second_run_changes_nothing(seed: int, count: int) -> None:
+    scene = replace(generate_room(seed, count).observed, camera=looking_north(6.0, 1.6))
+    once = solve(scene)
+    twice = solve(once)
+    for item in once.objects:
+        other = twice.object(item.id).pose
+        assert np.allclose(item.pose.matrix, other.matrix, atol=1e-6), item.id
+        assert np.allclose(item.pose.scale, other.scale, atol=1e-6), item.id
+
+
+def test_behind_the_camera_there_is_no_evidence(room: Room) -> None:
+    name = room.put("box_24", (0.0, -2.4, 1.5))
+    scene = room.scene(camera=looking_north())
+    assert np.isnan(observations_of(scene).bounds_px).all()
+    assert np.isfinite(solve(scene).object(name).pose.matrix).all()
+
+
+def test_what_was_made_smaller_is_not_made_larger_again(room: Room) -> None:
+    room.put("box_24", (0.0, 0.0, 0.2))
+    scene = room.scene(camera=looking_north())
+    observations = observations_of(scene)
+    smaller = np.full((1, 3), 0.9)
+    assert (observations.limited(smaller).most == 0.9).all()
+    assert (observations.limited(np.ones((1, 3))).most == observations.most).all()
+
+
+@settings(max_examples=20, deadline=None)
+@given(
+    st.floats(-1.0, 1.0),
+    st.floats(0.5, 3.0),
+    st.floats(-3.0, 3.0),
+    st.lists(st.floats(-0.1, 0.1), min_size=5, max_size=5),
+)
+def test_derivatives_are_the_slopes(x: float, y: float, yaw: float, state: list[float]) -> None:
+    room = Room(LIBRARY)
+    room.put("box_24", (x, y, 0.3), yaw=yaw)
+    scene = room.scene(camera=looking_north())
+    pose = scene.objects[0].pose
+    fit = observations_of(scene).fit(
+        0, pose.R_world_object, pose.position, pose.scale, np.eye(3)[:, :2], np.array([0.0, 0.0, -1.0])
+    )
+    here, step = np.array(state), 1e-6
+    system = fit.linearised(here)
+    assert system is not None
+    for k, towards in enumerate(step * np.eye(5)):
+        ahead, behind = fit.linearised(here + towards), fit.linearised(here - towards)
+        assert ahead is not None
+        assert behind is not None
+        slope = (ahead[1] - behind[1]) / (2 * step)
+        # Where two corners are equally far out, an outline has a slope to either side: any between them will do.
+        one_sided = np.stack([(ahead[1] - system[1]) / step, (system[1] - behind[1]) / step])
+        smooth = np.abs(one_sided[0] - one_sided[1]) < 1e-3
+        assert np.allclose(system[0][smooth, k], slope[smooth], atol=1e-4)

@@ -1,0 +1,75 @@
+"""What is asked of an open-vocabulary detector, and what is made of its boxes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from diorama_core.artefacts import LabelledBox, Photo
+from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, CATEGORIES, UNKNOWN
+from diorama_core.models.boxes import Detections
+from diorama_core.perception.foundation.detection import OpenVocabularyDetection
+from diorama_core.perception.foundation.vocabulary import INDOOR_WORDS
+from diorama_core.progress import Progress
+
+PHOTO = Photo(np.zeros((100, 200, 3), np.uint8), "room.png", (200, 100))
+Row = tuple[float, float, float, float, float, str]
+
+
+@dataclass
+class _Detector:
+    """Finds what it is told, by the word in the phrase; remembers the phrases."""
+
+    rows: Sequence[Row] = ()
+    asked: list[str] = field(default_factory=list)
+
+    def detect(self, rgb: np.ndarray, phrases: Sequence[str], threshold: float) -> Detections:
+        self.asked = list(phrases)
+        retained = [r for r in self.rows if r[4] >= threshold and f"a photo of {r[5]}" in phrases]
+        labels = [phrases.index(f"a photo of {r[5]}") for r in retained]
+        table = np.array([r[:5] for r in retained], dtype=float).reshape(-1, 5)
+        return Detections(table[:, :4], table[:, 4], np.array(labels, dtype=int))
+
+
+def _found(words: tuple[str, ...], *rows: Row) -> tuple[LabelledBox, ...]:
+    stage = OpenVocabularyDetection(_Detector(rows))  # type: ignore[arg-type]
+    return stage.detect(PHOTO, words, Progress())
+
+
+def test_without_words_a_vocabulary_of_rooms_is_asked_for_in_the_papers_phrase() -> None:
+    detector = _Detector()
+    OpenVocabularyDetection(detector).detect(PHOTO, (), Progress())  # type: ignore[arg-type]
+    assert detector.asked == [f"a photo of {word}" for word in INDOOR_WORDS]
+    assert 300 < len(INDOOR_WORDS) == len(set(INDOOR_WORDS))
+    assert {c.name for c in CATEGORIES if c is not UNKNOWN} - ARCHITECTURE_WORDS <= set(INDOOR_WORDS)
+
+
+def test_parts_of_the_room_are_never_objects() -> None:
+    detector = _Detector()
+    words = ("wall", "chair", "floor", "Ceiling", "chair")
+    OpenVocabularyDetection(detector).detect(PHOTO, words, Progress())  # type: ignore[arg-type]
+    assert detector.asked == ["a photo of chair"]
+    assert not ARCHITECTURE_WORDS & set(INDOOR_WORDS)
+
+
+def test_double_boxes_of_any_class_and_parts_of_the_same_class_go() -> None:
+    found = _found(
+        ("chair", "armchair", "pillow"),
+        (10, 10, 60, 90, 0.9, "armchair"),
+        (11, 10, 60, 91, 0.6, "chair"),  # the same thing under another name
+        (20, 20, 50, 60, 0.5, "armchair"),  # its back
+        (20, 40, 50, 60, 0.4, "pillow"),  # something else that lies on it
+        (100, 10, 150, 90, 0.3, "chair"),
+        (160, 10, 190, 90, 0.1, "chair"),  # too unsure
+        (5, 5, 9, 9, 0.8, "pillow"),  # too small to be anything
+    )
+    assert [(b.category, b.score) for b in found] == [("armchair", 0.9), ("pillow", 0.4), ("chair", 0.3)]
+
+
+def test_words_that_the_library_does_not_know_keep_their_name() -> None:
+    found = _found(
+        ("couch", "gramophone horn"), (0, 0, 90, 90, 0.9, "couch"), (100, 0, 150, 50, 0.5, "gramophone horn")
+    )
+    assert [(b.category, b.label) for b in found] == [("sofa", "couch"), (UNKNOWN.name, "gramophone horn")]
