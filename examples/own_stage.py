@@ -14,7 +14,7 @@ import numpy as np
 from diorama_core.artefacts import CameraEstimate, CameraHypothesis, Inputs
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.perception.inputs import read_inputs
-from diorama_core.pipeline.run import embedded_stages
+from diorama_core.pipeline.stages import embedded_stages
 from diorama_core.progress import Progress
 from diorama_core.project.build import build_project
 from diorama_core.project.storage import Project

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +11,7 @@ from jaxtyping import Bool
 from diorama_app.session.client import Client
 from diorama_core.artefacts import Box, Inputs, LabelledBox
 from diorama_core.editing.input_corrections import given_outline, with_correction
-from diorama_core.editing.placing import seated
+from diorama_core.editing.reconstructed import inserted, renamed, replaced
 from diorama_core.errors import EditRefused
 from diorama_core.library.taxonomy import resolve
 from diorama_core.progress import Progress
@@ -30,11 +29,7 @@ def add_from_photo(client: Client, box: Box, label: str) -> None:
     new_id = edits.fresh_id(session.scene, resolve(label).category.name)
 
     def put(scene: Scene, found: Found) -> Scene:
-        item = replace(found.item, id=edits.fresh_id(scene, found.item.category))
-        edge = None if found.support is None else replace(found.support, child=item.id)
-        if edge is not None and not (scene.has_object(edge.parent) or scene.has_plane(edge.parent)):
-            edge = None
-        return seated(edits.insert(scene, item, edge), session.library, item.id)
+        return inserted(scene, found, session.library)
 
     _reconstruct(client, None, _labelled(box, label), new_id, f"insert {label} from the photo", put, select_new=True)
 
@@ -47,9 +42,7 @@ def rename_class(client: Client, object_id: str, label: str) -> None:
         raise EditRefused("say what it is, for example armchair")
 
     def put(scene: Scene, found: Found) -> Scene:
-        now = scene.object(object_id)
-        swapped = edits.swap(scene, object_id, found.item.candidates[0], keep_pose=True)
-        return _with_found(swapped, object_id, found, colour=now.colour)
+        return renamed(scene, object_id, found)
 
     assert item.box_px is not None
     _reconstruct(client, item.box_px, _labelled(item.box_px, words), object_id, f"{item.label} is a {words}", put)
@@ -129,29 +122,7 @@ def _reconstruct(
 
 
 def _replaced(client: Client, object_id: str) -> Callable[[Scene, Found], Scene]:
-    def put(scene: Scene, found: Found) -> Scene:
-        best = found.item.candidates[0]
-        changed = edits.swap(scene, object_id, best)
-        changed = _with_found(changed, object_id, found, colour=found.item.colour)
-        return seated(changed, client.session.library, object_id)
-
-    return put
-
-
-def _with_found(scene: Scene, object_id: str, found: Found, *, colour: tuple[float, float, float] | None) -> Scene:
-    def renewed(item: SceneObject) -> SceneObject:
-        new = found.item
-        return replace(
-            item,
-            label=new.label,
-            category=new.category,
-            candidates=new.candidates,
-            box_px=new.box_px,
-            confidence=new.confidence,
-            colour=colour,
-        )
-
-    return replace(scene, objects=tuple(renewed(o) if o.id == object_id else o for o in scene.objects))
+    return lambda scene, found: replaced(scene, object_id, found, client.session.library)
 
 
 def _labelled(box: Box, label: str) -> LabelledBox:

@@ -32,13 +32,12 @@ class PhotoOutlines:
             return
 
         def work(progress: Progress) -> None:
-            from diorama_core.pipeline.network_inputs import with_network_inputs
+            from diorama_core.pipeline.plan import evaluate
             from diorama_core.pipeline.presets import stages_for
             from diorama_core.pipeline.runner import Runner
 
             stages, runner = stages_for("auto", inputs, session.library), Runner(project.stages_folder)
-            seen = with_network_inputs(inputs, stages, runner, progress.part(0.0, 0.2)).of_any_camera
-            found = runner.run("objects", stages.objects, stages.objects.segment, (seen,), progress.part(0.2, 1.0))
+            found = evaluate(stages, {"given": inputs}, ("objects",), runner, progress)["objects"]
 
             def keep() -> None:
                 self._of, self._found = inputs, found

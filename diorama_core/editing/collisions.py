@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from collections.abc import Iterable, Mapping
 
 import fcl
 import numpy as np
+import trimesh
+from jaxtyping import Float
 
+from diorama_core.io.cache import LruCache
 from diorama_core.library import taxonomy
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.types import Pose, Scene, SceneObject
@@ -26,7 +28,7 @@ class Collisions:
 
     def __init__(self, library: ShapeLibrary) -> None:
         self._library = library
-        self._trees: OrderedDict[tuple[str, tuple[float, ...]], fcl.BVHModel] = OrderedDict()
+        self._trees: LruCache[tuple[str, tuple[float, ...]], fcl.BVHModel] = LruCache(CACHE_SIZE)
 
     def of(self, scene: Scene, ids: Iterable[str], poses: Mapping[str, Pose] | None = None) -> frozenset[Pair]:
         """Pairs (a chosen object, any other) that collide.
@@ -62,20 +64,16 @@ class Collisions:
         shrunk = 1.0 - np.minimum(TOUCHING_M / np.maximum(item.size_m, 1e-6), 0.5)
         scale = np.asarray(item.pose.scale) * shrunk
         key = (item.shape_id, tuple(np.round(scale, 4)))
-        tree = self._trees.get(key)
-        if tree is None:
-            mesh = self._library.mesh(item.shape_id)
-            tree = fcl.BVHModel()
-            vertices = np.asarray(mesh.vertices, dtype=np.float64) * scale
-            tree.beginModel(len(mesh.faces), len(vertices))
-            tree.addSubModel(vertices, np.asarray(mesh.faces, dtype=np.int64))
-            tree.endModel()
-            self._trees[key] = tree
-            while len(self._trees) > CACHE_SIZE:
-                self._trees.popitem(last=False)
-        else:
-            self._trees.move_to_end(key)
-        return tree
+        return self._trees.get(key, lambda: _bounding_tree(self._library.mesh(item.shape_id), scale))
+
+
+def _bounding_tree(mesh: trimesh.Trimesh, scale: Float[np.ndarray, "3"]) -> fcl.BVHModel:
+    tree = fcl.BVHModel()
+    vertices = np.asarray(mesh.vertices, dtype=np.float64) * scale
+    tree.beginModel(len(mesh.faces), len(vertices))
+    tree.addSubModel(vertices, np.asarray(mesh.faces, dtype=np.int64))
+    tree.endModel()
+    return tree
 
 
 def _boxes(items: list[SceneObject], here: Mapping[str, Pose]) -> tuple[np.ndarray, np.ndarray]:

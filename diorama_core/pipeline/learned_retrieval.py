@@ -8,7 +8,7 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.models.clip import DuoduoClip, OpenClip
 from diorama_core.models.manifest import network
 from diorama_core.models.store import ModelStore
-from diorama_core.pipeline.run import Stages
+from diorama_core.pipeline.stages import Stages
 from diorama_core.retrieval import HierarchicalRetrieval
 from diorama_core.retrieval.joint import ClipEmbedding, JointSimilarity
 

@@ -1,104 +1,20 @@
-"""What networks add to the inputs before the pipeline proper: boxes where nobody drew any, depth where nobody measured.
+"""What networks add to the inputs: boxes where nobody drew any, depth where nobody measured.
 
-Everything the user gave stays as it is; the stages after this one cannot tell a network's contribution from a user's,
-except that the inputs say whose depth it is.
+Everything the user gave stays as it is; later stages cannot tell a network's contribution from a user's, except that
+the inputs say whose depth it is.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
-import numpy as np
-
-from diorama_core.artefacts import Cuboid, Inputs, LabelledBox, ObjectGeometry, Photo, SceneGraph
+from diorama_core.artefacts import DepthPrediction, Inputs, LabelledBox
 from diorama_core.perception.foundation.depth_prediction import with_depth
-from diorama_core.pipeline.runner import Runner
-from diorama_core.progress import Progress
-from diorama_core.protocols import DetectionStage, RecognitionStage
-from diorama_core.scene.types import yaw_rotation
-
-if TYPE_CHECKING:
-    from diorama_core.pipeline.run import Stages
-
-_TURNS: Mapping[str, float] = {
-    "toward camera": np.pi,
-    "away from camera": 0.0,
-    "left": np.pi / 2,
-    "right": -np.pi / 2,
-}
-"""Heading of a front relative to the line of sight, counter-clockwise seen from above."""
 
 
-MAX_SETTLING_M = 0.35
-"""A cuboid's underside moves no farther than this to its supporter; the layout optimiser does the rest."""
-MIN_HEIGHT_M = 0.02
-
-
-def with_network_inputs(inputs: Inputs, stages: Stages, runner: Runner, progress: Progress) -> Inputs:
-    """The inputs with what the optional stages found."""
-    boxes = inputs.boxes
-    if stages.detection is not None and not boxes and inputs.instances is None:
-        boxes = detect_boxes(inputs.photo, stages.detection, stages.recognition, runner, progress.part(0.0, 0.5))
-        inputs = replace(inputs, boxes=boxes)
-    if stages.depth_prediction is not None and inputs.depth_m is None:
-        given = (inputs.photo, inputs.intrinsics)
-        seen = runner.run(
-            "sight", stages.depth_prediction, stages.depth_prediction.predict, given, progress.part(0.5, 1.0)
-        )
-        inputs = with_depth(inputs, seen)
-    return inputs
-
-
-def detect_boxes(
-    photo: Photo,
-    detection: DetectionStage,
-    recognition: RecognitionStage | None,
-    runner: Runner,
-    progress: Progress,
-) -> tuple[LabelledBox, ...]:
-    """Boxes that the detection stage proposes for a photo, after asking for words where somebody can be asked."""
-    words: tuple[str, ...] = ()
-    if recognition is not None:
-        words = runner.run("recognition", recognition, recognition.recognise, (photo,), progress.part(0.0, 0.4))
-    return runner.run("detection", detection, detection.detect, (photo, words), progress.part(0.4, 1.0))
-
-
-def with_graph(geometry: ObjectGeometry, graph: SceneGraph) -> ObjectGeometry:
-    """The geometry with the graph's supports, and fronts turned the way the graph says things face."""
-    facing = dict(graph.facing)
-    turned = (_turned(c, facing.get(c.object_id), geometry) for c in geometry.cuboids)
-    before, now = ({s.child: s.parent for s in edges} for edges in (geometry.supports, graph.supports))
-    tops = {c.object_id: float(c.corners_world[:, 2].max()) for c in geometry.cuboids}
-    cuboids = tuple(
-        c if before.get(c.object_id) == now.get(c.object_id) else _stood(c, now.get(c.object_id, ""), tops)
-        for c in turned
-    )
-    return replace(geometry, supports=graph.supports, cuboids=cuboids)
-
-
-def _stood(cuboid: Cuboid, parent: str, tops_m: Mapping[str, float]) -> Cuboid:
-    """The cuboid reaching down to a new supporter, its top where it was: the floor, or a top that is near."""
-    low, high = (float(v) for v in (cuboid.corners_world[:, 2].min(), cuboid.corners_world[:, 2].max()))
-    bottom = 0.0 if parent == "floor" else tops_m.get(parent, low)
-    if abs(bottom - low) > MAX_SETTLING_M or high - bottom < MIN_HEIGHT_M:
-        return cuboid
-    size = cuboid.size_m.copy()
-    size[2] = high - bottom
-    centre = cuboid.centre.copy()
-    centre[2] = (high + bottom) / 2
-    return replace(cuboid, centre=centre, size_m=size)
-
-
-def _turned(cuboid: Cuboid, direction: str | None, geometry: ObjectGeometry) -> Cuboid:
-    """The cuboid with its front on the side that looks the named way; untouched where its front is known."""
-    if direction is None or direction not in _TURNS or cuboid.front_known:
-        return cuboid
-    depth_prediction = cuboid.centre[:2] - geometry.camera.position[:2]
-    heading = float(np.arctan2(depth_prediction[1], depth_prediction[0])) + _TURNS[direction]
-    wanted = np.array([np.cos(heading), np.sin(heading)])
-    quarter = max(range(4), key=lambda k: float((cuboid.R_world_object @ yaw_rotation(k * np.pi / 2))[:2, 0] @ wanted))
-    size = cuboid.size_m if quarter % 2 == 0 else cuboid.size_m[[1, 0, 2]]
-    R = cuboid.R_world_object @ yaw_rotation(quarter * np.pi / 2)
-    return replace(cuboid, R_world_object=R, size_m=size, front_known=True)
+def with_network_inputs(
+    given: Inputs, detected: tuple[LabelledBox, ...] | None, predicted: DepthPrediction | None
+) -> Inputs:
+    """The inputs with detected boxes and predicted depth; None adds nothing."""
+    inputs = given if detected is None else replace(given, boxes=detected)
+    return inputs if predicted is None else with_depth(inputs, predicted)

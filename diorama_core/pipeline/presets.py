@@ -47,9 +47,9 @@ from diorama_core.pipeline.choices import (
     SEGMENTERS,
 )
 from diorama_core.pipeline.learned_retrieval import with_joint_retrieval
-from diorama_core.pipeline.network_inputs import detect_boxes
-from diorama_core.pipeline.run import DEFAULT_RECIPE, Stages, embedded_stages
+from diorama_core.pipeline.plan import evaluate
 from diorama_core.pipeline.runner import Runner
+from diorama_core.pipeline.stages import DEFAULT_RECIPE, ProposalStages, Stages, embedded_stages
 from diorama_core.pose.correspondence.features import NetworkFeatures
 from diorama_core.pose.correspondence.solvers import CorrespondencePose
 from diorama_core.progress import Progress
@@ -143,7 +143,10 @@ def propose_boxes(
         return None
     lmm = LmmSettings.from_environment()
     recognition = LanguageRecognition(lmm) if lmm is not None and isinstance(stage, OpenVocabularyDetection) else None
-    return detect_boxes(photo, stage, recognition, Runner(None), progress or Progress())
+    stages = ProposalStages(stage, recognition)
+    found = evaluate(stages, {"given": Inputs(photo)}, ("detected_boxes",), Runner(None), progress)
+    boxes: tuple[LabelledBox, ...] = found["detected_boxes"]
+    return boxes
 
 
 def _insist(inputs: Inputs, store: ModelStore) -> None:

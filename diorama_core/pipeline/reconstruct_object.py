@@ -1,7 +1,7 @@
-"""One object perceived anew from the photo: outlined, measured, retrieved and posed in the scene as it is now.
+"""One object reconstructed anew from the photo: segmented, measured, retrieved and posed in the scene as it is now.
 
-Camera, room and everything else stay. The photo's own stages come from the project's saved results; only what is
-downstream of the one box runs again.
+Camera, room and everything else stay. The photo's own artefacts come from the plan, with the project's cached results;
+only what is downstream of the one box is evaluated again. Where nothing differs from what was built, nothing changes.
 """
 
 from __future__ import annotations
@@ -12,17 +12,17 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Bool, Float
 
-from diorama_core.artefacts import DetectedObject, Inputs, LabelledBox, ObjectGeometry
+from diorama_core.artefacts import DetectedObject, Inputs, LabelledBox, ObjectGeometry, PosedCandidates
 from diorama_core.errors import InputError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.colours import photo_colours
-from diorama_core.pipeline.network_inputs import with_network_inputs
+from diorama_core.pipeline.plan import Artefacts, evaluate
 from diorama_core.pipeline.presets import stages_for
 from diorama_core.pipeline.runner import Runner
+from diorama_core.pipeline.stages import Stages
 from diorama_core.progress import Progress
+from diorama_core.protocols import ObjectStage
 from diorama_core.scene.types import Camera, Candidate, Plane, Pose, Scene, SceneObject, Support, yaw_rotation
-
-NEW_ID = "looked_at_again"
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +32,9 @@ class Found:
     item: SceneObject
     """Its id is the asked one."""
     support: Support | None
-    found_object: DetectedObject
+    detected: DetectedObject
+    as_built: bool
+    """Whether nothing was said that the build did not know: the scene's object is this one already."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +48,8 @@ class _Similarity:
     @classmethod
     def between(cls, measured: Camera, scene: Camera, floor_m: float) -> _Similarity:
         """Both cameras are the photo's; their heights above the floor say how lengths compare."""
+        if np.array_equal(measured.T_world_camera, scene.T_world_camera):
+            return cls(np.eye(3), np.zeros(3), 1.0)
         R = scene.T_world_camera[:3, :3] @ measured.T_world_camera[:3, :3].T
         above = float(measured.position[2])
         scale = float(scene.position[2] - floor_m) / above if above > 0.05 else 1.0
@@ -89,72 +93,91 @@ def reconstruct_object(
         raise InputError("this scene has no photo camera; build it from the photo first")
     progress = progress or Progress()
     stages, runner = stages_for("auto", inputs, library), Runner(cache)
-    inputs = with_network_inputs(inputs, stages, runner, progress.part(0.0, 0.05))
-    camera = runner.run("camera", stages.camera, stages.camera.estimate, (inputs,), progress.part(0.05, 0.1))
-    seen = inputs.of_any_camera  # as the build asks, for its saved result
-    known = runner.run("objects", stages.objects, stages.objects.segment, (seen,), progress.part(0.1, 0.4))
-    geometry = runner.run(
-        "geometry", stages.geometry, stages.geometry.measure, (inputs, camera, known), progress.part(0.4, 0.5)
-    )
-    room = runner.run(
-        "architecture",
-        stages.architecture,
-        stages.architecture.reconstruct,
-        (inputs, known, geometry),
-        progress.part(0.5, 0.55),
-    )
-    found_object = _outlined(stages.objects.segment, inputs, box, mask, progress.part(0.55, 0.6))
-    others = tuple(o for o in known if o.id != object_id)
-    measured = stages.geometry.measure(inputs, camera, (*others, found_object), progress.part(0.6, 0.7))
-    alone = replace(measured, cuboids=tuple(c for c in measured.cuboids if c.object_id == NEW_ID))
-    depth = stages.depth.depth(inputs, (*others, found_object), measured, room, progress.part(0.7, 0.75))
-    shapes = stages.retrieval.retrieve(inputs, (found_object,), alone, progress.part(0.75, 0.85))
-    posed = stages.pose.pose(inputs, (found_object,), alone, depth, shapes, progress.part(0.85, 1.0))
-    if not posed or not posed[0].candidates:
+    photo = evaluate(stages, {"given": inputs}, ("architecture",), runner, progress.part(0.0, 0.5))
+    known = next((o for o in photo["objects"] if o.id == object_id), None)
+    if known is not None and _says(known, box, mask):
+        built = evaluate(stages, photo, ("posed",), runner, progress.part(0.5, 1.0))
+        candidates = next((p for p in built["posed"] if p.object_id == object_id and p.candidates), None)
+        if candidates is not None:
+            return _found(scene, library, known, built, candidates, as_built=True)
+    detected = _segmented(stages.objects, photo["inputs"], box, mask, object_id, progress.part(0.5, 0.6))
+    found, posed = _posed_alone(stages, photo, detected, progress.part(0.6, 1.0))
+    if posed is None:
         raise InputError(f"nothing in the library is like a {box.label}; call it something plainer")
-    return _found(scene, library, found_object, measured, posed[0].candidates, posed[0].confidence, inputs, object_id)
+    return _found(scene, library, detected, found, posed, as_built=False)
 
 
-def _outlined(
-    segment: object, inputs: Inputs, box: LabelledBox, mask: np.ndarray | None, progress: Progress
+def _says(known: DetectedObject, box: LabelledBox, mask: Bool[np.ndarray, "h w"] | None) -> bool:
+    """Whether a box, its name and its outline are what the build knew of the object."""
+    same_box = known.box == box.box and known.category == box.category and known.label == box.label
+    return same_box and (mask is None or np.array_equal(mask, known.mask))
+
+
+def _segmented(
+    stage: ObjectStage,
+    inputs: Inputs,
+    box: LabelledBox,
+    mask: Bool[np.ndarray, "h w"] | None,
+    object_id: str,
+    progress: Progress,
 ) -> DetectedObject:
     if mask is None:
         alone = replace(inputs, boxes=(box,), instances=None, instance_boxes=())
-        return replace(segment(alone, progress)[0], id=NEW_ID)  # type: ignore[operator]
-    return DetectedObject(NEW_ID, box.category, box.label, box.box, mask, 1, 1.0)
+        return replace(stage.segment(alone, progress)[0], id=object_id)
+    return DetectedObject(object_id, box.category, box.label, box.box, mask, 1, 1.0)
+
+
+def _posed_alone(
+    stages: Stages, photo: Artefacts, detected: DetectedObject, progress: Progress
+) -> tuple[Artefacts, PosedCandidates | None]:
+    """The photo's artefacts with the object among the others, and the object's candidates, ranked for it alone."""
+    objects = (*(o for o in photo["objects"] if o.id != detected.id), detected)
+    fixed = {name: photo[name] for name in ("given", "inputs", "camera", "architecture")}
+    uncached = Runner(None)
+    whole = evaluate(stages, {**fixed, "objects": objects}, ("geometry", "depth"), uncached, progress.part(0.0, 0.4))
+    geometry: ObjectGeometry = whole["geometry"]
+    cuboids = tuple(c for c in geometry.cuboids if c.object_id == detected.id)
+    alone = {
+        **fixed,
+        "furniture_objects": (detected,),
+        "geometry": replace(geometry, cuboids=cuboids),
+        "depth": whole["depth"],
+    }
+    posed = evaluate(stages, alone, ("posed",), uncached, progress.part(0.4, 1.0))["posed"]
+    return whole, posed[0] if posed and posed[0].candidates else None
 
 
 def _found(
     scene: Scene,
     library: ShapeLibrary,
-    found_object: DetectedObject,
-    geometry: ObjectGeometry,
-    candidates: tuple[Candidate, ...],
-    confidence: float,
-    inputs: Inputs,
-    object_id: str,
+    detected: DetectedObject,
+    photo: Artefacts,
+    posed: PosedCandidates,
+    *,
+    as_built: bool,
 ) -> Found:
     assert scene.camera is not None
+    geometry: ObjectGeometry = photo["geometry"]
     floor = scene.architecture.floor
     level = 0.0 if floor is None else float(floor.polygon[:, 2].mean())
     to_scene = _Similarity.between(geometry.camera, scene.camera, level)
-    here = tuple(replace(c, pose=to_scene.pose(c.pose)) for c in candidates)
+    here: tuple[Candidate, ...] = tuple(replace(c, pose=to_scene.pose(c.pose)) for c in posed.candidates)
     best = here[0]
-    category = found_object.category if found_object.category != "object" else library.shape(best.shape_id).category
+    category = detected.category if detected.category != "object" else library.shape(best.shape_id).category
     item = SceneObject(
-        id=object_id,
-        label=found_object.label,
+        id=detected.id,
+        label=detected.label,
         category=category,
         shape_id=best.shape_id,
         shape_size_m=best.shape_size_m,
         pose=best.pose,
         candidates=here,
-        box_px=found_object.box,
-        confidence=confidence,
-        colour=photo_colours(inputs.photo.rgb, (found_object,)).get(NEW_ID),
+        box_px=detected.box,
+        confidence=posed.confidence,
+        colour=photo_colours(photo["inputs"].photo.rgb, (detected,)).get(detected.id),
     )
-    parent = next((s.parent for s in geometry.supports if s.child == NEW_ID), "floor")
-    return Found(item, _edge(scene, item, parent), found_object)
+    parent = next((s.parent for s in geometry.supports if s.child == detected.id), "floor")
+    return Found(item, _edge(scene, item, parent), detected, as_built)
 
 
 def _edge(scene: Scene, item: SceneObject, parent: str) -> Support | None:

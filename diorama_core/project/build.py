@@ -8,7 +8,8 @@ from dataclasses import replace
 from diorama_core.artefacts import Inputs
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.presets import stages_for
-from diorama_core.pipeline.run import Built, Stages, build_scene
+from diorama_core.pipeline.run import Built, build_scene
+from diorama_core.pipeline.stages import Stages
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
 from diorama_core.protocols import Preview

@@ -19,7 +19,7 @@ from diorama_core.geometry.camera_attitude import CameraAttitude
 from diorama_core.perception.camera.given_attitude import GivenAttitudeCamera
 from diorama_core.pipeline import codec
 from diorama_core.pipeline.presets import stages_for
-from diorama_core.pipeline.run import embedded_stages
+from diorama_core.pipeline.stages import embedded_stages
 from diorama_core.progress import Progress
 from diorama_core.project.build import build_project
 from diorama_core.project.storage import Project

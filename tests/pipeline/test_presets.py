@@ -18,7 +18,8 @@ from diorama_core.models.store import FileRecord, Installed, ModelStore, sha256_
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.pipeline.choices import profile_status
 from diorama_core.pipeline.presets import propose_boxes, stages_for
-from diorama_core.pipeline.run import Built, Stages, build_scene
+from diorama_core.pipeline.run import Built, build_scene
+from diorama_core.pipeline.stages import Stages
 from diorama_core.pose import RenderAndCompare
 from diorama_core.progress import Progress
 from diorama_core.synthesis.layout_rooms import box_library

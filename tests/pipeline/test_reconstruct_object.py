@@ -38,7 +38,7 @@ def test_a_box_is_looked_at_with_what_built_the_scene(
     inputs, library, cache = Inputs(Photo(rgb, "room.png", (WIDTH, HEIGHT)), (box,)), box_library(), tmp_path / "stages"
     built = build_scene(inputs, library, stages=stages_for("auto", inputs, library), cache=cache)
     saved = {path.name for path in cache.rglob("*.zip")}
-    assert any(name.startswith("sight") for name in saved) == networks
+    assert any(name.startswith("depth_prediction") for name in saved) == networks
     found = reconstruct_object(built.scene, inputs, library, box, "chair_again", cache=cache)
     assert found.item.id == "chair_again"
     assert found.item.category == "chair"

@@ -17,7 +17,7 @@ import pytest
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import Shape
 from diorama_core.perception.inputs import read_inputs
-from diorama_core.pipeline.run import embedded_stages
+from diorama_core.pipeline.stages import embedded_stages
 from diorama_core.progress import Progress
 from diorama_core.retrieval import HierarchicalRetrieval
 from diorama_core.synthesis.splits import Subset

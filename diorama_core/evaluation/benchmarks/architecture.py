@@ -18,7 +18,9 @@ from diorama_core.evaluation.metrics.architecture import ArchitectureScores, arc
 from diorama_core.evaluation.reports import paper
 from diorama_core.evaluation.reports.tables import Column, Row, Table, paper_rows
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.pipeline.run import embedded_stages
+from diorama_core.pipeline.plan import evaluate
+from diorama_core.pipeline.runner import Runner
+from diorama_core.pipeline.stages import embedded_stages
 from diorama_core.progress import Progress
 from diorama_core.protocols import ArchitectureStage
 from diorama_core.synthesis.artefacts import photo_only
@@ -102,15 +104,14 @@ def _emptied(view: TruthView) -> Inputs:
 def _room(
     case: str, view: TruthView, inputs: Inputs, library: ShapeLibrary, stage: ArchitectureStage | None
 ) -> RoomResult:
-    stages, quiet = embedded_stages(inputs, library), Progress()
+    stages = embedded_stages(inputs, library)
     stage = stage or stages.architecture
     begun = time.process_time()
     try:
-        camera = stages.camera.estimate(inputs, quiet)
-        objects = stages.objects.segment(inputs, quiet)
-        geometry = stages.geometry.measure(inputs, camera, objects, quiet)
+        found = evaluate(stages, {"given": inputs}, ("objects", "supported_geometry"), Runner(None))
+        geometry = found["supported_geometry"]
         begun = time.process_time()
-        room = stage.reconstruct(inputs, objects, geometry, quiet)
+        room = stage.reconstruct(found["inputs"], found["objects"], geometry, Progress())
         spent = time.process_time() - begun
         scores = architecture_scores(
             room.architecture.planes, view.scene.architecture.planes, view.camera, found_camera=geometry.camera

@@ -11,7 +11,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from diorama_core.architecture.mounting import snap_mounted_objects
 from diorama_core.artefacts import (
     ArchitectureEstimate,
     DepthMap,
@@ -25,8 +24,9 @@ from diorama_core.evaluation.metrics.pose import Alignment, object_alignment, sc
 from diorama_core.evaluation.metrics.scene import as_placed, in_true_world, matched, relation_accuracy, structure_of
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.assemble import assemble
-from diorama_core.pipeline.network_inputs import with_graph
-from diorama_core.pipeline.run import embedded_stages
+from diorama_core.pipeline.plan import evaluate
+from diorama_core.pipeline.runner import Runner
+from diorama_core.pipeline.stages import embedded_stages
 from diorama_core.pose import RenderAndCompare
 from diorama_core.pose.correspondence.solvers import HALF_GRID, CorrespondencePose, Kind
 from diorama_core.progress import Progress
@@ -129,16 +129,8 @@ def predict(inputs: Inputs, library: ShapeLibrary) -> Seen:
     Raises:
         DioramaError: with the reason, when a stage cannot do its work.
     """
-    stages, quiet = embedded_stages(inputs, library), Progress()
-    camera = stages.camera.estimate(inputs, quiet)
-    objects = stages.objects.segment(inputs, quiet)
-    geometry = stages.geometry.measure(inputs, camera, objects, quiet)
-    if stages.graph is not None:
-        geometry = with_graph(geometry, stages.graph.relate(inputs, objects, geometry, quiet))
-    room = stages.architecture.reconstruct(inputs, objects, geometry, quiet)
-    geometry = snap_mounted_objects(geometry, room)
-    depth = stages.depth.depth(inputs, objects, geometry, room, quiet)
-    return Seen(inputs, objects, geometry, room, depth)
+    found = evaluate(embedded_stages(inputs, library), {"given": inputs}, ("depth",), Runner(None))
+    return Seen(found["inputs"], found["furniture_objects"], found["geometry"], found["architecture"], found["depth"])
 
 
 def inputs_with(view: TruthView, depth: str) -> Inputs:

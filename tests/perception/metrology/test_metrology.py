@@ -51,12 +51,12 @@ def seen(items: tuple[RequestedObject, ...], R: np.ndarray, height_m: float) -> 
     bounds, visible = visible_bounds(corners @ R, K)
     assert visible.all()
     return tuple(
-        detect_boxes(f"{t.category.replace(' ', '_')}_{n}", t.category, tuple(b), n + 1)
+        detected(f"{t.category.replace(' ', '_')}_{n}", t.category, tuple(b), n + 1)
         for n, (t, b) in enumerate(zip(items, bounds, strict=True))
     )
 
 
-def detect_boxes(name: str, category: str, box: tuple, mask_id: int = 1) -> DetectedObject:
+def detected(name: str, category: str, box: tuple, mask_id: int = 1) -> DetectedObject:
     return DetectedObject(name, category, category, box, np.zeros((480, 640), dtype=bool), mask_id, 0.1)
 
 
@@ -117,9 +117,7 @@ def test_unnamed_objects_are_placed_plausibly() -> None:
 def test_mirrored_picture_gives_the_mirrored_room() -> None:
     R = rotation(14.0, 4.0)
     objects = seen(ROOM[:5], R, 1.4)
-    mirrored = tuple(
-        detect_boxes(o.id, o.category, (640 - o.box[2], o.box[1], 640 - o.box[0], o.box[3])) for o in objects
-    )
+    mirrored = tuple(detected(o.id, o.category, (640 - o.box[2], o.box[1], 640 - o.box[0], o.box[3])) for o in objects)
     one, other = measure(objects, R), measure(mirrored, rotation(14.0, -4.0))
     assert one.camera.position[2] == pytest.approx(other.camera.position[2], rel=0.02)
     for a, b in zip(one.cuboids, other.cuboids, strict=True):
@@ -168,7 +166,7 @@ boxes = st.tuples(st.floats(-5, 640), st.floats(-5, 480), st.floats(-5, 645), st
 )
 def test_any_boxes_give_finite_cuboids(given_boxes: list, names: list, pitch: float) -> None:
     objects = tuple(
-        detect_boxes(f"thing_{n}", name, box) for n, (box, name) in enumerate(zip(given_boxes, names, strict=False))
+        detected(f"thing_{n}", name, box) for n, (box, name) in enumerate(zip(given_boxes, names, strict=False))
     )
     geometry = measure(objects, rotation(pitch))
     assert [c.object_id for c in geometry.cuboids] == [o.id for o in objects]

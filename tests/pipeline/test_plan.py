@@ -1,0 +1,122 @@
+"""One order for all: correcting nothing changes nothing, and a step runs only for what is wanted."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from diorama_core.artefacts import Inputs, LabelledBox
+from diorama_core.editing.reconstructed import replaced
+from diorama_core.pipeline.plan import PLAN, StageStep, evaluate
+from diorama_core.pipeline.presets import stages_for
+from diorama_core.pipeline.reconstruct_object import reconstruct_object
+from diorama_core.pipeline.runner import Runner
+from diorama_core.pipeline.stages import Stages, embedded_stages
+from diorama_core.progress import Progress
+from diorama_core.project.build import build_project
+from diorama_core.project.storage import Project
+from diorama_core.scene.schema import scene_to_json
+from diorama_core.synthesis.layout_rooms import box_library
+from tests.synthetic_rooms import box_room, cuboid, look, shoot
+
+LIBRARY = box_library()
+
+
+@pytest.fixture(autouse=True)
+def _embedded_only(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("DIORAMA_MODELS", str(tmp_path / "models"))
+    monkeypatch.delenv("DIORAMA_LMM_BASE_URL", raising=False)
+
+
+def room_inputs(*, depth: bool) -> Inputs:
+    """A room with a table, a box on it and a chair, each in a box with a name."""
+    cuboids = (
+        cuboid("table", (0.2, 2.6, 0.0), (0.8, 1.2, 0.72)),
+        cuboid("box", (0.1, 2.5, 0.72), (0.25, 0.3, 0.2)),
+        cuboid("chair", (-1.0, 2.2, 0.0), (0.45, 0.45, 0.9), 30.0),
+    )
+    names = ("table", "box", "chair")
+    shot = shoot(look(size=(320, 240)), box_room(-2.0, 2.0, 4.0, 2.6), cuboids, names)
+    boxes = tuple(LabelledBox(o.box, o.category, o.label) for o in shot.objects)
+    return replace(shot.inputs, boxes=boxes, instances=None, depth_m=shot.inputs.depth_m if depth else None)
+
+
+@pytest.mark.parametrize("depth", [False, True], ids=["photo", "depth"])
+def test_correcting_nothing_gives_the_same_scene_byte_for_byte(depth: bool, tmp_path: Path) -> None:
+    project = Project.create(tmp_path / "room")
+    built = build_project(project, room_inputs(depth=depth), LIBRARY)
+    scene_file = project.scene_path.read_bytes()
+    inputs = project.load_inputs()
+    assert inputs is not None
+
+    again = build_project(project, inputs, LIBRARY)
+    assert project.scene_path.read_bytes() == scene_file
+    assert all(run.cached for run in again.runs if run.stage != "layout")
+
+    assert len(built.scene.objects) == 3
+    for item in built.objects:
+        box = LabelledBox(item.box, item.category, item.label)
+        cache = project.stages_folder
+        found = reconstruct_object(built.scene, inputs, LIBRARY, box, item.id, cache=cache)
+        assert scene_to_json(replaced(built.scene, item.id, found, LIBRARY)).encode() == scene_file
+        here, there = found.item.candidates[0].pose, built.observed.object(item.id).candidates[0].pose
+        assert np.allclose(here.position, there.position, atol=1e-9)
+
+
+@pytest.mark.parametrize("depth", [False, True], ids=["photo", "depth"])
+def test_a_corrected_object_is_measured_in_the_room_that_the_build_had(depth: bool, tmp_path: Path) -> None:
+    inputs, cache = room_inputs(depth=depth), tmp_path / "stages"
+    stages = stages_for("auto", inputs, LIBRARY)
+    built = build_project(Project.create(tmp_path / "room"), inputs, LIBRARY)
+    x1, y1, x2, y2 = inputs.boxes[2].box
+    box = LabelledBox((x1 + 2, y1 + 1, x2 - 2, y2), "chair", "chair")
+    found = reconstruct_object(built.scene, inputs, LIBRARY, box, built.objects[2].id, cache=cache)
+    assert not found.as_built
+    assert found.support is not None
+    assert found.support.parent == "floor"
+    names = {path.name.rsplit("-", 1)[0] for path in cache.glob("*.zip")}
+    assert names == {"camera", "objects", "geometry", "architecture", *(["graph"] if stages.graph else [])}
+
+
+class Counting:
+    """A stage that records which of its methods were called."""
+
+    def __init__(self, stage: object, calls: list[str]) -> None:
+        self.stage, self.calls = stage, calls
+
+    def __repr__(self) -> str:
+        return repr(self.stage)
+
+    def __getattr__(self, name: str) -> object:
+        self.calls.append(name)
+        return getattr(self.stage, name)
+
+
+def test_only_the_steps_that_lead_to_what_is_wanted_run() -> None:
+    inputs, calls = room_inputs(depth=False), list[str]()
+    plain = embedded_stages(inputs, LIBRARY)
+    counted = {s.name: getattr(plain, s.name) for s in PLAN if isinstance(s, StageStep)}
+    stages = replace(plain, **{n: Counting(stage, calls) for n, stage in counted.items() if stage is not None})
+    known = evaluate(stages, {"given": inputs}, ("objects",), Runner(None), Progress())
+    assert calls == ["segment"]
+    evaluate(stages, known, ("supported_geometry",), Runner(None), Progress())
+    assert calls == ["segment", "estimate", "measure"]
+
+
+def test_an_unknown_artefact_is_named() -> None:
+    inputs = room_inputs(depth=False)
+    with pytest.raises(KeyError, match="skeleton"):
+        evaluate(embedded_stages(inputs, LIBRARY), {"given": inputs}, ("skeleton",), Runner(None))
+
+
+def test_every_step_takes_what_an_earlier_one_gives() -> None:
+    known = {"given"}
+    for step in PLAN:
+        assert set(step.takes) <= known, step
+        assert step.gives not in known
+        known.add(step.gives)
+    fields = set(Stages.__dataclass_fields__)
+    assert {s.name for s in PLAN if isinstance(s, StageStep)} == fields - {"layout", "filler"}
