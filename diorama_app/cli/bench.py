@@ -154,7 +154,7 @@ def _bench_speed(a: argparse.Namespace) -> int:
         bench = run(built_in_library(), a.seed, progress, QUICK if a.quick else FULL, before=before)
     if a.keep:
         retained = committed_figures(a.keep) if a.keep.exists() else {}  # a quick run and a full one keep other figures
-        write_atomically(a.keep, regression_bytes({**retained, **bench.figures()}))
+        write_atomically(a.keep, regression_bytes({**retained, **bench.figures()}), error=InputError)
     _show(bench, a)
     worse = slower(bench.figures(), before, a.tolerance)
     for name, times in worse.items():
@@ -180,7 +180,7 @@ def _write(path: Path | None, document: dict[str, object]) -> None:
     from diorama_core.io.atomic import write_atomically
 
     if path:
-        write_atomically(path, json.dumps(document, indent=1).encode())
+        write_atomically(path, json.dumps(document, indent=1).encode(), error=InputError)
 
 
 def _write_text(a: argparse.Namespace, text: str) -> None:
@@ -194,4 +194,4 @@ def _write_text(a: argparse.Namespace, text: str) -> None:
     if begin in there and end in there:
         before, _, after = there.partition(begin)
         text = f"{before}{begin}\n{text.strip()}\n{end}{after.partition(end)[2]}"
-    write_atomically(a.markdown, text.encode())
+    write_atomically(a.markdown, text.encode(), error=InputError)

@@ -272,7 +272,7 @@ def _picture(a: argparse.Namespace) -> None:
     if kind is None:
         raise InputError(f"{a.output}: pictures are written as .png or .jpg; choose such a name")
     Image.fromarray(image).save(buffer, kind)
-    write_atomically(a.output, buffer.getvalue())
+    write_atomically(a.output, buffer.getvalue(), error=InputError)
     print(f"{a.output}: {image.shape[1]}x{image.shape[0]}")
 
 

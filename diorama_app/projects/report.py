@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from diorama_core.artefacts import LayoutReport
+from diorama_core.errors import ProjectError
 from diorama_core.io.atomic import write_atomically
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.arrangements import arrangement, arrangement_count
@@ -52,7 +53,8 @@ def write_arrangements(
         if _overlaps(report) > _overlaps(built.layout):
             continue  # these shapes have no room beside one another here; the next may
         name = f"arrangements/scene_{len(names) + 1}.json"
-        write_atomically(project.folder / name, scene_to_json(edits.set_metrics(arranged, report.after)).encode())
+        text = scene_to_json(edits.set_metrics(arranged, report.after))
+        write_atomically(project.folder / name, text.encode(), error=ProjectError)
         names.append(name)
     return tuple(names)
 

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-from collections import OrderedDict
-
 import manifold3d
 import numpy as np
 import trimesh
@@ -13,14 +10,15 @@ from PIL import Image
 from trimesh.visual.material import PBRMaterial
 
 from diorama_core.geometry.planes import plane_axes, plane_uv
+from diorama_core.io.cache import LruCache
 from diorama_core.library.paint import painted
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.simplify import simplified_glb
 from diorama_core.scene.types import Finish, Plane
 
 Colour = tuple[float, float, float]
-CACHE_SIZE = 256
-"""How many shapes' bytes are kept in memory."""
+CACHE_BYTES = 512 * 2**20
+"""Of all shapes in memory: what the browser asks for again when somebody joins or an edit is undone."""
 LIGHT_SCENE_TRIANGLES = 24_000
 """Of a scene's models, for browsers that draw without a graphics card."""
 LIGHT_SHAPE_TRIANGLES = (400, 2000)
@@ -34,34 +32,24 @@ class ShapeBytes:
         """Nothing is made yet; `light` models are simplified, the more the more of them there are."""
         self._library = library
         self._max_triangles = LIGHT_SHAPE_TRIANGLES[0] if light else None
-        self._retained: OrderedDict[tuple[str, Colour | None, Finish | None], bytes] = OrderedDict()
-        self._lock = threading.Lock()
+        self._cached: LruCache[tuple[str, Colour | None, Finish | None, int | None], bytes]
+        self._cached = LruCache(CACHE_BYTES, size_of=len)
 
     def expect(self, count: int) -> None:
         """From now on shapes are made for a scene of about `count` objects."""
-        with self._lock:
-            if self._max_triangles is not None:
-                most = int(np.clip(LIGHT_SCENE_TRIANGLES // max(count, 1), *LIGHT_SHAPE_TRIANGLES))
-                if most != self._max_triangles:
-                    self._retained.clear()
-                self._max_triangles = most
+        if self._max_triangles is not None:
+            self._max_triangles = int(np.clip(LIGHT_SCENE_TRIANGLES // max(count, 1), *LIGHT_SHAPE_TRIANGLES))
 
     def glb(self, shape_id: str, colour: Colour | None = None, finish: Finish | None = None) -> bytes:
         """The shape's GLB; with `colour` (sRGB 0 to 1) and `finish` on its main material."""
-        key = (shape_id, colour, finish)
-        with self._lock:
-            if key in self._retained:
-                self._retained.move_to_end(key)
-                return self._retained[key]
-        own = colour is None and finish is None
-        data = self._library.glb(shape_id) if own else _painted_glb(self._library.parts(shape_id), colour, finish)
-        if self._max_triangles is not None:
-            data = simplified_glb(data, self._max_triangles)
-        with self._lock:
-            self._retained[key] = data
-            while len(self._retained) > CACHE_SIZE:
-                self._retained.popitem(last=False)
-        return data
+        most = self._max_triangles
+
+        def made() -> bytes:
+            own = colour is None and finish is None
+            data = self._library.glb(shape_id) if own else _painted_glb(self._library.parts(shape_id), colour, finish)
+            return data if most is None else simplified_glb(data, most)
+
+        return self._cached.get((shape_id, colour, finish, most), made)
 
 
 def _painted_glb(parts: trimesh.Scene, colour: Colour | None, finish: Finish | None) -> bytes:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import logging
-import threading
 import time
-from collections import OrderedDict
 from concurrent.futures import Future, ThreadPoolExecutor
 
 from diorama_app.web.viser_adapter import PICTURES
 from diorama_core.errors import DioramaError
+from diorama_core.io.cache import LruCache
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.user_library import ShapeRecords
 from diorama_core.scene.types import Finish
@@ -37,8 +36,7 @@ class Thumbnails:
         self._library = library
         self._records = records
         self._own: dict[str, str] = {}
-        self._painted: OrderedDict[str, tuple[str, Paint]] = OrderedDict()
-        self._lock = threading.Lock()
+        self._painted: LruCache[str, tuple[str, Paint]] = LruCache(CACHE_SIZE)
         self._worker = ThreadPoolExecutor(1, thread_name_prefix="thumbnails")
 
     def html(self, shape_id: str, paint: Paint = OWN) -> str:
@@ -48,21 +46,16 @@ class Thumbnails:
         except DioramaError:
             return '<span class="blank"></span>'
         name = hashlib.sha256(f"{shape_id} {content} {paint}".encode()).hexdigest()[:20]
-        with self._lock:
-            if paint == OWN:
-                self._own[name] = shape_id
-            else:
-                self._painted[name] = (shape_id, paint)
-                self._painted.move_to_end(name)
-                while len(self._painted) > CACHE_SIZE:
-                    self._painted.popitem(last=False)
+        if paint == OWN:
+            self._own[name] = shape_id
+        else:
+            self._painted.get(name, lambda: (shape_id, paint))
         return f'<img alt="" loading="lazy" src="{PICTURES}{name}.png">'
 
     def png(self, name: str) -> Future[bytes | None]:
         """The picture called so, made beside everything else; None where there is none."""
         name = name.removesuffix(".png")
-        with self._lock:
-            asked = (self._own[name], OWN) if name in self._own else self._painted.get(name)
+        asked = (self._own[name], OWN) if name in self._own else self._painted.find(name)
         if asked is None:
             nothing: Future[bytes | None] = Future()
             nothing.set_result(None)

@@ -6,13 +6,6 @@ once per machine.
 
 from __future__ import annotations
 
-import io
-import logging
-import os
-import tempfile
-import threading
-import zipfile
-from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -25,11 +18,12 @@ from jaxtyping import Float, Float32, Int, Int32, UInt8
 from scipy.spatial import cKDTree
 
 from diorama_core.geometry.silhouette import ShapeCaster
-
-log = logging.getLogger(__name__)
+from diorama_core.io.cache import LruCache
+from diorama_core.io.derived import read_arrays, write_arrays
+from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
 
 _FORMAT = "4"
-_CACHE = 512
+_CACHED_SHAPES = 512
 _MIN_AREA_M2 = 1e-12
 _READ_ALONG_EDGE = 5
 """Rows of points at which a face's picture is read."""
@@ -172,10 +166,10 @@ def face_colours(mesh: trimesh.Trimesh) -> tuple[UInt8[np.ndarray, "f 4"], UInt8
     if texture is not None and visual.uv is not None and len(visual.uv) == len(mesh.vertices):
         factor = getattr(material, "baseColorFactor", None)
         pixels = _read_picture(texture, np.asarray(visual.uv, float)[mesh.faces])
-        light = _to_linear(pixels.mean(axis=1) / 255.0) * (
+        light = srgb_to_linear(pixels.mean(axis=1) / 255.0) * (
             np.ones(3) if factor is None else np.asarray(factor, float)[:3] / 255.0
         )
-        rgb = np.clip(np.rint(255.0 * _to_srgb(light)), 0, 255)
+        rgb = np.clip(np.rint(255.0 * linear_to_srgb(light)), 0, 255)
         spread = np.rint(pixels.std(axis=1).mean(axis=1)).astype(np.uint8)
     return np.concatenate([rgb, np.full((count, 1), _opacity(material))], axis=1).astype(np.uint8), spread
 
@@ -218,73 +212,48 @@ def material_rgb(visual: Any) -> UInt8[np.ndarray, "3"] | None:
         return np.asarray(material.main_color, dtype=np.uint8)[:3]
     picture = np.ones(3) if texture is None else np.asarray(texture.convert("RGB").resize((1, 1)), float)[0, 0] / 255.0
     # glTF: the factor is linear light, the picture is sRGB; a material without a factor shows its picture as it is.
-    light = _to_linear(picture) * (np.ones(3) if factor is None else np.asarray(factor, float)[:3] / 255.0)
-    return np.asarray(np.clip(np.rint(255.0 * _to_srgb(light)), 0, 255), dtype=np.uint8)
-
-
-def _to_linear(srgb: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
-    return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
-
-
-def _to_srgb(light: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
-    light = np.maximum(light, 0.0)
-    return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+    light = srgb_to_linear(picture) * (np.ones(3) if factor is None else np.asarray(factor, float)[:3] / 255.0)
+    return np.asarray(np.clip(np.rint(255.0 * linear_to_srgb(light)), 0, 255), dtype=np.uint8)
 
 
 class AppearanceStore:
-    """Looks by the content hash of their shapes; safe to share between threads."""
+    """Appearances by the content hash of their shapes; safe to share between threads."""
 
     def __init__(self) -> None:
-        self._lock = threading.Lock()
-        self._retained: OrderedDict[str, ShapeAppearance] = OrderedDict()
+        self._cached: LruCache[str, ShapeAppearance] = LruCache(_CACHED_SHAPES)
 
     def get(self, key: str, folder: Path, parts: Callable[[], trimesh.Scene]) -> ShapeAppearance:
-        """The look kept under `key`: from memory, from a file in `folder`, or made from `parts()` and written there.
+        """The appearance under `key`: from memory, from a file in `folder`, or made from `parts()` and written there.
 
         A folder that cannot be written costs time, nothing else. Without a key nothing is remembered.
         """
         if not key:
             return appearance_of(parts())
-        with self._lock:
-            if key not in self._retained:
-                self._retained[key] = _read(folder / f"{key}.{_FORMAT}.npz") or _made(folder, key, parts())
-                while len(self._retained) > _CACHE:
-                    self._retained.popitem(last=False)
-            self._retained.move_to_end(key)
-            return self._retained[key]
+        path = folder / f"{key}.{_FORMAT}.npz"
+        return self._cached.get(key, lambda: _read(path) or _made(path, parts()))
 
 
 SHARED_APPEARANCES = AppearanceStore()
 """One memory for all stages: retrieval and pose look at the same shapes."""
 
 
+_STORED = {
+    "vertices": "vertices",
+    "faces": "faces",
+    "colours": "colours_srgb",
+    "areas": "areas_m2",
+    "of_faces": "face_rgba",
+    "spread": "face_spread",
+}
+"""Names of the arrays in a file, and the fields that they hold."""
+
+
 def _read(path: Path) -> ShapeAppearance | None:
-    try:
-        with np.load(path, allow_pickle=False) as data:
-            return ShapeAppearance(
-                data["vertices"], data["faces"], data["colours"], data["areas"], data["of_faces"], data["spread"]
-            )
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
-        return None  # absent, or half a file from another program: it is made again
+    arrays = read_arrays(path, *_STORED)
+    return None if arrays is None else ShapeAppearance(**dict(zip(_STORED.values(), arrays, strict=True)))
 
 
-def _made(folder: Path, key: str, parts: trimesh.Scene) -> ShapeAppearance:
+def _made(path: Path, parts: trimesh.Scene) -> ShapeAppearance:
     appearance = appearance_of(parts)
-    data = io.BytesIO()
-    np.savez(
-        data,
-        vertices=appearance.vertices,
-        faces=appearance.faces,
-        colours=appearance.colours_srgb,
-        areas=appearance.areas_m2,
-        of_faces=appearance.face_rgba,
-        spread=appearance.face_spread,
-    )
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=folder, delete=False) as part:
-            part.write(data.getvalue())
-        os.replace(part.name, folder / f"{key}.{_FORMAT}.npz")  # so that no reader ever sees half a file
-    except OSError as error:
-        log.warning("cannot keep shapes in %s (%s); they are built again each time", folder, error)
+    write_arrays(path, {name: getattr(appearance, of) for name, of in _STORED.items()})
     return appearance

@@ -1,35 +1,82 @@
-"""Writing files so that a crash or a full disk never leaves half of one."""
+"""Files that appear whole or not at all, whatever happens while they are written."""
 
 from __future__ import annotations
 
 import os
-import tempfile
+import secrets
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import BinaryIO
 
-from diorama_core.errors import ProjectError
+from diorama_core.errors import DioramaError
 
 
-def write_atomically(path: Path, data: bytes) -> None:
-    """Write beside the target and rename over it.
+def write_atomically(path: Path, data: bytes, *, error: type[DioramaError] | None = None) -> None:
+    """Replace a file by `data`; see `open_atomically`.
+
+    Args:
+        path: The file; missing folders above it are made.
+        data: Its whole content.
+        error: What a failure is raised as; see `open_atomically`.
+    """
+    with open_atomically(path, error=error) as stream:
+        stream.write(data)
+
+
+@contextmanager
+def open_atomically(path: Path, *, error: type[DioramaError] | None = None) -> Iterator[BinaryIO]:
+    """A binary stream whose content becomes the file when the block ends without an exception.
+
+    The content is written beside the target, flushed to the disk and renamed over the target, so that a reader, a crash
+    and a full disk see the old file or the new one. The file's mode follows the umask, as that of any new file. When
+    the block or the disk fails, the part that was written is deleted and an older file stays as it was.
+
+    Args:
+        path: The file; missing folders above it are made.
+        error: Class that an `OSError` is translated into, with one line of advice; None passes the `OSError` on, for
+            callers that have better advice.
 
     Raises:
-        ProjectError: when the folder cannot be written; the old file is untouched.
+        OSError: when the folder or the disk refuses and no `error` is given; else `error`.
     """
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, part = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
-    except OSError as error:
-        raise ProjectError(
-            f"cannot write in {path.parent} ({error.strerror}); choose a folder you may write to"
-        ) from error
+        part = _new_part(path)
+    except OSError as cause:
+        if error is None:
+            raise
+        raise error(f"cannot write in {path.parent} ({_reason(cause)}); choose a folder you may write to") from cause
     try:
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(data)
-            stream.flush()
-            os.fsync(stream.fileno())
-        os.replace(part, path)
-    except OSError as error:
-        Path(part).unlink(missing_ok=True)
-        raise ProjectError(
-            f"cannot write {path} ({error.strerror}); free some space or choose another folder"
-        ) from error
+        with _deleted_on_failure(part):
+            with part.open("wb") as stream:
+                yield stream
+                stream.flush()
+                os.fsync(stream.fileno())
+            os.replace(part, path)
+    except OSError as cause:
+        if error is None:
+            raise
+        raise error(f"cannot write {path} ({_reason(cause)}); free some space or choose another folder") from cause
+
+
+def _new_part(path: Path) -> Path:
+    """An empty file beside the target, under a name that no other writer has."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.parent / f".{secrets.token_hex(8)}.part"
+    # Not `tempfile`: its files are their owner's only, and libraries and caches may be shared.
+    os.close(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
+    return part
+
+
+@contextmanager
+def _deleted_on_failure(part: Path) -> Iterator[None]:
+    try:
+        yield
+    except BaseException:
+        with suppress(OSError):
+            part.unlink(missing_ok=True)
+        raise
+
+
+def _reason(cause: OSError) -> str:
+    return cause.strerror or str(cause)

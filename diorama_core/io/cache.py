@@ -1,48 +1,94 @@
-"""Values that are dear to make and often asked for again."""
+"""The most recently used values in memory, each made once however many threads ask for it."""
 
 from __future__ import annotations
 
 import threading
-from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Hashable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
+from cachetools import LRUCache
+
+Key = TypeVar("Key", bound=Hashable)
 Value = TypeVar("Value")
 
 
-class LruCache(Generic[Value]):
-    """The most recently used values by name; each is made once, by one thread, while others wait for it.
+class LruCache(Generic[Key, Value]):
+    """Values by key, least recently used ones dropped first; safe to share between threads.
+
+    A value is made outside the cache's own lock, under a lock of its key: who asks for the same key waits, who asks
+    for another does not. A failed attempt leaves nothing behind; the next one tries again.
 
     Args:
-        size: How many are kept.
+        limit: The greatest sum of sizes: how many values, or how much of what `size_of` counts.
+        size_of: Size of one value, for instance its bytes; 1 by default. A value beyond the limit is not cached.
     """
 
-    def __init__(self, size: int) -> None:
-        self._size = size
-        self._values: OrderedDict[str, Value] = OrderedDict()
-        self._making: dict[str, threading.Lock] = {}
+    def __init__(self, limit: float, size_of: Callable[[Value], float] | None = None) -> None:
+        self._values: LRUCache[Key, Value] = LRUCache(limit, size_of)
+        self._making: dict[Key, _Turn] = {}
         self._lock = threading.Lock()
 
-    def get(self, name: str, make: Callable[[], Value]) -> Value:
-        """The value kept under `name`, made now if there is none."""
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def get(self, key: Key, make: Callable[[], Value]) -> Value:
+        """The cached value, or that of `make()`, whose exceptions pass through.
+
+        `make` may use this cache for other keys.
+        """
         with self._lock:
-            if name in self._values:
-                self._values.move_to_end(name)
-                return self._values[name]
-            making = self._making.setdefault(name, threading.Lock())
-        with making:
+            if key in self._values:
+                return self._values[key]
+        with self._turn(key):
             with self._lock:
-                if name in self._values:
-                    return self._values[name]
+                if key in self._values:
+                    return self._values[key]
             value = make()
             with self._lock:
-                self._values[name] = value
-                while len(self._values) > self._size:
-                    self._values.popitem(last=False)
-                self._making.pop(name, None)
+                self._put(key, value)
             return value
 
-    def forget(self, name: str) -> None:
+    def find(self, key: Key) -> Value | None:
+        """The cached value, which counts as a use, or None."""
+        with self._lock:
+            return self._values.get(key)
+
+    def forget(self, key: Key) -> None:
         """Drop one value, so that it is made again."""
         with self._lock:
-            self._values.pop(name, None)
+            self._values.pop(key, None)
+
+    def clear(self) -> None:
+        """Drop all values."""
+        with self._lock:
+            self._values.clear()
+
+    def _put(self, key: Key, value: Value) -> None:
+        try:
+            self._values[key] = value
+        except ValueError:  # larger than the whole cache: made again each time
+            self._values.pop(key, None)
+
+    @contextmanager
+    def _turn(self, key: Key) -> Iterator[None]:
+        """Alone with a key. Its lock lives as long as somebody has or awaits it."""
+        with self._lock:
+            turn = self._making.setdefault(key, _Turn())
+            turn.threads += 1
+        try:
+            with turn.lock:
+                yield
+        finally:
+            with self._lock:
+                turn.threads -= 1
+                if not turn.threads:
+                    del self._making[key]
+
+
+@dataclass
+class _Turn:
+    # Re-entrant, so that a value that needs itself ends in a RecursionError and not in silence.
+    lock: threading.RLock = field(default_factory=threading.RLock)
+    threads: int = 0

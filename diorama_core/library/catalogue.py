@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-import logging
 import os
-import tempfile
-from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -18,14 +15,13 @@ import trimesh
 
 from diorama_core.errors import LibraryError
 from diorama_core.io.cache import LruCache
+from diorama_core.io.derived import derived
 from diorama_core.library import furniture, taxonomy
 from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.model import Design, built, mesh_of, scene_of
 from diorama_core.library.furniture.solids import Solid
 from diorama_core.library.record import Shape, SupportSurface, usual_contact_faces
 from diorama_core.library.surfaces import support_surfaces
-
-log = logging.getLogger(__name__)
 
 BULK_DENSITY: dict[str, float] = {
     "chair": 28, "office chair": 35, "armchair": 40, "stool": 45, "bench": 60, "sofa": 40, "ottoman": 70, "table": 45,
@@ -81,12 +77,12 @@ class BuiltInLibrary:
         if len(self._designs) != len(designs):
             raise LibraryError("two built-in designs share an id; give each its own")
         self._records = {d.id: _record(d) for d in designs}
-        self._files = _FileCache(cache_dir)
-        self._solids: LruCache[list[tuple[Material, Solid]]] = LruCache(8)
-        self._scenes: LruCache[trimesh.Scene] = LruCache(64)
-        self._meshes: LruCache[trimesh.Trimesh] = LruCache(256)
-        self._glbs: LruCache[bytes] = LruCache(256)
-        self._surfaces: LruCache[tuple[SupportSurface, ...]] = LruCache(4096)
+        self._folder = cache_dir
+        self._solids: LruCache[str, list[tuple[Material, Solid]]] = LruCache(8)
+        self._scenes: LruCache[str, trimesh.Scene] = LruCache(64)
+        self._meshes: LruCache[str, trimesh.Trimesh] = LruCache(256)
+        self._glbs: LruCache[str, bytes] = LruCache(256)
+        self._surfaces: LruCache[str, tuple[SupportSurface, ...]] = LruCache(4096)
 
     def __repr__(self) -> str:
         return f"BuiltInLibrary({len(self._records)} shapes)"
@@ -118,7 +114,7 @@ class BuiltInLibrary:
         """`parts` as GLB, +Z up, metres; the same bytes every time."""
         record = self._known(shape_id)
         return self._glbs.get(
-            shape_id, lambda: self._files.get(f"{record.content_hash}.glb", lambda: _glb(self.parts(shape_id)))
+            shape_id, lambda: derived(self._folder / f"{record.content_hash}.glb", lambda: _glb(self.parts(shape_id)))
         )
 
     def _built(self, shape_id: str) -> list[tuple[Material, Solid]]:
@@ -135,30 +131,7 @@ class BuiltInLibrary:
         def measure() -> bytes:
             return _surfaces_to_json(support_surfaces(self.mesh(record.id)))
 
-        return _surfaces_from_json(self._files.get(f"{record.content_hash}.surfaces.json", measure))
-
-
-class _FileCache:
-    """Files that can be made again at any time; a folder that cannot be written only costs time."""
-
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
-
-    def get(self, name: str, make: Callable[[], bytes]) -> bytes:
-        """The file's bytes, made and written when absent."""
-        path = self._folder / name
-        try:
-            return path.read_bytes()
-        except OSError:
-            data = make()
-        try:
-            self._folder.mkdir(parents=True, exist_ok=True)
-            with tempfile.NamedTemporaryFile(dir=self._folder, delete=False) as part:
-                part.write(data)
-            os.replace(part.name, path)  # so that no reader ever sees half a file
-        except OSError as error:
-            log.warning("cannot cache shapes in %s (%s); they are built again each time", self._folder, error)
-        return data
+        return _surfaces_from_json(derived(self._folder / f"{record.content_hash}.surfaces.json", measure))
 
 
 def _record(design: Design) -> Shape:

@@ -8,6 +8,7 @@ from jaxtyping import UInt8
 from PIL import Image
 from trimesh.visual.material import PBRMaterial
 
+from diorama_core.io.srgb import srgb_to_linear
 from diorama_core.scene.types import Finish
 
 Colour = tuple[float, float, float]
@@ -79,8 +80,9 @@ def _overridden(source: PBRMaterial, colour: Colour | None, finish: Finish | Non
 
 def _in_colour(source: PBRMaterial, colour: Colour) -> PBRMaterial:
     texture = source.baseColorTexture
-    gain = 1.0 if texture is None else 1.0 / _srgb_to_linear(_DETAIL_MEAN)
-    linear = [min(_srgb_to_linear(c) * gain, 1.0) for c in colour]
+    gain = 1.0 if texture is None else 1.0 / float(srgb_to_linear(np.array(_DETAIL_MEAN)))
+    # glTF's base colour factor is linear.
+    linear = np.minimum(srgb_to_linear(np.array(colour, dtype=np.float64)) * gain, 1.0).tolist()
     return PBRMaterial(
         name=f"{source.name or 'material'} painted",
         baseColorFactor=[*(round(255 * c) for c in linear), _opacity(source)],
@@ -103,8 +105,3 @@ def _detail(texture: Image.Image) -> UInt8[np.ndarray, "h w 3"]:
     grey = np.asarray(texture.convert("L"), dtype=np.float64) / 255.0
     level = grey / max(float(grey.mean()), 1e-3) * _DETAIL_MEAN
     return np.repeat(np.round(255 * np.clip(level, 0.0, 1.0)).astype(np.uint8)[..., None], 3, axis=2)
-
-
-def _srgb_to_linear(value: float) -> float:
-    """Display value to linear light (IEC 61966-2-1): glTF's base colour factor is linear."""
-    return value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
-import struct
 from typing import Any
 
 import meshoptimizer
 import numpy as np
+
+from diorama_core.io.glb import read_glb, write_glb
 
 LARGEST_ERROR = 0.05
 """How far a simplified surface may lie from the true one, as a share of the part's size."""
@@ -17,7 +17,6 @@ FEWEST = 24
 _TYPES = {5121: np.uint8, 5123: np.uint16, 5125: np.uint32, 5126: np.float32}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 _INDICES, _VERTICES = 34963, 34962
-_JSON, _BIN = 0x4E4F534A, 0x004E4942
 
 
 def simplified_glb(data: bytes, max_triangles: int) -> bytes:
@@ -26,7 +25,7 @@ def simplified_glb(data: bytes, max_triangles: int) -> bytes:
     Models that are light enough, and those with parts this does not know (animations, compressed or sparse data), come
     back unchanged. Simplified by quadric error (meshoptimizer), every vertex one of the original ones.
     """
-    document, binary = _read(data)
+    document, binary = read_glb(data)
     parts = [p for mesh in document.get("meshes", ()) for p in mesh["primitives"]]
     if not all(map(_is_plain, parts)) or not _is_known(document):
         return data
@@ -105,15 +104,7 @@ class _Writer:
             "bufferViews": self._views,
             "buffers": [{"byteLength": len(self._data)}],
         }
-        text = json.dumps({**self._document, **buffers}, separators=(",", ":")).encode()
-        text += b" " * (-len(text) % 4)
-        chunks = struct.pack("<II", len(text), _JSON) + text + struct.pack("<II", len(self._data), _BIN) + self._data
-        return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
-
-
-def _read(data: bytes) -> tuple[dict[str, Any], bytes]:
-    length = struct.unpack_from("<I", data, 12)[0]
-    return json.loads(data[20 : 20 + length]), data[28 + length :]
+        return write_glb({**self._document, **buffers}, self._data, allow_nan=True)
 
 
 def _is_plain(part: dict[str, Any]) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,6 +10,7 @@ import numpy as np
 from jaxtyping import Float32, UInt8
 
 from diorama_core.errors import UnavailableError
+from diorama_core.io.atomic import open_atomically
 from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, normalised, resized
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
 
@@ -72,9 +72,8 @@ def inner_graph(graph: Path, block: int) -> Path:
                 if name == last:
                     node.input[i] = wanted
         after = after or last in node.output
-    part = target.with_suffix(f".{os.getpid()}.part")
-    onnx.save(model, str(part))
-    os.replace(part, target)
+    with open_atomically(target, error=UnavailableError) as stream:
+        onnx.save(model, stream)
     return target
 
 

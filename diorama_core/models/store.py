@@ -21,6 +21,7 @@ import platformdirs
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 
 from diorama_core.errors import InputError, UnavailableError
+from diorama_core.io.atomic import write_atomically
 from diorama_core.models.manifest import NETWORKS, ModelFile, Network
 
 RECORD = "installed.json"
@@ -248,8 +249,5 @@ def sha256_of(path: Path) -> str:
 
 
 def write_json(path: Path, value: object) -> None:
-    """Write by temporary file and rename."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_suffix(f".{os.getpid()}.part")
-    part.write_text(json.dumps(value, indent=1, sort_keys=True))
-    os.replace(part, path)
+    """Write a value as JSON, atomically."""
+    write_atomically(path, json.dumps(value, indent=1, sort_keys=True).encode())

@@ -17,6 +17,7 @@ from jaxtyping import Bool, Float, Float32, Int, UInt8
 
 from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.shape_appearance import ShapeAppearance
+from diorama_core.io.srgb import srgb_to_linear
 from diorama_core.geometry.silhouette import Hits, PoseBatch
 from diorama_core.pose.surface import MeasuredSurface
 
@@ -82,7 +83,8 @@ class AppearanceLikelihood:
         """
         small = _TOLERANCE_M + _TOLERANCE_SHARE * float(np.median(size_m)) + 1.5 * surface.spread_m
         close = replace(surface, tolerance_m=np.minimum(surface.tolerance_m, small))
-        light = _linear(seen.window.means(rgb * mask[..., None]) / np.maximum(seen.covered, 1e-6)[:, None] / 255.0)
+        colours = seen.window.means(rgb * mask[..., None]) / np.maximum(seen.covered, 1e-6)[:, None] / 255.0
+        light = srgb_to_linear(np.clip(colours, 0.0, 1.0))
         return cls(seen, close, np.log(light + _DARKEST).astype(np.float32))
 
     def log_likelihoods(
@@ -219,12 +221,7 @@ def _softly(off: Float[np.ndarray, "p n"], power: int) -> Float[np.ndarray, "p n
 def _light_of(appearance: ShapeAppearance) -> tuple[Float32[np.ndarray, "o 3"], Float32[np.ndarray, "o"]]:
     """Logarithms of the opaque faces' colours as linear light, and the variance of their pictures in that measure."""
     srgb = appearance.face_rgba[appearance.opaque_faces, :3] / 255.0
-    light = _linear(srgb)
+    light = srgb_to_linear(srgb)
     slope = 2.2 * srgb.mean(axis=1) ** 1.2 / (light.mean(axis=1) + _DARKEST)
     variance = (slope * appearance.face_spread[appearance.opaque_faces] / 255.0) ** 2
     return np.log(light + _DARKEST).astype(np.float32), variance.astype(np.float32)
-
-
-def _linear(srgb: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
-    srgb = np.clip(srgb, 0.0, 1.0)
-    return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)

@@ -108,8 +108,8 @@ class Project:
 
     def save_inputs(self, inputs: Inputs, warnings: Sequence[str] = ()) -> None:
         """Keep what the user gave, the photo also as a picture for people."""
-        write_atomically(self.stages_folder / "inputs.zip", codec.dump(inputs))
-        write_atomically(self.folder / "photo.jpg", _jpeg(inputs.photo.rgb))
+        write_atomically(self.stages_folder / "inputs.zip", codec.dump(inputs), error=ProjectError)
+        write_atomically(self.folder / "photo.jpg", _jpeg(inputs.photo.rgb), error=ProjectError)
         self.update_info(photo=inputs.photo.name, warnings=list(warnings))
 
     def load_inputs(self) -> Inputs | None:
@@ -131,7 +131,7 @@ class Project:
         """Write `scene.json`; the previous one is kept among the backups (at most one a minute)."""
         text = scene_to_json(scene)
         self._back_up(emptied=not scene.objects)
-        write_atomically(self.scene_path, text.encode())
+        write_atomically(self.scene_path, text.encode(), error=ProjectError)
 
     def load_scene(self) -> Scene:
         """Read `scene.json`; raises `ProjectError` when there is none yet, `SceneError` when it is wrong."""
@@ -150,7 +150,7 @@ class Project:
     def save_textures(self, textures: Mapping[str, UInt8[np.ndarray, "h w 3"]]) -> None:
         """Keep the planes' pictures under their names."""
         for name, picture in textures.items():
-            write_atomically(self._texture_path(name), _jpeg(picture))
+            write_atomically(self._texture_path(name), _jpeg(picture), error=ProjectError)
 
     def texture(self, name: str) -> UInt8[np.ndarray, "h w 3"] | None:
         """A plane's picture, or None when it is missing."""
@@ -173,7 +173,7 @@ class Project:
             "version": VERSION,
             **{k: v for k, v in info.items() if k not in ("format", "version")},
         }
-        write_atomically(self._info_path, json.dumps(document, indent=1).encode())
+        write_atomically(self._info_path, json.dumps(document, indent=1).encode(), error=ProjectError)
 
     def _back_up(self, *, emptied: bool) -> None:
         if not self.scene_path.exists():
@@ -183,7 +183,8 @@ class Project:
         if recent and not emptied:
             return
         stamp = time.strftime("%Y%m%d-%H%M%S") + f"-{time.time_ns() % 1_000_000_000:09d}"
-        write_atomically(self.folder / "backups" / f"scene-{stamp}.json", self.scene_path.read_bytes())
+        backup = self.folder / "backups" / f"scene-{stamp}.json"
+        write_atomically(backup, self.scene_path.read_bytes(), error=ProjectError)
         for old in self.backups()[MAX_BACKUPS:]:
             old.unlink(missing_ok=True)
 

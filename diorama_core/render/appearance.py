@@ -6,8 +6,6 @@ Colours are linear, as glTF states them; pictures (textures) are sRGB, as they c
 
 from __future__ import annotations
 
-import threading
-from collections import OrderedDict
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -16,6 +14,7 @@ from jaxtyping import Float, Float32, Int32, UInt8
 from trimesh.visual.color import ColorVisuals
 from trimesh.visual.material import PBRMaterial
 
+from diorama_core.io.cache import LruCache
 from diorama_core.library.paint import painted
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.render.raycast import face_normals, unit
@@ -80,38 +79,20 @@ def shape_surfaces(
     return _cached_surfaces(library.parts(shape_id), (colour_srgb, finish))
 
 
-def srgb_to_linear(colour: Float[np.ndarray, "*n"]) -> Float[np.ndarray, "*n"]:
-    """Display values 0 to 1 to linear light (IEC 61966-2-1)."""
-    return np.where(colour <= 0.04045, colour / 12.92, ((np.maximum(colour, 0) + 0.055) / 1.055) ** 2.4)
-
-
-def linear_to_srgb(light: Float[np.ndarray, "*n"]) -> Float[np.ndarray, "*n"]:
-    """Linear light 0 to 1 to display values (IEC 61966-2-1)."""
-    return np.where(light <= 0.0031308, light * 12.92, 1.055 * np.maximum(light, 1e-9) ** (1 / 2.4) - 0.055)
-
-
 Paint = tuple[Colour | None, Finish | None]
 
-_CACHE: OrderedDict[tuple[int, Paint], tuple[trimesh.Scene, tuple[Surface, ...]]] = OrderedDict()
-_CACHE_LOCK = threading.Lock()
-_CACHED_SHAPES = 128
+_CACHE: LruCache[tuple[int, Paint], tuple[trimesh.Scene, tuple[Surface, ...]]] = LruCache(128)
 
 
 def _cached_surfaces(parts: trimesh.Scene, paint: Paint) -> tuple[Surface, ...]:
     """The surfaces of a scene of parts, read once while the same scene object keeps being asked for."""
-    key = (id(parts), paint)
-    with _CACHE_LOCK:
-        retained = _CACHE.get(key)
-        if retained is not None:
-            _CACHE.move_to_end(key)
-            return retained[1]
-    shown = parts if paint == (None, None) else painted(parts, *paint)
-    surfaces = tuple(s for s in _read_parts(shown) if len(s.faces))
-    with _CACHE_LOCK:
-        _CACHE[key] = (parts, surfaces)  # holding the scene keeps its id from being given to another
-        while len(_CACHE) > _CACHED_SHAPES:
-            _CACHE.popitem(last=False)
-    return surfaces
+
+    def read() -> tuple[trimesh.Scene, tuple[Surface, ...]]:
+        shown = parts if paint == (None, None) else painted(parts, *paint)
+        # Caching the scene, too, keeps its id from being given to another.
+        return parts, tuple(s for s in _read_parts(shown) if len(s.faces))
+
+    return _CACHE.get((id(parts), paint), read)[1]
 
 
 def _read_parts(parts: trimesh.Scene) -> list[Surface]:

@@ -7,7 +7,8 @@ import numpy as np
 from jaxtyping import Float, Int32, UInt8
 
 from diorama_core.geometry.planes import plane_axes, plane_uv
-from diorama_core.render.appearance import Material, Surface, srgb_to_linear
+from diorama_core.io.srgb import srgb_to_linear
+from diorama_core.render.appearance import Material, Surface
 from diorama_core.scene.types import Plane
 
 

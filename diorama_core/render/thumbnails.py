@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import io
-import logging
-import os
-import tempfile
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
@@ -15,6 +12,7 @@ from typing import TYPE_CHECKING
 from PIL import Image
 
 from diorama_core.io.cache import LruCache
+from diorama_core.io.derived import derived
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
 from diorama_core.library.sheet import contact_sheet
@@ -23,9 +21,7 @@ from diorama_core.progress import Progress
 if TYPE_CHECKING:
     from diorama_core.render.appearance import Paint
 
-log = logging.getLogger(__name__)
-
-_CACHE: LruCache[bytes] = LruCache(2048)
+_CACHE: LruCache[str, bytes] = LruCache(2048)
 
 
 def thumbnail(
@@ -52,7 +48,7 @@ def thumbnail(
         return _CACHE.get(f"{id(library)} {shape_id} {size} {paint}", lambda: _rendered(library, shape_id, size, paint))
     name = f"{shape.content_hash}-{_renderer()}-{size}.png"
     path = (folder or default_cache_dir() / "thumbnails") / name
-    return _CACHE.get(name, lambda: _read(path) or _written(path, _rendered(library, shape_id, size)))
+    return _CACHE.get(name, lambda: derived(path, lambda: _rendered(library, shape_id, size)))
 
 
 def shape_sheet(
@@ -89,24 +85,6 @@ def _rendered(library: ShapeLibrary, shape_id: str, size: int, paint: Paint = (N
     buffer = io.BytesIO()
     Image.fromarray(render_shape(library, shape_id, (size, size), paint=paint)).save(buffer, "PNG", optimize=True)
     return buffer.getvalue()
-
-
-def _read(path: Path) -> bytes | None:
-    try:
-        return path.read_bytes()
-    except OSError:
-        return None  # absent, or not to be read: it is rendered again
-
-
-def _written(path: Path, data: bytes) -> bytes:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as part:
-            part.write(data)
-        os.replace(part.name, path)  # so that no reader ever sees half a file
-    except OSError as error:
-        log.warning("cannot keep pictures in %s (%s); they are rendered again each time", path.parent, error)
-    return data
 
 
 @cache

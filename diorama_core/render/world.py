@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int, Int32, UInt8
 
+from diorama_core.io.srgb import srgb_to_linear
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.render.appearance import Surface, shape_surfaces, srgb_to_linear
+from diorama_core.render.appearance import Surface, shape_surfaces
 from diorama_core.render.raycast import Caster, Hits, RayArray, face_normals, facing, unit
 from diorama_core.render.slabs import plane_surfaces
 from diorama_core.scene.types import Scene

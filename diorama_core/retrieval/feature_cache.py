@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import logging
-import os
-import tempfile
 from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
@@ -13,12 +10,11 @@ import numpy as np
 from jaxtyping import Float, Float16
 
 from diorama_core.io.cache import LruCache
+from diorama_core.io.derived import write_derived
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape
 
-log = logging.getLogger(__name__)
-
-_CACHE: LruCache[np.ndarray] = LruCache(4096)
+_CACHE: LruCache[str, np.ndarray] = LruCache(4096)
 
 
 def cached_features(
@@ -56,11 +52,5 @@ def _read(path: Path) -> np.ndarray | None:
 def _written(path: Path, values: np.ndarray) -> np.ndarray:
     data = BytesIO()
     np.save(data, values)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as part:
-            part.write(data.getvalue())
-        os.replace(part.name, path)  # so that no reader ever sees half a file
-    except OSError as error:
-        log.warning("cannot keep features in %s (%s); they are made again each time", path.parent, error)
+    write_derived(path, data.getvalue())
     return values

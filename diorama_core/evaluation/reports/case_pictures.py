@@ -50,4 +50,4 @@ def write_picture(path: Path, rgb: UInt8[np.ndarray, "h w 3"]) -> None:
         raise InputError(f"{path}: a picture is written as .png or .jpg; give such a name")
     quality = [] if path.suffix.lower() == ".png" else [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY]
     _, data = cv2.imencode(path.suffix.lower(), rgb[..., ::-1], quality)
-    write_atomically(path, data.tobytes())
+    write_atomically(path, data.tobytes(), error=InputError)

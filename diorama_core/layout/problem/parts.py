@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
-import threading
 from pathlib import Path
 
 import numpy as np
+import trimesh
 
 from diorama_core.geometry.convex import ConvexPart, convex_parts
+from diorama_core.io.cache import LruCache
+from diorama_core.io.derived import read_arrays, write_arrays
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
 
 VERSION = 6
 """Of the decomposition: raise it when `convex_parts` changes, so that files of older versions are not read."""
 
-_KNOWN: dict[str, tuple[ConvexPart, ...]] = {}
-_LOCK = threading.Lock()
+_CACHE: LruCache[str, tuple[ConvexPart, ...]] = LruCache(4096)
 
 
 def parts_of_shape(library: ShapeLibrary, shape: Shape) -> tuple[ConvexPart, ...]:
@@ -29,37 +28,24 @@ def parts_of_shape(library: ShapeLibrary, shape: Shape) -> tuple[ConvexPart, ...
     key = shape.content_hash
     if not key:
         return convex_parts(library.mesh(shape.id))
-    with _LOCK:
-        known = _KNOWN.get(key)
-    if known is None:
-        path = default_cache_dir() / "parts" / f"{key}-{VERSION}.npz"
-        known = _read(path)
-        if known is None:
-            known = convex_parts(library.mesh(shape.id))
-            _write(path, known)
-        with _LOCK:
-            _KNOWN[key] = known
-    return known
+    path = default_cache_dir() / "parts" / f"{key}-{VERSION}.npz"
+    return _CACHE.get(key, lambda: _read(path) or _made(path, library.mesh(shape.id)))
 
 
 def _read(path: Path) -> tuple[ConvexPart, ...] | None:
-    try:
-        with np.load(path) as stored:
-            count = int(stored["count"])
-            return tuple(
-                ConvexPart(stored[f"vertices_{k}"], stored[f"normals_{k}"], stored[f"edges_{k}"]) for k in range(count)
-            )
-    except (OSError, ValueError, KeyError, EOFError):
-        return None
+    count = read_arrays(path, "count")
+    names = [] if count is None else _names(int(count[0]))
+    arrays = read_arrays(path, *names)
+    return None if not arrays else tuple(ConvexPart(*arrays[k : k + 3]) for k in range(0, len(arrays), 3))
 
 
-def _write(path: Path, parts: tuple[ConvexPart, ...]) -> None:
-    """Keep parts for the next start; where the cache cannot be written they are only kept in memory."""
-    arrays = {f"{name}_{k}": getattr(q, name) for k, q in enumerate(parts) for name in ("vertices", "normals", "edges")}
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".tmp", delete=False) as file:
-            np.savez(file, count=len(parts), **arrays)
-        os.replace(file.name, path)
-    except OSError:
-        return
+def _made(path: Path, mesh: trimesh.Trimesh) -> tuple[ConvexPart, ...]:
+    parts = convex_parts(mesh)
+    arrays = (array for q in parts for array in (q.vertices, q.normals, q.edges))
+    write_arrays(path, {"count": np.array(len(parts)), **dict(zip(_names(len(parts)), arrays, strict=True))})
+    return parts
+
+
+def _names(count: int) -> list[str]:
+    """Of the arrays in a file: three of every part."""
+    return [f"{name}_{k}" for k in range(count) for name in ("vertices", "normals", "edges")]

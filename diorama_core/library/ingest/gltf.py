@@ -10,13 +10,13 @@ import base64
 import binascii
 import io
 import json
-import struct
 from typing import Any
 
 import numpy as np
 from PIL import Image
 
 from diorama_core.errors import LibraryError
+from diorama_core.io.glb import GlbError, is_glb, split_glb, write_glb
 from diorama_core.library.ingest.limits import Limits
 from diorama_core.library.ingest.references import References, shown
 
@@ -29,7 +29,6 @@ _NEEDS_DECODER = {
     "EXT_meshopt_compression": "meshopt",
     "KHR_meshopt_compression": "meshopt",
 }
-_GLB, _JSON, _BIN = 0x46546C67, 0x4E4F534A, 0x004E4942
 
 
 def packed(data: bytes, references: References, limits: Limits) -> bytes:
@@ -66,18 +65,11 @@ def node_names(glb: bytes) -> tuple[str, ...]:
 def _container(data: bytes, limits: Limits) -> tuple[Json, bytes | None]:
     """The JSON document and the binary chunk."""
     text, binary = data, None
-    if data[:4] == struct.pack("<I", _GLB):
-        if len(data) < 20:
-            raise LibraryError("the GLB ends within its header")
-        version, length = struct.unpack_from("<II", data, 4)
-        if version != 2:
-            raise LibraryError(f"GLB version {version} is not supported; save it as glTF 2.0")
-        if length > len(data):
-            raise LibraryError(f"the GLB is cut off: {len(data)} of {length} bytes")
-        chunks = dict(reversed(list(_chunks(data))))
-        if _JSON not in chunks:
-            raise LibraryError("the GLB has no JSON chunk")
-        text, binary = chunks[_JSON], chunks.get(_BIN)
+    if is_glb(data):
+        try:
+            text, binary = split_glb(data)
+        except GlbError as error:
+            raise LibraryError(str(error)) from error
     if len(text) > limits.json_bytes:
         raise LibraryError(f"its JSON has {len(text) / 2**20:.0f} MB; the limit is {limits.json_bytes / 2**20:.0f} MB")
     try:
@@ -87,17 +79,6 @@ def _container(data: bytes, limits: Limits) -> tuple[Json, bytes | None]:
     if not isinstance(document, dict):
         raise LibraryError("its JSON is no glTF document")
     return document, binary
-
-
-def _chunks(data: bytes) -> list[tuple[int, bytes]]:
-    found, at = [], 12
-    while at + 8 <= len(data):
-        length, kind = struct.unpack_from("<II", data, at)
-        if at + 8 + length > len(data):
-            raise LibraryError("a chunk of the GLB is cut off")
-        found.append((kind, data[at + 8 : at + 8 + length]))
-        at += 8 + length
-    return found
 
 
 def _rows(document: Json, name: str) -> list[Json]:
@@ -226,10 +207,7 @@ def _repacked(document: Json, views: list[bytes], references: References) -> byt
         at += len(parts[-1])
     document["bufferViews"], document["buffers"] = rows, [{"byteLength": at}]
     document.setdefault("accessors", [])
-    text = json.dumps(document).encode()
-    text += b" " * (-len(text) % 4)
-    body = struct.pack("<II", len(text), _JSON) + text + struct.pack("<II", at, _BIN) + b"".join(parts)
-    return struct.pack("<III", _GLB, 2, 12 + len(body)) + body
+    return write_glb(document, b"".join(parts), allow_nan=True)
 
 
 def _unscale(accessor: Json, rows: list[Json], views: list[bytes]) -> None:

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import io
-import logging
-import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,11 +10,10 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float, Float32
 
+from diorama_core.io.derived import read_arrays, write_arrays
 from diorama_core.library.catalogue import built_in_library, default_cache_dir
 from diorama_core.library.ingest.relief import SIDE, relief
 from diorama_core.library.record import Shape, ShapeLibrary
-
-log = logging.getLogger(__name__)
 
 _FORMAT = 3
 EACH = 6
@@ -63,7 +59,7 @@ def known_shapes(
     retained = _read(path, len(shapes))
     if retained is None:
         retained = _taken(library, shapes, on_step)
-        _write(path, retained)
+        write_arrays(path, {"reliefs": retained})
     return KnownShapes(categories, relief_features(retained.astype(np.float32) / 255.0), sizes)
 
 
@@ -95,21 +91,5 @@ def _taken(library: ShapeLibrary, shapes: Sequence[Shape], on_step: Callable[[fl
 
 
 def _read(path: Path, count: int) -> np.ndarray | None:
-    try:
-        with np.load(path) as stored:
-            found = stored["reliefs"]
-        return found if found.shape == (count, 3, 2, SIDE, SIDE) else None
-    except (OSError, ValueError, KeyError, EOFError):
-        return None
-
-
-def _write(path: Path, found: np.ndarray) -> None:
-    buffer = io.BytesIO()
-    np.savez_compressed(buffer, reliefs=found)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        part = path.with_suffix(f".{os.getpid()}.part")
-        part.write_bytes(buffer.getvalue())
-        part.replace(path)
-    except OSError as error:
-        log.warning("cannot keep reliefs in %s (%s); they are taken again each time", path.parent, error)
+    stored = read_arrays(path, "reliefs")
+    return stored[0] if stored is not None and stored[0].shape == (count, 3, 2, SIDE, SIDE) else None

@@ -18,6 +18,7 @@ import simsimd
 from jaxtyping import Bool, Float, Float16, Int
 
 from diorama_core.errors import LibraryError
+from diorama_core.io.atomic import write_atomically
 
 _RESCORED = 4
 """How many times the wanted rows are scored again in full precision."""
@@ -159,7 +160,7 @@ class FeatureMatrix:
                 self.folder.mkdir(parents=True, exist_ok=True)
                 self._values_path.touch()
                 self._keys_path.touch()
-                about.write_text(json.dumps(wanted))
+                write_atomically(about, json.dumps(wanted).encode())
             found = json.loads(about.read_text())
         except (OSError, ValueError) as error:
             raise LibraryError(f"features in {self.folder} cannot be used ({error}); delete that folder") from error

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import io
-import os
-import tempfile
 import threading
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -14,6 +12,7 @@ import numpy as np
 import trimesh
 
 from diorama_core.errors import LibraryError
+from diorama_core.io.atomic import write_atomically
 from diorama_core.io.cache import LruCache
 from diorama_core.library.ingest.sink import Ingested
 from diorama_core.library.record import Shape
@@ -39,8 +38,8 @@ class StoredLibrary:
     def __init__(self, folder: Path, *, create: bool = False) -> None:
         self.folder = folder
         self._records = Records(folder / "library.sqlite", create=create)
-        self._scenes: LruCache[trimesh.Scene] = LruCache(64)
-        self._meshes: LruCache[trimesh.Trimesh] = LruCache(256)
+        self._scenes: LruCache[str, trimesh.Scene] = LruCache(64)
+        self._meshes: LruCache[str, trimesh.Trimesh] = LruCache(256)
         self._lock = threading.Lock()
         self._listed: dict[str | None, tuple[Shape, ...]] = {}
         self._listed_state = -1
@@ -153,13 +152,7 @@ class StoredLibrary:
         try:
             if path.exists() and path.stat().st_size == len(glb):
                 return model
-            path.parent.mkdir(parents=True, exist_ok=True)
-            with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as part:
-                part.write(glb)
-                part.flush()
-                os.fsync(part.fileno())
-            os.chmod(part.name, 0o644)  # a temporary file is its owner's only, a library may be shared
-            os.replace(part.name, path)
+            write_atomically(path, glb)
         except OSError as error:
             raise LibraryError(f"the library cannot be written in {self.folder} ({error.strerror})") from error
         return model

@@ -19,6 +19,7 @@ from typing import Any, Generic, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from diorama_core.errors import UnavailableError
+from diorama_core.io.derived import write_derived
 from diorama_core.perception.language.json_text import json_in
 from diorama_core.progress import Progress
 
@@ -179,7 +180,7 @@ class LmmClient:
             value, problem = _validated(text, schema)
             if value is not None:
                 if retained is not None:
-                    _keep(retained, value)
+                    write_derived(retained, value.model_dump_json().encode())
                 return Reply(value, usage)
             messages = [
                 *messages[:2],
@@ -300,13 +301,6 @@ def _picture(data: bytes) -> dict[str, Any]:
     kind = "png" if data.startswith(b"\x89PNG") else "jpeg"
     uri = f"data:image/{kind};base64,{base64.b64encode(data).decode()}"
     return {"type": "image_url", "image_url": {"url": uri}}
-
-
-def _keep(path: Path, value: BaseModel) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_suffix(f".{os.getpid()}.part")
-    part.write_text(value.model_dump_json())
-    os.replace(part, path)
 
 
 def _pause_s(error: Exception, attempt: int) -> float:

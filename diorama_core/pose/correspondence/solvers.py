@@ -71,7 +71,7 @@ class CorrespondencePose:
     """Predicts relative scale and in-plane turn; used by `correspondence` and `gigapose-like`."""
     grid: TemplateGrid = PAPER_GRID
     cache: TemplateCache = field(default_factory=TemplateCache, repr=False, compare=False)
-    _encoded: LruCache[EncodedViews] = field(
+    _encoded: LruCache[str, EncodedViews] = field(
         default_factory=lambda: LruCache(_CACHED_SHAPES), repr=False, compare=False
     )
 
