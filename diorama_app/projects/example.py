@@ -12,7 +12,7 @@ from diorama_core.errors import ProjectError
 from diorama_core.perception.inputs import ReadInputs, read_inputs
 from diorama_core.project.storage import Project
 
-EXAMPLE = Path(__file__).resolve().parents[1] / "assets" / "example"
+EXAMPLE = Path(__file__).resolve().parents[2] / "assets" / "example"
 NAME = "example"
 
 

@@ -38,7 +38,7 @@ ANY_HOST = frozenset({"", "0.0.0.0", "::"})
 MAX_UPLOAD_BYTES = 128 * 1024 * 1024
 MAX_UPLOADS_IN_FLIGHT = 8
 
-HEAD_SCRIPTS = sorted((Path(__file__).parent / "static").glob("*.js"))
+HEAD_SCRIPTS = sorted((Path(__file__).parents[1] / "static").glob("*.js"))
 """Run in the page before viser does."""
 PICTURES = "pictures/"
 """Addresses below this one are pictures."""

@@ -34,7 +34,7 @@ def test_the_server_starts_without_the_pipeline_and_the_networks() -> None:
 def test_open3d_loads_while_other_threads_load_modules() -> None:
     script = """
 import sys, types
-from diorama_app.warming import load_open3d
+from diorama_app.session.preload import load_open3d
 
 def meanwhile(frame, event, arg):
     def at_each_line(frame, event, arg):

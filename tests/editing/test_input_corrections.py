@@ -165,7 +165,7 @@ def test_a_known_length_is_retained_as_the_height_of_the_camera(client: Client) 
 
 
 def test_inputs_about_whose_camera_nothing_was_said_are_the_bytes_they_were(inputs: Inputs) -> None:
-    assert b"held" not in codec.dump(inputs)
+    assert b"camera_attitude" not in codec.dump(inputs)
     assert b"camera_height" not in codec.dump(inputs)
     said = replace(inputs, camera_attitude=CameraAttitude(0.1, 0.0), camera_height_m=1.5)
     assert codec.load(codec.dump(said)) == said

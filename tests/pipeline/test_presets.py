@@ -145,11 +145,11 @@ def test_stages_mix_one_by_one_and_a_pull_reruns_only_what_it_touches(
     assert "camera" not in again
     assert ran() == set()
     _install(store, "moge-2-vits", graphs["moge-2-vits"])
-    assert ran() >= {"sight", "camera", "geometry", "depth"}
+    assert ran() >= {"depth_prediction", "camera", "geometry", "depth"}
     _install(store, "migan", graphs["migan"])
     emptied = ran()
     assert "architecture" in emptied
-    assert not emptied & {"sight", "camera", "objects", "geometry", "graph"}
+    assert not emptied & {"depth_prediction", "camera", "objects", "geometry", "graph"}
     store.forget(network("migan"))
     assert ran() == set()
     store.forget(network("moge-2-vits"))
@@ -177,7 +177,7 @@ def test_every_network_of_the_paper_takes_its_stage(photo: Photo, store: ModelSt
     used = {
         "detection": "owlv2-large",
         "objects": "sam2.1-large",
-        "sight": "metric3d-large",
+        "depth_prediction": "metric3d-large",
         "architecture": "lama metric3d-large birefnet: mvanet",
         "filler": "lama",
         "pose": "dinov2-large gigapose-scale block=17",

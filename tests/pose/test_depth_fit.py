@@ -120,7 +120,7 @@ def test_outlines_reach_to_the_edges_of_the_pixels() -> None:
     rows, columns = np.nonzero(room.objects[0].mask)
     assert outline.reach_px[0] == pytest.approx(columns.max() + 1)
     assert outline.reach_px[4] == pytest.approx(rows.max() + 1)
-    assert Outline.of(measured(room).evidence.seen, np.zeros_like(room.objects[0].mask)) is None
+    assert Outline.of(measured(room).observations.seen, np.zeros_like(room.objects[0].mask)) is None
 
 
 def test_where_its_foot_is_hidden_a_object_may_stand_anywhere_below() -> None:
@@ -137,6 +137,6 @@ def test_hardly_any_depth_is_no_measurement() -> None:
     few = SeenPoints(*(a[:3] for a in vars(whole.points).values()))
     assert len(few.depth_m) == 3
     mask = np.zeros_like(room.objects[0].mask)
-    assert whole.evidence.surface is not None
-    blind = replace(whole.evidence, surface=replace(whole.evidence.surface, weight=np.zeros(56 * 56)))
+    assert whole.observations.surface is not None
+    blind = replace(whole.observations, surface=replace(whole.observations.surface, weight=np.zeros(56 * 56)))
     assert MeasuredObject.of(mask, blind, whole.cuboid, whole.contact.anchor, on_floor=False) is None

@@ -60,7 +60,7 @@ class Extent:
     def check(self) -> None:
         """Raise `InputError` for quantities that do not ascend."""
         check_ascending("picture sizes", tuple(float(w * h) for w, h in self.sizes))
-        for name in ("hall_objects", "layout_objects", "step_objects", "feature_shapes", "word_shapes"):
+        for name in ("large_scene_objects", "layout_objects", "step_objects", "feature_shapes", "word_shapes"):
             check_ascending(name.replace("_", " "), tuple(map(float, getattr(self, name))))
 
 

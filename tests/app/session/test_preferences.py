@@ -51,7 +51,7 @@ def test_every_setting_is_retained_except_that_outlines_are_shown() -> None:
     assert remembered(one) == CHANGED  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("kept", [None, "", "{", "[]", '{"unit": "parsec"}', '{"snap": "perhaps"}'])
+@pytest.mark.parametrize("retained", [None, "", "{", "[]", '{"unit": "parsec"}', '{"snap": "perhaps"}'])
 def test_what_is_not_understood_counts_as_somebody_new(retained: str | None) -> None:
     assert read_preferences(retained) == Preferences()
 

@@ -109,7 +109,7 @@ def test_a_column_for_each_reading(view, library) -> None:
 
 
 def test_a_room_that_fails_counts_for_every_solver(view, library, solvers, monkeypatch) -> None:
-    monkeypatch.setattr(pose_bench, "see", lambda inputs, library: 1 / 0)
+    monkeypatch.setattr(pose_bench, "predict", lambda inputs, library: 1 / 0)
     tally = pose_bench._Tally()
     pose_bench._one_room(view, solvers, tally, pose_bench.Progress(), "room")
     bench = tally.finished(0)

@@ -149,7 +149,7 @@ def test_a_hall_holds_what_was_asked_for_side_by_side():
 
 
 def test_quantities_must_grow():
-    with pytest.raises(InputError, match="hall objects"):
+    with pytest.raises(InputError, match="large scene objects"):
         Extent(((32, 24),), (5, 5), (1,), (1,), (1,), (1,)).check()
 
 
