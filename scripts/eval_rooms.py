@@ -16,7 +16,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from diorama_core.architecture.from_depth.stage import PlanarRoom
+from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.evaluation.metrics.architecture import match_planes
 from diorama_core.progress import Progress
 from tests.architecture.known_rooms import KINDS, photographed

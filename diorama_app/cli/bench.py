@@ -98,7 +98,7 @@ def _bench_rooms(a: argparse.Namespace) -> None:
 
 def _bench_system(a: argparse.Namespace) -> None:
     from diorama_core.evaluation.benchmarks import system as system_bench
-    from diorama_core.evaluation.reports.case_pictures import case_writer
+    from diorama_core.evaluation.benchmarks.case_pictures import case_writer
     from diorama_core.library.catalogue import built_in_library
 
     _check(a)
@@ -128,7 +128,7 @@ def _bench_dataset(a: argparse.Namespace) -> None:
 
 def _bench_survey(a: argparse.Namespace) -> None:
     from diorama_core.evaluation.benchmarks import rooms as rooms_bench
-    from diorama_core.evaluation.reports.case_pictures import write_picture
+    from diorama_core.evaluation.benchmarks.case_pictures import write_picture
     from diorama_core.library.catalogue import built_in_library
 
     _check(a)

@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from functools import partial
 
 import numpy as np
-import viser.transforms as vtf
 
 from diorama_app.session.client import Client
 from diorama_app.session.layout_run import Costs, LayoutRun, Samples
 from diorama_app.session.session import EditorSession
 from diorama_core.artefacts import LayoutReport
 from diorama_core.errors import EditRefused
+from diorama_core.geometry.rotations import rotation_from_vector, rotation_vector
 from diorama_core.layout.weights import AS_IT_IS, Weights
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
@@ -122,8 +122,8 @@ def _glide(session: EditorSession, start: Scene, final: Scene, progress: Progres
 
 
 def _between(a: Pose, b: Pose, share: float) -> Pose:
-    turn = vtf.SO3.from_matrix(b.R_world_object @ a.R_world_object.T)
-    R = vtf.SO3.exp(share * turn.log()).as_matrix() @ a.R_world_object
+    turn = rotation_vector(b.R_world_object @ a.R_world_object.T)
+    R = rotation_from_vector(share * turn) @ a.R_world_object
     u, _, vt = np.linalg.svd(R)
     return Pose(u @ vt, a.position + share * (b.position - a.position), a.scale + share * (b.scale - a.scale))
 

@@ -18,10 +18,10 @@ from diorama_app.interaction.marquee import objects_in
 from diorama_app.interaction.resize_handles import SizeHandles
 from diorama_app.session.client import Client, Measuring, Placing
 from diorama_app.session.preferences import GizmoMode
-from diorama_app.viewport.scene_view import quaternion, rotation
 from diorama_core.editing.collisions import Collisions
 from diorama_core.editing.dragging import Slide, snapped_pose
 from diorama_core.editing.stretching import changed_poses
+from diorama_core.geometry.rotations import quaternion_wxyz, rotation_from_quaternion
 from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Pose, Scene
@@ -108,7 +108,7 @@ class Gestures:
             self._session.scene,
             low,
             high,
-            rotation(np.asarray(camera.wxyz)),
+            rotation_from_quaternion(np.asarray(camera.wxyz)),
             np.asarray(camera.position),
             float(camera.fov),
             float(camera.aspect),
@@ -220,7 +220,7 @@ class Gestures:
             self._gizmo = self._add(item.pose, scale)
             self._gizmo_key = key
         elif self._drag is None:
-            self._gizmo.wxyz = quaternion(item.pose.R_world_object)
+            self._gizmo.wxyz = quaternion_wxyz(item.pose.R_world_object)
             self._gizmo.position = item.pose.position
 
     def _add(self, pose: Pose, scale: float) -> viser.TransformControlsHandle:
@@ -231,7 +231,7 @@ class Gestures:
             active_axes=(True, True, self._client.preferences.gizmo == "free"),
             depth_test=False,
             opacity=0.85,
-            wxyz=quaternion(pose.R_world_object),
+            wxyz=quaternion_wxyz(pose.R_world_object),
             position=pose.position,
         )
 
@@ -257,7 +257,7 @@ class Gestures:
         if not isinstance(drag, Turn):
             return
         start = drag.scene.object(drag.object_id)
-        pose = Pose(rotation(wxyz), position, start.pose.scale)
+        pose = Pose(rotation_from_quaternion(wxyz), position, start.pose.scale)
         if self._client.preferences.snap:
             pose = snapped_pose(start.pose, pose)
         if phase != "end":

@@ -11,8 +11,8 @@ import viser
 from jaxtyping import Float
 
 from diorama_app.session.client import Client
-from diorama_app.viewport.scene_view import quaternion
 from diorama_core.editing.stretching import HANDLES, Handle, changed_poses, handle_place, pulled_m, stretched
+from diorama_core.geometry.rotations import quaternion_wxyz
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene, SceneObject
 
@@ -77,7 +77,7 @@ class SizeHandles:
         return modifier_key
 
     def _put(self, item: SceneObject) -> None:
-        wxyz = quaternion(item.pose.R_world_object)
+        wxyz = quaternion_wxyz(item.pose.R_world_object)
         with self._client.viser_client.atomic():
             for handle in HANDLES:
                 node = self._nodes[handle.name]

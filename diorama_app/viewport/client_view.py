@@ -11,8 +11,9 @@ import viser
 from jaxtyping import Bool, Float, UInt8
 
 from diorama_app.viewport.framing import DEFAULT_FOV_RAD
-from diorama_app.viewport.scene_view import quaternion, reduced
+from diorama_app.viewport.scene_view import reduced
 from diorama_core.artefacts import Box, LabelledBox
+from diorama_core.geometry.rotations import quaternion_wxyz, rotation_from_quaternion
 from diorama_core.scene.types import Camera, Plane
 
 BOARD_CENTRE = np.array([0.0, 0.0, 400.0])
@@ -153,7 +154,7 @@ class ClientView:
             handle.up_direction = (0.0, 0.0, 1.0)
             handle.position = camera.position
             handle.look_at = camera.position + R[:, 2] * target_distance_m
-            handle.wxyz = quaternion(R)
+            handle.wxyz = quaternion_wxyz(R)
         self._viser_client.flush()
 
     def approach(self, target: Float[np.ndarray, "3"], distance_m: float) -> None:
@@ -166,9 +167,7 @@ class ClientView:
 
     def screen_axis(self, side: str) -> tuple[Float[np.ndarray, "3"], bool]:
         """The level world axis nearest to the screen's "right" (or to "away" from the eye), and if it runs backward."""
-        from diorama_app.viewport.scene_view import rotation
-
-        R = rotation(np.asarray(self._viser_client.camera.wxyz))
+        R = rotation_from_quaternion(np.asarray(self._viser_client.camera.wxyz))
         right = R[:, 0]
         # Straight from above, "away" is the screen's up.
         direction = right if side == "right" else np.cross((0.0, 0.0, 1.0), right)
@@ -227,7 +226,7 @@ class ClientView:
             thickness_units="screen",
             color=(70, 78, 92),
             image=None if photo is None else reduced(photo, 512),
-            wxyz=quaternion(camera.T_world_camera[:3, :3]),
+            wxyz=quaternion_wxyz(camera.T_world_camera[:3, :3]),
             position=camera.position,
             cast_shadow=False,
             receive_shadow=False,
@@ -303,7 +302,7 @@ class ClientView:
             render_width=k.width / k.fx * depth_m,
             render_height=k.height / k.fy * depth_m,
             position=camera.position + R @ centre_camera,
-            wxyz=quaternion(R),
+            wxyz=quaternion_wxyz(R),
             cast_shadow=False,
             receive_shadow=False,
         )
@@ -338,7 +337,7 @@ class ClientView:
                 render_width=board.width_m,
                 render_height=BOARD_HEIGHT_M,
                 position=BOARD_CENTRE,
-                wxyz=quaternion(np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]])),
+                wxyz=quaternion_wxyz(np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]])),
                 cast_shadow=False,
                 receive_shadow=False,
             )
@@ -380,7 +379,7 @@ class ClientView:
             render_width=self.board.width_m,
             render_height=BOARD_HEIGHT_M,
             position=BOARD_CENTRE - (0.0, 0.002, 0.0),
-            wxyz=quaternion(np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]])),
+            wxyz=quaternion_wxyz(np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]])),
             cast_shadow=False,
             receive_shadow=False,
         )
@@ -447,11 +446,9 @@ class ClientView:
         board, camera = self.board, self._viser_client.camera
         if board is None:
             return None
-        from diorama_app.viewport.scene_view import rotation
-
         low, high = event.screen_min, event.screen_max
         screen = np.array([[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]])
-        rays = screen_rays(screen, rotation(camera.wxyz), camera.fov, camera.aspect)
+        rays = screen_rays(screen, rotation_from_quaternion(camera.wxyz), camera.fov, camera.aspect)
         pixels = board.to_pixels(np.asarray(camera.position), rays)
         size = np.array([board.width_px, board.height_px])
         (x1, y1), (x2, y2) = np.clip(pixels.min(axis=0), 0, size), np.clip(pixels.max(axis=0), 0, size)

@@ -58,7 +58,7 @@ def _painted_glb(parts: trimesh.Scene, colour: Colour | None, finish: Finish | N
 
 def plane_triangles(plane: Plane) -> Int32[np.ndarray, "m 3"]:
     """A plane's polygon (concave ones too) cut into triangles that face the room."""
-    axes = np.stack(plane_axes(plane), axis=1)
+    axes = np.stack(plane_axes(plane.normal), axis=1)
     return np.asarray(manifold3d.triangulate([plane.polygon @ axes]), dtype=np.int32)
 
 

@@ -12,11 +12,11 @@ from typing import Any
 
 import numpy as np
 import viser
-import viser.transforms as vtf
-from jaxtyping import Float, UInt8
+from jaxtyping import UInt8
 
 from diorama_app.viewport.decorations import remove_quietly
 from diorama_app.viewport.mesh_assets import ShapeBytes, plane_glb, plane_triangles
+from diorama_core.geometry.rotations import quaternion_wxyz
 from diorama_core.scene.types import Finish, Plane, Pose, Scene, SceneObject
 
 MESH_NAMES = 8
@@ -194,7 +194,7 @@ class Viewport:
     def _set_pose(self, shown: _Shown, pose: Pose) -> None:
         before, shown.pose = shown.pose, pose
         if before is None or not np.array_equal(before.R_world_object, pose.R_world_object):
-            shown.frame.wxyz = quaternion(pose.R_world_object)
+            shown.frame.wxyz = quaternion_wxyz(pose.R_world_object)
         if before is None or not np.array_equal(before.position, pose.position):
             shown.frame.position = pose.position
         scale = tuple(float(s) for s in pose.scale)
@@ -205,16 +205,6 @@ class Viewport:
         """A name not in use. Names are used again: the server keeps a few messages for every name there ever was."""
         taken = {h.name for _, h in self._planes.values()} | {s.frame.name for s in self._objects.values()}
         return next(name for n in range(1, len(taken) + 2) if (name := f"{stem}/{n}") not in taken)
-
-
-def quaternion(R: Float[np.ndarray, "3 3"]) -> Float[np.ndarray, "4"]:
-    """(w, x, y, z) of a rotation."""
-    return np.asarray(vtf.SO3.from_matrix(np.array(R)).wxyz, dtype=np.float64)
-
-
-def rotation(wxyz: Float[np.ndarray, "4"]) -> Float[np.ndarray, "3 3"]:
-    """The rotation of a quaternion."""
-    return np.asarray(vtf.SO3(np.asarray(wxyz, dtype=np.float64)).normalize().as_matrix(), dtype=np.float64)
 
 
 def reduced(picture: UInt8[np.ndarray, "h w 3"], longest: int) -> UInt8[np.ndarray, "h2 w2 3"]:

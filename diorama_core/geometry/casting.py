@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Float, Int
 
-from diorama_core.geometry.planes import plane_axes
+from diorama_core.geometry.planes import in_plane_polygon
 from diorama_core.scene.types import Camera, Plane
 
 CONVEX_SLACK_M = 1e-6
@@ -47,20 +47,8 @@ def cast_plane(
         for normal, offset in zip(inward, offsets, strict=True):
             inside &= origin @ normal + reach * (directions @ normal) >= offset - slack_m
     else:
-        inside = in_polygon(origin + reach[..., None] * directions, plane)
+        inside = in_plane_polygon(origin + reach[..., None] * directions, plane)
     return np.where(inside, t, np.inf)
-
-
-def in_polygon(points: Float[np.ndarray, "*n 3"], plane: Plane) -> Bool[np.ndarray, "*n"]:
-    """Whether points of a plane lie in its polygon, whatever its shape: an odd number of edges beside them."""
-    axes = np.stack(plane_axes(plane), axis=1)
-    x, y = np.moveaxis(points @ axes, -1, 0)
-    corners = plane.polygon @ axes
-    inside = np.zeros(x.shape, dtype=bool)
-    for (ax, ay), (bx, by) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        if ay != by:
-            inside ^= ((ay > y) != (by > y)) & (x < ax + (y - ay) * (bx - ax) / (by - ay))
-    return inside
 
 
 def cast_planes(

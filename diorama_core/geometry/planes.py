@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
+from math import hypot, sqrt
+
 import numpy as np
 from jaxtyping import Bool, Float
 
-from diorama_core.scene.frames import UP_WORLD
 from diorama_core.scene.types import Plane
 
 
-def plane_axes(plane: Plane) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
-    """Unit axes (u, v) within a plane, with `u x v = normal`.
+def plane_axes(normal: Float[np.ndarray, "3"]) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+    """Unit axes (u, v) within a plane of a unit normal, with `u x v = normal`.
 
     Walls: u runs horizontally to the right as seen from inside the room, v runs up. Floor: u = world +X,
     v = world +Y. Ceiling: u = world +X, v = world -Y (for flat ones; tilted ones are as near to that as can be).
     """
-    normal = plane.normal
-    along = np.cross(UP_WORLD, normal)
-    if np.linalg.norm(along) < 0.5:
-        along = np.array([1.0, 0.0, 0.0]) - normal[0] * normal
-    u = along / np.linalg.norm(along)
-    return u, np.cross(normal, u)
+    x, y, z = normal.tolist()  # numbers, not arrays: this is in the layout's inner loop
+    steepness = hypot(x, y)
+    if steepness >= 0.5:
+        u0, u1, u2 = -y / steepness, x / steepness, 0.0
+    else:
+        length = sqrt(max(1.0 - x * x, 0.5))
+        u0, u1, u2 = (1.0 - x * x) / length, 0.0 - x * y / length, 0.0 - x * z / length
+    return np.array([u0, u1, u2]), np.array([y * u2 - z * u1, z * u0 - x * u2, x * u1 - y * u0])
 
 
 def plane_rectangle(plane: Plane) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3 2"], Float[np.ndarray, "2"]]:
@@ -29,7 +32,7 @@ def plane_rectangle(plane: Plane) -> tuple[Float[np.ndarray, "3"], Float[np.ndar
     Returns:
         Its corner of least u and v (world), the axes as columns (u, v), and its extents along them in metres.
     """
-    u, v = plane_axes(plane)
+    u, v = plane_axes(plane.normal)
     axes = np.stack([u, v], axis=1)
     flat = plane.polygon @ axes
     low, high = flat.min(axis=0), flat.max(axis=0)
@@ -134,13 +137,17 @@ def grid_normals(points_camera: Float[np.ndarray, "h w 3"], step: int = 2) -> Fl
     return normals
 
 
-def in_polygon(points: Float[np.ndarray, "n 2"], outline: Float[np.ndarray, "k 2"]) -> Bool[np.ndarray, "n"]:
+def in_polygon(points: Float[np.ndarray, "*n 2"], outline: Float[np.ndarray, "k 2"]) -> Bool[np.ndarray, "*n"]:
     """Whether points lie within a polygon, convex or not, by the even-odd rule; never within an empty one."""
-    if len(outline) < 3:
-        return np.zeros(len(points), dtype=bool)
-    a, b = outline, np.roll(outline, -1, axis=0)
-    x, y = points[:, :1], points[:, 1:]
-    passes = (a[:, 1] > y) != (b[:, 1] > y)
-    rise = np.where(a[:, 1] == b[:, 1], 1.0, b[:, 1] - a[:, 1])
-    crossing = a[:, 0] + (y - a[:, 1]) * (b[:, 0] - a[:, 0]) / rise
-    return np.asarray((passes & (x < crossing)).sum(axis=1) % 2 == 1)
+    x, y = np.moveaxis(points, -1, 0)
+    inside = np.zeros(x.shape, dtype=bool)
+    for (ax, ay), (bx, by) in zip(outline.tolist(), np.roll(outline, -1, axis=0).tolist(), strict=True):
+        if ay != by:
+            inside ^= ((ay > y) != (by > y)) & (x < ax + (y - ay) * (bx - ax) / (by - ay))
+    return inside
+
+
+def in_plane_polygon(points: Float[np.ndarray, "*n 3"], plane: Plane) -> Bool[np.ndarray, "*n"]:
+    """Whether points of a plane lie in its polygon, whatever its shape."""
+    axes = np.stack(plane_axes(plane.normal), axis=1)
+    return in_polygon(points @ axes, plane.polygon @ axes)

@@ -10,6 +10,7 @@ import trimesh
 from jaxtyping import Float
 
 from diorama_core.errors import UnavailableError
+from diorama_core.geometry.rotations import quaternion_wxyz
 from diorama_core.geometry.sat import place_bodies
 from diorama_core.layout.problem.problem import Problem, build_problem
 from diorama_core.layout.problem.supports import is_wall_like
@@ -110,7 +111,7 @@ def _model_xml(scene: Scene, problem: Problem, step_s: float) -> str:
             geoms.append(f'<geom type="mesh" mesh="m{number}" density="200"/>')
         hung = is_wall_like(problem.surface[k]) or problem.surface[k] is None or problem.contact[k][2] > 0.5
         joint = "" if hung or not problem.free[k] else "<freejoint/>"
-        at, turn = _numbers(pose.position), _numbers(_quaternion(pose.R_world_object))
+        at, turn = _numbers(pose.position), _numbers(quaternion_wxyz(pose.R_world_object))
         bodies.append(f'<body name="{name}" pos="{at}" quat="{turn}">{joint}{"".join(geoms)}</body>')
     room = [_plane_xml(p.normal, p.centre) for p in scene.architecture.planes if p.role == "floor"]
     return (
@@ -126,18 +127,3 @@ def _plane_xml(normal: np.ndarray, point: np.ndarray) -> str:
 
 def _numbers(values: np.ndarray) -> str:
     return " ".join(f"{float(x):.9g}" for x in values)
-
-
-def _quaternion(R: Float[np.ndarray, "3 3"]) -> Float[np.ndarray, "4"]:
-    """w, x, y, z of a rotation (Shepperd's method through the largest component)."""
-    K = np.array(
-        [
-            [R[0, 0] - R[1, 1] - R[2, 2], 0.0, 0.0, 0.0],
-            [R[0, 1] + R[1, 0], R[1, 1] - R[0, 0] - R[2, 2], 0.0, 0.0],
-            [R[0, 2] + R[2, 0], R[1, 2] + R[2, 1], R[2, 2] - R[0, 0] - R[1, 1], 0.0],
-            [R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1], np.trace(R)],
-        ]
-    )
-    _, vectors = np.linalg.eigh(K / 3.0)
-    x, y, z, w = vectors[:, -1]
-    return np.array([w, x, y, z])

@@ -6,11 +6,10 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.geometry.sat import pair_axes, place_bodies
+from diorama_core.layout import gradients
+from diorama_core.layout.gradients import BoxPairs, near_pairs
 from diorama_core.layout.problem.problem import Problem
-from diorama_core.layout.problem.volumes import Volumes
-from diorama_core.layout.published import gradients
-from diorama_core.layout.published.gradients import BoxPairs, near_pairs
-from diorama_core.layout.published.staged import contact_templates
+from diorama_core.layout.problem.volumes import Volumes, contact_templates
 
 ALIGNED_RAD = float(np.deg2rad(1.0))
 PLACED_M = 1e-3

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from diorama_core.architecture.mounting import snap_mounted_objects
-from diorama_core.architecture.passages import without_openings
+from diorama_core.architecture.walls.passages import without_openings
 from diorama_core.artefacts import Inputs
 from diorama_core.perception.graph.apply import with_graph
 from diorama_core.pipeline.network_inputs import with_network_inputs

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Literal, TypeVar
 
-from diorama_core.architecture.from_depth.stage import PlanarRoom
+from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.architecture.texture.empty_room import EmptyRoomFiller
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.errors import UnavailableError

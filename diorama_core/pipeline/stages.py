@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from diorama_core.architecture.from_depth.stage import PlanarRoom
+from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.architecture.single_view.stage import PhotoRoom
 from diorama_core.architecture.texture.empty_room import EmptyRoomFiller
 from diorama_core.artefacts import Inputs

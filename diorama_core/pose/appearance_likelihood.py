@@ -17,8 +17,8 @@ from jaxtyping import Bool, Float, Float32, Int, UInt8
 
 from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.shape_appearance import ShapeAppearance
-from diorama_core.io.srgb import srgb_to_linear
 from diorama_core.geometry.silhouette import Hits, PoseBatch
+from diorama_core.io.srgb import srgb_to_linear
 from diorama_core.pose.surface import MeasuredSurface
 
 _FEWEST_CELLS, _MAX_CELLS = 16, 48

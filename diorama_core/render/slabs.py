@@ -60,7 +60,7 @@ def _surface(
 
 def _triangles(plane: Plane) -> Int32[np.ndarray, "m 3"]:
     """The polygon cut into triangles, counter-clockwise seen from inside the room."""
-    axes = np.stack(plane_axes(plane), axis=1)
+    axes = np.stack(plane_axes(plane.normal), axis=1)
     return np.asarray(manifold3d.triangulate([plane.polygon @ axes]), dtype=np.int32)
 
 

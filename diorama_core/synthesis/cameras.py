@@ -9,6 +9,7 @@ import trimesh
 from jaxtyping import Float
 
 from diorama_core.errors import SceneError
+from diorama_core.geometry.planes import in_polygon
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.render.raycast import MeshCaster
 from diorama_core.render.slabs import plane_surfaces
@@ -171,14 +172,8 @@ def _apart(a: Camera, b: Camera) -> float:
 
 
 def _inside(point: np.ndarray, outline: Float[np.ndarray, "n 2"], margin_m: float) -> bool:
-    """Whether a point is in an outline (counter-clockwise, concave allowed) and `margin_m` from its edges."""
-    inside, count = False, len(outline)
-    for k in range(count):
-        a, b = outline[k], outline[(k + 1) % count]
-        edge = b - a
-        t = np.clip((point - a) @ edge / (edge @ edge), 0, 1)
-        if np.linalg.norm(point - a - t * edge) < margin_m:
-            return False
-        if (a[1] > point[1]) != (b[1] > point[1]) and point[0] < a[0] + edge[0] * (point[1] - a[1]) / edge[1]:
-            inside = not inside
-    return inside
+    """Whether a point is in an outline (concave allowed) and `margin_m` from its edges."""
+    edges, offset = np.roll(outline, -1, axis=0) - outline, point - outline
+    along = np.clip((offset * edges).sum(axis=1) / (edges * edges).sum(axis=1), 0, 1)
+    distance = np.linalg.norm(offset - along[:, None] * edges, axis=1)
+    return bool((distance >= margin_m).all() and in_polygon(point, outline))

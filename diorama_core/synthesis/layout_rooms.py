@@ -13,6 +13,7 @@ import numpy as np
 import trimesh
 
 from diorama_core.errors import EditRefused, LibraryError
+from diorama_core.geometry.rotations import rotation_from_vector
 from diorama_core.library.record import Shape, SupportSurface
 from diorama_core.scene import edits
 from diorama_core.scene.types import Architecture, Plane, Pose, Scene, SceneObject, Support, yaw_rotation
@@ -224,8 +225,7 @@ def _noisy(pose: Pose, noise: Noise, rng: np.random.Generator) -> Pose:
     axis = rng.normal(size=3)
     axis /= np.linalg.norm(axis)
     angle = noise.pitch_rad * abs(rng.normal())
-    K = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
-    turn = np.eye(3) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K
+    turn = rotation_from_vector(angle * axis)
     position = pose.position + rng.normal(0.0, noise.offset_m / np.sqrt(3.0), 3)
     return Pose(turn @ pose.R_world_object, position, pose.scale * np.exp(rng.normal(0.0, noise.scale, 3)))
 

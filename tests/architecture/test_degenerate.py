@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from diorama_core.architecture.from_depth.stage import PlanarRoom
+from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.architecture.plainrecon.stage import PlainRecon
 from diorama_core.architecture.single_view.stage import PhotoRoom
 from diorama_core.progress import Progress

@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_core.architecture.closed_room import is_simple
-from diorama_core.architecture.from_depth.stage import PlanarRoom
+from diorama_core.architecture.from_depth import PlanarRoom
+from diorama_core.architecture.walls.closed_room import is_simple
 from diorama_core.evaluation.metrics.architecture import architecture_scores, match_planes
 from diorama_core.progress import Progress
 from tests.architecture.known_rooms import KINDS, all_rays_hit, known_room, photographed, visible_feet

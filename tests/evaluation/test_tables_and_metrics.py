@@ -13,6 +13,15 @@ from diorama_core.evaluation.benchmarks.architecture import RoomResult, architec
 from diorama_core.evaluation.benchmarks.cases import STANDARD_SCENES, Case, recipe
 from diorama_core.evaluation.benchmarks.pose import with_true_architecture, with_true_graph
 from diorama_core.evaluation.benchmarks.pose_comparison import PoseScores
+from diorama_core.evaluation.benchmarks.pose_tables import (
+    GroupCounts,
+    ablation_table,
+    all_in_one_table,
+    category_table,
+    comparison_table,
+    groups_table,
+    retrievals_table,
+)
 from diorama_core.evaluation.benchmarks.retrieval import ObjectResult, recall_table, retrieval_table
 from diorama_core.evaluation.benchmarks.system import CaseResult, build_case, scene_table, system_table
 from diorama_core.evaluation.metrics.architecture import architecture_scores
@@ -27,15 +36,6 @@ from diorama_core.evaluation.metrics.scene import (
 )
 from diorama_core.evaluation.metrics.shape import chamfer, shape_distance
 from diorama_core.evaluation.reports import paper
-from diorama_core.evaluation.reports.pose_tables import (
-    GroupCounts,
-    ablation_table,
-    all_in_one_table,
-    category_table,
-    comparison_table,
-    groups_table,
-    retrievals_table,
-)
 from diorama_core.evaluation.speed.bench import Series, speed_table
 from diorama_core.progress import Progress
 from diorama_core.render.raycast import MeshCaster

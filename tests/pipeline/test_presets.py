@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import torch
 
-from diorama_core.architecture.from_depth.stage import PlanarRoom
+from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.errors import UnavailableError
 from diorama_core.models.manifest import network

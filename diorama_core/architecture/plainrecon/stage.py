@@ -11,12 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.architecture.closed_room import GUESS_CONFIDENCE
-from diorama_core.architecture.from_depth.surface import MeasuredSurface, measured_surface
 from diorama_core.architecture.plainrecon.bounds import Sheet, fitted_sheet, joined, upright
 from diorama_core.architecture.plainrecon.clusters import MIN_POINTS, planar_clusters
 from diorama_core.architecture.supports import resolve_supports
 from diorama_core.architecture.texture.colours import coloured, object_pixels
+from diorama_core.architecture.walls.closed_room import GUESS_CONFIDENCE
+from diorama_core.architecture.walls.surface import MeasuredSurface, measured_surface
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Architecture, Plane

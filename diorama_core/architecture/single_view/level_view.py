@@ -15,7 +15,7 @@ from jaxtyping import Bool, Float, Int, UInt8
 from scipy.ndimage import gaussian_filter
 from scipy.spatial import ConvexHull, QhullError
 
-from diorama_core.architecture.from_depth.stage import view_headings
+from diorama_core.architecture.from_depth import view_headings
 from diorama_core.architecture.single_view.room_cues import EDGE_THRESHOLD, RoomCues
 from diorama_core.architecture.texture.colours import object_pixels
 from diorama_core.artefacts import DetectedObject

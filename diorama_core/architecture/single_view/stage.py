@@ -7,12 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.architecture.closed_room import GUESS_CONFIDENCE, room_planes
-from diorama_core.architecture.from_depth.ceilings import CeilingPiece
-from diorama_core.architecture.from_depth.openings import Opening, counted
-from diorama_core.architecture.from_depth.wall_candidates import WallCandidate
-from diorama_core.architecture.from_depth.wall_path import Run, heading
-from diorama_core.architecture.passages import with_passages
 from diorama_core.architecture.single_view.box_search import find_box
 from diorama_core.architecture.single_view.level_view import level_view
 from diorama_core.architecture.single_view.room_cues import MAX_CEILING_M, RoomCues, gather_room_cues
@@ -29,7 +23,13 @@ from diorama_core.architecture.single_view.wall_chain import (
 )
 from diorama_core.architecture.supports import resolve_supports
 from diorama_core.architecture.texture.colours import coloured, visible_planes
-from diorama_core.architecture.wall_sequence import CORNER_SLACK_RAD, WallPiece, chained, meeting_point
+from diorama_core.architecture.walls.ceilings import CeilingPiece
+from diorama_core.architecture.walls.closed_room import GUESS_CONFIDENCE, room_planes
+from diorama_core.architecture.walls.openings import Opening, counted
+from diorama_core.architecture.walls.passages import with_passages
+from diorama_core.architecture.walls.wall_candidates import WallCandidate
+from diorama_core.architecture.walls.wall_path import Run, heading
+from diorama_core.architecture.walls.wall_sequence import CORNER_SLACK_RAD, WallPiece, chained, meeting_point
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Architecture, Plane

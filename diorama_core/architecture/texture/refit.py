@@ -75,7 +75,8 @@ def refitted(picture: UInt8[np.ndarray, "h w 3"], before: Plane, after: Plane) -
 
 def _resized(before: Plane, after: Plane) -> bool:
     """Whether the rectangle differs within the plane; one that only moved along its normal is the same."""
-    if max(float(np.abs(a - b).max()) for a, b in zip(plane_axes(before), plane_axes(after), strict=True)) > SAME_M:
+    turned = np.subtract(plane_axes(before.normal), plane_axes(after.normal))
+    if float(np.abs(turned).max()) > SAME_M:
         return False  # turned: there is no telling what belongs where
     origin, axes, extents = plane_rectangle(before)
     origin_after, _, extents_after = plane_rectangle(after)

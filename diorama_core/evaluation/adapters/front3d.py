@@ -13,7 +13,8 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from diorama_core.errors import InputError
-from diorama_core.evaluation.adapters.files import R_ZUP_YUP, read_json, rotation_wxyz
+from diorama_core.evaluation.adapters.files import R_ZUP_YUP, read_json
+from diorama_core.geometry.rotations import rotation_from_quaternion
 from diorama_core.library.taxonomy import resolve
 from diorama_core.scene.types import Architecture, Plane, PlaneRole, Pose, Scene, SceneObject, Support
 
@@ -53,7 +54,7 @@ def read_front3d(path: Path, room: str) -> Scene:
 def _object(child: dict[str, Any], record: dict[str, Any], index: int) -> SceneObject:
     label = str(record.get("category") or record.get("title") or "object").split("/")[-1].strip()
     x, y, z, w = child["rot"]
-    R = R_ZUP_YUP @ rotation_wxyz(np.array([w, x, y, z])) @ _R_FRONT_OBJECT
+    R = R_ZUP_YUP @ rotation_from_quaternion(np.array([w, x, y, z])) @ _R_FRONT_OBJECT
     width, height, depth = (float(v) for v in record["size"])
     scale_x, scale_y, scale_z = (float(v) for v in child["scale"])
     foot = R_ZUP_YUP @ np.array(child["pos"], dtype=np.float64)

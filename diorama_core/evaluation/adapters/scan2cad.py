@@ -14,7 +14,8 @@ from jaxtyping import Float
 
 from diorama_core.artefacts import Inputs
 from diorama_core.errors import InputError
-from diorama_core.evaluation.adapters.files import existing, read_json, read_matrix, rotation_wxyz
+from diorama_core.evaluation.adapters.files import existing, read_json, read_matrix
+from diorama_core.geometry.rotations import rotation_from_quaternion
 from diorama_core.perception.inputs import read_inputs
 from diorama_core.scene.types import Camera
 
@@ -83,7 +84,7 @@ def read_scan2cad(scans: Path, annotations: Path, scene: str, frame: str) -> Sca
 def _matrix(trs: dict[str, list[float]]) -> Float[np.ndarray, "4 4"]:
     """Translation, rotation (w, x, y, z) and scale as one matrix."""
     M = np.eye(4)
-    M[:3, :3] = rotation_wxyz(np.array(trs["rotation"])) * np.array(trs["scale"])
+    M[:3, :3] = rotation_from_quaternion(np.array(trs["rotation"])) * np.array(trs["scale"])
     M[:3, 3] = trs["translation"]
     return M
 

@@ -28,11 +28,7 @@ from diorama_core.evaluation.benchmarks.pose_comparison import (
     predict,
     shapes_of,
 )
-from diorama_core.evaluation.benchmarks.retrieval import object_groups
-from diorama_core.evaluation.metrics.pose import object_alignment, pair_checks
-from diorama_core.evaluation.metrics.scene import as_placed, in_true_world, matched
-from diorama_core.evaluation.reports import paper
-from diorama_core.evaluation.reports.pose_tables import (
+from diorama_core.evaluation.benchmarks.pose_tables import (
     GroupCounts,
     ablation_table,
     all_in_one_table,
@@ -41,6 +37,10 @@ from diorama_core.evaluation.reports.pose_tables import (
     groups_table,
     retrievals_table,
 )
+from diorama_core.evaluation.benchmarks.retrieval import object_groups
+from diorama_core.evaluation.metrics.pose import object_alignment, pair_checks
+from diorama_core.evaluation.metrics.scene import as_placed, in_true_world, matched
+from diorama_core.evaluation.reports import paper
 from diorama_core.evaluation.reports.tables import Table
 from diorama_core.layout.published.recipes import AllInOneRecipe, PaperRecipe
 from diorama_core.layout.recipes import recipe as layout_recipe

@@ -14,8 +14,8 @@ from jaxtyping import Bool, Float, Int
 from scipy.optimize import linear_sum_assignment
 from scipy.spatial import cKDTree
 
-from diorama_core.geometry.casting import camera_rays, cast_planes, in_polygon
-from diorama_core.geometry.planes import plane_rectangle
+from diorama_core.geometry.casting import camera_rays, cast_planes
+from diorama_core.geometry.planes import in_plane_polygon, plane_rectangle
 from diorama_core.scene.types import Camera, Plane
 
 VIEW_STEP = 2
@@ -192,7 +192,7 @@ def plane_points(planes: tuple[Plane, ...], spacing_m: float = SAMPLE_M) -> Floa
         steps = [(np.arange(n) + 0.5) * (e / n) for e in extents for n in [max(1, round(float(e) / spacing_m))]]
         grid = np.stack(np.meshgrid(*steps), axis=-1).reshape(-1, 2)
         on_plane = origin + grid @ axes.T
-        points.append(on_plane[in_polygon(on_plane, plane)])
+        points.append(on_plane[in_plane_polygon(on_plane, plane)])
     return np.concatenate(points)
 
 

@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 
 from diorama_core.evaluation.metrics.pose import Alignment, Placed, object_alignment, scene_alignment
 from diorama_core.evaluation.metrics.shape import shape_distance, shape_points
-from diorama_core.geometry.casting import in_polygon
+from diorama_core.geometry.planes import in_plane_polygon
 from diorama_core.geometry.projection import box_iou
 from diorama_core.layout.exact import drift, mesh_overlap_m3, stable_share
 from diorama_core.layout.problem.problem import build_problem
@@ -217,7 +217,7 @@ def out_of_bounds_share(scene: Scene, samples: int = 12) -> float:
     for item in scene.objects:
         local = np.column_stack([grid * np.asarray(item.shape_size_m)[:2], np.zeros(len(grid))])
         points = item.pose.apply(local)
-        out += float(in_polygon(points, floor).mean()) < INSIDE_SHARE
+        out += float(in_plane_polygon(points, floor).mean()) < INSIDE_SHARE
     return out / len(scene.objects)
 
 

@@ -14,10 +14,11 @@ from jaxtyping import Float
 from scipy.optimize import linprog
 
 from diorama_core.geometry.cross import cross
+from diorama_core.geometry.planes import plane_axes
 from diorama_core.layout.feasible.photo_observations import PhotoObservations
 from diorama_core.layout.feasible.quadratic import HARD, least_distance
 from diorama_core.layout.problem.problem import Problem
-from diorama_core.layout.problem.supports import Surface, is_wall_like, plane_axes
+from diorama_core.layout.problem.supports import Surface, is_wall_like
 
 SMALLEST_SHRINK = 0.8
 """An object that does not fit is made smaller by at most this factor; beyond, it stays large and is named."""

@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.geometry.cross import cross
+from diorama_core.geometry.planes import plane_axes
 from diorama_core.library import taxonomy
 from diorama_core.library.record import Shape, SupportSurface
 from diorama_core.scene.frames import FACE_NORMALS_OBJECT
@@ -108,16 +109,6 @@ def convex_outline(polygon: Float[np.ndarray, "n 3"], normal: Float[np.ndarray, 
         chains += chain[:-1]
     hull = np.array(chains)
     return hull[:, :1] * u + hull[:, 1:] * v + (normal @ polygon.mean(axis=0)) * normal
-
-
-def plane_axes(normal: Float[np.ndarray, "3"]) -> tuple[np.ndarray, np.ndarray]:
-    """Two unit axes that with the normal form a right-handed frame; the first is horizontal."""
-    x, y, z = (float(c) for c in normal)
-    length = float(np.hypot(x, y))
-    if length <= 1e-6:
-        return np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0 if z > 0 else -1.0, 0.0])
-    u0, u1 = -y / length, x / length
-    return np.array([u0, u1, 0.0]), np.array([-z * u1, z * u0, x * u1 - y * u0])
 
 
 def _cross(a: np.ndarray, b: np.ndarray) -> float:

@@ -80,3 +80,16 @@ class Volumes:
             level=local.level * stretch + (normal * owner_p).sum(axis=1),
             clearance=local.clearance * stretch,
         )
+
+
+def contact_templates(problem: Problem, supported: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Corners of the touching faces in object frames at scale 1, and half extents."""
+    half = problem.shape_size[supported] / 2
+    signs = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    template = np.zeros((len(supported), 4, 3))
+    for row, contact in enumerate(problem.contact[supported]):
+        axis = int(np.abs(contact).argmax())
+        others = [k for k in range(3) if k != axis]
+        template[row][:, others] = signs
+        template[row][:, axis] = contact[axis]
+    return template * half[:, None, :], half

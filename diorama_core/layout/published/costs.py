@@ -11,7 +11,7 @@ import torch
 from jaxtyping import Float, Int
 from torch import Tensor
 
-from diorama_core.layout.published.gradients import EPSILON
+from diorama_core.layout.gradients import EPSILON
 
 
 def _norm(v: Float[Tensor, "*b d"]) -> Float[Tensor, "*b"]:

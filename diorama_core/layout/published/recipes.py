@@ -11,10 +11,11 @@ import numpy as np
 import torch
 
 from diorama_core.artefacts import LayoutReport
+from diorama_core.geometry.rotations import rotation_from_vector
+from diorama_core.layout.gradients import near_pairs
 from diorama_core.layout.problem.problem import Problem, build_problem
-from diorama_core.layout.problem.volumes import Volumes
+from diorama_core.layout.problem.volumes import Volumes, contact_templates
 from diorama_core.layout.published import costs, staged
-from diorama_core.layout.published.gradients import near_pairs
 from diorama_core.layout.published.staged import Edges, Report, Schedule, State
 from diorama_core.layout.report import measure
 from diorama_core.layout.weights import AS_IT_IS, Weights
@@ -127,7 +128,7 @@ def _all_at_once(problem: Problem, state: State, schedule: Schedule, weights: We
         slopes = torch.autograd.grad(torch.stack(list(values.values())).sum(), [turn, p, scale], allow_unused=True)
         for k, slope in enumerate(slopes):
             velocity[k] = schedule.momentum * velocity[k] + (0.0 if slope is None else slope * free)
-        state.R = np.matmul(staged.rotations(-schedule.rate * rate * velocity[0].numpy()), state.R)
+        state.R = np.matmul(rotation_from_vector(-schedule.rate * rate * velocity[0].numpy()), state.R)
         state.p = state.p - schedule.rate * rate * velocity[1].numpy()
         state.scale = np.maximum(state.scale - schedule.scale_rate * rate * velocity[2].numpy(), 0.05)
         report("all terms", step, state, {name: float(v.detach()) for name, v in values.items()})
@@ -150,7 +151,7 @@ class _Terms:
         self.volumes = Volumes.of(problem)
         self.supported = self.volumes.supported
         if len(self.supported):
-            self.template = torch.tensor(staged.contact_templates(problem, self.supported)[0])
+            self.template = torch.tensor(contact_templates(problem, self.supported)[0])
 
     def at(self, turn: torch.Tensor, p: torch.Tensor, scale: torch.Tensor, state: State) -> Mapping[str, torch.Tensor]:
         """3 e_align, e_sem, 5 e_place, e_rel, e_vol and e_col, weighted; adherence is part of the first and third."""

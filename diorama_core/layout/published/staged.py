@@ -13,9 +13,10 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.geometry.cross import cross
+from diorama_core.geometry.rotations import rotation_from_vector
+from diorama_core.layout import gradients
 from diorama_core.layout.problem.problem import Problem
-from diorama_core.layout.problem.volumes import Volumes
-from diorama_core.layout.published import gradients
+from diorama_core.layout.problem.volumes import Volumes, contact_templates
 from diorama_core.layout.weights import AS_IT_IS, Weights
 
 
@@ -126,7 +127,7 @@ def orientation_stage(
         gradient = to_child @ cross(face, slope) - to_supporter @ cross(normal, slope)
         gradient += weights.heading * cross(state.R[:, :, 0], turn)
         velocity = schedule.momentum * velocity + gradient * free
-        state.R = np.matmul(rotations(-schedule.rate * rate * velocity), state.R)
+        state.R = np.matmul(rotation_from_vector(-schedule.rate * rate * velocity), state.R)
         terms = {"align": 3.0 * weights.align * value, "heading": weights.heading * retained}
         report("orientation", step, state, terms)
     state.R = orthonormal(state.R)
@@ -246,19 +247,6 @@ class Placement:
         return value, self.scatter @ ((np.sign(distance) * self.weight)[:, None] * self.slope)
 
 
-def contact_templates(problem: Problem, supported: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Corners of the touching faces in object frames at scale 1, and half extents."""
-    half = problem.shape_size[supported] / 2
-    signs = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-    template = np.zeros((len(supported), 4, 3))
-    for row, contact in enumerate(problem.contact[supported]):
-        axis = int(np.abs(contact).argmax())
-        others = [k for k in range(3) if k != axis]
-        template[row][:, others] = signs
-        template[row][:, axis] = contact[axis]
-    return template * half[:, None, :], half
-
-
 def with_walls(problem: Problem, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Boxes of objects and of walls, and which pairs may collide."""
     n, walls = problem.count, problem.walls
@@ -286,18 +274,6 @@ def _wall_frame(normal: np.ndarray) -> Float[np.ndarray, "3 3"]:
     second = np.cross(normal, helper)
     second /= np.linalg.norm(second)
     return np.column_stack([normal, second, np.cross(normal, second)])
-
-
-def rotations(vectors: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "n 3 3"]:
-    """Rotation matrices of rotation vectors (Rodrigues)."""
-    angle = np.sqrt(np.einsum("nc,nc->n", vectors, vectors) + 1e-24)
-    x, y, z = (vectors / angle[:, None]).T
-    s, c = np.sin(angle), np.cos(angle)
-    t = 1.0 - c
-    rows = [c + x * x * t, x * y * t - z * s, x * z * t + y * s]
-    rows += [y * x * t + z * s, c + y * y * t, y * z * t - x * s]
-    rows += [z * x * t - y * s, z * y * t + x * s, c + z * z * t]
-    return np.stack(rows, axis=1).reshape(-1, 3, 3)
 
 
 def orthonormal(R: Float[np.ndarray, "n 3 3"]) -> Float[np.ndarray, "n 3 3"]:

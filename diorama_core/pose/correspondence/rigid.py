@@ -12,6 +12,7 @@ from diorama_core.pose.correspondence.crops import PATCHES, Crop, patch_pixels
 from diorama_core.pose.correspondence.matching import Matches
 from diorama_core.pose.correspondence.umeyama import ransac_umeyama, umeyama
 from diorama_core.render.templates import Templates
+from diorama_core.scene.types import yaw_rotation
 
 POOLED_VIEWS = 5
 """Views whose matches are taken together: their points are all in the shape's one frame."""
@@ -119,9 +120,7 @@ def from_one_match(compared: Compared, view: int, scale_network: GigaPoseScale |
         size2d, angle = _plane_similarity(templates.grid.size_px, patches, query)
     else:
         size2d, angle = _predicted(compared, view, scale_network)
-    c, s = np.cos(angle), np.sin(angle)
-    in_plane = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    R = crop.R_camera_crop @ in_plane @ templates.grid.R_object_camera[view].T
+    R = crop.R_camera_crop @ yaw_rotation(angle) @ templates.grid.R_object_camera[view].T
     z_seen = float(target[0] @ crop.R_camera_crop[:, 2])
     z_shown = float(templates.camera(view).to_camera(source[:1])[0, 2])
     scale = float(size2d * (z_seen / crop.focal_px) / (z_shown / templates.grid.intrinsics.fx))

@@ -11,8 +11,8 @@ from PIL import Image
 
 from diorama_core.errors import InputError
 from diorama_core.evaluation.adapters import read_front3d, read_scan2cad, read_ssdb, read_sunrgbd
-from diorama_core.evaluation.adapters.files import rotation_wxyz
 from diorama_core.evaluation.adapters.front3d import rooms_of
+from diorama_core.geometry.rotations import rotation_from_quaternion
 
 SIZE = (64, 48)
 
@@ -165,5 +165,5 @@ def test_sunrgbd_polygons_depth_and_tilt(tmp_path):
 
 
 def test_quaternions_turn_the_right_way():
-    R = rotation_wxyz(np.array([np.cos(np.pi / 4), 0, 0, np.sin(np.pi / 4)]) * 3)
+    R = rotation_from_quaternion(np.array([np.cos(np.pi / 4), 0, 0, np.sin(np.pi / 4)]) * 3)
     assert np.allclose(R @ [1, 0, 0], [0, 1, 0])

@@ -25,8 +25,8 @@ from diorama_core.evaluation.benchmarks.pose_comparison import (
     predict,
     shapes_of,
 )
+from diorama_core.evaluation.benchmarks.pose_tables import comparison_table
 from diorama_core.evaluation.metrics.scene import without_unasked
-from diorama_core.evaluation.reports.pose_tables import comparison_table
 from diorama_core.pose import RenderAndCompare
 from diorama_core.pose.correspondence.solvers import HALF_GRID, CorrespondencePose
 from diorama_core.render.templates import TemplateGrid

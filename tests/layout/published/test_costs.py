@@ -5,7 +5,8 @@ import pytest
 import torch
 from torch.autograd import gradcheck
 
-from diorama_core.layout.published import costs, gradients
+from diorama_core.layout import gradients
+from diorama_core.layout.published import costs
 
 
 def tensor(*shape: int, seed: int = 0) -> torch.Tensor:

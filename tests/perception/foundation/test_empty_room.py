@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from diorama_core.architecture.from_depth.stage import PlanarRoom
+from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.models.depth import SeenDepth
 from diorama_core.models.foreground import Foreground
 from diorama_core.perception.foundation.empty_room import EmptyRoomArchitecture

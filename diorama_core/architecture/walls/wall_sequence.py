@@ -11,9 +11,9 @@ from itertools import pairwise
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.architecture.from_depth.surface import MeasuredSurface
-from diorama_core.architecture.from_depth.wall_candidates import WallCandidate
-from diorama_core.architecture.from_depth.wall_path import Run, heading, wall_runs
+from diorama_core.architecture.walls.surface import MeasuredSurface
+from diorama_core.architecture.walls.wall_candidates import WallCandidate
+from diorama_core.architecture.walls.wall_path import Run, heading, wall_runs
 
 CORNER_SLACK_RAD = np.deg2rad(5.0)
 COLLINEAR_M = 0.1

@@ -11,9 +11,9 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float
 
-from diorama_core.architecture.from_depth.surface import MeasuredSurface
-from diorama_core.architecture.from_depth.wall_candidates import WallCandidate, crossings, tolerance_m
-from diorama_core.architecture.wall_sequence import WallPiece
+from diorama_core.architecture.walls.surface import MeasuredSurface
+from diorama_core.architecture.walls.wall_candidates import WallCandidate, crossings, tolerance_m
+from diorama_core.architecture.walls.wall_sequence import WallPiece
 
 CELL_M = 0.06
 BEYOND_M = 0.25

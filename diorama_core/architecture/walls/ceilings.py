@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float
 
-from diorama_core.architecture.from_depth.surface import MeasuredSurface
-from diorama_core.architecture.from_depth.wall_candidates import tolerance_m
+from diorama_core.architecture.walls.surface import MeasuredSurface
+from diorama_core.architecture.walls.wall_candidates import tolerance_m
 
 MIN_FLAT_SHARE = 0.004
 """A ceiling counts as seen when this share of the measured points lies on it."""

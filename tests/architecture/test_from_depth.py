@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.architecture.from_depth.stage import PlanarRoom
+from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.progress import Progress
 from tests.synthetic_rooms import box_room, cuboid, floor, look, shoot, wall
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.architecture.from_depth.openings import Opening, with_openings
-from diorama_core.architecture.from_depth.stage import PlanarRoom
+from diorama_core.architecture.from_depth import PlanarRoom
+from diorama_core.architecture.walls.openings import Opening, with_openings
 from diorama_core.artefacts import DetectedObject
 from diorama_core.evaluation.metrics.architecture import plane_points
 from diorama_core.geometry.casting import camera_rays, cast_plane

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.architecture.from_depth.openings import Opening
-from diorama_core.architecture.from_depth.stage import PlanarRoom
-from diorama_core.architecture.passages import is_passage, with_passages, without_openings
+from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.architecture.single_view.stage import PhotoRoom
-from diorama_core.architecture.wall_sequence import WallPiece
+from diorama_core.architecture.walls.openings import Opening
+from diorama_core.architecture.walls.passages import is_passage, with_passages, without_openings
+from diorama_core.architecture.walls.wall_sequence import WallPiece
 from diorama_core.artefacts import DetectedObject, ObjectGeometry
 from diorama_core.geometry.casting import cast_plane
 from diorama_core.progress import Progress

@@ -14,14 +14,8 @@ from itertools import pairwise
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from diorama_core.architecture.from_depth.surface import MeasuredSurface
-from diorama_core.architecture.from_depth.wall_candidates import (
-    MIN_RISE_M,
-    WallCandidate,
-    crossings,
-    same_wall,
-    tolerance_m,
-)
+from diorama_core.architecture.walls.surface import MeasuredSurface
+from diorama_core.architecture.walls.wall_candidates import MIN_RISE_M, WallCandidate, crossings, same_wall, tolerance_m
 
 HEADING_BINS = 180
 FULL_EVIDENCE = 0.08

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float
 
-from diorama_core.architecture.from_depth.surface import MeasuredSurface
+from diorama_core.architecture.walls.surface import MeasuredSurface
 
 BIN_RAD = np.deg2rad(5.0)
 GROWTH_RAD = np.deg2rad(10.0)

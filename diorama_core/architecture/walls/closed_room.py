@@ -8,9 +8,9 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 
-from diorama_core.architecture.from_depth.ceilings import CeilingPiece
-from diorama_core.architecture.from_depth.openings import Opening, with_openings
-from diorama_core.architecture.wall_sequence import BEHIND_CAMERA_M, WallPiece
+from diorama_core.architecture.walls.ceilings import CeilingPiece
+from diorama_core.architecture.walls.openings import Opening, with_openings
+from diorama_core.architecture.walls.wall_sequence import BEHIND_CAMERA_M, WallPiece
 from diorama_core.geometry.planes import clip_polygon
 from diorama_core.scene.types import Camera, Plane
 

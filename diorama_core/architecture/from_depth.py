@@ -6,16 +6,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diorama_core.architecture.closed_room import GUESS_CONFIDENCE, room_planes
-from diorama_core.architecture.from_depth.ceilings import CeilingPiece, find_ceilings
-from diorama_core.architecture.from_depth.openings import Opening, counted, find_openings, is_shut
-from diorama_core.architecture.from_depth.surface import MeasuredSurface, measured_surface
-from diorama_core.architecture.from_depth.wall_candidates import find_walls, tolerance_m
-from diorama_core.architecture.from_depth.wall_path import heading
-from diorama_core.architecture.passages import is_passage, with_passages
 from diorama_core.architecture.supports import resolve_supports
 from diorama_core.architecture.texture.colours import coloured, object_pixels
-from diorama_core.architecture.wall_sequence import WallPiece, outline
+from diorama_core.architecture.walls.ceilings import CeilingPiece, find_ceilings
+from diorama_core.architecture.walls.closed_room import GUESS_CONFIDENCE, room_planes
+from diorama_core.architecture.walls.openings import Opening, counted, find_openings, is_shut
+from diorama_core.architecture.walls.passages import is_passage, with_passages
+from diorama_core.architecture.walls.surface import MeasuredSurface, measured_surface
+from diorama_core.architecture.walls.wall_candidates import find_walls, tolerance_m
+from diorama_core.architecture.walls.wall_path import heading
+from diorama_core.architecture.walls.wall_sequence import WallPiece, outline
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Architecture, Camera

@@ -15,8 +15,8 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import least_squares
 
-from diorama_core.architecture.from_depth.openings import FRAME_M, MIN_AREA_M2, MIN_SIDE_M, SILL_M, Opening
-from diorama_core.architecture.wall_sequence import WallPiece
+from diorama_core.architecture.walls.openings import FRAME_M, MIN_AREA_M2, MIN_SIDE_M, SILL_M, Opening
+from diorama_core.architecture.walls.wall_sequence import WallPiece
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, ObjectGeometry
 from diorama_core.scene.types import Camera
 

@@ -1,0 +1,1 @@
+"""Walls, ceilings and openings, from measured points or from a photo, closed to a room."""
