@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Protocol
 
 import numpy as np
 import trimesh
@@ -35,7 +34,15 @@ class Part:
 
 
 Parts = list[Part]
-Builder = Callable[[Size], Parts]
+
+
+class NamedStyle(Protocol):
+    """What runs through every piece of one style (`styles.Style`)."""
+
+    @property
+    def name(self) -> str:
+        """Value of `Shape.style`."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -47,11 +54,17 @@ class Design:
     caption: str
     size_m: Size
     style: str
-    build: Builder
-    """Parts standing on z = 0, front toward +X, about as large as the size given; the finish makes it exact."""
+    builder: Callable[..., Parts]
+    """Called with the size and `options`: parts standing on z = 0, front toward +X, about as large as the size."""
+    options: Mapping[str, Any] = field(default_factory=dict)
+    """What else the builder is told."""
     symmetry: SymmetryFold = 1
     mass_kg: float | None = None
     """None lets the catalogue guess from the category and the size."""
+
+    def build(self, size_m: Size) -> Parts:
+        """The parts at about a size; `built` makes them exact."""
+        return self.builder(size_m, **self.options)
 
 
 def design(
@@ -59,31 +72,33 @@ def design(
     name: str,
     caption: str,
     size_m: Size,
-    style: str,
-    build: Callable[..., Parts],
+    style: str | NamedStyle,
+    builder: Callable[..., Parts],
     symmetry: SymmetryFold = 1,
     *,
     id: str | None = None,
     mass_kg: float | None = None,
     **options: Any,
 ) -> Design:
-    """A design called after its category and `name` (or `id`, where it was once called otherwise).
+    """One row of a table of designs.
 
     Args:
         category: Canonical category.
-        name: What tells it from its siblings.
+        name: What tells it from its siblings; the id is the category and the name.
         caption: One line a person would say of it.
         size_m: Extents along x, y and z.
-        style: modern, classic, industrial, rustic or minimal.
-        build: Called with the size and `options`.
+        style: modern, classic, industrial, rustic or minimal; or a whole style, which the builder gets as `style`.
+        builder: Called with the size and `options`.
         symmetry: Turns about up that leave it looking the same.
-        id: The whole id.
+        id: The whole id, where it was once called otherwise.
         mass_kg: None lets the catalogue guess.
-        options: What else the builder is to know.
+        options: What else the builder is told.
     """
     known_as = id or f"{category.replace(' ', '-')}-{name}"
-    builder = partial(build, **options) if options else build
-    return Design(known_as, category, caption, size_m, style, builder, symmetry, mass_kg)
+    if isinstance(style, str):
+        return Design(known_as, category, caption, size_m, style, builder, options, symmetry, mass_kg)
+    options = {"style": style, **options}
+    return Design(known_as, category, caption, size_m, style.name, builder, options, symmetry, mass_kg)
 
 
 def of(material: Material, *solids: Solid) -> Parts:

@@ -6,17 +6,13 @@ every style and swapping one chair for another offers real alternatives.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any
 
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.cases import Base
 from diorama_core.library.furniture.legs import Leg
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, design
-from diorama_core.library.record import SymmetryFold
 
 EMERALD_VELVET = Material("emerald velvet", "velvet", "#3f5f52", 0.8, 0.0, 0.5)
 TEAL_VELVET = Material("teal velvet", "velvet", "#3f6570", 0.8, 0.0, 0.5)
@@ -120,18 +116,3 @@ MINIMAL = Style(
     "minimal", m.BIRCH, m.BIRCH, m.LIGHT_FABRIC, m.CREAM_LEATHER, m.STEEL, "slim", 0.005, "none", "flat", "plinth", 0.05
 )
 STYLES = (MODERN, CLASSIC, INDUSTRIAL, RUSTIC, MINIMAL)
-
-
-def styled(
-    category: str,
-    name: str,
-    caption: str,
-    size_m: Size,
-    style: Style,
-    build: Callable[..., Parts],
-    symmetry: SymmetryFold = 1,
-    **options: Any,
-) -> Design:
-    """A design whose builder takes a style; see `model.design` for the rest."""
-    builder = partial(build, style=style, **options)
-    return design(category, name, caption, size_m, style.name, builder, symmetry)

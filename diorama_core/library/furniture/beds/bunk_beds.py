@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.beds.bedding import bedding
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, four, of
+from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
 from diorama_core.library.furniture.solids import beam, box, rod
 
 
@@ -46,12 +44,5 @@ def bunk_bed(size: Size, wood: Material, duvet: Material) -> Parts:
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "bed-bunk",
-        "bunk bed",
-        "pine bunk bed with a ladder",
-        (2.06, 1.00, 1.62),
-        "rustic",
-        partial(bunk_bed, wood=m.PINE, duvet=m.LIGHT_FABRIC),
-    ),
-)
+    design("bunk bed", "bunk", "pine bunk bed with a ladder", (2.06, 1.00, 1.62), "rustic", bunk_bed, id="bed-bunk", wood=m.PINE, duvet=m.LIGHT_FABRIC),
+)  # fmt: skip

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Literal
 
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.beds.bedding import bedding
 from diorama_core.library.furniture.beds.headboards import Head, headboard
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, four, of
+from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
 from diorama_core.library.furniture.solids import box, cushion, prism, ring_path, rounded_rectangle, taper, tube
 
 
@@ -94,94 +93,15 @@ def bare_mattress(size: Size, cloth: Material, piping: Material) -> Parts:
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "bed-panel-oak",
-        "bed",
-        "oak double bed with a panel headboard",
-        (2.12, 1.62, 1.02),
-        "classic",
-        partial(bed, frame=m.OAK, duvet=m.LINEN, throw=m.TAUPE_FABRIC),
-    ),
-    Design(
-        "bed-low-oak",
-        "bed",
-        "low oak platform bed without a headboard",
-        (2.08, 1.60, 0.66),
-        "minimal",
-        partial(bed, frame=m.LIGHT_OAK, head="none", duvet=m.WHITE_COTTON, throw=m.GREY_FABRIC, top_z=0.40),
-    ),
-    Design(
-        "bed-padded-grey",
-        "bed",
-        "grey upholstered double bed",
-        (2.18, 1.70, 1.12),
-        "modern",
-        partial(bed, frame=m.GREY_FABRIC, head="padded", duvet=m.WHITE_COTTON, throw=m.CHARCOAL_FABRIC, base="box"),
-    ),
-    Design(
-        "bed-channel-green",
-        "bed",
-        "forest green bed with a channelled headboard",
-        (2.20, 1.66, 1.16),
-        "modern",
-        partial(bed, frame=m.GREEN_FABRIC, head="channels", duvet=m.LINEN, base="box", top_z=0.54),
-    ),
-    Design(
-        "bed-slats-walnut",
-        "bed",
-        "walnut bed with a slatted headboard",
-        (2.12, 1.58, 0.98),
-        "rustic",
-        partial(bed, frame=m.WALNUT, head="slats", duvet=m.OATMEAL, throw=m.RUST_FABRIC),
-    ),
-    Design(
-        "bed-iron",
-        "bed",
-        "wrought-iron double bed",
-        (2.10, 1.45, 1.15),
-        "rustic",
-        partial(bed, frame=m.IRON, head="spindles", duvet=m.WHITE_COTTON, throw=m.BLUE_FABRIC, foot_h=0.78, top_z=0.57),
-    ),
-    Design(
-        "bed-sleigh-mahogany",
-        "bed",
-        "mahogany bed with head- and footboard",
-        (2.18, 1.66, 1.10),
-        "classic",
-        partial(bed, frame=m.MAHOGANY, head="panel", duvet=m.BEIGE_FABRIC, foot_h=0.68, top_z=0.60),
-    ),
-    Design(
-        "bed-single-white",
-        "bed",
-        "white single bed",
-        (2.05, 0.98, 0.88),
-        "minimal",
-        partial(bed, frame=m.WHITE, head="panel", duvet=m.BLUE_FABRIC, top_z=0.50),
-    ),
-    Design(
-        "bed-single-pine",
-        "bed",
-        "pine single bed with slats",
-        (2.06, 1.00, 0.86),
-        "rustic",
-        partial(bed, frame=m.PINE, head="slats", duvet=m.OLIVE_FABRIC, top_z=0.48),
-    ),
-    Design(
-        "bed-divan-king",
-        "bed",
-        "king-size divan without a headboard",
-        (2.05, 1.82, 0.82),
-        "modern",
-        partial(
-            bed, frame=m.TAUPE_FABRIC, head="none", duvet=m.WHITE_COTTON, throw=m.NAVY_FABRIC, base="box", top_z=0.56
-        ),
-    ),
-    Design(
-        "bed-mattress",
-        "bed",
-        "bare double mattress",
-        (2.00, 1.40, 0.24),
-        "minimal",
-        partial(bare_mattress, cloth=m.WHITE_COTTON, piping=m.GREY_FABRIC),
-    ),
-)
+    design("bed", "panel-oak", "oak double bed with a panel headboard", (2.12, 1.62, 1.02), "classic", bed, frame=m.OAK, duvet=m.LINEN, throw=m.TAUPE_FABRIC),
+    design("bed", "low-oak", "low oak platform bed without a headboard", (2.08, 1.60, 0.66), "minimal", bed, frame=m.LIGHT_OAK, head="none", duvet=m.WHITE_COTTON, throw=m.GREY_FABRIC, top_z=0.40),
+    design("bed", "padded-grey", "grey upholstered double bed", (2.18, 1.70, 1.12), "modern", bed, frame=m.GREY_FABRIC, head="padded", duvet=m.WHITE_COTTON, throw=m.CHARCOAL_FABRIC, base="box"),
+    design("bed", "channel-green", "forest green bed with a channelled headboard", (2.20, 1.66, 1.16), "modern", bed, frame=m.GREEN_FABRIC, head="channels", duvet=m.LINEN, base="box", top_z=0.54),
+    design("bed", "slats-walnut", "walnut bed with a slatted headboard", (2.12, 1.58, 0.98), "rustic", bed, frame=m.WALNUT, head="slats", duvet=m.OATMEAL, throw=m.RUST_FABRIC),
+    design("bed", "iron", "wrought-iron double bed", (2.10, 1.45, 1.15), "rustic", bed, frame=m.IRON, head="spindles", duvet=m.WHITE_COTTON, throw=m.BLUE_FABRIC, foot_h=0.78, top_z=0.57),
+    design("bed", "sleigh-mahogany", "mahogany bed with head- and footboard", (2.18, 1.66, 1.10), "classic", bed, frame=m.MAHOGANY, head="panel", duvet=m.BEIGE_FABRIC, foot_h=0.68, top_z=0.60),
+    design("bed", "single-white", "white single bed", (2.05, 0.98, 0.88), "minimal", bed, frame=m.WHITE, head="panel", duvet=m.BLUE_FABRIC, top_z=0.50),
+    design("bed", "single-pine", "pine single bed with slats", (2.06, 1.00, 0.86), "rustic", bed, frame=m.PINE, head="slats", duvet=m.OLIVE_FABRIC, top_z=0.48),
+    design("bed", "divan-king", "king-size divan without a headboard", (2.05, 1.82, 0.82), "modern", bed, frame=m.TAUPE_FABRIC, head="none", duvet=m.WHITE_COTTON, throw=m.NAVY_FABRIC, base="box", top_z=0.56),
+    design("bed", "mattress", "bare double mattress", (2.00, 1.40, 0.24), "minimal", bare_mattress, cloth=m.WHITE_COTTON, piping=m.GREY_FABRIC),
+)  # fmt: skip

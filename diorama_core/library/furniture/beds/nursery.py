@@ -9,9 +9,9 @@ from diorama_core.library.furniture import styles as s
 from diorama_core.library.furniture.carcass import drawer_front
 from diorama_core.library.furniture.legs import leg
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, four, of
+from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
 from diorama_core.library.furniture.solids import beam, box, cushion, pillow, prism, rod, rounded_rectangle
-from diorama_core.library.furniture.styles import CLASSIC, INDUSTRIAL, MINIMAL, MODERN, RUSTIC, Style, styled
+from diorama_core.library.furniture.styles import CLASSIC, INDUSTRIAL, MINIMAL, MODERN, RUSTIC, Style
 
 
 def crib(size: Size, style: Style, sheet: Material, solid_ends: bool = True, spindles: bool = False) -> Parts:
@@ -113,14 +113,14 @@ def changing_table(size: Size, style: Style, pad: Material, drawers: int = 2, op
 
 
 DESIGNS: tuple[Design, ...] = (
-    styled("crib", "oak-modern", "oak cot with white bars", (0.72, 1.30, 0.92), MODERN.but(wood=m.LIGHT_OAK, frame=m.LIGHT_OAK), crib, 2, sheet=s.SKY_FABRIC),
-    styled("crib", "white-spindle", "white spindle crib", (0.74, 1.34, 0.96), CLASSIC.but(wood=m.WHITE, frame=m.WHITE), crib, 2, sheet=m.ROSE_FABRIC, solid_ends=False, spindles=True),
-    styled("crib", "pine", "pine cot with panelled ends", (0.70, 1.28, 0.98), RUSTIC, crib, 2, sheet=m.LINEN),
-    styled("crib", "birch", "plain birch cot", (0.68, 1.26, 0.86), MINIMAL, crib, 2, sheet=m.LIGHT_FABRIC),
-    styled("crib", "iron", "black iron crib with reclaimed ends", (0.72, 1.32, 1.00), INDUSTRIAL, crib, 2, sheet=m.GREY_FABRIC),
-    styled("changing table", "oak", "oak changing table with drawers", (0.52, 0.90, 0.96), MODERN.but(wood=m.OAK, frame=m.OAK), changing_table, pad=m.WHITE_COTTON),
-    styled("changing table", "white", "white changing table with open shelves", (0.50, 0.78, 0.92), MINIMAL.but(wood=m.WHITE, frame=m.BIRCH), changing_table, pad=m.LIGHT_FABRIC, drawers=0, open_shelves=2),
-    styled("changing table", "cream", "cream changing dresser", (0.54, 0.95, 1.00), CLASSIC.but(wood=m.CREAM, frame=m.CREAM), changing_table, pad=s.SKY_FABRIC, drawers=3, open_shelves=0),
-    styled("changing table", "pine", "pine changing table", (0.52, 0.85, 0.95), RUSTIC, changing_table, pad=m.LINEN, drawers=1, open_shelves=2),
-    styled("changing table", "charcoal", "charcoal changing table on steel feet", (0.50, 0.84, 0.94), INDUSTRIAL.but(wood=m.CHARCOAL, fitting=m.STEEL), changing_table, pad=m.GREY_FABRIC),
+    design("crib", "oak-modern", "oak cot with white bars", (0.72, 1.30, 0.92), MODERN.but(wood=m.LIGHT_OAK, frame=m.LIGHT_OAK), crib, 2, sheet=s.SKY_FABRIC),
+    design("crib", "white-spindle", "white spindle crib", (0.74, 1.34, 0.96), CLASSIC.but(wood=m.WHITE, frame=m.WHITE), crib, 2, sheet=m.ROSE_FABRIC, solid_ends=False, spindles=True),
+    design("crib", "pine", "pine cot with panelled ends", (0.70, 1.28, 0.98), RUSTIC, crib, 2, sheet=m.LINEN),
+    design("crib", "birch", "plain birch cot", (0.68, 1.26, 0.86), MINIMAL, crib, 2, sheet=m.LIGHT_FABRIC),
+    design("crib", "iron", "black iron crib with reclaimed ends", (0.72, 1.32, 1.00), INDUSTRIAL, crib, 2, sheet=m.GREY_FABRIC),
+    design("changing table", "oak", "oak changing table with drawers", (0.52, 0.90, 0.96), MODERN.but(wood=m.OAK, frame=m.OAK), changing_table, pad=m.WHITE_COTTON),
+    design("changing table", "white", "white changing table with open shelves", (0.50, 0.78, 0.92), MINIMAL.but(wood=m.WHITE, frame=m.BIRCH), changing_table, pad=m.LIGHT_FABRIC, drawers=0, open_shelves=2),
+    design("changing table", "cream", "cream changing dresser", (0.54, 0.95, 1.00), CLASSIC.but(wood=m.CREAM, frame=m.CREAM), changing_table, pad=s.SKY_FABRIC, drawers=3, open_shelves=0),
+    design("changing table", "pine", "pine changing table", (0.52, 0.85, 0.95), RUSTIC, changing_table, pad=m.LINEN, drawers=1, open_shelves=2),
+    design("changing table", "charcoal", "charcoal changing table on steel feet", (0.50, 0.84, 0.94), INDUSTRIAL.but(wood=m.CHARCOAL, fitting=m.STEEL), changing_table, pad=m.GREY_FABRIC),
 )  # fmt: skip

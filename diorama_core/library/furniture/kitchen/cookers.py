@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.fittings import at, bar_handle, knob
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, of
+from diorama_core.library.furniture.model import Design, Parts, Size, design, of
 from diorama_core.library.furniture.solids import box, cylinder, ring_path, rod, superellipse, tube
 
 
@@ -81,36 +79,8 @@ def burners(d: float, w: float, top: float, hob: str) -> Parts:
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "stove-gas-white",
-        "stove",
-        "white gas cooker",
-        (0.62, 0.60, 0.95),
-        "classic",
-        partial(stove, body=m.WHITE, hob="gas"),
-    ),
-    Design(
-        "stove-glass-steel",
-        "stove",
-        "stainless-steel cooker with a glass hob",
-        (0.62, 0.60, 0.90),
-        "modern",
-        partial(stove, body=m.STAINLESS, hob="glass"),
-    ),
-    Design(
-        "stove-range",
-        "stove",
-        "wide charcoal range cooker",
-        (0.64, 0.90, 0.96),
-        "classic",
-        partial(stove, body=m.CHARCOAL, hob="gas"),
-    ),
-    Design(
-        "stove-rings",
-        "stove",
-        "cream electric cooker",
-        (0.60, 0.54, 0.93),
-        "rustic",
-        partial(stove, body=m.CREAM, hob="rings"),
-    ),
-)
+    design("stove", "gas-white", "white gas cooker", (0.62, 0.60, 0.95), "classic", stove, body=m.WHITE, hob="gas"),
+    design("stove", "glass-steel", "stainless-steel cooker with a glass hob", (0.62, 0.60, 0.90), "modern", stove, body=m.STAINLESS, hob="glass"),
+    design("stove", "range", "wide charcoal range cooker", (0.64, 0.90, 0.96), "classic", stove, body=m.CHARCOAL, hob="gas"),
+    design("stove", "rings", "cream electric cooker", (0.60, 0.54, 0.93), "rustic", stove, body=m.CREAM, hob="rings"),
+)  # fmt: skip

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.carcass import door_front, drawer_front
 from diorama_core.library.furniture.fittings import at, tap
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, of
+from diorama_core.library.furniture.model import Design, Parts, Size, design, of
 from diorama_core.library.furniture.solids import box
 
 
@@ -73,50 +71,9 @@ def _worktop_with_basin(d: float, w: float, h: float, t: float, top: Material) -
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "kitchen-counter-white-oak",
-        "kitchen counter",
-        "white kitchen units with an oak worktop",
-        (0.62, 1.80, 0.90),
-        "modern",
-        partial(counter, body=m.WHITE, top=m.OAK, units=("door", "drawers", "door")),
-    ),
-    Design(
-        "kitchen-counter-sage-marble",
-        "kitchen counter",
-        "sage panelled units with a marble top",
-        (0.62, 2.00, 0.91),
-        "classic",
-        partial(
-            counter, body=m.SAGE, top=m.MARBLE, units=("pair", "drawers"), panel="shaker", pull=m.BRASS, handle="knob"
-        ),
-    ),
-    Design(
-        "kitchen-counter-sink-unit",
-        "kitchen counter",
-        "grey kitchen unit with a steel sink",
-        (0.62, 1.60, 1.14),
-        "modern",
-        partial(counter, body=m.LIGHT_GREY, top=m.GRANITE, units=("door", "pair"), basin=True),
-    ),
-    Design(
-        "kitchen-counter-island",
-        "kitchen counter",
-        "navy kitchen island",
-        (0.90, 1.60, 0.92),
-        "modern",
-        partial(
-            counter, body=m.NAVY, top=m.LIGHT_OAK, units=("drawers", "door", "drawers"), panel="shaker", pull=m.BRASS
-        ),
-    ),
-    Design(
-        "kitchen-counter-concrete",
-        "kitchen counter",
-        "walnut units with a concrete worktop",
-        (0.64, 2.40, 0.90),
-        "industrial",
-        partial(
-            counter, body=m.WALNUT, top=m.CONCRETE, units=("door", "drawers", "drawers", "door"), pull=m.BLACK_STEEL
-        ),
-    ),
-)
+    design("kitchen counter", "white-oak", "white kitchen units with an oak worktop", (0.62, 1.80, 0.90), "modern", counter, body=m.WHITE, top=m.OAK, units=("door", "drawers", "door")),
+    design("kitchen counter", "sage-marble", "sage panelled units with a marble top", (0.62, 2.00, 0.91), "classic", counter, body=m.SAGE, top=m.MARBLE, units=("pair", "drawers"), panel="shaker", pull=m.BRASS, handle="knob"),
+    design("kitchen counter", "sink-unit", "grey kitchen unit with a steel sink", (0.62, 1.60, 1.14), "modern", counter, body=m.LIGHT_GREY, top=m.GRANITE, units=("door", "pair"), basin=True),
+    design("kitchen counter", "island", "navy kitchen island", (0.90, 1.60, 0.92), "modern", counter, body=m.NAVY, top=m.LIGHT_OAK, units=("drawers", "door", "drawers"), panel="shaker", pull=m.BRASS),
+    design("kitchen counter", "concrete", "walnut units with a concrete worktop", (0.64, 2.40, 0.90), "industrial", counter, body=m.WALNUT, top=m.CONCRETE, units=("door", "drawers", "drawers", "door"), pull=m.BLACK_STEEL),
+)  # fmt: skip

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.fittings import at, bar_handle, knob
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, four, of
+from diorama_core.library.furniture.model import Design, Parts, Size, design, four, of
 from diorama_core.library.furniture.solids import box, cylinder, lathe
 
 
@@ -56,36 +54,8 @@ def washing_machine(size: Size, body: Material, trim: Material, kind: str = "fro
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "washing-machine-white",
-        "washing machine",
-        "white front-loading washing machine",
-        (0.58, 0.60, 0.85),
-        "minimal",
-        partial(washing_machine, body=m.WHITE, trim=m.LIGHT_GREY),
-    ),
-    Design(
-        "washing-machine-graphite",
-        "washing machine",
-        "graphite washing machine",
-        (0.60, 0.60, 0.85),
-        "modern",
-        partial(washing_machine, body=m.CHARCOAL, trim=m.STEEL),
-    ),
-    Design(
-        "washing-machine-top-loader",
-        "washing machine",
-        "white top-loading washing machine",
-        (0.62, 0.62, 1.00),
-        "classic",
-        partial(washing_machine, body=m.WHITE, trim=m.GREY, kind="top"),
-    ),
-    Design(
-        "washing-machine-dishwasher",
-        "dishwasher",
-        "stainless-steel dishwasher",
-        (0.60, 0.60, 0.84),
-        "modern",
-        partial(washing_machine, body=m.STAINLESS, trim=m.BLACK, kind="dish"),
-    ),
-)
+    design("washing machine", "white", "white front-loading washing machine", (0.58, 0.60, 0.85), "minimal", washing_machine, body=m.WHITE, trim=m.LIGHT_GREY),
+    design("washing machine", "graphite", "graphite washing machine", (0.60, 0.60, 0.85), "modern", washing_machine, body=m.CHARCOAL, trim=m.STEEL),
+    design("washing machine", "top-loader", "white top-loading washing machine", (0.62, 0.62, 1.00), "classic", washing_machine, body=m.WHITE, trim=m.GREY, kind="top"),
+    design("dishwasher", "dishwasher", "stainless-steel dishwasher", (0.60, 0.60, 0.84), "modern", washing_machine, id="washing-machine-dishwasher", body=m.STAINLESS, trim=m.BLACK, kind="dish"),
+)  # fmt: skip

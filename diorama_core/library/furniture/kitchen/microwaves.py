@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.fittings import at, bar_handle, knob
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, four, of
+from diorama_core.library.furniture.model import Design, Parts, Size, design, four, of
 from diorama_core.library.furniture.solids import box, cylinder, prism, rounded_rectangle
 
 
@@ -51,44 +49,9 @@ def microwave(size: Size, body: Material, kind: str = "microwave") -> Parts:
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "microwave-black",
-        "microwave",
-        "black microwave oven",
-        (0.38, 0.50, 0.29),
-        "modern",
-        partial(microwave, body=m.BLACK),
-    ),
-    Design(
-        "microwave-steel",
-        "microwave",
-        "stainless-steel microwave",
-        (0.40, 0.52, 0.31),
-        "modern",
-        partial(microwave, body=m.STAINLESS),
-    ),
-    Design(
-        "microwave-white",
-        "microwave",
-        "white microwave",
-        (0.36, 0.46, 0.27),
-        "minimal",
-        partial(microwave, body=m.WHITE),
-    ),
-    Design(
-        "microwave-mini-oven",
-        "microwave",
-        "small countertop oven with knobs",
-        (0.36, 0.45, 0.27),
-        "classic",
-        partial(microwave, body=m.STAINLESS, kind="oven"),
-    ),
-    Design(
-        "microwave-toaster",
-        "microwave",
-        "cream two-slot toaster",
-        (0.18, 0.30, 0.20),
-        "classic",
-        partial(microwave, body=m.CREAM, kind="toaster"),
-    ),
-)
+    design("microwave", "black", "black microwave oven", (0.38, 0.50, 0.29), "modern", microwave, body=m.BLACK),
+    design("microwave", "steel", "stainless-steel microwave", (0.40, 0.52, 0.31), "modern", microwave, body=m.STAINLESS),
+    design("microwave", "white", "white microwave", (0.36, 0.46, 0.27), "minimal", microwave, body=m.WHITE),
+    design("microwave", "mini-oven", "small countertop oven with knobs", (0.36, 0.45, 0.27), "classic", microwave, body=m.STAINLESS, kind="oven"),
+    design("microwave", "toaster", "cream two-slot toaster", (0.18, 0.30, 0.20), "classic", microwave, body=m.CREAM, kind="toaster"),
+)  # fmt: skip

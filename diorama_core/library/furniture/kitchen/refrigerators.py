@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.fittings import at, bar_handle
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, of
+from diorama_core.library.furniture.model import Design, Parts, Size, design, of
 from diorama_core.library.furniture.solids import box
 
 
@@ -46,44 +44,9 @@ def refrigerator(size: Size, body: Material, layout: str, round_edge: float = 0.
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "refrigerator-white-top",
-        "refrigerator",
-        "white refrigerator with a freezer above",
-        (0.68, 0.66, 1.55),
-        "minimal",
-        partial(refrigerator, body=m.WHITE, layout="top"),
-    ),
-    Design(
-        "refrigerator-steel-bottom",
-        "refrigerator",
-        "stainless-steel fridge freezer",
-        (0.68, 0.62, 1.86),
-        "modern",
-        partial(refrigerator, body=m.STAINLESS, layout="bottom"),
-    ),
-    Design(
-        "refrigerator-double",
-        "refrigerator",
-        "side-by-side stainless-steel refrigerator",
-        (0.74, 0.92, 1.78),
-        "modern",
-        partial(refrigerator, body=m.STAINLESS, layout="double"),
-    ),
-    Design(
-        "refrigerator-retro",
-        "refrigerator",
-        "rounded sage refrigerator",
-        (0.70, 0.60, 1.52),
-        "classic",
-        partial(refrigerator, body=m.SAGE, layout="single", round_edge=0.055),
-    ),
-    Design(
-        "refrigerator-small",
-        "refrigerator",
-        "small white refrigerator",
-        (0.56, 0.52, 0.84),
-        "minimal",
-        partial(refrigerator, body=m.WHITE, layout="single"),
-    ),
-)
+    design("refrigerator", "white-top", "white refrigerator with a freezer above", (0.68, 0.66, 1.55), "minimal", refrigerator, body=m.WHITE, layout="top"),
+    design("refrigerator", "steel-bottom", "stainless-steel fridge freezer", (0.68, 0.62, 1.86), "modern", refrigerator, body=m.STAINLESS, layout="bottom"),
+    design("refrigerator", "double", "side-by-side stainless-steel refrigerator", (0.74, 0.92, 1.78), "modern", refrigerator, body=m.STAINLESS, layout="double"),
+    design("refrigerator", "retro", "rounded sage refrigerator", (0.70, 0.60, 1.52), "classic", refrigerator, body=m.SAGE, layout="single", round_edge=0.055),
+    design("refrigerator", "small", "small white refrigerator", (0.56, 0.52, 0.84), "minimal", refrigerator, body=m.WHITE, layout="single"),
+)  # fmt: skip

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, four, of
+from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
 from diorama_core.library.furniture.solids import beam, bend, box, cushion, ring_path, superellipse, taper, tube
 
 
@@ -52,49 +50,9 @@ def hairpin_bench(size: Size, wood: Material, steel: Material) -> Parts:
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "bench-plank-oak",
-        "bench",
-        "oak plank bench",
-        (0.36, 1.30, 0.45),
-        "rustic",
-        partial(wooden_bench, wood=m.OAK, legs=m.OAK),
-        2,
-    ),
-    Design(
-        "bench-plank-reclaimed",
-        "bench",
-        "reclaimed-wood bench with black legs",
-        (0.38, 1.50, 0.46),
-        "industrial",
-        partial(wooden_bench, wood=m.RECLAIMED, legs=m.BLACK_WOOD, planks=3),
-        2,
-    ),
-    Design(
-        "bench-padded-linen",
-        "bench",
-        "linen upholstered bench",
-        (0.42, 1.20, 0.48),
-        "classic",
-        partial(padded_bench, cloth=m.LINEN, legs=m.WALNUT),
-        2,
-    ),
-    Design(
-        "bench-padded-green",
-        "bench",
-        "forest green upholstered bench",
-        (0.44, 1.05, 0.46),
-        "modern",
-        partial(padded_bench, cloth=m.GREEN_FABRIC, legs=m.BRASS),
-        2,
-    ),
-    Design(
-        "bench-hairpin",
-        "bench",
-        "walnut bench on hairpin legs",
-        (0.36, 1.10, 0.45),
-        "industrial",
-        partial(hairpin_bench, wood=m.WALNUT, steel=m.BLACK_STEEL),
-        2,
-    ),
-)
+    design("bench", "plank-oak", "oak plank bench", (0.36, 1.30, 0.45), "rustic", wooden_bench, 2, wood=m.OAK, legs=m.OAK),
+    design("bench", "plank-reclaimed", "reclaimed-wood bench with black legs", (0.38, 1.50, 0.46), "industrial", wooden_bench, 2, wood=m.RECLAIMED, legs=m.BLACK_WOOD, planks=3),
+    design("bench", "padded-linen", "linen upholstered bench", (0.42, 1.20, 0.48), "classic", padded_bench, 2, cloth=m.LINEN, legs=m.WALNUT),
+    design("bench", "padded-green", "forest green upholstered bench", (0.44, 1.05, 0.46), "modern", padded_bench, 2, cloth=m.GREEN_FABRIC, legs=m.BRASS),
+    design("bench", "hairpin", "walnut bench on hairpin legs", (0.36, 1.10, 0.45), "industrial", hairpin_bench, 2, wood=m.WALNUT, steel=m.BLACK_STEEL),
+)  # fmt: skip

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from functools import partial
 from itertools import pairwise
 
 import numpy as np
 
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, of
+from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, of
 from diorama_core.library.furniture.seating.wooden_chairs import curved_back
 from diorama_core.library.furniture.solids import bend, box, prism, rod, superellipse, taper, tube
 
@@ -66,36 +65,8 @@ def cantilever_chair(size: Size, frame: Material, web: Material) -> Parts:
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "chair-cafe-steel",
-        "chair",
-        "pressed-steel café chair",
-        (0.49, 0.45, 0.85),
-        "industrial",
-        partial(metal_cafe_chair, colour=m.BLACK_STEEL, seat=None),
-    ),
-    Design(
-        "chair-cafe-wood-seat",
-        "chair",
-        "steel café chair with an oak seat",
-        (0.50, 0.46, 0.84),
-        "industrial",
-        partial(metal_cafe_chair, colour=m.IRON, seat=m.OAK),
-    ),
-    Design(
-        "chair-cantilever-cane",
-        "chair",
-        "chrome cantilever chair with cane seat and back",
-        (0.57, 0.47, 0.82),
-        "modern",
-        partial(cantilever_chair, frame=m.CHROME, web=m.RATTAN),
-    ),
-    Design(
-        "chair-cantilever-black",
-        "chair",
-        "cantilever chair in black leather",
-        (0.58, 0.50, 0.86),
-        "modern",
-        partial(cantilever_chair, frame=m.CHROME, web=m.BLACK_LEATHER),
-    ),
-)
+    design("chair", "cafe-steel", "pressed-steel café chair", (0.49, 0.45, 0.85), "industrial", metal_cafe_chair, colour=m.BLACK_STEEL, seat=None),
+    design("chair", "cafe-wood-seat", "steel café chair with an oak seat", (0.50, 0.46, 0.84), "industrial", metal_cafe_chair, colour=m.IRON, seat=m.OAK),
+    design("chair", "cantilever-cane", "chrome cantilever chair with cane seat and back", (0.57, 0.47, 0.82), "modern", cantilever_chair, frame=m.CHROME, web=m.RATTAN),
+    design("chair", "cantilever-black", "cantilever chair in black leather", (0.58, 0.50, 0.86), "modern", cantilever_chair, frame=m.CHROME, web=m.BLACK_LEATHER),
+)  # fmt: skip

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 
 import numpy as np
 from jaxtyping import Float
@@ -11,7 +10,7 @@ from scipy.interpolate import PchipInterpolator
 
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, four, of
+from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
 from diorama_core.library.furniture.solids import bend, box, rod, slab, tube
 
 
@@ -74,20 +73,6 @@ def shell_chair(size: Size, shell: Material, legs: Material, base: str) -> Parts
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "chair-shell-white",
-        "chair",
-        "white shell chair on beech dowels",
-        (0.53, 0.47, 0.82),
-        "modern",
-        partial(shell_chair, shell=m.WHITE, legs=m.BIRCH, base="wood"),
-    ),
-    Design(
-        "chair-shell-sage",
-        "chair",
-        "sage moulded chair on steel tube",
-        (0.54, 0.48, 0.80),
-        "modern",
-        partial(shell_chair, shell=m.SAGE, legs=m.BLACK_STEEL, base="steel"),
-    ),
-)
+    design("chair", "shell-white", "white shell chair on beech dowels", (0.53, 0.47, 0.82), "modern", shell_chair, shell=m.WHITE, legs=m.BIRCH, base="wood"),
+    design("chair", "shell-sage", "sage moulded chair on steel tube", (0.54, 0.48, 0.80), "modern", shell_chair, shell=m.SAGE, legs=m.BLACK_STEEL, base="steel"),
+)  # fmt: skip

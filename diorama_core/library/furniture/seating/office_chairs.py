@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Literal
 
 import numpy as np
 
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, of
+from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, of
 from diorama_core.library.furniture.solids import Solid, bend, box, cushion, cylinder, rod, slab, tube
 
 
@@ -89,44 +88,9 @@ def office_chair(
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "office-chair-mesh-black",
-        "office chair",
-        "black mesh office chair",
-        (0.64, 0.64, 1.00),
-        "modern",
-        partial(office_chair, cloth=m.CHARCOAL_FABRIC, frame=m.BLACK, back="mesh"),
-    ),
-    Design(
-        "office-chair-task-blue",
-        "office chair",
-        "blue task chair without arms",
-        (0.60, 0.60, 0.92),
-        "minimal",
-        partial(office_chair, cloth=m.BLUE_FABRIC, frame=m.CHARCOAL, back="padded", arms=False),
-    ),
-    Design(
-        "office-chair-executive",
-        "office chair",
-        "black leather executive chair",
-        (0.68, 0.68, 1.16),
-        "classic",
-        partial(office_chair, cloth=m.BLACK_LEATHER, frame=m.BLACK, back="high"),
-    ),
-    Design(
-        "office-chair-task-grey",
-        "office chair",
-        "grey padded office chair with arms",
-        (0.63, 0.64, 0.96),
-        "modern",
-        partial(office_chair, cloth=m.GREY_FABRIC, frame=m.STEEL, back="padded"),
-    ),
-    Design(
-        "office-chair-tan",
-        "office chair",
-        "tan leather desk chair",
-        (0.62, 0.62, 0.94),
-        "industrial",
-        partial(office_chair, cloth=m.TAN_LEATHER, frame=m.BLACK_STEEL, back="padded"),
-    ),
-)
+    design("office chair", "mesh-black", "black mesh office chair", (0.64, 0.64, 1.00), "modern", office_chair, cloth=m.CHARCOAL_FABRIC, frame=m.BLACK, back="mesh"),
+    design("office chair", "task-blue", "blue task chair without arms", (0.60, 0.60, 0.92), "minimal", office_chair, cloth=m.BLUE_FABRIC, frame=m.CHARCOAL, back="padded", arms=False),
+    design("office chair", "executive", "black leather executive chair", (0.68, 0.68, 1.16), "classic", office_chair, cloth=m.BLACK_LEATHER, frame=m.BLACK, back="high"),
+    design("office chair", "task-grey", "grey padded office chair with arms", (0.63, 0.64, 0.96), "modern", office_chair, cloth=m.GREY_FABRIC, frame=m.STEEL, back="padded"),
+    design("office chair", "tan", "tan leather desk chair", (0.62, 0.62, 0.94), "industrial", office_chair, cloth=m.TAN_LEATHER, frame=m.BLACK_STEEL, back="padded"),
+)  # fmt: skip

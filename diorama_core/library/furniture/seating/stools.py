@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, four, of
+from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
 from diorama_core.library.furniture.solids import (
     beam,
     box,
@@ -87,22 +85,6 @@ def step_stool(size: Size, wood: Material) -> Parts:
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "stool-round-oak",
-        "stool",
-        "low round oak stool",
-        (0.36, 0.36, 0.45),
-        "minimal",
-        partial(round_stool, wood=m.OAK, seat=m.OAK),
-        4,
-    ),
-    Design(
-        "stool-farm-pine",
-        "stool",
-        "small pine farmhouse stool",
-        (0.26, 0.40, 0.34),
-        "rustic",
-        partial(step_stool, wood=m.PINE),
-        2,
-    ),
-)
+    design("stool", "round-oak", "low round oak stool", (0.36, 0.36, 0.45), "minimal", round_stool, 4, wood=m.OAK, seat=m.OAK),
+    design("stool", "farm-pine", "small pine farmhouse stool", (0.26, 0.40, 0.34), "rustic", step_stool, 2, wood=m.PINE),
+)  # fmt: skip

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, four, of
+from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
 from diorama_core.library.furniture.solids import bend, box, cushion, taper, tube
 
 
@@ -38,28 +36,7 @@ def padded_chair(size: Size, cloth: Material, legs: Material, arms: bool = False
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "chair-padded-grey",
-        "chair",
-        "grey upholstered dining chair",
-        (0.58, 0.49, 0.87),
-        "modern",
-        partial(padded_chair, cloth=m.GREY_FABRIC, legs=m.OAK),
-    ),
-    Design(
-        "chair-padded-blue",
-        "chair",
-        "slate blue upholstered chair with arms",
-        (0.59, 0.56, 0.84),
-        "modern",
-        partial(padded_chair, cloth=m.BLUE_FABRIC, legs=m.BLACK_STEEL, arms=True),
-    ),
-    Design(
-        "chair-padded-tan",
-        "chair",
-        "tan leather dining chair",
-        (0.60, 0.48, 0.95),
-        "classic",
-        partial(padded_chair, cloth=m.TAN_LEATHER, legs=m.DARK_WALNUT),
-    ),
-)
+    design("chair", "padded-grey", "grey upholstered dining chair", (0.58, 0.49, 0.87), "modern", padded_chair, cloth=m.GREY_FABRIC, legs=m.OAK),
+    design("chair", "padded-blue", "slate blue upholstered chair with arms", (0.59, 0.56, 0.84), "modern", padded_chair, cloth=m.BLUE_FABRIC, legs=m.BLACK_STEEL, arms=True),
+    design("chair", "padded-tan", "tan leather dining chair", (0.60, 0.48, 0.95), "classic", padded_chair, cloth=m.TAN_LEATHER, legs=m.DARK_WALNUT),
+)  # fmt: skip

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, of
+from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, of
 from diorama_core.library.furniture.solids import (
     Solid,
     beam,
@@ -153,76 +151,13 @@ def folding_chair(size: Size, wood: Material, frame: Material) -> Parts:
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "chair-slat-oak",
-        "chair",
-        "oak dining chair with a slatted back",
-        (0.53, 0.46, 0.88),
-        "classic",
-        partial(dining_chair, wood=m.OAK, seat=None, back="slats"),
-    ),
-    Design(
-        "chair-ladder-walnut",
-        "chair",
-        "walnut ladder-back chair with a linen seat",
-        (0.52, 0.47, 0.98),
-        "rustic",
-        partial(dining_chair, wood=m.WALNUT, seat=m.LINEN, back="ladder"),
-    ),
-    Design(
-        "chair-panel-birch",
-        "chair",
-        "birch chair with a plain panel back",
-        (0.51, 0.46, 0.80),
-        "minimal",
-        partial(dining_chair, wood=m.BIRCH, seat=None, back="panel"),
-    ),
-    Design(
-        "chair-cross-black",
-        "chair",
-        "black cross-back chair with a cane seat",
-        (0.52, 0.48, 0.89),
-        "rustic",
-        partial(dining_chair, wood=m.BLACK_WOOD, seat=m.RATTAN, back="cross"),
-    ),
-    Design(
-        "chair-slat-mahogany",
-        "chair",
-        "mahogany dining chair with a leather seat",
-        (0.55, 0.50, 1.02),
-        "classic",
-        partial(dining_chair, wood=m.MAHOGANY, seat=m.BROWN_LEATHER, back="slats"),
-    ),
-    Design(
-        "chair-windsor-oak",
-        "chair",
-        "oak Windsor chair with a hooped spindle back",
-        (0.54, 0.50, 0.93),
-        "classic",
-        partial(windsor_chair, wood=m.OAK),
-    ),
-    Design(
-        "chair-windsor-black",
-        "chair",
-        "black Windsor chair",
-        (0.52, 0.48, 0.86),
-        "rustic",
-        partial(windsor_chair, wood=m.BLACK_WOOD),
-    ),
-    Design(
-        "chair-folding-pine",
-        "chair",
-        "slatted pine folding chair",
-        (0.50, 0.45, 0.79),
-        "minimal",
-        partial(folding_chair, wood=m.PINE, frame=m.PINE),
-    ),
-    Design(
-        "chair-folding-black",
-        "chair",
-        "folding chair with a black frame and oak slats",
-        (0.48, 0.43, 0.80),
-        "industrial",
-        partial(folding_chair, wood=m.OAK, frame=m.BLACK_STEEL),
-    ),
-)
+    design("chair", "slat-oak", "oak dining chair with a slatted back", (0.53, 0.46, 0.88), "classic", dining_chair, wood=m.OAK, seat=None, back="slats"),
+    design("chair", "ladder-walnut", "walnut ladder-back chair with a linen seat", (0.52, 0.47, 0.98), "rustic", dining_chair, wood=m.WALNUT, seat=m.LINEN, back="ladder"),
+    design("chair", "panel-birch", "birch chair with a plain panel back", (0.51, 0.46, 0.80), "minimal", dining_chair, wood=m.BIRCH, seat=None, back="panel"),
+    design("chair", "cross-black", "black cross-back chair with a cane seat", (0.52, 0.48, 0.89), "rustic", dining_chair, wood=m.BLACK_WOOD, seat=m.RATTAN, back="cross"),
+    design("chair", "slat-mahogany", "mahogany dining chair with a leather seat", (0.55, 0.50, 1.02), "classic", dining_chair, wood=m.MAHOGANY, seat=m.BROWN_LEATHER, back="slats"),
+    design("chair", "windsor-oak", "oak Windsor chair with a hooped spindle back", (0.54, 0.50, 0.93), "classic", windsor_chair, wood=m.OAK),
+    design("chair", "windsor-black", "black Windsor chair", (0.52, 0.48, 0.86), "rustic", windsor_chair, wood=m.BLACK_WOOD),
+    design("chair", "folding-pine", "slatted pine folding chair", (0.50, 0.45, 0.79), "minimal", folding_chair, wood=m.PINE, frame=m.PINE),
+    design("chair", "folding-black", "folding chair with a black frame and oak slats", (0.48, 0.43, 0.80), "industrial", folding_chair, wood=m.OAK, frame=m.BLACK_STEEL),
+)  # fmt: skip

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.carcass import open_case
 from diorama_core.library.furniture.cases import Base, feet
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, four, of
+from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
 from diorama_core.library.furniture.solids import beam, box, rod
 
 
@@ -97,84 +95,14 @@ def cube_shelf(size: Size, wood: Material, rows: int, columns: int) -> Parts:
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "bookshelf-oak-four",
-        "bookshelf",
-        "oak bookcase with four shelves",
-        (0.32, 0.90, 1.60),
-        "classic",
-        partial(bookcase, wood=m.OAK, levels=4),
-    ),
-    Design(
-        "bookshelf-white-five",
-        "bookshelf",
-        "tall white bookcase",
-        (0.30, 0.80, 2.02),
-        "minimal",
-        partial(bookcase, wood=m.WHITE, levels=6, base="none"),
-    ),
-    Design(
-        "bookshelf-walnut-crown",
-        "bookshelf",
-        "walnut bookcase with a cornice",
-        (0.36, 1.05, 1.95),
-        "classic",
-        partial(bookcase, wood=m.WALNUT, levels=5, crown=True),
-    ),
-    Design(
-        "bookshelf-low-oak",
-        "bookshelf",
-        "low oak bookcase on splayed legs",
-        (0.32, 1.10, 0.85),
-        "modern",
-        partial(bookcase, wood=m.LIGHT_OAK, levels=2, base="splay"),
-    ),
-    Design(
-        "bookshelf-steel-frame",
-        "bookshelf",
-        "industrial shelving with reclaimed boards",
-        (0.36, 1.05, 1.80),
-        "industrial",
-        partial(frame_shelf, boards=m.RECLAIMED, frame=m.BLACK_STEEL, levels=5),
-    ),
-    Design(
-        "bookshelf-metal-rack",
-        "bookshelf",
-        "grey metal storage rack",
-        (0.42, 0.95, 1.70),
-        "industrial",
-        partial(frame_shelf, boards=m.LIGHT_GREY, frame=m.STEEL, levels=5),
-    ),
-    Design(
-        "bookshelf-ladder",
-        "bookshelf",
-        "leaning ladder shelf",
-        (0.42, 0.65, 1.85),
-        "modern",
-        partial(ladder_shelf, wood=m.OAK, frame=m.BLACK_STEEL),
-    ),
-    Design(
-        "bookshelf-cubes",
-        "bookshelf",
-        "white cube shelving",
-        (0.39, 1.12, 1.12),
-        "minimal",
-        partial(cube_shelf, wood=m.WHITE, rows=3, columns=3),
-    ),
-    Design(
-        "bookshelf-cubes-tall",
-        "bookshelf",
-        "tall birch cube shelving",
-        (0.39, 0.77, 1.47),
-        "minimal",
-        partial(cube_shelf, wood=m.BIRCH, rows=4, columns=2),
-    ),
-    Design(
-        "bookshelf-wide",
-        "bookshelf",
-        "wide bookcase with two columns",
-        (0.32, 1.50, 1.85),
-        "rustic",
-        partial(bookcase, wood=m.PINE, levels=5, columns=2),
-    ),
-)
+    design("bookshelf", "oak-four", "oak bookcase with four shelves", (0.32, 0.90, 1.60), "classic", bookcase, wood=m.OAK, levels=4),
+    design("bookshelf", "white-five", "tall white bookcase", (0.30, 0.80, 2.02), "minimal", bookcase, wood=m.WHITE, levels=6, base="none"),
+    design("bookshelf", "walnut-crown", "walnut bookcase with a cornice", (0.36, 1.05, 1.95), "classic", bookcase, wood=m.WALNUT, levels=5, crown=True),
+    design("bookshelf", "low-oak", "low oak bookcase on splayed legs", (0.32, 1.10, 0.85), "modern", bookcase, wood=m.LIGHT_OAK, levels=2, base="splay"),
+    design("bookshelf", "steel-frame", "industrial shelving with reclaimed boards", (0.36, 1.05, 1.80), "industrial", frame_shelf, boards=m.RECLAIMED, frame=m.BLACK_STEEL, levels=5),
+    design("bookshelf", "metal-rack", "grey metal storage rack", (0.42, 0.95, 1.70), "industrial", frame_shelf, boards=m.LIGHT_GREY, frame=m.STEEL, levels=5),
+    design("bookshelf", "ladder", "leaning ladder shelf", (0.42, 0.65, 1.85), "modern", ladder_shelf, wood=m.OAK, frame=m.BLACK_STEEL),
+    design("bookshelf", "cubes", "white cube shelving", (0.39, 1.12, 1.12), "minimal", cube_shelf, wood=m.WHITE, rows=3, columns=3),
+    design("bookshelf", "cubes-tall", "tall birch cube shelving", (0.39, 0.77, 1.47), "minimal", cube_shelf, wood=m.BIRCH, rows=4, columns=2),
+    design("bookshelf", "wide", "wide bookcase with two columns", (0.32, 1.50, 1.85), "rustic", bookcase, wood=m.PINE, levels=5, columns=2),
+)  # fmt: skip

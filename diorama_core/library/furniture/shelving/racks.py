@@ -17,7 +17,7 @@ from diorama_core.library.furniture.shelving.wall_shelves import wall_shelf
 from diorama_core.library.furniture.shelving.wardrobes import sliding_wardrobe, wardrobe
 from diorama_core.library.furniture.solids import beam, box, rod, tube
 from diorama_core.library.furniture.storage.styled import styled_case
-from diorama_core.library.furniture.styles import CLASSIC, MINIMAL, MODERN, RUSTIC, Style, styled
+from diorama_core.library.furniture.styles import CLASSIC, MINIMAL, MODERN, RUSTIC, Style
 
 
 def dresser_bookcase(
@@ -178,10 +178,10 @@ CREAM = RUSTIC.but(wood=m.CREAM)
 DUCK = CLASSIC.but(wood=s.DUCK_EGG)
 
 DESIGNS: tuple[Design, ...] = (
-    styled("bookshelf", "cupboard-mahogany", "mahogany bookcase over a cupboard", (0.42, 1.00, 2.05), CLASSIC, dresser_bookcase, levels=4),
-    styled("bookshelf", "cupboard-pine", "pine dresser bookcase", (0.44, 1.10, 1.95), RUSTIC, dresser_bookcase, levels=3, bays=("door", "2", "door")),
-    styled("bookshelf", "cupboard-smoked", "smoked-oak bookcase with drawers below", (0.40, 1.00, 1.90), MODERN.but(wood=s.SMOKED_OAK, handle="none"), dresser_bookcase, levels=4, bays=("2", "2")),
-    styled("bookshelf", "cupboard-white", "white bookcase over plain doors", (0.38, 0.80, 2.00), MINIMAL.but(wood=m.WHITE), dresser_bookcase, levels=4),
+    design("bookshelf", "cupboard-mahogany", "mahogany bookcase over a cupboard", (0.42, 1.00, 2.05), CLASSIC, dresser_bookcase, levels=4),
+    design("bookshelf", "cupboard-pine", "pine dresser bookcase", (0.44, 1.10, 1.95), RUSTIC, dresser_bookcase, levels=3, bays=("door", "2", "door")),
+    design("bookshelf", "cupboard-smoked", "smoked-oak bookcase with drawers below", (0.40, 1.00, 1.90), MODERN.but(wood=s.SMOKED_OAK, handle="none"), dresser_bookcase, levels=4, bays=("2", "2")),
+    design("bookshelf", "cupboard-white", "white bookcase over plain doors", (0.38, 0.80, 2.00), MINIMAL.but(wood=m.WHITE), dresser_bookcase, levels=4),
     design("bookshelf", "stepped-birch", "birch stepped bookshelf", (0.30, 1.20, 1.20), "minimal", stepped_shelf, wood=m.BIRCH, columns=3),
     design("bookshelf", "stepped-walnut", "walnut stepped shelf of four steps", (0.32, 1.40, 1.40), "modern", stepped_shelf, wood=m.WALNUT, columns=4),
     design("bookshelf", "asymmetric-oak", "oak bookshelf with staggered uprights", (0.32, 1.20, 1.75), "modern", asymmetric_shelf, boards=m.OAK, frame=m.BLACK_STEEL, levels=5),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -10,7 +9,7 @@ import numpy as np
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.carcass import open_case
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, of
+from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, of
 from diorama_core.library.furniture.solids import box, cylinder, rod
 
 
@@ -65,60 +64,11 @@ def pipe_shelf(size: Size, wood: Material, steel: Material) -> Parts:
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "shelves-floating-oak",
-        "shelves",
-        "floating oak shelf",
-        (0.22, 0.90, 0.045),
-        "minimal",
-        partial(wall_shelf, wood=m.OAK, kind="board"),
-    ),
-    Design(
-        "shelves-floating-white",
-        "shelves",
-        "floating white shelf",
-        (0.24, 1.10, 0.05),
-        "minimal",
-        partial(wall_shelf, wood=m.WHITE, kind="board"),
-    ),
-    Design(
-        "shelves-bracket",
-        "shelves",
-        "walnut shelf on steel brackets",
-        (0.24, 1.00, 0.22),
-        "industrial",
-        partial(wall_shelf, wood=m.WALNUT, kind="bracket"),
-    ),
-    Design(
-        "shelves-box",
-        "shelves",
-        "oak wall box shelf",
-        (0.24, 0.80, 0.50),
-        "modern",
-        partial(wall_shelf, wood=m.OAK, kind="box"),
-    ),
-    Design(
-        "shelves-stack",
-        "shelves",
-        "three-tier wall shelf",
-        (0.22, 0.90, 0.75),
-        "classic",
-        partial(wall_shelf, wood=m.CHERRY, kind="stack"),
-    ),
-    Design(
-        "shelves-rail",
-        "shelves",
-        "wall-rail shelving with birch boards",
-        (0.26, 1.10, 1.00),
-        "modern",
-        partial(wall_shelf, wood=m.BIRCH, kind="rail", metal=m.WHITE),
-    ),
-    Design(
-        "shelves-pipe",
-        "shelves",
-        "plank shelves on pipe brackets",
-        (0.26, 1.10, 0.60),
-        "industrial",
-        partial(pipe_shelf, wood=m.RECLAIMED, steel=m.BLACK_STEEL),
-    ),
-)
+    design("shelves", "floating-oak", "floating oak shelf", (0.22, 0.90, 0.045), "minimal", wall_shelf, wood=m.OAK, kind="board"),
+    design("shelves", "floating-white", "floating white shelf", (0.24, 1.10, 0.05), "minimal", wall_shelf, wood=m.WHITE, kind="board"),
+    design("shelves", "bracket", "walnut shelf on steel brackets", (0.24, 1.00, 0.22), "industrial", wall_shelf, wood=m.WALNUT, kind="bracket"),
+    design("shelves", "box", "oak wall box shelf", (0.24, 0.80, 0.50), "modern", wall_shelf, wood=m.OAK, kind="box"),
+    design("shelves", "stack", "three-tier wall shelf", (0.22, 0.90, 0.75), "classic", wall_shelf, wood=m.CHERRY, kind="stack"),
+    design("shelves", "rail", "wall-rail shelving with birch boards", (0.26, 1.10, 1.00), "modern", wall_shelf, wood=m.BIRCH, kind="rail", metal=m.WHITE),
+    design("shelves", "pipe", "plank shelves on pipe brackets", (0.26, 1.10, 0.60), "industrial", pipe_shelf, wood=m.RECLAIMED, steel=m.BLACK_STEEL),
+)  # fmt: skip

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.carcass import door_front, drawer_front, plinth
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, of
+from diorama_core.library.furniture.model import Design, Parts, Size, design, of
 from diorama_core.library.furniture.solids import box
 
 
@@ -96,52 +94,10 @@ def sliding_wardrobe(size: Size, body: Material, front: Material, doors: int) ->
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "wardrobe-white-two",
-        "wardrobe",
-        "white two-door wardrobe",
-        (0.58, 1.00, 2.00),
-        "minimal",
-        partial(wardrobe, body=m.WHITE, doors=2),
-    ),
-    Design(
-        "wardrobe-oak-three",
-        "wardrobe",
-        "oak three-door wardrobe with drawers",
-        (0.60, 1.45, 2.02),
-        "modern",
-        partial(wardrobe, body=m.OAK, doors=3, drawers=True, pull=m.BLACK_STEEL),
-    ),
-    Design(
-        "wardrobe-armoire",
-        "wardrobe",
-        "walnut armoire with a cornice",
-        (0.62, 1.20, 2.08),
-        "classic",
-        partial(wardrobe, body=m.WALNUT, doors=2, panel="shaker", drawers=True, crown=True, pull=m.BRASS),
-    ),
-    Design(
-        "wardrobe-sliding",
-        "wardrobe",
-        "sliding-door wardrobe in light oak",
-        (0.65, 1.80, 2.10),
-        "modern",
-        partial(sliding_wardrobe, body=m.WHITE, front=m.LIGHT_OAK, doors=2),
-    ),
-    Design(
-        "wardrobe-mirror",
-        "wardrobe",
-        "white wardrobe with a mirror door",
-        (0.58, 1.50, 2.10),
-        "modern",
-        partial(wardrobe, body=m.WHITE, doors=3, mirror=1),
-    ),
-    Design(
-        "wardrobe-rustic",
-        "wardrobe",
-        "cream painted rustic wardrobe",
-        (0.58, 1.10, 1.95),
-        "rustic",
-        partial(wardrobe, body=m.CREAM, doors=2, panel="shaker", crown=True, pull=m.IRON),
-    ),
-)
+    design("wardrobe", "white-two", "white two-door wardrobe", (0.58, 1.00, 2.00), "minimal", wardrobe, body=m.WHITE, doors=2),
+    design("wardrobe", "oak-three", "oak three-door wardrobe with drawers", (0.60, 1.45, 2.02), "modern", wardrobe, body=m.OAK, doors=3, drawers=True, pull=m.BLACK_STEEL),
+    design("wardrobe", "armoire", "walnut armoire with a cornice", (0.62, 1.20, 2.08), "classic", wardrobe, body=m.WALNUT, doors=2, panel="shaker", drawers=True, crown=True, pull=m.BRASS),
+    design("wardrobe", "sliding", "sliding-door wardrobe in light oak", (0.65, 1.80, 2.10), "modern", sliding_wardrobe, body=m.WHITE, front=m.LIGHT_OAK, doors=2),
+    design("wardrobe", "mirror", "white wardrobe with a mirror door", (0.58, 1.50, 2.10), "modern", wardrobe, body=m.WHITE, doors=3, mirror=1),
+    design("wardrobe", "rustic", "cream painted rustic wardrobe", (0.58, 1.10, 1.95), "rustic", wardrobe, body=m.CREAM, doors=2, panel="shaker", crown=True, pull=m.IRON),
+)  # fmt: skip

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.carcass import open_case
 from diorama_core.library.furniture.cases import case
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, of, shifted
+from diorama_core.library.furniture.model import Design, Parts, Size, design, of, shifted
 from diorama_core.library.furniture.solids import box
 
 
@@ -35,12 +33,5 @@ def curio(size: Size, wood: Material, levels: int) -> Parts:
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "cabinet-display",
-        "display cabinet",
-        "glazed walnut display cabinet",
-        (0.42, 0.95, 1.90),
-        "classic",
-        partial(curio, wood=m.WALNUT, levels=4),
-    ),
-)
+    design("display cabinet", "display", "glazed walnut display cabinet", (0.42, 0.95, 1.90), "classic", curio, id="cabinet-display", wood=m.WALNUT, levels=4),
+)  # fmt: skip

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.carcass import drawer_front
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, of
+from diorama_core.library.furniture.model import Design, Parts, Size, design, of
 from diorama_core.library.furniture.solids import box
 
 
@@ -26,20 +24,6 @@ def filing_cabinet(size: Size, steel: Material, drawers: int) -> Parts:
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "cabinet-filing",
-        "filing cabinet",
-        "grey steel filing cabinet",
-        (0.60, 0.46, 1.02),
-        "industrial",
-        partial(filing_cabinet, steel=m.LIGHT_GREY, drawers=3),
-    ),
-    Design(
-        "cabinet-low-filing",
-        "filing cabinet",
-        "white pedestal on castors' plinth",
-        (0.55, 0.42, 0.60),
-        "minimal",
-        partial(filing_cabinet, steel=m.WHITE, drawers=3),
-    ),
-)
+    design("filing cabinet", "filing", "grey steel filing cabinet", (0.60, 0.46, 1.02), "industrial", filing_cabinet, id="cabinet-filing", steel=m.LIGHT_GREY, drawers=3),
+    design("filing cabinet", "low-filing", "white pedestal on castors' plinth", (0.55, 0.42, 0.60), "minimal", filing_cabinet, id="cabinet-low-filing", steel=m.WHITE, drawers=3),
+)  # fmt: skip

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.carcass import door_front
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, four, of
+from diorama_core.library.furniture.model import Design, Parts, Size, design, four, of
 from diorama_core.library.furniture.solids import box
 
 
@@ -34,12 +32,5 @@ def locker(size: Size, body: Material, doors: int) -> Parts:
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "cabinet-lockers",
-        "locker",
-        "sage steel lockers",
-        (0.45, 0.90, 1.80),
-        "industrial",
-        partial(locker, body=m.SAGE, doors=3),
-    ),
-)
+    design("locker", "lockers", "sage steel lockers", (0.45, 0.90, 1.80), "industrial", locker, id="cabinet-lockers", body=m.SAGE, doors=3),
+)  # fmt: skip

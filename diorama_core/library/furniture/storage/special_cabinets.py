@@ -14,7 +14,7 @@ from diorama_core.library.furniture.solids import box, cushion, rod
 from diorama_core.library.furniture.storage.filing_cabinets import filing_cabinet
 from diorama_core.library.furniture.storage.lockers import locker
 from diorama_core.library.furniture.storage.styled import styled_case
-from diorama_core.library.furniture.styles import CLASSIC, INDUSTRIAL, MINIMAL, MODERN, RUSTIC, Style, styled
+from diorama_core.library.furniture.styles import CLASSIC, INDUSTRIAL, MINIMAL, MODERN, RUSTIC, Style
 
 
 def wooden_files(size: Size, style: Style, drawers: int, columns: int = 1) -> Parts:
@@ -243,19 +243,19 @@ DUCK = CLASSIC.but(wood=s.DUCK_EGG, frame=s.DUCK_EGG, top=m.OAK)
 CREAM = RUSTIC.but(wood=m.CREAM, frame=m.CREAM, handle="knob")
 
 DESIGNS: tuple[Design, ...] = (
-    styled("filing cabinet", "oak-two", "oak filing cabinet with two drawers", (0.56, 0.46, 0.74), RUSTIC.but(wood=m.OAK), wooden_files, drawers=2),
-    styled("filing cabinet", "walnut-lateral", "walnut lateral file", (0.48, 0.92, 0.76), MODERN.but(handle="cup"), wooden_files, drawers=2),
-    styled("filing cabinet", "mahogany-four", "mahogany filing cabinet with four drawers", (0.60, 0.48, 1.32), CLASSIC, wooden_files, drawers=4),
+    design("filing cabinet", "oak-two", "oak filing cabinet with two drawers", (0.56, 0.46, 0.74), RUSTIC.but(wood=m.OAK), wooden_files, drawers=2),
+    design("filing cabinet", "walnut-lateral", "walnut lateral file", (0.48, 0.92, 0.76), MODERN.but(handle="cup"), wooden_files, drawers=2),
+    design("filing cabinet", "mahogany-four", "mahogany filing cabinet with four drawers", (0.60, 0.48, 1.32), CLASSIC, wooden_files, drawers=4),
     design("filing cabinet", "steel-four", "tall charcoal steel filing cabinet", (0.62, 0.47, 1.32), "industrial", filing_cabinet, steel=m.CHARCOAL, drawers=4),
-    styled("filing cabinet", "cards", "oak card-index cabinet", (0.45, 0.92, 1.05), RUSTIC.but(wood=m.OAK, fitting=m.BRASS), wooden_files, drawers=6, columns=3),
-    styled("display cabinet", "mahogany-crown", "mahogany china cabinet with glazing bars", (0.44, 1.15, 2.05), CLASSIC, display_cabinet, levels=4, low=0.4, bars=3, crown=True),
-    styled("display cabinet", "steel-glass", "black steel and glass cabinet", (0.40, 0.90, 1.75), INDUSTRIAL, display_cabinet, levels=4, bars=3),
-    styled("display cabinet", "oak-hutch", "oak kitchen hutch with glazed doors", (0.45, 1.30, 1.95), RUSTIC.but(wood=m.OAK), display_cabinet, levels=3, low=0.45, bars=1, doors=3, crown=True),
-    styled("display cabinet", "walnut-splay", "walnut glass cabinet on splayed legs", (0.40, 1.00, 1.50), MODERN, display_cabinet, levels=3),
-    styled("display cabinet", "white-tall", "narrow white vitrine", (0.36, 0.45, 1.70), WHITE, display_cabinet, levels=5, doors=1),
-    styled("shoe cabinet", "oak-tilting", "oak shoe cabinet with tilting fronts", (0.26, 0.80, 1.10), CANE, tilting_shoe_cabinet, flaps=3),
-    styled("shoe cabinet", "white-slim", "slim white shoe cabinet", (0.20, 0.70, 1.20), WHITE, tilting_shoe_cabinet, flaps=4),
-    styled("shoe cabinet", "duck-egg", "duck egg shoe cabinet with an oak top", (0.30, 1.00, 0.86), DUCK, tilting_shoe_cabinet, flaps=2, columns=2),
+    design("filing cabinet", "cards", "oak card-index cabinet", (0.45, 0.92, 1.05), RUSTIC.but(wood=m.OAK, fitting=m.BRASS), wooden_files, drawers=6, columns=3),
+    design("display cabinet", "mahogany-crown", "mahogany china cabinet with glazing bars", (0.44, 1.15, 2.05), CLASSIC, display_cabinet, levels=4, low=0.4, bars=3, crown=True),
+    design("display cabinet", "steel-glass", "black steel and glass cabinet", (0.40, 0.90, 1.75), INDUSTRIAL, display_cabinet, levels=4, bars=3),
+    design("display cabinet", "oak-hutch", "oak kitchen hutch with glazed doors", (0.45, 1.30, 1.95), RUSTIC.but(wood=m.OAK), display_cabinet, levels=3, low=0.45, bars=1, doors=3, crown=True),
+    design("display cabinet", "walnut-splay", "walnut glass cabinet on splayed legs", (0.40, 1.00, 1.50), MODERN, display_cabinet, levels=3),
+    design("display cabinet", "white-tall", "narrow white vitrine", (0.36, 0.45, 1.70), WHITE, display_cabinet, levels=5, doors=1),
+    design("shoe cabinet", "oak-tilting", "oak shoe cabinet with tilting fronts", (0.26, 0.80, 1.10), CANE, tilting_shoe_cabinet, flaps=3),
+    design("shoe cabinet", "white-slim", "slim white shoe cabinet", (0.20, 0.70, 1.20), WHITE, tilting_shoe_cabinet, flaps=4),
+    design("shoe cabinet", "duck-egg", "duck egg shoe cabinet with an oak top", (0.30, 1.00, 0.86), DUCK, tilting_shoe_cabinet, flaps=2, columns=2),
     design("shoe cabinet", "steel-rack", "steel shoe rack", (0.32, 0.90, 0.66), "industrial", shoe_rack, slats=m.BLACK_STEEL, frame=m.BLACK_STEEL, levels=3),
     design("shoe cabinet", "pine-bench", "pine shoe bench with a linen seat", (0.35, 0.95, 0.50), "rustic", shoe_rack, slats=m.PINE, frame=m.PINE, levels=2, bench=m.LINEN),
     design("shoe cabinet", "birch-rack", "birch shoe rack with four shelves", (0.30, 0.75, 0.80), "minimal", shoe_rack, slats=m.BIRCH, frame=m.BIRCH, levels=4),
@@ -264,9 +264,9 @@ DESIGNS: tuple[Design, ...] = (
     design("locker", "forest-three", "forest green changing-room lockers", (0.50, 0.96, 1.85), "classic", locker, body=s.FOREST, doors=3),
     design("locker", "rust-two", "rust-brown steel lockers", (0.46, 0.64, 1.70), "rustic", locker, body=m.paint("rust paint", "#7d5a45", 0.7), doors=2),
     design("locker", "iron-single", "single charcoal locker", (0.46, 0.38, 1.75), "industrial", locker, body=m.CHARCOAL, doors=1),
-    styled("pantry cabinet", "cream-glazed", "cream larder cupboard with glazed doors", (0.48, 0.95, 2.05), CREAM, pantry, glazed=True),
-    styled("pantry cabinet", "duck-egg", "duck egg panelled larder", (0.55, 0.90, 2.10), CLASSIC.but(wood=s.DUCK_EGG, frame=s.DUCK_EGG), pantry),
-    styled("pantry cabinet", "white-plain", "tall white kitchen cupboard", (0.58, 0.60, 2.10), WHITE.but(handle="bar"), pantry),
-    styled("pantry cabinet", "oak-modern", "tall oak kitchen cupboard", (0.56, 0.80, 2.05), OAK_MODERN, pantry),
-    styled("pantry cabinet", "charcoal", "charcoal larder with drawers below", (0.50, 0.80, 1.95), STEEL, pantry, split=0.42),
+    design("pantry cabinet", "cream-glazed", "cream larder cupboard with glazed doors", (0.48, 0.95, 2.05), CREAM, pantry, glazed=True),
+    design("pantry cabinet", "duck-egg", "duck egg panelled larder", (0.55, 0.90, 2.10), CLASSIC.but(wood=s.DUCK_EGG, frame=s.DUCK_EGG), pantry),
+    design("pantry cabinet", "white-plain", "tall white kitchen cupboard", (0.58, 0.60, 2.10), WHITE.but(handle="bar"), pantry),
+    design("pantry cabinet", "oak-modern", "tall oak kitchen cupboard", (0.56, 0.80, 2.05), OAK_MODERN, pantry),
+    design("pantry cabinet", "charcoal", "charcoal larder with drawers below", (0.50, 0.80, 1.95), STEEL, pantry, split=0.42),
 )  # fmt: skip

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.carcass import drawer_front
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, four, of
+from diorama_core.library.furniture.model import Design, Parts, Size, design, four, of
 from diorama_core.library.furniture.solids import box, taper
 from diorama_core.library.furniture.tables.side_tables import block_table
 from diorama_core.library.furniture.tables.tops import (
@@ -37,75 +35,12 @@ def box_table(size: Size, wood: Material, top: Material, drawers: int, pull: Mat
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "coffee-table-oak-shelf",
-        "coffee table",
-        "oak coffee table with a lower shelf",
-        (0.60, 1.10, 0.45),
-        "classic",
-        partial(leg_table, top=m.OAK, legs=m.OAK, shape="square", apron=0.06, shelf=m.OAK),
-        2,
-    ),
-    Design(
-        "coffee-table-walnut-oval",
-        "coffee table",
-        "oval walnut coffee table",
-        (0.65, 1.20, 0.40),
-        "modern",
-        partial(leg_table, top=m.WALNUT, legs=m.WALNUT, outline="oval", shape="splay", apron=0.0),
-        2,
-    ),
-    Design(
-        "coffee-table-glass",
-        "coffee table",
-        "glass coffee table with a brass frame",
-        (0.65, 1.10, 0.42),
-        "modern",
-        partial(glass_table, frame=m.BRASS),
-        2,
-    ),
-    Design(
-        "coffee-table-steel-reclaimed",
-        "coffee table",
-        "reclaimed-wood coffee table in a steel frame",
-        (0.65, 1.15, 0.43),
-        "industrial",
-        partial(frame_table, top=m.RECLAIMED, frame=m.BLACK_STEEL, shelf=m.RECLAIMED),
-        2,
-    ),
-    Design(
-        "coffee-table-round-drum",
-        "coffee table",
-        "round oak drum coffee table",
-        (0.80, 0.80, 0.36),
-        "minimal",
-        partial(pedestal_table, top=m.LIGHT_OAK, foot=m.LIGHT_OAK, kind="drum"),
-        36,
-    ),
-    Design(
-        "coffee-table-marble-round",
-        "coffee table",
-        "round marble coffee table on black legs",
-        (0.85, 0.85, 0.42),
-        "modern",
-        partial(hairpin_table, top=m.MARBLE, steel=m.BLACK_STEEL, outline="round"),
-        4,
-    ),
-    Design(
-        "coffee-table-drawers",
-        "coffee table",
-        "walnut coffee table with two drawers",
-        (0.62, 1.15, 0.46),
-        "classic",
-        partial(box_table, wood=m.CHERRY, top=m.CHERRY, drawers=2, pull=m.BRASS),
-    ),
-    Design(
-        "coffee-table-block",
-        "coffee table",
-        "low rounded wooden block table",
-        (0.75, 0.95, 0.32),
-        "minimal",
-        partial(block_table, wood=m.DARK_WALNUT, groove=m.BLACK),
-        2,
-    ),
-)
+    design("coffee table", "oak-shelf", "oak coffee table with a lower shelf", (0.60, 1.10, 0.45), "classic", leg_table, 2, top=m.OAK, legs=m.OAK, shape="square", apron=0.06, shelf=m.OAK),
+    design("coffee table", "walnut-oval", "oval walnut coffee table", (0.65, 1.20, 0.40), "modern", leg_table, 2, top=m.WALNUT, legs=m.WALNUT, outline="oval", shape="splay", apron=0.0),
+    design("coffee table", "glass", "glass coffee table with a brass frame", (0.65, 1.10, 0.42), "modern", glass_table, 2, frame=m.BRASS),
+    design("coffee table", "steel-reclaimed", "reclaimed-wood coffee table in a steel frame", (0.65, 1.15, 0.43), "industrial", frame_table, 2, top=m.RECLAIMED, frame=m.BLACK_STEEL, shelf=m.RECLAIMED),
+    design("coffee table", "round-drum", "round oak drum coffee table", (0.80, 0.80, 0.36), "minimal", pedestal_table, 36, top=m.LIGHT_OAK, foot=m.LIGHT_OAK, kind="drum"),
+    design("coffee table", "marble-round", "round marble coffee table on black legs", (0.85, 0.85, 0.42), "modern", hairpin_table, 4, top=m.MARBLE, steel=m.BLACK_STEEL, outline="round"),
+    design("coffee table", "drawers", "walnut coffee table with two drawers", (0.62, 1.15, 0.46), "classic", box_table, wood=m.CHERRY, top=m.CHERRY, drawers=2, pull=m.BRASS),
+    design("coffee table", "block", "low rounded wooden block table", (0.75, 0.95, 0.32), "minimal", block_table, 2, wood=m.DARK_WALNUT, groove=m.BLACK),
+)  # fmt: skip

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.carcass import drawer_front
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, four, of
+from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
 from diorama_core.library.furniture.solids import box, rod, taper
 from diorama_core.library.furniture.tables.dining_tables import trestle_table
 from diorama_core.library.furniture.tables.tops import table_top
@@ -85,62 +83,11 @@ def standing_desk(size: Size, top: Material, frame: Material) -> Parts:
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "desk-writing-oak",
-        "desk",
-        "oak writing desk with drawers",
-        (0.65, 1.30, 0.76),
-        "modern",
-        partial(drawer_desk, wood=m.OAK, legs=m.OAK, pull=m.BLACK_STEEL),
-    ),
-    Design(
-        "desk-writing-white",
-        "desk",
-        "white writing desk",
-        (0.60, 1.10, 0.75),
-        "minimal",
-        partial(drawer_desk, wood=m.WHITE, legs=m.BIRCH, pull=m.BRASS, splay=False),
-    ),
-    Design(
-        "desk-pedestal-walnut",
-        "desk",
-        "walnut desk with a drawer pedestal",
-        (0.70, 1.45, 0.75),
-        "classic",
-        partial(pedestal_desk, wood=m.WALNUT, body=m.WALNUT, pull=m.BRASS),
-    ),
-    Design(
-        "desk-pedestal-double",
-        "desk",
-        "mahogany partner's desk with two pedestals",
-        (0.80, 1.60, 0.77),
-        "classic",
-        partial(pedestal_desk, wood=m.MAHOGANY, body=m.MAHOGANY, pull=m.BRASS, sides=(1, -1)),
-    ),
-    Design(
-        "desk-office-grey",
-        "desk",
-        "grey office desk with drawers",
-        (0.75, 1.50, 0.74),
-        "minimal",
-        partial(pedestal_desk, wood=m.LIGHT_OAK, body=m.LIGHT_GREY, pull=m.STEEL, sides=(-1,)),
-    ),
-    Design(
-        "desk-standing",
-        "desk",
-        "height-adjustable desk with an oak top",
-        (0.75, 1.50, 0.78),
-        "modern",
-        partial(standing_desk, top=m.OAK, frame=m.BLACK_STEEL),
-        2,
-    ),
-    Design(
-        "desk-trestle",
-        "desk",
-        "reclaimed-wood desk on A-frames",
-        (0.70, 1.40, 0.75),
-        "industrial",
-        partial(trestle_table, top=m.RECLAIMED, frame=m.BLACK_STEEL, kind="a"),
-        2,
-    ),
-)
+    design("desk", "writing-oak", "oak writing desk with drawers", (0.65, 1.30, 0.76), "modern", drawer_desk, wood=m.OAK, legs=m.OAK, pull=m.BLACK_STEEL),
+    design("desk", "writing-white", "white writing desk", (0.60, 1.10, 0.75), "minimal", drawer_desk, wood=m.WHITE, legs=m.BIRCH, pull=m.BRASS, splay=False),
+    design("desk", "pedestal-walnut", "walnut desk with a drawer pedestal", (0.70, 1.45, 0.75), "classic", pedestal_desk, wood=m.WALNUT, body=m.WALNUT, pull=m.BRASS),
+    design("desk", "pedestal-double", "mahogany partner's desk with two pedestals", (0.80, 1.60, 0.77), "classic", pedestal_desk, wood=m.MAHOGANY, body=m.MAHOGANY, pull=m.BRASS, sides=(1, -1)),
+    design("desk", "office-grey", "grey office desk with drawers", (0.75, 1.50, 0.74), "minimal", pedestal_desk, wood=m.LIGHT_OAK, body=m.LIGHT_GREY, pull=m.STEEL, sides=(-1,)),
+    design("desk", "standing", "height-adjustable desk with an oak top", (0.75, 1.50, 0.78), "modern", standing_desk, 2, top=m.OAK, frame=m.BLACK_STEEL),
+    design("desk", "trestle", "reclaimed-wood desk on A-frames", (0.70, 1.40, 0.75), "industrial", trestle_table, 2, top=m.RECLAIMED, frame=m.BLACK_STEEL, kind="a"),
+)  # fmt: skip

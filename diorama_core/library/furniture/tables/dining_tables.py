@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, of
+from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, of
 from diorama_core.library.furniture.solids import beam, box, taper
 from diorama_core.library.furniture.tables.tops import leg_table, pedestal_table
 
@@ -47,112 +45,16 @@ def trestle_table(size: Size, top: Material, frame: Material, kind: str = "x") -
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "table-oak-classic",
-        "table",
-        "oak dining table with tapered legs",
-        (0.85, 1.60, 0.75),
-        "classic",
-        partial(leg_table, top=m.OAK, legs=m.OAK),
-        2,
-    ),
-    Design(
-        "table-walnut-splay",
-        "table",
-        "walnut table with splayed legs",
-        (0.90, 1.80, 0.74),
-        "modern",
-        partial(leg_table, top=m.WALNUT, legs=m.WALNUT, outline="soft", shape="splay", apron=0.0),
-        2,
-    ),
-    Design(
-        "table-white-square",
-        "table",
-        "small white kitchen table",
-        (0.75, 0.75, 0.74),
-        "minimal",
-        partial(leg_table, top=m.WHITE, legs=m.BIRCH, shape="square", apron=0.06),
-        4,
-    ),
-    Design(
-        "table-farmhouse",
-        "table",
-        "farmhouse table with turned legs",
-        (0.92, 1.75, 0.77),
-        "rustic",
-        partial(leg_table, top=m.PINE, legs=m.CREAM, shape="turned", apron=0.1),
-        2,
-    ),
-    Design(
-        "table-round-tulip",
-        "table",
-        "round white tulip table",
-        (1.10, 1.10, 0.73),
-        "modern",
-        partial(pedestal_table, top=m.WHITE, foot=m.WHITE),
-        36,
-    ),
-    Design(
-        "table-round-oak",
-        "table",
-        "round oak table on four legs",
-        (1.05, 1.05, 0.75),
-        "minimal",
-        partial(leg_table, top=m.LIGHT_OAK, legs=m.LIGHT_OAK, outline="round", shape="splay", apron=0.0),
-        4,
-    ),
-    Design(
-        "table-round-claw",
-        "table",
-        "round mahogany pedestal table",
-        (1.20, 1.20, 0.76),
-        "classic",
-        partial(pedestal_table, top=m.MAHOGANY, foot=m.MAHOGANY, kind="claw"),
-        4,
-    ),
-    Design(
-        "table-round-bistro",
-        "table",
-        "round marble bistro table",
-        (0.70, 0.70, 0.74),
-        "industrial",
-        partial(pedestal_table, top=m.MARBLE, foot=m.BLACK_STEEL, kind="disc"),
-        36,
-    ),
-    Design(
-        "table-trestle-x",
-        "table",
-        "plank table on crossed trestles",
-        (0.90, 1.80, 0.76),
-        "rustic",
-        partial(trestle_table, top=m.RECLAIMED, frame=m.RECLAIMED),
-        2,
-    ),
-    Design(
-        "table-steel-hoop",
-        "table",
-        "oak table on black steel hoops",
-        (0.95, 2.00, 0.75),
-        "industrial",
-        partial(trestle_table, top=m.OAK, frame=m.BLACK_STEEL, kind="box"),
-        2,
-    ),
-    Design(
-        "table-oval-walnut",
-        "table",
-        "oval walnut dining table",
-        (1.00, 1.90, 0.74),
-        "modern",
-        partial(leg_table, top=m.WALNUT, legs=m.BLACK_WOOD, outline="oval", shape="splay", apron=0.0),
-        2,
-    ),
-    Design(
-        "table-conference",
-        "table",
-        "long light oak conference table",
-        (1.10, 2.60, 0.74),
-        "minimal",
-        partial(trestle_table, top=m.LIGHT_OAK, frame=m.WHITE, kind="a"),
-        2,
-    ),
-)
+    design("table", "oak-classic", "oak dining table with tapered legs", (0.85, 1.60, 0.75), "classic", leg_table, 2, top=m.OAK, legs=m.OAK),
+    design("table", "walnut-splay", "walnut table with splayed legs", (0.90, 1.80, 0.74), "modern", leg_table, 2, top=m.WALNUT, legs=m.WALNUT, outline="soft", shape="splay", apron=0.0),
+    design("table", "white-square", "small white kitchen table", (0.75, 0.75, 0.74), "minimal", leg_table, 4, top=m.WHITE, legs=m.BIRCH, shape="square", apron=0.06),
+    design("table", "farmhouse", "farmhouse table with turned legs", (0.92, 1.75, 0.77), "rustic", leg_table, 2, top=m.PINE, legs=m.CREAM, shape="turned", apron=0.1),
+    design("table", "round-tulip", "round white tulip table", (1.10, 1.10, 0.73), "modern", pedestal_table, 36, top=m.WHITE, foot=m.WHITE),
+    design("table", "round-oak", "round oak table on four legs", (1.05, 1.05, 0.75), "minimal", leg_table, 4, top=m.LIGHT_OAK, legs=m.LIGHT_OAK, outline="round", shape="splay", apron=0.0),
+    design("table", "round-claw", "round mahogany pedestal table", (1.20, 1.20, 0.76), "classic", pedestal_table, 4, top=m.MAHOGANY, foot=m.MAHOGANY, kind="claw"),
+    design("table", "round-bistro", "round marble bistro table", (0.70, 0.70, 0.74), "industrial", pedestal_table, 36, top=m.MARBLE, foot=m.BLACK_STEEL, kind="disc"),
+    design("table", "trestle-x", "plank table on crossed trestles", (0.90, 1.80, 0.76), "rustic", trestle_table, 2, top=m.RECLAIMED, frame=m.RECLAIMED),
+    design("table", "steel-hoop", "oak table on black steel hoops", (0.95, 2.00, 0.75), "industrial", trestle_table, 2, top=m.OAK, frame=m.BLACK_STEEL, kind="box"),
+    design("table", "oval-walnut", "oval walnut dining table", (1.00, 1.90, 0.74), "modern", leg_table, 2, top=m.WALNUT, legs=m.BLACK_WOOD, outline="oval", shape="splay", apron=0.0),
+    design("table", "conference", "long light oak conference table", (1.10, 2.60, 0.74), "minimal", trestle_table, 2, top=m.LIGHT_OAK, frame=m.WHITE, kind="a"),
+)  # fmt: skip

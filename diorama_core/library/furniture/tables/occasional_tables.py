@@ -12,7 +12,7 @@ from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of, shifted
 from diorama_core.library.furniture.solids import bend, box, cushion, cylinder, lathe, prism, rod, superellipse, tube
 from diorama_core.library.furniture.storage.chests import trunk
-from diorama_core.library.furniture.styles import CLASSIC, INDUSTRIAL, MINIMAL, MODERN, RUSTIC, Style, styled
+from diorama_core.library.furniture.styles import CLASSIC, INDUSTRIAL, MINIMAL, MODERN, RUSTIC, Style
 from diorama_core.library.furniture.tables.tops import frame_table, table_top
 
 
@@ -237,9 +237,9 @@ def styled_console(size: Size, style: Style, drawers: int = 2, shelf: bool = Tru
 DESIGNS: tuple[Design, ...] = (
     design("coffee table", "nesting-marble", "pair of round marble tables on brass", (0.80, 1.10, 0.44), "modern", nesting_tables, tops=(m.MARBLE, m.MARBLE), legs=m.BRASS),
     design("coffee table", "nesting-oak", "pair of round oak and black tables", (0.82, 1.15, 0.42), "minimal", nesting_tables, tops=(m.LIGHT_OAK, m.BLACK_WOOD), legs=m.BLACK_STEEL),
-    styled("coffee table", "drawer-mahogany", "mahogany coffee table with drawers", (0.65, 1.15, 0.46), CLASSIC, drawer_coffee_table, 1, drawers=2),
-    styled("coffee table", "drawer-pine", "pine coffee table with a slatted shelf", (0.65, 1.10, 0.45), RUSTIC, drawer_coffee_table, 1, drawers=1),
-    styled("coffee table", "steel-shelf", "reclaimed-wood coffee table on steel", (0.65, 1.20, 0.42), INDUSTRIAL, drawer_coffee_table, 2, drawers=0),
+    design("coffee table", "drawer-mahogany", "mahogany coffee table with drawers", (0.65, 1.15, 0.46), CLASSIC, drawer_coffee_table, 1, drawers=2),
+    design("coffee table", "drawer-pine", "pine coffee table with a slatted shelf", (0.65, 1.10, 0.45), RUSTIC, drawer_coffee_table, 1, drawers=1),
+    design("coffee table", "steel-shelf", "reclaimed-wood coffee table on steel", (0.65, 1.20, 0.42), INDUSTRIAL, drawer_coffee_table, 2, drawers=0),
     design("coffee table", "waterfall-walnut", "walnut waterfall coffee table", (0.60, 1.20, 0.38), "modern", waterfall_table, 2, wood=m.WALNUT, shelf=True),
     design("coffee table", "sculpted-glass", "sculpted walnut coffee table with a glass top", (0.90, 1.25, 0.41), "modern", sculpted_glass_table, 1, wood=m.WALNUT),
     design("coffee table", "travertine", "oval stone coffee table on three legs", (0.75, 1.20, 0.36), "minimal", pillow_table, 1, stone=m.Material("travertine", "clay", "#cfc0a8", 0.6, 0.0, 0.6)),
@@ -251,15 +251,15 @@ DESIGNS: tuple[Design, ...] = (
     design("side table", "fluted-white", "white fluted drum side table", (0.42, 0.42, 0.50), "modern", drum_table, 36, side=m.WHITE, top=m.WHITE, ribs=40),
     design("side table", "barrel-oak", "oak barrel side table with iron bands", (0.44, 0.44, 0.55), "rustic", drum_table, 36, side=m.OAK, top=m.OAK, band=m.IRON),
     design("side table", "concrete-drum", "concrete drum side table", (0.40, 0.40, 0.46), "industrial", drum_table, 36, side=m.CONCRETE, top=m.CONCRETE),
-    styled("side table", "drawer-cherry", "cherry side table with a drawer", (0.42, 0.46, 0.62), CLASSIC.but(wood=m.CHERRY, frame=m.CHERRY, top=m.CHERRY), drawer_coffee_table, 1, drawers=1),
-    styled("side table", "drawer-oak", "oak end table with a shelf", (0.45, 0.50, 0.56), RUSTIC.but(wood=m.OAK, frame=m.OAK), drawer_coffee_table, 1, drawers=0),
+    design("side table", "drawer-cherry", "cherry side table with a drawer", (0.42, 0.46, 0.62), CLASSIC.but(wood=m.CHERRY, frame=m.CHERRY, top=m.CHERRY), drawer_coffee_table, 1, drawers=1),
+    design("side table", "drawer-oak", "oak end table with a shelf", (0.45, 0.50, 0.56), RUSTIC.but(wood=m.OAK, frame=m.OAK), drawer_coffee_table, 1, drawers=0),
     design("side table", "waterfall-birch", "birch waterfall side table", (0.36, 0.45, 0.48), "minimal", waterfall_table, 2, wood=m.BIRCH),
     design("console table", "demilune", "half-round mahogany hall table", (0.36, 0.95, 0.78), "classic", demilune_table, 1, wood=m.MAHOGANY, profile="taper", drawer=True),
     design("console table", "demilune-white", "half-round whitewashed console with bowed legs", (0.38, 1.00, 0.80), "classic", demilune_table, 1, wood=m.WHITEWASH, profile="cabriole"),
-    styled("console table", "pine-drawers", "pine console table with two drawers", (0.36, 1.10, 0.80), RUSTIC, styled_console, 1),
-    styled("console table", "reclaimed-steel", "reclaimed-wood console on steel", (0.36, 1.25, 0.78), INDUSTRIAL, styled_console, 2, drawers=0),
-    styled("console table", "walnut-splay", "walnut console table on splayed legs", (0.38, 1.20, 0.76), MODERN, styled_console, 1, drawers=2, shelf=False),
-    styled("console table", "birch-slim", "slim birch console table", (0.30, 1.00, 0.76), MINIMAL, styled_console, 2, drawers=0, shelf=False),
+    design("console table", "pine-drawers", "pine console table with two drawers", (0.36, 1.10, 0.80), RUSTIC, styled_console, 1),
+    design("console table", "reclaimed-steel", "reclaimed-wood console on steel", (0.36, 1.25, 0.78), INDUSTRIAL, styled_console, 2, drawers=0),
+    design("console table", "walnut-splay", "walnut console table on splayed legs", (0.38, 1.20, 0.76), MODERN, styled_console, 1, drawers=2, shelf=False),
+    design("console table", "birch-slim", "slim birch console table", (0.30, 1.00, 0.76), MINIMAL, styled_console, 2, drawers=0, shelf=False),
     design("console table", "waterfall-oak", "oak waterfall console", (0.34, 1.20, 0.76), "modern", waterfall_table, 2, wood=m.OAK),
     design("console table", "glass-brass", "brass console table with a glass top", (0.34, 1.15, 0.77), "modern", frame_table, 2, top=m.GLASS, frame=m.BRASS, shelf=m.GLASS),
 )  # fmt: skip

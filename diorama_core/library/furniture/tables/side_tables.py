@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, of
+from diorama_core.library.furniture.model import Design, Parts, Size, design, of
 from diorama_core.library.furniture.solids import bend, lathe, prism, rod, rounded_rectangle, superellipse, tube
 from diorama_core.library.furniture.tables.tops import frame_table, leg_table, pedestal_table
 
@@ -74,66 +72,11 @@ def shell_pouf_table(size: Size, wicker: Material, top: Material) -> Parts:
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "side-table-tripod-oak",
-        "side table",
-        "round oak tripod side table",
-        (0.45, 0.45, 0.52),
-        "minimal",
-        partial(tripod_table, top=m.OAK, legs=m.OAK),
-        symmetry=3,
-    ),
-    Design(
-        "side-table-tulip",
-        "side table",
-        "white tulip side table with a marble top",
-        (0.45, 0.45, 0.53),
-        "modern",
-        partial(pedestal_table, top=m.MARBLE, foot=m.WHITE),
-        36,
-    ),
-    Design(
-        "side-table-tray",
-        "side table",
-        "brass tray table",
-        (0.46, 0.46, 0.55),
-        "modern",
-        partial(tray_table, tray=m.BRASS, legs=m.BLACK_STEEL),
-        4,
-    ),
-    Design(
-        "side-table-stump",
-        "side table",
-        "tree-stump side table",
-        (0.38, 0.40, 0.46),
-        "rustic",
-        partial(stump_table, bark=m.BARK, core=m.PINE),
-    ),
-    Design(
-        "side-table-frame",
-        "side table",
-        "steel-framed side table with a walnut top",
-        (0.40, 0.45, 0.58),
-        "industrial",
-        partial(frame_table, top=m.WALNUT, frame=m.BLACK_STEEL, shelf=m.WALNUT),
-        2,
-    ),
-    Design(
-        "side-table-classic-shelf",
-        "side table",
-        "cherry side table with a shelf",
-        (0.45, 0.50, 0.60),
-        "classic",
-        partial(leg_table, top=m.CHERRY, legs=m.CHERRY, shelf=m.CHERRY),
-        2,
-    ),
-    Design(
-        "side-table-wicker",
-        "side table",
-        "wicker drum side table",
-        (0.45, 0.45, 0.48),
-        "rustic",
-        partial(shell_pouf_table, wicker=m.WICKER, top=m.OAK),
-        36,
-    ),
-)
+    design("side table", "tripod-oak", "round oak tripod side table", (0.45, 0.45, 0.52), "minimal", tripod_table, 3, top=m.OAK, legs=m.OAK),
+    design("side table", "tulip", "white tulip side table with a marble top", (0.45, 0.45, 0.53), "modern", pedestal_table, 36, top=m.MARBLE, foot=m.WHITE),
+    design("side table", "tray", "brass tray table", (0.46, 0.46, 0.55), "modern", tray_table, 4, tray=m.BRASS, legs=m.BLACK_STEEL),
+    design("side table", "stump", "tree-stump side table", (0.38, 0.40, 0.46), "rustic", stump_table, bark=m.BARK, core=m.PINE),
+    design("side table", "frame", "steel-framed side table with a walnut top", (0.40, 0.45, 0.58), "industrial", frame_table, 2, top=m.WALNUT, frame=m.BLACK_STEEL, shelf=m.WALNUT),
+    design("side table", "classic-shelf", "cherry side table with a shelf", (0.45, 0.50, 0.60), "classic", leg_table, 2, top=m.CHERRY, legs=m.CHERRY, shelf=m.CHERRY),
+    design("side table", "wicker", "wicker drum side table", (0.45, 0.45, 0.48), "rustic", shell_pouf_table, 36, wicker=m.WICKER, top=m.OAK),
+)  # fmt: skip

@@ -8,7 +8,7 @@ from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture import styles as s
 from diorama_core.library.furniture.carcass import drawer_front
 from diorama_core.library.furniture.legs import leg
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, four, of
+from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
 from diorama_core.library.furniture.solids import (
     box,
     cylinder,
@@ -19,7 +19,7 @@ from diorama_core.library.furniture.solids import (
     superellipse,
     tube,
 )
-from diorama_core.library.furniture.styles import CLASSIC, INDUSTRIAL, MINIMAL, MODERN, RUSTIC, Style, styled
+from diorama_core.library.furniture.styles import CLASSIC, INDUSTRIAL, MINIMAL, MODERN, RUSTIC, Style
 
 TABLE_M = 0.76
 """Height of the table top."""
@@ -124,11 +124,11 @@ def _mirror(d: float, w: float, h: float, z: float, style: Style, kind: str) -> 
 
 
 DESIGNS: tuple[Design, ...] = (
-    styled("vanity table", "round-walnut", "walnut dressing table with a round brass mirror", (0.45, 1.00, 1.36), MODERN, vanity, mirror="round"),
-    styled("vanity table", "triple-cream", "cream dressing table with a triple mirror", (0.46, 1.15, 1.40), CLASSIC.but(wood=m.CREAM, frame=m.CREAM, top=m.CREAM, leg="cabriole"), vanity, mirror="triple"),
-    styled("vanity table", "oval-mahogany", "mahogany dressing table with an oval mirror", (0.48, 1.05, 1.42), CLASSIC, vanity, mirror="oval", pedestals=True),
-    styled("vanity table", "square-pine", "pine dressing table with a mirror", (0.45, 0.95, 1.30), RUSTIC, vanity, mirror="square"),
-    styled("vanity table", "steel", "reclaimed-wood dressing table on steel", (0.44, 0.95, 1.34), INDUSTRIAL, vanity, mirror="round"),
-    styled("vanity table", "birch", "birch dressing table with a plain mirror", (0.42, 0.85, 1.26), MINIMAL, vanity, mirror="square"),
-    styled("vanity table", "blush-low", "blush dressing table without a mirror", (0.45, 1.00, 0.77), MODERN.but(wood=s.BLUSH, frame=m.BRASS, leg="taper"), vanity, mirror="none"),
+    design("vanity table", "round-walnut", "walnut dressing table with a round brass mirror", (0.45, 1.00, 1.36), MODERN, vanity, mirror="round"),
+    design("vanity table", "triple-cream", "cream dressing table with a triple mirror", (0.46, 1.15, 1.40), CLASSIC.but(wood=m.CREAM, frame=m.CREAM, top=m.CREAM, leg="cabriole"), vanity, mirror="triple"),
+    design("vanity table", "oval-mahogany", "mahogany dressing table with an oval mirror", (0.48, 1.05, 1.42), CLASSIC, vanity, mirror="oval", pedestals=True),
+    design("vanity table", "square-pine", "pine dressing table with a mirror", (0.45, 0.95, 1.30), RUSTIC, vanity, mirror="square"),
+    design("vanity table", "steel", "reclaimed-wood dressing table on steel", (0.44, 0.95, 1.34), INDUSTRIAL, vanity, mirror="round"),
+    design("vanity table", "birch", "birch dressing table with a plain mirror", (0.42, 0.85, 1.26), MINIMAL, vanity, mirror="square"),
+    design("vanity table", "blush-low", "blush dressing table without a mirror", (0.45, 1.00, 0.77), MODERN.but(wood=s.BLUSH, frame=m.BRASS, leg="taper"), vanity, mirror="none"),
 )  # fmt: skip

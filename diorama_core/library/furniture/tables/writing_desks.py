@@ -10,7 +10,7 @@ from diorama_core.library.furniture.legs import leg
 from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
 from diorama_core.library.furniture.solids import beam, box, prism, rod
-from diorama_core.library.furniture.styles import CLASSIC, INDUSTRIAL, MINIMAL, MODERN, RUSTIC, Style, styled
+from diorama_core.library.furniture.styles import CLASSIC, INDUSTRIAL, MINIMAL, MODERN, RUSTIC, Style
 from diorama_core.library.furniture.tables.desks import standing_desk
 
 
@@ -158,13 +158,13 @@ def shelf_desk(size: Size, top: Material, frame: Material, levels: int = 3) -> P
 
 
 DESIGNS: tuple[Design, ...] = (
-    styled("desk", "writing-mahogany", "mahogany writing table with turned legs", (0.65, 1.30, 0.77), CLASSIC, styled_desk),
-    styled("desk", "writing-pine", "pine writing desk", (0.60, 1.15, 0.76), RUSTIC, styled_desk, drawers=2),
-    styled("desk", "gallery-walnut", "walnut desk with pigeon holes", (0.62, 1.20, 0.98), MODERN, styled_desk, drawers=2, gallery=True),
-    styled("desk", "reclaimed-drawers", "reclaimed-wood desk with drawers on steel legs", (0.62, 1.40, 0.76), INDUSTRIAL, styled_desk),
-    styled("desk", "birch-slim", "slim birch desk", (0.55, 1.10, 0.74), MINIMAL, styled_desk, drawers=2),
-    styled("desk", "secretary-cherry", "cherry bureau with its front let down", (0.78, 0.90, 1.05), CLASSIC.but(wood=m.CHERRY, frame=m.CHERRY), secretary),
-    styled("desk", "secretary-oak", "oak bureau with its front let down", (0.76, 0.85, 1.02), RUSTIC.but(wood=m.OAK, frame=m.OAK), secretary),
+    design("desk", "writing-mahogany", "mahogany writing table with turned legs", (0.65, 1.30, 0.77), CLASSIC, styled_desk),
+    design("desk", "writing-pine", "pine writing desk", (0.60, 1.15, 0.76), RUSTIC, styled_desk, drawers=2),
+    design("desk", "gallery-walnut", "walnut desk with pigeon holes", (0.62, 1.20, 0.98), MODERN, styled_desk, drawers=2, gallery=True),
+    design("desk", "reclaimed-drawers", "reclaimed-wood desk with drawers on steel legs", (0.62, 1.40, 0.76), INDUSTRIAL, styled_desk),
+    design("desk", "birch-slim", "slim birch desk", (0.55, 1.10, 0.74), MINIMAL, styled_desk, drawers=2),
+    design("desk", "secretary-cherry", "cherry bureau with its front let down", (0.78, 0.90, 1.05), CLASSIC.but(wood=m.CHERRY, frame=m.CHERRY), secretary),
+    design("desk", "secretary-oak", "oak bureau with its front let down", (0.76, 0.85, 1.02), RUSTIC.but(wood=m.OAK, frame=m.OAK), secretary),
     design("desk", "corner-oak", "L-shaped oak desk on black steel", (1.30, 1.50, 0.74), "modern", corner_desk, top=m.OAK, frame=m.BLACK_STEEL),
     design("desk", "corner-white", "L-shaped white desk", (1.20, 1.60, 0.73), "minimal", corner_desk, top=m.WHITE, frame=m.STEEL),
     design("desk", "shelves-reclaimed", "reclaimed-wood desk with shelves at its side", (0.55, 1.30, 1.45), "industrial", shelf_desk, top=m.RECLAIMED, frame=m.BLACK_STEEL),

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, of, turned
+from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, of, turned
 from diorama_core.library.furniture.solids import (
     ball,
     beam,
@@ -87,60 +85,11 @@ def lounge_chair(size: Size, cloth: Material, wood: Material) -> Parts:
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "armchair-track-beige",
-        "armchair",
-        "beige armchair with track arms",
-        (0.86, 0.84, 0.84),
-        "modern",
-        partial(sofa, cloth=m.BEIGE_FABRIC, legs=m.WALNUT, seats=1),
-    ),
-    Design(
-        "armchair-club-leather",
-        "armchair",
-        "brown leather club chair",
-        (0.88, 0.90, 0.80),
-        "classic",
-        partial(sofa, cloth=m.BROWN_LEATHER, legs=m.DARK_WALNUT, seats=1, arms="rolled"),
-    ),
-    Design(
-        "armchair-wing-blue",
-        "armchair",
-        "navy wing chair",
-        (0.84, 0.78, 1.08),
-        "classic",
-        partial(wing_chair, cloth=m.NAVY_FABRIC, legs=m.DARK_WALNUT),
-    ),
-    Design(
-        "armchair-tub-rose",
-        "armchair",
-        "dusty rose tub chair",
-        (0.76, 0.78, 0.74),
-        "modern",
-        partial(barrel_chair, cloth=m.ROSE_FABRIC, base=m.DARK_WALNUT),
-    ),
-    Design(
-        "armchair-tub-cream",
-        "armchair",
-        "cream tub chair",
-        (0.80, 0.84, 0.78),
-        "minimal",
-        partial(barrel_chair, cloth=m.LINEN, base=m.BLACK),
-    ),
-    Design(
-        "armchair-lounge-oak",
-        "armchair",
-        "oak lounge chair with grey cushions",
-        (0.80, 0.72, 0.84),
-        "modern",
-        partial(lounge_chair, cloth=m.GREY_FABRIC, wood=m.OAK),
-    ),
-    Design(
-        "armchair-lounge-walnut",
-        "armchair",
-        "walnut lounge chair with olive cushions",
-        (0.82, 0.74, 0.86),
-        "modern",
-        partial(lounge_chair, cloth=m.OLIVE_FABRIC, wood=m.WALNUT),
-    ),
-)
+    design("armchair", "track-beige", "beige armchair with track arms", (0.86, 0.84, 0.84), "modern", sofa, cloth=m.BEIGE_FABRIC, legs=m.WALNUT, seats=1),
+    design("armchair", "club-leather", "brown leather club chair", (0.88, 0.90, 0.80), "classic", sofa, cloth=m.BROWN_LEATHER, legs=m.DARK_WALNUT, seats=1, arms="rolled"),
+    design("armchair", "wing-blue", "navy wing chair", (0.84, 0.78, 1.08), "classic", wing_chair, cloth=m.NAVY_FABRIC, legs=m.DARK_WALNUT),
+    design("armchair", "tub-rose", "dusty rose tub chair", (0.76, 0.78, 0.74), "modern", barrel_chair, cloth=m.ROSE_FABRIC, base=m.DARK_WALNUT),
+    design("armchair", "tub-cream", "cream tub chair", (0.80, 0.84, 0.78), "minimal", barrel_chair, cloth=m.LINEN, base=m.BLACK),
+    design("armchair", "lounge-oak", "oak lounge chair with grey cushions", (0.80, 0.72, 0.84), "modern", lounge_chair, cloth=m.GREY_FABRIC, wood=m.OAK),
+    design("armchair", "lounge-walnut", "walnut lounge chair with olive cushions", (0.82, 0.74, 0.86), "modern", lounge_chair, cloth=m.OLIVE_FABRIC, wood=m.WALNUT),
+)  # fmt: skip

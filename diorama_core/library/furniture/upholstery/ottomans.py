@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, four, of
+from diorama_core.library.furniture.model import Design, Parts, Size, design, four, of
 from diorama_core.library.furniture.solids import box, cushion, cylinder, loft, ring_path, superellipse, taper, tube
 
 
@@ -49,49 +47,9 @@ def round_pouf(size: Size, cloth: Material, ribs: int = 0) -> Parts:
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "ottoman-square-grey",
-        "ottoman",
-        "square grey footstool",
-        (0.55, 0.60, 0.42),
-        "modern",
-        partial(square_ottoman, cloth=m.GREY_FABRIC, legs=m.OAK),
-        2,
-    ),
-    Design(
-        "ottoman-wide-leather",
-        "ottoman",
-        "wide brown leather ottoman",
-        (0.60, 0.90, 0.43),
-        "classic",
-        partial(square_ottoman, cloth=m.BROWN_LEATHER, legs=m.DARK_WALNUT),
-        2,
-    ),
-    Design(
-        "ottoman-pouf-oatmeal",
-        "ottoman",
-        "ribbed oatmeal pouf",
-        (0.55, 0.55, 0.38),
-        "rustic",
-        partial(round_pouf, cloth=m.OATMEAL, ribs=16),
-        36,
-    ),
-    Design(
-        "ottoman-pouf-leather",
-        "ottoman",
-        "tan leather pouf",
-        (0.52, 0.52, 0.36),
-        "modern",
-        partial(round_pouf, cloth=m.TAN_LEATHER, ribs=10),
-        36,
-    ),
-    Design(
-        "ottoman-pouf-ochre",
-        "ottoman",
-        "smooth ochre pouf",
-        (0.58, 0.58, 0.40),
-        "modern",
-        partial(round_pouf, cloth=m.MUSTARD_FABRIC),
-        36,
-    ),
-)
+    design("ottoman", "square-grey", "square grey footstool", (0.55, 0.60, 0.42), "modern", square_ottoman, 2, cloth=m.GREY_FABRIC, legs=m.OAK),
+    design("ottoman", "wide-leather", "wide brown leather ottoman", (0.60, 0.90, 0.43), "classic", square_ottoman, 2, cloth=m.BROWN_LEATHER, legs=m.DARK_WALNUT),
+    design("ottoman", "pouf-oatmeal", "ribbed oatmeal pouf", (0.55, 0.55, 0.38), "rustic", round_pouf, 36, cloth=m.OATMEAL, ribs=16),
+    design("ottoman", "pouf-leather", "tan leather pouf", (0.52, 0.52, 0.36), "modern", round_pouf, 36, cloth=m.TAN_LEATHER, ribs=10),
+    design("ottoman", "pouf-ochre", "smooth ochre pouf", (0.58, 0.58, 0.40), "modern", round_pouf, 36, cloth=m.MUSTARD_FABRIC),
+)  # fmt: skip

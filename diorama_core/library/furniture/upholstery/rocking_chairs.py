@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, of
+from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, of
 from diorama_core.library.furniture.solids import beam, bend, box, cushion, rod, tube
 
 
@@ -38,12 +36,5 @@ def rocking_chair(size: Size, wood: Material, cloth: Material) -> Parts:
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "armchair-rocking",
-        "rocking chair",
-        "rocking chair with spindles",
-        (0.88, 0.64, 1.04),
-        "rustic",
-        partial(rocking_chair, wood=m.OAK, cloth=m.LINEN),
-    ),
-)
+    design("rocking chair", "rocking", "rocking chair with spindles", (0.88, 0.64, 1.04), "rustic", rocking_chair, id="armchair-rocking", wood=m.OAK, cloth=m.LINEN),
+)  # fmt: skip

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, of
+from diorama_core.library.furniture.model import Design, Parts, Size, design, of
 from diorama_core.library.furniture.solids import box, taper
 from diorama_core.library.furniture.upholstery.cushions import seat_cushion
 from diorama_core.library.furniture.upholstery.sofas import sofa
@@ -36,12 +34,5 @@ def corner_sofa(size: Size, cloth: Material, legs: Material) -> Parts:
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "sofa-corner",
-        "sectional sofa",
-        "light grey corner sofa with a chaise",
-        (1.60, 2.50, 0.82),
-        "modern",
-        partial(corner_sofa, cloth=m.LIGHT_FABRIC, legs=m.BLACK),
-    ),
-)
+    design("sectional sofa", "corner", "light grey corner sofa with a chaise", (1.60, 2.50, 0.82), "modern", corner_sofa, id="sofa-corner", cloth=m.LIGHT_FABRIC, legs=m.BLACK),
+)  # fmt: skip

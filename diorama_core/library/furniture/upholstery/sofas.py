@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, four, of, turned
+from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of, turned
 from diorama_core.library.furniture.solids import Solid, beam, bend, box, pillow, taper, tube
 from diorama_core.library.furniture.upholstery.cushions import ArmKind, arm, back_cushion, seat_cushion, tufting
 
@@ -89,76 +87,13 @@ def _wooden_arms(d: float, w: float, arm_h: float, wood: Material) -> Parts:
 
 
 DESIGNS: tuple[Design, ...] = (
-    Design(
-        "sofa-grey-three",
-        "sofa",
-        "grey three-seat sofa with track arms",
-        (0.95, 2.10, 0.84),
-        "modern",
-        partial(sofa, cloth=m.GREY_FABRIC, legs=m.OAK),
-    ),
-    Design(
-        "sofa-blue-two",
-        "sofa",
-        "slate blue two-seat sofa",
-        (0.90, 1.60, 0.82),
-        "modern",
-        partial(sofa, cloth=m.BLUE_FABRIC, legs=m.WALNUT, seats=2, arms="slim"),
-    ),
-    Design(
-        "sofa-linen-rolled",
-        "sofa",
-        "linen sofa with rolled arms",
-        (0.98, 2.05, 0.88),
-        "classic",
-        partial(sofa, cloth=m.LINEN, legs=m.DARK_WALNUT, seats=3, arms="rolled", plinth_base=True),
-    ),
-    Design(
-        "sofa-leather-tan",
-        "sofa",
-        "tan leather sofa",
-        (0.92, 1.95, 0.80),
-        "industrial",
-        partial(sofa, cloth=m.TAN_LEATHER, legs=m.BLACK_STEEL, seats=2, arms="slim"),
-    ),
-    Design(
-        "sofa-chesterfield",
-        "sofa",
-        "brown leather chesterfield sofa",
-        (0.92, 2.05, 0.76),
-        "classic",
-        partial(sofa, cloth=m.BROWN_LEATHER, legs=m.DARK_WALNUT, seats=3, arms="rolled", tufted=True),
-    ),
-    Design(
-        "sofa-green-plush",
-        "sofa",
-        "forest green sofa with pillow arms",
-        (1.00, 2.20, 0.82),
-        "modern",
-        partial(sofa, cloth=m.GREEN_FABRIC, legs=m.BLACK, seats=2, arms="pillow", plinth_base=True),
-    ),
-    Design(
-        "sofa-oatmeal-low",
-        "sofa",
-        "low oatmeal three-seat sofa",
-        (1.02, 2.40, 0.74),
-        "minimal",
-        partial(sofa, cloth=m.OATMEAL, legs=m.BLACK, arms="track", plinth_base=True, seat_h=0.4),
-    ),
-    Design(
-        "sofa-wood-arm",
-        "sofa",
-        "sofa with a wooden frame and rust cushions",
-        (0.85, 1.75, 0.82),
-        "rustic",
-        partial(sofa, cloth=m.RUST_FABRIC, legs=m.OAK, seats=3, arms="wood"),
-    ),
-    Design(
-        "sofa-daybed",
-        "sofa",
-        "armless charcoal daybed",
-        (0.88, 1.90, 0.78),
-        "minimal",
-        partial(sofa, cloth=m.CHARCOAL_FABRIC, legs=m.OAK, seats=2, arms="none"),
-    ),
-)
+    design("sofa", "grey-three", "grey three-seat sofa with track arms", (0.95, 2.10, 0.84), "modern", sofa, cloth=m.GREY_FABRIC, legs=m.OAK),
+    design("sofa", "blue-two", "slate blue two-seat sofa", (0.90, 1.60, 0.82), "modern", sofa, cloth=m.BLUE_FABRIC, legs=m.WALNUT, seats=2, arms="slim"),
+    design("sofa", "linen-rolled", "linen sofa with rolled arms", (0.98, 2.05, 0.88), "classic", sofa, cloth=m.LINEN, legs=m.DARK_WALNUT, seats=3, arms="rolled", plinth_base=True),
+    design("sofa", "leather-tan", "tan leather sofa", (0.92, 1.95, 0.80), "industrial", sofa, cloth=m.TAN_LEATHER, legs=m.BLACK_STEEL, seats=2, arms="slim"),
+    design("sofa", "chesterfield", "brown leather chesterfield sofa", (0.92, 2.05, 0.76), "classic", sofa, cloth=m.BROWN_LEATHER, legs=m.DARK_WALNUT, seats=3, arms="rolled", tufted=True),
+    design("sofa", "green-plush", "forest green sofa with pillow arms", (1.00, 2.20, 0.82), "modern", sofa, cloth=m.GREEN_FABRIC, legs=m.BLACK, seats=2, arms="pillow", plinth_base=True),
+    design("sofa", "oatmeal-low", "low oatmeal three-seat sofa", (1.02, 2.40, 0.74), "minimal", sofa, cloth=m.OATMEAL, legs=m.BLACK, arms="track", plinth_base=True, seat_h=0.4),
+    design("sofa", "wood-arm", "sofa with a wooden frame and rust cushions", (0.85, 1.75, 0.82), "rustic", sofa, cloth=m.RUST_FABRIC, legs=m.OAK, seats=3, arms="wood"),
+    design("sofa", "daybed", "armless charcoal daybed", (0.88, 1.90, 0.78), "minimal", sofa, cloth=m.CHARCOAL_FABRIC, legs=m.OAK, seats=2, arms="none"),
+)  # fmt: skip
