@@ -23,7 +23,7 @@ from diorama_core.library.furniture import (
     textiles,
     upholstery,
 )
-from diorama_core.library.furniture.model import Design
+from diorama_core.library.furniture.model import Design, designs_of
 
 FAMILIES = (
     seating,
@@ -50,4 +50,4 @@ FAMILIES = (
 
 def designs() -> tuple[Design, ...]:
     """Every built-in design, in a stable order."""
-    return tuple(design for family in FAMILIES for design in family.DESIGNS)
+    return designs_of(*FAMILIES)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from types import ModuleType
 from typing import Any, Protocol
 
 import numpy as np
@@ -99,6 +100,11 @@ def design(
         return Design(known_as, category, caption, size_m, style, builder, options, symmetry, mass_kg)
     options = {"style": style, **options}
     return Design(known_as, category, caption, size_m, style.name, builder, options, symmetry, mass_kg)
+
+
+def designs_of(*kinds: ModuleType) -> tuple[Design, ...]:
+    """The tables of several modules, `DESIGNS` in each, one after the other."""
+    return tuple(row for kind in kinds for row in kind.DESIGNS)
 
 
 def of(material: Material, *solids: Solid) -> Parts:

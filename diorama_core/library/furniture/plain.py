@@ -2,20 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    design,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    box,
-    prism,
-    superellipse,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def rounded_block(size: Size, material: Material, radius: float) -> Parts:

@@ -3,16 +3,6 @@
 from __future__ import annotations
 
 from diorama_core.library.furniture.bathroom import accessories, basins, radiators, sanitary, showers
-from diorama_core.library.furniture.model import Design
+from diorama_core.library.furniture.model import designs_of
 
-DESIGNS: tuple[Design, ...] = tuple(
-    design
-    for kind in (
-        basins,
-        sanitary,
-        radiators,
-        showers,
-        accessories,
-    )
-    for design in kind.DESIGNS
-)
+DESIGNS = designs_of(basins, sanitary, radiators, showers, accessories)

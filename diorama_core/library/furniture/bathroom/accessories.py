@@ -4,21 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.hollow_ware import hollow
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, design, four, of, shifted
-from diorama_core.library.furniture.solids import (
-    bend,
-    box,
-    cylinder,
-    lathe,
-    prism,
-    rod,
-    rounded_rectangle,
-    superellipse,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 TISSUE = Material("tissue", "paper", "#eeece7", 0.95, 0.0, 0.2)
 BRISTLE = m.paint("bristles", "#d9d6cf", 0.95)

@@ -4,30 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.carcass import door_front, drawer_front
-from diorama_core.library.furniture.fittings import at, tap
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    both_sides,
-    design,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    Solid,
-    box,
-    cylinder,
-    loft,
-    prism,
-    ring_path,
-    rod,
-    rounded_rectangle,
-    superellipse,
-    taper,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def vessel(outline: np.ndarray, layers: list[tuple[float, float]], x_shift: float = 0.0) -> Solid:

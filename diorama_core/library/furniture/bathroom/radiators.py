@@ -4,21 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    design,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    Solid,
-    box,
-    cylinder,
-    rod,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def panel_radiator(size: Size, paint: Material) -> Parts:

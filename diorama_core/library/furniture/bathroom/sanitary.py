@@ -4,28 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.bathroom.basins import vessel
-from diorama_core.library.furniture.fittings import at, tap
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    design,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    box,
-    cylinder,
-    lathe,
-    loft,
-    prism,
-    ring_path,
-    rod,
-    rounded_rectangle,
-    superellipse,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def toilet(size: Size, kind: str = "close", seat: Material = m.PORCELAIN) -> Parts:

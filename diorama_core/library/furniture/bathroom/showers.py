@@ -6,23 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, design, of
-from diorama_core.library.furniture.solids import (
-    Solid,
-    bend,
-    box,
-    cylinder,
-    lathe,
-    loft,
-    prism,
-    ring_path,
-    rod,
-    rounded_rectangle,
-    slab,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 SHOWER_GLASS = m.glass("shower glass", "#aebfbb", 0.16)
 FROSTED = m.glass("frosted glass", "#cfd8d6", 0.5, 0.4)

@@ -10,7 +10,6 @@ from diorama_core.library.furniture.beds import (
     nursery,
     stacked_beds,
 )
-from diorama_core.library.furniture.model import Design
+from diorama_core.library.furniture.model import designs_of
 
-KINDS = (framed_beds, bedsteads, bunk_beds, stacked_beds, day_beds, nursery)
-DESIGNS: tuple[Design, ...] = tuple(design for kind in KINDS for design in kind.DESIGNS)
+DESIGNS = designs_of(framed_beds, bedsteads, bunk_beds, stacked_beds, day_beds, nursery)

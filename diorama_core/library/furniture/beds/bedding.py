@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Parts, of
-from diorama_core.library.furniture.solids import Solid, pillow, prism, rounded_rectangle, slab
+from diorama_core.library.furniture.kit import *
 
 
 def bedding(d: float, w: float, z: float, thick: float, duvet: Material, pillows: int, throw: Material | None) -> Parts:

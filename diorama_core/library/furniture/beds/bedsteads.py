@@ -4,14 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
 from diorama_core.library.furniture.beds.bedding import bedding
 from diorama_core.library.furniture.beds.framed_beds import bed
-from diorama_core.library.furniture.carcass import drawer_front
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of, shifted
-from diorama_core.library.furniture.solids import ball, beam, box, cushion, cylinder, lathe, rod, slab, tube
+from diorama_core.library.furniture.kit import *
 
 
 def mattress_on(

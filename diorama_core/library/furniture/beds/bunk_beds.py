@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.beds.bedding import bedding
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
-from diorama_core.library.furniture.solids import beam, box, rod
+from diorama_core.library.furniture.kit import *
 
 
 def bunk_bed(size: Size, wood: Material, duvet: Material) -> Parts:

@@ -4,26 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.legs import Leg, leg
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
-from diorama_core.library.furniture.solids import (
-    Solid,
-    beam,
-    box,
-    cylinder,
-    lathe,
-    pillow,
-    prism,
-    ring_path,
-    rod,
-    rounded_rectangle,
-    shell,
-    superellipse,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def mattress(d: float, w: float, thick: float) -> list[Solid]:

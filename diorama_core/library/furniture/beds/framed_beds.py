@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from typing import Literal
 
-from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.beds.bedding import bedding
 from diorama_core.library.furniture.beds.headboards import Head, headboard
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
-from diorama_core.library.furniture.solids import box, cushion, prism, ring_path, rounded_rectangle, taper, tube
+from diorama_core.library.furniture.kit import *
 
 
 def bed(

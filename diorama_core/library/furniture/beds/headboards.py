@@ -6,9 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Parts, both_sides, of
-from diorama_core.library.furniture.solids import beam, box, cushion, cylinder, lathe, rod
+from diorama_core.library.furniture.kit import *
 
 Head = Literal["none", "panel", "slats", "padded", "channels", "spindles"]
 

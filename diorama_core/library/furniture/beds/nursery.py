@@ -4,14 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.carcass import drawer_front
-from diorama_core.library.furniture.legs import leg
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
-from diorama_core.library.furniture.solids import beam, box, cushion, pillow, prism, rod, rounded_rectangle
-from diorama_core.library.furniture.styles import CLASSIC, INDUSTRIAL, MINIMAL, MODERN, RUSTIC, Style
+from diorama_core.library.furniture.kit import *
 
 
 def crib(size: Size, style: Style, sheet: Material, solid_ends: bool = True, spindles: bool = False) -> Parts:

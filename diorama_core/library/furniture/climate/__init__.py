@@ -3,15 +3,6 @@
 from __future__ import annotations
 
 from diorama_core.library.furniture.climate import air_conditioners, fans, fireplaces, heaters
-from diorama_core.library.furniture.model import Design
+from diorama_core.library.furniture.model import designs_of
 
-DESIGNS: tuple[Design, ...] = tuple(
-    design
-    for kind in (
-        fireplaces,
-        heaters,
-        fans,
-        air_conditioners,
-    )
-    for design in kind.DESIGNS
-)
+DESIGNS = designs_of(fireplaces, heaters, fans, air_conditioners)

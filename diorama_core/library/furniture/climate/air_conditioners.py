@@ -4,16 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, design, four, of
-from diorama_core.library.furniture.solids import (
-    box,
-    cylinder,
-    loft,
-    prism,
-    rounded_rectangle,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def split_unit(size: Size, body: Material, trim: Material) -> Parts:

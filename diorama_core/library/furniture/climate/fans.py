@@ -6,21 +6,7 @@ from functools import cache
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, design, of, shifted, turned
-from diorama_core.library.furniture.solids import (
-    Solid,
-    bend,
-    box,
-    cylinder,
-    lathe,
-    prism,
-    rod,
-    slab,
-    superellipse,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 
 @cache

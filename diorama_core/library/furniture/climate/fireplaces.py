@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
-from diorama_core.library.furniture.solids import Solid, box, cylinder, lathe, prism, rod, rounded_rectangle, taper
+from diorama_core.library.furniture.kit import *
 
 RED_BRICK = Material("red brick", "brick", "#8a5a48", 0.9, 0.0, 0.62)
 WHITE_BRICK = Material("painted brick", "brick", "#d9d4ca", 0.85, 0.0, 0.62)

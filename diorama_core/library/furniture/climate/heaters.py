@@ -4,18 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
-from diorama_core.library.furniture.solids import (
-    box,
-    cylinder,
-    lathe,
-    prism,
-    rod,
-    rounded_rectangle,
-    superellipse,
-)
+from diorama_core.library.furniture.kit import *
 
 GRILLE = Material("steel grille", "mesh", "#9b9d9e", 0.5, 0.3, 0.06)
 

@@ -3,15 +3,6 @@
 from __future__ import annotations
 
 from diorama_core.library.furniture.containers import baskets, bins, boxes, luggage
-from diorama_core.library.furniture.model import Design
+from diorama_core.library.furniture.model import designs_of
 
-DESIGNS: tuple[Design, ...] = tuple(
-    design
-    for kind in (
-        boxes,
-        baskets,
-        bins,
-        luggage,
-    )
-    for design in kind.DESIGNS
-)
+DESIGNS = designs_of(boxes, baskets, bins, luggage)

@@ -4,29 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    both_sides,
-    design,
-    four,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    ball,
-    bend,
-    box,
-    cylinder,
-    loft,
-    prism,
-    ring_path,
-    rounded_rectangle,
-    superellipse,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def carton(size: Size, card: Material, opened: bool = False) -> Parts:

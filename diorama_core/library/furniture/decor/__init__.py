@@ -3,18 +3,6 @@
 from __future__ import annotations
 
 from diorama_core.library.furniture.decor import boards, clocks, globes, mirrors, pictures, sculptures, vases
-from diorama_core.library.furniture.model import Design
+from diorama_core.library.furniture.model import designs_of
 
-DESIGNS: tuple[Design, ...] = tuple(
-    design
-    for kind in (
-        vases,
-        pictures,
-        mirrors,
-        clocks,
-        boards,
-        sculptures,
-        globes,
-    )
-    for design in kind.DESIGNS
-)
+DESIGNS = designs_of(vases, pictures, mirrors, clocks, boards, sculptures, globes)

@@ -4,22 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.frames import frame
-from diorama_core.library.furniture.materials import Material, art
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    both_sides,
-    design,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    ball,
-    box,
-    cylinder,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def whiteboard(size: Size, face: Material) -> Parts:
@@ -32,7 +17,7 @@ def whiteboard(size: Size, face: Material) -> Parts:
     )
 
 
-CHALK = art("blackboard", "clay", "#2f3a36", 0.9)
+CHALK = m.art("blackboard", "clay", "#2f3a36", 0.9)
 
 
 def bulletin(size: Size, bar: Material, face: Material, notes: int = 5) -> Parts:

@@ -4,29 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.frames import frame, stand_up
-from diorama_core.library.furniture.materials import Material, art
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    both_sides,
-    design,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    ball,
-    box,
-    cushion,
-    cylinder,
-    lathe,
-    loft,
-    prism,
-    rod,
-    superellipse,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def wall_clock(size: Size, rim: Material, face: Material, square: bool = False) -> Parts:
@@ -210,14 +188,14 @@ def spokes_clock(size: Size, metal: Material, wood: Material) -> Parts:
     return [p.moved(0, 0, h / 2) for p in of(metal, *rods) + of(wood, *balls, hub) + of(m.BLACK, *hands)]
 
 
-DIAL = art("clock dial", "dial", "#f0ece2")
+DIAL = m.art("clock dial", "dial", "#f0ece2")
 
 
-DARK_DIAL = art("dark clock dial", "dial", "#2f3235")
+DARK_DIAL = m.art("dark clock dial", "dial", "#2f3235")
 
 
-ROMAN = art("roman dial", "roman dial", "#efe8d8")
-DARK_ROMAN = art("dark roman dial", "roman dial", "#3a3c3f")
+ROMAN = m.art("roman dial", "roman dial", "#efe8d8")
+DARK_ROMAN = m.art("dark roman dial", "roman dial", "#3a3c3f")
 DIGITS = m.Material("clock display", "digits", "#c9d6cf", 0.3, 0.0, 1.0, glow=0.08)
 
 

@@ -6,23 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    design,
-    of,
-    shifted,
-)
-from diorama_core.library.furniture.solids import (
-    ball,
-    cylinder,
-    lathe,
-    superellipse,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 SEA = Material("globe sea", "map", "#8ea6b0", 0.4, 0.0, 1.0)
 

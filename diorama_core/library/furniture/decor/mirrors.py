@@ -7,25 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.frames import frame, stand_up, wall_outline
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    both_sides,
-    design,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    bend,
-    box,
-    lathe,
-    rod,
-    superellipse,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def mirror(

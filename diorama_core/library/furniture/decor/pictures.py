@@ -4,25 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.frames import frame, stand_up
-from diorama_core.library.furniture.materials import Material, art
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    design,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    beam,
-    box,
-    lathe,
-    rod,
-    slab,
-    superellipse,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def picture(size: Size, bar: Material, image: Material, width: float = 0.03, mount: float = 0.0) -> Parts:
@@ -203,38 +185,38 @@ def twin_frame(size: Size, bar: Material, images: tuple[Material, Material]) -> 
     return parts
 
 
-HILLS = art("hills print", "hills", "#5c6f74")
+HILLS = m.art("hills print", "hills", "#5c6f74")
 
 
-WARM_HILLS = art("dusk hills print", "hills", "#8a6656")
+WARM_HILLS = m.art("dusk hills print", "hills", "#8a6656")
 
 
-ABSTRACT = art("abstract print", "abstract", "#6d7f83")
+ABSTRACT = m.art("abstract print", "abstract", "#6d7f83")
 
 
-ABSTRACT_TWO = art("abstract print in ochre", "abstract", "#9c7a55")
+ABSTRACT_TWO = m.art("abstract print in ochre", "abstract", "#9c7a55")
 
 
-BOTANIC = art("botanical print", "botanic", "#5f7355")
+BOTANIC = m.art("botanical print", "botanic", "#5f7355")
 
 
-SEASCAPE = art("seascape", "waves", "#5e7887")
+SEASCAPE = m.art("seascape", "waves", "#5e7887")
 
 
-ARCHES = art("arches print", "arches", "#5f7a80")
-SUN = art("sun print", "sun", "#67735f")
-FIELD = art("colour field", "field", "#8a6152")
-BLUE_FIELD = art("blue colour field", "field", "#5a7187")
-RIDGES = art("ridges print", "ridges", "#3c3f44")
-BLOCKS = art("blocks print", "blocks", "#5f7787")
-STROKES = art("brush strokes", "strokes", "#5d7768")
-SKYLINE = art("skyline print", "skyline", "#5d6670")
-STILL_LIFE = art("still life", "vessels", "#5e7278")
-FERN = art("fern print", "fern", "#5f7a5e")
-PORTRAIT = art("portrait photograph", "portrait", "#8b9298")
-PORTRAIT_TWO = art("warm portrait", "portrait", "#9c8570")
-MAP = art("old map", "map", "#a7b3ae")
-WEAVING = art("wall weaving", "kilim", "#8d6a5a", 0.95)
+ARCHES = m.art("arches print", "arches", "#5f7a80")
+SUN = m.art("sun print", "sun", "#67735f")
+FIELD = m.art("colour field", "field", "#8a6152")
+BLUE_FIELD = m.art("blue colour field", "field", "#5a7187")
+RIDGES = m.art("ridges print", "ridges", "#3c3f44")
+BLOCKS = m.art("blocks print", "blocks", "#5f7787")
+STROKES = m.art("brush strokes", "strokes", "#5d7768")
+SKYLINE = m.art("skyline print", "skyline", "#5d6670")
+STILL_LIFE = m.art("still life", "vessels", "#5e7278")
+FERN = m.art("fern print", "fern", "#5f7a5e")
+PORTRAIT = m.art("portrait photograph", "portrait", "#8b9298")
+PORTRAIT_TWO = m.art("warm portrait", "portrait", "#9c8570")
+MAP = m.art("old map", "map", "#a7b3ae")
+WEAVING = m.art("wall weaving", "kilim", "#8d6a5a", 0.95)
 
 
 DESIGNS: tuple[Design, ...] = (

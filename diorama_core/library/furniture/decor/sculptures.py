@@ -6,31 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    both_sides,
-    design,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    Solid,
-    ball,
-    bend,
-    box,
-    cushion,
-    cylinder,
-    lathe,
-    loft,
-    prism,
-    rod,
-    smooth_profile,
-    superellipse,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 BRONZE = m.metal("bronze", "#6b5640", 0.4)
 

@@ -6,24 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.hollow_ware import hollow
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    both_sides,
-    design,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    Profile,
-    bend,
-    lathe,
-    smooth_profile,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 VASES: dict[str, Profile] = {
     "urn": ((0.42, 0), (0.5, 0.02), (0.95, 0.42), (1.0, 0.58), (0.8, 0.8), (0.42, 0.92), (0.5, 1.0)),

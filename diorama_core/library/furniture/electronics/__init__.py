@@ -3,16 +3,6 @@
 from __future__ import annotations
 
 from diorama_core.library.furniture.electronics import computers, gadgets, printers, screens, sound
-from diorama_core.library.furniture.model import Design
+from diorama_core.library.furniture.model import designs_of
 
-DESIGNS: tuple[Design, ...] = tuple(
-    design
-    for kind in (
-        screens,
-        computers,
-        printers,
-        sound,
-        gadgets,
-    )
-    for design in kind.DESIGNS
-)
+DESIGNS = designs_of(screens, computers, printers, sound, gadgets)

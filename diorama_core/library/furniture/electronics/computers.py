@@ -6,27 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    design,
-    four,
-    of,
-    turned,
-)
-from diorama_core.library.furniture.solids import (
-    bend,
-    box,
-    cushion,
-    cylinder,
-    lathe,
-    prism,
-    rounded_rectangle,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def keys_of(d: float, w: float, rows: int, columns: int, z: float, height: float, material: Material) -> Parts:

@@ -4,25 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of, shifted
-from diorama_core.library.furniture.solids import (
-    ball,
-    bend,
-    box,
-    cushion,
-    cylinder,
-    lathe,
-    loft,
-    prism,
-    ring_path,
-    rod,
-    rounded_rectangle,
-    slab,
-    superellipse,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 IVORY = m.paint("ivory bakelite", "#ddd3bf", 0.3)
 BAKELITE = m.paint("black bakelite", "#232223", 0.22)

@@ -2,19 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    design,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    box,
-    cylinder,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def printer(size: Size, body: Material) -> Parts:

@@ -4,26 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    both_sides,
-    design,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    box,
-    cushion,
-    cylinder,
-    prism,
-    rod,
-    rounded_rectangle,
-    slab,
-    taper,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def panel(w: float, h: float, t: float, bezel: float, body: Material, chin: float = 0.0) -> Parts:

@@ -6,20 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, design, four, of, shifted
-from diorama_core.library.furniture.solids import (
-    bend,
-    box,
-    cylinder,
-    lathe,
-    prism,
-    rod,
-    rounded_rectangle,
-    superellipse,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 CLOTH_GRILLE = m.fabric("speaker cloth", "#6f6f70", 0.05)
 PALE_GRILLE = m.fabric("pale speaker cloth", "#b7b0a4", 0.05)

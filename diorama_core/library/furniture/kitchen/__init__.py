@@ -11,7 +11,6 @@ from diorama_core.library.furniture.kitchen import (
     microwaves,
     refrigerators,
 )
-from diorama_core.library.furniture.model import Design
+from diorama_core.library.furniture.model import designs_of
 
-KINDS = (refrigerators, cookers, laundry, appliances, counters, islands, microwaves)
-DESIGNS: tuple[Design, ...] = tuple(design for kind in KINDS for design in kind.DESIGNS)
+DESIGNS = designs_of(refrigerators, cookers, laundry, appliances, counters, islands, microwaves)

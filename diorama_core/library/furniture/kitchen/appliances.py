@@ -4,17 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.carcass import door_front
-from diorama_core.library.furniture.fittings import at, bar_handle, knob
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.kitchen.cookers import burners, stove
 from diorama_core.library.furniture.kitchen.laundry import washing_machine
 from diorama_core.library.furniture.kitchen.microwaves import microwave
 from diorama_core.library.furniture.kitchen.refrigerators import refrigerator
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
-from diorama_core.library.furniture.solids import box, cylinder, lathe, loft, rod, slab, tube
 
 RED_ENAMEL = m.paint("red enamel", "#8a3b35", 0.25)
 CREAM_ENAMEL = m.paint("cream enamel", "#e5dcc6", 0.25)

@@ -4,14 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.carcass import door_front, drawer_front, open_case
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.kitchen.counters import counter
-from diorama_core.library.furniture.legs import leg
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of, shifted
-from diorama_core.library.furniture.solids import beam, box, rod
 from diorama_core.library.furniture.storage.special_cabinets import glass_door
 
 SOAPSTONE = m.Material("soapstone", "marble", "#50555a", 0.4, 0.0, 0.8)

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.fittings import at, bar_handle, knob
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, design, four, of
-from diorama_core.library.furniture.solids import box, cylinder, prism, rounded_rectangle
+from diorama_core.library.furniture.kit import *
 
 
 def microwave(size: Size, body: Material, kind: str = "microwave") -> Parts:

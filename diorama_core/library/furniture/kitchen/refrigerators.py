@@ -4,11 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.fittings import at, bar_handle
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, design, of
-from diorama_core.library.furniture.solids import box
+from diorama_core.library.furniture.kit import *
 
 
 def refrigerator(size: Size, body: Material, layout: str, round_edge: float = 0.012) -> Parts:

@@ -13,20 +13,6 @@ from diorama_core.library.furniture.kitchenware import (
     jars,
     kettles,
 )
-from diorama_core.library.furniture.model import Design
+from diorama_core.library.furniture.model import designs_of
 
-DESIGNS: tuple[Design, ...] = tuple(
-    design
-    for kind in (
-        bowls,
-        cups,
-        glasses,
-        bottles,
-        jars,
-        kettles,
-        coffee_machines,
-        blenders,
-        cookware,
-    )
-    for design in kind.DESIGNS
-)
+DESIGNS = designs_of(bowls, cups, glasses, bottles, jars, kettles, coffee_machines, blenders, cookware)

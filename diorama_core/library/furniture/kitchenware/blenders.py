@@ -4,26 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    design,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    bend,
-    cylinder,
-    lathe,
-    loft,
-    prism,
-    ring_path,
-    rounded_rectangle,
-    superellipse,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 BLUE_ENAMEL = m.paint("blue enamel", "#5b7489", 0.25)
 

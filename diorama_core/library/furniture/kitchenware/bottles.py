@@ -6,26 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    both_sides,
-    design,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    ball,
-    bend,
-    box,
-    cylinder,
-    lathe,
-    loft,
-    smooth_profile,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def bottle(size: Size, glass: Material, kind: Literal["wine", "water", "spray"], cap: Material) -> Parts:

@@ -6,25 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    both_sides,
-    design,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    bend,
-    box,
-    lathe,
-    loft,
-    ring_path,
-    rounded_rectangle,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def bowl(size: Size, clay: Material, kind: Literal["deep", "plate", "tray", "footed"]) -> Parts:

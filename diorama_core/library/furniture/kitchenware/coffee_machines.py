@@ -4,32 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.hollow_ware import hollow
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    design,
-    four,
-    of,
-    shifted,
-)
-from diorama_core.library.furniture.solids import (
-    ball,
-    bend,
-    box,
-    cylinder,
-    lathe,
-    loft,
-    prism,
-    ring_path,
-    rod,
-    rounded_rectangle,
-    superellipse,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 CREAM_ENAMEL = m.paint("cream enamel", "#e2d8c3", 0.25)
 

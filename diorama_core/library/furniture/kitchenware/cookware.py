@@ -4,25 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.hollow_ware import hollow
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Part, Parts, Size, both_sides, design, of
-from diorama_core.library.furniture.solids import (
-    Solid,
-    beam,
-    bend,
-    box,
-    cushion,
-    cylinder,
-    lathe,
-    prism,
-    ring_path,
-    rod,
-    rounded_rectangle,
-    superellipse,
-    tube,
-)  # fmt: skip
+from diorama_core.library.furniture.kit import *
 
 BLUE_IRON = m.paint("blue enamelled iron", "#4c6478", 0.3)
 GREEN_IRON = m.paint("green enamelled iron", "#5f7362", 0.3)

@@ -4,21 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.hollow_ware import hollow
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    design,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    Profile,
-    lathe,
-    smooth_profile,
-)
+from diorama_core.library.furniture.kit import *
 
 SHAPES: dict[str, tuple[Profile, float]] = {
     "tumbler": (((0.82, 0), (0.85, 0.02), (1.0, 0.98), (0.995, 1.0)), 0.09),

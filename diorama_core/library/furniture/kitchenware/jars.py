@@ -4,11 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.hollow_ware import hollow
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, of
-from diorama_core.library.furniture.solids import Solid, ball, bend, box, cylinder, lathe, smooth_profile, tube
+from diorama_core.library.furniture.kit import *
 
 CEREAL = Material("dry pasta", "speckle", "#c9a86e", 0.9, 0.0, 0.1)
 BEANS = Material("coffee beans", "speckle", "#4b3528", 0.6, 0.0, 0.08)

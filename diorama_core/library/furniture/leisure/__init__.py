@@ -3,16 +3,6 @@
 from __future__ import annotations
 
 from diorama_core.library.furniture.leisure import books, instruments, pianos, sports, toys
-from diorama_core.library.furniture.model import Design
+from diorama_core.library.furniture.model import designs_of
 
-DESIGNS: tuple[Design, ...] = tuple(
-    design
-    for kind in (
-        pianos,
-        instruments,
-        sports,
-        books,
-        toys,
-    )
-    for design in kind.DESIGNS
-)
+DESIGNS = designs_of(pianos, instruments, sports, books, toys)

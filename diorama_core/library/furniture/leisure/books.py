@@ -4,24 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    both_sides,
-    design,
-    of,
-    turned,
-)
-from diorama_core.library.furniture.solids import (
-    box,
-    cylinder,
-    prism,
-    shell,
-    superellipse,
-)
+from diorama_core.library.furniture.kit import *
 
 COVERS = tuple(
     m.Material(f"book cover {k}", "leather", c, 0.7, 0.0, 0.3)

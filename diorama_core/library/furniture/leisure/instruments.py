@@ -6,10 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, design, of, shifted
-from diorama_core.library.furniture.solids import Solid, bend, box, cylinder, lathe, prism, rod, superellipse, tube
+from diorama_core.library.furniture.kit import *
 
 SPRUCE = m.wood("spruce top", "#d6b37f", 0.3)
 EBONY = m.wood("ebony", "#2b2421", 0.4)

@@ -6,24 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    both_sides,
-    design,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    box,
-    cylinder,
-    lathe,
-    prism,
-    rod,
-    taper,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def upright_piano(size: Size, wood: Material, legs: str = "column") -> Parts:

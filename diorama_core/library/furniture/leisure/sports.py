@@ -4,24 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, of, shifted
-from diorama_core.library.furniture.solids import (
-    ball,
-    bend,
-    box,
-    cushion,
-    cylinder,
-    lathe,
-    loft,
-    prism,
-    ring_path,
-    rod,
-    rounded_rectangle,
-    superellipse,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 RUBBER = m.paint("rubber", "#2a2a2b", 0.85)
 MAT_BLUE = m.paint("blue foam", "#63808f", 0.9)

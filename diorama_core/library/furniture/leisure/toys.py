@@ -4,29 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    both_sides,
-    design,
-    four,
-    of,
-    turned,
-)
-from diorama_core.library.furniture.solids import (
-    ball,
-    bend,
-    box,
-    cushion,
-    cylinder,
-    lathe,
-    loft,
-    rod,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def teddy(size: Size, fur: Material, muzzle: Material) -> Parts:

@@ -11,18 +11,6 @@ from diorama_core.library.furniture.lighting import (
     table_lamps,
     wall_lamps,
 )
-from diorama_core.library.furniture.model import Design
+from diorama_core.library.furniture.model import designs_of
 
-DESIGNS: tuple[Design, ...] = tuple(
-    design
-    for kind in (
-        table_lamps,
-        desk_lamps,
-        floor_lamps,
-        ceiling_lamps,
-        chandeliers,
-        wall_lamps,
-        candles,
-    )
-    for design in kind.DESIGNS
-)
+DESIGNS = designs_of(table_lamps, desk_lamps, floor_lamps, ceiling_lamps, chandeliers, wall_lamps, candles)

@@ -4,21 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.hollow_ware import hollow
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, design, of, shifted
-from diorama_core.library.furniture.solids import (
-    bend,
-    box,
-    cylinder,
-    lathe,
-    prism,
-    slab,
-    smooth_profile,
-    superellipse,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 WAX = Material("candle wax", "plain", "#efe6d2", 0.45, 0.0, 0.1, glow=0.06)
 FLAME = m.lit("candle flame", "#f0cf98", 0.9)

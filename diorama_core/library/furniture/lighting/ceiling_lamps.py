@@ -6,29 +6,8 @@ from typing import Literal
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.lighting.shades import bulb, flex, rose, shade, spider
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    design,
-    of,
-    shifted,
-)
-from diorama_core.library.furniture.solids import (
-    ball,
-    bend,
-    box,
-    cylinder,
-    lathe,
-    ring_path,
-    rod,
-    smooth_profile,
-    superellipse,
-    tube,
-)
 
 
 def pendant(

@@ -4,29 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    design,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    ball,
-    bend,
-    box,
-    cylinder,
-    lathe,
-    loft,
-    prism,
-    rod,
-    rounded_rectangle,
-    slab,
-    superellipse,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def desk_lamp(size: Size, paint: Material, joint: Material) -> Parts:

@@ -6,10 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Parts, of
-from diorama_core.library.furniture.solids import Solid, ball, cylinder, lathe, rod
+from diorama_core.library.furniture.kit import *
 
 
 def shade(bottom: float, top: float, height: float, pleats: int = 0) -> Solid:

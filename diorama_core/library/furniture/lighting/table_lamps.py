@@ -6,30 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.lighting.shades import bulb, filament_bulb, shade, spider
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    design,
-    four,
-    of,
-    shifted,
-)
-from diorama_core.library.furniture.solids import (
-    ball,
-    box,
-    cylinder,
-    lathe,
-    ring_path,
-    rod,
-    smooth_profile,
-    superellipse,
-    taper,
-    tube,
-)
 
 
 def shaded_lamp(

@@ -4,24 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.lighting.shades import bulb, filament_bulb, shade, spider
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, design, of, shifted
-from diorama_core.library.furniture.solids import (
-    ball,
-    bend,
-    box,
-    cylinder,
-    lathe,
-    loft,
-    prism,
-    rod,
-    slab,
-    superellipse,
-    taper,
-    tube,
-)
 
 
 def plate(d: float, z: float, radius: float, metal: Material, tall: float = 1.0) -> Parts:

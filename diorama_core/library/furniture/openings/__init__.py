@@ -2,14 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture.model import Design
+from diorama_core.library.furniture.model import designs_of
 from diorama_core.library.furniture.openings import doors, windows
 
-DESIGNS: tuple[Design, ...] = tuple(
-    design
-    for kind in (
-        windows,
-        doors,
-    )
-    for design in kind.DESIGNS
-)
+DESIGNS = designs_of(windows, doors)

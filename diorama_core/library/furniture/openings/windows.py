@@ -4,23 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.frames import frame, stand_up, wall_outline
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    design,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    Solid,
-    box,
-    loft,
-    rod,
-    superellipse,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def window(size: Size, bar: Material, panes: tuple[int, int] = (2, 1), sill: bool = True) -> Parts:

@@ -4,24 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    design,
-    of,
-)
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.plants.foliage import arching_leaf
-from diorama_core.library.furniture.solids import (
-    ball,
-    bend,
-    lathe,
-    rod,
-    smooth_profile,
-    tube,
-)
 
 
 def bunch(size: Size, vase: Material, green: Material, bloom: Material) -> Parts:

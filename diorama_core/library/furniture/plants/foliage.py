@@ -6,10 +6,7 @@ from functools import cache
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Parts, of
-from diorama_core.library.furniture.solids import Solid, cylinder, lathe, rod, unit
+from diorama_core.library.furniture.kit import *
 
 
 def pot(diameter: float, height: float, material: Material, shape: str = "taper") -> Parts:

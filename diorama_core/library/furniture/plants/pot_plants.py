@@ -6,30 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    design,
-    of,
-)
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.plants.foliage import arching_leaf, leaf, pot
-from diorama_core.library.furniture.solids import (
-    Solid,
-    ball,
-    bend,
-    cylinder,
-    lathe,
-    loft,
-    prism,
-    ring_path,
-    rod,
-    smooth_profile,
-    superellipse,
-    tube,
-)
 
 
 def snake_plant(size: Size, pot_of: Material, green: Material, shape: str = "cylinder") -> Parts:

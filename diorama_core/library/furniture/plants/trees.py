@@ -4,24 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    design,
-    of,
-)
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.plants.foliage import arching_leaf, leaf, pot
-from diorama_core.library.furniture.solids import (
-    Solid,
-    ball,
-    bend,
-    cylinder,
-    tube,
-    unit,
-)
 
 
 def fiddle_tree(size: Size, pot_of: Material, green: Material, leaves: int = 46) -> Parts:

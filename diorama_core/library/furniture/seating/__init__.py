@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture.model import Design
+from diorama_core.library.furniture.model import designs_of
 from diorama_core.library.furniture.seating import (
     bar_chairs,
     bar_stools,
@@ -20,8 +20,19 @@ from diorama_core.library.furniture.seating import (
     wooden_chairs,
 )
 
-KINDS = (
-    *(wooden_chairs, moulded_chairs, metal_chairs, upholstered_chairs, bentwood_chairs, tub_chairs),
-    *(stools, small_stools, bar_stools, bar_chairs, benches, styled_benches, office_chairs, desk_chairs),
+DESIGNS = designs_of(
+    wooden_chairs,
+    moulded_chairs,
+    metal_chairs,
+    upholstered_chairs,
+    bentwood_chairs,
+    tub_chairs,
+    stools,
+    small_stools,
+    bar_stools,
+    bar_chairs,
+    benches,
+    styled_benches,
+    office_chairs,
+    desk_chairs,
 )
-DESIGNS: tuple[Design, ...] = tuple(design for kind in KINDS for design in kind.DESIGNS)

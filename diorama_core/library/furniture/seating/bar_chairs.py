@@ -4,13 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.legs import Leg
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, of
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.seating.wooden_chairs import curved_back
-from diorama_core.library.furniture.solids import Solid, beam, box, cushion, prism, rod, slab, superellipse, taper
 
 
 def bar_frame(d: float, w: float, seat_z: float, profile: Leg, metal: bool) -> tuple[list[Solid], list[Solid]]:

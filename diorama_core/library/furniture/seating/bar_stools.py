@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.model import Design, design
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.seating.stools import pad_stool, round_stool, swivel_stool
 
 DESIGNS: tuple[Design, ...] = (

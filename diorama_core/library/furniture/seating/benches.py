@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
-from diorama_core.library.furniture.solids import beam, bend, box, cushion, ring_path, superellipse, taper, tube
+from diorama_core.library.furniture.kit import *
 
 
 def wooden_bench(size: Size, wood: Material, legs: Material, planks: int = 2) -> Parts:

@@ -4,24 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.legs import leg
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, of
-from diorama_core.library.furniture.solids import (
-    Solid,
-    beam,
-    bend,
-    box,
-    cushion,
-    prism,
-    ring_path,
-    rod,
-    slab,
-    superellipse,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def bistro_chair(size: Size, wood: Material, seat: Material) -> Parts:

@@ -4,25 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, of
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.seating.moulded_chairs import eased
 from diorama_core.library.furniture.seating.office_chairs import castor_star
 from diorama_core.library.furniture.seating.wooden_chairs import curved_back
-from diorama_core.library.furniture.solids import (
-    bend,
-    box,
-    cushion,
-    cylinder,
-    prism,
-    ring_path,
-    rod,
-    slab,
-    superellipse,
-    tube,
-)
 
 
 def column(seat_z: float, metal: Material) -> Parts:

@@ -6,11 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, of
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.seating.wooden_chairs import curved_back
-from diorama_core.library.furniture.solids import bend, box, prism, rod, superellipse, taper, tube
 
 
 def metal_cafe_chair(size: Size, colour: Material, seat: Material | None) -> Parts:

@@ -8,10 +8,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.interpolate import PchipInterpolator
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
-from diorama_core.library.furniture.solids import bend, box, rod, slab, tube
+from diorama_core.library.furniture.kit import *
 
 
 def eased(v: Float[np.ndarray, "m 1"], at: Sequence[float], values: Sequence[float]) -> Float[np.ndarray, "m 1"]:

@@ -4,27 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.legs import Leg, leg
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
-from diorama_core.library.furniture.solids import (
-    ball,
-    beam,
-    box,
-    cushion,
-    cylinder,
-    lathe,
-    loft,
-    prism,
-    ring_path,
-    rod,
-    slab,
-    superellipse,
-    taper,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def padded_stool(

@@ -4,21 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
-from diorama_core.library.furniture.solids import (
-    beam,
-    box,
-    cushion,
-    cylinder,
-    lathe,
-    ring_path,
-    rod,
-    superellipse,
-    taper,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def round_stool(size: Size, wood: Material, seat: Material, foot_ring: Material | None = None) -> Parts:

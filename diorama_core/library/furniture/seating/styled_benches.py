@@ -4,12 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.legs import Leg, leg
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
-from diorama_core.library.furniture.solids import ball, beam, box, cushion, ring_path, shell, superellipse, tube
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.storage.chests import blanket_box
 from diorama_core.library.furniture.tables.occasional_tables import waterfall_table
 

@@ -4,12 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.legs import Leg, leg
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
-from diorama_core.library.furniture.solids import Solid, ball, box, cushion, ring_path, shell, slab, superellipse, tube
+from diorama_core.library.furniture.kit import *
 
 
 def tub_chair(size: Size, cloth: Material, legs: Material, profile: Leg = "taper", channels: int = 0) -> Parts:

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
-from diorama_core.library.furniture.solids import bend, box, cushion, taper, tube
+from diorama_core.library.furniture.kit import *
 
 
 def padded_chair(size: Size, cloth: Material, legs: Material, arms: bool = False) -> Parts:

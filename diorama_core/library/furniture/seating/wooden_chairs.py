@@ -4,22 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, of
-from diorama_core.library.furniture.solids import (
-    Solid,
-    beam,
-    bend,
-    box,
-    cushion,
-    prism,
-    rod,
-    slab,
-    superellipse,
-    taper,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def curved_back(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture.model import Design
+from diorama_core.library.furniture.model import designs_of
 from diorama_core.library.furniture.shelving import (
     bookcases,
     hall_pieces,
@@ -11,5 +11,4 @@ from diorama_core.library.furniture.shelving import (
     wardrobes,
 )
 
-KINDS = (bookcases, racks, wardrobes, wall_shelves, hall_pieces)
-DESIGNS: tuple[Design, ...] = tuple(design for kind in KINDS for design in kind.DESIGNS)
+DESIGNS = designs_of(bookcases, racks, wardrobes, wall_shelves, hall_pieces)

@@ -6,23 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
-from diorama_core.library.furniture.solids import (
-    Solid,
-    ball,
-    bend,
-    box,
-    cushion,
-    cylinder,
-    lathe,
-    ring_path,
-    rod,
-    superellipse,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def hook(reach: float = 0.07, rise: float = 0.05, r: float = 0.006) -> Solid:

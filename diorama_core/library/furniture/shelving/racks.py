@@ -6,18 +6,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.carcass import drawer_front, open_case
-from diorama_core.library.furniture.legs import leg
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of, shifted
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.shelving.bookcases import bookcase, cube_shelf, frame_shelf, ladder_shelf
 from diorama_core.library.furniture.shelving.wall_shelves import wall_shelf
 from diorama_core.library.furniture.shelving.wardrobes import sliding_wardrobe, wardrobe
-from diorama_core.library.furniture.solids import beam, box, rod, tube
 from diorama_core.library.furniture.storage.styled import styled_case
-from diorama_core.library.furniture.styles import CLASSIC, MINIMAL, MODERN, RUSTIC, Style
 
 
 def dresser_bookcase(

@@ -6,11 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.carcass import open_case
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, of
-from diorama_core.library.furniture.solids import box, cylinder, rod
+from diorama_core.library.furniture.kit import *
 
 
 def wall_shelf(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture.model import Design
+from diorama_core.library.furniture.model import designs_of
 from diorama_core.library.furniture.storage import (
     cabinets,
     case_pieces,
@@ -17,7 +17,7 @@ from diorama_core.library.furniture.storage import (
     tv_stands,
 )
 
-KINDS = (
+DESIGNS = designs_of(
     night_stands,
     dressers,
     cabinets,
@@ -30,4 +30,3 @@ KINDS = (
     tv_stands,
     chests,
 )
-DESIGNS: tuple[Design, ...] = tuple(design for kind in KINDS for design in kind.DESIGNS)

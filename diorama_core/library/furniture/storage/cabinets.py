@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.cases import case
-from diorama_core.library.furniture.model import Design, design
+from diorama_core.library.furniture.kit import *
 
 DESIGNS: tuple[Design, ...] = (
     design("cabinet", "two-door-white", "white two-door cabinet", (0.42, 0.82, 0.90), "minimal", case, body=m.WHITE, bays=["pair"], base="plinth", base_h=0.07),

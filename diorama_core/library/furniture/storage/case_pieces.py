@@ -4,15 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.carcass import drawer_front, pull
-from diorama_core.library.furniture.legs import leg
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, design, four, of
-from diorama_core.library.furniture.solids import Solid, box, cylinder, prism, slab, superellipse
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.storage.styled import styled_case
-from diorama_core.library.furniture.styles import CLASSIC, INDUSTRIAL, MINIMAL, MODERN, RUSTIC, Style
 
 
 def round_stand(size: Size, wood: Material, pull_metal: Material) -> Parts:

@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.carcass import open_case
-from diorama_core.library.furniture.cases import case
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, design, of, shifted
-from diorama_core.library.furniture.solids import box
+from diorama_core.library.furniture.kit import *
 
 
 def curio(size: Size, wood: Material, levels: int) -> Parts:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.cases import case
-from diorama_core.library.furniture.model import Design, design
+from diorama_core.library.furniture.kit import *
 
 DESIGNS: tuple[Design, ...] = (
     design("dresser", "oak-six", "oak dresser with six drawers", (0.48, 1.40, 0.80), "modern", case, body=m.OAK, bays=["3", "3"], base="splay", base_h=0.16),

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.carcass import door_front
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, design, four, of
-from diorama_core.library.furniture.solids import box
+from diorama_core.library.furniture.kit import *
 
 
 def locker(size: Size, body: Material, doors: int) -> Parts:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.cases import case
-from diorama_core.library.furniture.model import Design, design
+from diorama_core.library.furniture.kit import *
 
 DESIGNS: tuple[Design, ...] = (
     design("night stand", "oak-drawers", "oak night stand with two drawers", (0.42, 0.48, 0.55), "modern", case, body=m.OAK, bays=["2"], base="splay", base_h=0.16),

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.cases import case
-from diorama_core.library.furniture.model import Design, design
+from diorama_core.library.furniture.kit import *
 
 DESIGNS: tuple[Design, ...] = (
     design("sideboard", "walnut-long", "long walnut sideboard", (0.45, 1.75, 0.72), "modern", case, body=m.WALNUT, bays=["door", "3", "door"], base="splay", base_h=0.18, handle="knob", pull=m.BRASS),

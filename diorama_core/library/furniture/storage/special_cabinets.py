@@ -4,17 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.carcass import drawer_front, plinth, pull
-from diorama_core.library.furniture.cases import feet
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of, shifted
-from diorama_core.library.furniture.solids import box, cushion, rod
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.storage.filing_cabinets import filing_cabinet
 from diorama_core.library.furniture.storage.lockers import locker
 from diorama_core.library.furniture.storage.styled import styled_case
-from diorama_core.library.furniture.styles import CLASSIC, INDUSTRIAL, MINIMAL, MODERN, RUSTIC, Style
 
 
 def wooden_files(size: Size, style: Style, drawers: int, columns: int = 1) -> Parts:

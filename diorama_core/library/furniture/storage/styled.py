@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from diorama_core.library.furniture.cases import Cell, case
-from diorama_core.library.furniture.model import Parts, Size
-from diorama_core.library.furniture.styles import Style
+from diorama_core.library.furniture.kit import *
 
 
 def styled_case(size: Size, style: Style, bays: Sequence[Cell], **changes: Any) -> Parts:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.cases import case
-from diorama_core.library.furniture.model import Design, design
+from diorama_core.library.furniture.kit import *
 
 DESIGNS: tuple[Design, ...] = (
     design("tv stand", "oak-open", "oak media unit with open bays", (0.42, 1.50, 0.50), "modern", case, body=m.OAK, bays=["door", "open", "door"], base="splay", base_h=0.14, handle="none"),

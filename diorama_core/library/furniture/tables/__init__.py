@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture.model import Design
+from diorama_core.library.furniture.model import designs_of
 from diorama_core.library.furniture.tables import (
     carts,
     coffee_tables,
@@ -16,7 +16,7 @@ from diorama_core.library.furniture.tables import (
     writing_desks,
 )
 
-KINDS = (
+DESIGNS = designs_of(
     dining_tables,
     gathering_tables,
     coffee_tables,
@@ -28,4 +28,3 @@ KINDS = (
     vanities,
     carts,
 )
-DESIGNS: tuple[Design, ...] = tuple(design for kind in KINDS for design in kind.DESIGNS)

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.carcass import drawer_front
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, design, four, of
-from diorama_core.library.furniture.solids import box, taper
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.tables.side_tables import block_table
 from diorama_core.library.furniture.tables.tops import (
     frame_table,

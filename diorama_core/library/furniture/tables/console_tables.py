@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.model import Design, design
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.tables.coffee_tables import box_table
 from diorama_core.library.furniture.tables.tops import frame_table, leg_table
 

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.carcass import drawer_front
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
-from diorama_core.library.furniture.solids import box, rod, taper
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.tables.dining_tables import trestle_table
 from diorama_core.library.furniture.tables.tops import table_top
 

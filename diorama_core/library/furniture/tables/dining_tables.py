@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, of
-from diorama_core.library.furniture.solids import beam, box, taper
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.tables.tops import leg_table, pedestal_table
 
 

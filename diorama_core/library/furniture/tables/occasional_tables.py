@@ -4,15 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.carcass import drawer_front
-from diorama_core.library.furniture.legs import leg
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of, shifted
-from diorama_core.library.furniture.solids import bend, box, cushion, cylinder, lathe, prism, rod, superellipse, tube
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.storage.chests import trunk
-from diorama_core.library.furniture.styles import CLASSIC, INDUSTRIAL, MINIMAL, MODERN, RUSTIC, Style
 from diorama_core.library.furniture.tables.tops import frame_table, table_top
 
 

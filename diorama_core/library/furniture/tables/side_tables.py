@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, design, of
-from diorama_core.library.furniture.solids import bend, lathe, prism, rod, rounded_rectangle, superellipse, tube
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.tables.tops import frame_table, leg_table, pedestal_table
 
 

@@ -4,23 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Parts, Size, both_sides, four, joined, of
-from diorama_core.library.furniture.solids import (
-    Solid,
-    beam,
-    bend,
-    box,
-    cylinder,
-    lathe,
-    prism,
-    rod,
-    rounded_rectangle,
-    superellipse,
-    taper,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 Outline = str
 """Shape of a top: "square", "soft", "round" or "oval"."""

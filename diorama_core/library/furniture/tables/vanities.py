@@ -4,22 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.carcass import drawer_front
-from diorama_core.library.furniture.legs import leg
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
-from diorama_core.library.furniture.solids import (
-    box,
-    cylinder,
-    prism,
-    ring_path,
-    rod,
-    rounded_rectangle,
-    superellipse,
-    tube,
-)
-from diorama_core.library.furniture.styles import CLASSIC, INDUSTRIAL, MINIMAL, MODERN, RUSTIC, Style
+from diorama_core.library.furniture.kit import *
 
 TABLE_M = 0.76
 """Height of the table top."""

@@ -4,26 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    both_sides,
-    design,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    ball,
-    box,
-    cylinder,
-    ring_path,
-    rod,
-    slab,
-    superellipse,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def drape(w: float, h: float, depth: float, folds: float, phase: float, gather: float = 1.0) -> np.ndarray:

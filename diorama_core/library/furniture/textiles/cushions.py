@@ -6,24 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    design,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    cushion,
-    cylinder,
-    lathe,
-    pillow,
-    ring_path,
-    superellipse,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 STRIPED_CLOTH = Material("striped linen", "stripes", "#8b98a5", 0.92, 0.0, 0.5)
 

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, of, shifted
-from diorama_core.library.furniture.solids import Solid, box, cylinder, lathe, loft, rod, shell, slab, tube
+from diorama_core.library.furniture.kit import *
 
 TERRY = Material("white terry", "terry", "#eae7e0", 0.97, 0.0, 0.07)
 BLUE_TERRY = Material("slate blue terry", "terry", "#6c8496", 0.97, 0.0, 0.07)

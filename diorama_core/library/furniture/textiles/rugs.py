@@ -6,25 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import (
-    Design,
-    Parts,
-    Size,
-    design,
-    of,
-)
-from diorama_core.library.furniture.solids import (
-    box,
-    loft,
-    prism,
-    ring_path,
-    rod,
-    shell,
-    superellipse,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 
 
 def rug(size: Size, pile: Material, pictured: bool, fringe: Material | None = None) -> Parts:

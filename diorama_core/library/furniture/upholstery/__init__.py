@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture.model import Design
+from diorama_core.library.furniture.model import designs_of
 from diorama_core.library.furniture.upholstery import (
     armchairs,
     bean_bags,
@@ -20,9 +20,19 @@ from diorama_core.library.furniture.upholstery import (
     storage_ottomans,
 )
 
-KINDS = (
-    *(sofas, period_sofas, sectional_sofas, modular_sofas, chaises),
-    *(armchairs, lounge_chairs, recliners, reclining_chairs, rocking_chairs, rockers),
-    *(ottomans, storage_ottomans, bean_bags),
+DESIGNS = designs_of(
+    sofas,
+    period_sofas,
+    sectional_sofas,
+    modular_sofas,
+    chaises,
+    armchairs,
+    lounge_chairs,
+    recliners,
+    reclining_chairs,
+    rocking_chairs,
+    rockers,
+    ottomans,
+    storage_ottomans,
+    bean_bags,
 )
-DESIGNS: tuple[Design, ...] = tuple(design for kind in KINDS for design in kind.DESIGNS)

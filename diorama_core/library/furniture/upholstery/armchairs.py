@@ -4,22 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, of, turned
-from diorama_core.library.furniture.solids import (
-    ball,
-    beam,
-    bend,
-    box,
-    cushion,
-    cylinder,
-    lathe,
-    rod,
-    slab,
-    taper,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.upholstery.cushions import back_cushion, seat_cushion
 from diorama_core.library.furniture.upholstery.sofas import sofa
 

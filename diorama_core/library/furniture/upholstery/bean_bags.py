@@ -5,11 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, design, of
-from diorama_core.library.furniture.solids import loft, tube
+from diorama_core.library.furniture.kit import *
 
 
 def bean_bag(size: Size, cloth: Material, seam: Material, tall: float = 1.0, panels: int = 6) -> Parts:

@@ -4,12 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.legs import Leg, leg
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
-from diorama_core.library.furniture.solids import beam, bend, box, cushion, cylinder, rod, slab, tube
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.upholstery.cushions import seat_cushion
 
 

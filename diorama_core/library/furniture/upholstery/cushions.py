@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from diorama_core.library.furniture.solids import Solid, box, cushion, cylinder, ring_path, slab, superellipse, tube
+from diorama_core.library.furniture.kit import *
 
 ArmKind = Literal["track", "rolled", "slim", "pillow", "wood", "none"]
 

@@ -4,11 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, design, of
-from diorama_core.library.furniture.solids import Solid, box, cushion
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.upholstery.cushions import back_cushion, seat_cushion
 
 Layout = Literal["left", "right", "corner", "u"]

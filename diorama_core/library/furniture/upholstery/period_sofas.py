@@ -4,20 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.legs import Leg, leg
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of
-from diorama_core.library.furniture.solids import (
-    ball,
-    beam,
-    box,
-    cylinder,
-    pillow,
-    slab,
-    tube,
-)
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.upholstery.cushions import arm, back_cushion, seat_cushion, tufting
 from diorama_core.library.furniture.upholstery.sofas import sofa
 

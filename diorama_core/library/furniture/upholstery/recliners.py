@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.model import Design, design
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.upholstery.sofas import sofa
 
 DESIGNS: tuple[Design, ...] = (

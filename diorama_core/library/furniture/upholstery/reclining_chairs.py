@@ -4,11 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, of
-from diorama_core.library.furniture.solids import beam, box, cushion, cylinder, rod
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.upholstery.cushions import ArmKind, arm
 
 

@@ -4,12 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, of, shifted
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.seating.moulded_chairs import shell_chair
-from diorama_core.library.furniture.solids import Solid, bend, box, cushion, rod, slab, tube
 from diorama_core.library.furniture.upholstery.cushions import back_cushion
 
 

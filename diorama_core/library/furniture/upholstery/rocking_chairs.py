@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, of
-from diorama_core.library.furniture.solids import beam, bend, box, cushion, rod, tube
+from diorama_core.library.furniture.kit import *
 
 
 def rocking_chair(size: Size, wood: Material, cloth: Material) -> Parts:

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, design, of
-from diorama_core.library.furniture.solids import box, taper
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.upholstery.cushions import seat_cushion
 from diorama_core.library.furniture.upholstery.sofas import sofa
 

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, Parts, Size, both_sides, design, four, of, turned
-from diorama_core.library.furniture.solids import Solid, beam, bend, box, pillow, taper, tube
+from diorama_core.library.furniture.kit import *
 from diorama_core.library.furniture.upholstery.cushions import ArmKind, arm, back_cushion, seat_cushion, tufting
 
 
