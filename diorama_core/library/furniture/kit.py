@@ -13,6 +13,7 @@ from diorama_core.library.furniture.cases import Base, Cell, case, feet
 from diorama_core.library.furniture.fittings import at, bar_handle, knob, tap
 from diorama_core.library.furniture.frames import frame, stand_up, wall_outline
 from diorama_core.library.furniture.hollow_ware import hollow
+from diorama_core.library.furniture.keys import keypad, keys_of, piano_keys, spread
 from diorama_core.library.furniture.legs import Leg, leg
 from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.model import (
@@ -60,5 +61,6 @@ __all__ = [  # noqa: RUF022
     "Solid", "Profile", "ball", "beam", "bend", "box", "cushion", "cylinder", "lathe", "loft", "pillow", "prism",
     "ring_path", "rod", "rounded_rectangle", "shell", "slab", "smooth_profile", "superellipse", "taper", "tube", "unit",
     "Leg", "leg", "Base", "Cell", "case", "feet", "door_front", "drawer_front", "open_case", "plinth", "pull",
-    "bar_handle", "knob", "tap", "frame", "stand_up", "wall_outline", "hollow",
+    "bar_handle", "knob", "tap", "frame", "stand_up", "wall_outline", "hollow", "keypad", "keys_of",
+    "piano_keys", "spread",
 ]  # fmt: skip

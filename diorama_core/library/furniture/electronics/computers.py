@@ -9,27 +9,6 @@ import numpy as np
 from diorama_core.library.furniture.kit import *
 
 
-def keys_of(d: float, w: float, rows: int, columns: int, z: float, height: float, material: Material) -> Parts:
-    """A field of key caps; the top row is toward -X."""
-    pitch_x, pitch_y = d / rows, w / columns
-    solids = []
-    for r in range(rows):
-        x = d / 2 - pitch_x * (r + 0.5)
-        if r == 0:
-            solids += [box((pitch_x * 0.84, pitch_y * 5.6, height), 0.0015).moved(x, 0, z)]
-            solids += [
-                box((pitch_x * 0.84, pitch_y * 1.3, height), 0.0015).moved(x, s * (w / 2 - pitch_y * f), z)
-                for s in (1, -1)
-                for f in (0.75, 2.3)
-            ]
-            continue
-        solids += [
-            box((pitch_x * 0.84, pitch_y * 0.86, height), 0.0015).moved(x, -w / 2 + pitch_y * (c + 0.5), z)
-            for c in range(columns)
-        ]
-    return of(material, *solids)
-
-
 def laptop(size: Size, body: Material, keys: Material, angle: float = 112.0) -> Parts:
     """An open laptop; the screen faces +X."""
     d, w, h = size

@@ -63,12 +63,9 @@ def desk_telephone(size: Size, body: Material, trim: Material) -> Parts:
         )
     )
     tilt = 9.0
-    field = [
-        box((0.016, 0.02, 0.006), 0.002).moved(0.05 - 0.024 * r, -0.02 - 0.028 * c, 0)
-        for r in range(4)
-        for c in range(3)
-    ]
-    field += [box((0.01, 0.026, 0.005), 0.002).moved(0.045 - 0.018 * r, -0.115, 0) for r in range(4)]
+    digits = [(0.05 - 0.024 * r, 0.0) for r in range(4)]
+    field = keypad(box((0.016, 0.02, 0.006), 0.002), digits, spread(3, -0.028, -0.048))
+    field += keypad(box((0.01, 0.026, 0.005), 0.002), [(0.045 - 0.018 * r, 0.0) for r in range(4)], [-0.115])
     screen = box((0.035, 0.1, 0.004), 0.001).moved(-0.065, -0.05, 0)
     parts = (
         of(body, wedge.turned("y", tilt))
@@ -85,11 +82,8 @@ def cordless(size: Size, body: Material, trim: Material) -> Parts:
     d, w, h = size
     base = lathe([(w * 0.48, 0), (w * 0.5, 0.006), (w * 0.42, 0.022), (w * 0.3, 0.03)], 32).scaled(x=d / w)
     phone = prism(rounded_rectangle(0.026, 0.048, 0.012, 5), h - 0.012, 0.008).turned("y", -7).moved(0.006, 0, 0.01)
-    keys = [
-        box((0.003, 0.009, 0.007), 0.001).moved(0.0195, (c - 1) * 0.0125, h * (0.28 + 0.075 * r))
-        for r in range(4)
-        for c in range(3)
-    ]
+    rows = [(0.0195, h * (0.28 + 0.075 * r)) for r in range(4)]
+    keys = keypad(box((0.003, 0.009, 0.007), 0.001), rows, spread(3, 0.0125))
     screen = box((0.003, 0.034, 0.03), 0.001).moved(0.0195, 0, h * 0.64)
     return of(body, base, phone) + of(trim, *(k.turned("y", -7) for k in keys)) + of(m.SCREEN, screen.turned("y", -7))
 
@@ -175,14 +169,12 @@ def remote(size: Size, body: Material, keys: Material, sparse: bool = False) -> 
             for x, y in ((-0.26, 0), (-0.42, 0), (-0.06, 0.2), (-0.06, -0.2), (0.06, 0.2), (0.06, -0.2))
         ]
         return parts + of(keys, ring, *dots)
+    across = spread(3, w * 0.27)
+    rows = [(d * (0.02 + 0.065 * r), z) for r in range(6)]
     solids = [
-        box((d * 0.036, w * 0.19, 0.0034), 0.001).moved(d * (0.02 + 0.065 * r), (c - 1) * w * 0.27, z)
-        for r in range(6)
-        for c in range(3)
-    ]
-    solids += [
+        *keypad(box((d * 0.036, w * 0.19, 0.0034), 0.001), rows, across),
         cylinder(0.24 * w, 0.0034, 0.001, 24).moved(-d * 0.16, 0, z),
-        *(box((d * 0.03, w * 0.16, 0.0034), 0.001).moved(-d * 0.36, (c - 1) * w * 0.27, z) for c in range(3)),
+        *keypad(box((d * 0.03, w * 0.16, 0.0034), 0.001), [(-d * 0.36, z)], across),
     ]
     return parts + of(keys, *solids) + of(RED_KEY, cylinder(0.1 * w, 0.0036, 0.001, 16).moved(-d * 0.44, w * 0.3, z))
 

@@ -30,11 +30,8 @@ def microwave(size: Size, body: Material, kind: str = "microwave") -> Parts:
         for z in (0.27, 0.52, 0.77):
             parts += at(knob(0.017), x + 0.016, side_y, z * h)
         return parts + at(bar_handle(glass_w * 0.8, False), x + 0.01, y, h - 0.045)
-    keys = [
-        box((0.004, 0.02, 0.012), 0.001).moved(x + 0.016, side_y + (c - 1) * 0.028, 0.07 + 0.03 * r)
-        for r in range(4)
-        for c in range(3)
-    ]
+    rows = [(x + 0.016, 0.07 + 0.03 * r) for r in range(4)]
+    keys = keypad(box((0.004, 0.02, 0.012), 0.001), rows, spread(3, 0.028, side_y))
     display = box((0.004, 0.085, 0.032), 0.001).moved(x + 0.015, side_y, h - 0.08)
     return (
         parts

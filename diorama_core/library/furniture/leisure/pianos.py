@@ -31,15 +31,8 @@ def upright_piano(size: Size, wood: Material, legs: str = "column") -> Parts:
         box((0.02, w - 0.06, 0.05), 0.004).moved(front - 0.012, 0, key_z - 0.04),
     )
     kx = front - 0.1
-    parts += of(
-        m.WHITE,
-        *(box((0.145, 0.0215, 0.02), 0.002).moved(kx, -0.59 * 1.0 + 0.0227 * k, key_z - 0.01) for k in range(52)),
-    )
-    black = [k for k in range(51) if k % 7 in (0, 1, 3, 4, 5)]
-    parts += of(
-        m.BLACK,
-        *(box((0.09, 0.011, 0.012), 0.002).moved(kx - 0.026, -0.59 + 0.0227 * (k + 0.5), key_z + 0.008) for k in black),
-    )
+    white, black = (0.145, 0.0215, 0.02), (0.09, 0.011, 0.012)
+    parts += piano_keys(-0.59, 0.0227, white, (kx, key_z - 0.01), black, (kx - 0.026, key_z + 0.008), first=0.0)
     parts += of(
         wood,
         box((0.02, w - 0.1, 0.17), 0.004).turned("y", -14).moved(-d / 2 + depth + 0.012, 0, key_z + 0.03),
@@ -78,20 +71,10 @@ def digital_piano(size: Size, body: Material) -> Parts:
     )
     step = (w - 0.14) / 52
     kx = d / 2 - 0.09
-    parts += of(
-        m.WHITE,
-        *(
-            box((0.14, step * 0.94, 0.016), 0.002).moved(kx, -w / 2 + 0.07 + step * (k + 0.5), h - 0.075)
-            for k in range(52)
-        ),
-    )
-    black = [k for k in range(51) if k % 7 in (0, 1, 3, 4, 5)]
+    white, black = (0.14, step * 0.94, 0.016), (0.088, step * 0.5, 0.012)
+    parts += piano_keys(-w / 2 + 0.07, step, white, (kx, h - 0.075), black, (kx - 0.024, h - 0.062))
     return parts + of(
         m.BLACK,
-        *(
-            box((0.088, step * 0.5, 0.012), 0.002).moved(kx - 0.024, -w / 2 + 0.07 + step * (k + 1), h - 0.062)
-            for k in black
-        ),
         box((0.015, 0.5, 0.17), 0.004).turned("y", -16).moved(-d * 0.24, 0, h - 0.01),
     )
 
@@ -144,22 +127,10 @@ def grand_piano(size: Size, lacquer: Material) -> Parts:
     pedals = [box((0.1, 0.024, 0.01), 0.004).moved(d / 2 - 0.29, y, 0.1) for y in (-0.07, 0.0, 0.07)]
     desk = box((0.014, 0.7, 0.22), 0.004).turned("y", -18).moved(d / 2 - 0.42, 0, z1 + 0.005)
     step = (w - 0.14) / 52
-    whites = [
-        box((0.145, step * 0.94, 0.02), 0.002).moved(d / 2 - 0.1, -half + 0.07 + step * (k + 0.5), z0 + 0.115)
-        for k in range(52)
-    ]
-    blacks = [
-        box((0.09, step * 0.5, 0.014), 0.002).moved(d / 2 - 0.126, -half + 0.07 + step * (k + 1), z0 + 0.133)
-        for k in range(51)
-        if k % 7 in (0, 1, 3, 4, 5)
-    ]
+    white, black = (0.145, step * 0.94, 0.02), (0.09, step * 0.5, 0.014)
+    keys = piano_keys(-half + 0.07, step, white, (d / 2 - 0.1, z0 + 0.115), black, (d / 2 - 0.126, z0 + 0.133))
     plate = prism(outline * 0.93, 0.004, 0.001).moved(0.0, 0.0, z1 - 0.001)
-    return (
-        of(lacquer, rim, *front, fall, lid, prop, *legs, *lyre, desk)
-        + of(m.BRASS, *casters, *pedals, plate)
-        + of(m.WHITE, *whites)
-        + of(m.BLACK, *blacks)
-    )
+    return of(lacquer, rim, *front, fall, lid, prop, *legs, *lyre, desk) + of(m.BRASS, *casters, *pedals, plate) + keys
 
 
 PIANO_BLACK = m.paint("black lacquer", "#1f1f21", 0.12)
