@@ -82,7 +82,9 @@ def _library_build(a: argparse.Namespace) -> None:
         )
     for shape_id, reason in prepared.failures:
         print(f"diorama: {shape_id}: {reason}", file=sys.stderr)
-    print(f"{prepared.count - len(prepared.failures)} of {prepared.count} shapes of {a.library} are ready")
+    print(
+        f"{prepared.count - len(prepared.failures)} of {prepared.count} shapes of {a.library} are ready, {prepared.made} made now"
+    )
 
 
 def _library_list(a: argparse.Namespace) -> None:

@@ -232,6 +232,10 @@ class AppearanceStore:
         path = folder / f"{key}.{_FORMAT}.npz"
         return self._cached.get(key, lambda: _read(path) or _made(path, parts()))
 
+    def has(self, key: str, folder: Path) -> bool:
+        """Whether the look kept under `key` is in a file of `folder`."""
+        return bool(key) and (folder / f"{key}.{_FORMAT}.npz").is_file()
+
 
 SHARED_APPEARANCES = AppearanceStore()
 """One memory for all stages: retrieval and pose look at the same shapes."""

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -15,13 +13,16 @@ import trimesh
 
 from diorama_core.errors import LibraryError
 from diorama_core.io.cache import LruCache
-from diorama_core.io.derived import derived
 from diorama_core.library import furniture, taxonomy
+from diorama_core.library.furniture.geometry_key import geometry_key
 from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.model import Design, built, mesh_of, scene_of
 from diorama_core.library.furniture.solids import Solid
 from diorama_core.library.record import Shape, SupportSurface, usual_contact_faces
-from diorama_core.library.surfaces import support_surfaces
+from diorama_core.library.surfaces import SURFACES_VERSION, support_surfaces
+
+GLB_VERSION = 1
+"""Of the models' files: raise it when what `_glb` writes for the same parts changes."""
 
 BULK_DENSITY: dict[str, float] = {
     "chair": 28, "office chair": 35, "armchair": 40, "stool": 45, "bench": 60, "sofa": 40, "ottoman": 70, "table": 45,
@@ -113,9 +114,18 @@ class BuiltInLibrary:
     def glb(self, shape_id: str) -> bytes:
         """`parts` as GLB, +Z up, metres; the same bytes every time."""
         record = self._known(shape_id)
-        return self._glbs.get(
-            shape_id, lambda: derived(self._folder / f"{record.content_hash}.glb", lambda: _glb(self.parts(shape_id)))
-        )
+        return self._glbs.get(shape_id, lambda: derived(self._glb_path(record), lambda: _glb(self.parts(shape_id))))
+
+    def is_built(self, shape_id: str) -> bool:
+        """Whether the model and the support surfaces of a shape are on disk."""
+        record = self._known(shape_id)
+        return self._glb_path(record).is_file() and self._surfaces_path(record).is_file()
+
+    def _glb_path(self, record: Shape) -> Path:
+        return self._folder / f"{record.content_hash}.{GLB_VERSION}.glb"
+
+    def _surfaces_path(self, record: Shape) -> Path:
+        return self._folder / f"{record.content_hash}.{SURFACES_VERSION}.surfaces.json"
 
     def _built(self, shape_id: str) -> list[tuple[Material, Solid]]:
         """The solids, kept for the moment: who asks for the mesh mostly asks for the materials next."""
@@ -131,7 +141,7 @@ class BuiltInLibrary:
         def measure() -> bytes:
             return _surfaces_to_json(support_surfaces(self.mesh(record.id)))
 
-        return _surfaces_from_json(derived(self._folder / f"{record.content_hash}.surfaces.json", measure))
+        return _surfaces_from_json(derived(self._surfaces_path(record), measure))
 
 
 def _record(design: Design) -> Shape:
@@ -146,7 +156,7 @@ def _record(design: Design) -> Shape:
         synonyms=kind.synonyms,
         contact_faces=usual_contact_faces(kind.mount),
         mass_kg=_mass_guess(design),
-        content_hash=_content_hash(design),
+        content_hash=geometry_key(design),
     )
 
 
@@ -155,19 +165,6 @@ def _mass_guess(design: Design) -> float:
         return design.mass_kg
     x, y, z = design.size_m
     return round(max(BULK_DENSITY.get(design.category, 100.0) * x * y * z, 0.05), 2)
-
-
-def _content_hash(design: Design) -> str:
-    key = f"{_code_hash()} {design.id} {design.size_m}"
-    return hashlib.sha256(key.encode()).hexdigest()[:24]
-
-
-@cache
-def _code_hash() -> str:
-    """Hash of the code that builds and measures shapes: geometry and materials follow from it and the design."""
-    here = Path(__file__).parent
-    sources = [*sorted((here / "furniture").rglob("*.py")), here / "surfaces.py"]
-    return hashlib.sha256(b"\0".join(s.read_bytes() for s in sources)).hexdigest()
 
 
 def _glb(scene: trimesh.Scene) -> bytes:

@@ -23,6 +23,8 @@ from diorama_core.library.record import SupportSurface
 if TYPE_CHECKING:
     from open3d.t.geometry import RaycastingScene
 
+SURFACES_VERSION = 1
+"""Raise it when other surfaces are found on the same shape, so that those on disk are measured again."""
 MINIMUM_UP = 0.9
 """Cosine of the steepest slope that still carries things."""
 STEP_M = 0.008

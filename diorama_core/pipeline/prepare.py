@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 
 from diorama_core.errors import DioramaError
 from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES
-from diorama_core.layout.problem.parts import parts_of_shape
+from diorama_core.layout.problem.parts import are_kept, parts_of_shape
 from diorama_core.library.catalogue import default_cache_dir
+from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.store import BUILT_IN, open_library
 from diorama_core.progress import Progress
 from diorama_core.render.image_search import ImageSearch
@@ -26,6 +28,8 @@ class Prepared:
 
     count: int
     """Shapes in the library."""
+    made: int = 0
+    """Shapes of which anything was missing and has been made now."""
     failures: tuple[tuple[str, str], ...] = ()
     """Ids of shapes that could not be prepared, and why."""
 
@@ -41,8 +45,8 @@ def prepare_library(
 ) -> Prepared:
     """Make and keep models, support surfaces and outlines of every shape of a library.
 
-    What is kept already costs next to nothing, so this can be run at any time and resumed. A shape that fails never
-    stops the others.
+    Only what is missing is made: after a change to one design, that shape's. So this can be run at any time, resumed
+    after an interruption, and costs next to nothing when all is there. A shape that fails never stops the others.
 
     Args:
         name: Of the library, as in `open_library`.
@@ -61,37 +65,62 @@ def prepare_library(
     progress, pool = progress or Progress(), pool or workers()
     library = open_library(name)
     shapes = library.shapes()
+    wanted = _Wanted(parts, views, templates)
+    missing = [s.id for s in shapes if not wanted.is_kept(library, s)]
     whole = progress.part(0.0, 0.7 if views else 1.0)
     failures: list[tuple[str, str]] = []
     done = 0
-    chunks = [tuple(s.id for s in shapes[i : i + _CHUNK]) for i in range(0, len(shapes), _CHUNK)]
-    for finished in pool.map(partial(_prepare, name, parts, views, templates), chunks):
+    chunks = [tuple(missing[i : i + _CHUNK]) for i in range(0, len(missing), _CHUNK)]
+    for finished in pool.map(partial(_prepare, name, wanted), chunks):
         failures += finished.value if finished.value is not None else [(i, str(finished.error)) for i in finished.item]
         done += len(finished.item)
-        whole.report(done / len(shapes), f"shapes: {done} of {len(shapes)}")
+        whole.report(done / len(missing), f"shapes: {done} of {len(missing)}")
     if views:
         broken = {shape_id for shape_id, _ in failures}
         usable = [s for s in shapes if s.id not in broken]
         ImageSearch(library).prepared(usable, progress.part(0.7, 1.0), pool, name)
-    return Prepared(len(shapes), tuple(sorted(failures)))
+    return Prepared(len(shapes), len(missing) - len(failures), tuple(sorted(failures)))
 
 
-def _prepare(name: str, parts: bool, views: bool, templates: bool, shape_ids: Sequence[str]) -> list[tuple[str, str]]:
+@dataclass(frozen=True)
+class _Wanted:
+    """What is to be derived from every shape beside its model, surfaces and outline."""
+
+    parts: bool
+    views: bool
+    templates: bool
+
+    def is_kept(self, library: ShapeLibrary, shape: Shape) -> bool:
+        """Whether all of it is on disk."""
+        is_built = getattr(library, "is_built", None)  # stored libraries have models and surfaces from the start
+        return (
+            (is_built is None or is_built(shape.id))
+            and SHARED_APPEARANCES.has(shape.content_hash, _looks())
+            and (not self.parts or are_kept(shape))
+            and (not self.views or EmbeddedSimilarity(library).is_prepared(shape))
+            and (not self.templates or TemplateCache().has(shape))
+        )
+
+
+def _looks() -> Path:
+    return default_cache_dir() / "looks"
+
+
+def _prepare(name: str, wanted: _Wanted, shape_ids: Sequence[str]) -> list[tuple[str, str]]:
     """Prepare some shapes; returns those that could not be, and why."""
     library, retained = open_library(name), TemplateCache(cached=1)
     similarity = EmbeddedSimilarity(library)
-    looks = default_cache_dir() / "looks"
     failures = []
     for shape_id in shape_ids:
         try:
             shape = library.shape(shape_id)
             library.glb(shape_id)
-            SHARED_APPEARANCES.get(shape.content_hash, looks, partial(library.parts, shape_id))
-            if parts:
+            SHARED_APPEARANCES.get(shape.content_hash, _looks(), partial(library.parts, shape_id))
+            if wanted.parts:
                 parts_of_shape(library, shape)
-            if views:
+            if wanted.views:
                 similarity.prepare(shape)
-            if templates:
+            if wanted.templates:
                 retained.get(library, shape)
         except DioramaError as error:
             failures.append((shape_id, str(error)))

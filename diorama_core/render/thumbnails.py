@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
 import io
 from collections.abc import Sequence
-from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,6 +20,8 @@ if TYPE_CHECKING:
     from diorama_core.render.appearance import Paint
 
 _CACHE: LruCache[str, bytes] = LruCache(2048)
+_VERSION = 1
+"""Raise it when the picture of the same shape changes: the light, the view, the background."""
 
 
 def thumbnail(
@@ -34,7 +34,7 @@ def thumbnail(
 ) -> bytes:
     """A square PNG of a shape on a transparent background.
 
-    Made once per content, size and renderer; shapes without a content hash are not written to disk.
+    Made once per content and size; shapes without a content hash are not written to disk.
 
     Args:
         library: Where the shape is.
@@ -46,7 +46,7 @@ def thumbnail(
     shape = record_of(library, shape_id)
     if not shape.content_hash or paint != (None, None):
         return _CACHE.get(f"{id(library)} {shape_id} {size} {paint}", lambda: _rendered(library, shape_id, size, paint))
-    name = f"{shape.content_hash}-{_renderer()}-{size}.png"
+    name = f"{shape.content_hash}-{_VERSION}-{size}.png"
     path = (folder or default_cache_dir() / "thumbnails") / name
     return _CACHE.get(name, lambda: derived(path, lambda: _rendered(library, shape_id, size)))
 
@@ -85,10 +85,3 @@ def _rendered(library: ShapeLibrary, shape_id: str, size: int, paint: Paint = (N
     buffer = io.BytesIO()
     Image.fromarray(render_shape(library, shape_id, (size, size), paint=paint)).save(buffer, "PNG", optimize=True)
     return buffer.getvalue()
-
-
-@cache
-def _renderer() -> str:
-    """Hash of the code that renders: a picture is another one when the light is."""
-    sources = sorted(Path(__file__).parent.glob("*.py"))
-    return hashlib.sha256(b"\0".join(s.read_bytes() for s in sources)).hexdigest()[:8]

@@ -24,7 +24,7 @@ from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.render.colour_layout import LAYOUT_WIDTH, colour_layout, layout_agreement, painted_views
 from diorama_core.render.templates import TemplateGrid, templates_with_faces
 from diorama_core.render.view_features import EDGES_WIDTH, OUTLINE_WIDTH, outline_and_edges
-from diorama_core.retrieval.feature_cache import cached_features
+from diorama_core.retrieval.feature_cache import cached_features, has_features
 from diorama_core.retrieval.outlines import filled, open_share
 from diorama_core.scene.values import ArrayValue
 
@@ -111,6 +111,10 @@ class EmbeddedSimilarity:
     def prepare(self, shape: Shape) -> None:
         """Make and keep what is compared of a shape, where that has not been done yet."""
         self._views(shape, self._appearance(shape))
+
+    def is_prepared(self, shape: Shape) -> bool:
+        """Whether what `prepare` keeps is on disk."""
+        return has_features(EMBEDDED_FEATURES, shape, self.folder)
 
     def form_agreement(self, a: Shape, b: Shape) -> float:
         """How alike two shapes are from all sides, whatever their size and colours: 1 for the same, 0 or less for none.

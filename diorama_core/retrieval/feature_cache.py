@@ -33,13 +33,22 @@ def cached_features(
     """
     if not shape.content_hash:
         return make().astype(np.float16)
-    path = (folder or default_cache_dir() / "features") / kind / f"{shape.content_hash}.npy"
+    path = _path(kind, shape, folder)
 
     def found_or_made() -> np.ndarray:
         found = _read(path)
         return _written(path, make().astype(np.float16)) if found is None else found
 
     return _CACHE.get(str(path), found_or_made)
+
+
+def has_features(kind: str, shape: Shape, folder: Path | None = None) -> bool:
+    """Whether the features of one kind of one shape are on disk."""
+    return bool(shape.content_hash) and _path(kind, shape, folder).is_file()
+
+
+def _path(kind: str, shape: Shape, folder: Path | None) -> Path:
+    return (folder or default_cache_dir() / "features") / kind / f"{shape.content_hash}.npy"
 
 
 def _read(path: Path) -> np.ndarray | None:

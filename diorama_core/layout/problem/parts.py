@@ -28,8 +28,17 @@ def parts_of_shape(library: ShapeLibrary, shape: Shape) -> tuple[ConvexPart, ...
     key = shape.content_hash
     if not key:
         return convex_parts(library.mesh(shape.id))
-    path = default_cache_dir() / "parts" / f"{key}-{VERSION}.npz"
+    path = _path(key)
     return _CACHE.get(key, lambda: _read(path) or _made(path, library.mesh(shape.id)))
+
+
+def are_kept(shape: Shape) -> bool:
+    """Whether the convex bodies of a shape are on disk."""
+    return bool(shape.content_hash) and _path(shape.content_hash).is_file()
+
+
+def _path(key: str) -> Path:
+    return default_cache_dir() / "parts" / f"{key}-{VERSION}.npz"
 
 
 def _read(path: Path) -> tuple[ConvexPart, ...] | None:

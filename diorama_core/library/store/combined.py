@@ -65,6 +65,11 @@ class CombinedLibrary:
         retained = getattr(self._of(shape_id), "thumbnail", None)
         return None if retained is None else retained(shape_id)
 
+    def is_built(self, shape_id: str) -> bool:
+        """Whether what its library derives from the shape is on disk; stored libraries have it from the start."""
+        built = getattr(self._of(shape_id), "is_built", None)
+        return True if built is None else bool(built(shape_id))
+
     def _of(self, shape_id: str) -> ShapeLibrary:
         self._refresh()
         owner = self._owner.get(shape_id)
