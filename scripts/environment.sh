@@ -69,12 +69,13 @@ install() {
     fi
 }
 
-# prepare_shapes: what is derived from the built-in shapes, once for each state of their code.
+# prepare_shapes: what is derived from the built-in shapes. Asked again after any change to the code; then only what is
+# missing is made, so after a change to one shape that one.
 prepare_shapes() {
     local stamp
-    stamp=".venv/.shapes-$(cat diorama_core/library/furniture/*.py diorama_core/library/*.py | cksum | tr ' ' '-')"
+    stamp=".venv/.shapes-$(find diorama_core -name '*.py' | LC_ALL=C sort | xargs cat | cksum | tr ' ' '-')"
     [ -e "$stamp" ] && return
-    say "Preparing the shape library (once; about a minute)…"
+    say "Preparing the shape library (about a minute the first time)…"
     .venv/bin/diorama library build || { say "The shapes could not be prepared; the line above says why."; exit 1; }
     rm -f .venv/.shapes-*
     touch "$stamp"

@@ -26,8 +26,11 @@ _PACKAGE = __name__.rpartition(".")[0]
 _FINISH = (built, mesh_of, scene_of)
 """What every design goes through after its builder."""
 
-_DOCSTRING = re.compile(r'^[ \t]*"""[\s\S]*?"""\n', re.MULTILINE)
-_COMMENT = re.compile(r"(?:^[ \t]*|  )# .*$", re.MULTILINE)
+_NOISE = re.compile(
+    r"""(?:^[ \t]*\"{3}[\s\S]*?\"{3}|[ \t]*\#.*)|(?P<kept>"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')""", re.MULTILINE
+)
+"""Docstrings and comments; other strings, in which neither begins, are kept."""
+_BLANK = re.compile(r"\n[ \t]*(?=\n)")
 _STATEMENT = re.compile(r"\n(?=[A-Za-z_@])")
 _DEFINED = re.compile(r"(?:@.*\n)*(?:def |class )(\w+)|(\w+(?:, \w+)*)(?:: [^=\n]+)? = ")
 _IMPORT = re.compile(r"from ([\w.]+) import \(?([^)]*)\)?")
@@ -188,7 +191,7 @@ class Module:
 def _pieces(text: str) -> Iterator[str]:
     """Statements at the top of a module, decorators with what they decorate."""
     decorators = ""
-    for piece in _STATEMENT.split(_COMMENT.sub("", _DOCSTRING.sub("", "\n" + text))):
+    for piece in _STATEMENT.split(_BLANK.sub("", _NOISE.sub(r"\g<kept>", "\n" + text))):
         piece = piece.strip() + "\n"
         if piece.startswith("@"):
             decorators += piece

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from jaxtyping import Float, Float32
+from jaxtyping import Float, Float32, UInt8
 
 from diorama_core.io.derived import read_arrays, write_arrays
 from diorama_core.library.catalogue import built_in_library, default_cache_dir
 from diorama_core.library.ingest.relief import SIDE, relief
 from diorama_core.library.record import Shape, ShapeLibrary
 
-_FORMAT = 3
+_FORMAT = 4
 EACH = 6
 """Shapes of one category that are kept, evenly spread over it: more hardly tell more."""
 
@@ -46,6 +45,8 @@ def known_shapes(
 ) -> KnownShapes:
     """Reliefs of shapes: read from the cache, or taken now (half a minute for the built-in ones) and kept there.
 
+    Only those that are missing are taken: after a change to one shape, that shape's.
+
     Args:
         cache_dir: Where they are kept; the user's cache by default.
         on_step: Told the share that is done.
@@ -53,24 +54,30 @@ def known_shapes(
     """
     library = library or built_in_library()
     shapes = _spread(library.shapes())
-    path = _place(shapes, cache_dir)
+    path = _place(cache_dir)
     categories = tuple(s.category for s in shapes)
     sizes = np.log([s.size_m for s in shapes])
-    retained = _read(path, len(shapes))
-    if retained is None:
-        retained = _taken(library, shapes, on_step)
-        write_arrays(path, {"reliefs": retained})
-    return KnownShapes(categories, relief_features(retained.astype(np.float32) / 255.0), sizes)
+    retained = _read(path)
+    missing = [s for s in shapes if _key(s) not in retained]
+    if missing:
+        retained |= _taken(library, missing, on_step)
+        retained = {_key(s): retained[_key(s)] for s in shapes}
+        _write(path, retained)
+    reliefs = np.stack([retained[_key(s)] for s in shapes])
+    return KnownShapes(categories, relief_features(reliefs.astype(np.float32) / 255.0), sizes)
 
 
 def are_known(cache_dir: Path | None = None) -> bool:
     """Whether the reliefs of the built-in shapes are in the cache."""
-    return _place(_spread(built_in_library().shapes()), cache_dir).exists()
+    return {_key(s) for s in _spread(built_in_library().shapes())} <= _read(_place(cache_dir)).keys()
 
 
-def _place(shapes: Sequence[Shape], cache_dir: Path | None) -> Path:
-    state = hashlib.sha256(f"{_FORMAT} {SIDE} {[s.content_hash for s in shapes]}".encode()).hexdigest()[:24]
-    return (cache_dir or default_cache_dir()) / "reliefs" / f"{state}.npz"
+def _place(cache_dir: Path | None) -> Path:
+    return (cache_dir or default_cache_dir()) / "reliefs" / f"{_FORMAT}-{SIDE}.npz"
+
+
+def _key(shape: Shape) -> str:
+    return shape.content_hash or shape.id
 
 
 def _spread(shapes: Sequence[Shape]) -> list[Shape]:
@@ -82,14 +89,23 @@ def _spread(shapes: Sequence[Shape]) -> list[Shape]:
     return [kind[row] for kind, some in zip(kinds.values(), rows, strict=True) for row in some]
 
 
-def _taken(library: ShapeLibrary, shapes: Sequence[Shape], on_step: Callable[[float], None]) -> np.ndarray:
-    found = np.zeros((len(shapes), 3, 2, SIDE, SIDE), np.uint8)
-    for row, shape in enumerate(shapes):
-        found[row] = np.round(relief(library.mesh(shape.id)) * 255)
-        on_step((row + 1) / len(shapes))
+def _taken(
+    library: ShapeLibrary, shapes: Sequence[Shape], on_step: Callable[[float], None]
+) -> dict[str, UInt8[np.ndarray, "3 2 side side"]]:
+    found = {}
+    for count, shape in enumerate(shapes, start=1):
+        found[_key(shape)] = np.round(relief(library.mesh(shape.id)) * 255).astype(np.uint8)
+        on_step(count / len(shapes))
     return found
 
 
-def _read(path: Path, count: int) -> np.ndarray | None:
-    stored = read_arrays(path, "reliefs")
-    return stored[0] if stored is not None and stored[0].shape == (count, 3, 2, SIDE, SIDE) else None
+def _read(path: Path) -> dict[str, UInt8[np.ndarray, "3 2 side side"]]:
+    """Reliefs by the keys of their shapes; none where there is no such file, or a damaged one."""
+    stored = read_arrays(path, "keys", "reliefs")
+    if stored is None or len(stored[0]) != len(stored[1]):
+        return {}
+    return dict(zip(stored[0].tolist(), stored[1], strict=True))
+
+
+def _write(path: Path, found: dict[str, UInt8[np.ndarray, "3 2 side side"]]) -> None:
+    write_arrays(path, {"keys": np.array(list(found)), "reliefs": np.stack(list(found.values()))})
