@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Literal
 
 from diorama_core.library.furniture import materials as m
@@ -16,6 +17,37 @@ Base = Literal["legs", "splay", "plinth", "steel", "none"]
 
 Cell = str
 """What fills one bay of a front: "open", "door", "pair" (of doors), or "3" and so on for that many drawers."""
+
+
+@dataclass(frozen=True)
+class _Fronts:
+    """How the doors and drawers of one case are made."""
+
+    wood: Material
+    pull: Material
+    handle: str
+    panel: str
+    infill: Material | None
+
+    def over(self, bay: Cell, x: float, y: float, z: float, w: float, h: float, hinge: int) -> Parts:
+        """What closes one bay, its back on the plane `x`, bottom at `z`, and the gap's shadow behind it."""
+        if bay == "open":
+            return []
+        shadow = of(m.SHADOW, box((0.003, w + 0.005, h), 0.001).moved(x, y, z))
+        if bay == "door":
+            return shadow + self._door(x, y, z, w, h, hinge)
+        if bay == "pair":
+            left, right = (self._door(x, y + f * w / 4, z, w / 2 - 0.004, h, f) for f in (1, -1))
+            return shadow + left + right
+        each = h / int(bay)
+        handle = "bar" if self.handle == "tall" else self.handle
+        heights = [z + each * k for k in range(int(bay))]
+        return shadow + [
+            p for zz in heights for p in drawer_front(x, y, zz, w, each - 0.006, self.wood, self.pull, handle)
+        ]
+
+    def _door(self, x: float, y: float, z: float, w: float, h: float, hinge: int) -> Parts:
+        return door_front(x, y, z, w, h, self.wood, self.pull, self.handle, hinge, self.panel, self.infill)
 
 
 def feet(kind: Base, d: float, w: float, height: float, material: Material) -> Parts:
@@ -54,7 +86,7 @@ def case(
 ) -> Parts:
     """A case of bays side by side, each open, with a door, or a stack of drawers."""
     d, w, h = size
-    fronts, t, reveal = front or body, 0.02, 0.02
+    fronts, t, reveal = _Fronts(front or body, pull, handle, panel, infill), 0.02, 0.02
     cap = 0.024 if top is not None else 0.0
     depth = d - reveal - 0.018
     z0, z1 = base_h, h - cap
@@ -78,67 +110,8 @@ def case(
     front_w = (w - 0.004) / len(bays)  # fronts lie over the sides and dividers, edge to edge
     for k, bay in enumerate(bays):
         y = -w / 2 + 0.002 + front_w * (k + 0.5)
-        parts += _bay(
-            bay,
-            x,
-            y,
-            z0 + 0.004,
-            front_w - 0.007,
-            z1 - z0 - 0.008,
-            fronts,
-            pull,
-            handle,
-            panel,
-            infill,
-            1 if k % 2 else -1,
-        )
+        place = (x, y, z0 + 0.004, front_w - 0.007, z1 - z0 - 0.008)
+        parts += fronts.over(bay, *place, hinge=1 if k % 2 else -1)
     if top is not None:
         parts += of(top, box((d, w + 0.02, cap + 0.001), 0.006, 2).moved(z=h - cap - 0.001))
     return parts
-
-
-def _bay(
-    bay: Cell,
-    x: float,
-    y: float,
-    z: float,
-    w: float,
-    h: float,
-    front: Material,
-    pull: Material,
-    handle: str,
-    panel: str,
-    infill: Material | None,
-    hinge: int,
-) -> Parts:
-    if bay == "open":
-        return []
-    return of(m.SHADOW, box((0.003, w + 0.005, h), 0.001).moved(x, y, z)) + _fronts(
-        bay, x, y, z, w, h, front, pull, handle, panel, infill, hinge
-    )
-
-
-def _fronts(
-    bay: Cell,
-    x: float,
-    y: float,
-    z: float,
-    w: float,
-    h: float,
-    front: Material,
-    pull: Material,
-    handle: str,
-    panel: str,
-    infill: Material | None,
-    hinge: int,
-) -> Parts:
-    if bay == "door":
-        return door_front(x, y, z, w, h, front, pull, handle, hinge, panel, infill)
-    if bay == "pair":
-        half = w / 2
-        left = door_front(x, y + half / 2, z, half - 0.004, h, front, pull, handle, 1, panel, infill)
-        return left + door_front(x, y - half / 2, z, half - 0.004, h, front, pull, handle, -1, panel, infill)
-    n = int(bay)
-    each = h / n
-    drawer_pull = "bar" if handle == "tall" else handle
-    return [p for k in range(n) for p in drawer_front(x, y, z + each * k, w, each - 0.006, front, pull, drawer_pull)]
