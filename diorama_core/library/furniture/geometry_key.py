@@ -90,7 +90,8 @@ class Sources:
     def __init__(self, folder: Path, package: str) -> None:
         self._folder, self._package = folder, package
         self._modules: dict[str, Module | None] = {}
-        self._uses: dict[Place, tuple[Place, ...]] = {}
+        self._names: dict[str, dict[str, Place]] = {}
+        self._uses: dict[Place, frozenset[Place]] = {}
 
     def digest(self, place: Place) -> str:
         """A hash of a definition's text and of all that it uses.
@@ -98,7 +99,8 @@ class Sources:
         Raises:
             LibraryError: when the module has no such definition (a builder made inside another function).
         """
-        if self._text(place) is None:
+        module = self._module(place[0])
+        if module is None or place[1] not in module.definitions:
             raise LibraryError(f"{place[0]} has no {place[1]} at its top, so shapes built by it cannot be told apart")
         texts = (f"{used} {self._text(used)}" for used in sorted(self.closure(place)))
         return hashlib.sha256("".join(texts).encode()).hexdigest()
@@ -107,45 +109,49 @@ class Sources:
         """A definition with everything that it uses, directly or not."""
         found, waiting = {place}, [place]
         while waiting:
-            new = [p for p in self._used(waiting.pop()) if p not in found]
-            found.update(new)
+            new = self._used(waiting.pop()) - found
+            found |= new
             waiting += new
         return frozenset(found)
 
-    def _text(self, place: Place) -> str | None:
+    def _used(self, place: Place) -> frozenset[Place]:
+        """The definitions whose names stand in a definition's text."""
+        if place not in self._uses:
+            names, used = self._namespace(place[0]), set[Place]()
+            for word in set(_WORD.findall(self._text(place))):
+                root, _, attribute = word.partition(".")
+                meant = names.get(root)
+                if meant is not None and not meant[1]:  # a module: one of its definitions is meant
+                    meant = self._namespace(meant[0]).get(attribute)
+                if meant is not None and meant[1]:
+                    used.add(meant)
+            self._uses[place] = frozenset(used)
+        return self._uses[place]
+
+    def _text(self, place: Place) -> str:
         module = self._module(place[0])
-        text = None if module is None else module.definitions.get(place[1])
-        return None if module is None or text is None else text + module.loose
+        return "" if module is None else module.definitions[place[1]] + module.loose
 
-    def _used(self, place: Place) -> tuple[Place, ...]:
-        known = self._uses.get(place)
-        if known is None:
-            words = sorted(set(_WORD.findall(self._text(place) or "")))
-            places = (self._resolved(place[0], *word.split(".")) for word in words if word[0] != ".")
-            known = self._uses[place] = tuple(p for p in places if p is not None)
-        return known
-
-    def _resolved(self, name: str, word: str, attribute: str = "") -> Place | None:
-        """Where a word of a module is defined; None for words of other packages and of functions themselves."""
-        module = self._module(name)
-        if module is None:
-            return None
-        if word in module.definitions:
-            return name, word
-        if word in module.imports:
-            source, original = module.imports[word]
-            inner = f"{source}.{original}".lstrip(".")
-            if self._module(inner) is not None:  # an imported module: one of its definitions is meant
-                return self._resolved(inner, attribute) if attribute else None
-            return self._resolved(source, original)
-        places = (self._resolved(source, word, attribute) for source in module.stars)
-        return next((p for p in places if p is not None), None)
+    def _namespace(self, name: str) -> dict[str, Place]:
+        """What the words of a module mean: definitions, and modules as places without a definition."""
+        if name not in self._names:
+            self._names[name] = names = {}  # at once, so that a circle of imports ends
+            module = self._module(name)
+            if module is not None:
+                for star in module.stars:
+                    names.update(self._namespace(star))
+                for word, (source, original) in module.imports.items():
+                    inner = f"{source}.{original}".lstrip(".")
+                    known = (inner, "") if self._module(inner) else self._namespace(source).get(original)
+                    names.update({word: known} if known else {})
+                names.update({word: (name, word) for word in module.definitions})
+        return self._names[name]
 
     def _module(self, name: str) -> Module | None:
         if name not in self._modules:
             path = self._folder.joinpath(*name.split(".")).with_suffix(".py") if name else None
-            found = path is not None and path.is_file()
-            self._modules[name] = Module(path.read_text(encoding="utf-8"), self._package) if path and found else None
+            text = path.read_text(encoding="utf-8") if path is not None and path.is_file() else None
+            self._modules[name] = None if text is None else Module(text, self._package)
         return self._modules[name]
 
 
