@@ -13,6 +13,7 @@ import trimesh
 
 from diorama_core.errors import LibraryError
 from diorama_core.io.cache import LruCache
+from diorama_core.io.derived import derived
 from diorama_core.library import furniture, taxonomy
 from diorama_core.library.furniture.geometry_key import geometry_key
 from diorama_core.library.furniture.materials import Material

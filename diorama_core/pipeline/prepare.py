@@ -9,7 +9,7 @@ from pathlib import Path
 
 from diorama_core.errors import DioramaError
 from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES
-from diorama_core.layout.problem.parts import are_kept, parts_of_shape
+from diorama_core.layout.problem.parts import are_cached, parts_of_shape
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.store import BUILT_IN, open_library
@@ -96,7 +96,7 @@ class _Wanted:
         return (
             (is_built is None or is_built(shape.id))
             and SHARED_APPEARANCES.has(shape.content_hash, _looks())
-            and (not self.parts or are_kept(shape))
+            and (not self.parts or are_cached(shape))
             and (not self.views or EmbeddedSimilarity(library).is_prepared(shape))
             and (not self.templates or TemplateCache().has(shape))
         )

@@ -32,7 +32,7 @@ def parts_of_shape(library: ShapeLibrary, shape: Shape) -> tuple[ConvexPart, ...
     return _CACHE.get(key, lambda: _read(path) or _made(path, library.mesh(shape.id)))
 
 
-def are_kept(shape: Shape) -> bool:
+def are_cached(shape: Shape) -> bool:
     """Whether the convex bodies of a shape are on disk."""
     return bool(shape.content_hash) and _path(shape.content_hash).is_file()
 
