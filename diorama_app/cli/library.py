@@ -82,9 +82,8 @@ def _library_build(a: argparse.Namespace) -> None:
         )
     for shape_id, reason in prepared.failures:
         print(f"diorama: {shape_id}: {reason}", file=sys.stderr)
-    print(
-        f"{prepared.count - len(prepared.failures)} of {prepared.count} shapes of {a.library} are ready, {prepared.made} made now"
-    )
+    ready = prepared.count - len(prepared.failures)
+    print(f"{ready} of {prepared.count} shapes of {a.library} are ready, {prepared.made} made now")
 
 
 def _library_list(a: argparse.Namespace) -> None:
