@@ -7,8 +7,8 @@ import logging
 import os
 import sys
 from collections.abc import Sequence
+from typing import Any
 
-import diorama_core
 from diorama_app.cli.bench import add_bench
 from diorama_app.cli.doctor import add_doctor
 from diorama_app.cli.library import add_library
@@ -47,11 +47,21 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 1
 
 
+class _Version(argparse.Action):
+    """Prints the installed version, which is looked up only when it is asked for."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        from importlib.metadata import version
+
+        print(f"diorama {version('diorama')}")
+        parser.exit()
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="diorama", description="One picture of a room becomes an editable 3D scene.", allow_abbrev=False
     )
-    parser.add_argument("--version", action="version", version=f"diorama {diorama_core.__version__}")
+    parser.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for add in (
         add_serve,

@@ -3,12 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from diorama_core.project.storage import Project
-    from diorama_core.scene.types import Scene
+import sys
+from typing import Any
 
 RECIPES = ("feasible", "paper", "all-in-one")
 PROFILES = ("auto", "embedded", "foundation")
@@ -29,19 +25,16 @@ def command(commands: Any, name: str, run: Any, summary: str, example: str) -> a
     return parser
 
 
-def opened(folder: Path) -> tuple[Project, Scene]:
-    """A project folder and its scene."""
-    from diorama_core.project.storage import Project
-
-    project = Project.open(folder)
-    return project, project.load_scene()
-
-
 def progress_bar() -> Any:
     """The bar on stderr."""
     from diorama_app.cli.progress_bar import progress_bar
 
     return progress_bar()
+
+
+def print_note(note: str) -> None:
+    """A remark on stderr."""
+    print(f"diorama: note: {note}", file=sys.stderr)
 
 
 def positive(text: str) -> float:

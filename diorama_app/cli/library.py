@@ -9,7 +9,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from diorama_app.cli.arguments import command, progress_bar
+import diorama_core as diorama
+from diorama_app.cli.arguments import command, print_note, progress_bar
 from diorama_app.cli.library_add import add_adding
 from diorama_core.errors import InputError
 
@@ -87,23 +88,21 @@ def _library_build(a: argparse.Namespace) -> None:
 
 
 def _library_list(a: argparse.Namespace) -> None:
-    from diorama_app.projects.report import library_named
     from diorama_core.library.taxonomy import resolve
 
-    library = library_named(a.library)
+    library = diorama.open_library(a.library)
     found = library.shapes() if a.category is None else library.in_category(resolve(a.category).category.name)
     _print_shapes(found, a.json)
 
 
 def _library_search(a: argparse.Namespace) -> None:
-    from diorama_app.projects.report import library_named
     from diorama_core.library.search import find
 
     if a.k < 1:
         raise InputError(f"-k {a.k}: ask for at least one shape")
     if a.image is None and not a.text.strip():
         raise InputError("say what to look for, in words or with --image FILE")
-    library = library_named(a.library)
+    library = diorama.open_library(a.library)
     if a.image is None:
         found = find(library, a.text, a.k)
         notes = [found.note]
@@ -116,12 +115,11 @@ def _library_search(a: argparse.Namespace) -> None:
             found = ImageSearch(library).find(crop, a.text, a.k, progress)
         notes = [found.note, crop.note]
     for note in filter(None, notes):
-        print(f"diorama: note: {note}", file=sys.stderr)
+        print_note(note)
     _print_shapes(found.shapes, a.json)
 
 
 def _library_sheet(a: argparse.Namespace) -> None:
-    from diorama_app.projects.report import library_named
     from diorama_core.library.taxonomy import resolve
     from diorama_core.render.thumbnails import shape_sheet
 
@@ -131,13 +129,13 @@ def _library_sheet(a: argparse.Namespace) -> None:
         raise InputError(f"-o {a.output}: a sheet is a PNG; end the name with .png")
     if not a.output.absolute().parent.is_dir():
         raise InputError(f"-o {a.output}: there is no folder {a.output.parent}; make it first")
-    library = library_named(a.library)
+    library = diorama.open_library(a.library)
     if a.category is None:
         shapes = tuple(sorted(library.shapes(), key=lambda s: s.category))  # stable: siblings side by side
     else:
         named = resolve(a.category)
         if named.note:
-            print(f"diorama: note: {named.note}", file=sys.stderr)
+            print_note(named.note)
         shapes = library.in_category(named.category.name)
     with progress_bar() as progress:
         page = shape_sheet(library, shapes, a.size, a.columns, progress)

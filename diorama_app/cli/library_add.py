@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import diorama_core as diorama
 from diorama_app.cli.arguments import command, positive, progress_bar
 from diorama_core.errors import InputError
 
@@ -139,10 +140,9 @@ def _by_note(report: Added) -> list[str]:
 
 
 def _info(a: argparse.Namespace) -> None:
-    from diorama_app.projects.report import library_named
     from diorama_core.library.record import shape_to_json
 
-    shape = library_named(a.library).shape(a.id)
+    shape = diorama.open_library(a.library).shape(a.id)
     print(shape_to_json(shape) if a.json else _described(shape))
 
 

@@ -11,6 +11,8 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+import diorama_core as diorama
+
 PACKAGES = {
     "viser": "viser",
     "trimesh": "trimesh",
@@ -62,9 +64,8 @@ def _package(name: str, module: str, *, needed: bool) -> Finding:
 
 
 def _library() -> Finding:
-    from diorama_app.projects.report import library_named
 
-    shapes = library_named("built-in").shapes()
+    shapes = diorama.open_library().shapes()
     return Finding(
         "shape library", bool(shapes), f"{len(shapes)} shapes, {len({s.category for s in shapes})} categories"
     )

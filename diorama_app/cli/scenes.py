@@ -4,32 +4,31 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import diorama_core as diorama
 from diorama_app.cli.arguments import (
     PROFILES,
     RECIPES,
     command,
     field_of_view,
     intrinsics,
-    opened,
     positive,
+    print_note,
     progress_bar,
     size,
     view,
 )
 from diorama_core.errors import InputError
+from diorama_core.export import FORMATS
 
 if TYPE_CHECKING:
     from diorama_core.library.record import ShapeLibrary
-    from diorama_core.project.storage import Project
+    from diorama_core.pipeline.stages import Stages
     from diorama_core.protocols import PoseStage
-    from diorama_core.scene.types import Scene
 
-EXPORT_FORMATS = ("glb",)
 ROOMS = ("closed", "plainrecon")
 POSES = ("render-and-compare", "correspondence", "zsp", "gigapose-like", "best-match")
 
@@ -48,17 +47,15 @@ def add_serve(commands: Any) -> None:
 
 
 def _serve(a: argparse.Namespace) -> None:
-    from diorama_app.projects.report import library_named, library_of
     from diorama_app.serve import serve
     from diorama_core.project.storage import Project
 
-    if a.library is None and a.project is not None:
-        library = library_of(Project.open(a.project))
-    else:
-        library = library_named(a.library or "built-in")
+    name = a.library
+    if name is None:
+        name = "built-in" if a.project is None else Project.open(a.project).library_name
     serve(
         project=a.project,
-        library=library,
+        library=diorama.open_library(name),
         projects_dir=a.projects or Path.home() / "Diorama",
         host=a.host,
         port=a.port,
@@ -111,53 +108,57 @@ def add_build(commands: Any) -> None:
 
 
 def _build(a: argparse.Namespace) -> None:
-    from diorama_app.projects.report import build_report, library_named, write_arrangements
-    from diorama_core.perception.inputs import read_inputs
-    from diorama_core.pipeline.presets import stages_for
-    from diorama_core.project.build import build_project
-    from diorama_core.project.storage import Project
+    from diorama_app.projects.report import build_report, write_arrangements
 
     if a.arrangements < 1:
         raise InputError(f"--arrangements {a.arrangements}: ask for at least one")
-    read = read_inputs(
-        a.image,
-        depth=a.depth,
-        depth_scale=a.depth_scale,
-        depth_encoding=a.depth_encoding,
-        intrinsics=a.intrinsics,
-        fov_deg=a.fov,
-        boxes=a.boxes,
-        masks=a.masks,
-    )
-    for warning in read.warnings:
-        print(f"diorama: note: {warning}", file=sys.stderr)
-    library = library_named(a.library)
-    stages = stages_for(a.profile, read.inputs, library, recipe=a.recipe)
-    if a.room == "plainrecon":
-        from diorama_core.architecture.plainrecon.stage import PlainRecon
-
-        if read.inputs.depth_m is None and stages.depth_prediction is None:
-            raise InputError("--room plainrecon reads depth: add --depth FILE or a profile with a depth network")
-        stages = replace(stages, architecture=PlainRecon())
-    if a.pose is not None:
-        stages = replace(stages, pose=pose_solver(a.pose, library))
-    project = Project.create(a.output)
-    project.update_info(library=a.library)
     with progress_bar() as progress:
-        built = build_project(project, read.inputs, library, stages=stages, warnings=read.warnings, progress=progress)
-        scenes = write_arrangements(project, built, library, stages.layout, a.arrangements, progress)
-    report = build_report(project, built, scenes)
+        room = diorama.build(
+            a.image,
+            boxes=a.boxes,
+            masks=a.masks,
+            depth=a.depth,
+            depth_scale=a.depth_scale,
+            depth_encoding=a.depth_encoding,
+            intrinsics=a.intrinsics,
+            fov_deg=a.fov,
+            profile=a.profile,
+            recipe=a.recipe,
+            library=a.library,
+            stages=lambda stages: _with_options(stages, a),
+            output=a.output,
+            progress=progress,
+            warn=print_note,
+        )
+        scenes = write_arrangements(room, a.arrangements, progress)
+    report = build_report(room, scenes)
     if a.json:
         print(json.dumps(report))
     else:
         print(f"{a.output}: {report['summary']}")
-        if not built.objects:
-            drawing = f"open it with 'diorama serve {a.output}' and draw boxes around the furniture"
-            found = f"No furniture was found: {drawing}."
-            lacking = (
-                f"No boxes were given: get the small detector with 'diorama models pull yolox-nano', or {drawing}."
-            )
-            print(found if stages.detection else lacking)
+        if not room.scene.objects:
+            print(_invitation(a.output, detected=room.stages is not None and room.stages.detection is not None))
+
+
+def _with_options(stages: Stages, a: argparse.Namespace) -> Stages:
+    """The profile's stages with those that options name."""
+    if a.room == "plainrecon":
+        from diorama_core.architecture.plainrecon.stage import PlainRecon
+
+        if a.depth is None and stages.depth_prediction is None:
+            raise InputError("--room plainrecon reads depth: add --depth FILE or a profile with a depth network")
+        stages = replace(stages, architecture=PlainRecon())
+    if a.pose is not None:
+        stages = replace(stages, pose=pose_solver(a.pose, diorama.open_library(a.library)))
+    return stages
+
+
+def _invitation(project: Path, *, detected: bool) -> str:
+    """What to do where a scene is empty."""
+    drawing = f"open it with 'diorama serve {project}' and draw boxes around the furniture"
+    if detected:
+        return f"No furniture was found: {drawing}."
+    return f"No boxes were given: get the small detector with 'diorama models pull yolox-nano', or {drawing}."
 
 
 def pose_solver(name: str, library: ShapeLibrary) -> PoseStage:
@@ -186,17 +187,11 @@ def add_optimise(commands: Any) -> None:
 def _optimise(a: argparse.Namespace) -> None:
     from dataclasses import asdict
 
-    from diorama_app.projects.report import library_of
-    from diorama_core.layout.recipes import recipe
-    from diorama_core.scene.edits import set_metrics
-
-    project, scene = opened(a.project)
     with progress_bar() as progress:
-        inputs = project.load_inputs()
-        measured = inputs is not None and inputs.depth_m is not None
-        arrange = recipe(a.recipe, library_of(project), depth_measured=measured)
-        arranged, report = arrange.optimise(scene, progress)
-    project.save_scene(set_metrics(arranged, report.after))
+        room = diorama.optimise(diorama.load(a.project), recipe=a.recipe, progress=progress)
+    room.save(a.project)
+    report = room.layout
+    assert report is not None
     if a.json:
         print(json.dumps(asdict(report)))
         return
@@ -218,17 +213,14 @@ def add_export(commands: Any) -> None:
         "diorama export my-room --format glb -o room.glb",
     )
     p.add_argument("project", type=Path, metavar="PROJECT")
-    p.add_argument("--format", choices=EXPORT_FORMATS, required=True)
+    p.add_argument("--format", choices=tuple(FORMATS), required=True)
     p.add_argument("-o", "--output", type=Path, required=True, metavar="FILE")
 
 
 def _export(a: argparse.Namespace) -> None:
-    from diorama_app.projects.report import library_of
-    from diorama_core.export.gltf import write_glb
-
-    project, scene = opened(a.project)
-    write_glb(scene, library_of(project), a.output, textures=project.textures(scene))
-    print(f"{a.output}: {len(scene.objects)} objects, {len(scene.architecture.planes)} planes")
+    room = diorama.load(a.project)
+    diorama.export(room, a.output, format=a.format)
+    print(f"{a.output}: {len(room.scene.objects)} objects, {len(room.scene.architecture.planes)} planes")
 
 
 def add_picture(commands: Any) -> None:
@@ -257,33 +249,13 @@ def _picture(a: argparse.Namespace) -> None:
 
     from PIL import Image
 
-    from diorama_app.projects.report import library_of
     from diorama_core.io.atomic import write_atomically
-    from diorama_core.render.picture import picture
 
-    project, scene = opened(a.project)
-    if a.view == "planes":
-        image = _planes_picture(project, scene, a.size)
-    else:
-        textures = project.textures(scene)
-        image = picture(scene, library_of(project), view=a.view, size=a.size, textures=textures)
-    buffer = io.BytesIO()
     kind = {".png": "PNG", ".jpg": "JPEG", ".jpeg": "JPEG"}.get(a.output.suffix.lower())
     if kind is None:
         raise InputError(f"{a.output}: pictures are written as .png or .jpg; choose such a name")
+    image = diorama.render(diorama.load(a.project), view=a.view, size=a.size)
+    buffer = io.BytesIO()
     Image.fromarray(image).save(buffer, kind)
     write_atomically(a.output, buffer.getvalue(), error=InputError)
     print(f"{a.output}: {image.shape[1]}x{image.shape[0]}")
-
-
-def _planes_picture(project: Project, scene: Scene, size: tuple[int, int] | None) -> Any:
-    """The photo with the room's planes drawn over it."""
-    import cv2
-
-    from diorama_core.render.planes_over_photo import planes_over_photo
-
-    photo = project.photo()
-    if photo is None or scene.camera is None:
-        raise InputError(f"{project.folder} has no photo to draw over; choose another --view, such as top")
-    rgb = photo.rgb if size is None else cv2.resize(photo.rgb, size, interpolation=cv2.INTER_AREA)
-    return planes_over_photo(rgb, scene.architecture.planes, scene.camera)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 from pathlib import Path
 from typing import Any
 
-from diorama_app.cli.arguments import PROFILES, RECIPES, command, progress_bar
+import diorama_core as diorama
+from diorama_app.cli.arguments import PROFILES, RECIPES, command, print_note, progress_bar
 
 
 def add_text(commands: Any) -> None:
@@ -30,32 +30,23 @@ def add_text(commands: Any) -> None:
 
 
 def _text(a: argparse.Namespace) -> None:
-    from diorama_app.projects.report import build_report, library_named
-    from diorama_core.pipeline.presets import stages_for
-    from diorama_core.project.build import build_project
-    from diorama_core.project.storage import Project
-    from diorama_core.text.pictures import ImageSettings, picture_of
+    from diorama_app.projects.report import build_report
 
-    library = library_named(a.library)
     with progress_bar() as progress:
-        made = picture_of(
+        room = diorama.build_from_text(
             a.prompt,
-            library,
             seed=a.seed,
-            endpoint=ImageSettings.from_environment(),
-            progress=progress.part(0.0, 0.2),
+            profile=a.profile,
+            recipe=a.recipe,
+            library=a.library,
+            output=a.output,
+            progress=progress,
+            warn=print_note,
         )
-        stages = stages_for(a.profile, made.inputs, library, recipe=a.recipe)
-        project = Project.create(a.output)
-        built = build_project(
-            project, made.inputs, library, stages=stages, warnings=made.notes, progress=progress.part(0.2, 1.0)
-        )
-    report = build_report(project, built, ("scene.json",))
+    report = build_report(room, ("scene.json",))
     if a.json:
         print(json.dumps(report))
         return
-    for note in made.notes:
-        print(f"diorama: note: {note}", file=sys.stderr)
     print(f"{a.output}: {report['summary']}")
-    if not built.objects:
+    if not room.scene.objects:
         print("No furniture was found in the picture: run 'diorama models pull lite', or draw boxes in the editor.")

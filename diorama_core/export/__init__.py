@@ -1,18 +1,20 @@
-"""Scenes as files other programs open: one module per format."""
+"""Scenes as files other programs open: one module per format, imported when it is used."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from importlib import import_module
 from pathlib import Path
-from typing import Protocol
-
-import numpy as np
-from jaxtyping import UInt8
+from typing import TYPE_CHECKING, Protocol, cast
 
 from diorama_core.errors import ExportError
-from diorama_core.export.gltf import write_glb
-from diorama_core.library.record import ShapeLibrary
-from diorama_core.scene.types import Scene
+
+if TYPE_CHECKING:
+    import numpy as np
+    from jaxtyping import UInt8
+
+    from diorama_core.library.record import ShapeLibrary
+    from diorama_core.scene.types import Scene
 
 
 class Writer(Protocol):
@@ -30,12 +32,13 @@ class Writer(Protocol):
         ...
 
 
-WRITERS: dict[str, Writer] = {"glb": write_glb}
-"""Every format that can be written, by the name the command line knows it by."""
+FORMATS: Mapping[str, str] = {"glb": "gltf:write_glb"}
+"""Every format by the name the command line knows it by, and where its writer is: `module:function`."""
 
 
 def writer(format_name: str) -> Writer:
     """The writer of a format; raises `ExportError` with the formats that exist."""
-    if format_name not in WRITERS:
-        raise ExportError(f"cannot export as {format_name!r}; choose one of: {', '.join(sorted(WRITERS))}")
-    return WRITERS[format_name]
+    if format_name not in FORMATS:
+        raise ExportError(f"cannot export as {format_name!r}; choose one of: {', '.join(sorted(FORMATS))}")
+    module, function = FORMATS[format_name].split(":")
+    return cast(Writer, getattr(import_module(f"diorama_core.export.{module}"), function))

@@ -36,10 +36,19 @@ def build_project(
     project.save_inputs(inputs, warnings)
     stages = stages or stages_for("auto", inputs, library)
     built = build_scene(inputs, library, stages=stages, cache=project.stages_folder, progress=progress, preview=preview)
-    if built.inputs.boxes != inputs.boxes:
-        project.save_inputs(replace(inputs, boxes=built.inputs.boxes), warnings)
+    save_built(project, built, inputs, warnings)
+    return built
+
+
+def save_built(project: Project, built: Built, given: Inputs, warnings: Sequence[str] = ()) -> None:
+    """Save a built scene, its textures and what was used in a project whose inputs are saved already.
+
+    Raises:
+        ProjectError: the folder cannot be written.
+    """
+    if built.inputs.boxes != given.boxes:
+        project.save_inputs(replace(given, boxes=built.inputs.boxes), warnings)
     project.save_textures(built.textures)
     project.save_scene(built.scene)
     project.save_stage_runs(built.runs)
     project.update_info(notes=[*warnings, *built.notes])
-    return built

@@ -75,6 +75,11 @@ class Project:
         return str(self.info().get("name", self.folder.name))
 
     @property
+    def library_name(self) -> str:
+        """The library that it was built with; the built-in one where none is noted."""
+        return str(self.info().get("library", "built-in"))
+
+    @property
     def stages_folder(self) -> Path:
         """Where stage results are kept."""
         return self.folder / "stages"

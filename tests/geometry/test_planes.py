@@ -26,6 +26,20 @@ def test_axes_are_right_handed_and_uv_spans_the_unit_square(plane):
     np.testing.assert_allclose(sorted(map(tuple, uv)), [(0, 0), (0, 1), (1, 0), (1, 1)], atol=1e-9)
 
 
+@given(st.floats(-np.pi, np.pi), st.floats(-np.pi / 2, np.pi / 2))
+def test_axes_of_any_normal_are_orthonormal_and_those_of_steep_planes_level(azimuth, height):
+    flat = np.cos(height)
+    normal = np.array([flat * np.cos(azimuth), flat * np.sin(azimuth), np.sin(height)])
+    u, v = plane_axes(normal)
+    np.testing.assert_allclose([u @ u, v @ v, u @ v, u @ normal, v @ normal], [1, 1, 0, 0, 0], atol=1e-12)
+    np.testing.assert_allclose(np.cross(u, v), normal, atol=1e-12)
+    if flat >= 0.5:
+        assert u[2] == 0
+        assert v[2] >= 0
+    else:
+        assert u[0] > 0.8  # near world +X, however little the plane is tilted
+
+
 def test_wall_texture_is_upright_and_not_mirrored():
     back = wall("back", (-1, 3), (2, 3), 2.5)
     np.testing.assert_allclose(plane_uv(back), [[0, 0], [1, 0], [1, 1], [0, 1]], atol=1e-12)

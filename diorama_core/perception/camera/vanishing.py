@@ -15,7 +15,6 @@ import numpy as np
 from jaxtyping import Float, Float32, Int
 from scipy.spatial import cKDTree
 
-from diorama_core.geometry.rotations import rotation_from_vector
 from diorama_core.perception.camera.frames import (
     facing_direction,
     frame_difference_rad,
@@ -177,7 +176,7 @@ def _moved(
 ) -> tuple[Float[np.ndarray, "3 3"], float]:
     if known is None:
         focal = float(np.clip(focal * np.exp(np.clip(step[3], -0.2, 0.2)), *FOCAL_RANGE))
-    return R @ rotation_from_vector(step[:3]), focal
+    return R @ _rotation(step[:3]), focal
 
 
 def _own_sigma(lines: Lines, R: Float[np.ndarray, "3 3"], focal: float) -> float:
@@ -195,7 +194,7 @@ def _gauss_newton_step(
     nearest = np.abs(signed_sines(lines, R, focal)).argmin(axis=0)
     pick = (nearest, np.arange(len(nearest)))
     trials = _trial_steps(free)
-    moved = R @ rotation_from_vector(trials[:, :3])
+    moved = R @ np.array([_rotation(t[:3]) for t in trials])
     focals = focal * np.exp(trials[:, 3]) if free == 4 else np.full(len(trials), focal)
     sines = signed_sines(lines, moved, focals[:, None, None])[:, *pick].astype(np.float64)
     weights = np.sqrt(lines.weights * _agreement(sines[-1], sigma))
@@ -214,6 +213,14 @@ def _trial_steps(free: int) -> Float[np.ndarray, "m free"]:
     """A little forward along each parameter, a little back, and nothing."""
     forward = np.eye(free) * _DIFFERENCE
     return np.concatenate([forward, -forward, np.zeros((1, free))])
+
+
+def _rotation(vector: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
+    """Rodrigues' formula, not `geometry.rotations`: another last digit here is another focal length in every scene."""
+    angle = float(np.linalg.norm(vector))
+    x, y, z = vector / max(angle, 1e-12)
+    k = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + np.sin(angle) * k + (1 - np.cos(angle)) * (k @ k)
 
 
 def _frame_log_prior(up_camera: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n"]:
