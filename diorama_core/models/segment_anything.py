@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, enlarged, normalised, resized
-from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
+from diorama_core.models.runtime import SHARED_SESSIONS, Session, SessionPool
 
 SIDE = 1024
 
@@ -45,16 +45,8 @@ class Sam2:
     def masks(self, rgb: UInt8[np.ndarray, "h w 3"], boxes: Float[np.ndarray, "n 4"]) -> Iterator[PromptedMask]:
         """Masks in the order of the boxes; the picture is encoded once."""
         height, width = rgb.shape[:2]
-        features = self.pool.get(self.encoder).run({"pixel_values": self.pixels(rgb)})
-        decoder = self.pool.get(self.decoder)
-        feeds = {name: value for name, value in features.items() if name in decoder.inputs}
-        for box in np.asarray(boxes, np.float32).reshape(-1, 4):
-            prompt: dict[str, np.ndarray] = {
-                "input_points": np.zeros((1, 1, 0, 2), np.float32),
-                "input_labels": np.zeros((1, 1, 0), np.int64),
-                "input_boxes": (box * np.array([SIDE / width, SIDE / height] * 2, np.float32))[None, None],
-            }
-            out = decoder.run({**feeds, **{k: v for k, v in prompt.items() if k in decoder.inputs}})
+        encoder, decoder = self.pool.get(self.encoder), self.pool.get(self.decoder)
+        for out in _answers(encoder, decoder, self.pixels(rgb), boxes, (SIDE / width, SIDE / height)):
             yield _best(out, lambda logits: enlarged(logits, (height, width)))
 
     def pixels(self, rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "1 3 1024 1024"]:
@@ -74,18 +66,9 @@ class SlimSam:
     def masks(self, rgb: UInt8[np.ndarray, "h w 3"], boxes: Float[np.ndarray, "n 4"]) -> Iterator[PromptedMask]:
         """Masks in the order of the boxes; the picture is encoded once."""
         height, width = rgb.shape[:2]
-        features = self.pool.get(self.encoder).run({"pixel_values": self.pixels(rgb)})
-        decoder = self.pool.get(self.decoder)
-        feeds = {name: value for name, value in features.items() if name in decoder.inputs}
         inner = fitted_size(height, width)
-        scale = np.array([inner[1] / width, inner[0] / height] * 2, np.float32)
-        for box in np.asarray(boxes, np.float32).reshape(-1, 4):
-            prompt: dict[str, np.ndarray] = {
-                "input_points": np.zeros((1, 1, 0, 2), np.float32),
-                "input_labels": np.zeros((1, 1, 0), np.int64),
-                "input_boxes": (box * scale)[None, None],
-            }
-            out = decoder.run({**feeds, **{k: v for k, v in prompt.items() if k in decoder.inputs}})
+        encoder, decoder = self.pool.get(self.encoder), self.pool.get(self.decoder)
+        for out in _answers(encoder, decoder, self.pixels(rgb), boxes, (inner[1] / width, inner[0] / height)):
             yield _best(out, lambda logits: _unpadded(logits, inner, (height, width)))
 
     def pixels(self, rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "1 3 1024 1024"]:
@@ -107,6 +90,24 @@ def _unpadded(
 ) -> Float32[np.ndarray, "h w"]:
     square = enlarged(logits, (SIDE, SIDE))
     return enlarged(square[: inner[0], : inner[1]], size)
+
+
+def _answers(
+    encoder: Session,
+    decoder: Session,
+    pixels: Float32[np.ndarray, "1 3 1024 1024"],
+    boxes: Float[np.ndarray, "n 4"],
+    scale_xy: tuple[float, float],
+) -> Iterator[dict[str, np.ndarray]]:
+    """The decoder's outputs for every box, scaled from the picture to the network's input; the picture goes in once."""
+    features = encoder.run({"pixel_values": pixels})
+    for box in np.asarray(boxes, np.float32).reshape(-1, 4) * np.array(scale_xy * 2, np.float32):
+        prompt: dict[str, np.ndarray] = {
+            "input_points": np.zeros((1, 1, 0, 2), np.float32),
+            "input_labels": np.zeros((1, 1, 0), np.int64),
+            "input_boxes": box[None, None],
+        }
+        yield decoder.run({name: value for name, value in {**features, **prompt}.items() if name in decoder.inputs})
 
 
 def _best(out: dict[str, np.ndarray], to_picture: Callable[[np.ndarray], np.ndarray]) -> PromptedMask:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from jaxtyping import Float, Float32
@@ -60,15 +61,28 @@ class MeasuredDepth:
         if inputs.depth_m is None:
             raise ValueError("MeasuredDepth needs measured depth; use RenderedDepth for a photo alone")
         progress.report(0.0, "Filling holes of the measured depth")
-        rendered, rendered_normals = render_geometry(geometry, objects, architecture.architecture)
-        measured = inputs.depth_m
-        camera = geometry.camera
-        seen = smooth_normals_camera(measured, camera.intrinsics) @ camera.T_world_camera[:3, :3].T
-        known = np.any(seen != 0, axis=-1)
-        depth = np.where(measured > 0, measured, rendered).astype(np.float32)
-        normals = np.where(known[..., None], seen, rendered_normals).astype(np.float32)
+        normals_camera = smooth_normals_camera(inputs.depth_m, geometry.camera.intrinsics)
+        rendered = render_geometry(geometry, objects, architecture.architecture)
+        filled = filled_depth(inputs.depth_m, normals_camera, geometry.camera, rendered, "measured")
         progress.report(1.0, "Depth is complete")
-        return DepthMap(depth, normals, "measured")
+        return filled
+
+
+def filled_depth(
+    depth_m: Float32[np.ndarray, "h w"],
+    normals_camera: Float[np.ndarray, "h w 3"],
+    camera: Camera,
+    rendered: tuple[Float32[np.ndarray, "h w"], Float32[np.ndarray, "h w 3"]],
+    source: Literal["measured", "network"],
+) -> DepthMap:
+    """A depth map and its normals; where either is zero, the rendered depth or world normal stands instead."""
+    depth, normals = rendered
+    known = np.any(normals_camera != 0, axis=-1, keepdims=True)
+    return DepthMap(
+        np.where(depth_m > 0, depth_m, depth).astype(np.float32),
+        np.where(known, normals_camera @ camera.T_world_camera[:3, :3].T, normals).astype(np.float32),
+        source,
+    )
 
 
 def render_geometry(

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from diorama_core.artefacts import ArchitectureEstimate
-from diorama_core.perception.depth import MeasuredDepth, RenderedDepth
+from diorama_core.perception.depth import MeasuredDepth, RenderedDepth, filled_depth
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Architecture
 from tests.synthetic_rooms import box_room, cuboid, look, shoot
@@ -73,3 +73,13 @@ def test_without_planes_unknown_is_zero(shot):
 def test_measured_needs_depth(shot):
     with pytest.raises(ValueError, match="measured depth"):
         run(MeasuredDepth(), replace(shot, inputs=replace(shot.inputs, depth_m=None)))
+
+
+def test_holes_of_depth_and_of_normals_are_filled_one_by_one(shot):
+    rendered = np.full((1, 3), 2.0, np.float32), np.tile(np.array([0, 0, 1], np.float32), (1, 3, 1))
+    depth = np.array([[1.0, 0.0, 1.0]], np.float32)
+    toward = np.array([[[0, 0, -1.0], [0, 0, -1.0], [0, 0, 0]]])
+    found = filled_depth(depth, toward, shot.camera, rendered, "measured")
+    back = -shot.camera.T_world_camera[:3, 2]
+    np.testing.assert_allclose(found.depth_m, [[1, 2, 1]])
+    np.testing.assert_allclose(found.normals_world, [[back, back, [0, 0, 1]]], atol=1e-6)

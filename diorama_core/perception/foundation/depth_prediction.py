@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-
 from diorama_core.artefacts import (
     ArchitectureEstimate,
     CameraEstimate,
@@ -18,7 +16,7 @@ from diorama_core.artefacts import (
 )
 from diorama_core.models.depth import GeometryNetwork
 from diorama_core.perception.camera.estimate import EmbeddedCamera
-from diorama_core.perception.depth import render_geometry
+from diorama_core.perception.depth import filled_depth, render_geometry
 from diorama_core.perception.measured import MeasuredGeometry
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Intrinsics
@@ -95,12 +93,8 @@ class NetworkDepth:
         if inputs.depth_m is None or inputs.normals_camera is None:
             raise ValueError("NetworkDepth needs depth and normals from a network; use RenderedDepth without them")
         progress.report(0.0, "Filling holes of the depth")
-        rendered, rendered_normals = render_geometry(geometry, objects, architecture.architecture)
-        seen = inputs.normals_camera @ geometry.camera.T_world_camera[:3, :3].T
-        known = np.any(inputs.normals_camera != 0, axis=-1)
-        depth = np.where(inputs.depth_m > 0, inputs.depth_m, rendered).astype(np.float32)
-        normals = np.where(known[..., None], seen, rendered_normals).astype(np.float32)
-        return DepthMap(depth, normals, "network")
+        rendered = render_geometry(geometry, objects, architecture.architecture)
+        return filled_depth(inputs.depth_m, inputs.normals_camera, geometry.camera, rendered, "network")
 
 
 def with_network_wording(words: str) -> str:
