@@ -1,1 +1,1 @@
-"""Files and memory: atomic writes and caches."""
+"""Atomic files, files that can be made again, caches in memory, GLB containers and sRGB: one place for each."""
