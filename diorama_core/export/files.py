@@ -1,31 +1,109 @@
-"""Writing files whole or not at all."""
+"""Writing files whole or not at all: everything is written beside its place and renamed when it is complete."""
 
 from __future__ import annotations
 
 import os
+import shutil
 import tempfile
+import zipfile
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from diorama_core.errors import ExportError
 
+Entry = tuple[str, bytes]
+"""Name of a file inside a package, with forward slashes, and its content."""
 
-def write_whole(path: Path, content: bytes) -> None:
-    """Write beside the target and rename, so that the target is never half a file.
+
+@contextmanager
+def whole_file(path: Path, suffix: str | None = None) -> Iterator[Path]:
+    """A temporary file beside `path` that takes its place when the block ends well.
+
+    Args:
+        path: The file to be; an existing one stays as it was until then, and for good when the block raises.
+        suffix: Ending of the temporary name, for libraries that choose the format by it (default: that of `path`).
 
     Raises:
-        ExportError: when the folder is missing, not writable or full; an older file at `path` stays as it was.
+        ExportError: when the folder is missing, not writable or full.
     """
-    temporary: str | None = None
+    path = Path(path)
+    temporary: Path | None = None
     try:
-        handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        os.chmod(temporary, 0o644)
+        handle, name = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=suffix or path.suffix, dir=path.parent)
+        os.close(handle)
+        temporary = Path(name)
+        yield temporary
+        _settle(temporary)
         os.replace(temporary, path)
     except OSError as error:
-        if temporary is not None and os.path.exists(temporary):
-            os.unlink(temporary)
-        reason = error.strerror or str(error)
-        raise ExportError(f"cannot write {path}: {reason}; choose a folder that exists and is writable") from error
+        raise _cannot_write(path, error) from error
+    finally:
+        if temporary is not None:
+            temporary.unlink(missing_ok=True)
+
+
+def write_whole(path: Path, content: bytes) -> None:
+    """Write one file; see `whole_file`."""
+    with whole_file(path) as temporary:
+        temporary.write_bytes(content)
+
+
+def companion_folder(path: Path, kind: str = "files") -> str:
+    """Name of the folder beside `path` that holds what a package's main file refers to, told apart by format."""
+    return f"{Path(path).stem}_{kind}"
+
+
+def write_package(path: Path, main: str, entries: Iterable[Entry]) -> None:
+    """Write a main file and those it refers to: as one zip where `path` ends in .zip, as a file and a folder otherwise.
+
+    Args:
+        path: The zip, or the main file.
+        main: Name of the main file, whose entry comes last; the others lie in a folder that `companion_folder` names.
+        entries: Names and contents, made one after the other as they are written.
+
+    Raises:
+        ExportError: when they cannot be written; nothing half written is left behind.
+    """
+    path = Path(path)
+    if path.suffix.lower() == ".zip":
+        with whole_file(path) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
+            for name, content in entries:
+                archive.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)
+        return
+    _write_beside(path, main, entries)
+
+
+def _write_beside(path: Path, main: str, entries: Iterable[Entry]) -> None:
+    """The companions first, then the main file that refers to them; files of other names there stay."""
+    temporary: Path | None = None
+    try:
+        temporary = Path(tempfile.mkdtemp(prefix=f".{path.stem}.", dir=path.parent))
+        content, companions = b"", []
+        for name, data in entries:
+            if name == main:
+                content = data
+                continue
+            companions.append(name)
+            (temporary / name).parent.mkdir(parents=True, exist_ok=True)
+            (temporary / name).write_bytes(data)
+        for name in companions:
+            (path.parent / name).parent.mkdir(parents=True, exist_ok=True)
+            os.replace(temporary / name, path.parent / name)
+        write_whole(path, content)
+    except OSError as error:
+        raise _cannot_write(path, error) from error
+    finally:
+        if temporary is not None:
+            shutil.rmtree(temporary, ignore_errors=True)
+
+
+def _settle(path: Path) -> None:
+    with path.open("rb") as file:
+        os.fsync(file.fileno())
+    os.chmod(path, 0o644)
+
+
+def _cannot_write(path: Path, error: OSError) -> ExportError:
+    reason = error.strerror or str(error)
+    return ExportError(f"cannot write {path}: {reason}; choose a folder that exists and is writable")

@@ -1,11 +1,14 @@
-"""A scene as one GLB file: metres, Y up, one named node per object, identical shapes shared.
+"""A scene as one GLB file: metres, Y up, a named node per object under its supporter, identical shapes shared.
 
 The world (+Z up) hangs under a root node that turns it to glTF's Y up, so that every node below keeps the numbers of
-the scene file. Objects carry what the scene knows of them in `extras`.
+the scene file. Below the root are three branches: the architecture, the objects, and the photo's camera. The root's
+`extras` carry the whole scene document and where it came from, each object's `extras` its own entry, so that a file can
+be read back even after other programs moved or deleted nodes. `docs/export.md` describes them.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -14,20 +17,39 @@ import numpy as np
 from jaxtyping import Float, UInt8
 from scipy.spatial.transform import Rotation
 
-from diorama_core.export.files import write_whole
+from diorama_core.export.files import whole_file
+from diorama_core.export.gathering import (
+    EVERYTHING,
+    ExportObject,
+    ExportOptions,
+    ExportPlane,
+    ExportScene,
+    gather,
+    rigid_inverse,
+    unique_name,
+)
 from diorama_core.export.gltf_document import GltfDocument
+from diorama_core.export.lights import ExportLight
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.render.appearance import Paint, shape_surfaces
-from diorama_core.render.slabs import plane_surfaces
-from diorama_core.scene.types import Camera, Plane, Scene, SceneObject, Support
+from diorama_core.progress import Progress
+from diorama_core.scene.schema import scene_to_json
+from diorama_core.scene.types import Camera, Scene
 
 Textures = Mapping[str, UInt8[np.ndarray, "h w c"]]
 _HALF_TURN = float(np.sqrt(0.5))
 _CAMERA_AXES = np.diag([1.0, -1.0, -1.0])
 """glTF cameras look along their -z with y up; ours along +z with y down."""
+_WIDEST_CONE_RAD = 1.5
 
 
-def write_glb(scene: Scene, library: ShapeLibrary, path: Path, *, textures: Textures | None = None) -> None:
+def write_glb(
+    scene: Scene,
+    library: ShapeLibrary,
+    path: Path,
+    *,
+    textures: Textures | None = None,
+    options: ExportOptions = EVERYTHING,
+) -> None:
     """Write the scene as a GLB file, whole or not at all.
 
     Args:
@@ -35,105 +57,173 @@ def write_glb(scene: Scene, library: ShapeLibrary, path: Path, *, textures: Text
         library: Where its shapes are.
         path: The file; an existing one is replaced.
         textures: Pictures of the planes by `Plane.texture`.
+        options: What of the scene is written.
 
     Raises:
         ExportError: when the file cannot be written.
         LibraryError: when a shape is missing.
     """
-    write_whole(Path(path), glb_bytes(scene, library, textures=textures))
+    write_gathered(gather(scene, library, textures=textures, options=options, name=Path(path).stem), Path(path))
 
 
-def glb_bytes(scene: Scene, library: ShapeLibrary, *, textures: Textures | None = None) -> bytes:
+def glb_bytes(
+    scene: Scene,
+    library: ShapeLibrary,
+    *,
+    textures: Textures | None = None,
+    options: ExportOptions = EVERYTHING,
+) -> bytes:
     """The scene as the content of a GLB file; see `write_glb`."""
-    document = GltfDocument(generator="Diorama")
-    names = _Names()
-    children = [_plane_node(document, plane, textures or {}, names) for plane in scene.architecture.planes]
-    meshes: dict[tuple[str, Paint], int] = {}
-    for item in scene.objects:
-        if not item.hidden:
-            mesh = _shape_mesh(document, library, item, meshes)
-            children.append(document.add("nodes", _object_node(item, scene.support_of(item.id), mesh, names)))
-    if scene.camera is not None:
-        children.append(_camera_node(document, scene.camera, names))
-    root: dict[str, Any] = {
-        "name": names.unique("diorama"),
-        "rotation": [-_HALF_TURN, 0.0, 0.0, _HALF_TURN],
-        "extras": {"units": "metres", "world_up": "+Z below this node, +Y above it"},
-    }
-    if children:
-        root["children"] = children
-    document.set_scene(document.add("scenes", {"name": "scene", "nodes": [document.add("nodes", root)]}))
-    return document.glb()
+    return _document(gather(scene, library, textures=textures, options=options), Progress()).glb()
 
 
-class _Names:
-    """Node names, each used once: many programs address nodes by name."""
-
-    def __init__(self) -> None:
-        self._taken: set[str] = set()
-
-    def unique(self, name: str) -> str:
-        candidate, number = name, 2
-        while candidate in self._taken:
-            candidate, number = f"{name} {number}", number + 1
-        self._taken.add(candidate)
-        return candidate
+def write_gathered(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
+    """Write a gathered scene as a GLB file, whole or not at all; raises `ExportError`."""
+    document = _document(gathered, progress or Progress())
+    with whole_file(path) as temporary, temporary.open("wb") as file:
+        document.write(file)
 
 
-def _plane_node(document: GltfDocument, plane: Plane, textures: Textures, names: _Names) -> int:
-    picture = textures.get(plane.texture) if plane.texture else None
-    mesh = document.add_mesh(plane.id, plane_surfaces(plane, picture))
-    name = plane.role if plane.id == plane.role else f"{plane.role} {plane.id}"
-    extras = {"id": plane.id, "role": plane.role, "confidence": plane.confidence}
-    return document.add("nodes", {"name": names.unique(name), "mesh": mesh, "extras": extras})
+def _document(gathered: ExportScene, progress: Progress) -> GltfDocument:
+    document = GltfDocument(generator="Diorama", compressed=gathered.options.compression == "meshopt")
+    return _Builder(gathered, document, progress).built()
 
 
-def _shape_mesh(
-    document: GltfDocument, library: ShapeLibrary, item: SceneObject, meshes: dict[tuple[str, Paint], int]
-) -> int:
-    key = (item.shape_id, (item.colour, item.finish))
-    if key not in meshes:
-        meshes[key] = document.add_mesh(item.shape_id, shape_surfaces(library, item.shape_id, *key[1]))
-    return meshes[key]
+class _Builder:
+    """Adds a gathered scene to a document."""
+
+    def __init__(self, gathered: ExportScene, document: GltfDocument, progress: Progress) -> None:
+        self._gathered = gathered
+        self._document = document
+        self._progress = progress
+        self._meshes: dict[str, int] = {}
+        names = [o.name for o in gathered.objects] + [p.name for p in gathered.planes]
+        self._names = {name.casefold() for name in names}
+        self._entries = {o["id"]: o for o in json.loads(scene_to_json(gathered.scene))["objects"]}
+        self._lights: dict[str, list[ExportLight]] = {}
+        for light in gathered.lights:
+            self._lights.setdefault(light.owner, []).append(light)
+
+    def built(self) -> GltfDocument:
+        planes = [self._plane(p) for p in self._gathered.planes]
+        objects = [self._object(o) for o in self._gathered.children_of(None)]
+        children = [
+            self._branch(name, nodes) for name, nodes in (("architecture", planes), ("objects", objects)) if nodes
+        ]
+        if self._gathered.camera is not None:
+            children.append(self._camera(self._gathered.camera))
+        root: dict[str, Any] = {
+            "name": self._unique("diorama"),
+            "rotation": [-_HALF_TURN, 0.0, 0.0, _HALF_TURN],
+            "extras": {
+                "units": "metres",
+                "world_up": "+Z below this node, +Y above it",
+                "diorama": scene_to_json(self._gathered.scene),
+                "provenance": dict(self._gathered.provenance),
+            },
+        }
+        if children:
+            root["children"] = children
+        node = self._document.add("nodes", root)
+        self._document.set_scene(self._document.add("scenes", {"name": self._gathered.name, "nodes": [node]}))
+        return self._document
+
+    def _unique(self, name: str) -> str:
+        return unique_name(name, self._names)
+
+    def _branch(self, name: str, children: list[int]) -> int:
+        return self._document.add("nodes", {"name": self._unique(name), "children": children})
+
+    def _mesh(self, key: str) -> int:
+        if key not in self._meshes:
+            mesh = self._gathered.meshes[key]
+            self._progress.report(len(self._meshes) / len(self._gathered.meshes), f"writing {mesh.name}")
+            self._meshes[key] = self._document.add_mesh(mesh.name, mesh.surfaces)
+        return self._meshes[key]
+
+    def _plane(self, slab: ExportPlane) -> int:
+        plane = slab.plane
+        extras = {
+            "diorama_plane": plane.id,
+            "role": plane.role,
+            "thickness_m": plane.thickness,
+            "confidence": plane.confidence,
+        }
+        return self._document.add("nodes", {"name": slab.name, "mesh": self._mesh(slab.mesh), "extras": extras})
+
+    def _object(self, item: ExportObject) -> int:
+        """The object's node: rigid with its mesh below where it carries others, which must not inherit its scale."""
+        node: dict[str, Any] = {"name": item.name, **_placement(self._gathered.T_parent(item))}
+        mesh = {"mesh": self._mesh(item.mesh), "scale": [float(v) for v in item.scale]}
+        below = [self._light(item, light) for light in self._lights.get(item.id, ())]
+        below += [self._object(child) for child in self._gathered.children_of(item.id)]
+        if below and not np.allclose(item.scale, 1.0, atol=1e-9):
+            name = self._unique(f"{item.name} shape")
+            below.insert(0, self._document.add("nodes", {"name": name, **mesh, "extras": {"diorama_mesh": item.id}}))
+        else:
+            node |= mesh
+        node["extras"] = self._extras(item)
+        if below:
+            node["children"] = below
+        return self._document.add("nodes", node)
+
+    def _extras(self, item: ExportObject) -> dict[str, Any]:
+        item, support = item.item, item.support
+        extras: dict[str, Any] = {
+            "id": item.id,
+            "label": item.label,
+            "category": item.category,
+            "shape": item.shape_id,
+            "size_m": [float(v) for v in item.size_m],
+            "confidence": item.confidence,
+            "locked": item.locked,
+        }
+        if support is not None:
+            extras["support"] = {
+                "parent": support.parent,
+                "relation": support.relation,
+                "against": [*support.adheres_to],
+            }
+        if item.candidates:
+            extras["candidates"] = [{"shape": c.shape_id, "score": c.score} for c in item.candidates]
+        extras["diorama"] = json.dumps(self._entries[item.id], ensure_ascii=False)
+        return extras
+
+    def _light(self, item: ExportObject, light: ExportLight) -> int:
+        entry: dict[str, Any] = {
+            "name": f"{item.name} {light.kind}",
+            "type": "point" if light.kind == "lamp" else "spot",
+            "color": [float(c) for c in light.colour],
+            "intensity": float(light.candela),
+        }
+        if light.kind == "window":
+            entry["spot"] = {"innerConeAngle": 0.0, "outerConeAngle": _WIDEST_CONE_RAD}
+        index = self._document.add_light(entry)
+        node = {
+            "name": self._unique(f"{item.name} light"),
+            **_placement(rigid_inverse(item.T_world) @ light.T_world),
+            "extensions": {"KHR_lights_punctual": {"light": index}},
+            "extras": {"diorama_light": item.id},
+        }
+        return self._document.add("nodes", node)
+
+    def _camera(self, camera: Camera) -> int:
+        """The photo's camera. glTF knows no principal point off the centre, so `extras` keeps the intrinsics."""
+        k = camera.intrinsics
+        lens = {
+            "yfov": 2.0 * float(np.arctan(0.5 * k.height / k.fy)),
+            "aspectRatio": (k.width / k.fx) / (k.height / k.fy),
+            "znear": 0.01,
+        }
+        extras = {"width": k.width, "height": k.height, "fx": k.fx, "fy": k.fy, "cx": k.cx, "cy": k.cy}
+        index = self._document.add("cameras", {"name": "photo", "type": "perspective", "perspective": lens})
+        T = camera.T_world_camera.copy()
+        T[:3, :3] = T[:3, :3] @ _CAMERA_AXES
+        node = {"name": self._unique("photo camera"), "camera": index, **_placement(T), "extras": extras}
+        return self._document.add("nodes", node)
 
 
-def _object_node(item: SceneObject, support: Support | None, mesh: int, names: _Names) -> dict[str, Any]:
-    extras: dict[str, Any] = {
-        "id": item.id,
-        "label": item.label,
-        "category": item.category,
-        "shape": item.shape_id,
-        "size_m": [float(v) for v in item.size_m],
-        "locked": item.locked,
-    }
-    if support is not None:
-        extras["support"] = {"parent": support.parent, "relation": support.relation, "against": [*support.adheres_to]}
-    name = item.label if item.label == item.id else f"{item.label} ({item.id})"
-    placement = _placement(item.pose.R_world_object, item.pose.position)
-    return {
-        "name": names.unique(name),
-        "mesh": mesh,
-        **placement,
-        "scale": [float(v) for v in item.pose.scale],
-        "extras": extras,
-    }
-
-
-def _camera_node(document: GltfDocument, camera: Camera, names: _Names) -> int:
-    """The photo's camera. glTF cannot say that the principal point is off centre, so `extras` keeps the intrinsics."""
-    k = camera.intrinsics
-    lens = {
-        "yfov": 2.0 * float(np.arctan(0.5 * k.height / k.fy)),
-        "aspectRatio": (k.width / k.fx) / (k.height / k.fy),
-        "znear": 0.01,
-    }
-    extras = {"width": k.width, "height": k.height, "fx": k.fx, "fy": k.fy, "cx": k.cx, "cy": k.cy}
-    index = document.add("cameras", {"name": "photo", "type": "perspective", "perspective": lens})
-    placement = _placement(camera.T_world_camera[:3, :3] @ _CAMERA_AXES, camera.position)
-    return document.add("nodes", {"name": names.unique("photo camera"), "camera": index, **placement, "extras": extras})
-
-
-def _placement(R: Float[np.ndarray, "3 3"], position: Float[np.ndarray, "3"]) -> dict[str, list[float]]:
+def _placement(T: Float[np.ndarray, "4 4"]) -> dict[str, list[float]]:
     """A node's rotation (glTF quaternions are x, y, z, w) and translation."""
-    quaternion = Rotation.from_matrix(R).as_quat(canonical=True)
-    return {"rotation": [float(v) for v in quaternion], "translation": [float(v) for v in position]}
+    quaternion = Rotation.from_matrix(T[:3, :3]).as_quat(canonical=True)
+    return {"rotation": [float(v) for v in quaternion], "translation": [float(v) for v in T[:3, 3]]}

@@ -1,7 +1,7 @@
 """Putting a glTF 2.0 document together: typed data in one buffer, shared materials and pictures, and the GLB around it.
 
 Written to the letter of the Khronos specification: little endian, every view aligned to four bytes, bounds stated
-for positions, indices as small as they can be, texture rows from the top.
+for positions, indices as small as they can be, texture rows from the top, pictures with power-of-two sides.
 """
 
 from __future__ import annotations
@@ -9,33 +9,51 @@ from __future__ import annotations
 import io
 import json
 import struct
-from typing import Any
+from typing import IO, Any
 
+import cv2
 import numpy as np
 from jaxtyping import UInt8
 from PIL import Image
 
+from diorama_core.export import meshopt
+from diorama_core.export.tangents import tangents
 from diorama_core.render.appearance import Material, Surface
 
 _ARRAY_BUFFER, _ELEMENT_ARRAY_BUFFER = 34962, 34963
-_FLOAT, _UNSIGNED_SHORT, _UNSIGNED_INT = 5126, 5123, 5125
+_COMPONENT_TYPES = {"f4": 5126, "u2": 5123, "u4": 5125, "i1": 5120}
+_WIDTHS = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
 _MAGIC, _JSON_CHUNK, _BINARY_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
 
 
 class GltfDocument:
     """A document under construction. Every `add_` method returns the index of what it added."""
 
-    def __init__(self, generator: str) -> None:
+    def __init__(self, generator: str, *, compressed: bool = False) -> None:
         self._data = bytearray()
+        self._compressed = compressed
+        self._decoded_bytes = 0
         self._json: dict[str, Any] = {"asset": {"version": "2.0", "generator": generator}}
         self._materials: dict[tuple[int, bool], int] = {}
-        self._pictures: dict[bytes, int] = {}
-        self._retained: list[Material] = []
+        self._pictures: dict[int, int] = {}
+        self._referenced: list[Any] = []
 
     def add(self, kind: str, entry: dict[str, Any]) -> int:
         """Append an entry to one of the document's lists (nodes, cameras, scenes, ...)."""
         self._json.setdefault(kind, []).append(entry)
         return len(self._json[kind]) - 1
+
+    def node(self, index: int) -> dict[str, Any]:
+        """A node that was added, to be completed."""
+        node: dict[str, Any] = self._json["nodes"][index]
+        return node
+
+    def add_light(self, light: dict[str, Any]) -> int:
+        """A light of KHR_lights_punctual."""
+        self._use("KHR_lights_punctual")
+        lights = self._json.setdefault("extensions", {}).setdefault("KHR_lights_punctual", {"lights": []})["lights"]
+        lights.append(light)
+        return len(lights) - 1
 
     def set_scene(self, index: int) -> None:
         """State which scene is shown."""
@@ -45,70 +63,120 @@ class GltfDocument:
         """A mesh with one primitive per surface."""
         return self.add("meshes", {"name": name, "primitives": [self._primitive(s) for s in surfaces]})
 
-    def glb(self) -> bytes:
-        """The finished file."""
+    def write(self, file: IO[bytes]) -> None:
+        """Write the finished file."""
         if self._data:
             self._json["buffers"] = [{"byteLength": len(self._data)}]
+        if self._decoded_bytes:
+            fallback = {"byteLength": self._decoded_bytes, "extensions": {meshopt.EXTENSION: {"fallback": True}}}
+            self._json["buffers"].append(fallback)
         text = json.dumps(self._json, separators=(",", ":"), allow_nan=False, ensure_ascii=False).encode()
         text += b" " * (-len(text) % 4)
-        binary = bytes(self._data) + b"\0" * (-len(self._data) % 4)
-        chunks = struct.pack("<II", len(text), _JSON_CHUNK) + text
-        if binary:
-            chunks += struct.pack("<II", len(binary), _BINARY_CHUNK) + binary
-        return struct.pack("<III", _MAGIC, 2, 12 + len(chunks)) + chunks
+        self._data += b"\0" * (-len(self._data) % 4)
+        chunks = 8 + len(text) + (8 + len(self._data) if self._data else 0)
+        file.write(struct.pack("<III", _MAGIC, 2, 12 + chunks))
+        file.write(struct.pack("<II", len(text), _JSON_CHUNK) + text)
+        if self._data:
+            file.write(struct.pack("<II", len(self._data), _BINARY_CHUNK))
+            file.write(self._data)
+
+    def glb(self) -> bytes:
+        """The finished file's content."""
+        file = io.BytesIO()
+        self.write(file)
+        return file.getvalue()
+
+    def _use(self, extension: str, *, required: bool = False) -> None:
+        for field in ("extensionsUsed", "extensionsRequired") if required else ("extensionsUsed",):
+            names = self._json.setdefault(field, [])
+            if extension not in names:
+                names.append(extension)
 
     def _primitive(self, surface: Surface) -> dict[str, Any]:
-        attributes = {
-            "POSITION": self._accessor(surface.vertices, "VEC3", bounds=True),
-            "NORMAL": self._accessor(surface.normals, "VEC3"),
-        }
-        if surface.uv is not None:
-            attributes["TEXCOORD_0"] = self._accessor(surface.uv * [1, -1] + [0, 1], "VEC2")
+        material = surface.material
+        textured = surface.uv is not None and (material.texture is not None or bool(material.maps))
+        arrays = {"POSITION": surface.vertices, "NORMAL": surface.normals}
+        if textured and "normalTexture" in material.maps:
+            arrays["TANGENT"] = tangents(surface)
+        if textured and surface.uv is not None:
+            arrays["TEXCOORD_0"] = surface.uv * [1, -1] + [0, 1]
         if surface.colours is not None:
-            attributes["COLOR_0"] = self._accessor(surface.colours, "VEC3")
+            arrays["COLOR_0"] = surface.colours
+        arrays = {name: np.ascontiguousarray(values, dtype="<f4") for name, values in arrays.items()}
+        faces = surface.faces
+        if self._compressed:
+            arrays, faces = meshopt.prepared(arrays, faces)
         return {
-            "attributes": attributes,
-            "indices": self._indices(surface.faces.reshape(-1)),
-            "material": self._material(surface.material, textured=surface.uv is not None),
+            "attributes": {name: self._attribute(name, values) for name, values in arrays.items()},
+            "indices": self._indices(faces.reshape(-1), len(surface.vertices)),
+            "material": self._material(material, textured=textured),
         }
 
-    def _accessor(self, values: np.ndarray, kind: str, *, bounds: bool = False) -> int:
-        data = np.ascontiguousarray(values, dtype="<f4")
+    def _attribute(self, name: str, values: np.ndarray) -> int:
+        normalised = values.dtype.itemsize == 1
+        width = 3 if name in ("POSITION", "NORMAL") else values.shape[1]
         entry: dict[str, Any] = {
-            "bufferView": self._view(data.tobytes(), _ARRAY_BUFFER),
-            "componentType": _FLOAT,
-            "count": len(data),
-            "type": kind,
+            "bufferView": self._vertex_view(values),
+            "componentType": _COMPONENT_TYPES[values.dtype.str[1:]],
+            "count": len(values),
+            "type": _WIDTHS[width],
         }
-        if bounds:
-            entry |= {"min": [float(v) for v in data.min(axis=0)], "max": [float(v) for v in data.max(axis=0)]}
+        if normalised:
+            self._use("KHR_mesh_quantization", required=True)
+            entry["normalized"] = True
+        if name == "POSITION":
+            entry |= {"min": [float(v) for v in values.min(axis=0)], "max": [float(v) for v in values.max(axis=0)]}
         return self.add("accessors", entry)
 
-    def _indices(self, indices: np.ndarray) -> int:
-        small = int(indices.max()) < 65535
-        data = indices.astype("<u2" if small else "<u4")
-        return self.add(
-            "accessors",
-            {
-                "bufferView": self._view(data.tobytes(), _ELEMENT_ARRAY_BUFFER),
-                "componentType": _UNSIGNED_SHORT if small else _UNSIGNED_INT,
-                "count": len(data),
-                "type": "SCALAR",
-            },
-        )
+    def _indices(self, indices: np.ndarray, vertices: int) -> int:
+        data = indices.astype("<u2" if vertices < 65536 else "<u4")
+        if self._compressed:
+            view = self._compressed_view(meshopt.encoded_faces(indices, vertices), data, "TRIANGLES")
+        else:
+            view = self._view(data.tobytes(), _ELEMENT_ARRAY_BUFFER)
+        kind = _COMPONENT_TYPES[data.dtype.str[1:]]
+        return self.add("accessors", {"bufferView": view, "componentType": kind, "count": len(data), "type": "SCALAR"})
+
+    def _vertex_view(self, values: np.ndarray) -> int:
+        if self._compressed:
+            return self._compressed_view(meshopt.encoded_vertices(values), values, "ATTRIBUTES")
+        return self._view(values.tobytes(), _ARRAY_BUFFER)
 
     def _view(self, data: bytes, target: int | None = None) -> int:
-        self._data += b"\0" * (-len(self._data) % 4)
-        entry: dict[str, Any] = {"buffer": 0, "byteOffset": len(self._data), "byteLength": len(data)}
+        entry: dict[str, Any] = {"buffer": 0, "byteOffset": self._append(data), "byteLength": len(data)}
         if target is not None:
             entry["target"] = target
-        self._data += data
         return self.add("bufferViews", entry)
+
+    def _compressed_view(self, encoded: bytes, values: np.ndarray, mode: str) -> int:
+        """A view of the fallback buffer, which no file stores, with the compressed data that stand for it."""
+        self._use(meshopt.EXTENSION, required=True)
+        stride = values.itemsize * (values.shape[1] if values.ndim > 1 else 1)
+        packed = {
+            "buffer": 0,
+            "byteOffset": self._append(encoded),
+            "byteLength": len(encoded),
+            "byteStride": stride,
+            "count": len(values),
+            "mode": mode,
+        }
+        entry: dict[str, Any] = {"buffer": 1, "byteOffset": self._decoded_bytes, "byteLength": values.nbytes}
+        if mode == "ATTRIBUTES":
+            entry["byteStride"] = stride
+        entry["target"] = _ARRAY_BUFFER if mode == "ATTRIBUTES" else _ELEMENT_ARRAY_BUFFER
+        self._decoded_bytes += values.nbytes + -values.nbytes % 4
+        return self.add("bufferViews", {**entry, "extensions": {meshopt.EXTENSION: packed}})
+
+    def _append(self, data: bytes) -> int:
+        self._data += b"\0" * (-len(self._data) % 4)
+        offset = len(self._data)
+        self._data += data
+        return offset
 
     def _material(self, material: Material, *, textured: bool) -> int:
         key = (id(material), textured)
         if key not in self._materials:
-            self._retained.append(material)  # keeps the id from being reused while this document grows
+            self._referenced.append(material)  # keeps the id from being reused while this document grows
             self._materials[key] = self.add("materials", self._material_entry(material, textured))
         return self._materials[key]
 
@@ -135,17 +203,29 @@ class GltfDocument:
         return entry
 
     def _texture(self, picture: UInt8[np.ndarray, "h w c"]) -> int:
-        encoded, mime = _encoded(picture)
-        if encoded not in self._pictures:
+        if id(picture) not in self._pictures:
+            self._referenced.append(picture)
             if not self._json.get("samplers"):
                 self.add("samplers", {"magFilter": 9729, "minFilter": 9987, "wrapS": 10497, "wrapT": 10497})
+            encoded, mime = encoded_picture(power_of_two(picture))
             image = self.add("images", {"bufferView": self._view(encoded), "mimeType": mime})
-            self._pictures[encoded] = self.add("textures", {"sampler": 0, "source": image})
-        return self._pictures[encoded]
+            self._pictures[id(picture)] = self.add("textures", {"sampler": 0, "source": image})
+        return self._pictures[id(picture)]
 
 
-def _encoded(picture: UInt8[np.ndarray, "h w c"]) -> tuple[bytes, str]:
-    """PNG for small or transparent pictures, JPEG for the large opaque ones."""
+def power_of_two(picture: UInt8[np.ndarray, "h w c"]) -> UInt8[np.ndarray, "h w c"]:
+    """The picture with sides that are powers of two, so that every device can repeat and minify it.
+
+    A side goes up to the next power unless it lies less than a tenth above the one below.
+    """
+    height, width = (2 ** max(int(np.ceil(np.log2(n / 1.1))), 0) for n in picture.shape[:2])
+    if (height, width) == picture.shape[:2]:
+        return picture
+    return np.asarray(cv2.resize(picture, (width, height), interpolation=cv2.INTER_LINEAR)).reshape(height, width, -1)
+
+
+def encoded_picture(picture: UInt8[np.ndarray, "h w c"]) -> tuple[bytes, str]:
+    """Content and media type: PNG for small or transparent pictures, JPEG for the large opaque ones."""
     buffer = io.BytesIO()
     image = Image.fromarray(np.ascontiguousarray(picture))
     if picture.shape[2] == 3 and picture.shape[0] * picture.shape[1] > 512 * 512:

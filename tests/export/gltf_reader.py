@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import struct
 
+import meshoptimizer
 import numpy as np
 
 COMPONENTS = {5121: np.dtype("u1"), 5123: np.dtype("<u2"), 5125: np.dtype("<u4"), 5126: np.dtype("<f4")}
@@ -45,6 +46,16 @@ def values(document: dict, binary: bytes, index: int) -> np.ndarray:
     numbers = np.frombuffer(binary, component, count * width, start).reshape(count, width)
     assert np.isfinite(numbers).all()
     return numbers
+
+
+def unpacked(document: dict, binary: bytes, index: int) -> np.ndarray:
+    """The numbers of an accessor that EXT_meshopt_compression packed."""
+    accessor = document["accessors"][index]
+    view = document["bufferViews"][accessor["bufferView"]]["extensions"]["EXT_meshopt_compression"]
+    packed = binary[view["byteOffset"] : view["byteOffset"] + view["byteLength"]]
+    if view["mode"] == "TRIANGLES":
+        return meshoptimizer.decode_index_buffer(view["count"], 4, packed).reshape(-1)
+    return meshoptimizer.decode_vertex_buffer(view["count"], view["byteStride"], packed)
 
 
 def check(data: bytes) -> dict:

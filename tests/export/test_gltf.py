@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 import io
+import json
 from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
 import trimesh
+from PIL import Image
+from scipy.spatial import KDTree
 from scipy.spatial.transform import Rotation
 
 from diorama_core.errors import ExportError, LibraryError
-from diorama_core.export import writer
-from diorama_core.export.gltf import glb_bytes, write_glb
+from diorama_core.export.gathering import ExportOptions, ExportScene
+from diorama_core.export.gltf import glb_bytes, write_gathered, write_glb
+from diorama_core.scene.schema import scene_from_json
 from diorama_core.scene.types import Architecture, Intrinsics, Scene
 from tests.export import gltf_reader
+from tests.export.scenes import gathered
+from tests.export.validators import gltf_findings, needs_gltf_validator
 from tests.primitives import PrimitiveLibrary, box_room, furnished_room, place
 
 LIBRARY = PrimitiveLibrary()
@@ -35,6 +43,22 @@ def test_the_file_is_sound() -> None:
     assert "extensionsRequired" not in document
 
 
+@needs_gltf_validator
+@pytest.mark.parametrize("source", ["example", "primitives", "fittings", "boxes", "empty shell"])
+def test_the_khronos_validator_finds_nothing(source: str, tmp_path) -> None:
+    path = tmp_path / "scene.glb"
+    write_gathered(gathered(source), path)
+    assert gltf_findings(path) == []
+
+
+@needs_gltf_validator
+def test_only_the_unknown_extension_is_remarked_on_in_compressed_files(tmp_path) -> None:
+    path = tmp_path / "scene.glb"
+    write_gathered(gathered("example", compression="meshopt"), path)
+    (finding,) = gltf_findings(path)
+    assert "UNSUPPORTED_EXTENSION" in finding
+
+
 def test_extents_in_metres_with_y_up() -> None:
     """The room of 4 x 5 x 2.6 m plus the slabs' thickness; depth (world y) runs along glTF's -z."""
     bounds = load(glb_bytes(furnished_room(LIBRARY), LIBRARY)).bounds
@@ -53,12 +77,101 @@ def test_every_object_stands_where_the_scene_says() -> None:
 
 
 def test_nodes_carry_what_the_scene_knows() -> None:
-    document = gltf_reader.check(glb_bytes(furnished_room(LIBRARY), LIBRARY))
+    scene = furnished_room(LIBRARY)
+    document = gltf_reader.check(glb_bytes(scene, LIBRARY))
     extras = node(document, "ball (b)")["extras"]
     assert extras["category"] == "toy"
     assert extras["shape"] == "ball"
     assert extras["support"] == {"parent": "t", "relation": "placed on", "against": []}
-    assert {"floor", "ceiling", "wall back", "wall left"} <= {n["name"] for n in document["nodes"]}
+    assert json.loads(extras["diorama"])["id"] == "b"
+    assert scene_from_json(node(document, "diorama")["extras"]["diorama"]) == scene
+
+
+def test_the_tree_follows_the_supports_beside_the_architecture() -> None:
+    document = gltf_reader.check(glb_bytes(furnished_room(LIBRARY), LIBRARY))
+
+    def below(name: str) -> set[str]:
+        return {document["nodes"][i]["name"] for i in node(document, name).get("children", ())}
+
+    assert below("diorama") == {"architecture", "objects", "photo camera"}
+    assert below("architecture") == {"floor", "ceiling", "wall back", "wall left", "wall right", "wall front"}
+    assert below("table (t)") == {"ball (b)"}
+    assert "ball (b)" not in below("objects")
+
+
+def test_children_do_not_inherit_scale() -> None:
+    scene = furnished_room(LIBRARY)
+    table = scene.object("t")
+    wide = replace(table, pose=replace(table.pose, scale=(1.0, 2.0, 1.0)))
+    stretched = replace(scene, objects=tuple(wide if o.id == "t" else o for o in scene.objects))
+    document = gltf_reader.check(glb_bytes(stretched, LIBRARY))
+    assert "scale" not in node(document, "table (t)")
+    assert node(document, "table (t) shape")["scale"] == [1.0, 2.0, 1.0]
+    loaded = load(glb_bytes(stretched, LIBRARY))
+    corners = loaded.graph.get("ball (b)")[0][:3, :3]
+    np.testing.assert_allclose(np.linalg.norm(corners, axis=0), scene.object("b").pose.scale, atol=1e-6)
+
+
+def test_without_the_ceiling_and_only_the_selection() -> None:
+    scene = furnished_room(LIBRARY)
+    open_room = gltf_reader.check(glb_bytes(scene, LIBRARY, options=ExportOptions(ceiling=False)))
+    assert "ceiling" not in {n["name"] for n in open_room["nodes"]}
+    assert "floor" in {n["name"] for n in open_room["nodes"]}
+    ball = gltf_reader.check(glb_bytes(scene, LIBRARY, options=ExportOptions(only=frozenset({"b"}))))
+    assert {n["name"] for n in ball["nodes"]} == {"diorama", "objects", "ball (b)", "photo camera"}
+    assert len(ball["meshes"]) == 1
+
+
+def test_pictures_are_limited_and_have_sides_of_powers_of_two() -> None:
+    picture = np.zeros((300, 700, 3), np.uint8)
+    planes = tuple(replace(p, texture="wall.png") if p.id == "back" else p for p in box_room().planes)
+    scene = Scene(None, Architecture(planes))
+    for limit, expected in ((None, (1024, 512)), (256, (256, 128))):
+        data = glb_bytes(scene, LIBRARY, textures={"wall.png": picture}, options=ExportOptions(max_texture_px=limit))
+        document, binary = gltf_reader.read(data)
+        view = document["bufferViews"][document["images"][0]["bufferView"]]
+        image = Image.open(io.BytesIO(binary[view["byteOffset"] : view["byteOffset"] + view["byteLength"]]))
+        assert image.size == expected
+
+
+def test_lamps_and_windows_shine() -> None:
+    document = gltf_reader.check(_glb(gathered("fittings")))
+    lights = document["extensions"]["KHR_lights_punctual"]["lights"]
+    assert {light["type"] for light in lights} == {"point", "spot"}
+    spot = next(n for n in document["nodes"] if n["name"].startswith("window") and "extensions" in n)
+    R = Rotation.from_quat(spot["rotation"]).as_matrix()
+    window = gathered("fittings").object("window_1")
+    into_room = window.T_world[:3, :3] @ -R[:, 2]
+    np.testing.assert_allclose(into_room, [0.0, -1.0, 0.0], atol=1e-9)
+
+
+def test_compressed_geometry_is_the_same_within_a_tenth_of_a_millimetre() -> None:
+    plain, packed = (_glb(gathered("example", compression=c)) for c in ("none", "meshopt"))
+    assert len(packed) < 0.8 * len(plain)
+    (document, binary), (other, data) = gltf_reader.read(plain), gltf_reader.read(packed)
+    for mesh, same in zip(document["meshes"], other["meshes"], strict=True):
+        for first, second in zip(mesh["primitives"], same["primitives"], strict=True):
+            points = gltf_reader.values(document, binary, first["attributes"]["POSITION"])
+            faces = gltf_reader.values(document, binary, first["indices"]).reshape(-1, 3)
+            unpacked = gltf_reader.unpacked(other, data, second["attributes"]["POSITION"])
+            order = gltf_reader.unpacked(other, data, second["indices"]).reshape(-1, 3)
+            _assert_same_triangles(points[faces], unpacked[order])
+
+
+def _assert_same_triangles(a: np.ndarray, b: np.ndarray) -> None:
+    assert a.shape == b.shape
+    distance, _ = KDTree(b.mean(axis=1)).query(a.mean(axis=1))
+    assert distance.max() < 1e-4
+    areas = [np.linalg.norm(np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]), axis=1).sum() for t in (a, b)]
+    assert areas[0] == pytest.approx(areas[1], rel=1e-2)
+
+
+def _glb(scene: ExportScene) -> bytes:
+    buffer = io.BytesIO()
+    with TemporaryDirectory() as folder:
+        write_gathered(scene, Path(folder) / "scene.glb")
+        buffer.write((Path(folder) / "scene.glb").read_bytes())
+    return buffer.getvalue()
 
 
 def test_identical_shapes_share_a_mesh_and_colours_do_not_leak() -> None:
@@ -173,9 +286,3 @@ def test_a_folder_that_cannot_be_written_is_one_clear_line(tmp_path) -> None:
             write_glb(Scene(), LIBRARY, target)
         assert "\n" not in str(caught.value)
     assert sorted(p.name for p in tmp_path.iterdir()) == ["file"]
-
-
-def test_formats_are_a_table() -> None:
-    assert writer("glb") is write_glb
-    with pytest.raises(ExportError, match="glb"):
-        writer("docx")

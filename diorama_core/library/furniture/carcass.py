@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
+from diorama_core.library.furniture.joints import door_hinge, drawer_slide
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Parts, Size, of
+from diorama_core.library.furniture.model import Parts, Size, jointed, of, with_role
 from diorama_core.library.furniture.solids import Solid, ball, bend, box, cylinder, rod, tube
 
 
@@ -31,15 +33,55 @@ def pull(kind: str, width: float) -> list[Solid]:
 
 
 def drawer_front(
-    x: float, y: float, z: float, width: float, height: float, wood: Material, metal: Material, kind: str = "bar"
+    x: float,
+    y: float,
+    z: float,
+    width: float,
+    height: float,
+    wood: Material,
+    metal: Material,
+    kind: str = "bar",
+    inside: DrawerSpace | None = None,
 ) -> Parts:
-    """A drawer's front, its back on the plane `x`, bottom at `z`, with its pull (two when it is wide)."""
+    """A drawer's front, its back on the plane `x`, bottom at `z`, with its pull (two when it is wide).
+
+    With `inside`, the free space behind it, the drawer has a box and can be pulled out.
+    """
     t = 0.018
     parts = of(wood, box((t, width, height), 0.003).moved(x + t / 2, y, z))
     spots = (-0.25, 0.25) if width > 0.62 and kind in ("knob", "cup") else (0.0,)
-    return parts + of(
-        metal, *(s.moved(x + t, y + f * width, z + height * 0.5) for f in spots for s in pull(kind, width))
-    )
+    parts += of(metal, *(s.moved(x + t, y + f * width, z + height * 0.5) for f in spots for s in pull(kind, width)))
+    if inside is None:
+        return parts
+    slide = drawer_slide(x, y, z, DRAWER_TRAVEL * inside.depth)
+    return jointed(slide, parts + with_role("inside", of(wood, *drawer_box(x, inside))))
+
+
+@dataclass(frozen=True)
+class DrawerSpace:
+    """Free space behind a drawer's front."""
+
+    depth: float
+    low_y: float
+    high_y: float
+    low_z: float
+    high_z: float
+
+
+DRAWER_TRAVEL = 0.75
+"""Share of the depth behind it by which a drawer comes out."""
+
+
+def drawer_box(x: float, space: DrawerSpace) -> list[Solid]:
+    """A box open to the top behind a front whose back is the plane `x`, with air around it."""
+    air, t = 0.006, 0.01
+    depth, width = space.depth - 2 * air, space.high_y - space.low_y - 2 * air
+    height = 0.7 * (space.high_z - space.low_z) - air
+    y, z, middle = (space.low_y + space.high_y) / 2, space.low_z + air, x - depth / 2
+    floor = box((depth, width, t), 0.001).moved(middle, y, z)
+    sides = [box((depth, t, height), 0.001).moved(middle, y + s * (width - t) / 2, z) for s in (1, -1)]
+    ends = [box((t, width, height), 0.001).moved(xx, y, z) for xx in (x - t / 2, x - depth + t / 2)]
+    return [floor, *sides, *ends]
 
 
 def door_front(
@@ -84,7 +126,8 @@ def door_front(
             )
     grip_z = z + height * (0.5 if height > 0.9 else 0.72 if z < 1.0 else 0.28)
     grip_y = y - hinge * (width / 2 - min(0.04, width * 0.12))
-    return parts + of(metal, *(s.moved(x + t, grip_y, grip_z) for s in pull(kind, width)))
+    parts += of(metal, *(s.moved(x + t, grip_y, grip_z) for s in pull(kind, width)))
+    return jointed(door_hinge(x + t, y + hinge * width / 2, hinge), parts)
 
 
 def open_case(

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from diorama_core.library.furniture import materials as m
-from diorama_core.library.furniture.carcass import door_front, drawer_front, open_case, plinth
+from diorama_core.library.furniture.carcass import DrawerSpace, door_front, drawer_front, open_case, plinth
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Parts, Size, both_sides, four, of, shifted
+from diorama_core.library.furniture.model import Parts, Size, both_sides, four, of, shifted, with_role
 from diorama_core.library.furniture.solids import box, rod, taper
 
 Base = Literal["legs", "splay", "plinth", "steel", "none"]
@@ -29,11 +29,13 @@ class _Fronts:
     panel: str
     infill: Material | None
 
-    def over(self, bay: Cell, x: float, y: float, z: float, w: float, h: float, hinge: int) -> Parts:
-        """What closes one bay, its back on the plane `x`, bottom at `z`, and the gap's shadow behind it."""
+    def over(
+        self, bay: Cell, x: float, y: float, z: float, w: float, h: float, hinge: int, space: DrawerSpace
+    ) -> Parts:
+        """What closes one bay, its back on the plane `x`, bottom at `z`; the gap's shadow and free `space` behind it."""
         if bay == "open":
             return []
-        shadow = of(m.SHADOW, box((0.003, w + 0.005, h), 0.001).moved(x, y, z))
+        shadow = with_role("filler", of(m.SHADOW, box((0.003, w + 0.005, h), 0.001).moved(x, y, z)))
         if bay == "door":
             return shadow + self._door(x, y, z, w, h, hinge)
         if bay == "pair":
@@ -41,10 +43,12 @@ class _Fronts:
             return shadow + left + right
         each = h / int(bay)
         handle = "bar" if self.handle == "tall" else self.handle
-        heights = [z + each * k for k in range(int(bay))]
-        return shadow + [
-            p for zz in heights for p in drawer_front(x, y, zz, w, each - 0.006, self.wood, self.pull, handle)
-        ]
+        parts = shadow
+        for k in range(int(bay)):
+            low, height = z + each * k, each - 0.006
+            inside = replace(space, low_z=max(low, space.low_z), high_z=min(low + height, space.high_z))
+            parts = parts + drawer_front(x, y, low, w, height, self.wood, self.pull, handle, inside)
+        return parts
 
     def _door(self, x: float, y: float, z: float, w: float, h: float, hinge: int) -> Parts:
         return door_front(x, y, z, w, h, self.wood, self.pull, self.handle, hinge, self.panel, self.infill)
@@ -105,13 +109,15 @@ def case(
         for k, bay in enumerate(bays)
         if bay != "open"
     ]
-    parts += shifted(shell + of(body, *dividers, *solid), -reveal / 2)
+    parts += shifted(shell + of(body, *dividers) + with_role("filler", of(body, *solid)), -reveal / 2)
     x = depth / 2 - reveal / 2
     front_w = (w - 0.004) / len(bays)  # fronts lie over the sides and dividers, edge to edge
     for k, bay in enumerate(bays):
         y = -w / 2 + 0.002 + front_w * (k + 0.5)
         place = (x, y, z0 + 0.004, front_w - 0.007, z1 - z0 - 0.008)
-        parts += fronts.over(bay, *place, hinge=1 if k % 2 else -1)
+        left = -w / 2 + t + inner_w * k
+        space = DrawerSpace(depth - 0.03, left + 0.01, left + inner_w - 0.01, z0 + t, z1 - t)
+        parts += fronts.over(bay, *place, hinge=1 if k % 2 else -1, space=space)
     if top is not None:
         parts += of(top, box((d, w + 0.02, cap + 0.001), 0.006, 2).moved(z=h - cap - 0.001))
     return parts

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture import styles as s
-from diorama_core.library.furniture.carcass import door_front, drawer_front, open_case, plinth, pull
+from diorama_core.library.furniture.carcass import DrawerSpace, door_front, drawer_front, open_case, plinth, pull
 from diorama_core.library.furniture.cases import Base, Cell, case, feet
 from diorama_core.library.furniture.fittings import at, bar_handle, knob, tap
 from diorama_core.library.furniture.frames import frame, stand_up, wall_outline
 from diorama_core.library.furniture.hollow_ware import hollow
+from diorama_core.library.furniture.joints import Joint, door_hinge, drawer_slide
 from diorama_core.library.furniture.keys import keypad, keys_of, piano_keys, spread
 from diorama_core.library.furniture.legs import Leg, leg
 from diorama_core.library.furniture.materials import Material
@@ -25,9 +26,11 @@ from diorama_core.library.furniture.model import (
     design,
     four,
     joined,
+    jointed,
     of,
     shifted,
     turned,
+    with_role,
 )
 from diorama_core.library.furniture.solids import (
     Profile,
@@ -58,6 +61,7 @@ from diorama_core.library.furniture.styles import CLASSIC, INDUSTRIAL, MINIMAL, 
 __all__ = [  # noqa: RUF022
     "Design", "design", "Material", "m", "Style", "s", "CLASSIC", "INDUSTRIAL", "MINIMAL", "MODERN", "RUSTIC",
     "Part", "Parts", "Size", "of", "at", "shifted", "turned", "both_sides", "four", "joined",
+    "Joint", "jointed", "with_role", "door_hinge", "drawer_slide", "DrawerSpace",
     "Solid", "Profile", "ball", "beam", "bend", "box", "cushion", "cylinder", "lathe", "loft", "pillow", "prism",
     "ring_path", "rod", "rounded_rectangle", "shell", "slab", "smooth_profile", "superellipse", "taper", "tube", "unit",
     "Leg", "leg", "Base", "Cell", "case", "feet", "door_front", "drawer_front", "open_case", "plinth", "pull",

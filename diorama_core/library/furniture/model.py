@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import ModuleType
-from typing import Any, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 import trimesh
 
+from diorama_core.library.furniture.joints import Joint
 from diorama_core.library.furniture.materials import Material, pbr
 from diorama_core.library.furniture.solids import Solid, unit
 from diorama_core.library.record import SymmetryFold
@@ -24,14 +25,20 @@ class Part:
 
     material: Material
     solid: Solid
+    joint: Joint | None = None
+    """How it moves against the rest; None where it does not."""
+    role: Literal["shown", "filler", "inside"] = "shown"
+    """A filler closes a case that is not opened; what is inside is only there when the case can be opened."""
 
     def moved(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Part:
         """Shifted by (x, y, z)."""
-        return replace(self, solid=self.solid.moved(x, y, z))
+        joint = None if self.joint is None else self.joint.moved(x, y, z)
+        return replace(self, solid=self.solid.moved(x, y, z), joint=joint)
 
     def turned(self, axis: str, angle_deg: float) -> Part:
         """Turned about a coordinate axis through the origin."""
-        return replace(self, solid=self.solid.turned(axis, angle_deg))
+        joint = None if self.joint is None else self.joint.turned(axis, angle_deg)
+        return replace(self, solid=self.solid.turned(axis, angle_deg), joint=joint)
 
 
 Parts = list[Part]
@@ -107,6 +114,16 @@ def designs_of(*kinds: ModuleType) -> tuple[Design, ...]:
     return tuple(row for kind in kinds for row in kind.DESIGNS)
 
 
+def jointed(joint: Joint | None, parts: Iterable[Part]) -> Parts:
+    """Parts that move together."""
+    return [replace(p, joint=joint) for p in parts]
+
+
+def with_role(role: Literal["filler", "inside"], parts: Iterable[Part]) -> Parts:
+    """Parts that are there only while the piece is closed, or only when it can be opened."""
+    return [replace(p, role=role) for p in parts]
+
+
 def of(material: Material, *solids: Solid) -> Parts:
     """Parts of one material."""
     return [Part(material, s) for s in solids]
@@ -146,7 +163,7 @@ def joined(solids: Sequence[Solid]) -> Solid:
 
 def built(design: Design) -> list[tuple[Material, Solid]]:
     """The design's solids, one per material, centred, stretched to exactly the declared size."""
-    parts = design.build(design.size_m)
+    parts = [p for p in design.build(design.size_m) if p.role != "inside"]
     points = np.concatenate([p.solid.vertices for p in parts])
     low, high = points.min(axis=0), points.max(axis=0)
     centre, factors = (low + high) / 2, np.asarray(design.size_m) / (high - low)

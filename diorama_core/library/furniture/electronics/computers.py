@@ -22,7 +22,10 @@ def laptop(size: Size, body: Material, keys: Material, angle: float = 112.0) -> 
     screen = of(body, box((0.006, w, lid), 0.003, 2).moved(-0.003)) + of(
         m.SCREEN, box((0.002, w - 0.016, lid - 0.022), 0.0005).pictured().moved(0.0, 0, 0.014)
     )
-    return parts + [p.moved(x0 + 0.008, 0, 0.01) for p in turned(screen, "y", -(angle - 90))]
+    # The axis lies in the plane of the glass, high enough for the closed lid to clear the keys.
+    pivot = Joint("lid", "hinge", (0.002, 0.0, 0.009), (0.0, 1.0, 0.0), 0.0, float(np.deg2rad(angle - 2.0)))
+    lifted = turned(jointed(pivot, screen), "y", -(angle - 90))
+    return parts + [p.moved(x0 + 0.008, 0, 0.01) for p in lifted]
 
 
 def keyboard(size: Size, body: Material, keys: Material, columns: int = 17) -> Parts:

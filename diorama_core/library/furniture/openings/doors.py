@@ -25,9 +25,9 @@ def door(
     parts = of(casing, *jambs, box((d, w, bar), 0.006, 2).moved(z=h - bar))
     lw, lh = w - 2 * bar + 0.004, h - bar - 0.008
     front = x + t / 2
-    parts += of(leaf, *_leaf(panel, lw, lh, t, x))
+    swung = of(leaf, *_leaf(panel, lw, lh, t, x))
     if panel == "glazed":
-        parts += of(m.PANE, box((0.006, lw - 0.2, lh * 0.55), 0.001).pictured().moved(x, 0, lh * 0.38))
+        swung += of(m.PANE, box((0.006, lw - 0.2, lh * 0.55), 0.001).pictured().moved(x, 0, lh * 0.38))
     y, z = -lw / 2 + 0.065, 1.0
     grip = [
         box((0.006, 0.042, 0.19), 0.003).moved(front + 0.003, y, z - 0.12),
@@ -35,7 +35,8 @@ def door(
         rod((front + 0.05, y - 0.008, z), (front + 0.05, y + 0.11, z), 0.009),
     ]
     hinges = [cylinder(0.007, 0.09, 0.001, 10).moved(front, lw / 2, zz) for zz in (0.2, h - 0.35)]
-    return parts + of(handle, *grip, *hinges)
+    swung += of(handle, *grip)
+    return parts + jointed(door_hinge(front, lw / 2, 1), swung) + of(handle, *hinges)
 
 
 def _leaf(panel: str, w: float, h: float, t: float, x: float) -> list[Solid]:

@@ -34,13 +34,10 @@ def office_chair(
     d, w, h = size
     seat_z, r = 0.47, 0.5 * min(d, w) * 0.96
     star = castor_star(r)
-    lift = [
-        cylinder(0.03, 0.2, 0.004, 16).moved(z=0.09),
-        cylinder(0.02, 0.22, 0.003, 16).moved(z=0.22),
-        box((0.22, 0.16, 0.04), 0.012).moved(-0.02, 0, seat_z - 0.1),
-    ]
+    lift = [cylinder(0.03, 0.2, 0.004, 16).moved(z=0.09), cylinder(0.02, 0.22, 0.003, 16).moved(z=0.22)]
+    plate = box((0.22, 0.16, 0.04), 0.012).moved(-0.02, 0, seat_z - 0.1)
     seat = cushion((0.47, min(0.5, 0.82 * w), 0.09), 5, 3.2, 12).moved(0.03, 0, seat_z - 0.07)
-    parts = of(frame, *star, *lift) + of(cloth, seat)
+    parts = of(frame, plate) + of(cloth, seat)
     bx, bh = -0.22, h - seat_z - 0.06
     width = 0.72 * w if back != "high" else 0.78 * w
     stem = tube(
@@ -81,7 +78,8 @@ def office_chair(
             8,
         )
         parts += of(frame, *both_sides(post, box((0.25, 0.075, 0.03), 0.013, 2).moved(0.0, y, seat_z + 0.175)))
-    return parts
+    swivel = Joint("seat", "swivel", (0.0, 0.0, seat_z - 0.1), (0.0, 0.0, 1.0))
+    return of(frame, *star, *lift) + jointed(swivel, parts)
 
 
 DESIGNS: tuple[Design, ...] = (

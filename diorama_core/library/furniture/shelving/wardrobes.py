@@ -21,9 +21,11 @@ def wardrobe(
     base = 0.08
     low = 0.26 if drawers else 0.0
     cap = 0.06 if crown else 0.0
-    parts = of(
-        body, box((d - 0.03, w - (0.04 if crown else 0), h - base - cap), 0.004).moved(-0.012, 0, base)
-    ) + plinth(d - 0.02, w - 0.02, base, body)
+    depth, width = d - 0.03, w - (0.04 if crown else 0)
+    closed = of(body, box((depth, width, h - base - cap), 0.004).moved(-0.012, 0, base))
+    boards = [base + low, h - cap - 0.3] if drawers else [h - cap - 0.3]
+    hollow = shifted(open_case((depth, width, h - cap), body, boards, base=base), -0.012)
+    parts = with_role("filler", closed) + with_role("inside", hollow) + plinth(d - 0.02, w - 0.02, base, body)
     if crown:
         parts += of(
             body,
@@ -35,7 +37,7 @@ def wardrobe(
     x = d / 2 - 0.027
     for k in range(doors):
         y = -span / 2 + each * (k + 0.5)
-        parts += door_front(
+        leaf = door_front(
             x,
             y,
             base + low + 0.005,
@@ -47,23 +49,16 @@ def wardrobe(
             1 if k % 2 else -1,
             panel,
         )
+        parts += leaf
         if mirror == k:
-            parts += of(
-                m.MIRROR, box((0.004, each - 0.08, h - base - 0.16), 0.001).pictured().moved(x + 0.0185, y, base + 0.07)
-            )
+            glass = box((0.004, each - 0.08, h - base - 0.16), 0.001).pictured().moved(x + 0.0185, y, base + 0.07)
+            parts += jointed(leaf[0].joint, of(m.MIRROR, glass))
     if drawers:
         n = max(doors // 2, 1)
         for k in range(n):
-            parts += drawer_front(
-                x,
-                -span / 2 + span / n * (k + 0.5),
-                base + 0.006,
-                span / n - 0.006,
-                low - 0.012,
-                front or body,
-                pull,
-                "bar",
-            )
+            y, broad = -span / 2 + span / n * (k + 0.5), span / n - 0.06
+            space = DrawerSpace(depth - 0.03, y - broad / 2, y + broad / 2, base + 0.02, base + low - 0.02)
+            parts += drawer_front(x, y, base + 0.006, span / n - 0.006, low - 0.012, front or body, pull, "bar", space)
     return parts
 
 

@@ -1,0 +1,148 @@
+"""Every format a scene can be written in, as a table: what it keeps, how its files end, what it needs.
+
+Writers are imported when they are used, so that listing the formats is cheap and a missing optional library stops only
+the format that needs it.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol, cast
+
+from diorama_core.errors import ExportError, UnavailableError
+from diorama_core.progress import Progress
+
+if TYPE_CHECKING:
+    from diorama_core.export.gathering import ExportOptions, ExportScene, Picture
+    from diorama_core.library.record import ShapeLibrary
+    from diorama_core.scene.types import Scene
+
+
+class Writer(Protocol):
+    """Writes a gathered scene, whole or not at all; raises `ExportError` when it cannot."""
+
+    def __call__(self, gathered: ExportScene, path: Path, progress: Progress) -> None:
+        """Write to `path`, replacing what is there only when all went well."""
+        ...
+
+
+@dataclass(frozen=True)
+class Format:
+    """One format."""
+
+    name: str
+    """What the command line knows it by."""
+    title: str
+    """What people call it."""
+    suffixes: tuple[str, ...]
+    """How its files may end, the usual ending first."""
+    keeps: str
+    """What of the scene it keeps, in a few words for people who choose."""
+    place: str
+    """Where its writer is: `module:function` inside `diorama_core.export`."""
+    extra: str | None = None
+    """Optional dependency group that it needs."""
+    needs: str | None = None
+    """Module of that group whose absence stops the format."""
+    joints: bool = False
+    """Whether shapes that know their joints are written in parts that move."""
+
+    def writer(self) -> Writer:
+        """The function that writes it.
+
+        Raises:
+            UnavailableError: when its optional library is not installed.
+        """
+        module, function = self.place.split(":")
+        if self.needs is not None and importlib.util.find_spec(self.needs) is None:
+            raise UnavailableError(f"{self.title} needs an optional library: pip install 'diorama[{self.extra}]'")
+        return cast(Writer, getattr(importlib.import_module(f"diorama_core.export.{module}"), function))
+
+
+_USD_KEEPS = "materials, textures, camera, lights, supports, colliders, masses, joints, the scene itself"
+_SIM_KEEPS = "visual meshes with materials, convex colliders, masses, friction, joints"
+
+_TABLE = (
+    Format(
+        "glb",
+        "glTF binary",
+        (".glb",),
+        "materials, textures, camera, lights, supports, the scene itself",
+        "gltf:write_gathered",
+    ),
+    Format("usda", "USD text", (".usda",), _USD_KEEPS, "usd:write_usda", "usd", "pxr", joints=True),
+    Format("usdc", "USD binary", (".usdc",), _USD_KEEPS, "usd:write_usdc", "usd", "pxr", joints=True),
+    Format("usdz", "USD package for AR", (".usdz",), _USD_KEEPS, "usd:write_usdz", "usd", "pxr", joints=True),
+    Format("mjcf", "MuJoCo", (".xml", ".zip"), _SIM_KEEPS, "mjcf:write_mjcf", joints=True),
+    Format("urdf", "URDF (ROS, PyBullet, Isaac)", (".urdf", ".zip"), _SIM_KEEPS, "urdf:write_urdf", joints=True),
+    Format("sdf", "SDFormat (Gazebo)", (".sdf", ".zip"), _SIM_KEEPS, "sdf:write_sdf", joints=True),
+)
+
+FORMATS: Mapping[str, Format] = {f.name: f for f in _TABLE}
+"""Every format, by name."""
+
+
+def format_named(name: str) -> Format:
+    """The format with this name; raises `ExportError` with those that exist."""
+    if name not in FORMATS:
+        raise ExportError(f"cannot export as {name!r}; choose one of: {', '.join(FORMATS)}")
+    return FORMATS[name]
+
+
+def export_scene(
+    scene: Scene,
+    library: ShapeLibrary,
+    path: Path,
+    format_name: str,
+    *,
+    options: ExportOptions | None = None,
+    textures: Mapping[str, Picture] | None = None,
+    photo: Picture | None = None,
+    name: str | None = None,
+    provenance: Mapping[str, Any] | None = None,
+    progress: Progress | None = None,
+) -> ExportScene:
+    """Write a scene in one of `FORMATS`, whole or not at all, and return what was written.
+
+    Args:
+        scene: What to write; hidden objects are left out.
+        library: Where its shapes are.
+        path: The file; an existing one is replaced when everything went well.
+        format_name: A key of `FORMATS`.
+        options: What of the scene is written, and how.
+        textures: Pictures of the planes by `Plane.texture`.
+        photo: The photo that the scene was made from.
+        name: What the file calls the scene (default: the file's own name).
+        provenance: Where the scene comes from, as JSON values.
+        progress: Where it is reported and cancelling is noticed.
+
+    Raises:
+        ExportError: the format does not exist, its file ends otherwise, or it cannot be written.
+        UnavailableError: an optional library is missing.
+        LibraryError: a shape is missing.
+        Cancelled: when asked to stop; an older file at `path` stays as it was.
+    """
+    from diorama_core.export.gathering import EVERYTHING, gather
+
+    chosen, path, progress = format_named(format_name), Path(path), progress or Progress()
+    if path.suffix.lower() not in chosen.suffixes:
+        endings = " or ".join(chosen.suffixes)
+        raise ExportError(f"{path}: {chosen.title} files end in {endings}; choose such a name")
+    write = chosen.writer()
+    gathered = gather(
+        scene,
+        library,
+        options=replace(options or EVERYTHING, joints=chosen.joints),
+        textures=textures,
+        photo=photo,
+        name=name or path.stem,
+        provenance=provenance,
+        progress=progress.part(0.0, 0.5),
+    )
+    write(gathered, path, progress.part(0.5, 1.0))
+    progress.report(1.0, f"wrote {path.name}")
+    return gathered

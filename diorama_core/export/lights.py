@@ -1,0 +1,107 @@
+"""Light that the objects of a scene give: lamps shine from their bulbs and shades, windows let daylight in.
+
+A photo does not tell how bright a lamp is, so each category has the luminous flux of a usual one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.render.appearance import Surface
+from diorama_core.scene.types import Scene, SceneObject
+
+LAMP_LUMENS: Mapping[str, float] = {
+    "lamp": 450.0,
+    "floor lamp": 800.0,
+    "wall lamp": 400.0,
+    "ceiling lamp": 1100.0,
+    "chandelier": 1600.0,
+    "candle": 12.0,
+}
+"""Luminous flux of a usual lamp of each category; categories that are not listed give no light."""
+WINDOW_LUX = 2000.0
+"""Daylight that falls through a window, in lumens per square metre of it."""
+WARM: tuple[float, float, float] = (1.0, 0.78, 0.54)
+"""Linear colour of a bulb of about 3000 K."""
+DAYLIGHT: tuple[float, float, float] = (0.92, 0.96, 1.0)
+"""Linear colour of light from the sky."""
+
+
+@dataclass(frozen=True, eq=False)
+class ExportLight:
+    """A light that belongs to an object."""
+
+    kind: Literal["lamp", "window"]
+    """A lamp shines to all sides from a point, a window from its face into the room."""
+    owner: str
+    """Id of the object."""
+    T_world: Float[np.ndarray, "4 4"]
+    """Rigid; the light shines along its -Z, as the lights of glTF and USD do; +Y is its height, +X its width."""
+    lumens: float
+    colour: tuple[float, float, float]
+    """Linear, its largest component 1."""
+    radius_m: float
+    """Of a lamp's glowing part; 0 for windows."""
+    size_m: tuple[float, float] = (0.0, 0.0)
+    """Width and height of a window; 0 for lamps."""
+
+    @property
+    def candela(self) -> float:
+        """Luminous intensity along -Z: of a point to all sides, of a window's face as a Lambertian emitter."""
+        return self.lumens / (4 * np.pi if self.kind == "lamp" else np.pi)
+
+
+def lights_of(
+    scene: Scene, objects: Iterable[SceneObject], surfaces: Mapping[str, tuple[Surface, ...]]
+) -> tuple[ExportLight, ...]:
+    """Lights of the objects that are lamps or windows.
+
+    Args:
+        scene: Says where the room is, so that windows shine into it.
+        objects: The objects that are shown.
+        surfaces: What each looks like, by id, in its shape's frame.
+    """
+    found = []
+    for item in objects:
+        if item.category in LAMP_LUMENS:
+            found.append(_lamp(item, surfaces[item.id]))
+        elif item.category == "window":
+            found.append(_window(scene, item))
+    return tuple(found)
+
+
+def _lamp(item: SceneObject, surfaces: tuple[Surface, ...]) -> ExportLight:
+    """A point in the middle of what glows, or of the object where nothing is known to."""
+    glowing = [s for s in surfaces if any(s.material.emissive)]
+    points = np.concatenate([s.vertices for s in glowing]) if glowing else item.corners_world
+    world = item.pose.apply(points) if glowing else points
+    low, high = world.min(axis=0), world.max(axis=0)
+    T = np.eye(4)
+    T[:3, 3] = (low + high) / 2
+    radius = float(np.clip(0.25 * (high - low).min(), 0.005, 0.08))
+    return ExportLight("lamp", item.id, T, LAMP_LUMENS[item.category], WARM, radius)
+
+
+def _window(scene: Scene, item: SceneObject) -> ExportLight:
+    """A rectangle just in front of the window's face that looks into the room."""
+    depth, width, height = (float(v) for v in item.size_m)
+    R = item.pose.R_world_object
+    inward = R[:, 0] if (_middle(scene) - item.pose.position) @ R[:, 0] >= 0 else -R[:, 0]
+    T = np.eye(4)
+    T[:3, 2], T[:3, 1] = -inward, R[:, 2]
+    T[:3, 0] = np.cross(T[:3, 1], T[:3, 2])
+    T[:3, 3] = item.pose.position + inward * (depth / 2 + 0.01)
+    return ExportLight("window", item.id, T, WINDOW_LUX * width * height, DAYLIGHT, 0.0, (width, height))
+
+
+def _middle(scene: Scene) -> Float[np.ndarray, "3"]:
+    planes = scene.architecture.planes
+    if planes:
+        corners = np.concatenate([p.polygon for p in planes])
+        return (corners.min(axis=0) + corners.max(axis=0)) / 2
+    return np.zeros(3) if scene.camera is None else scene.camera.position

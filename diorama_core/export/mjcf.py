@@ -1,0 +1,259 @@
+"""A scene as a MuJoCo model: static room, rigid bodies with convex colliders, visual meshes with their materials.
+
+The main file refers to meshes and pictures in a folder beside it, or lies with them in one zip. World +Z up, metres,
+quaternions wxyz, as MuJoCo has them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import Rotation
+
+from diorama_core.export.colliders import (
+    MovingPart,
+    PhysicalScene,
+    Points,
+    RigidBody,
+    StaticSlab,
+    hull_volume,
+    physical_scene,
+)
+from diorama_core.export.files import Entry, companion_folder, write_package
+from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene, rigid_inverse
+from diorama_core.export.lights import ExportLight
+from diorama_core.export.physics import FLOOR_FRICTION
+from diorama_core.export.wavefront import obj_text, png_bytes
+from diorama_core.progress import Progress
+from diorama_core.render.appearance import Material, linear_to_srgb
+from diorama_core.scene.types import Camera
+
+_CAMERA_AXES = np.diag([1.0, -1.0, -1.0])
+"""MuJoCo's cameras look along their -z with y up; ours along +z with y down."""
+FULL_LIGHT_CANDELA = 100.0
+"""Luminous intensity that MuJoCo's unitless brightness of 1 stands for."""
+
+
+def write_mjcf(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
+    """Write a MuJoCo model: `.xml` with a folder beside it, or everything as one `.zip`.
+
+    Raises:
+        ExportError: when it cannot be written.
+    """
+    progress = progress or Progress()
+    progress.report(0.0, "preparing colliders")
+    physical = physical_scene(gathered)
+    main, folder = f"{Path(path).stem}.xml", companion_folder(path, "mjcf")
+    content = mjcf_text(gathered, physical, folder).encode()
+
+    def entries() -> Iterator[Entry]:
+        yield from _assets(gathered, folder, progress)
+        yield main, content
+
+    write_package(path, main, entries())
+
+
+def mjcf_text(gathered: ExportScene, physical: PhysicalScene, folder: str | None = None) -> str:
+    """The model's XML.
+
+    Args:
+        gathered: The scene.
+        physical: The same as rigid bodies.
+        folder: Where visual meshes and pictures lie, relative to the model; None writes colliders only.
+    """
+    root = Element("mujoco", model=gathered.name)
+    SubElement(root, "compiler", angle="radian", autolimits="true")
+    SubElement(root, "option", timestep="0.002", integrator="implicitfast", cone="elliptic", impratio="10")
+    SubElement(SubElement(root, "visual"), "headlight", ambient="0.35 0.35 0.35", diffuse="0.5 0.5 0.5")
+    _defaults(SubElement(root, "default"))
+    assets, world = SubElement(root, "asset"), SubElement(root, "worldbody")
+    if folder is not None:
+        _materials(assets, gathered, folder)
+    _room(world, assets, gathered, physical.slabs, folder)
+    if gathered.camera is not None:
+        _camera(world, gathered.camera)
+    below: dict[str | None, list[RigidBody]] = {}
+    for body in physical.bodies:
+        below.setdefault(None if body.free else body.carrier, []).append(body)
+    lights: dict[str, list[ExportLight]] = {}
+    for light in gathered.lights:
+        lights.setdefault(light.owner, []).append(light)
+    writer = _BodyWriter(gathered, assets, below, lights, folder)
+    for body in below.get(None, ()):
+        writer.write(world, body, np.eye(4))
+    slugs = {b.node.id: b.node.slug for b in physical.bodies}
+    pairs = [(slugs[a], slugs[b]) for a, b in physical.without_contact]
+    # A part and the case it sits in touch; MuJoCo knows that by itself only where the case can move.
+    pairs += [(b.node.slug, f"{b.node.slug}__{m.limb.slug}") for b in physical.bodies for m in b.moving]
+    contact = SubElement(root, "contact")
+    for first, second in pairs:
+        SubElement(contact, "exclude", body1=first, body2=second)
+    indent(root)
+    return tostring(root, encoding="unicode", xml_declaration=False) + "\n"
+
+
+class _BodyWriter:
+    """Writes bodies with what is welded to them."""
+
+    def __init__(
+        self,
+        gathered: ExportScene,
+        assets: Element,
+        below: dict[str | None, list[RigidBody]],
+        lights: dict[str, list[ExportLight]],
+        folder: str | None,
+    ) -> None:
+        self._gathered = gathered
+        self._assets = assets
+        self._below = below
+        self._lights = lights
+        self._folder = folder
+
+    def write(self, parent: Element, body: RigidBody, T_world_parent: Float[np.ndarray, "4 4"]) -> None:
+        node = body.node
+        T = rigid_inverse(T_world_parent) @ node.T_world
+        element = SubElement(parent, "body", {"name": node.slug, **_placement(T)})
+        if body.free:
+            SubElement(element, "freejoint", name=f"{node.slug}_free")
+        self._colliders(element, body, body.parts, body.mass_kg, node.slug)
+        if self._folder is not None:
+            _visuals(element, self._assets, self._gathered.meshes[node.mesh], node, self._folder)
+            for light in self._lights.get(node.id, ()):
+                _light(element, rigid_inverse(node.T_world) @ light.T_world, light)
+        for moving in body.moving:
+            self._limb(element, body, moving)
+        for child in self._below.get(node.id, ()):
+            self.write(element, child, node.T_world)
+
+    def _limb(self, parent: Element, body: RigidBody, moving: MovingPart) -> None:
+        """A body at the object's own frame, so that its geometry needs no other."""
+        limb = moving.limb
+        name = f"{body.node.slug}__{limb.slug}"
+        element = SubElement(parent, "body", name=name)
+        kind = "slide" if limb.kind == "slide" else "hinge"
+        joint = {"name": name, "class": kind, "pos": _numbers(limb.origin), "axis": _numbers(limb.axis)}
+        if limb.kind != "swivel":
+            joint["range"] = f"{limb.lower:.8g} {limb.upper:.8g}"
+        SubElement(element, "joint", joint)
+        self._colliders(element, body, moving.parts, moving.mass_kg, name)
+        if self._folder is not None:
+            mesh = self._gathered.meshes[limb.mesh]
+            _visuals(element, self._assets, mesh, body.node, self._folder, name)
+
+    def _colliders(
+        self, element: Element, body: RigidBody, parts: tuple[Points, ...], mass_kg: float, name: str
+    ) -> None:
+        volumes = [max(hull_volume(p), 1e-9) for p in parts]
+        for number, (part, volume) in enumerate(zip(parts, volumes, strict=True)):
+            mesh = f"{name}_part_{number}"
+            SubElement(self._assets, "mesh", name=mesh, vertex=_numbers(part.ravel()), inertia="convex")
+            mass = mass_kg * volume / sum(volumes)
+            attributes = {"type": "mesh", "mesh": mesh, "mass": f"{mass:.6g}", "friction": f"{body.friction:.3g}"}
+            SubElement(element, "geom", {"name": mesh, "class": "collider", **attributes})
+
+
+def _defaults(root: Element) -> None:
+    collider = SubElement(root, "default", {"class": "collider"})
+    SubElement(collider, "geom", group="3", solref="0.01 1", condim="4", rgba="0.4 0.6 0.9 0.4")
+    visual = SubElement(root, "default", {"class": "visual"})
+    SubElement(visual, "geom", group="1", contype="0", conaffinity="0", mass="0")
+    for kind in ("hinge", "slide"):
+        moving = SubElement(root, "default", {"class": kind})
+        SubElement(moving, "joint", type=kind, damping="1", frictionloss="0.5")
+
+
+def _room(
+    world: Element,
+    assets: Element,
+    gathered: ExportScene,
+    slabs: Iterable[StaticSlab],
+    folder: str | None,
+) -> None:
+    """Floors are endless planes, so that nothing falls beside them; walls and ceilings are slabs."""
+    for slab in slabs:
+        plane = slab.plane
+        if plane.role == "floor":
+            level = {"pos": _numbers(plane.centre), "zaxis": _numbers(plane.normal), "size": "20 20 1"}
+            geom = {"name": slab.slug, "class": "collider", "type": "plane", "friction": str(FLOOR_FRICTION)}
+            SubElement(world, "geom", {**geom, **level})
+        for number, piece in enumerate(() if plane.role == "floor" else slab.pieces):
+            name = f"{slab.slug}_part_{number}"
+            centre = piece.mean(axis=0)
+            SubElement(assets, "mesh", name=name, vertex=_numbers((piece - centre).ravel()), inertia="convex")
+            geom = {"name": name, "class": "collider", "type": "mesh", "mesh": name, "pos": _numbers(centre)}
+            SubElement(world, "geom", geom)
+    if folder is not None:
+        for exported in gathered.planes:
+            _visuals(world, assets, gathered.meshes[exported.mesh], None, folder)
+
+
+def _visuals(
+    element: Element,
+    assets: Element,
+    mesh: ExportMesh,
+    node: ExportObject | None,
+    folder: str,
+    label: str | None = None,
+) -> None:
+    label = label or (mesh.key if node is None else node.slug)
+    for number, surface in enumerate(mesh.surfaces):
+        name = f"{label}_shape_{number}"
+        scale = {} if node is None else {"scale": _numbers(node.scale)}
+        file = f"{folder}/meshes/{mesh.key}_{number}.obj"
+        SubElement(assets, "mesh", {"name": name, "file": file, "inertia": "shell", **scale})
+        attributes = {"type": "mesh", "mesh": name, "material": surface.material.name}
+        SubElement(element, "geom", {"name": name, "class": "visual", **attributes})
+
+
+def _materials(assets: Element, gathered: ExportScene, folder: str) -> None:
+    for number, material in enumerate(gathered.materials):
+        attributes = {"name": material.name, "rgba": _numbers(srgb_rgba(material))}
+        if material.texture is not None:
+            SubElement(assets, "texture", name=material.name, type="2d", file=f"{folder}/textures/{number}.png")
+            attributes["texture"] = material.name
+        attributes |= {"metallic": f"{material.metallic:.3g}", "roughness": f"{material.roughness:.3g}"}
+        attributes |= {"specular": f"{0.5 * (1 - material.roughness):.3g}", "emission": f"{max(material.emissive):.3g}"}
+        SubElement(assets, "material", attributes)
+
+
+def srgb_rgba(material: Material) -> Float[np.ndarray, "4"]:
+    """A material's colour as programs without linear light expect it."""
+    return np.append(linear_to_srgb(np.asarray(material.colour)), material.alpha)
+
+
+def _assets(gathered: ExportScene, folder: str, progress: Progress) -> Iterator[Entry]:
+    for number, material in enumerate(gathered.materials):
+        if material.texture is not None:
+            yield f"{folder}/textures/{number}.png", png_bytes(material.texture)
+    for done, mesh in enumerate(gathered.meshes.values()):
+        progress.report(0.3 + 0.7 * done / len(gathered.meshes), f"writing {mesh.name}")
+        for number, surface in enumerate(mesh.surfaces):
+            yield f"{folder}/meshes/{mesh.key}_{number}.obj", obj_text(surface).encode()
+
+
+def _light(element: Element, T: Float[np.ndarray, "4 4"], light: ExportLight) -> None:
+    strength = min(light.candela / FULL_LIGHT_CANDELA, 1.0) * np.asarray(light.colour)
+    kind = {"type": "point"} if light.kind == "lamp" else {"type": "spot", "cutoff": "80", "exponent": "1"}
+    place = {"pos": _numbers(T[:3, 3]), "dir": _numbers(-T[:3, 2])}
+    SubElement(element, "light", {**kind, **place, "diffuse": _numbers(strength), "castshadow": "false"})
+
+
+def _camera(world: Element, camera: Camera) -> None:
+    T = camera.T_world_camera.copy()
+    T[:3, :3] = T[:3, :3] @ _CAMERA_AXES
+    k = camera.intrinsics
+    fovy = 2 * float(np.degrees(np.arctan(0.5 * k.height / k.fy)))  # degrees, whatever the compiler is told
+    SubElement(world, "camera", {"name": "photo", "fovy": f"{fovy:.9g}", **_placement(T)})
+
+
+def _placement(T: Float[np.ndarray, "4 4"]) -> dict[str, str]:
+    quaternion = Rotation.from_matrix(T[:3, :3]).as_quat(canonical=True, scalar_first=True)
+    return {"pos": _numbers(T[:3, 3]), "quat": _numbers(quaternion)}
+
+
+def _numbers(values: Float[np.ndarray, " n"]) -> str:
+    return " ".join(f"{float(v):.8g}" for v in values)

@@ -1,0 +1,136 @@
+"""What things weigh and how they slide: one table of materials, applied to the closed volumes of a shape.
+
+Shapes model most things as solids that are hollow in truth: drawers, tubes, vases, housings. Each material therefore
+has the thickness of its usual walls, and weighs no more than its surface at that thickness.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.library.record import Shape
+from diorama_core.render.appearance import Material, Surface
+
+MIN_SHEET_M, MAX_SHEET_M = 0.0005, 0.003
+"""Thickness of surfaces that enclose no volume (leaves, lamp shades, cloth) lies between these."""
+MAX_PRIOR_RATIO = 3.0
+"""A mass may differ from the usual one of its category and size by this factor at most."""
+UNKNOWN_MASS_KG = 1.0
+"""The mass of a library record that nobody estimated."""
+MIN_MASS_KG = 0.01
+
+
+@dataclass(frozen=True)
+class Substance:
+    """Physical properties of one kind of material."""
+
+    name: str
+    density: float
+    """Kilograms per cubic metre."""
+    wall_m: float
+    """Thickness of the walls of hollow things made of it; infinite for what is solid throughout."""
+    friction: float
+    """Coefficient of sliding friction against wood."""
+    words: tuple[str, ...]
+    """A material is of this kind when its name holds one of these."""
+
+
+SUBSTANCES: tuple[Substance, ...] = (
+    Substance("leather", 70.0, np.inf, 0.6, ("leather",)),
+    Substance("cloth", 60.0, np.inf, 0.7, ("cloth", "fabric", "linen", "wool", "cotton", "felt", "velvet", "canvas")),
+    Substance("stone", 2600.0, 0.02, 0.5, ("marble", "granite", "stone", "slate", "terrazzo")),
+    Substance("concrete", 2200.0, 0.03, 0.6, ("concrete", "brick")),
+    Substance("ceramic", 2300.0, 0.005, 0.4, ("porcelain", "ceramic", "glaze", "terracotta", "clay", "enamel")),
+    Substance("glass", 2500.0, 0.005, 0.35, ("glass", "mirror", "crystal")),
+    Substance("steel", 7800.0, 0.0012, 0.4, ("steel", "chrome", "iron", "metal", "brass", "copper", "bronze")),
+    Substance("aluminium", 2700.0, 0.002, 0.4, ("aluminium", "aluminum")),
+    Substance("soil", 1300.0, np.inf, 0.6, ("soil", "earth")),
+    Substance("paper", 700.0, np.inf, 0.5, ("paper", "book", "cardboard", "pages", "print", "card")),
+    Substance("leaf", 300.0, 0.004, 0.5, ("leaf", "leaves", "foliage", "moss", "flower", "petal", "stem", "bark")),
+    Substance("wicker", 350.0, 0.008, 0.5, ("wicker", "rattan", "cane", "straw", "jute", "seagrass", "bamboo")),
+    Substance("rubber", 1100.0, 0.01, 0.9, ("rubber", "tyre", "silicone")),
+    Substance("foam", 40.0, np.inf, 0.7, ("foam", "mattress", "pillow", "duvet")),
+    Substance("plastic", 1050.0, 0.003, 0.4, ("plastic", "screen", "acrylic")),
+    Substance("lacquer", 650.0, 0.014, 0.45, ("lacquer", "paint", "laminate")),
+    Substance(
+        "wood",
+        620.0,
+        0.018,
+        0.5,
+        ("oak", "walnut", "pine", "birch", "cherry", "mahogany", "beech", "teak", "maple", "wood", "black ash", "ply"),
+    ),
+)
+OTHER = Substance("other", 600.0, 0.01, 0.5, ())
+"""What a material that no word names is taken to be."""
+FLOOR_FRICTION = 0.7
+
+
+def substance_of(material: Material) -> Substance:
+    """The kind of a material, by its name, else by how it reflects and lets light through."""
+    name = material.name.casefold()
+    for substance in SUBSTANCES:
+        if any(word in name for word in substance.words):
+            return substance
+    if material.alpha < 0.9:
+        return _named("glass")
+    return _named("steel") if material.metallic > 0.5 else OTHER
+
+
+def material_mass_kg(surfaces: tuple[Surface, ...], scale: Float[np.ndarray, "3"]) -> float:
+    """Mass of surfaces at a scale: each material's closed volume, or its walls, times its density."""
+    whole, mean_square = float(np.prod(scale)), float(np.prod(scale)) ** (2 / 3)
+    total = 0.0
+    for surface in surfaces:
+        kind, area = substance_of(surface.material), surface.area_m2 * mean_square
+        volume = enclosed_m3(surface) * whole
+        sheet = float(np.clip(kind.wall_m, MIN_SHEET_M, MAX_SHEET_M))
+        total += kind.density * (min(volume, area * kind.wall_m) if volume > 0 else area * sheet)
+    return max(total, MIN_MASS_KG)
+
+
+def plausible_mass_kg(mass_kg: float, scale: Float[np.ndarray, "3"], record: Shape) -> float:
+    """A mass, kept near the usual one of the shape's category and size where the library knows it."""
+    if record.mass_kg == UNKNOWN_MASS_KG:
+        return mass_kg
+    usual = record.mass_kg * float(np.prod(scale))
+    return float(np.clip(mass_kg, usual / MAX_PRIOR_RATIO, usual * MAX_PRIOR_RATIO))
+
+
+def friction_of(surfaces: tuple[Surface, ...]) -> float:
+    """Coefficient of the material that covers most of a shape."""
+    areas: dict[Substance, float] = {}
+    for surface in surfaces:
+        kind = substance_of(surface.material)
+        areas[kind] = areas.get(kind, 0.0) + surface.area_m2
+    return max(areas, key=areas.__getitem__, default=OTHER).friction
+
+
+def enclosed_m3(surface: Surface) -> float:
+    """Volume that a surface encloses; 0 when it is not closed. Measured once a surface."""
+    if surface not in _ENCLOSED:
+        _ENCLOSED[surface] = _enclosed_m3(surface)
+    return _ENCLOSED[surface]
+
+
+_ENCLOSED: WeakKeyDictionary[Surface, float] = WeakKeyDictionary()
+
+
+def _enclosed_m3(surface: Surface) -> float:
+    _, place = np.unique(np.round(surface.vertices, 5), axis=0, return_inverse=True)
+    corners = place.reshape(-1)[surface.faces].astype(np.int64)
+    edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+    edges = edges[edges[:, 0] != edges[:, 1]]
+    count = int(place.max()) + 1
+    there, back = (np.sort(e[:, 0] * count + e[:, 1]) for e in (edges, edges[:, ::-1]))
+    closed = np.array_equal(there, back)  # every edge is walked as often one way as the other
+    a, b, c = (surface.vertices[surface.faces[:, k]].astype(np.float64) for k in range(3))
+    volume = float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum()) / 6.0
+    return volume if closed and volume > 0 else 0.0
+
+
+def _named(name: str) -> Substance:
+    return next(s for s in SUBSTANCES if s.name == name)

@@ -1,0 +1,178 @@
+"""A scene as an SDFormat world, for Gazebo: the room as one static model, every object a model of its own.
+
+What is welded to an object is a link of that object's model; moving parts are links on revolute and prismatic joints.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import Rotation
+
+from diorama_core.export.colliders import PhysicalScene, physical_scene
+from diorama_core.export.files import Entry, companion_folder, write_package
+from diorama_core.export.gathering import ExportMesh, ExportScene
+from diorama_core.export.lights import ExportLight
+from diorama_core.export.links import Link, collider_file, links_of, mesh_files, visual_file
+from diorama_core.export.mjcf import srgb_rgba
+from diorama_core.export.physics import FLOOR_FRICTION
+from diorama_core.progress import Progress
+
+VERSION = "1.9"
+ROOM = "room"
+
+
+def write_sdf(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
+    """Write an SDF world: `.sdf` with a folder beside it, or everything as one `.zip`.
+
+    Raises:
+        ExportError: when it cannot be written.
+    """
+    progress = progress or Progress()
+    progress.report(0.0, "preparing colliders")
+    physical = physical_scene(gathered)
+    links = links_of(gathered, physical)
+    main, folder = f"{Path(path).stem}.sdf", companion_folder(path, "sdf")
+    content = sdf_text(gathered, physical, links, folder).encode()
+
+    def entries() -> Iterator[Entry]:
+        yield from mesh_files(gathered, physical, links, folder, progress)
+        yield main, content
+
+    write_package(path, main, entries())
+
+
+def sdf_text(gathered: ExportScene, physical: PhysicalScene, links: tuple[Link, ...], folder: str) -> str:
+    """The world; meshes lie in `folder`, relative to it."""
+    root = Element("sdf", version=VERSION)
+    world = SubElement(root, "world", name=gathered.name)
+    SubElement(world, "gravity").text = "0 0 -9.81"
+    for light in gathered.lights:
+        _light(world, f"{gathered.object(light.owner).slug}_light", light)
+    _room(world, gathered, physical, folder)
+    by_name = {link.name: link for link in links}
+    tops = {link.name: _top(link, by_name) for link in links}
+    for link in links:
+        if tops[link.name] == link.name:
+            _model(world, link, [k for k in links if tops[k.name] == link.name], folder)
+    indent(root)
+    return '<?xml version="1.0"?>\n' + tostring(root, encoding="unicode") + "\n"
+
+
+def _top(link: Link, by_name: dict[str, Link]) -> str:
+    while link.parent is not None:
+        link = by_name[link.parent]
+    return link.name
+
+
+def _room(world: Element, gathered: ExportScene, physical: PhysicalScene, folder: str) -> None:
+    if not physical.slabs:
+        return
+    model = SubElement(world, "model", name=ROOM)
+    SubElement(model, "static").text = "true"
+    link = SubElement(model, "link", name="link")
+    for exported in gathered.planes:
+        _visuals(link, gathered.meshes[exported.mesh], np.ones(3), folder)
+    for slab in physical.slabs:
+        _colliders(link, slab.slug, len(slab.pieces), FLOOR_FRICTION, folder)
+
+
+def _model(world: Element, top: Link, links: list[Link], folder: str) -> None:
+    model = SubElement(world, "model", name=top.name)
+    SubElement(model, "pose").text = _pose(top.T_parent)
+    SubElement(model, "static").text = "false" if top.joint == "free" or len(links) > 1 else "true"
+    places: dict[str, Float[np.ndarray, "4 4"]] = {top.name: np.eye(4)}
+    for link in links:
+        if link is not top and link.parent is not None:
+            places[link.name] = places[link.parent] @ link.T_parent
+        _link(model, link, places[link.name], folder)
+    if top.joint == "fixed" and len(links) > 1:  # its moving parts may move, so the model is not static
+        joint = SubElement(model, "joint", name="to_room", type="fixed")
+        SubElement(joint, "parent").text = "world"
+        SubElement(joint, "child").text = top.name
+    for link in links:
+        if link is not top:
+            _joint(model, link)
+
+
+def _link(model: Element, link: Link, T_model: Float[np.ndarray, "4 4"], folder: str) -> None:
+    element = SubElement(model, "link", name=link.name)
+    SubElement(element, "pose").text = _pose(T_model)
+    inertial = SubElement(element, "inertial")
+    SubElement(inertial, "pose").text = f"{_numbers(link.inertia.centre)} 0 0 0"
+    SubElement(inertial, "mass").text = f"{link.inertia.mass_kg:.6g}"
+    tensor = SubElement(inertial, "inertia")
+    names = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
+    for name, at in names.items():
+        SubElement(tensor, name).text = f"{float(link.inertia.tensor[at]):.8g}"
+    _visuals(element, link.mesh, link.scale, folder)
+    _colliders(element, link.name, len(link.parts), link.friction, folder)
+
+
+def _joint(model: Element, link: Link) -> None:
+    kinds = {"hinge": "revolute", "swivel": "continuous", "slide": "prismatic"}
+    joint = SubElement(model, "joint", name=f"{link.name}_joint", type=kinds.get(link.joint, "fixed"))
+    limb = link.limb
+    if limb is not None:
+        SubElement(joint, "pose").text = f"{_numbers(limb.origin)} 0 0 0"
+    SubElement(joint, "parent").text = link.parent
+    SubElement(joint, "child").text = link.name
+    if limb is None:
+        return
+    axis = SubElement(joint, "axis")
+    SubElement(axis, "xyz").text = _numbers(limb.axis)
+    if limb.kind != "swivel":
+        limit = SubElement(axis, "limit")
+        SubElement(limit, "lower").text = f"{limb.lower:.8g}"
+        SubElement(limit, "upper").text = f"{limb.upper:.8g}"
+    dynamics = SubElement(axis, "dynamics")
+    SubElement(dynamics, "damping").text = "1.0"
+    SubElement(dynamics, "friction").text = "0.5"
+
+
+def _visuals(element: Element, mesh: ExportMesh, scale: Float[np.ndarray, "3"], folder: str) -> None:
+    for number, surface in enumerate(mesh.surfaces):
+        visual = SubElement(element, "visual", name=f"{mesh.key}_{number}")
+        shape = SubElement(SubElement(visual, "geometry"), "mesh")
+        SubElement(shape, "uri").text = visual_file(folder, mesh, number)
+        SubElement(shape, "scale").text = _numbers(scale)
+        if surface.material.texture is None:  # textured ones keep what their own file says
+            material = SubElement(visual, "material")
+            for slot in ("ambient", "diffuse"):
+                SubElement(material, slot).text = _numbers(srgb_rgba(surface.material))
+
+
+def _colliders(element: Element, owner: str, count: int, friction: float, folder: str) -> None:
+    for number in range(count):
+        collision = SubElement(element, "collision", name=f"{owner}_part_{number}")
+        shape = SubElement(SubElement(collision, "geometry"), "mesh")
+        SubElement(shape, "uri").text = collider_file(folder, owner, number)
+        grip = SubElement(SubElement(SubElement(collision, "surface"), "friction"), "ode")
+        SubElement(grip, "mu").text = f"{friction:.3g}"
+        SubElement(grip, "mu2").text = f"{friction:.3g}"
+
+
+def _light(world: Element, name: str, light: ExportLight) -> None:
+    element = SubElement(world, "light", name=name, type="point" if light.kind == "lamp" else "spot")
+    SubElement(element, "pose").text = _pose(light.T_world)
+    SubElement(element, "diffuse").text = f"{_numbers(np.asarray(light.colour))} 1"
+    attenuation = SubElement(element, "attenuation")
+    for key, value in (("range", "20"), ("constant", "0.3"), ("linear", "0.1"), ("quadratic", "0.1")):
+        SubElement(attenuation, key).text = value
+    if light.kind == "window":
+        SubElement(element, "direction").text = "0 0 -1"
+        spot = SubElement(element, "spot")
+        for key, value in (("inner_angle", "0.5"), ("outer_angle", "1.5"), ("falloff", "1")):
+            SubElement(spot, key).text = value
+
+
+def _pose(T: Float[np.ndarray, "4 4"]) -> str:
+    return _numbers(np.concatenate([T[:3, 3], Rotation.from_matrix(T[:3, :3]).as_euler("xyz")]))
+
+
+def _numbers(values: Float[np.ndarray, " n"]) -> str:
+    return " ".join(f"{float(v):.9g}" for v in values)

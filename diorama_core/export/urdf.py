@@ -1,0 +1,134 @@
+"""A scene as URDF: one tree of links below a world link, for ROS, PyBullet, Isaac Sim and Drake.
+
+Objects that may move hang on floating joints, everything else on fixed ones; moving parts on revolute, prismatic and
+continuous joints with limits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import Rotation
+
+from diorama_core.export.colliders import PhysicalScene, physical_scene
+from diorama_core.export.files import Entry, companion_folder, write_package
+from diorama_core.export.gathering import ExportMesh, ExportScene
+from diorama_core.export.links import Inertia, Link, collider_file, links_of, mesh_files, visual_file
+from diorama_core.export.mjcf import srgb_rgba
+from diorama_core.progress import Progress
+from diorama_core.render.appearance import Material
+
+WORLD = "world"
+EFFORT_N, VELOCITY = "50", "2"
+_TYPES = {"free": "floating", "fixed": "fixed", "hinge": "revolute", "slide": "prismatic", "swivel": "continuous"}
+
+
+def write_urdf(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
+    """Write a URDF: `.urdf` with a folder beside it, or everything as one `.zip`.
+
+    Raises:
+        ExportError: when it cannot be written.
+    """
+    progress = progress or Progress()
+    progress.report(0.0, "preparing colliders")
+    physical = physical_scene(gathered)
+    links = links_of(gathered, physical)
+    main, folder = f"{Path(path).stem}.urdf", companion_folder(path, "urdf")
+    content = urdf_text(gathered, physical, links, folder).encode()
+
+    def entries() -> Iterator[Entry]:
+        yield from mesh_files(gathered, physical, links, folder, progress)
+        yield main, content
+
+    write_package(path, main, entries())
+
+
+def urdf_text(gathered: ExportScene, physical: PhysicalScene, links: tuple[Link, ...], folder: str) -> str:
+    """The robot description; meshes lie in `folder`, relative to it."""
+    robot = Element("robot", name=gathered.name)
+    # MuJoCo would drop folders from file names and merge what is fixed.
+    SubElement(SubElement(robot, "mujoco"), "compiler", strippath="false", fusestatic="false", discardvisual="true")
+    materials = {id(m): f"material_{k}" for k, m in enumerate(gathered.materials)}
+    for number, material in enumerate(gathered.materials):
+        _material(robot, f"material_{number}", material)
+    world = SubElement(robot, "link", name=WORLD)
+    for exported in gathered.planes:
+        _visuals(world, gathered.meshes[exported.mesh], np.ones(3), folder, materials)
+    for slab in physical.slabs:
+        _colliders(world, slab.slug, len(slab.pieces), folder)
+    for link in links:
+        _link(robot, link, folder, materials)
+    indent(robot)
+    return '<?xml version="1.0"?>\n' + tostring(robot, encoding="unicode") + "\n"
+
+
+def _link(robot: Element, link: Link, folder: str, materials: dict[int, str]) -> None:
+    element = SubElement(robot, "link", name=link.name)
+    _inertial(element, link.inertia)
+    _visuals(element, link.mesh, link.scale, folder, materials)
+    _colliders(element, link.name, len(link.parts), folder)
+    contact = SubElement(element, "contact")
+    SubElement(contact, "lateral_friction", value=f"{link.friction:.3g}")
+    joint = SubElement(robot, "joint", name=f"{link.name}_joint", type=_TYPES[link.joint])
+    SubElement(joint, "parent", link=link.parent or WORLD)
+    SubElement(joint, "child", link=link.name)
+    limb = link.limb
+    if limb is None:
+        SubElement(joint, "origin", _origin(link.T_parent))
+        return
+    # A moving link's frame lies on its axis: its geometry is shifted back by as much.
+    SubElement(joint, "origin", xyz=_numbers(limb.origin), rpy="0 0 0")
+    SubElement(joint, "axis", xyz=_numbers(limb.axis))
+    SubElement(joint, "dynamics", damping="1.0")
+    limits = {"effort": EFFORT_N, "velocity": VELOCITY}
+    if limb.kind != "swivel":
+        limits |= {"lower": f"{limb.lower:.8g}", "upper": f"{limb.upper:.8g}"}
+    SubElement(joint, "limit", limits)
+    for origin in element.iter("origin"):
+        origin.set("xyz", _numbers(np.array(origin.get("xyz", "").split(), dtype=float) - limb.origin))
+
+
+def _inertial(element: Element, inertia: Inertia) -> None:
+    inertial = SubElement(element, "inertial")
+    SubElement(inertial, "origin", xyz=_numbers(inertia.centre), rpy="0 0 0")
+    SubElement(inertial, "mass", value=f"{inertia.mass_kg:.6g}")
+    tensor = inertia.tensor
+    names = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
+    SubElement(inertial, "inertia", {name: f"{float(tensor[at]):.8g}" for name, at in names.items()})
+
+
+def _visuals(
+    element: Element, mesh: ExportMesh, scale: Float[np.ndarray, "3"], folder: str, materials: dict[int, str]
+) -> None:
+    for number, surface in enumerate(mesh.surfaces):
+        visual = SubElement(element, "visual")
+        SubElement(visual, "origin", xyz="0 0 0", rpy="0 0 0")
+        geometry = SubElement(visual, "geometry")
+        SubElement(geometry, "mesh", filename=visual_file(folder, mesh, number), scale=_numbers(scale))
+        SubElement(visual, "material", name=materials[id(surface.material)])
+
+
+def _colliders(element: Element, owner: str, count: int, folder: str) -> None:
+    for number in range(count):
+        collision = SubElement(element, "collision", name=f"{owner}_part_{number}")
+        SubElement(collision, "origin", xyz="0 0 0", rpy="0 0 0")
+        geometry = SubElement(collision, "geometry")
+        SubElement(geometry, "mesh", filename=collider_file(folder, owner, number))
+
+
+def _material(robot: Element, name: str, material: Material) -> None:
+    element = SubElement(robot, "material", name=name)
+    SubElement(element, "color", rgba=_numbers(srgb_rgba(material)))
+
+
+def _origin(T: Float[np.ndarray, "4 4"]) -> dict[str, str]:
+    roll, pitch, yaw = Rotation.from_matrix(T[:3, :3]).as_euler("xyz")
+    return {"xyz": _numbers(T[:3, 3]), "rpy": _numbers(np.array([roll, pitch, yaw]))}
+
+
+def _numbers(values: Float[np.ndarray, " n"]) -> str:
+    return " ".join(f"{float(v):.9g}" for v in values)

@@ -1,0 +1,178 @@
+"""A scene as USD: text, binary, or a package that AR Quick Look opens.
+
+Objects lie side by side below one scope, because rigid bodies must not be nested; a relationship names each one's
+supporter. Every shape is a prototype that its objects reference as instances, together with its materials. The default
+prim's custom data carry the whole scene document, each object's its own entry, so that a file can be read back.
+"""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from pxr import Gf, Kind, Sdf, Usd, UsdGeom
+
+from diorama_core.export.colliders import physical_scene
+from diorama_core.export.files import Entry, companion_folder, whole_file, write_package
+from diorama_core.export.gathering import ExportObject, ExportScene, rigid_inverse
+from diorama_core.export.gltf_document import encoded_picture
+from diorama_core.export.usd_look import Looks, add_camera, add_light, add_surfaces
+from diorama_core.export.usd_physics import add_physics, limb_path
+from diorama_core.export.usd_values import place
+from diorama_core.progress import Progress
+from diorama_core.scene.schema import scene_to_json
+
+ROOT = "/Scene"
+PROTOTYPES = "/Prototypes"
+
+
+def write_usda(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
+    """Write USD text, with pictures in a folder beside it; raises `ExportError`."""
+    _write_layer(gathered, path, progress or Progress())
+
+
+def write_usdc(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
+    """Write binary USD, with pictures in a folder beside it; raises `ExportError`."""
+    _write_layer(gathered, path, progress or Progress())
+
+
+def write_usdz(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
+    """Write one package: +Y up, binary, aligned and uncompressed, as AR Quick Look asks; raises `ExportError`."""
+    progress = progress or Progress()
+    with tempfile.TemporaryDirectory() as folder:
+        stage, pictures = build_stage(gathered, "textures", progress, up_axis="Y")
+        layer = Path(folder) / "scene.usdc"
+        stage.GetRootLayer().Export(str(layer))
+        with whole_file(path) as temporary, Sdf.ZipFileWriter.CreateNew(str(temporary)) as package:
+            package.AddFile(str(layer), layer.name)
+            for name, content in pictures:
+                file = Path(folder) / Path(name).name
+                file.write_bytes(content)
+                package.AddFile(str(file), name)
+
+
+def _write_layer(gathered: ExportScene, path: Path, progress: Progress) -> None:
+    path = Path(path)
+    stage, pictures = build_stage(gathered, f"{companion_folder(path, 'usd')}/textures", progress, up_axis="Z")
+    with tempfile.TemporaryDirectory() as folder:
+        layer = Path(folder) / path.name
+        stage.GetRootLayer().Export(str(layer))
+
+        def entries() -> Iterator[Entry]:
+            yield from pictures
+            yield path.name, layer.read_bytes()
+
+        write_package(path, path.name, entries())
+
+
+def build_stage(
+    gathered: ExportScene, textures: str, progress: Progress, *, up_axis: str
+) -> tuple[Usd.Stage, list[Entry]]:
+    """The stage, in memory, and the pictures it refers to.
+
+    Args:
+        gathered: The scene.
+        textures: Folder of the pictures, relative to the stage's file.
+        progress: Where it is reported and cancelling is noticed.
+        up_axis: "Z" keeps the scene's numbers; "Y" turns the whole scene below its root.
+    """
+    stage = Usd.Stage.CreateInMemory()
+    UsdGeom.SetStageUpAxis(stage, up_axis)
+    UsdGeom.SetStageMetersPerUnit(stage, 1.0)
+    stage.SetMetadata("comment", "written by Diorama")
+    root = UsdGeom.Xform.Define(stage, ROOT)
+    stage.SetDefaultPrim(root.GetPrim())
+    Usd.ModelAPI(root).SetKind(Kind.Tokens.assembly)
+    if up_axis == "Y":
+        root.AddRotateXOp().Set(-90.0)
+    _describe(root.GetPrim(), gathered)
+    looks = Looks(stage, textures)
+    _prototypes(stage, gathered, looks, progress)
+    _architecture(stage, gathered, looks)
+    _objects(stage, gathered)
+    if gathered.camera is not None:
+        add_camera(stage, f"{ROOT}/PhotoCamera", gathered.camera)
+    for light in gathered.lights:
+        owner = gathered.object(light.owner)
+        T = rigid_inverse(owner.T_world) @ light.T_world
+        add_light(stage, f"{object_path(owner)}/Light", light, T)
+    add_physics(stage, gathered, physical_scene(gathered))
+    pictures = []
+    for name, picture in looks.pictures():
+        progress.check()
+        pictures.append((name, encoded_picture(picture)[0]))
+    return stage, pictures
+
+
+def object_path(item: ExportObject) -> str:
+    """Where an object's prim is."""
+    return f"{ROOT}/Objects/{item.slug}"
+
+
+def _describe(prim: Usd.Prim, gathered: ExportScene) -> None:
+    prim.SetDisplayName(gathered.name)
+    prim.SetCustomDataByKey("diorama", scene_to_json(gathered.scene))
+    if gathered.provenance:
+        prim.SetCustomDataByKey("provenance", json.dumps(dict(gathered.provenance), ensure_ascii=False))
+
+
+def _prototypes(stage: Usd.Stage, gathered: ExportScene, looks: Looks, progress: Progress) -> None:
+    stage.CreateClassPrim(PROTOTYPES)
+    shapes = [m for m in gathered.meshes.values() if m.shape_id is not None]
+    for done, mesh in enumerate(shapes):
+        progress.report(0.9 * done / len(shapes), f"writing {mesh.name}")
+        path = f"{PROTOTYPES}/{mesh.key}"
+        UsdGeom.Xform.Define(stage, path)
+        add_surfaces(stage, path, mesh.surfaces, looks)
+
+
+def _architecture(stage: Usd.Stage, gathered: ExportScene, looks: Looks) -> None:
+    if not gathered.planes:
+        return
+    group = UsdGeom.Xform.Define(stage, f"{ROOT}/Architecture")
+    Usd.ModelAPI(group).SetKind(Kind.Tokens.group)
+    for slab in gathered.planes:
+        prim = UsdGeom.Xform.Define(stage, f"{ROOT}/Architecture/{slab.slug}").GetPrim()
+        Usd.ModelAPI(prim).SetKind(Kind.Tokens.component)
+        prim.SetDisplayName(slab.name)
+        plane = {"id": slab.plane.id, "role": slab.plane.role, "confidence": slab.plane.confidence}
+        prim.SetCustomDataByKey("diorama_plane", json.dumps(plane))
+        add_surfaces(stage, str(prim.GetPath()), gathered.meshes[slab.mesh].surfaces, looks)
+
+
+def _objects(stage: Usd.Stage, gathered: ExportScene) -> None:
+    if not gathered.objects:
+        return
+    group = UsdGeom.Xform.Define(stage, f"{ROOT}/Objects")
+    Usd.ModelAPI(group).SetKind(Kind.Tokens.group)
+    entries = {o["id"]: o for o in json.loads(scene_to_json(gathered.scene))["objects"]}
+    for item in gathered.objects:
+        path = object_path(item)
+        xform = UsdGeom.Xform.Define(stage, path)
+        place(xform, item.T_world)
+        prim = xform.GetPrim()
+        Usd.ModelAPI(prim).SetKind(Kind.Tokens.component)
+        prim.SetDisplayName(item.name)
+        prim.SetCustomDataByKey("diorama", json.dumps(entries[item.id], ensure_ascii=False))
+        prim.CreateAttribute("diorama:category", Sdf.ValueTypeNames.Token, custom=True).Set(item.item.category)
+        if item.parent is not None:
+            supporter = prim.CreateRelationship("diorama:supporter", custom=True)
+            supporter.AddTarget(object_path(gathered.object(item.parent)))
+        _shape(stage, path, item.mesh, item)
+        for limb in item.limbs:
+            beside = UsdGeom.Xform.Define(stage, limb_path(path, limb))
+            place(beside, item.T_world)
+            Usd.ModelAPI(beside).SetKind(Kind.Tokens.component)
+            beside.GetPrim().SetDisplayName(f"{item.name} {limb.name}")
+            beside.GetPrim().SetCustomDataByKey("diorama_limb", item.id)
+            _shape(stage, limb_path(path, limb), limb.mesh, item)
+
+
+def _shape(stage: Usd.Stage, path: str, mesh: str, item: ExportObject) -> None:
+    """An instance of a prototype at the object's scale."""
+    shape = UsdGeom.Xform.Define(stage, f"{path}/Shape")
+    shape.AddScaleOp(UsdGeom.XformOp.PrecisionDouble).Set(Gf.Vec3d(*(float(v) for v in item.scale)))
+    shape.GetPrim().GetReferences().AddInternalReference(f"{PROTOTYPES}/{mesh}")
+    shape.GetPrim().SetInstanceable(True)

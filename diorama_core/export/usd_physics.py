@@ -1,0 +1,138 @@
+"""Rigid bodies of a USD stage: a static room, bodies with convex colliders, masses, friction and welds."""
+
+from __future__ import annotations
+
+import numpy as np
+from jaxtyping import Float
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade
+
+from diorama_core.export.colliders import MovingPart, PhysicalScene, Points, RigidBody
+from diorama_core.export.gathering import ExportScene, rigid_inverse
+from diorama_core.export.limbs import ExportLimb
+from diorama_core.export.links import hull_faces
+from diorama_core.export.physics import FLOOR_FRICTION
+from diorama_core.export.usd_values import extent, integers, quaternion, vectors
+
+ROOT = "/Scene"
+GRAVITY = 9.81
+
+
+def add_physics(stage: Usd.Stage, gathered: ExportScene, physical: PhysicalScene) -> None:
+    """Make the stage's objects and planes bodies."""
+    scene = UsdPhysics.Scene.Define(stage, f"{ROOT}/Physics")
+    up = -1.0 if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z else 0.0
+    scene.CreateGravityDirectionAttr(Gf.Vec3f(0.0, 0.0 if up else -1.0, up))
+    scene.CreateGravityMagnitudeAttr(GRAVITY)
+    grips = _Grips(stage)
+    paths = {b.node.id: f"{ROOT}/Objects/{b.node.slug}" for b in physical.bodies}
+    for slab in physical.slabs:
+        path = f"{ROOT}/Architecture/{slab.slug}"
+        _colliders(stage, path, slab.pieces, grips.material(FLOOR_FRICTION))
+    for body in physical.bodies:
+        path = paths[body.node.id]
+        _colliders(stage, path, body.parts, grips.material(body.friction))
+        moves = body.free or _moves(physical, body)
+        if moves:
+            UsdPhysics.RigidBodyAPI.Apply(stage.GetPrimAtPath(path))
+            UsdPhysics.MassAPI.Apply(stage.GetPrimAtPath(path)).CreateMassAttr(body.mass_kg)
+        if moves and not body.free and body.carrier is not None:
+            _weld(stage, paths[body.carrier], path, gathered, body)
+        for moving in body.moving:
+            _limb(stage, path, moving, grips.material(body.friction))
+    for a, b in physical.without_contact:
+        pairs = UsdPhysics.FilteredPairsAPI.Apply(stage.GetPrimAtPath(paths[a]))
+        pairs.CreateFilteredPairsRel().AddTarget(paths[b])
+
+
+def _moves(physical: PhysicalScene, body: RigidBody) -> bool:
+    """Whether what a body is welded to can move."""
+    by_id = {b.node.id: b for b in physical.bodies}
+    while not body.free and body.carrier is not None:
+        body = by_id[body.carrier]
+    return body.free
+
+
+class _Grips:
+    """Physical materials, one for each coefficient of friction."""
+
+    def __init__(self, stage: Usd.Stage) -> None:
+        self._stage = stage
+        self._made: dict[float, UsdShade.Material] = {}
+
+    def material(self, friction: float) -> UsdShade.Material:
+        if friction not in self._made:
+            UsdGeom.Scope.Define(self._stage, f"{ROOT}/PhysicsMaterials")
+            path = f"{ROOT}/PhysicsMaterials/friction_{round(100 * friction)}"
+            made = UsdShade.Material.Define(self._stage, path)
+            grip = UsdPhysics.MaterialAPI.Apply(made.GetPrim())
+            grip.CreateStaticFrictionAttr(friction)
+            grip.CreateDynamicFrictionAttr(0.9 * friction)
+            grip.CreateRestitutionAttr(0.0)
+            self._made[friction] = made
+        return self._made[friction]
+
+
+def _colliders(stage: Usd.Stage, path: str, parts: tuple[Points, ...], grip: UsdShade.Material) -> None:
+    """Convex meshes that are not drawn."""
+    scope = UsdGeom.Scope.Define(stage, f"{path}/Colliders")
+    scope.CreatePurposeAttr(UsdGeom.Tokens.guide)
+    for number, points in enumerate(parts):
+        mesh = UsdGeom.Mesh.Define(stage, f"{path}/Colliders/Part_{number}")
+        vertices, faces = hull_faces(points)
+        mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
+        mesh.CreatePointsAttr(vectors(vertices))
+        mesh.CreateExtentAttr(extent(vertices))
+        mesh.CreateFaceVertexCountsAttr(integers(np.full(len(faces), 3)))
+        mesh.CreateFaceVertexIndicesAttr(integers(faces.reshape(-1)))
+        UsdPhysics.CollisionAPI.Apply(mesh.GetPrim())
+        UsdPhysics.MeshCollisionAPI.Apply(mesh.GetPrim()).CreateApproximationAttr(UsdPhysics.Tokens.convexHull)
+        binding = UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim())
+        binding.Bind(grip, materialPurpose="physics")
+
+
+def _limb(stage: Usd.Stage, owner: str, moving: MovingPart, grip: UsdShade.Material) -> None:
+    """A body of its own beside its object, whose frame it shares, on a joint with limits."""
+    path = limb_path(owner, moving.limb)
+    prim = stage.GetPrimAtPath(path)
+    _colliders(stage, path, moving.parts, grip)
+    UsdPhysics.RigidBodyAPI.Apply(prim)
+    UsdPhysics.MassAPI.Apply(prim).CreateMassAttr(moving.mass_kg)
+    limb = moving.limb
+    slide = limb.kind == "slide"
+    kind = UsdPhysics.PrismaticJoint if slide else UsdPhysics.RevoluteJoint
+    joint = kind.Define(stage, f"{path}/Joint")
+    joint.CreateBody0Rel().AddTarget(Sdf.Path(owner))
+    joint.CreateBody1Rel().AddTarget(Sdf.Path(path))
+    joint.CreateAxisAttr(UsdPhysics.Tokens.x)
+    turn, origin = Gf.Quatf(quaternion(_frame_along(limb.axis))), Gf.Vec3f(*(float(v) for v in limb.origin))
+    for side in ("0", "1"):
+        getattr(joint, f"CreateLocalPos{side}Attr")(origin)
+        getattr(joint, f"CreateLocalRot{side}Attr")(turn)
+    if limb.kind != "swivel":
+        unit = 1.0 if slide else 180.0 / np.pi
+        joint.CreateLowerLimitAttr(limb.lower * unit)
+        joint.CreateUpperLimitAttr(limb.upper * unit)
+
+
+def limb_path(owner: str, limb: ExportLimb) -> str:
+    """Where the prim of a moving part is: beside its object, because bodies must not be nested."""
+    return f"{owner}__{limb.slug}"
+
+
+def _frame_along(axis: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
+    """A rotation whose first column is the axis."""
+    other = np.eye(3)[int(np.abs(axis).argmin())]
+    second = np.cross(axis, other)
+    second /= np.linalg.norm(second)
+    return np.stack([axis, second, np.cross(axis, second)], axis=1)
+
+
+def _weld(stage: Usd.Stage, carrier: str, path: str, gathered: ExportScene, body: RigidBody) -> None:
+    if body.carrier is None:
+        return
+    T = rigid_inverse(gathered.object(body.carrier).T_world) @ body.node.T_world
+    joint = UsdPhysics.FixedJoint.Define(stage, f"{path}/Weld")
+    joint.CreateBody0Rel().AddTarget(Sdf.Path(carrier))
+    joint.CreateBody1Rel().AddTarget(Sdf.Path(path))
+    joint.CreateLocalPos0Attr(Gf.Vec3f(*(float(v) for v in T[:3, 3])))
+    joint.CreateLocalRot0Attr(Gf.Quatf(quaternion(T[:3, :3])))

@@ -1,0 +1,104 @@
+"""The table of formats, and files that are whole or not there."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from diorama_core.errors import Cancelled, ExportError, UnavailableError
+from diorama_core.export import FORMATS, export_scene, format_named
+from diorama_core.export.files import companion_folder, whole_file, write_package
+from diorama_core.export.gathering import gather
+from diorama_core.progress import CancelToken, Progress
+from tests.primitives import PrimitiveLibrary, furnished_room
+
+LIBRARY = PrimitiveLibrary()
+
+
+@pytest.mark.parametrize("name", list(FORMATS))
+def test_every_format_writes_a_scene_whole(name: str, tmp_path: Path) -> None:
+    chosen = FORMATS[name]
+    if chosen.needs is not None:
+        pytest.importorskip(chosen.needs, reason=f"optional extra '{chosen.extra}' is not installed")
+    path = tmp_path / f"room{chosen.suffixes[0]}"
+    export_scene(furnished_room(LIBRARY), LIBRARY, path, name)
+    assert path.stat().st_size > 100
+    assert not [p for p in tmp_path.iterdir() if p.name.startswith(".")]
+
+
+@pytest.mark.parametrize("name", list(FORMATS))
+def test_cancelling_leaves_the_older_file(name: str, tmp_path: Path) -> None:
+    chosen = FORMATS[name]
+    if chosen.needs is not None:
+        pytest.importorskip(chosen.needs, reason=f"optional extra '{chosen.extra}' is not installed")
+    path = tmp_path / f"room{chosen.suffixes[0]}"
+    path.write_bytes(b"old")
+    token = CancelToken()
+    progress = Progress(on_event=lambda event: token.cancel() if event.fraction >= 0.5 else None, token=token)
+    with pytest.raises(Cancelled):
+        export_scene(furnished_room(LIBRARY), LIBRARY, path, name, progress=progress)
+    assert path.read_bytes() == b"old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_unknown_formats_and_endings_are_one_clear_line(tmp_path: Path) -> None:
+    with pytest.raises(ExportError, match="choose one of: glb"):
+        format_named("docx")
+    with pytest.raises(ExportError, match=r"end in \.glb"):
+        export_scene(furnished_room(LIBRARY), LIBRARY, tmp_path / "room.obj", "glb")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_missing_library_is_named_with_its_remedy() -> None:
+    absent = replace(FORMATS["usdz"], needs="no_such_module")
+    with pytest.raises(UnavailableError, match=r"pip install 'diorama\[usd\]'"):
+        absent.writer()
+
+
+def test_listing_the_formats_loads_no_heavy_library() -> None:
+    code = (
+        "import sys, diorama_core.export; print([m for m in ('trimesh', 'pxr', 'cv2', 'mujoco') if m in sys.modules])"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == "[]"
+
+
+def test_a_failing_writer_leaves_nothing(tmp_path: Path) -> None:
+    def fail_half_way() -> None:
+        with whole_file(tmp_path / "room.glb") as temporary:
+            temporary.write_bytes(b"half")
+            raise RuntimeError
+
+    with pytest.raises(RuntimeError):
+        fail_half_way()
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_package_beside_keeps_what_else_lies_there(tmp_path: Path) -> None:
+    path = tmp_path / "room.urdf"
+    folder = companion_folder(path, "urdf")
+    (tmp_path / folder).mkdir()
+    (tmp_path / folder / "mine.txt").write_text("keep")
+    write_package(path, "room.urdf", [(f"{folder}/a/b.obj", b"mesh"), ("room.urdf", b"main")])
+    assert path.read_bytes() == b"main"
+    assert (tmp_path / folder / "a" / "b.obj").read_bytes() == b"mesh"
+    assert (tmp_path / folder / "mine.txt").read_text() == "keep"
+
+
+def test_what_a_hidden_object_carries_moves_up() -> None:
+    scene = furnished_room(LIBRARY)
+    hidden = replace(scene, objects=tuple(replace(o, hidden=o.id == "t") for o in scene.objects))
+    assert gather(scene, LIBRARY).object("b").parent == "t"
+    assert gather(hidden, LIBRARY).object("b").parent is None
+
+
+def test_equal_materials_are_one_with_a_unique_name() -> None:
+    gathered = gather(furnished_room(LIBRARY), LIBRARY)
+    names = [m.name for m in gathered.materials]
+    assert len(names) == len(set(names))
+    used = {id(s.material) for mesh in gathered.meshes.values() for s in mesh.surfaces}
+    assert used == {id(m) for m in gathered.materials}

@@ -1,0 +1,91 @@
+"""MuJoCo loads what is written, and gravity leaves it in its place."""
+
+from __future__ import annotations
+
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from diorama_core.export.colliders import cut, hull_volume, physical_scene
+from diorama_core.export.gathering import gather
+from diorama_core.export.mjcf import write_mjcf
+from diorama_core.export.stability import stability
+from diorama_core.layout.problem.parts import parts_of_shape
+from diorama_core.scene.types import box_corners
+from tests.export.scenes import gathered, scene_of
+
+mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed (optional extra 'sim')")
+
+
+@pytest.mark.parametrize("source", ["example", "fittings", "primitives", "boxes", "empty shell"])
+def test_mujoco_loads_the_file_with_its_meshes(source: str, tmp_path: Path) -> None:
+    scene = gathered(source)
+    write_mjcf(scene, tmp_path / "room.xml")
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "room.xml"))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    for item in scene.objects:
+        np.testing.assert_allclose(data.body(item.slug).xpos, item.T_world[:3, 3], atol=1e-6)
+        np.testing.assert_allclose(data.body(item.slug).xmat.reshape(3, 3), item.T_world[:3, :3], atol=1e-6)
+
+
+def test_a_zip_holds_the_model_and_all_it_refers_to(tmp_path: Path) -> None:
+    write_mjcf(gathered("fittings"), tmp_path / "room.zip")
+    with zipfile.ZipFile(tmp_path / "room.zip") as archive:
+        archive.extractall(tmp_path / "unpacked")
+    mujoco.MjModel.from_xml_path(str(tmp_path / "unpacked" / "room.xml"))
+    assert [p.name for p in tmp_path.glob("room*")] == ["room.zip"]
+
+
+@pytest.mark.parametrize("source", ["example", "fittings", "boxes"])
+def test_objects_stay_for_two_seconds(source: str) -> None:
+    report = stability(gathered(source))
+    assert report.stable_share >= 0.98, report.unstable
+    assert any(d.free for d in report.drifts)
+
+
+def test_a_object_in_the_air_is_reported_as_falling() -> None:
+    scene, library = scene_of("boxes")
+    lifted = scene.objects[0]
+    lifted = replace(lifted, pose=lifted.pose.moved((0.0, 0.0, 0.5)))
+    moved = replace(scene, objects=(lifted, *scene.objects[1:]))
+    report = stability(gather(moved, library))
+    assert report.unstable[0].object_id == lifted.id
+    assert report.unstable[0].moved_m > 0.3
+
+
+def test_welded_by_choice(tmp_path: Path) -> None:
+    write_mjcf(gathered("example", bodies="welded"), tmp_path / "room.xml")
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "room.xml"))
+    assert model.njnt == 0
+    write_mjcf(gathered("example"), tmp_path / "room.xml")
+    assert mujoco.MjModel.from_xml_path(str(tmp_path / "room.xml")).njnt > 15
+
+
+def test_colliders_are_the_parts_of_the_layout() -> None:
+    """A bookshelf stays open inside: its bodies are its boards, not its hull."""
+    scene = gathered("example")
+    shelf = next(b for b in physical_scene(scene).bodies if b.node.id == "bookshelf_1")
+    shape = scene.library.shape(shelf.node.item.shape_id)
+    assert len(shelf.parts) == len(parts_of_shape(scene.library, shape)) > 4
+    assert shelf.volume_m3 < 0.6 * float(np.prod(shelf.node.item.size_m))
+
+
+def test_masses_are_those_of_furniture() -> None:
+    bodies = {b.node.id: b for b in physical_scene(gathered("example")).bodies}
+    assert 25 < bodies["sofa_1"].mass_kg < 90
+    assert 2 < bodies["chair_1"].mass_kg < 12
+    assert 0.1 < bodies["cup_1"].mass_kg < 0.8
+    assert all(0.2 < b.friction < 1.0 for b in bodies.values())
+
+
+def test_a_cut_leaves_the_part_on_one_side() -> None:
+    cube = box_corners((1.0, 1.0, 1.0))
+    rest = cut(cube, np.array([0.0, 0.0, 1.0]), -0.3)
+    assert rest is not None
+    assert hull_volume(rest) == pytest.approx(0.8)
+    assert rest[:, 2].min() == pytest.approx(-0.3)
+    assert cut(cube, np.array([0.0, 0.0, 1.0]), 0.2) is None

@@ -1,0 +1,161 @@
+"""USD files against the validators of usd-core, and against the scene they were made from."""
+
+from __future__ import annotations
+
+import json
+import struct
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("pxr", reason="usd-core is not installed (optional extra 'usd')")
+
+from pxr import Sdf, Usd, UsdGeom, UsdLux, UsdPhysics, UsdShade
+
+from diorama_core.export.colliders import physical_scene
+from diorama_core.export.usd import write_usda, write_usdc, write_usdz
+from diorama_core.scene.schema import scene_from_json
+from tests.export.scenes import SOURCES, gathered
+from tests.export.validators import usd_findings
+
+WRITERS = {"usda": write_usda, "usdc": write_usdc, "usdz": write_usdz}
+
+
+@pytest.fixture(scope="module")
+def example(tmp_path_factory: pytest.TempPathFactory) -> Usd.Stage:
+    path = tmp_path_factory.mktemp("usd") / "room.usda"
+    write_usda(gathered("example"), path)
+    return Usd.Stage.Open(str(path))
+
+
+@pytest.mark.parametrize("suffix", list(WRITERS))
+@pytest.mark.parametrize("source", SOURCES)
+def test_all_validators_find_nothing(source: str, suffix: str, tmp_path: Path) -> None:
+    path = tmp_path / f"room.{suffix}"
+    WRITERS[suffix](gathered(source), path)
+    assert usd_findings(path) == []
+
+
+def test_the_validators_do_find_something_wrong(tmp_path: Path) -> None:
+    path = tmp_path / "room.usda"
+    write_usda(gathered("primitives"), path)
+    stage = Usd.Stage.Open(str(path))
+    stage.GetRootLayer().ClearDefaultPrim()
+    UsdGeom.Xform.Define(stage, "/Scene/Objects/t/Colliders/Part_0/Inside")
+    UsdGeom.Mesh.Define(stage, "/Scene/Objects/t/Colliders/Part_0/Nested")
+    stage.GetRootLayer().Save()
+    assert usd_findings(path)
+
+
+def test_objects_stand_where_the_scene_says(tmp_path: Path) -> None:
+    scene = gathered("example")
+    for suffix, write in WRITERS.items():
+        write(scene, tmp_path / f"room.{suffix}")
+        stage = Usd.Stage.Open(str(tmp_path / f"room.{suffix}"))
+        assert UsdGeom.GetStageMetersPerUnit(stage) == 1.0
+        upright = UsdGeom.GetStageUpAxis(stage) == "Z"
+        for item in scene.objects:
+            prim = stage.GetPrimAtPath(f"/Scene/Objects/{item.slug}")
+            shown = _world_points(prim)
+            points = np.concatenate([s.vertices for s in scene.meshes[item.mesh].surfaces]) * item.scale
+            world = points @ item.T_world[:3, :3].T + item.T_world[:3, 3]
+            if not upright:
+                world = np.stack([world[:, 0], world[:, 2], -world[:, 1]], axis=1)
+            np.testing.assert_allclose(shown.min(axis=0), world.min(axis=0), atol=1e-5)
+            np.testing.assert_allclose(shown.max(axis=0), world.max(axis=0), atol=1e-5)
+
+
+def _world_points(prim: Usd.Prim) -> np.ndarray:
+    """World positions of everything that is drawn of an object."""
+    found, cache = [], UsdGeom.XformCache()
+    for mesh in Usd.PrimRange(prim.GetChild("Shape"), Usd.TraverseInstanceProxies()):
+        if mesh.IsA(UsdGeom.Mesh):
+            T = np.array(cache.GetLocalToWorldTransform(mesh))
+            found.append(np.array(UsdGeom.Mesh(mesh).GetPointsAttr().Get()) @ T[:3, :3] + T[3, :3])
+    return np.concatenate(found)
+
+
+def test_the_package_is_aligned_stored_and_starts_with_its_layer(tmp_path: Path) -> None:
+    write_usdz(gathered("example"), tmp_path / "room.usdz")
+    data = (tmp_path / "room.usdz").read_bytes()
+    with zipfile.ZipFile(tmp_path / "room.usdz") as package:
+        entries = package.infolist()
+    assert entries[0].filename.endswith(".usdc")
+    for entry in entries:
+        name, extra = struct.unpack_from("<HH", data, entry.header_offset + 26)
+        assert entry.compress_type == zipfile.ZIP_STORED
+        assert (entry.header_offset + 30 + name + extra) % 64 == 0
+    assert UsdGeom.GetStageUpAxis(Usd.Stage.Open(str(tmp_path / "room.usdz"))) == "Y"
+
+
+def test_shapes_are_instances_of_shared_prototypes(example: Usd.Stage) -> None:
+    chairs = [example.GetPrimAtPath(f"/Scene/Objects/chair_{k}/Shape") for k in (1, 2, 3)]
+    assert all(c.IsInstance() for c in chairs)
+    assert len({str(c.GetPrototype().GetPath()) for c in chairs}) == 1
+    for prim in Usd.PrimRange.Stage(example, Usd.TraverseInstanceProxies()):
+        if prim.IsA(UsdGeom.Mesh) and "Surface_" in prim.GetName():
+            material, _ = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()
+            assert material, prim.GetPath()
+
+
+def test_every_picture_exists(example: Usd.Stage) -> None:
+    folder, count = Path(example.GetRootLayer().realPath).parent, 0
+    for prim in Usd.PrimRange.Stage(example, Usd.TraverseInstanceProxies()):
+        shader = UsdShade.Shader(prim)
+        if shader and shader.GetIdAttr().Get() == "UsdUVTexture":
+            assert (folder / shader.GetInput("file").Get().path).is_file()
+            count += 1
+    assert count > 20
+
+
+def test_bodies_masses_and_lights_are_those_of_the_scene(example: Usd.Stage) -> None:
+    physical = physical_scene(gathered("example"))
+    for body in physical.bodies:
+        prim = example.GetPrimAtPath(f"/Scene/Objects/{body.node.slug}")
+        assert prim.HasAPI(UsdPhysics.RigidBodyAPI) == body.free
+        if body.free:
+            assert UsdPhysics.MassAPI(prim).GetMassAttr().Get() == pytest.approx(body.mass_kg, rel=1e-5)
+        colliders = [c for c in Usd.PrimRange(prim) if c.HasAPI(UsdPhysics.CollisionAPI)]
+        assert len(colliders) == len(body.parts)
+    lamps = [p for p in example.Traverse() if p.IsA(UsdLux.SphereLight)]
+    assert len(lamps) == 3
+
+
+@pytest.mark.parametrize("suffix", list(WRITERS))
+def test_joints_have_limits_and_validate(suffix: str, tmp_path: Path) -> None:
+    scene = gathered("fittings", joints=True)
+    path = tmp_path / f"room.{suffix}"
+    WRITERS[suffix](scene, path)
+    assert usd_findings(path) == []
+    stage = Usd.Stage.Open(str(path))
+    slides = [UsdPhysics.PrismaticJoint(p) for p in stage.Traverse() if p.IsA(UsdPhysics.PrismaticJoint)]
+    hinges = [UsdPhysics.RevoluteJoint(p) for p in stage.Traverse() if p.IsA(UsdPhysics.RevoluteJoint)]
+    assert len(slides) == 6
+    assert all(0.2 < s.GetUpperLimitAttr().Get() < 0.5 for s in slides)
+    assert {round(h.GetUpperLimitAttr().Get()) for h in hinges if h.GetUpperLimitAttr().HasAuthoredValue()} >= {90}
+    drawer = stage.GetPrimAtPath("/Scene/Objects/dresser_1__drawer_1")
+    assert drawer.HasAPI(UsdPhysics.RigidBodyAPI)
+    dresser = stage.GetPrimAtPath("/Scene/Objects/dresser_1")
+    assert not np.allclose(_world_points(drawer).max(axis=0), _world_points(dresser).max(axis=0))
+
+
+def test_the_scene_comes_along(example: Usd.Stage) -> None:
+    document = example.GetDefaultPrim().GetCustomDataByKey("diorama")
+    assert scene_from_json(document) == gathered("example").scene
+    cup = example.GetPrimAtPath("/Scene/Objects/cup_1")
+    assert json.loads(cup.GetCustomDataByKey("diorama"))["candidates"]
+    assert cup.GetRelationship("diorama:supporter").GetTargets() == [Sdf.Path("/Scene/Objects/coffee_table_1")]
+
+
+def test_the_camera_sees_what_the_photo_saw(example: Usd.Stage) -> None:
+    camera = gathered("example").camera
+    assert camera is not None
+    frustum = UsdGeom.Camera(example.GetPrimAtPath("/Scene/PhotoCamera")).GetCamera().frustum
+    seen = frustum.ComputeViewMatrix() * frustum.ComputeProjectionMatrix()
+    for point in ((0.5, 3.0, 0.4), (-1.0, 4.0, 1.2)):
+        x, y, _ = seen.Transform(point)
+        k = camera.intrinsics
+        pixel = [(x + 1) / 2 * k.width, (1 - y) / 2 * k.height]
+        np.testing.assert_allclose(pixel, camera.project(np.array(point)), atol=0.05)

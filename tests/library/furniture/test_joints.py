@@ -1,0 +1,92 @@
+"""Everything that moves opens all the way without running into the rest of its shape."""
+
+from __future__ import annotations
+
+import manifold3d
+import numpy as np
+import pytest
+import trimesh
+
+from diorama_core.library import furniture
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.library.furniture.articulation import articulation
+from diorama_core.library.furniture.joints import Joint
+from diorama_core.library.furniture.solids import Solid
+
+FAMILIES = ("dresser", "sideboard", "cabinet", "wardrobe", "night stand", "tv stand", "door", "laptop", "office chair")
+STEPS = (0.05, 0.3, 0.6, 1.0)
+TOUCH_M3 = 3e-6
+"""What may be shared beyond what is shared at rest: 3 cubic centimetres."""
+
+
+def moving_designs() -> list[str]:
+    return [d.id for d in furniture.designs() if d.category in FAMILIES and articulation(d.id) is not None]
+
+
+def posed(joint: Joint, share: float) -> np.ndarray:
+    """The motion of a joint that is open by a share of its range."""
+    if joint.kind == "slide":
+        return trimesh.transformations.translation_matrix(np.asarray(joint.axis) * joint.upper * share)
+    angle = 2 * np.pi * share if joint.kind == "swivel" else joint.upper * share
+    return trimesh.transformations.rotation_matrix(angle, joint.axis, joint.origin)
+
+
+def body(solids: tuple[Solid, ...]) -> manifold3d.Manifold:
+    found = []
+    for solid in solids:
+        mesh = trimesh.Trimesh(solid.vertices, solid.faces, process=False)
+        mesh.merge_vertices(merge_tex=True, merge_norm=True, digits_vertex=6)
+        made = manifold3d.Manifold(
+            manifold3d.Mesh(np.asarray(mesh.vertices, np.float32), np.asarray(mesh.faces, np.uint32))
+        )
+        if made.status() == manifold3d.Error.NoError and not made.is_empty():
+            found.append(made)
+    assert len(found) >= 0.8 * len(solids), "too few of the solids are closed to tell"
+    return manifold3d.Manifold.batch_boolean(found, manifold3d.OpType.Add)
+
+
+@pytest.mark.parametrize("shape_id", moving_designs())
+def test_opens_without_collision(shape_id: str) -> None:
+    pieces = articulation(shape_id)
+    assert pieces is not None
+    groups = {k: body(pieces.of_joint(k)) for k in (None, *range(len(pieces.joints)))}
+    for number, joint in enumerate(pieces.joints):
+        others = [made for k, made in groups.items() if k != number]
+        rest, moving = manifold3d.Manifold.batch_boolean(others, manifold3d.OpType.Add), groups[number]
+        touching = max(float((rest ^ moving).volume()), 0.0)
+        for share in STEPS:
+            opened = moving.transform(posed(joint, share)[:3])
+            shared = float((rest ^ opened).volume())
+            assert shared <= touching + TOUCH_M3, f"{joint.name} at {share:.0%}: {1e6 * (shared - touching):.0f} cm3"
+
+
+@pytest.mark.parametrize("category", FAMILIES)
+def test_every_family_has_shapes_that_open(category: str) -> None:
+    assert any(articulation(d.id) for d in furniture.designs() if d.category == category)
+
+
+def test_the_parts_together_are_the_shape() -> None:
+    """Closed, the moving parts lie within the box of the whole and reach all its sides."""
+    library = built_in_library()
+    for shape_id in ("dresser-oak-six", "office-chair-mesh-black"):
+        pieces = articulation(shape_id)
+        assert pieces is not None
+        points = np.concatenate([s.vertices for _, s in pieces.solids])
+        half = np.asarray(library.shape(shape_id).size_m) / 2
+        np.testing.assert_allclose(points.min(axis=0), -half, atol=1e-6)
+        np.testing.assert_allclose(points.max(axis=0), half, atol=1e-6)
+
+
+def test_a_drawer_comes_out_with_its_box() -> None:
+    pieces = articulation("dresser-oak-six")
+    assert pieces is not None
+    drawers = [j for j in pieces.joints if j.kind == "slide"]
+    assert [j.name for j in drawers] == [f"drawer {k}" for k in range(1, 7)]
+    assert all(0.2 < j.upper < 0.45 and j.axis == (1.0, 0.0, 0.0) for j in drawers)
+    box = np.concatenate([s.vertices for s in pieces.of_joint(0)])
+    assert np.ptp(box[:, 0]) > 0.3
+
+
+def test_shapes_without_moving_parts_have_no_articulation() -> None:
+    assert articulation("rug-persian-red") is None
+    assert articulation("not a shape") is None
