@@ -16,6 +16,7 @@ from diorama_core.errors import InputError
 
 if TYPE_CHECKING:
     from diorama_core.artefacts import Inputs, LayoutReport
+    from diorama_core.export.gathering import ExportOptions, ExportScene
     from diorama_core.library.record import ShapeLibrary
     from diorama_core.perception.input_arrays import Boxes, Depth, Masks, Picture
     from diorama_core.perception.input_depth import DepthEncoding
@@ -286,23 +287,44 @@ def optimise(
     return replace(reconstruction, scene=set_metrics(scene, report.after), layout=report)
 
 
-def export(reconstruction: Reconstruction, path: Path | str, *, format: str | None = None) -> None:
-    """Write the scene as a file for other programs, whole or not at all.
+def export(
+    reconstruction: Reconstruction,
+    path: Path | str,
+    *,
+    format: str | None = None,
+    options: ExportOptions | None = None,
+    progress: Progress | None = None,
+) -> ExportScene:
+    """Write the scene as a file for other programs, whole or not at all, and return what was written.
 
     Args:
         reconstruction: what to write; hidden objects are left out.
         path: the file; an existing one is replaced.
         format: a key of `diorama_core.export.FORMATS`; by default what the file's name ends in.
+        options: what of the scene is written, and how; see `diorama_core.export.gathering.ExportOptions`.
+        progress: reports and cancellation.
 
     Raises:
         ExportError: the format does not exist, or the file cannot be written.
+        UnavailableError: an optional library is missing.
         LibraryError: a shape is missing.
+        Cancelled: on request; an older file at `path` stays as it was.
     """
-    from diorama_core.export import writer
+    from diorama_core.export import export_scene
 
-    path = Path(path)
-    write = writer(format or path.suffix.lower().removeprefix("."))
-    write(reconstruction.scene, reconstruction.library, path, textures=reconstruction.textures)
+    path, project, inputs = Path(path), reconstruction.project, reconstruction.inputs
+    return export_scene(
+        reconstruction.scene,
+        reconstruction.library,
+        path,
+        format or path.suffix.lower().removeprefix("."),
+        options=options,
+        textures=reconstruction.textures,
+        photo=None if inputs is None else inputs.photo.rgb,
+        name=None if project is None else project.name,
+        provenance=None if project is None else project.info(),
+        progress=progress,
+    )
 
 
 def render(reconstruction: Reconstruction, *, view: str = "photo", size: tuple[int, int] | None = None) -> Picture:

@@ -11,6 +11,7 @@ from typing import Any
 
 from diorama_app.cli.bench import add_bench
 from diorama_app.cli.doctor import add_doctor
+from diorama_app.cli.importing import add_import
 from diorama_app.cli.library import add_library
 from diorama_app.cli.models import add_models
 from diorama_app.cli.scenes import add_build, add_export, add_optimise, add_picture, add_serve
@@ -68,6 +69,7 @@ def _parser() -> argparse.ArgumentParser:
         add_build,
         add_optimise,
         add_export,
+        add_import,
         add_picture,
         add_text,
         add_library,

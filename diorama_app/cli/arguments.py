@@ -65,14 +65,16 @@ def intrinsics(text: str) -> tuple[float, float, float, float]:
 
 
 def view(text: str) -> str:
-    """photo, planes, top, front or orbit:DEG."""
+    """photo, planes, top, front, orbit:DEG or turntable."""
     kind, _, angle = text.partition(":")
     try:
-        known = text in ("photo", "planes", "top", "front") or (kind == "orbit" and abs(float(angle)) < 1e6)
+        known = text in ("photo", "planes", "top", "front", "turntable") or (
+            kind == "orbit" and abs(float(angle)) < 1e6
+        )
     except ValueError:
         known = False
     if not known:
-        raise argparse.ArgumentTypeError(f"{text!r}; choose photo, planes, top, front or orbit:DEG, such as orbit:30")
+        raise argparse.ArgumentTypeError(f"{text!r}; choose photo, planes, top, front, turntable or orbit:30")
     return text
 
 

@@ -228,13 +228,11 @@ def add_export(commands: Any) -> None:
 def _export(a: argparse.Namespace) -> None:
     from dataclasses import asdict
 
-    from diorama_app.projects.report import library_of
-    from diorama_core.export import export_scene
     from diorama_core.export.gathering import ExportOptions
 
-    project, scene = opened(a.project)
+    room = diorama.load(a.project)
     only = None if a.only is None else frozenset(name.strip() for name in a.only.split(","))
-    unknown = sorted(name for name in only or () if not scene.has_object(name))
+    unknown = sorted(name for name in only or () if not room.scene.has_object(name))
     if unknown:
         raise InputError(f"--only {a.only}: there is no object {unknown[0]!r} in {a.project}; see its scene.json")
     if a.texture_size is not None and a.texture_size < 1:
@@ -246,22 +244,12 @@ def _export(a: argparse.Namespace) -> None:
         compression="meshopt" if a.compress else "none",
         bodies="welded" if a.welded else "free",
     )
-    output = a.output or project.folder / "exports" / f"{project.name}{FORMATS[a.format].suffixes[0]}"
-    output.parent.mkdir(parents=True, exist_ok=True)
-    photo = project.photo()
+    assert room.project is not None
+    output = a.output or room.project.folder / "exports" / f"{room.project.name}{FORMATS[a.format].suffixes[0]}"
+    if a.output is None:
+        output.parent.mkdir(parents=True, exist_ok=True)
     with progress_bar() as progress:
-        written = export_scene(
-            scene,
-            library_of(project),
-            output,
-            a.format,
-            options=options,
-            textures=project.textures(scene),
-            photo=None if photo is None else photo.rgb,
-            name=project.name,
-            provenance=project.info(),
-            progress=progress,
-        )
+        written = diorama.export(room, output, format=a.format, options=options, progress=progress)
     result: dict[str, Any] = {"file": str(output), "objects": len(written.objects), "planes": len(written.planes)}
     lines = [f"{output}: {len(written.objects)} objects, {len(written.planes)} planes"]
     if a.simulate:
@@ -290,8 +278,8 @@ def add_picture(commands: Any) -> None:
         "--view",
         type=view,
         default="photo",
-        metavar="photo|planes|top|front|orbit:DEG",
-        help="planes: floor, walls and ceiling drawn over the photo (default: photo)",
+        metavar="photo|planes|top|front|orbit:DEG|turntable",
+        help="planes: floor, walls and ceiling drawn over the photo; turntable: a film, .mp4 or .gif (default: photo)",
     )
     p.add_argument("--size", type=size, metavar="WxH", help="in pixels (default: the photo's, at most 1024 wide)")
 
@@ -303,11 +291,26 @@ def _picture(a: argparse.Namespace) -> None:
 
     from diorama_core.io.atomic import write_atomically
 
+    room = diorama.load(a.project)
+    if a.view == "turntable":
+        _turntable(room, a)
+        return
     kind = {".png": "PNG", ".jpg": "JPEG", ".jpeg": "JPEG"}.get(a.output.suffix.lower())
     if kind is None:
         raise InputError(f"{a.output}: pictures are written as .png or .jpg; choose such a name")
-    image = diorama.render(diorama.load(a.project), view=a.view, size=a.size)
+    image = diorama.render(room, view=a.view, size=a.size)
     buffer = io.BytesIO()
     Image.fromarray(image).save(buffer, kind)
     write_atomically(a.output, buffer.getvalue(), error=InputError)
     print(f"{a.output}: {image.shape[1]}x{image.shape[0]}")
+
+
+def _turntable(room: diorama.Reconstruction, a: argparse.Namespace) -> None:
+    """A film of the scene from all around."""
+    from diorama_core.export.turntable import FRAMES, SIZE, write_turntable
+
+    with progress_bar() as progress:
+        write_turntable(
+            room.scene, room.library, a.output, size=a.size or SIZE, textures=room.textures, progress=progress
+        )
+    print(f"{a.output}: {FRAMES} frames")

@@ -65,6 +65,7 @@ class Format:
 
 _USD_KEEPS = "materials, textures, camera, lights, supports, colliders, masses, joints, the scene itself"
 _SIM_KEEPS = "visual meshes with materials, convex colliders, masses, friction, joints"
+_PLAN_KEEPS = "walls, openings, footprints, names, lengths"
 
 _TABLE = (
     Format(
@@ -80,6 +81,37 @@ _TABLE = (
     Format("mjcf", "MuJoCo", (".xml", ".zip"), _SIM_KEEPS, "mjcf:write_mjcf", joints=True),
     Format("urdf", "URDF (ROS, PyBullet, Isaac)", (".urdf", ".zip"), _SIM_KEEPS, "urdf:write_urdf", joints=True),
     Format("sdf", "SDFormat (Gazebo)", (".sdf", ".zip"), _SIM_KEEPS, "sdf:write_sdf", joints=True),
+    Format(
+        "obj", "Wavefront OBJ with materials", (".zip", ".obj"), "named objects, materials, textures", "obj:write_obj"
+    ),
+    Format("ply", "PLY mesh", (".ply",), "one mesh with vertex colours", "ply:write_ply"),
+    Format("stl", "STL for printing", (".stl",), "bare triangles in millimetres", "stl:write_stl"),
+    Format(
+        "scene-state",
+        "Scene state (SceneEval, HSSD)",
+        (".json", ".zip"),
+        "poses, models (in a .zip), walls with openings, supports",
+        "scene_state:write_scene_state",
+    ),
+    Format("svg", "Floor plan as SVG", (".svg",), _PLAN_KEEPS, "plan_svg:write_svg"),
+    Format("pdf", "Floor plan as PDF", (".pdf",), _PLAN_KEEPS, "plan_pdf:write_pdf", "plan", "reportlab"),
+    Format("dxf", "Floor plan as DXF", (".dxf",), _PLAN_KEEPS, "plan_dxf:write_dxf", "plan", "ezdxf"),
+    Format(
+        "sh3d",
+        "Sweet Home 3D",
+        (".sh3d",),
+        "walls, floors, doors and windows, furniture as its models, camera",
+        "sweethome:write_sweet_home",
+    ),
+    Format(
+        "ifc",
+        "IFC building model",
+        (".ifc",),
+        "walls with openings, slabs, doors, windows, furniture with colours, ids and supporters",
+        "ifc:write_ifc",
+        "bim",
+        "ifcopenshell",
+    ),
 )
 
 FORMATS: Mapping[str, Format] = {f.name: f for f in _TABLE}

@@ -119,6 +119,7 @@ class _Builder:
                 "units": "metres",
                 "world_up": "+Z below this node, +Y above it",
                 "diorama": scene_to_json(self._gathered.scene),
+                "diorama_objects": json.dumps([o.id for o in self._gathered.objects]),
                 "provenance": dict(self._gathered.provenance),
             },
         }

@@ -62,6 +62,15 @@ def node_names(glb: bytes) -> tuple[str, ...]:
     return tuple(str(row["name"]) for row in rows if isinstance(row, dict) and row.get("name"))
 
 
+def container(data: bytes, limits: Limits) -> tuple[Json, bytes | None]:
+    """The JSON document and the binary chunk of a GLB, or the document alone of a glTF file, as they stand.
+
+    Raises:
+        LibraryError: when the container or its JSON is malformed or too large.
+    """
+    return _container(data, limits)
+
+
 def _container(data: bytes, limits: Limits) -> tuple[Json, bytes | None]:
     """The JSON document and the binary chunk."""
     text, binary = data, None

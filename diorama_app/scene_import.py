@@ -1,0 +1,66 @@
+"""A file as a scene whose shapes are at hand: those the library lacks are taken out of the file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from diorama_app.projects.report import library_named
+from diorama_core.errors import LibraryError
+from diorama_core.importing.foreign import open_foreign, take_missing_shapes
+from diorama_core.importing.opening import Opened, marked_file, open_marked
+from diorama_core.library.store import create_library, stored_libraries
+from diorama_core.library.user_library import OWN
+from diorama_core.progress import Progress
+
+
+@dataclass(frozen=True, eq=False)
+class Imported:
+    """A scene and the name of the library that has its shapes."""
+
+    opened: Opened
+    library_name: str
+
+
+def import_scene(path: Path, *, library_name: str | None = None, progress: Progress | None = None) -> Imported:
+    """Open a file as a scene.
+
+    Args:
+        path: The file; one of another program becomes a scene of objects, its models join the user's own.
+        library_name: Where shapes are looked up first; None takes the library the file names, or the built-in one.
+        progress: Where it is reported and cancelling is noticed.
+
+    Raises:
+        InputError: the file cannot be read.
+        UnavailableError: an optional library is missing.
+        LibraryError: no shape library of that name, or models cannot be kept.
+    """
+    progress = progress or Progress()
+    progress.report(0.0, f"reading {path.name}")
+    marked = marked_file(path)
+    if marked is None:
+        name = library_name or "built-in"
+        library_named(name)
+        return Imported(open_foreign(path, create_library(OWN), progress), _with_own(name))
+    opened = open_marked(marked)
+    name = library_name or _known(str(marked.provenance.get("library", "built-in")))
+    library = library_named(_with_own(name) if OWN in stored_libraries() else name)
+    known = {s.id for s in library.shapes()}
+    missing = {o.shape_id for o in opened.scene.objects} - known
+    if not missing:
+        return Imported(opened, name)
+    take_missing_shapes(path, marked, opened.scene, missing, create_library(OWN), progress)
+    return Imported(opened, _with_own(name))
+
+
+def _with_own(name: str) -> str:
+    return name if OWN in name.split("+") else f"{name}+{OWN}"
+
+
+def _known(name: str) -> str:
+    """The library of that name where this machine has it; otherwise the built-in one, and shapes come from the file."""
+    try:
+        library_named(name)
+    except LibraryError:
+        return "built-in"
+    return name

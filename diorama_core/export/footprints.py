@@ -1,0 +1,72 @@
+"""What objects cover on the floor: outlines of their meshes seen from above."""
+
+from __future__ import annotations
+
+import manifold3d
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene
+
+Outline = Float[np.ndarray, "n 2"]
+GRID_M = 0.0005
+"""Vertices are taken together on a grid of this size before the union: outlines are drawn at 1:20 at most."""
+GAP_M = 0.002
+"""Gaps between parts that are narrower than this are closed."""
+SIMPLER_M = 0.002
+"""Deviation allowed when points are left out of an outline."""
+UPRIGHT = 0.999
+"""Cosine from which on an object stands upright, so that its shape's outline only has to be turned."""
+AT_ONCE = 4000
+
+
+def footprints(scene: ExportScene) -> dict[str, tuple[Outline, ...]]:
+    """Outlines of every object in the world's x and y, by object id; holes are left out."""
+    shapes: dict[str, tuple[Outline, ...]] = {}
+    found = {}
+    for item in scene.objects:
+        if item.T_world[2, 2] > UPRIGHT:
+            if item.mesh not in shapes:
+                shapes[item.mesh] = outline(_flat(scene.meshes[item.mesh], np.eye(4)))
+            found[item.id] = tuple(_placed(o, item) for o in shapes[item.mesh])
+        else:
+            matrix = item.T_world.copy()
+            matrix[:3, :3] = matrix[:3, :3] * item.scale
+            found[item.id] = outline(_flat(scene.meshes[item.mesh], matrix))
+    return found
+
+
+def outline(triangles: Float[np.ndarray, "n 3 2"]) -> tuple[Outline, ...]:
+    """The outer boundaries of the union of triangles, counter-clockwise."""
+    snapped: np.ndarray = np.round(triangles / GRID_M) * GRID_M
+    a, b, c = snapped[:, 0], snapped[:, 1], snapped[:, 2]
+    area = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+    snapped = np.where((area < 0)[:, None, None], snapped[:, ::-1], snapped)[np.abs(area) > 1e-9]
+    if not len(snapped):
+        return ()
+    snapped = np.unique(np.round(snapped / GRID_M).astype(np.int32), axis=0) * GRID_M
+    order = np.argsort(snapped[:, 0, 0] + 0.37 * snapped[:, 0, 1])
+    blocks = [
+        manifold3d.CrossSection(list(snapped[order[i : i + AT_ONCE]]), manifold3d.FillRule.Positive)
+        for i in range(0, len(order), AT_ONCE)
+    ]
+    whole = manifold3d.CrossSection.batch_boolean(blocks, manifold3d.OpType.Add) if len(blocks) > 1 else blocks[0]
+    # A little wider and back again: parts that only touch become one.
+    whole = whole.offset(GAP_M / 2, manifold3d.JoinType.Miter).offset(-GAP_M / 2, manifold3d.JoinType.Miter)
+    polygons = [np.asarray(p) for p in whole.simplify(SIMPLER_M).to_polygons()]
+    return tuple(p for p in polygons if signed_area(p) > 1e-5)
+
+
+def signed_area(polygon: Outline) -> float:
+    """Area, positive for counter-clockwise."""
+    x, y = polygon[:, 0], polygon[:, 1]
+    return float(0.5 * (x @ np.roll(y, -1) - y @ np.roll(x, -1)))
+
+
+def _flat(mesh: ExportMesh, matrix: Float[np.ndarray, "4 4"]) -> Float[np.ndarray, "n 3 2"]:
+    linear, offset = matrix[:2, :3], matrix[:2, 3]
+    return np.concatenate([(s.vertices @ linear.T + offset)[s.faces] for s in mesh.surfaces])
+
+
+def _placed(shape: Outline, item: ExportObject) -> Outline:
+    return (shape * item.scale[:2]) @ item.T_world[:2, :2].T + item.T_world[:2, 3]

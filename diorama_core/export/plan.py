@@ -1,0 +1,203 @@
+"""A floor plan: walls cut at their openings, footprints of the furniture, lengths. Metres, world x and y."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import manifold3d
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.export.footprints import Outline, footprints
+from diorama_core.export.gathering import ExportObject, ExportScene
+from diorama_core.export.wall_lines import OPENING_CATEGORIES, Opening, WallLine, wall_lines
+
+UNNAMED = ("rug",)
+CORNER_M = 0.15
+"""Ends of walls nearer than this meet in a corner."""
+OVERHEAD_M = 1.7
+"""Objects whose lower side is higher hang above the section and are drawn dashed."""
+DIMENSION_GAP_M = 0.3
+"""Between a wall's outer side and its first dimension line, and between two lines."""
+ONE_LEAF_M = 1.15
+"""Doors wider than this have two leaves."""
+ARC_POINTS = 13
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """One object seen from above."""
+
+    id: str
+    label: str
+    """Empty for what lies under other furniture and needs no name."""
+    outlines: tuple[Outline, ...]
+    size_m: tuple[float, float]
+    """Along its own front (depth) and across (width)."""
+    overhead: bool
+    on_floor: bool
+    """Whether it stands on the floor, rather than on other furniture or on a wall."""
+    bottom_m: float
+
+
+@dataclass(frozen=True, eq=False)
+class Dimension:
+    """A length with its line, set off from the points it measures."""
+
+    start: Float[np.ndarray, "2"]
+    end: Float[np.ndarray, "2"]
+    offset: Float[np.ndarray, "2"]
+    """From the measured points to the dimension line."""
+
+    @property
+    def length_m(self) -> float:
+        """What it measures."""
+        return float(np.linalg.norm(self.end - self.start))
+
+    @property
+    def text(self) -> str:
+        """The length in metres as it is written."""
+        return f"{self.length_m:.2f}"
+
+
+@dataclass(frozen=True, eq=False)
+class FloorPlan:
+    """What a plan shows."""
+
+    name: str
+    floors: tuple[Outline, ...]
+    walls: tuple[Outline, ...]
+    """Cut walls as filled outlines; holes run clockwise."""
+    door_leaves: tuple[Outline, ...]
+    """Open lines: leaf and swing of each door."""
+    window_panes: tuple[Outline, ...]
+    """Open lines in the thickness of the wall."""
+    pieces: tuple[Piece, ...]
+    """The lowest first, so that what lies on top is drawn over it."""
+    dimensions: tuple[Dimension, ...]
+
+    @property
+    def bounds(self) -> Float[np.ndarray, "2 2"]:
+        """Least and largest x and y of everything, dimension lines included."""
+        points = [*self.floors, *self.walls, *self.door_leaves, *(o for p in self.pieces for o in p.outlines)]
+        points += [np.stack([d.start + d.offset, d.end + d.offset]) for d in self.dimensions]
+        every = np.concatenate(points) if points else np.array([[-0.5, -0.5], [0.5, 0.5]])
+        return np.stack([every.min(axis=0), every.max(axis=0)])
+
+
+def floor_plan(scene: ExportScene) -> FloorPlan:
+    """The plan of a gathered scene."""
+    floors = tuple(p.plane.polygon[:, :2] for p in scene.planes if p.plane.role == "floor")
+    walls = wall_lines([p.plane for p in scene.planes], [o.item for o in scene.objects], scene.scene)
+    openings = [(w, o) for w in walls for o in w.openings]
+    covered = footprints(scene)
+    pieces = [_piece(scene, o, covered[o.id]) for o in scene.objects if o.item.category not in OPENING_CATEGORIES]
+    return FloorPlan(
+        name=scene.name,
+        floors=floors,
+        walls=_cut_walls(walls, floors),
+        door_leaves=tuple(line for w, o in openings if o.is_door and o.object_id for line in _door(w, o)),
+        window_panes=tuple(line for w, o in openings if not o.is_door for line in _window(w, o)),
+        pieces=tuple(sorted(pieces, key=lambda p: p.bottom_m)),
+        dimensions=_dimensions(walls, floors),
+    )
+
+
+def _piece(scene: ExportScene, item: ExportObject, outlines: tuple[Outline, ...]) -> Piece:
+    bottom = float(item.item.corners_world[:, 2].min())
+    floor = scene.scene.architecture.floor
+    level = 0.0 if floor is None else float(floor.centre[2])
+    roles = {p.id: p.plane.role for p in scene.planes}
+    on_floor = item.support is None or roles.get(item.support.parent) == "floor"
+    depth, width, _ = (float(v) for v in item.item.size_m)
+    overhead = bottom - level > OVERHEAD_M
+    label = "" if item.item.category in UNNAMED else item.item.label
+    return Piece(item.id, label, outlines, (depth, width), overhead, on_floor, bottom)
+
+
+def _cut_walls(walls: Sequence[WallLine], floors: Sequence[Outline]) -> tuple[Outline, ...]:
+    """Slabs of all walls as one area, closed at corners, open at doors and windows, clear of the floor."""
+    ends = [p for w in walls for p in (w.start, w.end)]
+    solid = manifold3d.CrossSection()
+    for wall in walls:
+        t = wall.plane.thickness
+        first, last = (t if _meets(p, ends) else 0.0 for p in (wall.start, wall.end))
+        solid += _area(_strip(wall, -first, wall.length_m + last, 0.0, t))
+    for floor in floors:
+        solid -= _area(floor)
+    for wall in walls:
+        for opening in wall.openings:
+            solid -= _area(_strip(wall, opening.from_m, opening.to_m, -0.01, wall.plane.thickness + 0.01))
+    return tuple(np.asarray(p) for p in solid.to_polygons())
+
+
+def _meets(point: Float[np.ndarray, "2"], ends: Sequence[Float[np.ndarray, "2"]]) -> bool:
+    return sum(float(np.linalg.norm(point - e)) < CORNER_M for e in ends) > 1
+
+
+def _strip(wall: WallLine, from_m: float, to_m: float, near_m: float, far_m: float) -> Outline:
+    corners = ((from_m, near_m), (to_m, near_m), (to_m, far_m), (from_m, far_m))
+    return np.stack([wall.at(along, behind) for along, behind in corners])
+
+
+def _area(outline: Outline) -> manifold3d.CrossSection:
+    x, y = outline[:, 0], outline[:, 1]
+    counter_clockwise = x @ np.roll(y, -1) >= y @ np.roll(x, -1)
+    return manifold3d.CrossSection([outline if counter_clockwise else outline[::-1]], manifold3d.FillRule.Positive)
+
+
+def _door(wall: WallLine, opening: Opening) -> tuple[Outline, ...]:
+    """The open leaf and the quarter circle it swings through, into the room; a wide door has two leaves."""
+    width = opening.to_m - opening.from_m
+    if width <= ONE_LEAF_M:
+        return _leaf(wall, opening.from_m, width)
+    return (*_leaf(wall, opening.from_m, width / 2), *_leaf(wall, opening.to_m, -width / 2))
+
+
+def _leaf(wall: WallLine, hinge_m: float, reach_m: float) -> tuple[Outline, Outline]:
+    """A leaf hinged at a place along the wall that closes so far along it (backward where negative)."""
+    hinge, angles = wall.at(hinge_m), np.linspace(0, np.pi / 2, ARC_POINTS)[:, None]
+    swing = hinge + reach_m * np.cos(angles) * wall.along - abs(reach_m) * np.sin(angles) * wall.outward
+    return np.stack([hinge, swing[-1]]), swing
+
+
+def _window(wall: WallLine, opening: Opening) -> tuple[Outline, ...]:
+    t = wall.plane.thickness
+    depths = (0.0, 0.4 * t, 0.6 * t, t)
+    return tuple(np.stack([wall.at(opening.from_m, d), wall.at(opening.to_m, d)]) for d in depths)
+
+
+def _dimensions(walls: Sequence[WallLine], floors: Sequence[Outline]) -> tuple[Dimension, ...]:
+    """Lengths of the walls' faces, the parts between their openings, and the whole where no wall spans it."""
+    found = [d for w in walls for d in _wall_dimensions(w)]
+    every = np.concatenate([*floors, *(np.stack([w.start, w.end]) for w in walls)]) if walls or floors else None
+    if every is None:
+        return ()
+    (left, low), (right, high) = every.min(axis=0), every.max(axis=0)
+    far = 3 * DIMENSION_GAP_M if found else DIMENSION_GAP_M
+    corner = np.array([left, low])
+    whole = (
+        Dimension(corner, np.array([right, low]), np.array([0.0, -far])),
+        Dimension(np.array([left, high]), corner, np.array([-far, 0.0])),
+    )
+    return (*found, *(d for d in whole if d.length_m > 0.01 and not _known(d, found)))
+
+
+def _wall_dimensions(wall: WallLine) -> list[Dimension]:
+    first = (wall.plane.thickness + DIMENSION_GAP_M) * wall.outward
+    stops = [0.0, *(v for o in wall.openings for v in (o.from_m, o.to_m)), wall.length_m]
+    parts = [Dimension(wall.at(a), wall.at(b), first) for a, b in pairwise(stops) if b - a > 0.02]
+    if len(parts) < 2:
+        return [Dimension(wall.start, wall.end, first)]
+    return [*parts, Dimension(wall.start, wall.end, first + DIMENSION_GAP_M * wall.outward)]
+
+
+def _known(whole: Dimension, found: Sequence[Dimension]) -> bool:
+    """Whether a wall's length says the same already."""
+    along = (whole.end - whole.start) / whole.length_m
+    return any(
+        abs(d.length_m - whole.length_m) < 0.01 and abs(float((d.end - d.start) @ along)) > 0.99 * d.length_m
+        for d in found
+    )

@@ -1,0 +1,148 @@
+"""The floor plan as DXF (R2010) in millimetres at full size, by ezdxf: layers, real dimensions, a block per object."""
+
+from __future__ import annotations
+
+import io
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from diorama_core.export.files import write_whole
+from diorama_core.export.gathering import ExportScene
+from diorama_core.export.plan import Dimension, FloorPlan, Piece, floor_plan
+from diorama_core.progress import Progress
+
+MM_PER_M = 1000.0
+LAYERS = {
+    "FLOOR": 9,
+    "WALLS": 7,
+    "DOORS": 30,
+    "WINDOWS": 140,
+    "FURNITURE": 8,
+    "OVERHEAD": 252,
+    "LABELS": 2,
+    "DIMENSIONS": 3,
+}
+"""Layers with their colours (AutoCAD colour index)."""
+TEXT_MM = 90.0
+STYLE = "DIORAMA"
+
+
+def write_dxf(scene: ExportScene, path: Path, progress: Progress | None = None) -> None:
+    """Write the plan; raises `ExportError` when it cannot be written."""
+    progress = progress or Progress()
+    progress.report(0.1, "drawing the plan")
+    content = dxf_text(floor_plan(scene))
+    progress.check()
+    write_whole(Path(path), content.encode())
+
+
+def dxf_text(plan: FloorPlan) -> str:
+    """The plan as the text of a DXF file."""
+    import ezdxf
+    from ezdxf import units
+
+    document = ezdxf.new("R2010", setup=True)
+    document.units = units.MM
+    document.header["$MEASUREMENT"] = 1
+    for name, colour in LAYERS.items():
+        document.layers.add(name, color=colour, linetype="DASHED" if name == "OVERHEAD" else "CONTINUOUS")
+    space = document.modelspace()
+    for floor in plan.floors:
+        space.add_lwpolyline(floor * MM_PER_M, close=True, dxfattribs={"layer": "FLOOR"})
+    _add_walls(space, plan)
+    for layer, lines in (("WINDOWS", plan.window_panes), ("DOORS", plan.door_leaves)):
+        for line in lines:
+            space.add_lwpolyline(line * MM_PER_M, dxfattribs={"layer": layer})
+    taken: set[str] = set()
+    for piece in plan.pieces:
+        _add_piece(document, space, piece, taken)
+    _dimension_style(document)
+    for dimension in plan.dimensions:
+        _add_dimension(space, dimension)
+    low, high = plan.bounds * MM_PER_M
+    document.set_modelspace_vport(height=float(1.2 * max(high - low)), center=tuple((low + high) / 2))
+    stream = io.StringIO()
+    document.write(stream)
+    return stream.getvalue()
+
+
+def _add_walls(space: Any, plan: FloorPlan) -> None:
+    if not plan.walls:
+        return
+    hatch = space.add_hatch(color=LAYERS["FURNITURE"], dxfattribs={"layer": "WALLS", "hatch_style": 0})
+    for wall in plan.walls:
+        space.add_lwpolyline(wall * MM_PER_M, close=True, dxfattribs={"layer": "WALLS"})
+        hatch.paths.add_polyline_path(wall * MM_PER_M, is_closed=True)
+
+
+def _add_piece(document: Any, space: Any, piece: Piece, taken: set[str]) -> None:
+    """A block with the outline, put where the object is, with its name and size as attributes one can list."""
+    if not piece.outlines:
+        return
+    points = np.concatenate(piece.outlines)
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    layer = "OVERHEAD" if piece.overhead else "FURNITURE"
+    name = _block_name(piece, taken)
+    block = document.blocks.new(name)
+    for outline in piece.outlines:
+        block.add_lwpolyline((outline - middle) * MM_PER_M, close=True, dxfattribs={"layer": "0"})
+    insert = space.add_blockref(name, middle * MM_PER_M, dxfattribs={"layer": layer})
+    size = f"{piece.size_m[1]:.2f} x {piece.size_m[0]:.2f} m"
+    for tag, text in (("ID", piece.id), ("NAME", piece.label), ("SIZE", size)):
+        attribute = insert.add_attrib(
+            tag, " ".join(text.split()), middle * MM_PER_M, {"layer": layer, "height": TEXT_MM}
+        )
+        attribute.is_invisible = True
+    if piece.on_floor and piece.label and not piece.overhead:
+        label = space.add_text(" ".join(piece.label.split()), height=TEXT_MM, dxfattribs={"layer": "LABELS"})
+        label.set_placement(middle * MM_PER_M, align=_middle())
+
+
+def _middle() -> Any:
+    from ezdxf.enums import TextEntityAlignment
+
+    return TextEntityAlignment.MIDDLE_CENTER
+
+
+def _block_name(piece: Piece, taken: set[str]) -> str:
+    stem = re.sub(r"[^A-Za-z0-9_-]+", "_", piece.id) or "object"
+    name, number = stem, 2
+    while name.lower() in taken:
+        name, number = f"{stem}_{number}", number + 1
+    taken.add(name.lower())
+    return name
+
+
+def _readable(angle_deg: float) -> float:
+    """The same line's angle for text that is read from below or from the right."""
+    return (angle_deg + 89.9) % 180.0 - 89.9
+
+
+def _dimension_style(document: Any) -> None:
+    style = document.dimstyles.duplicate_entry("EZDXF", STYLE)
+    style.dxf.dimtxt = TEXT_MM
+    style.dxf.dimtsz = 40.0
+    style.dxf.dimlfac = 1.0 / MM_PER_M
+    style.dxf.dimdec = 2
+    style.dxf.dimzin = 0  # keeps the zeros of 0.80
+    style.dxf.dimexe = 40.0
+    style.dxf.dimexo = 60.0
+    style.dxf.dimgap = 30.0
+    style.dxf.dimscale = 1.0
+
+
+def _add_dimension(space: Any, dimension: Dimension) -> None:
+    start, end = dimension.start * MM_PER_M, dimension.end * MM_PER_M
+    base = (dimension.start + dimension.offset) * MM_PER_M
+    along = dimension.end - dimension.start
+    space.add_linear_dim(
+        base=tuple(base),
+        p1=tuple(start),
+        p2=tuple(end),
+        angle=_readable(float(np.degrees(np.arctan2(along[1], along[0])))),
+        dimstyle=STYLE,
+        dxfattribs={"layer": "DIMENSIONS"},
+    ).render()

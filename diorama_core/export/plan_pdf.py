@@ -1,0 +1,81 @@
+"""The floor plan as PDF, in scale on its page, by ReportLab."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import Any
+
+from diorama_core.export.files import write_whole
+from diorama_core.export.gathering import ExportScene
+from diorama_core.export.plan import floor_plan
+from diorama_core.export.plan_sheet import Line, Sheet, Text, plan_sheet
+from diorama_core.progress import Progress
+
+POINTS_PER_MM = 72.0 / 25.4
+LATIN, EAST_ASIAN = "Vera", "STSong-Light"
+"""A font that comes with ReportLab and is embedded; and the one that PDF readers bring for other scripts."""
+
+
+def write_pdf(scene: ExportScene, path: Path, progress: Progress | None = None) -> None:
+    """Write the plan; raises `ExportError` when it cannot be written."""
+    progress = progress or Progress()
+    progress.report(0.1, "drawing the plan")
+    content = pdf_bytes(plan_sheet(floor_plan(scene)))
+    progress.check()
+    write_whole(Path(path), content)
+
+
+def pdf_bytes(sheet: Sheet) -> bytes:
+    """A sheet as a PDF document of one page."""
+    from reportlab.pdfbase import pdfmetrics
+    from reportlab.pdfbase.cidfonts import UnicodeCIDFont
+    from reportlab.pdfbase.ttfonts import TTFont
+    from reportlab.pdfgen.canvas import Canvas
+
+    pdfmetrics.registerFont(TTFont(LATIN, "Vera.ttf"))
+    pdfmetrics.registerFont(UnicodeCIDFont(EAST_ASIAN))
+    known = frozenset(pdfmetrics.getFont(LATIN).face.charToGlyph)
+    buffer = io.BytesIO()
+    size = (sheet.width_mm * POINTS_PER_MM, sheet.height_mm * POINTS_PER_MM)
+    canvas = Canvas(buffer, pagesize=size, invariant=True)
+    canvas.setTitle(sheet.title)
+    canvas.setCreator("Diorama")
+    canvas.scale(POINTS_PER_MM, POINTS_PER_MM)
+    canvas.setLineJoin(1)
+    for mark in sheet.marks:
+        if isinstance(mark, Line):
+            _draw_line(canvas, mark)
+        else:
+            _draw_text(canvas, mark, known)
+    canvas.showPage()
+    canvas.save()
+    return buffer.getvalue()
+
+
+def _draw_line(canvas: Any, mark: Line) -> None:
+    path = canvas.beginPath()
+    for outline in mark.points:
+        path.moveTo(*outline[0])
+        for point in outline[1:]:
+            path.lineTo(*point)
+        if mark.closed:
+            path.close()
+    if mark.fill is not None:
+        canvas.setFillGray(mark.fill)
+    if mark.stroke_mm:
+        canvas.setLineWidth(mark.stroke_mm)
+        canvas.setDash([1.5, 1.0] if mark.dashed else [])
+    canvas.drawPath(path, stroke=int(mark.stroke_mm > 0), fill=int(mark.fill is not None))
+
+
+def _draw_text(canvas: Any, mark: Text, known: frozenset[int]) -> None:
+    text = "".join(c for c in mark.text if c.isprintable())
+    canvas.saveState()
+    canvas.setFillGray(0.0)
+    canvas.setFont(LATIN if all(ord(c) in known for c in text) else EAST_ASIAN, 0.92 * mark.height_mm)
+    canvas.translate(*mark.at)
+    canvas.rotate(mark.turn_deg)
+    draw = canvas.drawCentredString if mark.anchor == "middle" else canvas.drawString
+    draw(0, -0.36 * mark.height_mm, text)
+    canvas.restoreState()

@@ -1,0 +1,176 @@
+"""A floor plan on paper: scale and page chosen, everything in millimetres with y upward."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.errors import ExportError
+from diorama_core.export.plan import Dimension, FloorPlan, Piece
+
+A4, A3 = (297.0, 210.0), (420.0, 297.0)
+CHOICES = ((20, A4), (25, A4), (50, A4), (50, A3), (100, A4), (100, A3), (200, A4), (200, A3), (500, A3), (1000, A3))
+"""Denominators of scales with their pages, the first that fits is taken."""
+MARGIN_MM, TITLE_MM, DIMENSION_ROOM_MM = 10.0, 16.0, 6.0
+TEXT_MM, SMALL_MM, TICK_MM = 2.5, 2.0, 1.4
+LETTER = 0.56
+"""Mean width of a letter, in text heights."""
+
+Grey = float
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A path on the page."""
+
+    points: tuple[Float[np.ndarray, "n 2"], ...]
+    """One or more outlines, filled together (a hole runs the other way round)."""
+    closed: bool = False
+    fill: Grey | None = None
+    """0 black to 1 white; None leaves it open."""
+    stroke_mm: float = 0.18
+    """0 draws no line."""
+    dashed: bool = False
+    group: str = "plan"
+
+
+@dataclass(frozen=True, eq=False)
+class Text:
+    """One line of text, centred on a point."""
+
+    text: str
+    at: tuple[float, float]
+    height_mm: float = TEXT_MM
+    turn_deg: float = 0.0
+    anchor: str = "middle"
+    """`middle` or `start`."""
+    group: str = "labels"
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """A page with its marks in the order they are drawn."""
+
+    title: str
+    scale: int
+    """1 : scale."""
+    width_mm: float
+    height_mm: float
+    marks: tuple[Line | Text, ...]
+
+
+def plan_sheet(plan: FloorPlan) -> Sheet:
+    """The plan on the smallest page and in the largest scale that fit.
+
+    Raises:
+        ExportError: when no scale fits.
+    """
+    low, high = plan.bounds
+    scale, page = _choice(high - low)
+    width, height = page
+    centre = np.array([width / 2, (height + TITLE_MM) / 2])
+    to_page = _ToPage((low + high) / 2, 1000.0 / scale, centre)
+    marks: list[Line | Text] = [Line((to_page(f),), True, 0.96, 0.0, group="floor") for f in plan.floors]
+    for piece in plan.pieces:
+        marks += _piece_marks(piece, to_page)
+    marks.append(Line(tuple(to_page(w) for w in plan.walls), True, 0.25, 0.3, group="walls"))
+    marks += [Line((to_page(p),), stroke_mm=0.13, group="windows") for p in plan.window_panes]
+    marks += [Line((to_page(p),), stroke_mm=0.13, group="doors") for p in plan.door_leaves]
+    for dimension in plan.dimensions:
+        marks += _dimension_marks(dimension, to_page)
+    for piece in plan.pieces:
+        marks += _label_marks(piece, to_page)
+    marks += _title_marks(plan.name, scale, width)
+    return Sheet(plan.name, scale, width, height, tuple(m for m in marks if isinstance(m, Text) or m.points))
+
+
+@dataclass(frozen=True, eq=False)
+class _ToPage:
+    """World metres to page millimetres."""
+
+    centre_m: Float[np.ndarray, "2"]
+    mm_per_m: float
+    centre_mm: Float[np.ndarray, "2"]
+
+    def __call__(self, points: Float[np.ndarray, "*n 2"]) -> Float[np.ndarray, "*n 2"]:
+        return (points - self.centre_m) * self.mm_per_m + self.centre_mm
+
+
+def _choice(extent_m: Float[np.ndarray, "2"]) -> tuple[int, tuple[float, float]]:
+    for scale, (width, height) in CHOICES:
+        for page in ((width, height), (height, width)):
+            free = np.array(page) - 2 * MARGIN_MM - 2 * DIMENSION_ROOM_MM - [0.0, TITLE_MM]
+            if (extent_m * 1000.0 / scale <= free).all():
+                return scale, page
+    raise ExportError(f"a plan of {extent_m[0]:.0f} x {extent_m[1]:.0f} m fits no page; export the DXF instead")
+
+
+def _piece_marks(piece: Piece, to_page: _ToPage) -> list[Line | Text]:
+    outlines = tuple(to_page(o) for o in piece.outlines)
+    if piece.overhead:
+        return [Line(outlines, True, None, 0.13, dashed=True, group="overhead")]
+    return [Line(outlines, True, 1.0, 0.18 if piece.on_floor else 0.13, group="furniture")]
+
+
+def _label_marks(piece: Piece, to_page: _ToPage) -> list[Line | Text]:
+    """Name and size in the middle of furniture that is large enough for them."""
+    if not piece.outlines or not piece.label or not piece.on_floor or piece.overhead:
+        return []
+    points = to_page(np.concatenate(piece.outlines))
+    low, high = points.min(axis=0), points.max(axis=0)
+    width, height = high - low
+    lengthwise = width >= height
+    along, across = (width, height) if lengthwise else (height, width)
+    if along < LETTER * SMALL_MM * len(piece.label) or across < 1.2 * SMALL_MM:
+        return []
+    middle, turn = (low + high) / 2, 0.0 if lengthwise else 90.0
+    up = np.array([0.0, 1.0]) if lengthwise else np.array([-1.0, 0.0])
+    size = f"{piece.size_m[1]:.2f} × {piece.size_m[0]:.2f}"
+    if across < 2.8 * SMALL_MM or along < LETTER * SMALL_MM * len(size):
+        return [_text(piece.label, middle, SMALL_MM, turn)]
+    gap = 0.65 * SMALL_MM * up
+    return [_text(piece.label, middle + gap, SMALL_MM, turn), _text(size, middle - gap, 0.8 * SMALL_MM, turn)]
+
+
+def _text(text: str, at: Float[np.ndarray, "2"], height_mm: float, turn_deg: float, group: str = "labels") -> Text:
+    return Text(text, (float(at[0]), float(at[1])), height_mm, turn_deg, group=group)
+
+
+def _dimension_marks(dimension: Dimension, to_page: _ToPage) -> list[Line | Text]:
+    """Dimension line with slanted ticks, extension lines, and the length above it, readable from below or the right."""
+    start, end = to_page(dimension.start + dimension.offset), to_page(dimension.end + dimension.offset)
+    away = dimension.offset / max(float(np.linalg.norm(dimension.offset)), 1e-9)
+    along = (end - start) / max(float(np.linalg.norm(end - start)), 1e-9)
+    tick = 0.5 * TICK_MM * (along + away)
+    lines = [np.stack([start, end]), *(np.stack([p - tick, p + tick]) for p in (start, end))]
+    lines += [np.stack([p - 3.0 * away, p + 1.0 * away]) for p in (start, end)]
+    marks: list[Line | Text] = [Line((line,), stroke_mm=0.13, group="dimensions") for line in lines]
+    turn = float(np.degrees(np.arctan2(along[1], along[0])))
+    turn = (turn + 89.9) % 180.0 - 89.9
+    up = np.array([-np.sin(np.radians(turn)), np.cos(np.radians(turn))])
+    short = float(np.linalg.norm(end - start)) < LETTER * SMALL_MM * len(dimension.text)
+    height = 0.7 * SMALL_MM if short else SMALL_MM
+    return [*marks, _text(dimension.text, (start + end) / 2 + 0.85 * SMALL_MM * up, height, turn, "dimensions")]
+
+
+def _title_marks(name: str, scale: int, width_mm: float) -> list[Line | Text]:
+    """Name, scale and a scale bar along the lower border."""
+    base = MARGIN_MM + 3.0
+    bar_m = next(m for m in (1, 2, 5, 10, 20, 50) if m * 1000.0 / scale >= 20.0)
+    step = bar_m * 1000.0 / scale
+    right = width_mm - MARGIN_MM
+    marks: list[Line | Text] = [
+        Line((np.array([[MARGIN_MM, base + 8], [right, base + 8]]),), stroke_mm=0.25, group="title"),
+        Text(name, (MARGIN_MM, base + 2.5), 3.5, anchor="start", group="title"),
+        Text(f"1 : {scale}   lengths in metres", (MARGIN_MM, base - 2.0), TEXT_MM, anchor="start", group="title"),
+    ]
+    for part in range(2):
+        left = right - (2 - part) * step
+        box = np.array([[left, base], [left + step, base], [left + step, base + 1.5], [left, base + 1.5]])
+        marks.append(Line((box,), True, 0.0 if part == 0 else 1.0, 0.18, group="title"))
+    for number in range(3):
+        at = (right - (2 - number) * step, base + 3.5)
+        marks.append(Text(f"{number * bar_m} m" if number == 2 else str(number * bar_m), at, SMALL_MM, group="title"))
+    return marks

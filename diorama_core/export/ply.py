@@ -1,0 +1,113 @@
+"""A scene as one binary PLY mesh with normals and vertex colours: metres, +Z up.
+
+PLY has no materials: a vertex takes the colour of its material and of the picture at its place. Planes with a picture
+are cut into small triangles first, so that a photo on a wall stays recognisable.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+import trimesh
+from jaxtyping import Float32, UInt8
+
+from diorama_core.export.files import whole_file
+from diorama_core.export.gathering import ExportScene
+from diorama_core.export.world_meshes import world_meshes
+from diorama_core.progress import Progress
+from diorama_core.render.appearance import Surface, linear_to_srgb, srgb_to_linear
+
+PICTURE_EDGE_M = 0.05
+"""Longest edge of triangles that carry a picture."""
+MAX_PIECES = 60_000
+"""Triangles that a surface is cut into at most."""
+VERTEX = np.dtype([("place", "<f4", 3), ("normal", "<f4", 3), ("colour", "u1", 4)])
+FACE = np.dtype([("count", "u1"), ("corners", "<i4", 3)])
+
+
+def write_ply(scene: ExportScene, path: Path, progress: Progress | None = None) -> None:
+    """Write one mesh, whole or not at all.
+
+    Raises:
+        ExportError: when it cannot be written.
+        Cancelled: when asked to stop; what was there stays.
+    """
+    with whole_file(Path(path)) as temporary, tempfile.TemporaryFile() as faces, tempfile.TemporaryFile() as vertices:
+        vertex_count, face_count = _write_parts(scene, vertices, faces, progress)
+        with temporary.open("wb") as stream:
+            stream.write(_header(vertex_count, face_count))
+            for part in (vertices, faces):
+                part.seek(0)
+                while block := part.read(1 << 22):
+                    stream.write(block)
+
+
+def _write_parts(scene: ExportScene, vertices: BinaryIO, faces: BinaryIO, progress: Progress | None) -> tuple[int, int]:
+    """Vertices and faces one after the other: the header names both counts before either."""
+    vertex_count = face_count = 0
+    for mesh in world_meshes(scene, progress):
+        for surface in mesh.surfaces:
+            fine = finely_cut(surface)
+            rows = np.empty(len(fine.vertices), VERTEX)
+            rows["place"], rows["normal"], rows["colour"] = fine.vertices, fine.normals, vertex_colours(fine)
+            corners = np.empty(len(fine.faces), FACE)
+            corners["count"], corners["corners"] = 3, fine.faces + vertex_count
+            vertices.write(rows.tobytes())
+            faces.write(corners.tobytes())
+            vertex_count += len(rows)
+            face_count += len(corners)
+    return vertex_count, face_count
+
+
+def _header(vertices: int, faces: int) -> bytes:
+    floats = "".join(f"property float {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz"))
+    colours = "".join(f"property uchar {name}\n" for name in ("red", "green", "blue", "alpha"))
+    return (
+        "ply\nformat binary_little_endian 1.0\ncomment Diorama: metres, +Z up, sRGB colours\n"
+        f"element vertex {vertices}\n{floats}{colours}"
+        f"element face {faces}\nproperty list uchar int vertex_indices\nend_header\n"
+    ).encode()
+
+
+def finely_cut(surface: Surface) -> Surface:
+    """The surface with its large triangles cut where it carries a picture; without one it stays as it is."""
+    if surface.uv is None or surface.material.texture is None:
+        return surface
+    a, b, c = (surface.vertices[surface.faces[:, k]] for k in range(3))
+    longest = float(max(np.linalg.norm(x - y, axis=1).max() for x, y in ((a, b), (b, c), (c, a))))
+    edge = max(PICTURE_EDGE_M, float(np.sqrt(4.0 * surface.area_m2 / MAX_PIECES)))
+    if longest <= edge or len(surface.faces) > MAX_PIECES:
+        return surface
+    columns = np.hstack([surface.vertices, surface.normals, surface.uv]).astype(np.float64)
+    faces = surface.faces
+    while longest > edge:
+        columns, faces = trimesh.remesh.subdivide(columns, faces)
+        longest /= 2.0
+        if len(faces) * 4 > 4 * MAX_PIECES:
+            break
+    rows = columns.astype(np.float32)
+    return Surface(rows[:, :3], rows[:, 3:6], faces.astype(np.int32), surface.material, rows[:, 6:8])
+
+
+def vertex_colours(surface: Surface) -> UInt8[np.ndarray, "n 4"]:
+    """sRGB colour and opacity of every vertex: material, vertex colour and picture multiplied."""
+    material = surface.material
+    linear = np.tile(np.asarray(material.colour, dtype=np.float64), (len(surface.vertices), 1))
+    if surface.colours is not None:
+        linear *= surface.colours
+    if surface.uv is not None and material.texture is not None:
+        linear *= srgb_to_linear(_texels(material.texture, surface.uv)[:, :3] / 255.0)
+    rgb = np.rint(255 * np.clip(linear_to_srgb(np.clip(linear, 0, 1)), 0, 1)).astype(np.uint8)
+    return np.hstack([rgb, np.full((len(rgb), 1), round(255 * material.alpha), np.uint8)])
+
+
+def _texels(picture: UInt8[np.ndarray, "h w c"], uv: Float32[np.ndarray, "n 2"]) -> UInt8[np.ndarray, "n c"]:
+    """The nearest texel of each coordinate; 1 is the far border, not the near one again."""
+    height, width = picture.shape[:2]
+    wrapped = np.where((uv < 0) | (uv > 1), uv % 1.0, uv)
+    column = np.clip((wrapped[:, 0] * width).astype(int), 0, width - 1)
+    row = np.clip(((1 - wrapped[:, 1]) * height).astype(int), 0, height - 1)
+    return picture[row, column]

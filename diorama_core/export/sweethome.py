@@ -1,0 +1,216 @@
+"""A scene as a Sweet Home 3D home: walls, rooms, and furniture as its own models. Centimetres, plan y downward.
+
+The file is a zip with `Home.xml`, which Sweet Home 3D reads from version 5.3 on, and a folder per model (OBJ).
+Document type: https://www.sweethome3d.com/SweetHome3D.dtd
+"""
+
+from __future__ import annotations
+
+import io
+import xml.etree.ElementTree as ET
+import zipfile
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.export.files import whole_file
+from diorama_core.export.gathering import ExportMesh, ExportObject, ExportPlane, ExportScene
+from diorama_core.export.obj import encoded_picture, material_text
+from diorama_core.export.scene_state import R_SHAPE_FILE
+from diorama_core.export.text import index_rows, number_rows
+from diorama_core.export.wall_lines import OPENING_CATEGORIES, WallLine, wall_lines
+from diorama_core.progress import Progress
+from diorama_core.render.appearance import Material, linear_to_srgb
+from diorama_core.scene.types import Camera
+
+CM_PER_M = 100.0
+VERSION = "7200"
+UPRIGHT = 0.9999
+SLACK_M = 0.02
+"""Doors reach this far through their wall, so that Sweet Home 3D cuts it."""
+
+
+def write_sweet_home(scene: ExportScene, path: Path, progress: Progress | None = None) -> None:
+    """Write the home, whole or not at all.
+
+    Raises:
+        ExportError: when it cannot be written.
+        Cancelled: when asked to stop; what was there stays.
+    """
+    progress = progress or Progress()
+    with whole_file(Path(path)) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.compresslevel = 1
+        models: dict[str, str] = {}
+        for number, (key, name, content) in enumerate(_model_files(scene)):
+            progress.report(min(number / (3 * len(scene.objects) + 1), 1.0), "writing models")
+            models.setdefault(key, name)
+            archive.writestr(name, content)
+        archive.writestr("Home.xml", home_xml(scene, models))
+
+
+def home_xml(scene: ExportScene, models: Mapping[str, str]) -> bytes:
+    """The home's description; `models` names the entry of each object's model by `model_key`."""
+    walls = wall_lines([p.plane for p in scene.planes], [o.item for o in scene.objects], scene.scene)
+    height = max((w.top_m - w.bottom_m for w in walls), default=2.5)
+    attributes = {"version": VERSION, "name": scene.name, "camera": "topCamera", "wallHeight": _cm(height)}
+    home = ET.Element("home", attributes)
+    if scene.camera is not None:
+        ET.SubElement(home, "observerCamera", _observer(scene.camera))
+    depth = {o.object_id: w.plane.thickness for w in walls for o in w.openings if o.object_id}
+    for item in scene.objects:
+        is_opening = item.item.category in OPENING_CATEGORIES
+        tag = "doorOrWindow" if is_opening else "pieceOfFurniture"
+        ET.SubElement(home, tag, _piece(scene, item, models[model_key(item)], depth.get(item.id)))
+    for number, wall in enumerate(walls):
+        ET.SubElement(home, "wall", _wall(wall, number))
+    for plane in scene.planes:
+        if plane.plane.role == "floor":
+            _add_room(home, plane)
+    ET.indent(home)
+    return ET.tostring(home, encoding="utf-8", xml_declaration=True)
+
+
+def model_key(item: ExportObject) -> str:
+    """Names the model of an object: its mesh, or its own where it is tilted, which plans cannot say."""
+    return item.mesh if item.T_world[2, 2] > UPRIGHT else f"{item.mesh} {item.id}"
+
+
+def _cm(metres: float) -> str:
+    return f"{metres * CM_PER_M:.4f}"
+
+
+def _piece(scene: ExportScene, item: ExportObject, model: str, wall_m: float | None) -> dict[str, str]:
+    upright = item.T_world[2, 2] > UPRIGHT
+    corners = item.item.corners_world
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    if upright:
+        depth, width, height = (float(v) for v in item.item.size_m)
+        x, y, _ = item.T_world[:3, 3]
+        yaw = float(np.arctan2(item.T_world[1, 0], item.T_world[0, 0]))
+    else:
+        points = _world_points(scene, item)
+        low, high = points.min(axis=0), points.max(axis=0)
+        depth, width, height = (float(v) for v in high - low)
+        (x, y, _), yaw = (low + high) / 2, 0.0
+    attributes = {
+        "id": f"piece-{item.slug}",
+        "name": " ".join(item.item.label.split()) or item.id,
+        "angle": f"{(-np.pi / 2 - yaw) % (2 * np.pi):.7f}",
+        "x": _cm(float(x)),
+        "y": _cm(-float(y)),
+        "elevation": _cm(float(low[2]) - _floor_m(scene)),
+        "width": _cm(width),
+        "depth": _cm(max(depth, (wall_m or 0.0) + SLACK_M) if wall_m else depth),
+        "height": _cm(height),
+        "model": model,
+        "movable": "false" if item.item.locked else "true",
+    }
+    return attributes | ({"doorOrWindow": "true"} if item.item.category in OPENING_CATEGORIES else {})
+
+
+def _floor_m(scene: ExportScene) -> float:
+    floor = scene.scene.architecture.floor
+    return 0.0 if floor is None else float(floor.centre[2])
+
+
+def _world_points(scene: ExportScene, item: ExportObject) -> Float[np.ndarray, "n 3"]:
+    points = np.concatenate([s.vertices for s in scene.meshes[item.mesh].surfaces])
+    return (points * item.scale) @ item.T_world[:3, :3].T + item.T_world[:3, 3]
+
+
+def _wall(wall: WallLine, number: int) -> dict[str, str]:
+    """The wall's middle line; its inner face is where the scene has it."""
+    half = wall.plane.thickness / 2
+    (x0, y0), (x1, y1) = wall.at(0.0, half), wall.at(wall.length_m, half)
+    colour = "FF" + "".join(f"{round(255 * min(max(c, 0.0), 1.0)):02X}" for c in wall.plane.colour)
+    return {
+        "id": f"wall{number}",
+        "xStart": _cm(x0),
+        "yStart": _cm(-y0),
+        "xEnd": _cm(x1),
+        "yEnd": _cm(-y1),
+        "height": _cm(wall.top_m - wall.bottom_m),
+        "thickness": _cm(wall.plane.thickness),
+        "leftSideColor": colour,
+        "rightSideColor": colour,
+    }
+
+
+def _add_room(home: ET.Element, plane: ExportPlane) -> None:
+    colour = "FF" + "".join(f"{round(255 * min(max(c, 0.0), 1.0)):02X}" for c in plane.plane.colour)
+    room = ET.SubElement(home, "room", {"id": f"room-{plane.slug}", "areaVisible": "true", "floorColor": colour})
+    for x, y, _ in plane.plane.polygon:
+        ET.SubElement(room, "point", {"x": _cm(float(x)), "y": _cm(-float(y))})
+
+
+def _observer(camera: Camera) -> dict[str, str]:
+    """The photo's camera: yaw turns from the plan's y downward, pitch looks down, the field of view is horizontal."""
+    x, y, z = camera.position
+    forward = camera.T_world_camera[:3, 2]
+    return {
+        "attribute": "observerCamera",
+        "lens": "PINHOLE",
+        "x": _cm(float(x)),
+        "y": _cm(-float(y)),
+        "z": _cm(float(z)),
+        "yaw": f"{float(np.arctan2(-forward[0], -forward[1])):.6f}",
+        "pitch": f"{float(np.arcsin(np.clip(-forward[2], -1, 1))):.6f}",
+        "fieldOfView": f"{camera.intrinsics.horizontal_fov_rad:.6f}",
+        "time": "0",
+    }
+
+
+def _model_files(scene: ExportScene) -> Iterator[tuple[str, str, bytes]]:
+    """Key of the model, entry and content of each of its files; the OBJ comes first."""
+    done: set[str] = set()
+    for item in scene.objects:
+        key = model_key(item)
+        if key in done:
+            continue
+        folder = str(len(done) + 1)
+        done.add(key)
+        turn = np.eye(3) if key == item.mesh else item.T_world[:3, :3] * item.scale
+        yield from ((key, f"{folder}/{name}", content) for name, content in _obj_files(scene.meshes[item.mesh], turn))
+
+
+def _obj_files(mesh: ExportMesh, turn: Float[np.ndarray, "3 3"]) -> Iterator[tuple[str, bytes]]:
+    """A model in Sweet Home 3D's usual frame: +Y up, +Z front. Colours are sRGB, as it shows them."""
+    materials = list({id(s.material): s.material for s in mesh.surfaces}.values())
+    names = {id(m): f"material_{number}" for number, m in enumerate(materials)}
+    pictures = {id(m.texture): f"{names[id(m)]}{_ending(m)}" for m in materials if m.texture is not None}
+    stream, start, uv_start = io.BytesIO(), 1, 1
+    stream.write(b"mtllib model.mtl\n")
+    for surface in mesh.surfaces:
+        linear = R_SHAPE_FILE.T @ turn
+        normals = surface.normals @ np.linalg.inv(linear)
+        stream.write(number_rows("v", surface.vertices @ linear.T * CM_PER_M, 4))
+        stream.write(number_rows("vn", normals / np.maximum(np.linalg.norm(normals, axis=1)[:, None], 1e-12), 4))
+        stream.write(f"usemtl {names[id(surface.material)]}\n".encode())
+        corners = surface.faces.astype(np.int64) + start
+        if surface.uv is None:
+            stream.write(index_rows("f %d//%d %d//%d %d//%d", np.repeat(corners, 2, axis=1)))
+        else:
+            stream.write(number_rows("vt", surface.uv, 6))
+            uvs = surface.faces.astype(np.int64) + uv_start
+            rows = np.stack([corners, uvs, corners], axis=2).reshape(-1, 9)
+            stream.write(index_rows("f %d/%d/%d %d/%d/%d %d/%d/%d", rows))
+            uv_start += len(surface.uv)
+        start += len(surface.vertices)
+    yield "model.obj", stream.getvalue()
+    yield "model.mtl", "\n".join(material_text(_shown(m), names[id(m)], pictures) for m in materials).encode()
+    for material in materials:
+        if material.texture is not None:
+            yield pictures[id(material.texture)], encoded_picture(material.texture)
+
+
+def _ending(material: Material) -> str:
+    assert material.texture is not None
+    return ".jpg" if encoded_picture(material.texture)[:2] == b"\xff\xd8" else ".png"
+
+
+def _shown(material: Material) -> Material:
+    red, green, blue = (float(c) for c in linear_to_srgb(np.asarray(material.colour)))
+    return replace(material, colour=(red, green, blue), maps={})

@@ -1,0 +1,142 @@
+"""Walls as plans see them: a line on the floor with a thickness behind it, a height, and doors and windows along it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import manifold3d
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.geometry.planes import plane_rectangle
+from diorama_core.scene.types import Plane, Scene, SceneObject
+
+OPENING_CATEGORIES = ("door", "window")
+MIN_OPENING_M = 0.15
+"""Gaps in a wall's polygon that are narrower or lower than this are no opening."""
+REACH_M = 0.3
+"""A door or window whose middle is no farther than this from a wall's face belongs to it."""
+
+
+@dataclass(frozen=True)
+class Opening:
+    """A rectangle along a wall."""
+
+    id: str
+    from_m: float
+    """Distance of its left edge from the wall's start, seen from inside the room."""
+    to_m: float
+    bottom_m: float
+    """World height of its lower edge."""
+    top_m: float
+    is_door: bool
+    """Whether one walks through it."""
+    object_id: str | None = None
+    """The door or window that fills it; None for a bare opening."""
+
+
+@dataclass(frozen=True, eq=False)
+class WallLine:
+    """One wall's face on the floor, from left to right seen from inside the room."""
+
+    plane: Plane
+    start: Float[np.ndarray, "2"]
+    end: Float[np.ndarray, "2"]
+    bottom_m: float
+    top_m: float
+    openings: tuple[Opening, ...] = ()
+
+    @property
+    def length_m(self) -> float:
+        """Length of the face."""
+        return float(np.linalg.norm(self.end - self.start))
+
+    @property
+    def along(self) -> Float[np.ndarray, "2"]:
+        """Unit direction from start to end."""
+        return (self.end - self.start) / max(self.length_m, 1e-9)
+
+    @property
+    def outward(self) -> Float[np.ndarray, "2"]:
+        """Unit direction out of the room."""
+        return np.array([-self.along[1], self.along[0]])
+
+    def at(self, distance_m: float, behind_m: float = 0.0) -> Float[np.ndarray, "2"]:
+        """A point so far along the wall and so far behind its face."""
+        return self.start + distance_m * self.along + behind_m * self.outward
+
+
+def wall_lines(planes: Iterable[Plane], items: Sequence[SceneObject], scene: Scene) -> tuple[WallLine, ...]:
+    """The walls among some planes with their openings.
+
+    Args:
+        planes: Walls and others.
+        items: Objects; doors and windows among them become openings of the wall they hang on or stand in.
+        scene: Says what hangs on what.
+    """
+    walls = [_bare(p) for p in planes if p.role == "wall"]
+    fills = [o for o in items if o.category in OPENING_CATEGORIES]
+    supporter = {o.id: _wall_of(o, walls, scene) for o in fills}
+    return tuple(_with_openings(w, [o for o in fills if supporter[o.id] == w.plane.id]) for w in walls)
+
+
+def _bare(plane: Plane) -> WallLine:
+    origin, axes, extents = plane_rectangle(plane)
+    start = origin[:2]
+    heights = plane.polygon[:, 2]
+    return WallLine(plane, start, start + axes[:2, 0] * extents[0], float(heights.min()), float(heights.max()))
+
+
+def _wall_of(item: SceneObject, walls: Sequence[WallLine], scene: Scene) -> str | None:
+    edge = scene.support_of(item.id)
+    named = () if edge is None else (edge.parent, *edge.adheres_to)
+    for wall in walls:
+        if wall.plane.id in named:
+            return wall.plane.id
+    near = [(abs(float(w.plane.normal @ item.pose.position) - w.plane.offset), w) for w in walls]
+    near = [(d, w) for d, w in near if d <= REACH_M and _beside(item, w)]
+    return min(near, key=lambda pair: pair[0])[1].plane.id if near else None
+
+
+def _beside(item: SceneObject, wall: WallLine) -> bool:
+    distance = float((item.pose.position[:2] - wall.start) @ wall.along)
+    turned = abs(float(item.pose.R_world_object[:3, 0] @ wall.plane.normal)) > 0.8
+    return turned and 0 <= distance <= wall.length_m
+
+
+def _with_openings(wall: WallLine, fills: Sequence[SceneObject]) -> WallLine:
+    filled = [_filled(wall, item) for item in fills]
+    bare = [o for o in _gaps(wall) if not any(_meet(o, f) for f in filled)]
+    ordered = tuple(sorted((*filled, *bare), key=lambda o: o.from_m))
+    return WallLine(wall.plane, wall.start, wall.end, wall.bottom_m, wall.top_m, ordered)
+
+
+def _filled(wall: WallLine, item: SceneObject) -> Opening:
+    corners = item.corners_world
+    along = np.clip((corners[:, :2] - wall.start) @ wall.along, 0, wall.length_m)
+    low, high = np.clip(corners[:, 2], wall.bottom_m, wall.top_m)[[corners[:, 2].argmin(), corners[:, 2].argmax()]]
+    ends = float(along.min()), float(along.max())
+    return Opening(f"opening-{item.id}", *ends, float(low), float(high), item.category == "door", item.id)
+
+
+def _gaps(wall: WallLine) -> list[Opening]:
+    """Rectangles that the wall's polygon leaves out, other than at its ends and its top."""
+    length, height = wall.length_m, wall.top_m - wall.bottom_m
+    corners = wall.plane.polygon
+    flat = np.stack([(corners[:, :2] - wall.start) @ wall.along, corners[:, 2] - wall.bottom_m], axis=1)
+    whole = manifold3d.CrossSection([[[0, 0], [length, 0], [length, height], [0, height]]])
+    rest = whole - manifold3d.CrossSection([flat], manifold3d.FillRule.NonZero)
+    found = []
+    for number, piece in enumerate(rest.decompose()):
+        left, low, right, high = piece.bounds()
+        inside = left > 1e-3 and right < length - 1e-3 and high < height - 1e-3
+        if inside and right - left >= MIN_OPENING_M and high - low >= MIN_OPENING_M:
+            low, high = low + wall.bottom_m, high + wall.bottom_m
+            is_door = low < wall.bottom_m + 0.05
+            found.append(Opening(f"opening-{wall.plane.id}-{number + 1}", left, right, low, high, is_door))
+    return found
+
+
+def _meet(a: Opening, b: Opening) -> bool:
+    return a.from_m < b.to_m and b.from_m < a.to_m and a.bottom_m < b.top_m and b.bottom_m < a.top_m

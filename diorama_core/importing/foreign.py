@@ -1,0 +1,162 @@
+"""Files of other programs as scenes: their parts become objects of guessed kinds, on a floor.
+
+What is named floor, wall or ceiling and is flat becomes the room; everything else becomes objects, each taken into a
+library as a shape of its own (copies share one). Where no floor is named, there is one under the lowest object.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from diorama_core.errors import InputError, LibraryError
+from diorama_core.importing.marked import MarkedFile
+from diorama_core.importing.opening import Opened
+from diorama_core.importing.parts import Part, parts_of_gltf, parts_of_usd, shape_parts
+from diorama_core.importing.room import room_of, supports_of
+from diorama_core.importing.sweethome import parts_of_sweet_home
+from diorama_core.library.ingest.guess import Given, axis_vector
+from diorama_core.library.ingest.known_shapes import KnownShapes, known_shapes
+from diorama_core.library.ingest.models import UNKNOWN, RawModel
+from diorama_core.library.ingest.shaping import Source, ingest_model
+from diorama_core.library.ingest.sink import Ingested, ShapeSink
+from diorama_core.library.record import Shape
+from diorama_core.progress import Progress
+from diorama_core.scene.types import Architecture, Pose, Scene, SceneObject
+
+SAME_M = 1e-4
+"""Parts whose vertices differ less than this after a turn about up are copies of one shape."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Shaped:
+    """A part with the shape it became."""
+
+    part: Part
+    record: Shape
+    pose: Pose
+
+
+def open_foreign(path: Path, sink: ShapeSink, progress: Progress, known: KnownShapes | None = None) -> Opened:
+    """A scene from a file of another program.
+
+    Args:
+        path: GLB, glTF, USD or Sweet Home 3D.
+        sink: Takes the shapes in.
+        progress: Where parts are counted and cancelling is noticed.
+        known: Shapes to compare with; the built-in ones by default.
+
+    Raises:
+        InputError: the file cannot be read or has nothing in it.
+        LibraryError: a shape cannot be kept.
+    """
+    readers = {".glb": parts_of_gltf, ".gltf": parts_of_gltf, ".sh3d": parts_of_sweet_home}
+    parts = readers.get(path.suffix.lower(), parts_of_usd)(path)
+    if not parts:
+        raise InputError(f"{path.name} has no geometry in it; export the scene again")
+    room = room_of(parts)
+    known = known or _learnt(progress)
+    shaped: list[_Shaped] = []
+    notes = list(room.notes)
+    for number, part in enumerate(room.objects):
+        progress.report(0.5 + 0.5 * number / max(1, len(room.objects)), f"taking in {part.name}")
+        try:
+            shaped.append(_known_copy(part, shaped) or _taken_in(part, path, sink, known))
+        except LibraryError as error:
+            notes.append(f"{part.name} was left out: {error}")
+    objects = _objects(shaped)
+    scene = Scene(architecture=Architecture(room.planes), objects=objects)
+    return Opened(Scene(None, scene.architecture, objects, supports_of(scene)), changes=tuple(notes))
+
+
+def take_missing_shapes(
+    path: Path,
+    marked: MarkedFile,
+    scene: Scene,
+    missing: set[str],
+    sink: ShapeSink,
+    progress: Progress,
+    known: KnownShapes | None = None,
+) -> None:
+    """Take shapes that no library has out of a file that Diorama wrote, under their own ids.
+
+    Raises:
+        InputError: the file does not hold the geometry of one of them.
+        LibraryError: a shape cannot be kept.
+    """
+    known = known or _learnt(progress)
+    for number, shape_id in enumerate(sorted(missing)):
+        progress.report(0.5 + 0.5 * number / len(missing), f"taking in {shape_id}")
+        item = next(o for o in scene.objects if o.shape_id == shape_id)
+        part = shape_parts(path, marked, item)
+        if part is None:
+            raise InputError(
+                f"{path.name} does not hold the shape {shape_id!r}; name the library that has it: --library"
+            )
+        given = Given(up="+z", front="+x", unit_m=1.0, category=item.category, source=path.name, reason="the file")
+        sink.add(_ingested(part, shape_id, path, given, known))
+
+
+def _learnt(progress: Progress) -> KnownShapes:
+    message = "learning what furniture looks like (once)"
+    return known_shapes(on_step=lambda share: progress.report(0.5 * share, message))
+
+
+def _taken_in(part: Part, path: Path, sink: ShapeSink, known: KnownShapes) -> _Shaped:
+    stem = re.sub(r"[^a-z0-9]+", "-", f"{path.stem}-{part.name}".lower()).strip("-")[:80] or "shape"
+    digest = hashlib.sha256(np.round(part.whole.vertices, 5).tobytes()).hexdigest()[:6]
+    given = Given(up="+z", front=part.front, unit_m=1.0, category=part.category, source=path.name, reason="the file")
+    item = _ingested(part, f"{stem}-{digest}", path, given, known)
+    sink.add(item)
+    return _Shaped(part, item.record, _pose(part, item.record))
+
+
+def _ingested(part: Part, shape_id: str, path: Path, given: Given, known: KnownShapes) -> Ingested:
+    raw = RawModel(part.unturned, (part.name,), UNKNOWN, ())
+    source = Source(Path(f"{part.name.replace('/', ' ')}.glb"), Path(), shape_id, f"{path.name} {shape_id}", given)
+    return ingest_model(raw, source, known)
+
+
+def _pose(part: Part, record: Shape) -> Pose:
+    """Where a shape stands: its front and up are axes of the part, its middle is the part's."""
+    assert record.guess is not None
+    front, up = axis_vector(record.guess.front.value), axis_vector(record.guess.up.value)
+    R = np.stack([front, np.cross(up, front), up], axis=1).astype(float)
+    points = part.whole.vertices @ part.turn
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    return Pose(part.turn @ R, part.turn @ middle, np.ones(3))
+
+
+def _known_copy(part: Part, shaped: Sequence[_Shaped]) -> _Shaped | None:
+    """The same shape turned about up, where an earlier part is a copy of this one."""
+    for other in shaped:
+        if part.key is None or other.part.key != part.key:
+            continue
+        T = part.M_world @ np.linalg.inv(other.part.M_world)
+        rigid = np.abs(T[:3, :3] @ T[:3, :3].T - np.eye(3)).max() < SAME_M and np.linalg.det(T[:3, :3]) > 0
+        if rigid and abs(T[2, 2] - 1) < SAME_M:
+            U, _, V = np.linalg.svd(T[:3, :3] @ other.pose.R_world_object)
+            centre = T[:3, :3] @ other.pose.position + T[:3, 3]
+            return _Shaped(part, other.record, Pose(U @ V, centre, np.ones(3)))
+    return None
+
+
+def _objects(shaped: Sequence[_Shaped]) -> tuple[SceneObject, ...]:
+    taken: set[str] = set()
+    made = []
+    for one in shaped:
+        stem = re.sub(r"[^a-z0-9]+", "-", one.record.category.lower()).strip("-") or "object"
+        number = 1
+        while f"{stem}-{number}" in taken:
+            number += 1
+        taken.add(f"{stem}-{number}")
+        label = one.part.name or one.record.category
+        made.append(
+            SceneObject(f"{stem}-{number}", label, one.record.category, one.record.id, one.record.size_m, one.pose)
+        )
+    return tuple(made)

@@ -1,0 +1,164 @@
+"""Diorama's marks in a GLB or glTF file, whatever program saved it last."""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float, UInt8
+from PIL import Image
+from scipy.spatial.transform import Rotation
+
+from diorama_core.errors import InputError, LibraryError
+from diorama_core.importing.marked import MarkedFile, ObjectNode, as_ids, as_mapping
+from diorama_core.library.ingest.gltf import container
+from diorama_core.library.ingest.limits import DEFAULT_LIMITS
+from diorama_core.library.ingest.references import References, read_bytes
+
+Json = dict[str, Any]
+MARK = "diorama"
+Z_UP = np.array([[1.0, 0, 0, 0], [0, 0, -1.0, 0], [0, 1.0, 0, 0], [0, 0, 0, 1.0]])
+"""glTF's frame (+Y up) to the world's."""
+CAMERA_AXES = np.diag([1.0, -1.0, -1.0, 1.0])
+"""glTF cameras look along their -z with y up; ours along +z with y down."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Node:
+    index: int
+    row: Json
+    M_world: Float[np.ndarray, "4 4"]
+    """Node frame to glTF's frame."""
+    parent: int | None
+
+    @property
+    def extras(self) -> Mapping[str, Any]:
+        found = self.row.get("extras")
+        return found if isinstance(found, Mapping) else {}
+
+
+def read_marked_gltf(path: Path) -> MarkedFile | None:
+    """What Diorama wrote into a file; None when the file is not from it.
+
+    Raises:
+        InputError: when the file cannot be read.
+    """
+    try:
+        document, binary = container(read_bytes(path, DEFAULT_LIMITS), DEFAULT_LIMITS)
+        nodes = tuple(_walk(document))
+    except (LibraryError, KeyError, IndexError, TypeError, ValueError) as error:
+        raise InputError(f"{path.name} cannot be read as glTF ({error}); export it again") from error
+    root = next((n for n in nodes if "objects" in (as_mapping(n.extras.get(MARK)) or {})), None)
+    if root is None:
+        return None
+    mark = root.extras[MARK]
+    camera = next((n for n in nodes if "camera" in n.row and "fx" in n.extras), None)
+    pictures = _Pictures(document, binary, References(path.parent, path.parent, DEFAULT_LIMITS))
+    planes = {str(n.extras["diorama_plane"]): n for n in nodes if "diorama_plane" in n.extras}
+    return MarkedFile(
+        document=mark if isinstance(mark, str) else json.dumps(mark),
+        nodes=_object_nodes(nodes),
+        written=as_ids(root.extras.get("diorama_objects")),
+        planes={plane_id: Z_UP @ n.M_world for plane_id, n in planes.items()},
+        T_world_camera=None if camera is None else Z_UP @ camera.M_world @ CAMERA_AXES,
+        pictures={i: p for i, n in planes.items() if (p := pictures.of_mesh(n.row.get("mesh"))) is not None},
+        provenance=as_mapping(root.extras.get("provenance")) or {},
+    )
+
+
+def _walk(document: Json) -> Iterator[_Node]:
+    """Nodes of the shown scene, parents before children."""
+    rows = document.get("nodes", [])
+    scenes = document.get("scenes", [])
+    roots = scenes[document.get("scene", 0)].get("nodes", []) if scenes else range(len(rows))
+    waiting: list[tuple[int, Float[np.ndarray, "4 4"], int | None]] = [
+        (int(i), np.eye(4), None) for i in reversed(roots)
+    ]
+    places: dict[int, int] = {}
+    while waiting:
+        index, above, parent = waiting.pop()
+        if index in places:
+            raise ValueError(f"node {index} has two parents")
+        node = _Node(index, rows[index], above @ _local(rows[index]), parent)
+        places[index] = len(places)
+        yield node
+        waiting += [(int(c), node.M_world, places[index]) for c in reversed(node.row.get("children", []))]
+
+
+def _local(row: Json) -> Float[np.ndarray, "4 4"]:
+    if "matrix" in row:
+        return np.array(row["matrix"], dtype=np.float64).reshape(4, 4).T
+    M = np.eye(4)
+    M[:3, :3] = Rotation.from_quat(row.get("rotation", [0, 0, 0, 1])).as_matrix() * np.array(
+        row.get("scale", [1, 1, 1])
+    )
+    M[:3, 3] = row.get("translation", [0, 0, 0])
+    return M
+
+
+def _object_nodes(nodes: tuple[_Node, ...]) -> tuple[ObjectNode, ...]:
+    """Nodes that carry an object's entry, with the transform of the mesh that shows it."""
+    shapes: dict[int, Float[np.ndarray, "4 4"]] = {}
+    for node in nodes:
+        if "diorama_mesh" in node.extras and node.parent is not None:
+            shapes.setdefault(node.parent, node.M_world)
+    numbers: dict[int, int] = {}
+    found: list[ObjectNode] = []
+    for number, node in enumerate(nodes):
+        entry = as_mapping(node.extras.get(MARK))
+        if entry is None or "id" not in entry:
+            continue
+        above = node.parent
+        while above is not None and above not in numbers:
+            above = nodes[above].parent
+        numbers[number] = len(found)
+        parent = None if above is None else numbers[above]
+        M = Z_UP @ shapes.get(number, node.M_world)
+        found.append(ObjectNode(str(entry["id"]), str(node.row.get("name", "")), M, entry, parent))
+    return tuple(found)
+
+
+class _Pictures:
+    """Base colour pictures of meshes."""
+
+    def __init__(self, document: Json, binary: bytes | None, references: References) -> None:
+        self._document = document
+        self._binary = binary
+        self._references = references
+
+    def of_mesh(self, mesh: int | None) -> UInt8[np.ndarray, "h w 3"] | None:
+        """The picture of the first textured part; None where there is none that can be read."""
+        if mesh is None:
+            return None
+        for primitive in self._document["meshes"][mesh]["primitives"]:
+            material = self._document.get("materials", [])[primitive["material"]] if "material" in primitive else {}
+            texture = material.get("pbrMetallicRoughness", {}).get("baseColorTexture")
+            if texture is not None:
+                return self._image(self._document["textures"][texture["index"]])
+        return None
+
+    def _image(self, texture: Json) -> UInt8[np.ndarray, "h w 3"] | None:
+        if "source" not in texture:
+            return None
+        image = self._document["images"][texture["source"]]
+        data = self._inside(image["bufferView"]) if "bufferView" in image else self._outside(image.get("uri", ""))
+        data = None if data is None else self._references.checked_image(data, str(image.get("name", "a picture")))
+        return None if data is None else np.asarray(Image.open(io.BytesIO(data)).convert("RGB"))
+
+    def _inside(self, view: int) -> bytes | None:
+        row = self._document["bufferViews"][view]
+        buffer = self._document["buffers"][row["buffer"]]
+        data = self._outside(buffer["uri"]) if "uri" in buffer else self._binary
+        start = row.get("byteOffset", 0)
+        return None if data is None else data[start : start + row["byteLength"]]
+
+    def _outside(self, uri: str) -> bytes | None:
+        if uri.startswith("data:"):
+            return base64.b64decode(uri.partition(",")[2])
+        return self._references.read(uri)

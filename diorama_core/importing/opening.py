@@ -1,0 +1,75 @@
+"""One door for every file a scene can come from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import UInt8
+
+from diorama_core.errors import InputError
+from diorama_core.importing.marked import MarkedFile
+from diorama_core.importing.restore import restored
+from diorama_core.scene.types import Architecture, Scene
+
+GLTF_SUFFIXES = (".glb", ".gltf")
+USD_SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
+SUFFIXES = (*GLTF_SUFFIXES, *USD_SUFFIXES, ".sh3d")
+"""Endings of files that can be opened as scenes."""
+
+
+@dataclass(frozen=True, eq=False)
+class Opened:
+    """A scene from a file."""
+
+    scene: Scene
+    textures: Mapping[str, UInt8[np.ndarray, "h w 3"]] = field(default_factory=dict)
+    """Pictures of the planes by `Plane.texture`."""
+    changes: tuple[str, ...] = ()
+    """What the file has otherwise than it was written, one line each."""
+    provenance: Mapping[str, Any] = field(default_factory=dict)
+    """Where the scene came from, as the file says."""
+
+
+def marked_file(path: Path) -> MarkedFile | None:
+    """What Diorama wrote into a file; None when it comes from another program.
+
+    Raises:
+        InputError: the file is missing, of a kind that is not read, or damaged.
+        UnavailableError: an optional library is missing.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise InputError(f"{path} does not exist; name a GLB, USD or Sweet Home 3D file")
+    reader = _readers().get(path.suffix.lower())
+    if reader is None:
+        raise InputError(f"{path}: scenes are read from {', '.join(SUFFIXES)}; export one of these")
+    return reader(path)
+
+
+def open_marked(file: MarkedFile) -> Opened:
+    """The scene that Diorama wrote, as the file has it now; see `restore`."""
+    found = restored(file)
+    planes, textures = [], {}
+    for plane in found.scene.architecture.planes:
+        picture = file.pictures.get(plane.id)
+        if picture is not None:
+            plane = replace(plane, texture=plane.texture or f"plane-{plane.id}")
+            textures[str(plane.texture)] = picture
+        planes.append(plane)
+    scene = replace(found.scene, architecture=Architecture(tuple(planes)))
+    return Opened(scene, textures, found.changes, file.provenance)
+
+
+def _readers() -> dict[str, Callable[[Path], MarkedFile | None]]:
+    from diorama_core.importing.gltf import read_marked_gltf
+    from diorama_core.importing.usd import read_marked_usd
+
+    return {
+        **dict.fromkeys(GLTF_SUFFIXES, read_marked_gltf),
+        **dict.fromkeys(USD_SUFFIXES, read_marked_usd),
+        ".sh3d": lambda path: None,
+    }

@@ -1,0 +1,154 @@
+"""The room of a foreign file: what is named floor, wall or ceiling and is flat, or a floor under everything."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.importing.parts import Part
+from diorama_core.library.taxonomy import category
+from diorama_core.scene.types import Plane, Scene, SceneObject, Support
+
+THIN_M = 0.5
+"""Parts thicker than this are no wall, floor or ceiling, whatever they are called."""
+LARGE_M = 1.0
+"""Nor are those with a smaller second side."""
+ROUND_M = 0.3
+"""Floor around the objects where a file has none."""
+RESTS_M = 0.05
+"""How far an object may hover over, or sink into, what it stands on."""
+NEAR_WALL_M = 0.15
+_ROLES = {"floor": r"floor|ground", "ceiling": r"ceiling|roof", "wall": r"walls?"}
+
+
+@dataclass(frozen=True, eq=False)
+class Room:
+    """Planes, and the parts that are furniture."""
+
+    planes: tuple[Plane, ...]
+    objects: tuple[Part, ...]
+    notes: tuple[str, ...]
+
+
+def room_of(parts: Sequence[Part]) -> Room:
+    """Tell the room from what stands in it."""
+    named = {id(p): _role(p) for p in parts}
+    objects = tuple(p for p in parts if named[id(p)] is None)
+    flat = [p for p in parts if named[id(p)] is not None]
+    inside = objects or tuple(parts)
+    middle = np.mean([p.whole.bounds.mean(axis=0) for p in inside], axis=0)
+    planes: list[Plane] = []
+    for part in flat:
+        role = str(named[id(part)])
+        number = 1 + sum(p.role == role for p in planes)
+        plane = _plane(part, role, role if number == 1 and role != "wall" else f"{role}-{number}", middle)
+        if not any(_same(plane, other) for other in planes):
+            planes.append(plane)
+    notes = []
+    if not any(p.role == "floor" for p in planes):
+        planes.insert(0, _ground(parts))
+        notes.append("the file has no floor: there is one under the lowest object")
+    return Room(tuple(planes), objects, tuple(notes))
+
+
+def _role(part: Part) -> str | None:
+    words = re.sub(r"[^a-z]+", " ", part.name.lower())
+    for role, pattern in _ROLES.items():
+        if re.search(rf"\b({pattern})\b", words) and not re.search(
+            r"\b(lamp|light|clock|shelf|art|mirror|mat)\b", words
+        ):
+            return role if _is_flat(part, role) else None
+    return None
+
+
+def _is_flat(part: Part, role: str) -> bool:
+    (_, sides, _), height = _rectangle(part), float(np.ptp(part.whole.bounds[:, 2]))
+    if role == "wall":
+        return min(sides) < THIN_M and max(sides) > LARGE_M / 2 and height > LARGE_M
+    return height < THIN_M and min(sides) > LARGE_M
+
+
+def _rectangle(part: Part) -> tuple[Float[np.ndarray, "2"], tuple[float, float], float]:
+    """The smallest upright rectangle around a part: middle, sides, and the first side's angle."""
+    (x, y), (a, b), angle = cv2.minAreaRect(part.whole.vertices[:, :2].astype(np.float32))
+    return np.array([x, y]), (float(a), float(b)), float(np.radians(angle))
+
+
+def _plane(part: Part, role: str, name: str, middle: Float[np.ndarray, "3"]) -> Plane:
+    centre, (a, b), angle = _rectangle(part)
+    along, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+    low, high = (float(v) for v in part.whole.bounds[:, 2])
+    if role != "wall":
+        corners = [centre + s * a / 2 * along + t * b / 2 * across for s, t in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+        z = high if role == "floor" else low
+        polygon = np.array([[*c, z] for c in corners])
+        return Plane(name, role, polygon if role == "floor" else polygon[::-1], max(high - low, 0.01))  # type: ignore[arg-type]
+    if a < b:
+        a, b, along, across = b, a, across, along
+    inward = across if (middle[:2] - centre) @ across > 0 else -across
+    right = np.array([inward[1], -inward[0]])  # to the right as seen from inside
+    face = centre + b / 2 * inward
+    left_end, right_end = face - a / 2 * right, face + a / 2 * right
+    polygon = np.array([[*left_end, low], [*right_end, low], [*right_end, high], [*left_end, high]])
+    plane = Plane(name, "wall", polygon, max(b, 0.01))
+    return plane if plane.normal[:2] @ inward > 0 else Plane(name, "wall", polygon[::-1], max(b, 0.01))
+
+
+def _same(plane: Plane, other: Plane) -> bool:
+    """Whether two planes are faces of one slab, which files keep apart by material."""
+    if plane.role != other.role or plane.normal @ other.normal < 0.99:
+        return False
+    apart = [np.abs(plane.polygon.min(axis=0) - other.polygon.min(axis=0)).max()]
+    apart.append(np.abs(plane.polygon.max(axis=0) - other.polygon.max(axis=0)).max())
+    return bool(max(apart) < THIN_M / 2)
+
+
+def _ground(parts: Sequence[Part]) -> Plane:
+    low = np.min([p.whole.bounds[0] for p in parts], axis=0)
+    high = np.max([p.whole.bounds[1] for p in parts], axis=0)
+    (x0, y0), (x1, y1), z = low[:2] - ROUND_M, high[:2] + ROUND_M, low[2]
+    return Plane("floor", "floor", np.array([[x0, y0, z], [x1, y0, z], [x1, y1, z], [x0, y1, z]]))
+
+
+def supports_of(scene: Scene) -> tuple[Support, ...]:
+    """What stands on what, by touch: the highest surface right below, or the wall that a hung object touches."""
+    boxes = {o.id: np.stack([o.corners_world.min(axis=0), o.corners_world.max(axis=0)]) for o in scene.objects}
+    edges = []
+    for item in scene.objects:
+        wall = _wall(scene, item)
+        below = _below(boxes, item.id)
+        if category(item.category).mount == "wall" and wall is not None:
+            edges.append(Support(item.id, wall, "mounted on", child_face="back"))
+        elif below is not None:
+            edges.append(Support(item.id, below))
+        else:
+            floor = scene.architecture.floor
+            if floor is not None and abs(boxes[item.id][0, 2] - floor.centre[2]) < 2 * RESTS_M:
+                edges.append(Support(item.id, floor.id))
+    return tuple(edges)
+
+
+def _below(boxes: dict[str, Float[np.ndarray, "2 3"]], object_id: str) -> str | None:
+    mine = boxes[object_id]
+    middle = mine.mean(axis=0)
+    under = [
+        (other[1, 2], name)
+        for name, other in boxes.items()
+        if name != object_id
+        and abs(other[1, 2] - mine[0, 2]) < RESTS_M
+        and other[0, 2] < mine[0, 2] - RESTS_M
+        and (other[0, :2] <= middle[:2]).all()
+        and (middle[:2] <= other[1, :2]).all()
+    ]
+    return max(under)[1] if under else None
+
+
+def _wall(scene: Scene, item: SceneObject) -> str | None:
+    corners = item.corners_world
+    near = [(abs(float((corners @ w.normal).min()) - w.offset), w.id) for w in scene.architecture.by_role("wall")]
+    return min(near)[1] if near and min(near)[0] < NEAR_WALL_M else None

@@ -1,0 +1,129 @@
+"""Sweet Home 3D files (.sh3d): walls, floors and furniture as parts. Centimetres, plan y downward."""
+
+from __future__ import annotations
+
+import tempfile
+import xml.etree.ElementTree as ET
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from jaxtyping import Float
+
+from diorama_core.errors import DioramaError, InputError
+from diorama_core.importing.parts import Part
+from diorama_core.library.ingest.limits import DEFAULT_LIMITS
+from diorama_core.library.ingest.models import SUFFIXES, read_model
+
+M_PER_CM = 0.01
+MODEL_TO_PART = np.array([[1.0, 0, 0, 0], [0, 0, -1.0, 0], [0, 1.0, 0, 0], [0, 0, 0, 1.0]])
+"""Models have +Y up and +Z front; parts +Z up and, unturned, -Y front."""
+FURNITURE = ("pieceOfFurniture", "doorOrWindow", "light")
+THIN_M = 0.02
+XML_BYTES = 64 * 2**20
+
+
+def parts_of_sweet_home(path: Path) -> tuple[Part, ...]:
+    """Objects, walls and floors of a home; raises `InputError` when it cannot be read."""
+    try:
+        with zipfile.ZipFile(path) as archive, tempfile.TemporaryDirectory() as folder:
+            home = _home(archive, path)
+            size = sum(entry.file_size for entry in archive.infolist())
+            if size > DEFAULT_LIMITS.file_bytes:
+                raise InputError(f"{path.name} unpacks to {size / 2**20:.0f} MB; the limit is 512 MB")
+            archive.extractall(folder)  # zipfile keeps names inside the folder
+            pieces = [_piece(p, Path(folder)) for p in home.iter() if p.tag in FURNITURE and _visible(p)]
+    except zipfile.BadZipFile as error:
+        raise InputError(f"{path.name} is no Sweet Home 3D file ({error}); save it again") from error
+    height = float(home.get("wallHeight", 250.0))
+    walls = [_wall(w, height) for w in home.iter("wall")]
+    rooms = [_room(r) for r in home.iter("room") if len(r.findall("point")) >= 3]
+    return (*pieces, *walls, *rooms)
+
+
+def _home(archive: zipfile.ZipFile, path: Path) -> ET.Element:
+    if "Home.xml" not in archive.namelist():
+        raise InputError(f"{path.name} has no Home.xml; save it with Sweet Home 3D 5.3 or newer")
+    if archive.getinfo("Home.xml").file_size > XML_BYTES:
+        raise InputError(f"{path.name}: its Home.xml is too large")
+    text = archive.read("Home.xml")
+    if b"<!ENTITY" in text:
+        raise InputError(f"{path.name}: its Home.xml defines entities, which are not read")
+    try:
+        return ET.fromstring(text)
+    except ET.ParseError as error:
+        raise InputError(f"{path.name}: its Home.xml is damaged ({error})") from error
+
+
+def _visible(piece: ET.Element) -> bool:
+    return piece.get("visible", "true") != "false"
+
+
+def _number(element: ET.Element, name: str, default: float | None = None) -> float:
+    value = element.get(name)
+    if value is None and default is not None:
+        return default
+    try:
+        return float(value if value is not None else "")
+    except ValueError:
+        raise InputError(f"its Home.xml has a {element.tag} without a usable {name}") from None
+
+
+def _piece(piece: ET.Element, folder: Path) -> Part:
+    """A piece's model, turned upright and stretched to the size that the home gives it."""
+    sides = [_number(piece, k) * M_PER_CM for k in ("width", "depth", "height")]
+    scene = _model(piece, folder)
+    low, high = scene.bounds
+    stretch = np.eye(4)
+    stretch[:3, :3] = np.diag(np.array(sides) / np.maximum(high - low, 1e-6))
+    stretch[:3, 3] = -stretch[:3, :3] @ ((low + high) / 2)
+    yaw = -_number(piece, "angle", 0.0)
+    T = np.eye(4)
+    T[:2, :2] = [[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]]
+    bottom = _number(piece, "elevation", 0.0) * M_PER_CM
+    T[:3, 3] = [_number(piece, "x") * M_PER_CM, -_number(piece, "y") * M_PER_CM, bottom + sides[2] / 2]
+    scene.apply_transform(T @ stretch)
+    return Part(piece.get("name", piece.tag), scene, T, yaw_rad=yaw, front="-y")
+
+
+def _model(piece: ET.Element, folder: Path) -> trimesh.Scene:
+    """The model in the part's frame; a box where the home keeps it in a format that is not read."""
+    model = folder / piece.get("model", "")
+    if piece.get("model") and model.is_file() and model.suffix.lower() in SUFFIXES:
+        try:
+            scene = read_model(model, folder).scene
+            turn = np.eye(4)
+            turn[:3, :3] = np.array(piece.get("modelRotation", "1 0 0 0 1 0 0 0 1").split(), float).reshape(3, 3)
+            scene.apply_transform(MODEL_TO_PART @ turn)
+            if scene.bounds is not None:
+                return scene
+        except (DioramaError, ValueError):
+            pass  # the home is more than one broken model: its size is known, so a box stands for it
+    return trimesh.Scene({"box": trimesh.creation.box((1.0, 1.0, 1.0))})
+
+
+def _wall(wall: ET.Element, usual_cm: float) -> Part:
+    start, end = (np.array([_number(wall, f"x{k}"), -_number(wall, f"y{k}")]) * M_PER_CM for k in ("Start", "End"))
+    length = float(np.linalg.norm(end - start))
+    thick, high = _number(wall, "thickness") * M_PER_CM, _number(wall, "height", usual_cm) * M_PER_CM
+    along = (end - start) / max(length, 1e-9)
+    T = np.eye(4)
+    T[:2, 0], T[:2, 1] = along, [-along[1], along[0]]
+    T[:3, 3] = [*(start + end) / 2, high / 2]
+    return Part("wall", trimesh.Scene({"wall": trimesh.creation.box((length, thick, high), T)}), T)
+
+
+def _room(room: ET.Element) -> Part:
+    points = np.array([[_number(p, "x"), -_number(p, "y")] for p in room.findall("point")]) * M_PER_CM
+    return Part("floor", trimesh.Scene({"floor": _slab(points)}), np.eye(4))
+
+
+def _slab(points: Float[np.ndarray, "n 2"]) -> trimesh.Trimesh:
+    import manifold3d
+
+    solid = manifold3d.CrossSection([points], manifold3d.FillRule.NonZero)
+    if solid.is_empty():
+        solid = manifold3d.CrossSection([points[::-1]], manifold3d.FillRule.NonZero)
+    mesh = manifold3d.Manifold.extrude(solid, THIN_M).translate((0.0, 0.0, -THIN_M)).to_mesh()
+    return trimesh.Trimesh(mesh.vert_properties[:, :3], mesh.tri_verts, process=False)

@@ -1,0 +1,56 @@
+"""PLY, read back by trimesh and Open3D."""
+
+from __future__ import annotations
+
+import numpy as np
+import open3d
+import pytest
+import trimesh
+
+from diorama_core.export import export_scene
+from diorama_core.export.ply import MAX_PIECES, finely_cut, vertex_colours
+from diorama_core.render.appearance import Material, Surface
+from tests.export.test_obj import LIBRARY, photographed_room
+from tests.primitives import furnished_room
+
+
+def test_bounds_normals_and_colours(tmp_path) -> None:
+    scene, textures = photographed_room()
+    export_scene(scene, LIBRARY, tmp_path / "room.ply", "ply", textures=textures)
+    loaded = trimesh.load_mesh(tmp_path / "room.ply", process=False)
+    np.testing.assert_allclose(loaded.bounds, [[-2.05, -0.05, -0.05], [2.05, 5.05, 2.65]], atol=1e-5)
+    mesh = open3d.io.read_triangle_mesh(str(tmp_path / "room.ply"))
+    assert mesh.has_vertex_normals()
+    assert mesh.has_vertex_colors()
+    points, colours = np.asarray(mesh.vertices), 255 * np.asarray(mesh.vertex_colors)
+    on_wall = (np.abs(points[:, 1] - 5.0) < 1e-4) & (np.abs(points[:, 0]) < 1.9)
+    high = colours[on_wall & (points[:, 2] > 1.5) & (points[:, 2] < 2.5)]
+    low = colours[on_wall & (points[:, 2] < 1.1) & (points[:, 2] > 0.1)]
+    np.testing.assert_allclose(high, np.broadcast_to([250, 10, 10], high.shape), atol=2)
+    np.testing.assert_allclose(low, np.broadcast_to([10, 10, 250], low.shape), atol=2)
+
+
+def test_triangle_count_is_the_scenes(tmp_path) -> None:
+    scene = furnished_room(LIBRARY)
+    gathered = export_scene(scene, LIBRARY, tmp_path / "room.ply", "ply")
+    plain = [gathered.meshes[n.mesh] for n in (*gathered.planes, *gathered.objects)]
+    mesh = trimesh.load_mesh(tmp_path / "room.ply", process=False)
+    textured = [s for m in plain for s in m.surfaces if s.uv is not None and s.material.texture is not None]
+    extra = sum(len(finely_cut(s).faces) - len(s.faces) for s in textured)
+    assert len(mesh.faces) == sum(m.triangles for m in plain) + extra
+
+
+def test_cutting_keeps_the_area_and_is_bounded() -> None:
+    corners = np.array([[0, 0, 0], [40, 0, 0], [40, 30, 0], [0, 30, 0]], np.float32)
+    picture = np.full((4, 4, 3), 128, np.uint8)
+    quad = Surface(
+        corners,
+        np.tile(np.array([0, 0, 1], np.float32), (4, 1)),
+        np.array([[0, 1, 2], [0, 2, 3]], np.int32),
+        Material(texture=picture),
+        uv=corners[:, :2] / [40, 30],
+    )
+    cut = finely_cut(quad)
+    assert len(quad.faces) < len(cut.faces) <= 4 * MAX_PIECES
+    assert cut.area_m2 == pytest.approx(1200.0, rel=1e-4)
+    assert (vertex_colours(cut)[:, 3] == 255).all()

@@ -1,0 +1,169 @@
+"""Files of other programs as scenes of objects."""
+
+from __future__ import annotations
+
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from PIL import Image
+
+from diorama_core.errors import InputError
+from diorama_core.export import export_scene
+from diorama_core.importing.foreign import open_foreign, take_missing_shapes
+from diorama_core.importing.opening import marked_file, open_marked
+from diorama_core.library.ingest.known_shapes import KnownShapes, known_shapes
+from diorama_core.library.store import CombinedLibrary, StoredLibrary
+from diorama_core.progress import Progress
+from diorama_core.scene.support import check_scene
+from diorama_core.scene.types import Scene
+from tests.importing.test_gltf import LIBRARY, edit, edited_room
+from tests.primitives import furnished_room
+
+
+@pytest.fixture(scope="module")
+def known(tmp_path_factory: pytest.TempPathFactory) -> KnownShapes:
+    return known_shapes(tmp_path_factory.mktemp("known"), library=LIBRARY)
+
+
+def opened(path: Path, known: KnownShapes, folder: Path):
+    return open_foreign(path, StoredLibrary(folder / "models", create=True), Progress(), known)
+
+
+def unmarked(tmp_path: Path, scene: Scene) -> Path:
+    path = tmp_path / "foreign.glb"
+    export_scene(scene, LIBRARY, path, "glb")
+    edit(path, lambda document: [n.pop("extras", None) for n in document["nodes"]])
+    return path
+
+
+def test_a_foreign_glb_becomes_objects_in_a_room(tmp_path, known: KnownShapes) -> None:
+    scene = furnished_room(LIBRARY)
+    path = unmarked(tmp_path, scene)
+    assert marked_file(path) is None
+    found = opened(path, known, tmp_path).scene
+    check_scene(found)
+    assert {p.role for p in found.architecture.planes} == {"floor", "ceiling", "wall"}
+    assert len(found.architecture.by_role("wall")) == 4
+    for item in scene.objects:
+        mine = next(o for o in found.objects if o.label.startswith(f"{item.label} ({item.id})"))
+        for k in (np.min, np.max):
+            np.testing.assert_allclose(k(mine.corners_world, axis=0), k(item.corners_world, axis=0), atol=1e-3)
+    ball = next(o for o in found.objects if "ball" in o.label)
+    edge = found.support_of(ball.id)
+    assert edge is not None
+    assert "table" in found.object(edge.parent).label
+    chair = found.support_of(next(o for o in found.objects if "chair (c1)" in o.label).id)
+    assert chair is not None
+    assert chair.parent == "floor"
+
+
+def test_copies_share_a_shape(tmp_path, known: KnownShapes) -> None:
+    stool = trimesh.Scene({"seat": trimesh.creation.box((0.4, 0.3, 0.5))})
+    scene = trimesh.Scene()
+    for number, (x, turn) in enumerate(((0.0, 0.0), (1.5, 0.9), (3.0, 2.0))):
+        T = trimesh.transformations.rotation_matrix(turn, (0, 1, 0))
+        T[:3, 3] = [x, 0.25, 0.0]
+        scene.add_geometry(stool.geometry["seat"], node_name=f"stool {number}", geom_name="seat", transform=T)
+    (tmp_path / "stools.glb").write_bytes(scene.export(file_type="glb"))
+    result = opened(tmp_path / "stools.glb", known, tmp_path)
+    assert len(result.scene.objects) == 3
+    assert len({o.shape_id for o in result.scene.objects}) == 1
+    assert result.changes == ("the file has no floor: there is one under the lowest object",)
+    floor = result.scene.architecture.floor
+    assert floor is not None
+    assert floor.centre[2] == pytest.approx(0.1, abs=1e-6)
+    turned = sorted(float(o.pose.yaw_rad) for o in result.scene.objects)
+    assert turned[1] - turned[0] == pytest.approx(0.9, abs=1e-3) or turned[2] - turned[1] == pytest.approx(
+        0.9, abs=1e-3
+    )
+
+
+def test_a_file_in_centimetres_is_brought_to_size(tmp_path, known: KnownShapes) -> None:
+    box = trimesh.creation.box((120.0, 75.0, 60.0))
+    far = trimesh.creation.box((50.0, 90.0, 50.0), trimesh.transformations.translation_matrix((300.0, 0, 0)))
+    (tmp_path / "cm.glb").write_bytes(trimesh.Scene({"desk": box, "chair": far}).export(file_type="glb"))
+    found = opened(tmp_path / "cm.glb", known, tmp_path).scene
+    assert sorted(round(float(o.size_m.max()), 3) for o in found.objects) == [0.9, 1.2]
+
+
+def test_sweet_home_there_and_back(tmp_path, known: KnownShapes) -> None:
+    scene = furnished_room(LIBRARY)
+    export_scene(scene, LIBRARY, tmp_path / "home.sh3d", "sh3d")
+    found = opened(tmp_path / "home.sh3d", known, tmp_path).scene
+    assert len(found.objects) == len(scene.objects)
+    for item in scene.objects:
+        mine = next(o for o in found.objects if np.allclose(o.pose.position, item.pose.position, atol=1e-3))
+        for k in (np.min, np.max):
+            np.testing.assert_allclose(k(mine.corners_world, axis=0), k(item.corners_world, axis=0), atol=1e-3)
+    assert len(found.architecture.by_role("wall")) == 4
+    for wall in scene.architecture.by_role("wall"):
+        offsets = [w.offset for w in found.architecture.by_role("wall") if w.normal @ wall.normal > 0.999]
+        assert offsets == [pytest.approx(wall.offset, abs=1e-3)]
+
+
+def test_broken_homes_are_one_clear_line(tmp_path, known: KnownShapes) -> None:
+    path = tmp_path / "home.sh3d"
+    path.write_bytes(b"no zip")
+    with pytest.raises(InputError, match=r"home\.sh3d"):
+        opened(path, known, tmp_path)
+    for text, reason in (("<home", "damaged"), ("<!DOCTYPE h [<!ENTITY a 'b'>]><home/>", "entities")):
+        with zipfile.ZipFile(path, "w") as archive:
+            archive.writestr("Home.xml", text)
+        with pytest.raises(InputError, match=reason):
+            opened(path, known, tmp_path)
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("Home", "java")
+    with pytest.raises(InputError, match=r"Home\.xml"):
+        opened(path, known, tmp_path)
+
+
+def test_foreign_usd(tmp_path, known: KnownShapes) -> None:
+    pytest.importorskip("pxr", reason="needs the extra [usd]")
+    from pxr import Gf, Usd, UsdGeom
+
+    stage = Usd.Stage.CreateNew(str(tmp_path / "props.usda"))
+    UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
+    UsdGeom.SetStageMetersPerUnit(stage, 0.01)
+    stage.SetDefaultPrim(UsdGeom.Xform.Define(stage, "/World").GetPrim())
+    box = trimesh.creation.box((60.0, 80.0, 40.0))
+    for name, x in (("cabinet", 0.0), ("crate", 200.0)):
+        xform = UsdGeom.Xform.Define(stage, f"/World/{name}")
+        xform.AddTranslateOp().Set(Gf.Vec3d(x, 40.0, 0.0))
+        mesh = UsdGeom.Mesh.Define(stage, f"/World/{name}/mesh")
+        mesh.CreatePointsAttr(box.vertices.tolist())
+        mesh.CreateFaceVertexCountsAttr([3] * len(box.faces))
+        mesh.CreateFaceVertexIndicesAttr(box.faces.reshape(-1).tolist())
+    stage.Save()
+    found = opened(tmp_path / "props.usda", known, tmp_path).scene
+    assert sorted(np.round(o.size_m[2], 3) for o in found.objects) == [0.8, 0.8]
+    assert sorted(round(float(o.pose.position[0]), 3) for o in found.objects) == [0.0, 2.0]
+
+
+def test_shapes_that_no_library_has_come_out_of_the_file(tmp_path, known: KnownShapes) -> None:
+    scene = edited_room()
+    path = tmp_path / "room.glb"
+    export_scene(scene, LIBRARY, path, "glb")
+    marked = marked_file(path)
+    assert marked is not None
+    found = open_marked(marked).scene
+    sink = StoredLibrary(tmp_path / "models", create=True)
+    take_missing_shapes(path, marked, found, {"table", "ball"}, sink, Progress(), known)
+    library = CombinedLibrary([sink])
+    for shape_id in ("table", "ball"):
+        np.testing.assert_allclose(library.shape(shape_id).size_m, LIBRARY.shape(shape_id).size_m, atol=1e-4)
+        np.testing.assert_allclose(library.mesh(shape_id).bounds, LIBRARY.mesh(shape_id).bounds, atol=1e-4)
+    lost = replace(scene.object("c1"), shape_id="gone")
+    with pytest.raises(InputError, match="gone"):
+        take_missing_shapes(path, marked, Scene(objects=(lost,)), {"gone"}, sink, Progress(), known)
+
+
+def test_files_that_are_no_scene(tmp_path) -> None:
+    Image.new("RGB", (4, 4)).save(tmp_path / "photo.png")
+    with pytest.raises(InputError, match=r"\.glb"):
+        marked_file(tmp_path / "photo.png")
+    with pytest.raises(InputError, match="does not exist"):
+        marked_file(tmp_path / "missing.glb")

@@ -1,0 +1,77 @@
+"""Scenes that come back from USD files."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diorama_core.errors import InputError
+from diorama_core.export import export_scene
+from diorama_core.importing.restore import restored
+from diorama_core.importing.usd import read_marked_usd
+from tests.importing.test_gltf import LIBRARY, edited_room
+from tests.primitives import furnished_room
+
+pxr = pytest.importorskip("pxr", reason="needs the extra [usd]")
+
+
+def back(path):
+    marked = read_marked_usd(path)
+    assert marked is not None
+    return restored(marked)
+
+
+@pytest.mark.parametrize("kind", ["usda", "usdc", "usdz"])
+def test_an_untouched_file_gives_the_same_scene(tmp_path, kind: str) -> None:
+    scene = edited_room()
+    export_scene(scene, LIBRARY, tmp_path / f"room.{kind}", kind)
+    found = back(tmp_path / f"room.{kind}")
+    assert found.changes == ()
+    assert found.scene == scene
+
+
+def test_moved_and_deleted_prims(tmp_path) -> None:
+    from pxr import Gf, Usd, UsdGeom
+
+    scene = furnished_room(LIBRARY)
+    path = tmp_path / "room.usda"
+    export_scene(scene, LIBRARY, path, "usda")
+    stage = Usd.Stage.Open(str(path))
+    ops = UsdGeom.Xformable(stage.GetPrimAtPath("/Scene/Objects/c1")).GetOrderedXformOps()
+    next(o for o in ops if o.GetOpName() == "xformOp:translate").Set(Gf.Vec3d(0.0, 1.5, 0.45))
+    stage.RemovePrim("/Scene/Objects/c2")
+    stage.Save()
+    found = back(path).scene
+    np.testing.assert_allclose(found.object("c1").pose.position, [0.0, 1.5, 0.45], atol=1e-6)
+    assert not found.has_object("c2")
+    assert found.object("b") == scene.object("b")
+
+
+def test_another_unit_and_up_axis(tmp_path) -> None:
+    """A stage in centimetres with +Y up, as other programs write it, gives the same places."""
+    from pxr import Gf, Usd, UsdGeom
+
+    scene = furnished_room(LIBRARY)
+    path = tmp_path / "room.usda"
+    export_scene(scene, LIBRARY, path, "usda")
+    stage = Usd.Stage.Open(str(path))
+    UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
+    UsdGeom.SetStageMetersPerUnit(stage, 0.01)
+    root = UsdGeom.Xformable(stage.GetDefaultPrim())
+    root.AddTransformOp().Set(Gf.Matrix4d(100, 0, 0, 0, 0, 0, -100, 0, 0, 100, 0, 0, 0, 0, 0, 1))
+    stage.Save()
+    found = back(path)
+    assert found.changes == ()
+    assert found.scene == scene
+
+
+def test_foreign_and_broken_files(tmp_path) -> None:
+    from pxr import Usd, UsdGeom
+
+    stage = Usd.Stage.CreateNew(str(tmp_path / "foreign.usda"))
+    stage.SetDefaultPrim(UsdGeom.Xform.Define(stage, "/World").GetPrim())
+    stage.Save()
+    assert read_marked_usd(tmp_path / "foreign.usda") is None
+    (tmp_path / "broken.usda").write_text("no usd")
+    with pytest.raises(InputError, match=r"broken\.usda"):
+        read_marked_usd(tmp_path / "broken.usda")
