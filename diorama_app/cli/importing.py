@@ -26,7 +26,7 @@ def add_import(commands: Any) -> None:
 
 
 def _import(a: argparse.Namespace) -> None:
-    from diorama_app.scene_import import import_scene
+    from diorama_core.importing.scene_import import import_scene
     from diorama_core.project.storage import Project
 
     if (a.output / "scene.json").exists():

@@ -122,7 +122,7 @@ def slab_pieces(plane: Plane) -> tuple[Points, ...]:
     import manifold3d
 
     depth = -plane.normal * max(plane.thickness, MIN_SLAB_M)
-    flat = plane.polygon @ np.stack(plane_axes(plane), axis=1)
+    flat = plane.polygon @ np.stack(plane_axes(plane.normal), axis=1)
     if _is_convex(flat):
         return (np.vstack([plane.polygon, plane.polygon + depth]),)
     triangles = np.asarray(manifold3d.triangulate([flat]), dtype=int)

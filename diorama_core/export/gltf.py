@@ -169,15 +169,15 @@ class _Builder:
         return self._document.add("nodes", node)
 
     def _extras(self, item: ExportObject) -> dict[str, Any]:
-        item, support = item.item, item.support
+        obj, support = item.item, item.support
         extras: dict[str, Any] = {
-            "id": item.id,
-            "label": item.label,
-            "category": item.category,
-            "shape": item.shape_id,
-            "size_m": [float(v) for v in item.size_m],
-            "confidence": item.confidence,
-            "locked": item.locked,
+            "id": obj.id,
+            "label": obj.label,
+            "category": obj.category,
+            "shape": obj.shape_id,
+            "size_m": [float(v) for v in obj.size_m],
+            "confidence": obj.confidence,
+            "locked": obj.locked,
         }
         if support is not None:
             extras["support"] = {
@@ -185,9 +185,9 @@ class _Builder:
                 "relation": support.relation,
                 "against": [*support.adheres_to],
             }
-        if item.candidates:
-            extras["candidates"] = [{"shape": c.shape_id, "score": c.score} for c in item.candidates]
-        extras["diorama"] = json.dumps(self._entries[item.id], ensure_ascii=False)
+        if obj.candidates:
+            extras["candidates"] = [{"shape": c.shape_id, "score": c.score} for c in obj.candidates]
+        extras["diorama"] = json.dumps(self._entries[obj.id], ensure_ascii=False)
         return extras
 
     def _light(self, item: ExportObject, light: ExportLight) -> int:

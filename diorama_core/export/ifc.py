@@ -16,8 +16,9 @@ from jaxtyping import Float
 from diorama_core.export.files import whole_file
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene
 from diorama_core.export.wall_lines import Opening, WallLine, wall_lines
+from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
 from diorama_core.progress import Progress
-from diorama_core.render.appearance import Material, linear_to_srgb, srgb_to_linear
+from diorama_core.render.appearance import Material
 from diorama_core.scene.types import Plane
 
 CLASSES = {

@@ -28,8 +28,9 @@ from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene,
 from diorama_core.export.lights import ExportLight
 from diorama_core.export.physics import FLOOR_FRICTION
 from diorama_core.export.wavefront import obj_text, png_bytes
+from diorama_core.io.srgb import linear_to_srgb
 from diorama_core.progress import Progress
-from diorama_core.render.appearance import Material, linear_to_srgb
+from diorama_core.render.appearance import Material
 from diorama_core.scene.types import Camera
 
 _CAMERA_AXES = np.diag([1.0, -1.0, -1.0])

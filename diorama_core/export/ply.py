@@ -17,8 +17,9 @@ from jaxtyping import Float32, UInt8
 from diorama_core.export.files import whole_file
 from diorama_core.export.gathering import ExportScene
 from diorama_core.export.world_meshes import world_meshes
+from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
 from diorama_core.progress import Progress
-from diorama_core.render.appearance import Surface, linear_to_srgb, srgb_to_linear
+from diorama_core.render.appearance import Surface
 
 PICTURE_EDGE_M = 0.05
 """Longest edge of triangles that carry a picture."""

@@ -22,8 +22,9 @@ from diorama_core.export.obj import encoded_picture, material_text
 from diorama_core.export.scene_state import R_SHAPE_FILE
 from diorama_core.export.text import index_rows, number_rows
 from diorama_core.export.wall_lines import OPENING_CATEGORIES, WallLine, wall_lines
+from diorama_core.io.srgb import linear_to_srgb
 from diorama_core.progress import Progress
-from diorama_core.render.appearance import Material, linear_to_srgb
+from diorama_core.render.appearance import Material
 from diorama_core.scene.types import Camera
 
 CM_PER_M = 100.0

@@ -8,7 +8,8 @@ import numpy as np
 from jaxtyping import Float, Int, UInt8
 from PIL import Image
 
-from diorama_core.render.appearance import Material, Surface, linear_to_srgb
+from diorama_core.io.srgb import linear_to_srgb
+from diorama_core.render.appearance import Material, Surface
 
 
 def obj_text(surface: Surface, material: str | None = None) -> str:

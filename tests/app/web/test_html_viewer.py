@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from diorama_app.html_viewer import write_html
+from diorama_app.web.html_viewer import write_html
 from diorama_core.errors import Cancelled
 from diorama_core.export.gathering import gather
 from diorama_core.progress import CancelToken, Progress

@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from diorama_app.projects.report import library_named
 from diorama_core.errors import LibraryError
 from diorama_core.importing.foreign import open_foreign, take_missing_shapes
 from diorama_core.importing.opening import Opened, marked_file, open_marked
-from diorama_core.library.store import create_library, stored_libraries
+from diorama_core.library.store import create_library, open_library, stored_libraries
 from diorama_core.library.user_library import OWN
 from diorama_core.progress import Progress
 
@@ -40,11 +39,11 @@ def import_scene(path: Path, *, library_name: str | None = None, progress: Progr
     marked = marked_file(path)
     if marked is None:
         name = library_name or "built-in"
-        library_named(name)
+        open_library(name)
         return Imported(open_foreign(path, create_library(OWN), progress), _with_own(name))
     opened = open_marked(marked)
     name = library_name or _known(str(marked.provenance.get("library", "built-in")))
-    library = library_named(_with_own(name) if OWN in stored_libraries() else name)
+    library = open_library(_with_own(name) if OWN in stored_libraries() else name)
     known = {s.id for s in library.shapes()}
     missing = {o.shape_id for o in opened.scene.objects} - known
     if not missing:
@@ -60,7 +59,7 @@ def _with_own(name: str) -> str:
 def _known(name: str) -> str:
     """The library of that name where this machine has it; otherwise the built-in one, and shapes come from the file."""
     try:
-        library_named(name)
+        open_library(name)
     except LibraryError:
         return "built-in"
     return name
