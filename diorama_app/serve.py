@@ -1,21 +1,29 @@
-"""The editor's server: start it, stop it."""
+"""The editor's server: start it, stop it.
+
+The port opens first: while a browser fetches the page, the editor and the library are imported.
+"""
 
 from __future__ import annotations
 
 import signal
 import threading
 import webbrowser
+from concurrent.futures import Future
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import viser
 
-from diorama_app.app import Editor
+import diorama_core as diorama
 from diorama_app.session.preload import warm_up
-from diorama_app.session.session import EditorSession
 from diorama_app.web.viser_adapter import ANY_HOST, Visitors, create_server, stop_server
-from diorama_core.library.record import ShapeLibrary
 from diorama_core.project.storage import Project
+
+if TYPE_CHECKING:
+    from diorama_app.app import Editor
+    from diorama_app.session.session import EditorSession
+    from diorama_core.library.record import ShapeLibrary
 
 
 @dataclass(frozen=True)
@@ -54,7 +62,7 @@ def start(
     port: int = 0,
     low_graphics: bool = False,
     token: str | None = None,
-    library: ShapeLibrary | None = None,
+    library: str | ShapeLibrary = "built-in",
 ) -> Running:
     """Start the editor in the background.
 
@@ -65,16 +73,13 @@ def start(
         port: 0 lets the system choose.
         low_graphics: no shadows, no environment map.
         token: when set, visitors must bring it.
-        library: where shapes come from; the built-in one when None.
+        library: where shapes come from, or its name.
 
     Raises:
         InputError: the port is taken.
+        LibraryError: there is no library of that name.
         ProjectError, SceneError: the project cannot be opened.
     """
-    if library is None:
-        from diorama_core.library.catalogue import built_in_library
-
-        library = built_in_library()
     opened = None if project is None else Project.open(project)
     made: list[Editor] = []
 
@@ -82,15 +87,26 @@ def start(
         for editor in made:
             editor.refuse_upload(client_id, name, size)
 
+    def picture(name: str) -> Future[bytes | None]:
+        if made:
+            return made[0].session.thumbnails.png(name)
+        none_yet: Future[bytes | None] = Future()  # a page of an earlier server asks before the editor is there
+        none_yet.set_result(None)
+        return none_yet
+
     server = create_server(
         host=host,
         port=port,
         label="Diorama",
         visitors=Visitors(host, token),
         too_large=too_large,
-        pictures=lambda name: made[0].session.thumbnails.png(name),
+        pictures=picture,
     )
     try:
+        from diorama_app.app import Editor
+
+        if isinstance(library, str):
+            library = diorama.open_library(library)
         editor = Editor(server, library, projects_dir, low_graphics=low_graphics)
         made.append(editor)
         editor.open_first(opened)
@@ -113,7 +129,7 @@ def serve(
     open_browser: bool,
     low_graphics: bool,
     token: str | None,
-    library: ShapeLibrary | None = None,
+    library: str | ShapeLibrary = "built-in",
 ) -> None:
     """Run the editor until Ctrl+C."""
     running = start(

@@ -1,47 +1,44 @@
-"""Replace one stage of the pipeline by your own: here, a camera that is simply held level at a known field of view.
+"""Replace one stage of the pipeline by your own: here, a camera that stands level and looks straight into the room.
 
-python examples/own_stage.py room.jpg boxes.json level-room
+A stage is an object with one method, described in `diorama_core/protocols.py`. This one asks the stage that it replaces
+and changes the answer. Its settings are frozen fields, because results are cached under its `repr`.
+
+    python examples/02_replace_one_stage.py room.jpg boxes.json level-room
 """
 
 from __future__ import annotations
 
 import sys
 from dataclasses import dataclass, replace
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from diorama_core.artefacts import CameraEstimate, CameraHypothesis, Inputs
-from diorama_core.library.catalogue import built_in_library
-from diorama_core.perception.inputs import read_inputs
-from diorama_core.pipeline.stages import embedded_stages
-from diorama_core.progress import Progress
-from diorama_core.project.build import build_project
-from diorama_core.project.storage import Project
-from diorama_core.scene.types import Intrinsics
+import diorama_core as diorama
 
 
 @dataclass(frozen=True)
 class LevelCamera:
-    """A camera on a tripod: level, straight into the room."""
+    """The intrinsics of another camera stage, on a level tripod."""
 
-    horizontal_fov_deg: float = 60.0
+    other: Any
 
-    def estimate(self, inputs: Inputs, progress: Progress) -> CameraEstimate:
-        photo = inputs.photo
-        k = inputs.intrinsics or Intrinsics.from_fov(photo.width, photo.height, np.radians(self.horizontal_fov_deg))
-        R_world_camera = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
-        return CameraEstimate((CameraHypothesis(k, R_world_camera, 1.0),), confidence=0.5, source="assumed level")
+    def estimate(self, inputs: Any, progress: Any) -> Any:
+        found = self.other.estimate(inputs, progress)
+        # Columns are the camera's axes in the world: x right, y down, z forward along the room's +Y.
+        R_world_camera = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+        level = replace(found.best, R_world_camera=R_world_camera)
+        return replace(found, hypotheses=(level,), source="assumed level")
 
 
-def main() -> None:
-    image, boxes, folder = (Path(argument) for argument in sys.argv[1:4])
-    read = read_inputs(image, boxes=boxes)
-    library = built_in_library()
-    stages = replace(embedded_stages(read.inputs, library), camera=LevelCamera())
-    built = build_project(Project.create(folder), read.inputs, library, stages=stages)
-    print(f"{folder}: {len(built.scene.objects)} objects; camera {built.camera.source}")
+def with_level_camera(stages: diorama.Stages) -> diorama.Stages:
+    return replace(stages, camera=LevelCamera(stages.camera))
+
+
+def main(photo: str, boxes: str, folder: str) -> None:
+    room = diorama.build(photo, boxes=boxes, stages=with_level_camera, output=folder)
+    print(f"{folder}: {len(room.scene.objects)} objects; camera {room.built.camera.source}")
 
 
 if __name__ == "__main__":
-    main()
+    main(*sys.argv[1:4])

@@ -55,7 +55,7 @@ def _serve(a: argparse.Namespace) -> None:
         name = "built-in" if a.project is None else Project.open(a.project).library_name
     serve(
         project=a.project,
-        library=diorama.open_library(name),
+        library=name,
         projects_dir=a.projects or Path.home() / "Diorama",
         host=a.host,
         port=a.port,

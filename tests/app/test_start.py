@@ -6,29 +6,72 @@ import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
 
 import pytest
 
 from diorama_app.session import preload as warming
 from diorama_core.library.ingest import known_shapes
 
-HEAVY = (
+NEVER_AT_START = (
     "torch",
     "sklearn",
     "open3d",
     "cv2",
     "onnxruntime",
     "openai",
+    "huggingface_hub",
+    "tokenizers",
     "diorama_core.pipeline.run",
     "diorama_core.pipeline.presets",
     "diorama_core.evaluation",
 )
+NOT_BEFORE_LISTENING = (*NEVER_AT_START, "trimesh", "scipy", "fcl", "manifold3d", "networkx", "diorama_app.app")
+COMMAND_LINE = (*NOT_BEFORE_LISTENING, "numpy", "PIL", "pydantic", "viser", "rich")
 
 
-def test_the_server_starts_without_the_pipeline_and_the_networks() -> None:
-    code = f"import sys, diorama_app.serve; print(*[m for m in {HEAVY!r} if m in sys.modules])"
-    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
-    assert loaded == []
+def _loaded(code: str, *arguments: object) -> list[list[str]]:
+    """What each line printed by a fresh interpreter lists."""
+    command = [sys.executable, "-c", code, *map(str, arguments)]
+    return [
+        line.split() for line in subprocess.run(command, capture_output=True, text=True, check=True).stdout.split("\n")
+    ]
+
+
+def test_help_loads_nothing_but_the_command_line() -> None:
+    code = f"""
+import atexit, sys
+atexit.register(lambda: print("heavy:", *[m for m in {COMMAND_LINE!r} if m in sys.modules]))
+from diorama_app.cli import main
+main(["--help"])
+"""
+    assert _loaded(code)[-2] == ["heavy:"]
+
+
+def test_the_port_opens_before_the_editor_loads_and_the_editor_without_the_pipeline(tmp_path: Path) -> None:
+    code = f"""
+import os, socket, sys
+from pathlib import Path
+import diorama_app.serve as serving
+
+create_server = serving.create_server
+def listening(**settings):
+    server = create_server(**settings)
+    socket.create_connection(("127.0.0.1", server.get_port()), timeout=10).close()
+    print(*[m for m in {NOT_BEFORE_LISTENING!r} if m in sys.modules])
+    return server
+
+serving.create_server = listening
+running = serving.start(projects_dir=Path(sys.argv[1]))
+print(*[m for m in {NEVER_AT_START!r} if m in sys.modules])
+print(len(running.session.scene.objects), flush=True)
+running.stop()
+os._exit(0)
+"""
+    before_listening, at_start, objects = _loaded(code, tmp_path)[:3]
+    assert before_listening == []
+    assert at_start == []
+    assert int(objects[0]) > 0
 
 
 def test_open3d_loads_while_other_threads_load_modules() -> None:
