@@ -45,7 +45,6 @@ from diorama_app.session.client import Client, Panel
 from diorama_app.session.preferences import Preferences, remembered
 from diorama_app.session.session import EditorSession
 from diorama_app.viewport.client_view import set_theme
-from diorama_app.web.viser_adapter import MAX_UPLOAD_BYTES
 from diorama_core.editing.collisions import Collisions
 from diorama_core.errors import DioramaError
 from diorama_core.library.record import ShapeLibrary
@@ -131,13 +130,11 @@ class Editor:
             log.warning("the example cannot be opened: %s", error)
         session.refresh()
 
-    def refuse_upload(self, client_id: int, name: str, size: int) -> None:
-        """Tell a person that a file was too large. May be called from any thread."""
-        message = (
-            f"{name} has {size / 1e6:.0f} MB; files up to {MAX_UPLOAD_BYTES / 1e6:.0f} MB can be uploaded. "
-            "Make the picture smaller."
+    def refuse_upload(self, client_id: int, line: str) -> None:
+        """Tell a person why a file was not taken. May be called from any thread."""
+        self.session.ui_thread.post(
+            lambda: self.session.notice(client_id, line, "bad"), viser_client=client_id, key="upload refused"
         )
-        self.session.ui_thread.post(lambda: self.session.notice(client_id, message, "bad"))
 
     def close(self) -> None:
         """Save and end everything that runs."""
@@ -212,4 +209,5 @@ class Editor:
             self._gestures.pop(viser_client.client_id, None)
             self.session.left(viser_client)
 
+        self.session.ui_thread.forget(viser_client.client_id)
         self.session.ui_thread.post(leave)

@@ -6,18 +6,20 @@ The port opens first: while a browser fetches the page, the editor and the libra
 from __future__ import annotations
 
 import signal
+import socket
 import threading
 import webbrowser
 from concurrent.futures import Future
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
+from urllib.parse import urlsplit
 
 import viser
 
 import diorama_core as diorama
 from diorama_app.session.preload import warm_up
-from diorama_app.web.viser_adapter import ANY_HOST, Visitors, create_server, stop_server
+from diorama_app.web.viser_adapter import ANY_HOST, Visitors, create_server, stop_server, with_token
 from diorama_core.project.storage import Project
 
 if TYPE_CHECKING:
@@ -72,7 +74,7 @@ def start(
         host: address to listen on; loopback unless asked otherwise.
         port: 0 lets the system choose.
         low_graphics: no shadows, no environment map.
-        token: when set, visitors must bring it.
+        token: visitors must bring it; where other machines can reach the server and none is given, one is made.
         library: where shapes come from, or its name.
 
     Raises:
@@ -83,9 +85,12 @@ def start(
     opened = None if project is None else Project.open(project)
     made: list[Editor] = []
 
-    def too_large(client_id: int, name: str, size: int) -> None:
+    host = host or "0.0.0.0"  # an empty one means every address, on a port for each kind
+    token = with_token(host, token)
+
+    def refused(client_id: int, line: str) -> None:
         for editor in made:
-            editor.refuse_upload(client_id, name, size)
+            editor.refuse_upload(client_id, line)
 
     def picture(name: str) -> Future[bytes | None]:
         if made:
@@ -99,7 +104,7 @@ def start(
         port=port,
         label="Diorama",
         visitors=Visitors(host, token),
-        too_large=too_large,
+        refused=refused,
         pictures=picture,
     )
     try:
@@ -115,7 +120,7 @@ def start(
         raise
     stopped = threading.Event()
     threading.Thread(target=warm_up, args=(stopped,), daemon=True, name="warm up").start()
-    shown_host = "127.0.0.1" if host in ANY_HOST else host
+    shown_host = {"": "127.0.0.1", "0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)
     address = f"http://{f'[{shown_host}]' if ':' in shown_host else shown_host}:{server.get_port()}/"
     return Running(server, editor, address if token is None else f"{address}?token={token}", stopped)
 
@@ -142,6 +147,9 @@ def serve(
         library=library,
     )
     print(f"Diorama is at {running.url} (Ctrl+C stops it)", flush=True)
+    if host in ANY_HOST:
+        there = running.url.replace(urlsplit(running.url).netloc, f"{socket.gethostname()}:{running.port}")
+        print(f"From other machines: {there} (who has this address can change the project)", flush=True)
     if open_browser:
         threading.Thread(target=webbrowser.open, args=(running.url,), daemon=True).start()
     asked = threading.Event()

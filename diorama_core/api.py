@@ -390,6 +390,7 @@ def _built(
     """The scene of `inputs`, built in a project folder or, without one, in memory."""
     from diorama_core.pipeline.run import build_scene
     from diorama_core.project.build import build_project
+    from diorama_core.project.lock import ProjectLock
     from diorama_core.project.storage import Project
 
     project = None
@@ -397,9 +398,10 @@ def _built(
         built = build_scene(inputs, library, stages=stages, progress=progress)
     else:
         project = Project.create(Path(output))
-        if library_name is not None:
-            project.update_info(library=library_name)
-        built = build_project(project, inputs, library, stages=stages, warnings=warnings, progress=progress)
+        with ProjectLock(project.folder, "diorama build"):
+            if library_name is not None:
+                project.update_info(library=library_name)
+            built = build_project(project, inputs, library, stages=stages, warnings=warnings, progress=progress)
     return Reconstruction(
         scene=built.scene,
         library=library,

@@ -187,9 +187,12 @@ def add_optimise(commands: Any) -> None:
 def _optimise(a: argparse.Namespace) -> None:
     from dataclasses import asdict
 
-    with progress_bar() as progress:
-        room = diorama.optimise(diorama.load(a.project), recipe=a.recipe, progress=progress)
-    room.save(a.project)
+    from diorama_core.project.lock import ProjectLock
+
+    room = diorama.load(a.project)
+    with ProjectLock(a.project, "diorama optimise"), progress_bar() as progress:
+        room = diorama.optimise(room, recipe=a.recipe, progress=progress)
+        room.save(a.project)
     report = room.layout
     assert report is not None
     if a.json:

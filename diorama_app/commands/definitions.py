@@ -51,8 +51,11 @@ def build_commands(
     def save(client: Client) -> None:
         if session.project is None:
             raise EditRefused("there is no project open to save")
+        session.need_writable()
         session.autosave.save_soon(session.project, session.scene)
         session.autosave.flush()
+        if session.autosave.trouble:
+            return  # it says so itself
         client.notice(f"Saved in {session.project.name}.", "good")
 
     rows = (

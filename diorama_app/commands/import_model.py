@@ -29,7 +29,7 @@ def import_model(client: Client, name: str, content: bytes) -> None:
         shape_id = _taken_in(user_library, file_name, content, progress)
 
         def show() -> None:
-            if session.project is not None:
+            if session.project is not None and not session.read_only:
                 _note_library(session.project)
             client.toast(f"{file_name} is in the library", False)
             start_placing(client, shape_id)

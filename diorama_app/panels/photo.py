@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -17,6 +18,7 @@ from diorama_app.panels.fields import enable, on_change, on_press, show_if, show
 from diorama_app.reconstruction import build_job as work
 from diorama_app.reconstruction.networks import NO_DETECTOR
 from diorama_app.reconstruction.object_correction import add_from_photo
+from diorama_app.reconstruction.reading import Upload
 from diorama_app.reconstruction.text_to_scene import describe_room, how_pictures_come
 from diorama_app.session.client import Client
 from diorama_app.session.draft import Draft, boxes_json, can_find_furniture
@@ -26,9 +28,11 @@ from diorama_app.web.viser_adapter import component_uuid
 from diorama_core.artefacts import Box
 from diorama_core.errors import InputError
 from diorama_core.library.taxonomy import CATEGORIES
-from diorama_core.perception.inputs import read_inputs
+from diorama_core.perception.inputs import ReadInputs
 
 COMMON = ("chair", "table", "sofa", "armchair", "bed", "desk", "coffee table", "lamp", "cabinet", "bookshelf")
+SLOW_BYTES = 2_000_000
+"""A file of more is announced while it is read."""
 UPLOADS = {"photo": "Photo", "depth": "Depth (PNG, NPY)", "boxes": "Boxes (JSON)", "masks": "Masks (PNG)"}
 
 
@@ -118,9 +122,17 @@ class PhotoPanel:
             raise InputError("upload the photo first, then what goes with it")
         else:
             files = {**draft.files, kind: content}
-        made = self._read(files, Draft(name=name) if kind == "photo" else draft)
-        if kind == "boxes" and made.inputs is not None:
-            made = replace(made, boxes=made.inputs.boxes)
+
+        def take(made: Draft) -> None:
+            if kind == "boxes" and made.inputs is not None:
+                made = replace(made, boxes=made.inputs.boxes)
+            self._taken(kind, name, made)
+
+        self._read(files, Draft(name=name) if kind == "photo" else draft, take)
+        if len(content) > SLOW_BYTES:
+            self._client.notice(f"Reading {name}…")
+
+    def _taken(self, kind: str, name: str, made: Draft) -> None:
         self._session.draft = made
         for warning in made.warnings[:3]:
             self._client.notice(warning)
@@ -130,29 +142,40 @@ class PhotoPanel:
         else:
             self._redraw_boards()
             self._client.notice(f"{UPLOADS[kind]}: {name} is read.", "good")
-        self._session.refresh_panels()
+        self._session.refresh_panels(self._client)
 
-    def _read(self, files: dict[str, bytes], draft: Draft) -> Draft:
+    def _read(self, files: dict[str, bytes], draft: Draft, take: Callable[[Draft], None]) -> None:
+        """Read the files together, beside the desk; then `take` the draft they make."""
         files = dict(files)
         if "photo" not in files:
             files["photo"] = _png(draft)
         if "boxes" not in files and draft.boxes and draft.photo is not None:
             files["boxes"] = boxes_json(draft.boxes, draft.photo)
-        read = read_inputs(
+        before = self._session.draft.inputs
+
+        def done(read: ReadInputs) -> None:
+            if self._session.draft.inputs is not before:
+                raise InputError("the photo or what goes with it was changed meanwhile; upload the file again")
+            take(replace(draft, inputs=read.inputs, warnings=read.warnings, files=files, from_project=False))
+
+        upload = Upload(
             files["photo"],
-            name=draft.name,
+            draft.name,
             depth=files.get("depth"),
             boxes=files.get("boxes"),
             masks=files.get("masks"),
             intrinsics=_intrinsics(self._camera.value),
         )
-        return replace(draft, inputs=read.inputs, warnings=read.warnings, files=files, from_project=False)
+        self._session.reader.read(upload, self._client.id, self._client.post, done)
 
     def _camera_given(self, value: str) -> None:
         def read() -> None:
             if self._session.draft.photo is not None and (not value.strip() or value.count(",") == 3):
-                self._session.draft = self._read(self._session.draft.files, self._session.draft)
-                self._session.refresh_panels()
+                self._read(self._session.draft.files, self._session.draft, take)
+
+        def take(made: Draft) -> None:
+            self._session.draft = made
+            self._session.refresh_panels(self._client)
 
         self._client.post(read, key="camera")
 

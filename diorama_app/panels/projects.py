@@ -18,10 +18,13 @@ from diorama_app.reconstruction import build_job as work
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_app.web.html import Action, LiveHtml, button, text
-from diorama_core.errors import EditRefused
+from diorama_core.errors import EditRefused, ProjectError
+from diorama_core.io.bounded import read_picture
+from diorama_core.project.lock import ProjectLock
 from diorama_core.project.storage import Project
 
 RECENT = 12
+PICTURE_SIZE = (96, 72)
 COPY = (
     '<svg width="14" height="14" viewBox="0 0 24 24" fill="none" stroke="currentColor" stroke-width="2" '
     'style="display:block"><rect x="8" y="8" width="12" height="12" rx="2"/><path d="M16 4H6a2 2 0 0 0-2 2v10"/></svg>'
@@ -70,7 +73,7 @@ class Projects:
             versions = f"<details><summary class='dim'>Earlier versions</summary>{earlier}</details>" if earlier else ""
             self._status.show(
                 f'<input data-change="rename" value="{name}" aria-label="Project name" title="Type to rename">'
-                f"<p class='dim' style='margin-top:4px'>Every change is saved as you make it.</p>{versions}"
+                f"<p class='dim' style='margin-top:4px'>{text(_what_becomes_of_changes(session))}</p>{versions}"
             )
         notes = "".join(f"<p>{text(note[:1].upper() + note[1:])}.</p>" for note in session.notes[:6])
         self._notes.show(f'<h4>How this scene was made</h4><div class="card">{notes}</div>' if notes else "")
@@ -115,6 +118,7 @@ class Projects:
     def _do(self, action: Action) -> None:
         client, session = self._client, self._client.session
         if action.do == "rename" and session.project is not None:
+            session.need_writable()
             project_care.rename_project(session.project, action.pair[1])
             client.toast(f"This project is now called {session.project.name}", False)
         elif action.do == "version" and session.project is not None:
@@ -149,12 +153,19 @@ class Projects:
         elif do == "bin":
             if _is_open(session, folder):
                 raise EditRefused("that project is open; open another one first")
+            ProjectLock(folder).release()  # refused while another program has it open
             session.binned = project_care.to_bin(folder, session.projects_dir)
         else:
             if session.jobs.status is not None:
                 raise EditRefused(f"{session.jobs.status.title} is still running; cancel it or wait")
             session.open_project(Project.open(folder))
             session.notice_all(f"Opened {session.project.name if session.project else ''}.", "good")
+
+
+def _what_becomes_of_changes(session: EditorSession) -> str:
+    if session.read_only:
+        return "This project can only be looked at here."
+    return "Changes cannot be saved just now." if session.autosave.trouble else "Every change is saved as you make it."
 
 
 def _binned_row(place: Path) -> str:
@@ -168,11 +179,12 @@ def _is_open(session: EditorSession, folder: Path) -> bool:
 
 def _small_picture(path: Path) -> str:
     try:
-        with Image.open(path) as image:
-            image.thumbnail((96, 72))
-            buffer = io.BytesIO()
-            image.convert("RGB").save(buffer, "JPEG", quality=75)
-    except OSError:
-        return ""
+        picture = read_picture(path, ProjectError, most_pixels=8_000_000, within=PICTURE_SIZE)
+    except ProjectError:
+        return ""  # the project itself says what is wrong when it is opened
+    image = Image.fromarray(picture)
+    image.thumbnail(PICTURE_SIZE)
+    buffer = io.BytesIO()
+    image.save(buffer, "JPEG", quality=75)
     uri = base64.b64encode(buffer.getvalue()).decode()
     return f'<img alt="" class="small" src="data:image/jpeg;base64,{uri}">'

@@ -1,9 +1,10 @@
-"""Offers what an earlier session could not save, until it is taken or put away."""
+"""What stands between a change and the disk: another program, a full disk, changes that an earlier session lost."""
 
 from __future__ import annotations
 
 import viser
 
+from diorama_app.projects.manage import duplicate_project
 from diorama_app.session.client import Client
 from diorama_app.session.recovery import Unsaved
 from diorama_app.web.html import Action, LiveHtml, button, text
@@ -25,11 +26,24 @@ class UnsavedChanges:
         if session.project is not self._of:
             self._of = session.project
             self._found = None if session.project is None else session.autosave.recovery.left_behind(session.project)
+        self._html.show(self._trouble() + self._offer())
+
+    def _trouble(self) -> str:
+        session = self._client.session
+        if session.read_only:
+            return (
+                f'<div class="card warn">{text(session.read_only)}<div class="bar tight" style="margin:6px 0 0 0">'
+                + button("Work on a copy", "copy", title="A project of its own, as this one is now")
+                + button("Try again", "again", title="When it is closed there")
+                + "</div></div>"
+            )
+        return f'<div class="card warn">{text(session.autosave.trouble)}</div>' if session.autosave.trouble else ""
+
+    def _offer(self) -> str:
         found = self._found
         if found is None or not found.path.exists():
-            self._html.show("")
-            return
-        self._html.show(
+            return ""
+        return (
             f'<div class="card warn">Changes of {text(found.when)} were not saved when Diorama ended.'
             f'<div class="bar tight" style="margin:6px 0 0 0">'
             + button("Restore unsaved changes", "restore", title="One undo step")
@@ -42,6 +56,11 @@ class UnsavedChanges:
 
     def _do(self, what: str) -> None:
         session, found = self._client.session, self._found
+        if what in ("copy", "again") and session.project is not None:
+            copied = what == "copy"
+            folder = session.project.folder
+            session.open_project(duplicate_project(folder, session.projects_dir) if copied else Project.open(folder))
+            return
         if found is None or not found.path.exists():
             return
         if what == "restore" and session.project is not None:

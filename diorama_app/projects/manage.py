@@ -7,8 +7,7 @@ import time
 from pathlib import Path
 
 from diorama_core.errors import DioramaError, ProjectError
-from diorama_core.project.storage import Project
-from diorama_core.scene.schema import scene_from_json
+from diorama_core.project.storage import Project, read_scene
 from diorama_core.scene.types import Scene
 
 BIN = ".bin"
@@ -17,17 +16,22 @@ BIN = ".bin"
 
 def recent_projects(projects_dir: Path) -> list[Path]:
     """Folders of projects that have a scene, last touched first."""
-    if not projects_dir.is_dir():
+    try:
+        folders = [f for f in projects_dir.iterdir() if (f / "project.json").exists() and (f / "scene.json").exists()]
+    except OSError:
         return []
-    folders = [f for f in projects_dir.iterdir() if (f / "project.json").exists() and (f / "scene.json").exists()]
     return sorted(folders, key=touched, reverse=True)
 
 
 def touched(folder: Path) -> float:
     """When the project's scene was last written."""
+    return _written(folder / "scene.json")
+
+
+def _written(path: Path) -> float:
     try:
-        return (folder / "scene.json").stat().st_mtime
-    except OSError:
+        return path.stat().st_mtime
+    except OSError:  # somebody else removed it just now
         return 0.0
 
 
@@ -89,14 +93,12 @@ def out_of_bin(place: Path, projects_dir: Path) -> Path:
 
 def earlier_versions(project: Project, most: int = 6) -> tuple[tuple[str, str], ...]:
     """(file name, when, in words) of kept earlier scenes, newest first."""
-    return tuple(
-        (p.name, time.strftime("%d %b %H:%M", time.localtime(p.stat().st_mtime))) for p in project.backups()[:most]
-    )
+    return tuple((p.name, time.strftime("%d %b %H:%M", time.localtime(_written(p)))) for p in project.backups()[:most])
 
 
 def earlier_scene(project: Project, name: str) -> Scene:
     """One of the kept earlier scenes."""
     for path in project.backups():
         if path.name == name:
-            return scene_from_json(path.read_text())
+            return read_scene(path)
     raise ProjectError("that earlier version is gone; choose another")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +12,7 @@ from diorama_app.session.draft import Draft
 from diorama_app.session.session import EditorSession
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.progress import Progress
+from diorama_core.project.lock import ProjectLock
 from diorama_core.project.storage import Project
 from diorama_core.scene.types import Scene
 
@@ -26,11 +28,13 @@ def build(client: Client) -> None:
             else "nothing is marked in the photo yet; draw a box around each piece of furniture first"
         )
     inputs = draft.to_build()
+    own = draft.from_project and session.project is not None
+    if own:
+        session.need_writable()
 
     def work(progress: Progress) -> None:
         from diorama_core.project.build import build_project
 
-        own = draft.from_project and session.project is not None
         project = (
             session.project
             if own
@@ -38,7 +42,8 @@ def build(client: Client) -> None:
         )
         assert project is not None
         session.autosave.flush()
-        built = build_project(project, inputs, session.library, warnings=draft.warnings, progress=progress)
+        with contextlib.nullcontext() if own else ProjectLock(project.folder, "the editor"):
+            built = build_project(project, inputs, session.library, warnings=draft.warnings, progress=progress)
         client.post(lambda: show_built(session, draft, project, built.scene, own=own))
 
     session.jobs.start("build", "Building the scene", work)

@@ -49,6 +49,7 @@ def rebuild_as_found(client: Client) -> None:
 
 def _rebuild(client: Client, inputs: Inputs) -> None:
     session = client.session
+    session.need_writable()
     project, draft = session.project, session.draft
     if project is None or not draft.from_project:
         raise EditRefused("the open scene was not built from this photo; build it first")

@@ -1,7 +1,8 @@
-"""Autosave: every committed scene is in its project's folder within a second."""
+"""Autosave: every committed scene is in its project's folder within a second, or as soon as that is possible."""
 
 from __future__ import annotations
 
+import logging
 import threading
 import time
 from collections.abc import Callable
@@ -11,46 +12,65 @@ from diorama_core.errors import DioramaError
 from diorama_core.project.storage import Project
 from diorama_core.scene.types import Scene
 
+log = logging.getLogger(__name__)
+
 SETTLE_S = 0.4
 """Quick edits in a row are written once."""
+RETRY_S = 5.0
+"""What could not be saved is tried again so often."""
+
+Told = Callable[[str], None]
 
 
 class Autosave:
     """A thread that writes the newest scene. May be used from any thread."""
 
-    def __init__(self, on_error: Callable[[str], None], recovery: Recovery | None = None) -> None:
+    def __init__(
+        self,
+        on_error: Told,
+        recovery: Recovery | None = None,
+        *,
+        on_saved: Told = lambda message: None,
+        retry_s: float = RETRY_S,
+    ) -> None:
         """Start the thread.
 
         Args:
-            on_error: told in one line why something was not saved.
+            on_error: told in one line why something was not saved, once until it is.
             recovery: where changes lie until they are saved.
+            on_saved: told in one line when something that could not be saved has been.
+            retry_s: how often that is tried.
         """
-        self._on_error = on_error
+        self._on_error, self._on_saved, self._retry_s = on_error, on_saved, retry_s
         self.recovery = recovery or Recovery()
+        self.trouble = ""
+        """Why changes are not saved just now; empty when all is well."""
         self._condition = threading.Condition()
-        self._waiting: tuple[Project, Scene] | None = None
-        self._busy = False
-        self._stopping = False
+        self._writing = threading.RLock()
+        """Held from taking what waits until it is written, so that an older scene never follows a newer one."""
+        self._waiting: dict[Project, Scene] = {}
+        self._new = self._stopping = False
         self.saved_at: float | None = None
         self._thread = threading.Thread(target=self._work, daemon=True, name="autosave")
         self._thread.start()
 
     def save_soon(self, project: Project, scene: Scene) -> None:
-        """Write this scene, unless a newer one comes first."""
+        """Write this scene, unless a newer one of the same project comes first."""
         with self._condition:
-            if self._waiting is not None and self._waiting[0] != project:
-                self._write(*self._waiting)
-            self._waiting = (project, scene)
+            self._waiting[project] = scene
+            self._new = True
             self._condition.notify_all()
 
     def flush(self) -> None:
         """Write what waits, now."""
-        with self._condition:
-            while self._busy:
-                self._condition.wait(0.1)
-            waiting, self._waiting = self._waiting, None
-        if waiting is not None:
-            self._write(*waiting)
+        with self._writing:
+            with self._condition:
+                waiting, self._waiting = self._waiting, {}
+                self._new = False
+            for project, scene in waiting.items():
+                if not self._write(project, scene):
+                    with self._condition:
+                        self._waiting.setdefault(project, scene)
 
     def stop(self) -> None:
         """Write what waits and end the thread."""
@@ -63,31 +83,44 @@ class Autosave:
     def _work(self) -> None:
         while True:
             with self._condition:
-                while self._waiting is None and not self._stopping:
-                    self._condition.wait()
+                self._condition.wait_for(lambda: self._new or self._stopping, self._retry_s if self._waiting else None)
                 if self._stopping:
                     return
-                newest, self._busy = self._waiting, True
-            if newest is not None:
-                self.recovery.note(*newest)
+                self._new = False
+            with self._writing:
+                with self._condition:
+                    newest = dict(self._waiting)
+                for project, scene in newest.items():
+                    self.recovery.note(project, scene)
             with self._condition:
-                self._busy = False
-                self._condition.notify_all()
-            time.sleep(SETTLE_S)
-            with self._condition:
-                waiting, self._waiting = self._waiting, None
-                self._busy = waiting is not None
-            if waiting is not None:
-                self._write(*waiting)
-            with self._condition:
-                self._busy = False
-                self._condition.notify_all()
+                self._condition.wait_for(lambda: self._stopping, SETTLE_S)
+                if self._stopping:
+                    return
+            self.flush()
 
-    def _write(self, project: Project, scene: Scene) -> None:
+    def _write(self, project: Project, scene: Scene) -> bool:
         try:
             project.save_scene(scene)
-            self.saved_at = time.time()
-            self.recovery.forget(project)
-        except DioramaError as error:
-            self.recovery.note(project, scene)
-            self._on_error(f"not saved: {error}; the changes are kept and offered when the project is opened again")
+        except Exception as error:
+            if not isinstance(error, DioramaError):
+                log.exception("the scene of %s cannot be written", project.folder)
+            reason = str(error) if isinstance(error, DioramaError) else f"the scene cannot be written ({error})"
+            self._not_saved(reason, retained=self.recovery.note(project, scene))
+            return False
+        self.saved_at = time.time()
+        self.recovery.forget(project)
+        if self.trouble:
+            self.trouble = ""
+            self._on_saved("All changes are saved now.")
+        return True
+
+    def _not_saved(self, reason: str, *, retained: bool) -> None:
+        fate = (
+            "the changes are kept beside it and saved as soon as that is possible"
+            if retained
+            else "they are only in memory: leave Diorama running, and free space or export the scene"
+        )
+        message = f"not saved: {reason}; {fate}"
+        if message != self.trouble:
+            self.trouble = message
+            self._on_error(message)

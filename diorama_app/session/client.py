@@ -6,6 +6,7 @@ Holds nothing that a reload must not lose.
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Protocol
@@ -15,11 +16,13 @@ import viser
 from diorama_app.session.preferences import Preferences, remember
 from diorama_app.viewport.client_view import ClientView, NoticeKind
 from diorama_app.viewport.decorations import Decorations
-from diorama_core.errors import EditRefused
+from diorama_core.errors import DioramaError, EditRefused
 from diorama_core.scene.types import Camera, Scene, SceneObject
 
 if TYPE_CHECKING:
     from diorama_app.session.session import EditorSession
+
+log = logging.getLogger(__name__)
 
 COLOURS = ((38, 150, 96), (160, 80, 200), (20, 130, 190), (200, 60, 110), (150, 120, 20), (90, 100, 120))
 """Of the others' cursors; one's own selection is orange."""
@@ -66,6 +69,8 @@ class Client:
         self.preferences = Preferences()
         self.doing: Doing = None
         self.panels: list[Panel] = []
+        self.failing: dict[str, str] = {}
+        """Panels whose last redraw failed, and why."""
         self.job_panel: Panel | None = None
         self.curves: Panel | None = None
         """What is redrawn while a layout is optimised."""
@@ -75,6 +80,8 @@ class Client:
         """Closes the dialog that is open over the page, if one is."""
         self.toast: Callable[[str, bool], None] = lambda message, undo: None
         """Shows a line at the foot of the view, with a button that undoes when asked."""
+        self.to_say: tuple[str, bool] | None = None
+        """What is shown there with the next redraw."""
         self.open_tab: Callable[[str], None] = lambda name: None
         """Brings a tab of the panels to the front."""
         self.open_board: Callable[[], None] = lambda: None
@@ -103,7 +110,7 @@ class Client:
         self.selection = tuple(i for i in dict.fromkeys(ids) if self.session.scene.has_object(i))
         if len(self.session.clients) == 1:  # where several work, undo must not select what another one had selected
             self.session.document.note_selection(self.selection)
-        self.session.refresh_cursors()
+        self.session.refresh_cursors(self)
 
     def toggle(self, object_id: str) -> None:
         """Add an object to the selection, or take it out."""
@@ -131,9 +138,24 @@ class Client:
     def refresh(self) -> None:
         """Bring this browser's own marks and panels in line with the document."""
         with self.viser_client.atomic():  # one parcel: every one of them would wake the thread that sends
-            self.show_marks()
+            self._draw("marks", self.show_marks)
+            if self.to_say is not None:
+                (message, undo), self.to_say = self.to_say, None
+                self._draw("toast", lambda: self.toast(message, undo))
             for panel in self.panels:
-                panel.refresh()
+                self._draw(type(panel).__name__, panel.refresh)
+
+    def _draw(self, name: str, draw: Callable[[], None]) -> None:
+        """Draw one part of the page; one that fails says so in a line, once, and the others go on."""
+        try:
+            draw()
+        except Exception as error:
+            log.log(logging.DEBUG if name in self.failing else logging.ERROR, "panel %s", name, exc_info=True)
+            if name not in self.failing:
+                self.failing[name] = str(error) if isinstance(error, DioramaError) else type(error).__name__
+                self.notice(f"the panel {name} could not be drawn ({self.failing[name]}); your work is saved", "bad")
+        else:
+            self.failing.pop(name, None)
 
     def show_marks(self, scene: Scene | None = None) -> None:
         """Outlines, name tags and the others' cursors; around a preview where one is given."""

@@ -6,15 +6,18 @@ Everything here runs on the desk's thread, except where a method says otherwise.
 
 from __future__ import annotations
 
+import logging
 import threading
 import time
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import viser
 from jaxtyping import UInt8
 
+from diorama_app.reconstruction.reading import Reader
 from diorama_app.session.autosave import Autosave
 from diorama_app.session.client import Client
 from diorama_app.session.document import Document
@@ -22,6 +25,7 @@ from diorama_app.session.draft import Draft
 from diorama_app.session.jobs import Jobs, JobStatus, Outcome
 from diorama_app.session.layout_run import LayoutRun
 from diorama_app.session.problem_checker import Checker, Problems
+from diorama_app.session.redraws import Redraws
 from diorama_app.session.shape_preparation import Preparer
 from diorama_app.session.ui_thread import UiThread
 from diorama_app.viewport.client_view import NoticeKind
@@ -31,11 +35,16 @@ from diorama_app.viewport.scene_view import Viewport
 from diorama_app.viewport.thumbnails import Thumbnails
 from diorama_core.artefacts import Inputs, Photo
 from diorama_core.editing.clipboard import Clip
-from diorama_core.errors import DioramaError
+from diorama_core.errors import DioramaError, EditRefused, ProjectError
+from diorama_core.io.bounded import shortened
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.user_library import ShapeRecords
+from diorama_core.project.lock import ProjectLock, ProjectLockedError
 from diorama_core.project.storage import Project
+from diorama_core.scene.schema import check_limits
 from diorama_core.scene.types import Pose, Scene
+
+log = logging.getLogger(__name__)
 
 JOB_TOLD_EVERY_S = 0.15
 MESH_OVERLAP_S = 0.45
@@ -75,10 +84,15 @@ class EditorSession:
         """The last optimisation, as the panels show it."""
         self._job_told_at = 0.0
         self.ui_thread = UiThread(lambda message: self.notice_all(message, "bad"))
+        self.redraws = Redraws(self.ui_thread)
         self.jobs = Jobs(self._job_changed, self._job_ended)
-        self.autosave = Autosave(on_error=lambda message: self.notice_all(message, "bad"))
+        self.autosave = Autosave(on_error=lambda line: self._saver_says(line, "bad"), on_saved=self._saver_says)
+        self._lock: ProjectLock | None = None
+        self.read_only = ""
+        """Why the open project cannot be changed here; empty when it can."""
         self.shapes = ShapeBytes(library, light=low_graphics)
         self.preparer = Preparer(library)
+        self.reader = Reader()
         self.checker = Checker(library, lambda found: self.ui_thread.post(lambda: self._badged(found)))
         self.records = ShapeRecords(library)
         self.thumbnails = Thumbnails(library, self.records)
@@ -115,12 +129,18 @@ class EditorSession:
             inputs: what is said of the photo from now on; as before when None.
         """
         try:
-            scene = self._with_pictures_refitted(change(self.scene))
+            self.need_writable()
+            scene = change(self.scene)
+            check_limits(scene, self.scene)
+            scene = self._with_pictures_refitted(scene)
         except DioramaError:
-            self.refresh()  # fields and gizmo go back to what the document says
+            self.refresh(by)  # fields and gizmo go back to what the document says
             raise
+        except ValueError as error:  # the scene's own values refuse what is no number
+            self.refresh(by)
+            raise EditRefused(f"this cannot be: {shortened(str(error))}; give another value") from error
         if scene == self.scene and inputs is None:
-            self.refresh()
+            self.refresh(by)
             return
         self.commit(label, scene, by=by, selection=selection, merge_key=merge_key, inputs=inputs)
 
@@ -149,39 +169,47 @@ class EditorSession:
         merge_key: str | None = None,
         inputs: Inputs | None = None,
     ) -> None:
-        """Make a whole scene the current state as one undo step, show it and save it."""
+        """Make a whole scene the current state as one undo step, save it and show it."""
+        self.need_writable()
         if by is not None and selection is not None:
             by.selection = tuple(selection)
         chosen = () if by is None else tuple(i for i in by.selection if scene.has_object(i))
         self.document.commit(label, scene, selection=chosen, merge_key=merge_key, inputs=inputs)
-        self.changed()
         for client in self.clients.values():
             who = "" if client is by or by is None else f"{by.name}: "
-            client.toast(f"{who}{label[:1].upper()}{label[1:]}", True)
+            client.to_say = (f"{who}{label[:1].upper()}{label[1:]}", True)
+        self.changed(by)
+
+    def need_writable(self) -> None:
+        """Raise `EditRefused` when the open project cannot be changed here."""
+        if self.read_only:
+            raise EditRefused(self.read_only)
 
     def undo(self, by: Client) -> None:
         """Take back the last change, whoever made it."""
+        self.need_writable()
         undone = self.document.undo()
         self._time_travelled(by, f"Undone: {undone.label}", self.document.history.current.selection)
 
     def redo(self, by: Client) -> None:
         """Do again what was undone."""
+        self.need_writable()
         done = self.document.redo()
         self._time_travelled(by, f"Done again: {done.label}", done.selection)
 
     def _time_travelled(self, by: Client, message: str, selection: tuple[str, ...]) -> None:
         by.selection = selection or by.selection
-        self.changed()
         for client in self.clients.values():
-            client.toast(message, False)
+            client.to_say = (message, False)
+        self.changed(by)
 
-    def changed(self) -> None:
-        """The document changed: show and save it."""
-        self._follow_inputs()
-        self.refresh()
-        self.checker.look_at(self.scene)
+    def changed(self, by: Client | None = None) -> None:
+        """The document changed: save and show it. Nothing that is shown can keep it from being saved."""
         if self.project is not None:
             self.autosave.save_soon(self.project, self.scene)
+        self._follow_inputs()
+        self.refresh(by)
+        self.checker.look_at(self.scene)
 
     def _follow_inputs(self) -> None:
         """What is said of the photo changed: the next build starts from that, in this session and in later ones."""
@@ -205,33 +233,50 @@ class EditorSession:
         """Show poses that are not (yet) part of the document."""
         self.viewport.preview(poses)
 
-    def refresh(self) -> None:
-        """Bring every browser in line with the document."""
-        self.viewport.show(self.scene, self.textures)
+    def refresh(self, by: Client | None = None) -> None:
+        """Bring every browser in line with the document: the scene at once, panels as often as can be followed.
+
+        Args:
+            by: who caused it; sees the panels follow before the others do.
+        """
+        self._draw("the view", lambda: self.viewport.show(self.scene, self.textures))
         self.preparer.want(o.shape_id for o in self.scene.objects)
         for client in self.clients.values():
             client.drop_missing()
-            self._show_photo_camera(client)
-            client.refresh()
+            self._draw("the photo's camera", partial(self._show_photo_camera, client))
+        self.refresh_panels(by)
 
-    def refresh_panels(self) -> None:
+    def refresh_panels(self, by: Client | None = None) -> None:
         """Redraw the panels only."""
-        for client in self.clients.values():
-            client.refresh()
+        self.redraws.ask(self.clients.values(), first=by)
 
-    def refresh_cursors(self) -> None:
+    def refresh_cursors(self, by: Client | None = None) -> None:
         """Redraw what everyone sees of the others' selections."""
-        for client in self.clients.values():
-            client.refresh()
+        self.redraws.ask(self.clients.values(), first=by)
+
+    def _draw(self, what: str, draw: Callable[[], None]) -> None:
+        """Draw a part of the page; an unexpected error costs that part only."""
+        try:
+            draw()
+        except DioramaError as error:
+            self.notice_all(str(error), "bad")
+        except Exception:
+            log.exception("%s cannot be drawn", what)
+            self.notice_all(f"{what} could not be drawn; your work is saved. See the server's log.", "bad")
 
     # -- projects ---------------------------------------------------------------------------------------------
 
     def open_project(self, project: Project) -> None:
-        """Show another project; the one that was open is on disk already. Raises with nothing changed."""
-        scene = project.load_scene()
-        inputs = project.load_inputs()
+        """Show another project; the one that was open is on disk already. Raises with nothing changed.
+
+        One that another program has open is only looked at; of one whose scene is damaged the newest good version
+        is shown, and the page says so.
+        """
+        scene, damage = project.newest_scene()
+        inputs, lost = _photo_of(project)
         textures = project.textures(scene)
         self.autosave.flush()
+        self._take_lock(project)
         self.project, self.textures = project, textures
         self.read_notes()
         self.photo = None if inputs is None else inputs.photo
@@ -245,11 +290,37 @@ class EditorSession:
         self.show_whole_room()
         self.refresh()
         self.checker.look_at(scene)
+        for line in (self.read_only, damage, lost):
+            if line:
+                self.notice_all(line, "bad")
+
+    def _take_lock(self, project: Project) -> None:
+        """Let go of the project that was open, and have this one to oneself if possible."""
+        if self._lock is not None:
+            if self._lock.folder == project.folder:
+                return
+            self._lock.release()
+        self._lock, self.read_only = None, ""
+        try:
+            self._lock = ProjectLock(project.folder, "the editor")
+            self.autosave.recovery.clean_up(project)
+        except ProjectLockedError as error:
+            self.read_only = f"nothing can be changed here: {error}"
+        except (ProjectError, OSError) as error:
+            log.warning("%s is opened without a lock: %s", project.folder, error)  # saving will say what is wrong
+
+    def _saver_says(self, message: str, kind: NoticeKind = "good") -> None:
+        def tell() -> None:
+            self.notice_all(message, kind)
+            self.refresh_panels()
+
+        self.ui_thread.post(tell)
 
     def read_notes(self) -> None:
         """Learn what the project's build had to say."""
         notes = self.project.info().get("notes", []) if self.project is not None else []
-        self.notes = tuple(dict.fromkeys(str(note) for note in notes))
+        listed = notes if isinstance(notes, list) else []
+        self.notes = tuple(dict.fromkeys(shortened(str(note), 300) for note in listed[:50]))
 
     def show_whole_room(self) -> None:
         """New visitors and all who are here look at the whole room."""
@@ -280,6 +351,7 @@ class EditorSession:
     def left(self, viser_client: viser.ClientHandle) -> None:
         """A browser went away."""
         self.clients.pop(viser_client.client_id, None)
+        self.ui_thread.forget(viser_client.client_id)
         self.refresh_cursors()
 
     def notice(self, client_id: int | None, message: str, kind: NoticeKind = "info") -> None:
@@ -294,7 +366,9 @@ class EditorSession:
 
     def post(self, client_id: int | None, task: Callable[[], None], *, key: str | None = None) -> None:
         """Do `task` on the desk for one browser, which is told when it fails. May be called from any thread."""
-        self.ui_thread.post(task, key=key, on_error=lambda message: self.notice(client_id, message, "bad"))
+        self.ui_thread.post(
+            task, key=key, viser_client=client_id, on_error=lambda message: self.notice(client_id, message, "bad")
+        )
 
     def close(self) -> None:
         """Stop jobs, write what is unsaved, end the threads. Called from outside the desk."""
@@ -302,8 +376,11 @@ class EditorSession:
         self.jobs.wait(5.0)
         self.ui_thread.stop()
         self.autosave.stop()
+        if self._lock is not None:
+            self._lock.release()
         self.checker.stop()
         self.preparer.stop()
+        self.reader.close()
         self.thumbnails.stop()
 
     def _show_photo_camera(self, client: Client) -> None:
@@ -350,3 +427,11 @@ class EditorSession:
                 self.notice_all(outcome.error, "bad")
 
         self.ui_thread.post(tell)
+
+
+def _photo_of(project: Project) -> tuple[Inputs | None, str]:
+    """What is known of the photo, and why nothing is where it cannot be read."""
+    try:
+        return project.load_inputs(), ""
+    except ProjectError as error:
+        return None, str(error)

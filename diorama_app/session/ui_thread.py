@@ -1,81 +1,169 @@
-"""One thread on which everything that touches the document and the page happens, in order.
+"""One thread on which everything that touches the document and the page happens.
 
-viser runs callbacks on an event loop (never block it) or unordered in a thread pool; tasks posted here run one
-after another, so edits, undo and drawing never race. Errors meant for people are handled here, once.
+viser runs callbacks on an event loop (never block it) or unordered in a thread pool; tasks posted here run one after
+another, so edits, undo and drawing never race. Every browser has a bounded queue of its own, and the queues take turns:
+one that floods the server waits for itself. Errors meant for people are handled here, once.
 """
 
 from __future__ import annotations
 
+import heapq
 import logging
-import queue
 import threading
-from collections.abc import Callable
-from dataclasses import dataclass
+import time
+from collections import OrderedDict, deque
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass, field
 
 from diorama_core.errors import DioramaError
 
 log = logging.getLogger(__name__)
 
+MAX_WAITING = 64
+"""Tasks of one browser that may wait; what comes on top is left out, and the person is told."""
+
 Task = Callable[[], None]
 OnError = Callable[[str], None]
 
 
-@dataclass(frozen=True)
+@dataclass
 class _Posted:
     task: Task
     on_error: OnError
+    viser_client: Hashable | None
     key: str | None
 
 
+@dataclass(order=True)
+class _Delayed:
+    due: float
+    number: int
+    posted: _Posted = field(compare=False)
+
+
 class UiThread:
-    """A queue of small tasks and the thread that does them."""
+    """Queues of small tasks and the thread that does them. May be used from any thread."""
 
     def __init__(self, on_error: OnError) -> None:
         self._on_error = on_error
-        self._queue: queue.SimpleQueue[_Posted | None] = queue.SimpleQueue()
-        self._latest: dict[str, _Posted] = {}
-        self._lock = threading.Lock()
+        self._changed = threading.Condition()
+        self._queues: OrderedDict[Hashable | None, deque[_Posted]] = OrderedDict()
+        """Of each browser that asked for something, the one whose turn it is first; None is the server's own."""
+        self._keyed: dict[tuple[Hashable | None, str], _Posted] = {}
+        self._delayed: list[_Delayed] = []
+        self._number = 0
+        self._busy = self._stopping = False
         self._thread = threading.Thread(target=self._work, daemon=True, name="desk")
         self._thread.start()
 
-    def post(self, task: Task, *, key: str | None = None, on_error: OnError | None = None) -> None:
-        """Do `task` soon, after those posted before.
+    def post(
+        self,
+        task: Task,
+        *,
+        key: str | None = None,
+        on_error: OnError | None = None,
+        viser_client: Hashable | None = None,
+        after_s: float = 0.0,
+    ) -> None:
+        """Do `task` soon, after those posted before for the same browser.
 
         Args:
             task: quick work; long work belongs in a job.
             key: a newer task with the same key replaces an older one that has not started (a drag's moves).
-            on_error: told in one line what went wrong; the whole room by default.
+            on_error: told in one line what went wrong; everybody by default.
+            client: whose turn it takes; the server's own when None.
+            after_s: how long it waits at least.
         """
-        posted = _Posted(task, on_error or self._on_error, key)
-        if key is not None:
-            with self._lock:
-                waiting = key in self._latest
-                self._latest[key] = posted
-            if waiting:
+        posted = _Posted(task, on_error or self._on_error, viser_client, key)
+        with self._changed:
+            waiting = None if key is None else self._keyed.get((viser_client, key))
+            if waiting is not None:
+                waiting.task, waiting.on_error = task, posted.on_error
                 return
-        self._queue.put(posted)
+            if viser_client is not None and len(self._queues.get(viser_client, ())) >= MAX_WAITING:
+                self._refuse(posted)
+                return
+            if key is not None:
+                self._keyed[(viser_client, key)] = posted
+            if after_s > 0:
+                self._number += 1
+                heapq.heappush(self._delayed, _Delayed(time.monotonic() + after_s, self._number, posted))
+            else:
+                self._enqueue(posted)
+            self._changed.notify_all()
+
+    def forget(self, viser_client: Hashable) -> None:
+        """Drop what waits for a browser that went away."""
+        with self._changed:
+            self._queues.pop(viser_client, None)
+            self._delayed = [d for d in self._delayed if d.posted.viser_client != viser_client]
+            heapq.heapify(self._delayed)
+            for key in [k for k in self._keyed if k[0] == viser_client]:
+                del self._keyed[key]
+            self._changed.notify_all()
+
+    @property
+    def waiting(self) -> int:
+        """How many tasks wait."""
+        with self._changed:
+            return sum(len(q) for q in self._queues.values()) + len(self._delayed)
 
     def wait(self, timeout_s: float = 10.0) -> bool:
-        """Block until everything posted so far is done; False when that took too long."""
-        done = threading.Event()
-        self.post(done.set)
-        return done.wait(timeout_s)
+        """Block until nothing is left to do; False when that took too long."""
+        with self._changed:
+            return self._changed.wait_for(
+                lambda: not (self._busy or self._delayed or any(self._queues.values())), timeout_s
+            )
 
     def stop(self) -> None:
         """Finish what was posted, then end the thread."""
-        self._queue.put(None)
+        with self._changed:
+            self._stopping = True
+            self._changed.notify_all()
         if threading.current_thread() is not self._thread:
             self._thread.join(timeout=5.0)
 
-    def _work(self) -> None:
-        while (posted := self._queue.get()) is not None:
+    def _enqueue(self, posted: _Posted) -> None:
+        self._queues.setdefault(posted.viser_client, deque()).append(posted)
+
+    def _refuse(self, posted: _Posted) -> None:
+        key, told = (None, f"refused {posted.viser_client!r}"), posted.on_error
+        if key in self._keyed:
+            return
+        message = f"the server is busy with your last {MAX_WAITING} actions; what came after them was left out"
+        self._keyed[key] = refusal = _Posted(lambda: told(message), told, None, key[1])
+        self._enqueue(refusal)
+        self._changed.notify_all()
+
+    def _next(self) -> _Posted | None:
+        """The next task, waiting for it; None when the desk is stopped and everything is done."""
+        with self._changed:
+            self._busy = False
+            while True:
+                now = time.monotonic()
+                while self._delayed and (self._delayed[0].due <= now or self._stopping):
+                    self._enqueue(heapq.heappop(self._delayed).posted)
+                viser_client = next((c for c, q in self._queues.items() if q), self)
+                if viser_client is not self:
+                    break
+                self._queues.clear()
+                self._changed.notify_all()
+                if self._stopping:
+                    return None
+                self._changed.wait(self._delayed[0].due - now if self._delayed else None)
+            posted = self._queues[viser_client].popleft()
+            self._queues.move_to_end(viser_client)
             if posted.key is not None:
-                with self._lock:
-                    posted = self._latest.pop(posted.key)
+                self._keyed.pop((posted.viser_client, posted.key), None)
+            self._busy = True
+            return posted
+
+    def _work(self) -> None:
+        while (posted := self._next()) is not None:
             try:
                 posted.task()
             except DioramaError as error:
                 posted.on_error(str(error))
             except Exception:
                 log.exception("an unexpected error in the editor")
-                posted.on_error("Something went wrong and nothing was changed; the details are in the server's log.")
+                posted.on_error("Something went wrong; what was changed before is kept. See the server's log.")

@@ -13,12 +13,16 @@ import gzip
 import hmac
 import http
 import io
+import ipaddress
+import secrets
 import socket
 import threading
+import time
+import weakref
 from collections.abc import Awaitable, Callable, Iterator
 from concurrent.futures import Future
-from dataclasses import dataclass
-from http.cookies import SimpleCookie
+from dataclasses import dataclass, field
+from http.cookies import CookieError, SimpleCookie
 from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
@@ -26,6 +30,7 @@ from urllib.parse import parse_qs, urlsplit
 import viser
 import websockets.asyncio.server
 from viser import _messages
+from viser.infra import _infra
 from websockets.asyncio.server import ServerConnection
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
@@ -37,15 +42,62 @@ LOOPBACK_NAMES = frozenset({"127.0.0.1", "localhost", "::1"})
 ANY_HOST = frozenset({"", "0.0.0.0", "::"})
 MAX_UPLOAD_BYTES = 128 * 1024 * 1024
 MAX_UPLOADS_IN_FLIGHT = 8
+MAX_UPLOADS_PER_CLIENT = 3
+MAX_BYTES_IN_FLIGHT = 2 * MAX_UPLOAD_BYTES
+"""Announced by all uploads that are under way: viser holds them in memory."""
+UPLOAD_STALLED_S = 60.0
+"""An upload of which nothing came for so long is given up when its place is needed."""
+MIN_PART_BYTES = 4096
+"""The page sends parts of half a megabyte; very many small ones are only memory."""
+MESSAGES_PER_S, MESSAGES_AT_ONCE = 300, 600
+"""Of one connection: a drag and a turning camera together send about a hundred a second."""
+MAX_MESSAGE_BYTES = 16 * 1024 * 1024
 
 HEAD_SCRIPTS = sorted((Path(__file__).parents[1] / "static").glob("*.js"))
 """Run in the page before viser does."""
+SECURITY_HEADERS = {
+    # viser's page is one file of inline scripts, starts workers from blobs and compiles WebAssembly and templates.
+    "Content-Security-Policy": "default-src 'none'; script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:; "
+    "style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; font-src 'self' data:; "
+    "connect-src 'self' data: blob:; worker-src 'self' blob:; media-src 'self' data: blob:; manifest-src 'self'; "
+    "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'self'",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Permissions-Policy": "camera=(), geolocation=(), microphone=(), payment=(), usb=()",
+    "Referrer-Policy": "no-referrer",
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "SAMEORIGIN",
+}
 PICTURES = "pictures/"
 """Addresses below this one are pictures."""
 
+
+class _LoopEvent(asyncio.Event):
+    """An event that other threads cannot disturb.
+
+    viser sets it from whatever thread draws, and then asks its loop to set it again. `asyncio.Event` is not made for
+    the first: it walks the list of waiters while the loop changes it. The second is enough.
+    """
+
+    def set(self) -> None:
+        try:
+            asyncio.get_running_loop()
+        except RuntimeError:
+            return
+        super().set()
+
+
+@dataclass
+class _Buffer(_infra.AsyncMessageBuffer):  # type: ignore[misc]
+    message_event: asyncio.Event = field(default_factory=_LoopEvent)
+    flush_event: asyncio.Event = field(default_factory=_LoopEvent)
+
+
+_infra.AsyncMessageBuffer = _Buffer  # each connection makes its own by this name
+
 HttpHandler = Callable[[ServerConnection, Request], Response | None]
 Answer = Callable[[ServerConnection, Request], Response | Awaitable[Response] | None]
-TooLarge = Callable[[int, str, int], None]
+Refused = Callable[[int, str], None]
 Pictures = Callable[[str], "Future[bytes | None]"]
 
 
@@ -59,9 +111,15 @@ class Visitors:
     """When set, the first page load must carry `?token=...`; a cookie remembers it."""
 
     def refusal(self, request: Request) -> str | None:
-        """Why a request is not served, or None when it is."""
+        """Why a request is not served, or None when it is. Headers that make no sense are a reason."""
+        try:
+            return self._refusal(request)
+        except (ValueError, LookupError, CookieError):  # headers given twice, half an IPv6 address, a broken cookie
+            return "the request's headers make no sense"
+
+    def _refusal(self, request: Request) -> str | None:
         host_header = request.headers.get("Host", "")
-        if not self._knows(urlsplit(f"//{host_header}").hostname or ""):
+        if not self._knows((urlsplit(f"//{host_header}").hostname or "").rstrip(".")):
             return "this address is not served here"
         origin = request.headers.get("Origin")
         if origin is not None and urlsplit(origin).netloc != host_header:
@@ -84,7 +142,29 @@ class Visitors:
 
     def _knows(self, name: str) -> bool:
         # A page elsewhere that resolves its own name to this machine (DNS rebinding) sends that name.
-        return self.host in ANY_HOST or name == self.host or (self.host in LOOPBACK_NAMES and name in LOOPBACK_NAMES)
+        if self.host in ANY_HOST:
+            return name in LOOPBACK_NAMES or _is_address(name) or name in own_names()
+        return name == self.host.lower() or (self.host in LOOPBACK_NAMES and name in LOOPBACK_NAMES)
+
+
+def with_token(host: str, token: str | None) -> str | None:
+    """The token that visitors must bring: the one given; where others can reach the server, one is made otherwise."""
+    return token or (None if host in LOOPBACK_NAMES else secrets.token_urlsafe(18))
+
+
+@functools.cache
+def own_names() -> frozenset[str]:
+    """Names by which this machine is known, in small letters."""
+    name = socket.gethostname().lower()
+    return frozenset({name, f"{name}.local", socket.getfqdn().lower()})
+
+
+def _is_address(name: str) -> bool:
+    try:
+        ipaddress.ip_address(name)
+    except ValueError:
+        return False
+    return True
 
 
 def create_server(
@@ -93,7 +173,7 @@ def create_server(
     port: int,
     label: str,
     visitors: Visitors,
-    too_large: TooLarge | None = None,
+    refused: Refused | None = None,
     pictures: Pictures | None = None,
 ) -> viser.ViserServer:
     """A hardened viser server.
@@ -103,7 +183,7 @@ def create_server(
         port: 0 lets the system choose.
         label: shown above the panels.
         visitors: who may talk to it.
-        too_large: told (client id, file name, bytes) of every upload that was refused.
+        refused: told (client id, one line) of every upload that was refused.
         pictures: asked for a PNG when a page wants `pictures/<name>`. The browser fetches what it shows and nothing
             else, beside the websocket on which the scene comes.
 
@@ -114,7 +194,13 @@ def create_server(
     with _guarded_serve(visitors, pictures), contextlib.redirect_stdout(io.StringIO()):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=False)
     server.request_share_url = _no_share_url
-    _cap_uploads(server, too_large)
+    uploads = _Uploads(refused)
+    uploads.watch(server.gui)
+
+    async def watch(viser_client: viser.ClientHandle) -> None:
+        uploads.watch(viser_client.gui)
+
+    server.on_client_connect(watch)  # the first to be told, before anything makes an upload button
     return server
 
 
@@ -163,8 +249,9 @@ def _guarded_serve(visitors: Visitors, pictures: Pictures | None) -> Iterator[No
     original = websockets.asyncio.server.serve
 
     @functools.wraps(original)
-    def serve(*args: Any, process_request: HttpHandler | None = None, **kwargs: Any) -> Any:
-        return original(*args, process_request=_checked(process_request, visitors, pictures), **kwargs)
+    def serve(handler: Any, *args: Any, process_request: HttpHandler | None = None, **kwargs: Any) -> Any:
+        kwargs["max_size"] = MAX_MESSAGE_BYTES
+        return original(_paced(handler), *args, process_request=_checked(process_request, visitors, pictures), **kwargs)
 
     websockets.asyncio.server.serve = serve  # type: ignore[assignment, misc]
     try:
@@ -173,11 +260,37 @@ def _guarded_serve(visitors: Visitors, pictures: Pictures | None) -> Iterator[No
         websockets.asyncio.server.serve = original  # type: ignore[misc]
 
 
+def _paced(handler: Callable[[ServerConnection], Awaitable[None]]) -> Callable[[ServerConnection], Awaitable[None]]:
+    """The handler, with messages taken no faster than anybody can work: the rest waits at its sender."""
+
+    async def handle(connection: ServerConnection) -> None:
+        receive, credit, at = connection.recv, float(MESSAGES_AT_ONCE), time.monotonic()
+
+        async def recv(*args: Any, **kwargs: Any) -> Any:
+            nonlocal credit, at
+            now = time.monotonic()
+            credit, at = min(MESSAGES_AT_ONCE, credit + (now - at) * MESSAGES_PER_S) - 1.0, now
+            if credit < 0.0:
+                await asyncio.sleep(-credit / MESSAGES_PER_S)
+            return await receive(*args, **kwargs)
+
+        connection.recv = recv  # type: ignore[method-assign]
+        await handler(connection)
+
+    return handle
+
+
 def _checked(handler: HttpHandler | None, visitors: Visitors, pictures: Pictures | None) -> Answer:
     def process_request(connection: ServerConnection, request: Request) -> Response | Awaitable[Response] | None:
         refusal = visitors.refusal(request)
         if refusal is not None:
             return connection.respond(http.HTTPStatus.FORBIDDEN, f"Refused: {refusal}.\n")
+        try:
+            return served(connection, request)
+        except (ValueError, LookupError, OSError):  # an address that names no file: a null character, half a name
+            return connection.respond(http.HTTPStatus.BAD_REQUEST, "This request makes no sense.\n")
+
+    def served(connection: ServerConnection, request: Request) -> Response | Awaitable[Response] | None:
         name = urlsplit(request.path).path.removeprefix(f"/{PICTURES}")
         if pictures is not None and f"/{PICTURES}{name}" == urlsplit(request.path).path:
             return _picture(connection, pictures(name))
@@ -226,50 +339,101 @@ async def _picture(connection: ServerConnection, asked: Future[bytes | None]) ->
 
 
 def _add_headers(response: Response, *, remember: str | None) -> None:
-    response.headers["X-Frame-Options"] = "SAMEORIGIN"
-    response.headers["X-Content-Type-Options"] = "nosniff"
-    response.headers["Referrer-Policy"] = "no-referrer"
+    for name, value in SECURITY_HEADERS.items():
+        response.headers[name] = value
     if remember is not None:
         cookie = SimpleCookie({TOKEN_COOKIE: remember})
         cookie[TOKEN_COOKIE].update({"path": "/", "httponly": "1", "samesite": "Strict"})
         response.headers["Set-Cookie"] = cookie[TOKEN_COOKIE].OutputString()
 
 
-def _cap_uploads(server: viser.ViserServer, too_large: TooLarge | None) -> None:
-    gui = server.gui
-    start, part = gui._handle_file_transfer_start, gui._handle_file_transfer_part
-    handlers = server._websock_server._incoming_handlers
-    states = gui._current_file_upload_states
+class _Uploads:
+    """Caps on the uploads of all pages: the server's own panels and every client's. Used from viser's loop."""
 
-    def capped_start(client_id: Any, message: _messages.FileTransferStartUpload) -> None:
-        if message.size_bytes > MAX_UPLOAD_BYTES or message.part_count > message.size_bytes + 1:
-            _finish_progress(server, message)
-            if too_large is not None:
-                too_large(int(client_id), message.filename, message.size_bytes)
-        elif len(states) < MAX_UPLOADS_IN_FLIGHT:
-            start(client_id, message)
+    def __init__(self, refused: Refused | None) -> None:
+        self._refused = refused
+        self._guis: weakref.WeakSet[viser.GuiApi] = weakref.WeakSet()
+        self._moved_at: dict[str, float] = {}
+        """When the last part of each upload came."""
 
-    def capped_part(client_id: Any, message: _messages.FileTransferPart) -> None:
-        state = states.get(message.transfer_uuid)
-        if state is not None and state["transferred_bytes"] + len(message.content) > state["total_bytes"]:
-            states.pop(message.transfer_uuid, None)  # more than was announced
-            return
-        part(client_id, message)
+    def watch(self, gui: viser.GuiApi) -> None:
+        """Put the caps before viser's own handlers of one page's panels."""
+        self._guis.add(gui)
+        handlers = gui._websock_interface._incoming_handlers
+        start, part = gui._handle_file_transfer_start, gui._handle_file_transfer_part
 
-    for kind, old, new in (
-        (_messages.FileTransferStartUpload, start, capped_start),
-        (_messages.FileTransferPart, part, capped_part),
-    ):
-        handlers[kind] = [new if known == old else known for known in handlers[kind]]
+        def capped_start(client_id: Any, message: _messages.FileTransferStartUpload) -> None:
+            reason = self._against(client_id, message)
+            if reason is None:
+                self._moved_at[message.transfer_uuid] = time.monotonic()
+                start(client_id, message)
+            else:
+                self._refuse(gui, client_id, message, f"{message.filename[:100]} is not taken: {reason}")
 
+        def capped_part(client_id: Any, message: _messages.FileTransferPart) -> None:
+            state = gui._current_file_upload_states.get(message.transfer_uuid)
+            if state is None or state["client_id"] != client_id:
+                return
+            if state["transferred_bytes"] + len(message.content) > state["total_bytes"]:
+                gui._current_file_upload_states.pop(message.transfer_uuid, None)
+                name = state["filename"][:100]
+                self._refuse(gui, client_id, message, f"{name} is not taken: more came than was announced; try again")
+                return
+            self._moved_at[message.transfer_uuid] = time.monotonic()
+            part(client_id, message)
 
-def _finish_progress(server: viser.ViserServer, message: _messages.FileTransferStartUpload) -> None:
-    """Tell the page that the transfer is over, so that its progress notice goes away."""
-    server._websock_server.queue_message(
-        _messages.FileTransferPartAck(
-            source_component_uuid=message.source_component_uuid,
-            transfer_uuid=message.transfer_uuid,
-            transferred_bytes=message.size_bytes,
-            total_bytes=message.size_bytes,
+        for kind, old, new in (
+            (_messages.FileTransferStartUpload, start, capped_start),
+            (_messages.FileTransferPart, part, capped_part),
+        ):
+            handlers[kind] = [new if known == old else known for known in handlers[kind]]
+
+    def _against(self, client_id: Any, message: _messages.FileTransferStartUpload) -> str | None:
+        """Why an upload may not begin, or None."""
+        size, parts = message.size_bytes, message.part_count
+        if not (isinstance(size, int) and isinstance(parts, int) and isinstance(message.filename, str)):
+            return "the page sent nonsense; reload it"
+        if size > MAX_UPLOAD_BYTES:
+            return (
+                f"it has {size / 1e6:.0f} MB, and files up to {MAX_UPLOAD_BYTES / 1e6:.0f} MB can be uploaded; "
+                "make it smaller"
+            )
+        if size < 0 or not 0 <= parts <= size // MIN_PART_BYTES + 2:
+            return "the page sent nonsense; reload it"
+        running = self._running()
+        if message.transfer_uuid in {uuid for uuid, _ in running}:
+            return "it is being uploaded already"
+        own = sum(state["client_id"] == client_id for _, state in running)
+        announced = sum(state["total_bytes"] for _, state in running)
+        if own >= MAX_UPLOADS_PER_CLIENT or len(running) >= MAX_UPLOADS_IN_FLIGHT:
+            return "other uploads are under way; try again when they are done"
+        if announced + size > MAX_BYTES_IN_FLIGHT:
+            return "other large uploads are under way; try again when they are done"
+        return None
+
+    def _running(self) -> list[tuple[str, Any]]:
+        """Uploads under way; those that stand still are given up."""
+        now, found = time.monotonic(), []
+        for gui in list(self._guis):
+            for uuid, state in list(gui._current_file_upload_states.items()):
+                if now - self._moved_at.get(uuid, now) > UPLOAD_STALLED_S:
+                    gui._current_file_upload_states.pop(uuid, None)
+                else:
+                    found.append((uuid, state))
+        alive = {uuid for uuid, _ in found}
+        self._moved_at = {uuid: at for uuid, at in self._moved_at.items() if uuid in alive}
+        return found
+
+    def _refuse(self, gui: viser.GuiApi, client_id: Any, message: Any, line: str) -> None:
+        size = getattr(message, "size_bytes", 0)
+        gui._websock_interface.queue_message(
+            # The transfer is over for the page, so that its progress notice goes away.
+            _messages.FileTransferPartAck(
+                source_component_uuid=message.source_component_uuid,
+                transfer_uuid=message.transfer_uuid,
+                transferred_bytes=size,
+                total_bytes=size,
+            )
         )
-    )
+        if self._refused is not None:
+            self._refused(int(client_id), line)

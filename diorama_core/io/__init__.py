@@ -1,1 +1,1 @@
-"""Atomic files, files that can be made again, caches in memory, GLB containers and sRGB: one place for each."""
+"""Reading within bounds, atomic writes, caches, GLB containers, sRGB, and decoding in a process of its own."""

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import os
 import secrets
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
 from diorama_core.errors import DioramaError
+
+LEFTOVER_S = 3600.0
+"""A part older than this belongs to a program that was killed."""
 
 
 def write_atomically(path: Path, data: bytes, *, error: type[DioramaError] | None = None) -> None:
@@ -80,3 +84,14 @@ def _deleted_on_failure(part: Path) -> Iterator[None]:
 
 def _reason(cause: OSError) -> str:
     return cause.strerror or str(cause)
+
+
+def remove_leftovers(folder: Path, older_s: float = LEFTOVER_S) -> int:
+    """Remove the parts that killed programs left below a folder; returns how many."""
+    removed = 0
+    for part in folder.rglob(".*.part"):
+        with suppress(OSError):
+            if time.time() - part.stat().st_mtime > older_s:
+                part.unlink()
+                removed += 1
+    return removed

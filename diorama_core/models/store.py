@@ -15,6 +15,7 @@ import json
 import os
 import shutil
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 import platformdirs
@@ -22,11 +23,13 @@ from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 
 from diorama_core.errors import InputError, UnavailableError
 from diorama_core.io.atomic import write_atomically
+from diorama_core.io.bounded import read_bytes
 from diorama_core.models.manifest import NETWORKS, ModelFile, Network
 
 RECORD = "installed.json"
 LICENCES = "licences.json"
 FIRST_SEEN = "first-seen.json"
+MAX_RECORD_BYTES = 4_000_000
 _BLOCK = 1 << 20
 
 
@@ -85,10 +88,12 @@ class ModelStore:
 
     def installed(self, network: Network) -> Installed:
         """What was checked and recorded; nothing where the record is absent or damaged."""
+        path = self.folder_of(network) / RECORD
         try:
-            return Installed.model_validate_json((self.folder_of(network) / RECORD).read_bytes())
-        except (OSError, ValidationError):
+            about = path.stat()
+        except OSError:
             return Installed()
+        return _record(path, about.st_mtime_ns, about.st_size)
 
     def has(self, network: Network) -> bool:
         """Whether every file is there, whole and checked."""
@@ -151,8 +156,10 @@ class ModelStore:
 
     def _first_seen(self) -> dict[str, str]:
         try:
-            return TypeAdapter(dict[str, str]).validate_json((self.folder / FIRST_SEEN).read_bytes())
-        except (OSError, ValidationError):
+            return TypeAdapter(dict[str, str]).validate_json(
+                read_bytes(self.folder / FIRST_SEEN, MAX_RECORD_BYTES, UnavailableError)
+            )
+        except (UnavailableError, ValidationError):
             return {}
 
     def _write(self, network: Network, record: Installed) -> None:
@@ -209,8 +216,12 @@ class ModelStore:
     def accepted_licences(self) -> frozenset[str]:
         """Ids of the networks whose licence was accepted on this machine."""
         try:
-            return frozenset(TypeAdapter(list[str]).validate_json((self.folder / LICENCES).read_bytes()))
-        except (OSError, ValidationError):
+            return frozenset(
+                TypeAdapter(list[str]).validate_json(
+                    read_bytes(self.folder / LICENCES, MAX_RECORD_BYTES, UnavailableError)
+                )
+            )
+        except (UnavailableError, ValidationError):
             return frozenset()
 
     def accept_licences(self, network_ids: frozenset[str]) -> None:
@@ -237,6 +248,15 @@ def how_to_get(network: Network) -> str:
     if network.conversion:
         return f"convert your own checkpoint with {network.conversion}, then: diorama models pull --from FOLDER"
     return "put your own copy in a folder named after it, then: diorama models pull --from FOLDER"
+
+
+@lru_cache(maxsize=256)
+def _record(path: Path, written_ns: int, size: int) -> Installed:
+    """A record as it was written then; asked for at every redraw of a page."""
+    try:
+        return Installed.model_validate_json(read_bytes(path, MAX_RECORD_BYTES, UnavailableError))
+    except (UnavailableError, ValidationError):
+        return Installed()
 
 
 def sha256_of(path: Path) -> str:

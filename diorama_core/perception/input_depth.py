@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 from typing import Literal
 
 import numpy as np
@@ -24,6 +25,7 @@ SKY_M = 1e4
 ROOM_MEDIAN_M = (0.15, 20.0)
 """Median depth of a photo of a room; outside, the unit is wrong."""
 MIN_COVERAGE = 0.01
+MAX_DEPTH_MEGAPIXELS = 40
 LOW_COVERAGE = 0.2
 
 
@@ -40,11 +42,9 @@ def read_depth(
             f"--depth-scale {depth_scale:g}: give a positive number of units per metre, 1000 for millimetres"
         )
     raw, in_metres = _decode(source)
-    if in_metres:
-        depth = raw.astype(np.float32)
-    else:
-        values = _unrotated(raw) if encoding == "sunrgbd" else raw
-        depth = (values / depth_scale).astype(np.float32)
+    if raw.ndim != 2 or 0 in raw.shape:
+        raise InputError(f"{source.name}: depth must be a picture of one channel, this has shape {raw.shape}")
+    depth = raw.astype(np.float32) if in_metres else _scaled(raw, depth_scale, encoding)
     depth = _cleaned(depth, in_metres)
     notes = _check_plausible(source.name, depth, raw, in_metres, depth_scale, encoding)
     resized, more = _at_size(source.name, depth, photo_size)
@@ -61,7 +61,7 @@ def _decode(source: Source) -> tuple[Shaped[np.ndarray, "h w"], bool]:
             return exr.read_depth_channel(source.data), True
         except exr.ExrError as error:
             raise InputError(f"{source.name}: {error}, or as .npy (metres) or 16-bit PNG") from error
-    picture = open_picture(source, "depth")
+    picture = open_picture(source, "depth", MAX_DEPTH_MEGAPIXELS)
     if picture.mode not in ("I;16", "I;16B", "I;16L", "I", "F"):
         raise InputError(
             f"{source.name}: depth needs one channel of 16 bits, this has mode {picture.mode}; "
@@ -83,7 +83,12 @@ def _decode_npy(source: Source) -> Float32[np.ndarray, "h w"]:
             pass
         elif len(shape) != 2:
             raise InputError(f"{source.name}: depth must be two-dimensional, this has shape {shape}")
-        if int(np.prod(shape, dtype=object)) * dtype.itemsize > len(source.data):
+        count = math.prod(shape)
+        if count > MAX_DEPTH_MEGAPIXELS * 1_000_000:
+            raise InputError(
+                f"{source.name}: {count / 1e6:.0f} megapixels of depth are too many; save the photo's size"
+            )
+        if count * dtype.itemsize > len(source.data):
             raise ValueError("fewer numbers than the header states")
         array = np.load(io.BytesIO(source.data), allow_pickle=False)
     except InputError:
@@ -94,6 +99,15 @@ def _decode_npy(source: Source) -> Float32[np.ndarray, "h w"]:
         ) from error
     with np.errstate(over="ignore"):
         return np.squeeze(array).astype(np.float32)
+
+
+def _scaled(raw: Shaped[np.ndarray, "h w"], depth_scale: float, encoding: DepthEncoding) -> Float32[np.ndarray, "h w"]:
+    """Units as metres, in strips: the division takes four times the room of the result."""
+    depth = np.empty(raw.shape, np.float32)
+    for row in range(0, len(raw), 256):
+        strip = raw[row : row + 256]
+        depth[row : row + 256] = (_unrotated(strip) if encoding == "sunrgbd" else strip) / depth_scale
+    return depth
 
 
 def _unrotated(values: Shaped[np.ndarray, "h w"]) -> Shaped[np.ndarray, "h w"]:

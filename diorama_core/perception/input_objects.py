@@ -6,25 +6,29 @@ import re
 from typing import Annotated
 
 import numpy as np
-from jaxtyping import Int32
+from jaxtyping import Int32, Shaped
 from PIL import Image
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from diorama_core.artefacts import Box, LabelledBox
 from diorama_core.errors import InputError
 from diorama_core.geometry.projection import box_iou
+from diorama_core.io.bounded import megabytes, parse_json, shortened
 from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN, resolve
 from diorama_core.perception.input_depth import check_same_proportions
 from diorama_core.perception.input_photo import Source, load_pixels, open_picture
 
 MAX_OBJECTS = 500
+MAX_BOXES_BYTES = 4_000_000
+"""Of a boxes file: twenty times what five hundred boxes take."""
+MAX_MASK_MEGAPIXELS = 40
 MIN_BOX_PX = 2.0
 SPECK_SHARE = 1e-4
 """An instance or a loose piece of one smaller than this share of the picture is a speck."""
 MIN_SPECK_PX = 20
 CLIP_NOTICE_PX = 2.0
 
-_Number = Annotated[float, Field(allow_inf_nan=False)]
+_Number = Annotated[float, Field(allow_inf_nan=False, ge=-1e9, le=1e9)]
 InstanceBoxes = tuple[tuple[int, LabelledBox], ...]
 
 
@@ -51,10 +55,6 @@ def read_boxes(
         InputError: wrong JSON, or a box that is degenerate or wholly outside the picture, named by its index.
     """
     records = _parse(source)
-    if len(records) > MAX_OBJECTS:
-        raise InputError(
-            f"{source.name}: {len(records)} boxes are more than the {MAX_OBJECTS} accepted; keep the furniture"
-        )
     boxes: list[LabelledBox] = []
     notes: list[str] = []
     scale = (photo_size[0] / original_size[0], photo_size[1] / original_size[1])
@@ -81,15 +81,22 @@ def understood(word: str) -> tuple[str, str, str]:
 
 
 def _parse(source: Source) -> list[_BoxRecord]:
+    if len(source.data) > MAX_BOXES_BYTES:
+        raise InputError(
+            f"{source.name}: {megabytes(len(source.data))} are more than {MAX_OBJECTS} boxes take; boxes are {_EXAMPLE}"
+        )
+    document = parse_json(source.data, source.name, InputError, advice=f"boxes are {_EXAMPLE}")
+    if isinstance(document, list) and len(document) > MAX_OBJECTS:
+        raise InputError(
+            f"{source.name}: {len(document)} boxes are more than the {MAX_OBJECTS} accepted; keep the furniture"
+        )
     try:
-        return _RECORDS.validate_json(source.data)
+        return _RECORDS.validate_python(document)
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        if first["type"] == "json_invalid":
-            raise InputError(f"{source.name}: this is not JSON ({first['msg']}); boxes are {_EXAMPLE}") from error
-        place = ", ".join(str(p) for p in first["loc"])
+        first = error.errors(include_url=False, include_input=False)[0]
+        place = shortened(", ".join(str(p) for p in first["loc"]), 60)
         where = f"entry {place}: " if place else ""
-        raise InputError(f"{source.name}: {where}{first['msg'].lower()}; boxes are {_EXAMPLE}") from error
+        raise InputError(f"{source.name}: {where}{shortened(first['msg'].lower())}; boxes are {_EXAMPLE}") from error
 
 
 def _tidy(word: str) -> str:
@@ -123,15 +130,18 @@ def read_masks(
     Raises:
         InputError: not a mask picture, of other proportions, or without any instance.
     """
-    picture = open_picture(source, "mask")
+    picture = open_picture(source, "mask", MAX_MASK_MEGAPIXELS)
     if picture.format not in ("PNG", "TIFF", "BMP", "GIF", "WEBP", "PPM"):
         raise InputError(f"{source.name}: masks need exact colours, which {picture.format} blurs; save them as PNG")
     load_pixels(picture, source, "mask")
     check_same_proportions(source.name, "mask", picture.size, photo_size)
-    values = _values(np.asarray(_plain(picture)))
+    try:
+        pixels = np.asarray(_plain(picture))
+    except (ValueError, OSError, TypeError) as error:  # a palette that is not whole
+        raise InputError(f"{source.name}: the masks are damaged; save them again as PNG") from error
     if picture.size != photo_size:
-        values = _resized(values, photo_size)
-    instances, dropped = _without_specks(source.name, values)
+        pixels = _resized(pixels, photo_size)
+    instances, dropped = _without_specks(source.name, _values(pixels))
     notes = (f"{dropped} specks of the masks were dropped",) if dropped else ()
     instances.setflags(write=False)
     return instances, match_instances(instances, boxes), notes
@@ -154,7 +164,7 @@ def _values(pixels: np.ndarray) -> Int32[np.ndarray, "h w"]:
     return (rgb[..., 0] << 16) | (rgb[..., 1] << 8) | rgb[..., 2]
 
 
-def _resized(values: Int32[np.ndarray, "h w"], size: tuple[int, int]) -> Int32[np.ndarray, "h2 w2"]:
+def _resized(values: Shaped[np.ndarray, "h w *c"], size: tuple[int, int]) -> Shaped[np.ndarray, "h2 w2 *c"]:
     """Nearest neighbour by pixel centres."""
     rows = ((np.arange(size[1]) + 0.5) * values.shape[0] / size[1]).astype(int)
     columns = ((np.arange(size[0]) + 0.5) * values.shape[1] / size[0]).astype(int)

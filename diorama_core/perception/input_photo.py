@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import stat
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -18,13 +19,16 @@ from diorama_core.errors import InputError
 from diorama_core.perception.camera.exif import focal_from_exif
 
 MAX_FILE_MB = 200
-MAX_MEGAPIXELS = 120
+MAX_MEGAPIXELS = 64
+MAX_JPEG_MEGAPIXELS = 120
+"""A JPEG is decoded straight to a fraction of its size; others are decoded whole."""
 MIN_SIDE_PX = 32
 MAX_ASPECT = 8.0
 PICTURE_FORMATS = ("JPEG", "PNG", "WEBP", "AVIF", "BMP", "TIFF", "GIF", "PPM", "JPEG2000")
 """What is decoded; formats that start other programs (EPS) or hold no pixels are not."""
 
 _EXIF_DIRECTORY = 0x8769
+_AVERAGED = ("RGB", "RGBA", "L", "LA", "CMYK", "YCbCr")
 _ASK = "use a JPEG, PNG or WebP picture"
 
 
@@ -59,7 +63,10 @@ def _file_size(path: Path, what: str) -> int:
     if path.is_dir():
         raise InputError(f"{path}: is a folder; give the {what} file itself")
     try:
-        return path.stat().st_size
+        about = path.stat()
+        if not stat.S_ISREG(about.st_mode):
+            raise InputError(f"{path}: is not a file; give the {what} file itself")
+        return about.st_size
     except OSError as error:
         raise InputError(f"{path}: the {what} cannot be read ({error.strerror}); check the path") from error
 
@@ -71,11 +78,11 @@ def _check_size(label: str, size: int) -> None:
         raise InputError(f"{label}: {size / 1e6:.0f} MB is more than the {MAX_FILE_MB} MB accepted; reduce it first")
 
 
-def open_picture(source: Source, what: str = "picture") -> Image.Image:
+def open_picture(source: Source, what: str = "picture", megapixels: float = MAX_MEGAPIXELS) -> Image.Image:
     """Open without decoding, and refuse what would decode to an unreasonable size.
 
     Raises:
-        InputError: when it is no picture, or has more than `MAX_MEGAPIXELS`.
+        InputError: when it is no picture, or has more than so many megapixels (`MAX_JPEG_MEGAPIXELS` of a JPEG).
     """
     Image.init()  # the rarer formats are registered only on demand
     try:
@@ -83,13 +90,14 @@ def open_picture(source: Source, what: str = "picture") -> Image.Image:
             warnings.simplefilter("ignore", Image.DecompressionBombWarning)
             picture = Image.open(io.BytesIO(source.data), formats=PICTURE_FORMATS)
     except Image.DecompressionBombError as error:
-        raise InputError(f"{source.name}: {_too_many_pixels(None)}") from error
+        raise InputError(f"{source.name}: {_too_many_pixels(None, megapixels)}") from error
     except UnidentifiedImageError as error:
         raise InputError(f"{source.name}: {_what_it_is(source.data)}; {_ASK}") from error
     except Exception as error:  # decoders of untrusted bytes raise almost anything; each means the same to the user
         raise InputError(f"{source.name}: the {what} is damaged; export or download it again") from error
-    if picture.width * picture.height > MAX_MEGAPIXELS * 1_000_000:
-        raise InputError(f"{source.name}: {_too_many_pixels(picture.size)}")
+    most = max(megapixels, MAX_JPEG_MEGAPIXELS) if picture.format == "JPEG" else megapixels
+    if picture.width * picture.height > most * 1_000_000:
+        raise InputError(f"{source.name}: {_too_many_pixels(picture.size, most)}")
     return picture
 
 
@@ -119,11 +127,11 @@ def read_photo(source: Source, max_side: int) -> tuple[Photo, tuple[str, ...]]:
     picture.draft(None, (2 * max_side, 2 * max_side))  # JPEG decodes straight to a fraction of its size
     load_pixels(picture, source)
     exif = _exif(picture)
-    upright = ImageOps.exif_transpose(picture) if exif else picture
+    upright = _upright(picture) if exif else picture
     turned = (upright.width > upright.height) != (picture.width > picture.height) and raw_size[0] != raw_size[1]
     original = (raw_size[1], raw_size[0]) if turned else raw_size
     _check_shape(source.name, original)
-    rgb, notes = _to_rgb(upright, source.name)
+    rgb, notes = _to_rgb(_coarser(upright, max_side), source.name)
     reduced, more = _reduced(rgb, original, max_side)
     focal = focal_from_exif(exif, *original)
     photo = Photo(
@@ -144,6 +152,19 @@ def _exif(picture: Image.Image) -> Mapping[int, Any]:
         return {}
 
 
+def _upright(picture: Image.Image) -> Image.Image:
+    try:
+        return ImageOps.exif_transpose(picture)
+    except Exception:  # as above
+        return picture
+
+
+def _coarser(picture: Image.Image, max_side: int) -> Image.Image:
+    """A very large picture averaged down to no less than twice what is asked for, before anything copies it."""
+    factor = max(picture.size) // (2 * max_side)
+    return picture.reduce(factor) if factor > 1 and picture.mode in _AVERAGED else picture
+
+
 def _check_shape(name: str, size: tuple[int, int]) -> None:
     width, height = size
     if min(size) < MIN_SIDE_PX:
@@ -159,11 +180,14 @@ def _to_rgb(picture: Image.Image, name: str) -> tuple[Image.Image, tuple[str, ..
     if picture.mode == "F":
         raise InputError(f"{name}: a picture of floating-point numbers is not a photo; save it with 8 bits per channel")
     if picture.mode.startswith("I"):
-        values = np.clip(np.asarray(picture, dtype=np.int64), 0, 65535)
-        return Image.fromarray((values // 257).astype(np.uint8)).convert("RGB"), ()
+        values = np.asarray(picture)
+        eight = np.empty(values.shape, np.uint8)
+        for row in range(0, len(values), 256):  # in strips: the numbers take eight times the room of the result
+            eight[row : row + 256] = np.clip(values[row : row + 256].astype(np.int64), 0, 65535) // 257
+        return Image.fromarray(eight).convert("RGB"), ()
     if picture.mode in ("RGBA", "LA", "PA", "RGBa", "La") or "transparency" in picture.info:
         rgba = picture.convert("RGBA")
-        if np.asarray(rgba.getchannel("A")).min() == 255:
+        if rgba.getchannel("A").getextrema()[0] == 255:
             return rgba.convert("RGB"), ()
         white = Image.new("RGBA", rgba.size, (255, 255, 255, 255))
         note = "the photo is partly transparent; it was laid on white"
@@ -184,9 +208,9 @@ def _reduced(
     return array, (f"the photo was reduced from {original[0]} x {original[1]} to {size[0]} x {size[1]} pixels",)
 
 
-def _too_many_pixels(size: tuple[int, int] | None) -> str:
+def _too_many_pixels(size: tuple[int, int] | None, most: float) -> str:
     shape = f"{size[0]} x {size[1]} pixels are" if size else "the picture is"
-    return f"{shape} more than the {MAX_MEGAPIXELS} megapixels accepted; reduce it first"
+    return f"{shape} more than the {most:g} megapixels accepted; reduce it first"
 
 
 def _what_it_is(data: bytes) -> str:

@@ -1,7 +1,8 @@
 """Artefacts as files: a zip of one JSON tree and raw arrays, and fingerprints of their content.
 
-Nothing in such a file is ever executed: only the artefact classes listed here are constructed, so a project folder
-received from someone else is safe to open.
+Nothing in such a file is ever executed: only the artefact classes listed here are constructed, with fields of the types
+that the classes state, so a project folder received from someone else is safe to open. Sizes are checked before
+memory is taken: a small file can state to hold very much.
 """
 
 from __future__ import annotations
@@ -9,16 +10,25 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import math
 import zipfile
 from dataclasses import Field, fields, is_dataclass
 from typing import Any
 
 import numpy as np
+from numpy.lib import format as npy
 
 from diorama_core import artefacts
 from diorama_core.errors import ProjectError
 from diorama_core.geometry import camera_attitude
+from diorama_core.io.bounded import parse_json, shortened
+from diorama_core.io.typed import fits
 from diorama_core.scene import types
+
+MAX_BYTES = 400_000_000
+"""Unpacked: two hundred masks of a photo of 1600 x 1200."""
+MAX_TREE_BYTES = 32_000_000
+MAX_ENTRIES = 20_000
 
 _CLASSES: dict[str, type] = {
     c.__name__: c
@@ -68,22 +78,67 @@ def dump(value: Any) -> bytes:
     return buffer.getvalue()
 
 
-def load(data: bytes) -> Any:
+def load(data: bytes, expected: Any = Any) -> Any:
     """The artefact that `dump` wrote.
 
+    Args:
+        data: the file's bytes.
+        expected: the type it must have, as annotated.
+
     Raises:
-        ProjectError: when the bytes are damaged or of an unknown kind.
+        ProjectError: when the bytes are damaged, of an unknown kind or larger than any real result.
     """
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            tree = json.loads(archive.read("tree.json"))
-            count = len(archive.namelist()) - 1
-            arrays = [
-                np.lib.format.read_array(io.BytesIO(archive.read(f"{i}.npy")), allow_pickle=False) for i in range(count)
-            ]
-        return _decode(tree, arrays)
-    except (zipfile.BadZipFile, KeyError, ValueError, TypeError, EOFError) as error:
-        raise ProjectError(f"a saved stage result is damaged ({error}); it will be computed again") from error
+            names = _checked_names(archive)
+            tree = parse_json(_entry(archive, "tree.json"), "tree.json", ProjectError, advice="it is made again")
+            arrays = [_array(_entry(archive, name)) for name in names]
+        value = _decode(tree, arrays)
+        if not fits(value, type(value)) or not fits(value, expected):
+            raise ValueError("a value of another kind than it states")
+    except Exception as error:  # damaged bytes make zip, number and class raise almost anything; it means the same
+        reason = shortened(str(error), 120) or type(error).__name__
+        raise ProjectError(f"a saved stage result is damaged ({reason}); it will be computed again") from error
+    return value
+
+
+def _checked_names(archive: zipfile.ZipFile) -> list[str]:
+    """Names of the arrays in order, after the stated sizes of all entries were checked."""
+    infos = archive.infolist()
+    if len(infos) > MAX_ENTRIES or sum(i.file_size for i in infos) > MAX_BYTES:
+        raise ValueError(f"it would unpack to more than {MAX_ENTRIES} entries or {MAX_BYTES / 1e6:.0f} MB")
+    names = [f"{i}.npy" for i in range(len(infos) - 1)]
+    if {i.filename for i in infos} != {"tree.json", *names}:
+        raise ValueError("entries are missing or doubled")
+    if archive.getinfo("tree.json").file_size > MAX_TREE_BYTES:
+        raise ValueError("its tree is too large")
+    return names
+
+
+def _entry(archive: zipfile.ZipFile, name: str) -> bytes:
+    """One entry's bytes; never more than stated."""
+    stated = archive.getinfo(name).file_size
+    with archive.open(name) as stream:
+        content = stream.read(stated + 1)
+    if len(content) != stated:
+        raise ValueError(f"{name} has another size than stated")
+    return content
+
+
+def _array(content: bytes) -> np.ndarray:
+    """A read-only array over the bytes of a `.npy` entry."""
+    stream = io.BytesIO(content)
+    version = npy.read_magic(stream)
+    shape, fortran, dtype = (
+        npy.read_array_header_1_0(stream) if version == (1, 0) else npy.read_array_header_2_0(stream)
+    )
+    count = math.prod(shape)
+    if dtype.hasobject or dtype.kind not in "biufU" or len(content) - stream.tell() != count * dtype.itemsize:
+        raise ValueError("an array has another size than stated")
+    flat = np.frombuffer(content, dtype, count=count, offset=stream.tell()) if count else np.zeros(0, dtype)
+    array = flat.reshape(shape, order="F" if fortran else "C")
+    array.setflags(write=False)
+    return array
 
 
 def fingerprint(value: Any) -> str:
@@ -124,9 +179,7 @@ def _decode(tree: Any, arrays: list[np.ndarray]) -> Any:
     if not isinstance(tree, dict):
         return tree
     if "array" in tree:
-        array = arrays[tree["array"]]
-        array.setflags(write=False)
-        return array
+        return arrays[tree["array"]]
     if "class" in tree:
         content = {name: _decode(v, arrays) for name, v in tree["fields"].items()}
         return _CLASSES[tree["class"]](**content)

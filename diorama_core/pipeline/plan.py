@@ -6,6 +6,7 @@ plan, each restricted to the artefacts it wants. An artefact that the caller giv
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -13,11 +14,14 @@ from typing import Any
 from diorama_core.architecture.mounting import snap_mounted_objects
 from diorama_core.architecture.walls.passages import without_openings
 from diorama_core.artefacts import Inputs
+from diorama_core.errors import UnavailableError
 from diorama_core.perception.graph.apply import with_graph
 from diorama_core.pipeline.network_inputs import with_network_inputs
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import ProposalStages, Stages
 from diorama_core.progress import Progress
+
+log = logging.getLogger(__name__)
 
 Artefacts = Mapping[str, Any]
 """Artefacts by the names that `PLAN` uses."""
@@ -36,6 +40,8 @@ class StageStep:
     """Of the time that a build takes, roughly."""
     needed: Callable[[Inputs], bool] = lambda given: True
     """Whether it runs for what the user gave."""
+    dispensable: bool = False
+    """Whether the others go on without its result when it is not available."""
 
     def evaluate(self, stages: Stages | ProposalStages, known: Artefacts, runner: Runner, progress: Progress) -> Any:
         """The stage's result for the artefacts that are known."""
@@ -43,7 +49,13 @@ class StageStep:
         if stage is None or not self.needed(known["given"]):
             return None
         artefacts = tuple(known[name] for name in self.takes)
-        return runner.run(self.name, stage, getattr(stage, self.method), artefacts, progress)
+        try:
+            return runner.run(self.name, stage, getattr(stage, self.method), artefacts, progress)
+        except UnavailableError as error:
+            if not self.dispensable:
+                raise
+            log.warning("%s: the build goes on without: %s", self.name, error)
+            return None
 
 
 @dataclass(frozen=True)
@@ -73,7 +85,7 @@ def lacks_depth(given: Inputs) -> bool:
 PLAN: tuple[StageStep | Derivation, ...] = (
     Derivation(lambda given: given.photo, ("given",), "photo"),
     Derivation(lambda given: given.intrinsics, ("given",), "given_intrinsics"),
-    StageStep("recognition", "recognise", ("photo",), "words", 0.01, lacks_boxes),
+    StageStep("recognition", "recognise", ("photo",), "words", 0.01, lacks_boxes, dispensable=True),
     Derivation(lambda words: words or (), ("words",), "phrases"),
     StageStep("detection", "detect", ("photo", "phrases"), "detected_boxes", 0.02, lacks_boxes),
     StageStep("depth_prediction", "predict", ("photo", "given_intrinsics"), "predicted_depth", 0.02, lacks_depth),

@@ -13,9 +13,11 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_type_hints
 
 from diorama_core.errors import ProjectError
+from diorama_core.io.atomic import write_atomically
+from diorama_core.io.bounded import read_bytes
 from diorama_core.pipeline import codec
 from diorama_core.progress import Progress
 
@@ -67,7 +69,7 @@ class Runner:
             if self.folder is None
             else self.folder / f"{name.replace(' ', '_')}-{self._key(name, stage, artefacts)}.zip"
         )
-        result = _read(path)
+        result = _read(path, get_type_hints(call).get("return", Any))
         cached = result is not None
         if result is None:
             result = call(*artefacts, progress)
@@ -89,25 +91,25 @@ class Runner:
         return known[1]
 
 
-def _read(path: Path | None) -> Any:
+def _read(path: Path | None, expected: Any) -> Any:
+    """A saved result; a damaged one is removed, so that it is made again."""
     if path is None or not path.exists():
         return None
     try:
-        result = codec.load(path.read_bytes())
+        result = codec.load(read_bytes(path, codec.MAX_BYTES, ProjectError), expected)
     except ProjectError as error:
         log.warning("%s: %s", path.name, error)
+        path.unlink(missing_ok=True)
         return None
     os.utime(path)
     return result
 
 
 def _write(path: Path | None, result: Any) -> None:
+    """Save a result; raises `ProjectError` when the disk is full, with the finished stages kept."""
     if path is None:
         return
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_suffix(f".{os.getpid()}.part")
-    part.write_bytes(codec.dump(result))
-    os.replace(part, path)
+    write_atomically(path, codec.dump(result), error=ProjectError)
     stem = path.name.rsplit("-", 1)[0]
     siblings = sorted(path.parent.glob(f"{stem}-*.zip"), key=lambda p: p.stat().st_mtime, reverse=True)
     for old in siblings[CACHED_PER_STAGE:]:

@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import io
 import json
+import logging
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +20,9 @@ from jaxtyping import UInt8
 from PIL import Image
 
 from diorama_core.artefacts import Inputs, Photo
-from diorama_core.errors import ProjectError
+from diorama_core.errors import ProjectError, SceneError
 from diorama_core.io.atomic import write_atomically
+from diorama_core.io.bounded import MAX_JSON_BYTES, read_bytes, read_json, read_picture, shortened
 from diorama_core.pipeline import codec
 from diorama_core.pipeline.runner import StageRun
 from diorama_core.scene.schema import scene_from_json, scene_to_json
@@ -29,6 +32,12 @@ FORMAT = "diorama-project"
 VERSION = 1
 MAX_BACKUPS = 20
 BACKUP_EVERY_S = 60.0
+MAX_INFO_BYTES = 4_000_000
+MAX_NAME = 120
+MAX_TEXTURE_PIXELS = 200_000_000
+"""Of all planes together; the rest are shown in their plain colour."""
+
+log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -49,7 +58,7 @@ class Project:
             return cls.open(folder)
         if project.folder.exists() and not project.folder.is_dir():
             raise ProjectError(f"{folder} is a file, not a folder; choose another place for the project")
-        if project.folder.exists() and any(project.folder.iterdir()):
+        if project.folder.exists() and not all(_is_leftover(f) for f in project.folder.iterdir()):
             raise ProjectError(f"{folder} holds other files and is not a project; choose a new or an empty folder")
         project._write_info({"name": name or project.folder.name, "created": time.strftime("%Y-%m-%dT%H:%M:%S")})
         return project
@@ -72,7 +81,8 @@ class Project:
     @property
     def name(self) -> str:
         """What people call the project."""
-        return str(self.info().get("name", self.folder.name))
+        name = self.info().get("name")
+        return shortened(name, MAX_NAME) if isinstance(name, str) and name else self.folder.name
 
     @property
     def library_name(self) -> str:
@@ -96,16 +106,12 @@ class Project:
     def info(self) -> dict[str, Any]:
         """The content of `project.json`."""
         try:
-            info = json.loads(self._info_path.read_text())
-        except (OSError, json.JSONDecodeError) as error:
+            about = self._info_path.stat()
+        except OSError as error:
             raise ProjectError(
-                f"{self._info_path} cannot be read ({error}); restore it or build the project again"
+                f"{self._info_path} cannot be read ({error.strerror}); restore it or build the project again"
             ) from error
-        if not isinstance(info, dict) or info.get("format") != FORMAT:
-            raise ProjectError(f"{self._info_path} is not a Diorama project file")
-        if info.get("version", 0) > VERSION:
-            raise ProjectError(f"{self.folder} was written by a newer Diorama; update the program to open it")
-        return info
+        return dict(_info(self._info_path, about.st_mtime_ns, about.st_size, about.st_ino))
 
     def update_info(self, **changes: Any) -> None:
         """Change entries of `project.json`."""
@@ -122,9 +128,11 @@ class Project:
         path = self.stages_folder / "inputs.zip"
         if not path.exists():
             return None
-        inputs = codec.load(path.read_bytes())
-        if not isinstance(inputs, Inputs):
-            raise ProjectError(f"{path} does not hold a photo; build the project again")
+        try:
+            inputs = codec.load(read_bytes(path, codec.MAX_BYTES, ProjectError), Inputs)
+            _check_sizes(inputs)
+        except ProjectError as error:
+            raise ProjectError(f"{path}: the photo cannot be read back ({error}); build the project again") from error
         return inputs
 
     def photo(self) -> Photo | None:
@@ -142,7 +150,25 @@ class Project:
         """Read `scene.json`; raises `ProjectError` when there is none yet, `SceneError` when it is wrong."""
         if not self.scene_path.exists():
             raise ProjectError(f"{self.folder} has no scene yet; run 'diorama build' with this project's photo")
-        return scene_from_json(self.scene_path.read_text())
+        return read_scene(self.scene_path)
+
+    def newest_scene(self) -> tuple[Scene, str]:
+        """The scene, or of a damaged file the newest earlier version that can be read, and a line that says so.
+
+        Raises:
+            ProjectError, SceneError: as `load_scene`, when no version can be read.
+        """
+        try:
+            return self.load_scene(), ""
+        except SceneError as error:
+            for path in self.backups():
+                try:
+                    scene = read_scene(path)
+                except SceneError:
+                    continue
+                when = time.strftime("%d %b %H:%M", time.localtime(path.stat().st_mtime))
+                return scene, f"{self.name}: the version of {when} is shown, since {error}"
+            raise
 
     def backups(self) -> tuple[Path, ...]:
         """Earlier scene files, newest first."""
@@ -160,13 +186,23 @@ class Project:
     def texture(self, name: str) -> UInt8[np.ndarray, "h w 3"] | None:
         """A plane's picture, or None when it is missing."""
         path = self._texture_path(name)
-        return np.asarray(Image.open(path).convert("RGB")) if path.exists() else None
+        return read_picture(path, ProjectError) if path.exists() else None
 
     def textures(self, scene: Scene) -> dict[str, UInt8[np.ndarray, "h w 3"]]:
         """All pictures that the scene's planes name."""
         names = {p.texture for p in scene.architecture.planes if p.texture is not None}
-        found = {name: self.texture(name) for name in sorted(names)}
-        return {name: picture for name, picture in found.items() if picture is not None}
+        found: dict[str, UInt8[np.ndarray, "h w 3"]] = {}
+        pixels = 0
+        for name in sorted(names):
+            try:
+                picture = self.texture(name)
+            except ProjectError as error:
+                log.warning("a plane is shown without its picture: %s", error)
+                continue
+            pixels += 0 if picture is None else picture.shape[0] * picture.shape[1]
+            if picture is not None and pixels <= MAX_TEXTURE_PIXELS:
+                found[name] = picture
+        return found
 
     def _texture_path(self, name: str) -> Path:
         # A scene file from elsewhere must not reach outside the project.
@@ -189,9 +225,46 @@ class Project:
             return
         stamp = time.strftime("%Y%m%d-%H%M%S") + f"-{time.time_ns() % 1_000_000_000:09d}"
         backup = self.folder / "backups" / f"scene-{stamp}.json"
-        write_atomically(backup, self.scene_path.read_bytes(), error=ProjectError)
+        content = read_bytes(self.scene_path, MAX_JSON_BYTES, ProjectError)
+        write_atomically(backup, content, error=ProjectError)
         for old in self.backups()[MAX_BACKUPS:]:
             old.unlink(missing_ok=True)
+
+
+def read_scene(path: Path) -> Scene:
+    """A scene file.
+
+    Raises:
+        SceneError: unreadable, too large or wrong; says where.
+    """
+    return scene_from_json(read_bytes(path, MAX_JSON_BYTES, SceneError, "restore a backup"))
+
+
+@lru_cache(maxsize=128)
+def _info(path: Path, written_ns: int, size: int, inode: int) -> Mapping[str, Any]:
+    """The content of a `project.json` as it was written then; asked for at every redraw of a page."""
+    info = read_json(path, ProjectError, most=MAX_INFO_BYTES, advice="restore it or build the project again")
+    if not isinstance(info, dict) or info.get("format") != FORMAT:
+        raise ProjectError(f"{path} is not a Diorama project file; restore it from a copy")
+    version = info.get("version")
+    if not isinstance(version, int) or isinstance(version, bool):
+        raise ProjectError(f"{path} has no version number; restore it from a copy")
+    if version > VERSION:
+        raise ProjectError(f"{path.parent} was written by a newer Diorama; update the program to open it")
+    return info
+
+
+def _check_sizes(inputs: Inputs) -> None:
+    """Everything that lies pixel on pixel over the photo has its size; raises `ProjectError` otherwise."""
+    size = inputs.photo.rgb.shape[:2]
+    maps = (inputs.depth_m, inputs.instances, inputs.normals_camera)
+    if min(size) < 1 or any(m is not None and m.shape[:2] != size for m in maps):
+        raise ProjectError("depth or masks have another size than the photo")
+
+
+def _is_leftover(path: Path) -> bool:
+    """What a program that was killed left behind, or a lock: nothing of anybody's."""
+    return path.name.startswith(".") and path.suffix in (".part", ".lock")
 
 
 def _jpeg(rgb: UInt8[np.ndarray, "h w 3"]) -> bytes:

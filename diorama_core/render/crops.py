@@ -14,7 +14,8 @@ from PIL import Image, ImageOps
 from diorama_core.errors import InputError
 from diorama_core.scene.values import ArrayValue
 
-_MAX_PIXELS = 64_000_000
+_MAX_PIXELS = 16_000_000
+CROP_FORMATS = ("JPEG", "PNG", "WEBP", "GIF", "BMP", "TIFF", "AVIF")
 _WORKING_SIDE = 320
 _RIM = 0.02
 _PLAUSIBLE_SHARE = (0.08, 0.97)
@@ -50,7 +51,7 @@ def read_crop(path: Path) -> Crop:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", Image.DecompressionBombWarning)
-            with Image.open(path) as opened:
+            with Image.open(path, formats=CROP_FORMATS) as opened:
                 if opened.width * opened.height > _MAX_PIXELS:
                     raise InputError(f"{path} has {opened.width} x {opened.height} pixels; give a crop of one thing")
                 rgba = ImageOps.exif_transpose(opened).convert("RGBA")

@@ -74,7 +74,7 @@ def shape_sheet(
         nonlocal done
         progress.report(done / len(shapes), f"pictures: {done} of {len(shapes)}")
         done += 1
-        return Image.open(io.BytesIO(thumbnail(library, shape.id, size)))
+        return Image.open(io.BytesIO(thumbnail(library, shape.id, size)), formats=("PNG",))
 
     return contact_sheet(shapes, picture, size, columns)
 

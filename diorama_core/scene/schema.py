@@ -15,6 +15,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
 
 from diorama_core.errors import SceneError
+from diorama_core.io.bounded import parse_json, shortened
 from diorama_core.scene.support import check_scene
 from diorama_core.scene.types import (
     Architecture,
@@ -46,8 +47,23 @@ Migration = Callable[[dict[str, Any]], dict[str, Any]]
 MIGRATIONS: Mapping[int, Migration] = {}
 """Entry n turns a version n document into version n + 1."""
 
-Vec3 = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
-Row4 = tuple[FiniteFloat, FiniteFloat, FiniteFloat, FiniteFloat]
+MAX_ITEMS = 5000
+"""Objects, planes, candidates of one object, corners of one polygon."""
+
+# Wide enough for any room and any photo, narrow enough that no arithmetic on them overflows.
+Number = Annotated[float, Field(ge=-1e9, le=1e9, allow_inf_nan=False)]
+Metres = Annotated[float, Field(ge=-1e5, le=1e5, allow_inf_nan=False)]
+Size = Annotated[float, Field(ge=1e-6, le=1e4, allow_inf_nan=False)]
+Unit = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
+Pixels = Annotated[int, Field(gt=0, le=100_000)]
+Focal = Annotated[float, Field(ge=1e-3, le=1e7, allow_inf_nan=False)]
+Id = Annotated[str, Field(min_length=1, max_length=200)]
+Words = Annotated[str, Field(max_length=500)]
+
+Vec3 = tuple[Metres, Metres, Metres]
+Size3 = tuple[Size, Size, Size]
+Colour = tuple[Unit, Unit, Unit]
+Row4 = tuple[Metres, Metres, Metres, Metres]
 Matrix4 = tuple[Row4, Row4, Row4, Row4]
 
 
@@ -56,74 +72,74 @@ class _Model(BaseModel):
 
 
 class _CameraFile(_Model):
-    width: Annotated[int, Field(gt=0)]
-    height: Annotated[int, Field(gt=0)]
-    fx: FiniteFloat
-    fy: FiniteFloat
-    cx: FiniteFloat
-    cy: FiniteFloat
+    width: Pixels
+    height: Pixels
+    fx: Focal
+    fy: Focal
+    cx: Metres
+    cy: Metres
     T_world_camera: Matrix4
 
 
 class _PlaneFile(_Model):
-    id: str
+    id: Id
     role: PlaneRole
-    polygon: Annotated[list[Vec3], Field(min_length=3)]
-    thickness_m: FiniteFloat
-    colour: Vec3
-    texture: str | None
-    confidence: FiniteFloat
+    polygon: Annotated[list[Vec3], Field(min_length=3, max_length=MAX_ITEMS)]
+    thickness_m: Annotated[float, Field(ge=0.0, le=100.0, allow_inf_nan=False)]
+    colour: Colour
+    texture: Id | None
+    confidence: Number
 
 
 class _ArchitectureFile(_Model):
-    planes: list[_PlaneFile]
+    planes: Annotated[list[_PlaneFile], Field(max_length=MAX_ITEMS)]
 
 
 class _CandidateFile(_Model):
-    shape: str
-    shape_size_m: Vec3
-    score: FiniteFloat
+    shape: Id
+    shape_size_m: Size3
+    score: Number
     T_world_object: Matrix4
-    scale: Vec3
+    scale: Size3
 
 
 class _SupportFile(_Model):
-    parent: str
+    parent: Id
     relation: Relation
-    parent_surface: int | None
+    parent_surface: Annotated[int, Field(ge=0, le=1_000_000)] | None
     child_face: FaceName | None
-    adheres_to: list[str]
+    adheres_to: Annotated[list[Id], Field(max_length=MAX_ITEMS)]
 
 
 class _ObjectFile(_Model):
-    id: str
-    label: str
-    category: str
-    shape: str
-    shape_size_m: Vec3
+    id: Id
+    label: Words
+    category: Words
+    shape: Id
+    shape_size_m: Size3
     T_world_object: Matrix4
-    scale: Vec3
-    size_m: Vec3
+    scale: Size3
+    size_m: tuple[Number, Number, Number]
     support: _SupportFile | None
-    candidates: list[_CandidateFile]
-    mask_id: int | None
-    box_px: Row4 | None
-    confidence: FiniteFloat
+    candidates: Annotated[list[_CandidateFile], Field(max_length=MAX_ITEMS)]
+    mask_id: Annotated[int, Field(ge=-1_000_000_000, le=1_000_000_000)] | None
+    box_px: tuple[Number, Number, Number, Number] | None
+    confidence: Number
     locked: bool
     hidden: bool
-    colour: Vec3 | None
+    colour: Colour | None
     finish: Finish | None = None
 
 
 class _SceneFile(_Model):
     format: Literal["diorama-scene"]
     version: int
-    axes: dict[str, str]
+    axes: Annotated[dict[Words, Words], Field(max_length=20)]
     units: Literal["metres"]
     camera: _CameraFile | None
     architecture: _ArchitectureFile
-    objects: list[_ObjectFile]
-    metrics: dict[str, FiniteFloat]
+    objects: Annotated[list[_ObjectFile], Field(max_length=MAX_ITEMS)]
+    metrics: Annotated[dict[Words, FiniteFloat], Field(max_length=200)]
 
 
 def scene_to_json(scene: Scene) -> str:
@@ -141,30 +157,54 @@ def scene_to_json(scene: Scene) -> str:
     return json.dumps(document, indent=1, allow_nan=False)
 
 
-def scene_from_json(text: str, *, migrations: Mapping[int, Migration] = MIGRATIONS) -> Scene:
+def scene_from_json(text: str | bytes, *, migrations: Mapping[int, Migration] = MIGRATIONS) -> Scene:
     """Read a scene file's text.
 
     Raises:
         SceneError: not JSON, not a scene file, of a newer version, or inconsistent; says where.
     """
-    try:
-        document = json.loads(text)
-    except json.JSONDecodeError as error:
-        raise SceneError(
-            f"the scene file is not valid JSON (line {error.lineno}: {error.msg}); restore a backup"
-        ) from error
+    document = parse_json(text, "the scene file", SceneError, advice="restore a backup")
     document = _migrated(document, migrations)
     try:
         parsed = _SceneFile.model_validate(document)
         scene = _scene_from_file(parsed)
     except ValidationError as error:
-        first = error.errors()[0]
-        where = ".".join(str(part) for part in first["loc"])
-        raise SceneError(f"the scene file is wrong at {where}: {first['msg'].lower()}") from error
-    except ValueError as error:
-        raise SceneError(f"the scene file is wrong: {error}") from error
+        first = error.errors(include_url=False, include_input=False)[0]
+        where = shortened(".".join(str(part) for part in first["loc"]))
+        raise SceneError(f"the scene file is wrong at {where}: {shortened(first['msg'].lower())}") from error
+    except (ValueError, TypeError, ArithmeticError) as error:
+        raise SceneError(f"the scene file is wrong: {shortened(str(error))}") from error
     check_scene(scene)
     return scene
+
+
+def check_limits(scene: Scene, known: Scene | None = None) -> None:
+    """Whether the scene can be read back once it is written.
+
+    Args:
+        scene: any.
+        known: an earlier one; what is the same value in both is not looked at again.
+
+    Raises:
+        SceneError: a number or a name is beyond what a scene file may hold; says which.
+    """
+    before = set() if known is None else {id(v) for v in (*known.objects, *known.architecture.planes)}
+    try:
+        for plane in scene.architecture.planes:
+            if id(plane) not in before:
+                _PlaneFile.model_validate(_plane_to_file(plane))
+        for item in scene.objects:
+            if id(item) not in before:
+                _ObjectFile.model_validate(_object_to_file(item, scene.support_of(item.id)))
+                json.dumps([item.id, item.label, item.category, item.shape_id], ensure_ascii=False).encode()
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_input=False)[0]
+        where = shortened(" ".join(str(part) for part in first["loc"]), 60)
+        raise SceneError(f"{where}: {shortened(first['msg'].lower())}; give a value that fits a room") from error
+    except UnicodeEncodeError as error:
+        raise SceneError("a name holds half a character; type it again") from error
+    if len(scene.objects) > MAX_ITEMS:
+        raise SceneError(f"a scene holds at most {MAX_ITEMS} objects")
 
 
 def _migrated(document: Any, migrations: Mapping[int, Migration]) -> dict[str, Any]:
@@ -270,7 +310,10 @@ def _camera_from_file(file: _CameraFile | None) -> Camera | None:
     if file is None:
         return None
     k = Intrinsics(file.width, file.height, file.fx, file.fy, file.cx, file.cy)
-    return Camera(k, np.array(file.T_world_camera))
+    T = np.array(file.T_world_camera)
+    if not (np.abs(T[:3, :3] @ T[:3, :3].T - np.eye(3)).max() < 1e-5 and np.linalg.det(T[:3, :3]) > 0):
+        raise ValueError("the camera's rotation must be orthonormal and right-handed")
+    return Camera(k, T)
 
 
 def _plane_from_file(file: _PlaneFile) -> Plane:

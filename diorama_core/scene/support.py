@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 from diorama_core.errors import EditRefused, SceneError
 from diorama_core.scene.types import Scene, Support
 
@@ -54,9 +56,9 @@ def check_edge(scene: Scene, edge: Support) -> None:
 def check_scene(scene: Scene) -> None:
     """Raise `SceneError` with the first inconsistency between objects, planes and supports."""
     ids = [o.id for o in scene.objects] + [p.id for p in scene.architecture.planes]
-    doubles = sorted({i for i in ids if ids.count(i) > 1})
+    doubles = sorted(i for i, count in Counter(ids).items() if count > 1)
     if doubles:
-        raise SceneError(f"ids must be unique; repeated: {', '.join(doubles)}")
+        raise SceneError(f"ids must be unique; repeated: {', '.join(doubles[:5])}")
     children = [s.child for s in scene.supports]
     if len(children) != len(set(children)):
         raise SceneError("an object has more than one supporter; keep one support edge per object")

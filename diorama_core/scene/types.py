@@ -123,7 +123,7 @@ class Pose(ArrayValue):
         object.__setattr__(self, "position", frozen_array(self.position, (3,)))
         object.__setattr__(self, "scale", frozen_array(self.scale, (3,)))
         R = self.R_world_object
-        if np.abs(R @ R.T - np.eye(3)).max() > 1e-5 or np.linalg.det(R) < 0:
+        if not (np.abs(R).max() < 2.0 and np.abs(R @ R.T - np.eye(3)).max() < 1e-5 and np.linalg.det(R) > 0):
             raise ValueError("the rotation must be orthonormal and right-handed")
         if (self.scale <= 0).any():
             raise ValueError("scale must be positive")

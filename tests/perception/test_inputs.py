@@ -319,8 +319,8 @@ class TestDepth:
             (depth_png(np.full((HEIGHT, WIDTH), 20)), "--depth-scale"),
             (depth_png(np.full((HEIGHT, WIDTH), 1500))[:60], "damaged"),
             (b"\x76\x2f\x31\x01" + b"\0" * 64, "EXR"),
-            (b"\x76\x2f\x31\x01\x02\x02\0\0", "tiled"),
-            ((Path(__file__).parent / "exr" / "piz.exr").read_bytes(), "PIZ"),
+            (b"\x76\x2f\x31\x01\x02\x02\0\0", "damaged"),
+            ((Path(__file__).parent / "exr" / "piz.exr").read_bytes()[:200], "damaged"),
         ],
     )
     def test_refused_in_one_line(self, data: bytes, word: str) -> None:
@@ -329,6 +329,8 @@ class TestDepth:
     def test_a_header_that_promises_too_much_allocates_nothing(self) -> None:
         header = b"{'descr': '<f8', 'fortran_order': False, 'shape': (1000000, 1000000), }"
         data = b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header
+        assert "1000000 megapixels" in refusal(self.photo, depth=data)
+        data = data.replace(b"(1000000, 1000000), ", b"(1000000, 30), 0000 ".replace(b"0000", b"    "))
         assert "truncated" in refusal(self.photo, depth=data)
 
     def test_scale_must_be_positive(self) -> None:
@@ -374,14 +376,19 @@ class TestBoxes:
             (boxes_json(box(1, 1, 20, 20), box(200, 10, 300, 40)), "box 1"),
             (boxes_json(box(20, 1, 5, 20)), "box 0"),
             (boxes_json(box(5, 5, 5, 5)), "no area"),
-            (b"[{", "not JSON"),
+            (b"[{", "not valid JSON"),
             (b"", "0 bytes"),
-            (b"\xff\xfe\x00", "not JSON"),
+            (b"\xff\xfe\x00", "no text"),
             (b'{"bbox": [1, 2, 3, 4]}', "list"),
             (boxes_json({"bbox": [1, 2, 3]}), "entry 0"),
             (boxes_json({"bbox": [1, 2, 3, "x"]}), "entry 0"),
             (boxes_json({"class": "chair"}), "entry 0"),
-            (b'[{"bbox": [NaN, 1, 20, 20]}]', "entry 0"),
+            (b'[{"bbox": [NaN, 1, 20, 20]}]', "NaN is no number"),
+            (b'[{"bbox": [1e999, 1, 20, 20]}]', "too large"),
+            (b'[{"bbox": [1e30, 1, 20, 20]}]', "entry 0"),
+            (b'[{"bbox": [1, 1, 20, 20], "class": "\\ud800"}]', "no text"),
+            (b"[" * 100_000, "nested"),
+            (b"[" + b"1," * 3_000_000 + b"1]", "more than 500 boxes take"),
             (b'[{"bbox": [1, 1, 20, 20], "class": 7}]', "entry 0"),
             (boxes_json(*[box(1, 1, 20, 20)] * 501), "501"),
         ],

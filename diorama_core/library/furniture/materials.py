@@ -187,7 +187,7 @@ def pbr(material: Material) -> trimesh.visual.material.PBRMaterial:
         optional["emissiveFactor"] = [float(c) for c in material.glow * material.rgb**2.2]
     return trimesh.visual.material.PBRMaterial(
         name=material.name,
-        baseColorTexture=Image.open(io.BytesIO(picture_bytes(material))),
+        baseColorTexture=Image.open(io.BytesIO(picture_bytes(material)), formats=("JPEG", "PNG")),
         roughnessFactor=material.roughness,
         metallicFactor=material.metallic,
         **optional,

@@ -18,7 +18,7 @@ from PIL import Image
 from trimesh.visual.material import PBRMaterial
 
 from diorama_core.errors import LibraryError, UnavailableError
-from diorama_core.library.ingest.references import References
+from diorama_core.library.ingest.references import IMAGE_FORMATS, References
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ def _material(row: dict[str, Any], references: References) -> PBRMaterial:
         for name in paths if isinstance(paths, (list, tuple)) else [paths]:
             data = references.image(str(name))
             if data is not None and texture is None:
-                texture = Image.open(io.BytesIO(data))
+                texture = Image.open(io.BytesIO(data), formats=IMAGE_FORMATS)
     return PBRMaterial(
         name=str(row.get("NAME", "")),
         baseColorFactor=[*(colour if texture is None else (1.0, 1.0, 1.0)), float(row.get("OPACITY", 1.0))],

@@ -9,13 +9,13 @@ from __future__ import annotations
 import base64
 import binascii
 import io
-import json
 from typing import Any
 
 import numpy as np
 from PIL import Image
 
 from diorama_core.errors import LibraryError
+from diorama_core.io.bounded import parse_json
 from diorama_core.io.glb import GlbError, is_glb, split_glb, write_glb
 from diorama_core.library.ingest.limits import Limits
 from diorama_core.library.ingest.references import References, shown
@@ -81,10 +81,7 @@ def _container(data: bytes, limits: Limits) -> tuple[Json, bytes | None]:
             raise LibraryError(str(error)) from error
     if len(text) > limits.json_bytes:
         raise LibraryError(f"its JSON has {len(text) / 2**20:.0f} MB; the limit is {limits.json_bytes / 2**20:.0f} MB")
-    try:
-        document = json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise LibraryError(f"its JSON cannot be read ({str(error)[:80]})") from error
+    document = parse_json(text, "its JSON", LibraryError, advice="export the model again", finite=False)
     if not isinstance(document, dict):
         raise LibraryError("its JSON is no glTF document")
     return document, binary

@@ -15,7 +15,8 @@ from trimesh.visual.color import ColorVisuals
 from trimesh.visual.material import PBRMaterial
 from trimesh.visual.texture import TextureVisuals
 
-from diorama_core.errors import LibraryError
+from diorama_core.errors import DioramaError, LibraryError
+from diorama_core.io.bounded import shortened
 from diorama_core.library.ingest.limits import Limits
 
 _FARTHEST = 1e7
@@ -47,8 +48,18 @@ def repaired(scene: trimesh.Scene, limits: Limits) -> Repaired:
     clouds. Kept as they are: open and non-manifold surfaces (nothing here needs closed solids), with a warning.
 
     Raises:
-        LibraryError: when no triangle with area is left, or there are too many.
+        LibraryError: when no triangle with area is left, there are too many, or the file's numbers make no sense.
     """
+    try:
+        return _repaired(scene, limits)
+    except DioramaError:
+        raise
+    except Exception as error:  # loaders hand on whatever malformed bytes say
+        reason = f"{type(error).__name__}: {shortened(str(error), 100)}"
+        raise LibraryError(f"malformed geometry ({reason}); export the model again") from error
+
+
+def _repaired(scene: trimesh.Scene, limits: Limits) -> Repaired:
     notes: list[str] = []
     retained = []
     total = 0
@@ -78,6 +89,8 @@ def _placed(scene: trimesh.Scene, notes: list[str]) -> Iterator[tuple[str, trime
         mesh = scene.geometry[name]
         if not isinstance(mesh, trimesh.Trimesh):
             notes.append("lines and points were left out")
+        elif np.ndim(mesh.vertices) != 2 or np.shape(mesh.vertices)[1] != 3 or np.ndim(mesh.faces) != 2:
+            notes.append("a part whose points are not in space was left out")
         elif not np.isfinite(T).all():
             notes.append("a part with a broken transform was left out")
         else:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 RELATIONS = ("placed on", "mounted on")
 FACING = ("toward camera", "away from camera", "left", "right", "unknown")
@@ -37,6 +37,26 @@ def _relation(text: object) -> object:
 def _facing(text: object) -> object:
     words = str(text).strip().lower().replace("_", " ").replace("towards", "toward").replace("the ", "")
     return words if words in FACING else "unknown"
+
+
+def _sound(kind: type[BaseModel]) -> BeforeValidator:
+    """Leaves out the entries of a list that are not of a kind: one odd entry costs itself, not the reply."""
+
+    def sound(entries: object) -> object:
+        if not isinstance(entries, list):
+            return entries
+        retained = [entry for entry in entries if _is(kind, entry)]
+        return retained if retained or not entries else entries
+
+    return BeforeValidator(sound)
+
+
+def _is(kind: type[BaseModel], entry: object) -> bool:
+    try:
+        kind.model_validate(entry)
+    except ValidationError:
+        return False
+    return True
 
 
 Label = Annotated[str, BeforeValidator(tidy_label)]
@@ -83,8 +103,8 @@ class GraphReply(BaseModel):
     model_config = ConfigDict(extra="ignore")
 
     room_type: Label = ""
-    objects: Annotated[list[ObjectEntry], Field(max_length=1000)] = []
-    support_relation: Annotated[list[SupportEntry], Field(max_length=2000)]
+    objects: Annotated[list[ObjectEntry], _sound(ObjectEntry), Field(max_length=1000)] = []
+    support_relation: Annotated[list[SupportEntry], _sound(SupportEntry), Field(max_length=2000)]
 
 
 def graph_prompt(marks: Sequence[tuple[int, str]], architecture: Sequence[tuple[int, str]]) -> str:

@@ -8,7 +8,7 @@ from diorama_core.artefacts import DetectedObject, Inputs, ObjectGeometry, Photo
 from diorama_core.library.taxonomy import ARCHITECTURE_WORDS
 from diorama_core.perception.graph.geometric import GeometricGraph
 from diorama_core.perception.graph.repair import repaired
-from diorama_core.perception.language.client import LmmClient, LmmSettings, UnusableReplyError, Usage
+from diorama_core.perception.language.client import EndpointDownError, LmmClient, LmmSettings, UnusableReplyError, Usage
 from diorama_core.perception.language.marks import marked, picture_bytes
 from diorama_core.perception.language.replies import RECOGNITION_PROMPT, ClassesReply, GraphReply, graph_prompt
 from diorama_core.perception.language.votes import counted
@@ -46,7 +46,7 @@ class LanguageGraph:
         """One acyclic edge per object that has a cuboid.
 
         Raises:
-            UnavailableError: when the model cannot be asked at all.
+            UnavailableError: when it is asked wrongly (key, model). One that is slow or down leaves it to geometry.
         """
         fallback = self.geometric.relate(inputs, objects, geometry, progress.part(0.0, 0.1))
         if not objects:
@@ -55,7 +55,7 @@ class LanguageGraph:
         room = {len(objects) + 1 + i: name for i, name in enumerate(("floor", "wall", "ceiling"))}
         picture = picture_bytes(marked(inputs.photo.rgb, [o.mask for o in objects], list(marks)))
         prompt = graph_prompt([(n, o.label) for n, o in zip(marks, objects, strict=True)], list(room.items()))
-        replies, usage, failed = self._replies(prompt, picture, progress)
+        replies, usage, failed, trouble = self._replies(prompt, picture, progress)
         ballot = counted(replies, marks, room)
         supports, scores, mended = repaired(ballot.edges, fallback)
         return SceneGraph(
@@ -63,11 +63,11 @@ class LanguageGraph:
             scores=scores,
             facing=ballot.facing,
             captions=ballot.captions,
-            source=_told(self.settings, usage, len(replies), failed, mended, len(supports)),
+            source=_told(self.settings, usage, len(replies), failed, mended, len(supports), trouble),
         )
 
-    def _replies(self, prompt: str, picture: bytes, progress: Progress) -> tuple[list[GraphReply], Usage, int]:
-        """The usable replies, what they took, and how many were not usable."""
+    def _replies(self, prompt: str, picture: bytes, progress: Progress) -> tuple[list[GraphReply], Usage, int, str]:
+        """The usable replies, what all tries took, how many were not usable, and why no more were asked for."""
         client, usage, failed = LmmClient(self.settings), Usage(), 0
         replies: list[GraphReply] = []
         for vote in range(self.settings.votes):
@@ -75,17 +75,25 @@ class LanguageGraph:
             progress.report(0.1 + 0.9 * vote / self.settings.votes, message)
             try:
                 reply = client.ask(prompt, [picture], GraphReply, progress, vote=vote)
-            except UnusableReplyError:
+            except UnusableReplyError as error:
                 failed += 1
+                usage = usage + error.usage
                 continue
+            except EndpointDownError as error:
+                return replies, usage, failed, str(error)
             replies.append(reply.value)
             usage = usage + reply.usage
-        return replies, usage, failed
+        return replies, usage, failed, ""
 
 
-def _told(settings: LmmSettings, usage: Usage, used: int, failed: int, mended: int, count: int) -> str:
+def _told(
+    settings: LmmSettings, usage: Usage, used: int, failed: int, mended: int, count: int, trouble: str = ""
+) -> str:
+    if not used and trouble:
+        return f"geometry ({trouble})"
     if not used:
-        return f"geometry ({settings.model} gave no usable answer in {failed} tries)"
+        took = f": {usage.words(settings)}" if usage.calls else ""
+        return f"geometry ({settings.model} gave no usable answer in {failed} tries{took})"
     said = f"{settings.model}, {used} {'reply' if used == 1 else 'replies'}"
     if usage.calls:
         said += f" ({usage.words(settings)})"

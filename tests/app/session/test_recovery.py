@@ -9,7 +9,7 @@ import pytest
 from diorama_app.session import recovery
 from diorama_app.session.autosave import Autosave
 from diorama_app.session.recovery import Recovery
-from diorama_core.errors import ProjectError
+from diorama_core.errors import ProjectError, SceneError
 from diorama_core.project.storage import Project
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
@@ -86,3 +86,103 @@ def test_what_cannot_be_saved_is_retained(project: Project, tmp_path: Path, monk
     found = Recovery(tmp_path / "unsaved").left_behind(project)
     assert found is not None
     assert found.scene() == renamed()
+
+
+def test_what_could_not_be_saved_is_saved_as_soon_as_there_is_space(
+    project: Project, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    full, really_save = [True], Project.save_scene
+
+    def save(self: Project, scene: Scene) -> None:
+        if full[0]:
+            raise ProjectError("the disk is full")
+        really_save(self, scene)
+
+    monkeypatch.setattr(Project, "save_scene", save)
+    told: list[str] = []
+    autosave = Autosave(told.append, Recovery(tmp_path / "unsaved"), on_saved=told.append, retry_s=0.1)
+    autosave.save_soon(project, renamed())
+    deadline = time.monotonic() + 10.0
+    while not autosave.trouble and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert "the disk is full" in autosave.trouble
+    full[0] = False
+    while autosave.trouble and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert project.load_scene() == renamed()
+    assert [line.partition(":")[0] for line in told] == ["not saved", "All changes are saved now."], "once each"
+    assert list((tmp_path / "unsaved").glob("*.json")) == []
+    autosave.stop()
+
+
+def test_nothing_is_promised_when_nothing_can_be_retained(
+    project: Project, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(self: Project, scene: Scene) -> None:
+        raise ProjectError("the disk is full")
+
+    (tmp_path / "unsaved").write_text("a file where the folder would be")
+    monkeypatch.setattr(Project, "save_scene", full)
+    told: list[str] = []
+    autosave = Autosave(told.append, Recovery(tmp_path / "unsaved"))
+    autosave.save_soon(project, renamed())
+    autosave.flush()
+    assert "only in memory" in told[0]
+    assert "kept" not in told[0]
+    autosave.stop()
+
+
+def test_a_scene_that_cannot_be_written_does_not_end_the_thread(
+    project: Project, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    really_save = Project.save_scene
+
+    def save(self: Project, scene: Scene) -> None:
+        if scene == furnished_scene():
+            raise ZeroDivisionError("a bug")
+        really_save(self, scene)
+
+    monkeypatch.setattr(Project, "save_scene", save)
+    told: list[str] = []
+    autosave = Autosave(told.append, Recovery(tmp_path / "unsaved"), retry_s=0.05)
+    autosave.save_soon(project, furnished_scene())
+    autosave.flush()
+    assert "a bug" in told[0]
+    autosave.save_soon(project, renamed())
+    deadline = time.monotonic() + 10.0
+    while project.load_scene() != renamed() and time.monotonic() < deadline:
+        time.sleep(0.02)
+    assert project.load_scene() == renamed()
+    autosave.stop()
+
+
+def test_leftovers_are_removed_when_their_time_is_over(project: Project, tmp_path: Path) -> None:
+    old, here = Recovery(tmp_path / "unsaved"), Recovery(tmp_path / "unsaved")
+    old.note(project, renamed())
+    superseded = next((tmp_path / "unsaved").glob("*.json"))
+    day_ago = time.time() - 86400.0
+    os.utime(superseded, (day_ago, day_ago))
+    project.save_scene(furnished_scene())
+    parts = [project.folder / ".scene.json.abc.part", project.folder / "stages" / ".x.zip.abc.part"]
+    for part in parts:
+        part.write_bytes(b"half")
+        os.utime(part, (day_ago, day_ago))
+    fresh = project.folder / ".scene.json.now.part"
+    fresh.write_bytes(b"being written")
+    here.clean_up(project)
+    assert not superseded.exists()
+    assert not any(part.exists() for part in parts)
+    assert fresh.exists()
+
+
+def test_a_damaged_unsaved_copy_is_not_in_the_way(project: Project, tmp_path: Path) -> None:
+    old, here = Recovery(tmp_path / "unsaved"), Recovery(tmp_path / "unsaved")
+    old.note(project, renamed())
+    damaged = next((tmp_path / "unsaved").glob("*.json"))
+    damaged.write_bytes(b"\xff\xfe[[[")
+    minute_ago = time.time() - 30.0
+    os.utime(damaged, (minute_ago, minute_ago))
+    found = here.left_behind(project)
+    assert found is not None
+    with pytest.raises(SceneError):
+        found.scene()

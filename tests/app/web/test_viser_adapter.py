@@ -17,7 +17,7 @@ from viser import _messages
 from websockets.sync.client import connect
 
 from diorama_app.web import viser_adapter
-from diorama_app.web.viser_adapter import Visitors, component_uuid, create_server, stop_server
+from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
 from diorama_core.errors import InputError
 
 
@@ -64,6 +64,7 @@ def test_pages_of_its_own_origin_are_served(server: viser.ViserServer) -> None:
     status, headers = fetch(server)
     assert status == 200
     assert headers["X-Frame-Options"] == "SAMEORIGIN"
+    assert "default-src 'none'" in headers["Content-Security-Policy"]
     assert connects(server, Origin=f"http://127.0.0.1:{server.get_port()}")
 
 
@@ -102,6 +103,65 @@ def test_with_a_token_only_those_who_bring_it_get_in(guarded: viser.ViserServer)
     assert connects(guarded, Origin=origin, Cookie=cookie)
 
 
+@pytest.mark.parametrize("host", ["0.0.0.0", "::", "", "192.168.1.5"])
+def test_where_others_can_reach_it_there_is_a_token(host: str) -> None:
+    made = viser_adapter.with_token(host, None)
+    assert made is not None
+    assert len(made) >= 20
+    assert made != viser_adapter.with_token(host, None)
+    assert viser_adapter.with_token(host, "mine") == "mine"
+    assert viser_adapter.with_token("127.0.0.1", None) is None
+
+
+@pytest.mark.parametrize("host", ["0.0.0.0"])
+def test_a_server_for_everybody_still_knows_its_names(host: str) -> None:
+    made = create_server(host=host, port=0, label="test", visitors=Visitors(host, "s3cret"))
+    try:
+        assert fetch(made, "/?token=s3cret", Host="evil.example")[0] == 403
+        assert fetch(made, "/?token=s3cret", Host="rebound.example:80")[0] == 403
+        assert fetch(made, "/", Host=f"127.0.0.1:{made.get_port()}")[0] == 403, "no token"
+        for name in ("127.0.0.1", "192.168.7.7", "localhost", "[fe80::1]", socket.gethostname()):
+            assert fetch(made, "/?token=s3cret", Host=f"{name}:{made.get_port()}")[0] == 200, name
+    finally:
+        stop_server(made)
+
+
+NONSENSE = (
+    {"Host": "[::1"},
+    {"Host": "127.0.0.1", "Origin": "http://[half"},
+    {"Host": "127.0.0.1\u00e9"},
+    {"Cookie": 'diorama_token="\\777'},
+    {"Cookie": "[]=;;;=,"},
+)
+
+
+@pytest.mark.parametrize("headers", NONSENSE)
+def test_headers_that_make_no_sense_are_refused_not_an_error(
+    guarded: viser.ViserServer, headers: dict[str, str], caplog: pytest.LogCaptureFixture
+) -> None:
+    assert raw_status(guarded, "/", headers) in (400, 403)
+    assert not [r for r in caplog.records if r.levelname == "ERROR"]
+
+
+@pytest.mark.parametrize(
+    "path", ["/%00", "/a" * 2000, "/pictures/%00", "//[", "/?token=%ff&token", "/pictures/" + "x" * 3000]
+)
+def test_addresses_that_make_no_sense_are_refused_not_an_error(
+    server: viser.ViserServer, path: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    assert raw_status(server, path, {}) in (200, 400, 403, 404)
+    assert not [r for r in caplog.records if r.levelname == "ERROR"]
+
+
+def raw_status(server: viser.ViserServer, path: str, headers: dict[str, str]) -> int:
+    lines = [f"GET {path} HTTP/1.1", *(f"{k}: {v}" for k, v in headers.items())]
+    if "Host" not in headers:
+        lines.append(f"Host: 127.0.0.1:{server.get_port()}")
+    with socket.create_connection(("127.0.0.1", server.get_port()), timeout=10) as page:
+        page.sendall(("\r\n".join(lines) + "\r\n\r\n").encode("latin-1"))
+        return int(page.recv(100).split()[1])
+
+
 def test_a_taken_port_is_one_clear_line() -> None:
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
@@ -121,37 +181,6 @@ def test_no_public_tunnel_is_ever_opened(server: viser.ViserServer) -> None:
         handler(0, _messages.ShareUrlRequest())
     time.sleep(0.2)
     assert server._share_tunnel is None
-
-
-def test_uploads_larger_than_the_cap_are_dropped_and_told() -> None:
-    told: list[tuple[int, str, int]] = []
-    server = create_server(
-        host="127.0.0.1",
-        port=0,
-        label="x",
-        visitors=Visitors("127.0.0.1"),
-        too_large=lambda *what: told.append(what),
-    )
-    try:
-        upload = server.gui.add_upload_button("Upload")
-        uuid = component_uuid(upload)
-        start = server._websock_server._incoming_handlers[_messages.FileTransferStartUpload]
-        part = server._websock_server._incoming_handlers[_messages.FileTransferPart]
-
-        def begin(name: str, size: int, parts: int) -> None:
-            for handler in start:
-                handler(3, _messages.FileTransferStartUpload(uuid, name, name, "image/png", parts, size))
-
-        begin("huge.png", viser_adapter.MAX_UPLOAD_BYTES + 1, 500)
-        assert told == [(3, "huge.png", viser_adapter.MAX_UPLOAD_BYTES + 1)]
-        begin("small.png", 10, 2)
-        states = server.gui._current_file_upload_states
-        assert list(states) == ["small.png"]
-        for handler in part:
-            handler(3, _messages.FileTransferPart(uuid, "small.png", 0, b"x" * 11))
-        assert not states, "more bytes than announced end the transfer"
-    finally:
-        stop_server(server)
 
 
 def test_stopping_returns_at_once(server: viser.ViserServer) -> None:
@@ -191,3 +220,44 @@ def test_a_page_that_is_closed_while_its_picture_is_made_is_no_error(caplog: pyt
     assert fetch(made, "/pictures/table.png")[0] == 200
     stop_server(made)
     assert not [record.message for record in caplog.records if record.levelname == "ERROR"]
+
+
+def test_drawing_from_many_threads_never_disturbs_the_loop() -> None:
+    """`asyncio.Event.set` walks its waiters; from another thread that failed now and then."""
+    import asyncio
+    import threading
+    from collections import deque
+
+    from viser.infra import _infra
+
+    class Waiters(deque):
+        """Tells whether another thread than the loop's ever touches the list of waiters."""
+
+        def __iter__(self):  # type: ignore[no-untyped-def]
+            touched.add(threading.get_ident())
+            return super().__iter__()
+
+    touched: set[int] = set()
+
+    async def wait_for_messages() -> int:
+        buffer = _infra.AsyncMessageBuffer(asyncio.get_running_loop(), persistent_messages=False)
+        buffer.message_event._waiters = Waiters()  # type: ignore[attr-defined]
+        windows = buffer.window_generator(client_id=0)
+        arrived = 0
+
+        def draw(number: int) -> None:
+            for i in range(200):
+                buffer.push(_messages.SetPositionMessage(f"/{number}/{i}", (0.0, 0.0, 0.0)))
+
+        threads = [threading.Thread(target=draw, args=(number,)) for number in range(3)]
+        for thread in threads:
+            thread.start()
+        async for window in windows:
+            arrived += len(window)
+            if arrived == 600:
+                break
+        await windows.aclose()
+        return arrived
+
+    assert asyncio.run(asyncio.wait_for(wait_for_messages(), 20.0)) == 600, "every message arrives"
+    assert touched <= {threading.get_ident()}

@@ -28,6 +28,10 @@ class StubLmm:
     picture: str = ""
     """Base64 of what images/generations returns."""
     retry_after: str = "0"
+    drip_s: float = 0.0
+    """Between two bytes of a reply."""
+    flood_bytes: int = 0
+    """Of spaces before a reply."""
     address: str = ""
 
     def next_answer(self, request: dict[str, Any]) -> str | int:
@@ -75,10 +79,18 @@ def _handler(stub: StubLmm) -> type[BaseHTTPRequestHandler]:
             try:
                 self.send_response(status)
                 self.send_header("Content-Type", "application/json")
-                self.send_header("Content-Length", str(len(data)))
+                self.send_header("Content-Length", str(len(data) + stub.flood_bytes))
                 self.send_header("Retry-After", stub.retry_after)
                 self.end_headers()
-                self.wfile.write(data)
+                for _ in range(stub.flood_bytes // 1_000_000):
+                    self.wfile.write(b" " * 1_000_000)
+                if not stub.drip_s:
+                    self.wfile.write(data)
+                    return
+                for byte in data:
+                    time.sleep(stub.drip_s)
+                    self.wfile.write(bytes([byte]))
+                    self.wfile.flush()
             except OSError:
                 return  # who asked has gone
 

@@ -22,7 +22,7 @@ from diorama_core.artefacts import (
 from diorama_core.errors import Cancelled, UnavailableError
 from diorama_core.perception.graph.geometric import GeometricGraph
 from diorama_core.perception.graph.repair import repaired
-from diorama_core.perception.language.client import LmmClient, LmmSettings, UnusableReplyError
+from diorama_core.perception.language.client import LmmClient, LmmSettings, UnusableReplyError, strict_schema
 from diorama_core.perception.language.json_text import json_in
 from diorama_core.perception.language.marks import marked
 from diorama_core.perception.language.replies import ClassesReply, GraphReply, tidy_label
@@ -323,3 +323,72 @@ def test_geometry_alone_puts_the_lamp_on_the_table() -> None:
     assert _parents(graph) == TRUTH
     assert all(0.5 < s <= 1.0 for s in graph.scores)
     assert isinstance(GraphReply(support_relation=[]), GraphReply)
+
+
+def _graph_of(stub: StubLmm, **changes: Any) -> SceneGraph:
+    inputs, objects, geometry = _two_objects()
+    with answering(stub):
+        return LanguageGraph(_settings(stub, **changes)).relate(inputs, objects, geometry, Progress())
+
+
+def _two_objects() -> tuple[Inputs, tuple[DetectedObject, ...], ObjectGeometry]:
+    photo = Photo(np.full((60, 80, 3), 128, np.uint8), "room.jpg", (80, 60))
+    masks = [np.zeros((60, 80), bool) for _ in range(2)]
+    masks[0][30:50, 10:40] = masks[1][20:30, 15:25] = True
+    table = DetectedObject("table_1", "table", "table", (10, 30, 40, 50), masks[0], 1, 1.0)
+    lamp = DetectedObject("lamp_1", "lamp", "lamp", (15, 20, 25, 30), masks[1], 2, 1.0)
+    camera = Camera(Intrinsics.from_fov(80, 60, 1.0), np.eye(4))
+    cuboids = (
+        Cuboid("table_1", np.eye(3), np.array([0, 2.0, 0.4]), np.array([0.8, 1.2, 0.8]), 0.9),
+        Cuboid("lamp_1", np.eye(3), np.array([0, 2.0, 1.0]), np.array([0.2, 0.2, 0.4]), 0.9),
+    )
+    edges = (Support("table_1", "floor"), Support("lamp_1", "table_1"))
+    return Inputs(photo), (table, lamp), ObjectGeometry(camera, cuboids, edges, "test")
+
+
+ODD: list[Any] = [{"subject_id": 1, "type": "levitates", "target_id": 3}, "chair", None, {"subject_id": [1]}, 7]
+
+
+def test_one_odd_relation_costs_itself_not_the_reply() -> None:
+    good = [{"subject_id": 2, "type": "placed on", "target_id": 1}]
+    stub = StubLmm([json.dumps({"objects": [{"id": "x"}, {"id": 2}], "support_relation": [*ODD, *good]})])
+    graph = _graph_of(stub)
+    assert len(stub.requests) == 1, "nothing is asked again"
+    assert Support("lamp_1", "table_1") in graph.supports
+    assert "1 reply" in graph.source
+
+
+def test_a_slow_model_leaves_it_to_geometry_and_says_so() -> None:
+    graph = _graph_of(StubLmm([GOOD], delay_s=1.0), timeout_s=0.2, votes=3)
+    assert {s.child for s in graph.supports} == {"table_1", "lamp_1"}
+    assert graph.source.startswith("geometry (the language model at")
+    assert "did not answer within" in graph.source
+
+
+def test_a_reply_that_drips_ends() -> None:
+    began = time.monotonic()
+    graph = _graph_of(StubLmm([GOOD], drip_s=0.02), timeout_s=0.6, votes=1)
+    assert time.monotonic() - began < 5.0
+    assert "did not finish its answer" in graph.source
+
+
+def test_a_flood_is_no_answer_and_takes_no_memory() -> None:
+    graph = _graph_of(StubLmm([GOOD], flood_bytes=60_000_000), votes=1, re_asks=0)
+    assert "no usable answer" in graph.source
+
+
+def test_tokens_of_tries_that_failed_are_told() -> None:
+    graph = _graph_of(StubLmm(["no idea"]), votes=1)
+    assert "no usable answer in 1 tries: 3 calls, 3150 tokens" in graph.source
+
+
+def test_the_schema_is_strict() -> None:
+    stub = StubLmm([GOOD])
+    _ask(stub)
+    described = stub.requests[0]["response_format"]["json_schema"]
+    assert described["strict"] is True
+    assert described["schema"]["additionalProperties"] is False
+    assert described["schema"]["required"] == ["classes"]
+    text = json.dumps(strict_schema(GraphReply))
+    assert "maxItems" not in text
+    assert "default" not in text

@@ -1,0 +1,103 @@
+"""Uploads are decoded in a process of its own, while everybody else goes on working."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Any
+
+from diorama_core.errors import EditRefused
+from diorama_core.io.limited import LimitedProcess
+from diorama_core.perception.inputs import ReadInputs, read_inputs
+from diorama_core.pipeline import codec
+
+MAX_WAITING = 2
+"""Uploads of one person that are read or wait for it."""
+
+Post = Callable[[Callable[[], None]], None]
+
+
+@dataclass(frozen=True)
+class Upload:
+    """What `read_inputs` takes, as it was uploaded."""
+
+    photo: bytes
+    name: str
+    depth: bytes | None = None
+    boxes: bytes | None = None
+    masks: bytes | None = None
+    intrinsics: tuple[float, float, float, float] | None = None
+
+
+def read_packed(upload: Upload) -> tuple[bytes, tuple[str, ...]]:
+    """Checked inputs, packed, and warnings. Runs in the decoding process."""
+    read = read_inputs(
+        upload.photo,
+        name=upload.name,
+        depth=upload.depth,
+        boxes=upload.boxes,
+        masks=upload.masks,
+        intrinsics=upload.intrinsics,
+    )
+    return codec.dump(read.inputs), read.warnings
+
+
+class Reader:
+    """Reads uploads one after another. May be used from any thread."""
+
+    def __init__(self) -> None:
+        self._process = LimitedProcess()
+        self._pool = ThreadPoolExecutor(1, thread_name_prefix="reading")
+        self._lock = threading.Lock()
+        self._waiting: dict[int, int] = {}
+
+    def read(self, upload: Upload, client_id: int, post: Post, then: Callable[[ReadInputs], None]) -> None:
+        """Decode an upload, then do something with it.
+
+        Args:
+            upload: what came.
+            client_id: whose it is.
+            post: runs a task where errors are told to that person.
+            then: given the checked inputs, there.
+
+        Raises:
+            EditRefused: two uploads of this person are being read already.
+        """
+        with self._lock:
+            if self._waiting.get(client_id, 0) >= MAX_WAITING:
+                raise EditRefused("your last files are still being read; wait a moment and try again")
+            self._waiting[client_id] = self._waiting.get(client_id, 0) + 1
+        self._pool.submit(self._read, upload, client_id, post, then)
+
+    def wait(self, timeout_s: float = 30.0) -> bool:
+        """Block until what was asked for is read; False when that took too long."""
+        done = threading.Event()
+        self._pool.submit(done.set)
+        return done.wait(timeout_s)
+
+    def close(self) -> None:
+        """End the process; what waits is dropped."""
+        self._pool.shutdown(wait=False, cancel_futures=True)
+        self._process.stop()
+
+    def _read(self, upload: Upload, client_id: int, post: Post, then: Callable[[ReadInputs], None]) -> None:
+        try:
+            packed, warnings = self._process.call(upload.name, read_packed, upload)
+            read = ReadInputs(codec.load(packed), warnings)
+            post(lambda: then(read))
+        except Exception as error:
+            post(_raising(error))
+        finally:
+            with self._lock:
+                self._waiting[client_id] -= 1
+                if not self._waiting[client_id]:
+                    del self._waiting[client_id]
+
+
+def _raising(error: Exception) -> Callable[[], Any]:
+    def fail() -> None:
+        raise error
+
+    return fail

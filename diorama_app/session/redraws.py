@@ -1,0 +1,64 @@
+"""When browsers' panels are redrawn: at most ten times a second each, whoever acts first.
+
+Drawing the panels of one browser takes milliseconds; of twenty, at every edit of twenty people, more than there is. An
+edit therefore marks the panels of all as out of date, and each browser's are drawn as a task of its own, between which
+other people's edits take their turn.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from diorama_app.session.ui_thread import UiThread
+
+if TYPE_CHECKING:
+    from diorama_app.session.client import Client
+
+EVERY_S = 0.1
+"""Between two redraws of one browser."""
+SHARE = 0.4
+"""Of the time at most is spent on drawing; with many browsers the redraws of those who only watch come less often."""
+
+
+class Redraws:
+    """Used from the desk's thread only."""
+
+    def __init__(self, ui_thread: UiThread) -> None:
+        self._desk = ui_thread
+        self._drawn_at: dict[int, float] = {}
+        self._took_s = 0.0
+        """What a redraw takes, a running mean."""
+
+    def ask(self, clients: Iterable[Client], first: Client | None = None) -> None:
+        """Draw these browsers' panels soon.
+
+        Args:
+            guests: whose panels are out of date.
+            first: whoever caused it: drawn at once unless that was done just now.
+        """
+        all_of_them = list(clients)
+        known = {g.id for g in all_of_them}
+        self._drawn_at = {i: t for i, t in self._drawn_at.items() if i in known}
+        every_s = max(EVERY_S, len(all_of_them) * self._took_s / SHARE)
+        now = time.monotonic()
+        for client in sorted(all_of_them, key=lambda g: g is not first):
+            due_s = self._drawn_at.get(client.id, -every_s) + (EVERY_S if client is first else every_s) - now
+            if due_s <= 0 and (client is first or len(all_of_them) == 1):
+                self._draw(client)
+            else:
+                self._desk.post(
+                    lambda client=client: self._draw(client),  # type: ignore[misc]
+                    key="redraw",
+                    viser_client=("redraw", client.id),
+                    after_s=max(0.0, due_s),
+                )
+
+    def _draw(self, client: Client) -> None:
+        if client.id not in client.session.clients:
+            return  # went away meanwhile
+        began = time.monotonic()
+        client.refresh()
+        now = self._drawn_at[client.id] = time.monotonic()
+        self._took_s += 0.1 * (now - began - self._took_s)

@@ -1,0 +1,189 @@
+"""Reading files back: bounded before memory, and one clear line for whatever is wrong.
+
+A project folder, a scene or a texture may come from somebody else, and a disk may return anything. Every reader of the
+program goes through these functions: they check the size before reading, the number of pixels before decoding and the
+nesting before building values, and they raise the caller's kind of error and nothing else.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import re
+import stat
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import UInt8
+from PIL import EpsImagePlugin, Image
+
+from diorama_core.errors import DioramaError
+
+EpsImagePlugin.gs_binary = False  # no picture starts a program, not even one that a library opens for us
+
+Kind = type[DioramaError]
+
+MAX_JSON_BYTES = 64_000_000
+MAX_JSON_DEPTH = 64
+MAX_PICTURE_BYTES = 64_000_000
+MAX_PIXELS = 40_000_000
+PICTURE_FORMATS = ("JPEG", "PNG", "WEBP")
+"""What the program writes. Others are not opened: some (EPS) make the decoder start other programs."""
+
+_STRINGS = re.compile(rb'"[^"\\]*+(?:\\.[^"\\]*+)*+(?:"|\Z|\\\Z)', re.DOTALL)
+_OPEN, _CLOSED = np.frombuffer(b"[{", np.uint8), np.frombuffer(b"]}", np.uint8)
+_LARGE = re.compile(rb"[0-9.][eE]\+?[0-9]{3}|[0-9]{300}")
+_MAX_WORDS = 200
+
+
+def read_bytes(path: Path, most: int, error: Kind, advice: str = "restore it from a copy") -> bytes:
+    """The content of a regular file of at most `most` bytes.
+
+    Raises:
+        error: missing, no regular file, unreadable or larger.
+    """
+    try:
+        # Without waiting: a named pipe in a received folder would otherwise hold the reader for ever.
+        handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))
+        with os.fdopen(handle, "rb") as stream:
+            about = os.fstat(stream.fileno())
+            if not stat.S_ISREG(about.st_mode):
+                raise error(f"{path} is not a file; {advice}")
+            if about.st_size <= most:
+                data = stream.read(most + 1)
+                if len(data) <= most:
+                    return data
+            raise error(f"{path} has more than the {megabytes(most)} that are read; {advice}")
+    except OSError as reason:
+        raise error(f"{path} cannot be read ({reason.strerror or reason}); {advice}") from reason
+    except (ValueError, MemoryError) as reason:  # a null character in the name; a file larger than what is free
+        raise error(f"{shortened(str(path))} cannot be read ({reason}); {advice}") from reason
+
+
+def read_json(path: Path, error: Kind, *, most: int = MAX_JSON_BYTES, advice: str = "restore it from a copy") -> Any:
+    """The value in a JSON file; see `parse_json`.
+
+    Raises:
+        error: as `read_bytes` and `parse_json`.
+    """
+    return parse_json(read_bytes(path, most, error, advice), str(path), error, advice=advice)
+
+
+def parse_json(
+    data: bytes | str, name: str, error: Kind, *, advice: str = "restore it from a copy", finite: bool = True
+) -> Any:
+    """The value that JSON text describes: finite numbers (unless said otherwise), whole characters, few levels.
+
+    Raises:
+        error: not UTF-8, not JSON, nested too deeply, or with numbers or characters that cannot be written back.
+    """
+    try:
+        raw = data.encode() if isinstance(data, str) else data
+        if _depth(raw) > MAX_JSON_DEPTH:
+            raise error(f"{name} is nested more than {MAX_JSON_DEPTH} levels deep; {advice}")
+        value = json.loads(raw.decode("utf-8-sig"), parse_constant=_refuse_constant if finite else float)
+        if finite and _infinite(value, raw):
+            raise ValueError("a number is too large")
+        if rb"\u" in raw:
+            json.dumps(value, ensure_ascii=False).encode()  # half of a character pair cannot be written
+    except json.JSONDecodeError as reason:
+        raise error(f"{name} is not valid JSON (line {reason.lineno}: {shortened(reason.msg)}); {advice}") from reason
+    except UnicodeError as reason:
+        raise error(f"{name} holds bytes that are no text (UTF-8); {advice}") from reason
+    except (ValueError, RecursionError, MemoryError) as reason:
+        raise error(f"{name} cannot be read ({shortened(str(reason)) or type(reason).__name__}); {advice}") from reason
+    return value
+
+
+def picture_of(
+    data: bytes,
+    name: str,
+    error: Kind,
+    *,
+    most_pixels: int = MAX_PIXELS,
+    formats: Sequence[str] = PICTURE_FORMATS,
+    within: tuple[int, int] | None = None,
+) -> UInt8[np.ndarray, "h w 3"]:
+    """A picture's pixels, decoded.
+
+    Args:
+        data: the file's bytes.
+        name: what to call it in messages.
+        error: the kind of error raised.
+        most_pixels: more are refused before they are decoded.
+        formats: which formats are opened.
+        within: a JPEG may be decoded at a fraction of its size that still covers this (width, height).
+
+    Raises:
+        error: no picture of these formats, damaged, or of too many pixels.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            image = Image.open(io.BytesIO(data), formats=tuple(formats))
+        if image.width * image.height > most_pixels:
+            raise error(
+                f"{name}: {image.width} x {image.height} pixels are more than the {most_pixels / 1e6:.0f} megapixels "
+                "that are read; reduce it"
+            )
+        if within is not None:
+            image.draft("RGB", within)
+        return np.asarray(image.convert("RGB"))
+    except DioramaError:
+        raise
+    except Image.DecompressionBombError as reason:
+        raise error(f"{name}: more pixels than are read; reduce it") from reason
+    except Exception as reason:  # decoders of untrusted bytes raise almost anything
+        raise error(f"{name} is not a whole picture ({' or '.join(formats)}); replace it") from reason
+
+
+def read_picture(
+    path: Path, error: Kind, *, most_pixels: int = MAX_PIXELS, within: tuple[int, int] | None = None
+) -> UInt8[np.ndarray, "h w 3"]:
+    """A picture that the program wrote.
+
+    Raises:
+        error: as `read_bytes` and `picture_of`.
+    """
+    data = read_bytes(path, MAX_PICTURE_BYTES, error, "replace it")
+    return picture_of(data, str(path), error, most_pixels=most_pixels, within=within)
+
+
+def shortened(words: str, most: int = _MAX_WORDS) -> str:
+    """One line of at most `most` characters, without control characters and half characters."""
+    line = " ".join(words.encode("utf-8", "replace").decode().split())
+    line = "".join(c for c in line if c.isprintable())
+    return line if len(line) <= most else f"{line[: most - 1]}…"
+
+
+def megabytes(count: int) -> str:
+    """A number of bytes, in words."""
+    return f"{count / 1e6:.3g} MB" if count >= 100_000 else f"{count / 1e3:.3g} kB"
+
+
+def _depth(data: bytes) -> int:
+    """How deeply brackets are nested outside strings. A quick upper bound spares small files the work."""
+    if data.count(b"[") + data.count(b"{") <= MAX_JSON_DEPTH:
+        return 0
+    marks = np.frombuffer(_STRINGS.sub(b"", data), np.uint8)
+    steps = np.isin(marks, _OPEN).astype(np.int8) - np.isin(marks, _CLOSED)
+    return int(np.cumsum(steps[steps != 0], dtype=np.int32).max(initial=0))
+
+
+def _refuse_constant(name: str) -> float:
+    raise ValueError(f"{name} is no number")
+
+
+def _infinite(value: Any, raw: bytes) -> bool:
+    """Whether a number overflowed, as 1e999 does. Only text with an exponent or very many digits can."""
+    if not _LARGE.search(raw):
+        return False
+    try:
+        json.dumps(value, allow_nan=False)
+    except ValueError:
+        return True
+    return False

@@ -1,0 +1,99 @@
+"""One program at a time changes a project; the others see who it is.
+
+The lock is the operating system's, so that it ends with the program, however that ends. Who has it lies beside it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import getpass
+import json
+import os
+import socket
+import time
+from pathlib import Path
+from types import TracebackType
+
+from filelock import FileLock, Timeout
+
+from diorama_core.errors import ProjectError
+from diorama_core.io.atomic import write_atomically
+from diorama_core.io.bounded import read_json, shortened
+
+LOCK = ".diorama.lock"
+HOLDER = ".diorama-holder.lock"
+
+
+class ProjectLockedError(ProjectError):
+    """Another program has the project open for changes."""
+
+
+class ProjectLock:
+    """The right to change a project, until `release`. Also a context manager."""
+
+    def __init__(self, folder: Path, what: str = "Diorama") -> None:
+        """Take the lock.
+
+        Args:
+            folder: the project's.
+            what: who says so to others, such as "the editor".
+
+        Raises:
+            ProjectLockedError: another program has it; the message says which.
+            ProjectError: the folder cannot be written.
+        """
+        self.folder = folder
+        self._lock = FileLock(folder / LOCK, timeout=0)
+        try:
+            self._lock.acquire()
+        except Timeout:
+            raise ProjectLockedError(
+                f"{folder.name} is open in {supporter(folder)}; close it there, or work on a copy"
+            ) from None
+        except (OSError, NotImplementedError) as error:
+            reason = getattr(error, "strerror", None) or str(error)
+            raise ProjectError(f"{folder} cannot be changed ({reason}); copy it where you may write") from error
+        about = {
+            "what": what,
+            "who": _user(),
+            "host": socket.gethostname(),
+            "process": os.getpid(),
+            "since": time.strftime("%d %b %H:%M"),
+        }
+        try:
+            write_atomically(folder / HOLDER, json.dumps(about).encode(), error=ProjectError)
+        except ProjectError:
+            self._lock.release()
+            raise
+
+    def release(self) -> None:
+        """Let others change the project. Doing it twice does nothing."""
+        if not self._lock.is_locked:
+            return
+        with contextlib.suppress(OSError):
+            (self.folder / HOLDER).unlink(missing_ok=True)
+        with contextlib.suppress(OSError):
+            self._lock.release()
+
+    def __enter__(self) -> ProjectLock:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self.release()
+
+
+def supporter(folder: Path) -> str:
+    """Who has a project's lock, in words."""
+    try:
+        about = read_json(folder / HOLDER, ProjectError, most=10_000)
+        words = f"{about['what']} of {about['who']} on {about['host']} (process {about['process']}, {about['since']})"
+        return shortened(words, 150)
+    except (ProjectError, LookupError, TypeError):
+        return "another program"
+
+
+def _user() -> str:
+    try:
+        return getpass.getuser()
+    except (OSError, KeyError, ImportError):
+        return "somebody"

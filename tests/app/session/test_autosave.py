@@ -1,0 +1,162 @@
+"""What is edited is saved whatever the page does, and one broken panel is one broken panel."""
+
+from __future__ import annotations
+
+import json
+import struct
+import zlib
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from diorama_app.commands.camera_presets import Views
+from diorama_app.commands.definitions import build_commands
+from diorama_app.commands.edit import rename
+from diorama_app.panels.projects import Projects
+from diorama_app.projects import manage as project_care
+from diorama_app.reconstruction.photo_outlines import PhotoOutlines
+from diorama_app.session.client import Client
+from diorama_app.session.session import EditorSession
+from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
+from diorama_core.scene import edits
+from diorama_core.scene.types import Scene
+from tests.app.people import join
+from tests.app.small_room import PlainLibrary, make_project
+
+
+@pytest.fixture
+def session(tmp_path: Path) -> Iterator[EditorSession]:
+    server = create_server(host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1"))
+    made = EditorSession(server, PlainLibrary(), tmp_path / "projects")
+    made.open_project(make_project(tmp_path / "projects" / "demo"))
+    yield made
+    made.close()
+    stop_server(server)
+
+
+def moved_to(x: float) -> Callable[[Scene], Scene]:
+    def change(scene: Scene) -> Scene:
+        item = scene.object("chair_1")
+        return edits.move(scene, item.id, replace(item.pose, position=np.array([x, 1.0, 0.4])))
+
+    return change
+
+
+@pytest.mark.parametrize("x", [float("nan"), float("inf"), 1e12])
+def test_a_field_that_holds_no_number_says_so(session: EditorSession, x: float) -> None:
+    client = join(session)
+    before = session.scene
+    client.post(lambda: session.edit("move", moved_to(x), by=client))
+    assert session.ui_thread.wait()
+    told = client.viser_client.told  # type: ignore[attr-defined]
+    assert len(told) == 1
+    assert "Something went wrong" not in told[0]
+    assert "value" in told[0]
+    assert session.scene == before
+
+
+class Broken:
+    """A panel of which every redraw fails."""
+
+    def refresh(self) -> None:
+        raise RuntimeError("a panel broke")
+
+
+class Counting:
+    def __init__(self) -> None:
+        self.count = 0
+
+    def refresh(self) -> None:
+        self.count += 1
+
+
+def edited(session: EditorSession, client: Client, label: str = "throne") -> None:
+    client.post(lambda: rename(client, "chair_1", label))
+    assert session.ui_thread.wait()
+
+
+def saved_label(session: EditorSession) -> str:
+    session.autosave.flush()
+    assert session.project is not None
+    return session.project.load_scene().object("chair_1").label
+
+
+def test_an_edit_is_saved_and_the_others_are_redrawn_when_a_panel_fails(session: EditorSession) -> None:
+    client, other = join(session, 0), join(session, 1)
+    fine = Counting()
+    client.panels, other.panels = [Broken(), fine], [Broken(), fine]
+    fine.count = 0
+    edited(session, client)
+    assert saved_label(session) == "throne"
+    assert fine.count >= 2, "the panels after the broken one, of everybody"
+    told = client.viser_client.told  # type: ignore[attr-defined]
+    assert len(told) == 1, told
+    assert "Broken" in told[0]
+    assert "nothing was changed" not in told[0]
+    edited(session, client, "stool")
+    assert len(told) == 1, "said once, not at every edit"
+
+
+def test_the_scene_is_saved_when_the_view_cannot_be_drawn(
+    session: EditorSession, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(*_: object) -> None:
+        raise RuntimeError("deque mutated during iteration")
+
+    client = join(session)
+    monkeypatch.setattr(session.viewport, "show", fails)
+    edited(session, client)
+    assert saved_label(session) == "throne"
+
+
+def bomb_png(width: int, height: int) -> bytes:
+    """A picture of many pixels in few bytes."""
+
+    def chunk(kind: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    packer = zlib.compressobj(9)
+    rows = b"".join(packer.compress(bytes(1 + width * 3)) for _ in range(height)) + packer.flush()
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", rows) + chunk(b"IEND", b"")
+
+
+DAMAGED = {
+    "no text": b"\xff\xfe\x00format",
+    "version in words": json.dumps({"format": "diorama-project", "version": "1"}).encode(),
+    "not a table": b"[]",
+    "deep": b"[" * 100_000,
+    "huge number": b'{"format": "diorama-project", "version": ' + b"9" * 5000 + b"}",
+    "name is a table": json.dumps({"format": "diorama-project", "version": 1, "name": {"a": 1}}).encode(),
+}
+
+
+@pytest.mark.parametrize("kind", DAMAGED)
+def test_another_projects_damaged_file_is_that_projects_matter(session: EditorSession, kind: str) -> None:
+    other = make_project(session.projects_dir / "other").folder
+    (other / "project.json").write_bytes(DAMAGED[kind])
+    assert project_care.name_of(other) == "other"
+    client = join(session)
+    client.panels = [projects_panel(session, client)]
+    edited(session, client)
+    assert saved_label(session) == "throne"
+    assert client.viser_client.told == []  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("photo", [bomb_png(20_000, 12_000), b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 9 9\n"])
+def test_another_projects_photo_that_cannot_be_shown_is_left_out(session: EditorSession, photo: bytes) -> None:
+    other = make_project(session.projects_dir / "other").folder
+    (other / "photo.jpg").write_bytes(photo)
+    client = join(session)
+    client.panels = [projects_panel(session, client)]
+    edited(session, client)
+    assert saved_label(session) == "throne"
+    assert client.viser_client.told == []  # type: ignore[attr-defined]
+
+
+def projects_panel(session: EditorSession, client: Client) -> Projects:
+    commands = build_commands(session, Views(session), PhotoOutlines(session), lambda g: False, lambda g: None)
+    return Projects(session.server.gui, client, commands, lambda name, content: None)

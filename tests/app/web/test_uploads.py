@@ -1,0 +1,129 @@
+"""Uploads through the page's own buttons: capped, counted, and never kept waiting for."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from diorama_app.serve import Running, start
+from diorama_app.web import viser_adapter
+from diorama_app.web.viser_adapter import MAX_UPLOAD_BYTES, MAX_UPLOADS_IN_FLIGHT, MAX_UPLOADS_PER_CLIENT
+from tests.app.small_room import PlainLibrary, make_project
+from tests.app.wire import WirePage
+from tests.io.test_bombs import png
+
+BUTTONS = ("Upload a photo", "Add boxes (JSON)", "Add depth (PNG or NPY)", "Add masks (PNG)", "New from a photo")
+
+
+@pytest.fixture
+def running(tmp_path: Path) -> Iterator[Running]:
+    project = make_project(tmp_path / "projects" / "demo")
+    made = start(project=project.folder, projects_dir=tmp_path / "projects", low_graphics=True, library=PlainLibrary())
+    yield made
+    made.stop()
+
+
+def in_flight(running: Running) -> dict[str, dict]:
+    guis = [running.server.gui, *(c.gui for c in running.server.get_clients().values())]
+    return {uuid: state for gui in guis for uuid, state in gui._current_file_upload_states.items()}  # type: ignore[misc]
+
+
+def settled(running: Running) -> dict[str, dict]:
+    """What is under way when everything that was sent has been looked at."""
+    before, count = time.monotonic(), -1
+    while time.monotonic() - before < 3.0:
+        time.sleep(0.15)
+        if count == len(in_flight(running)):
+            break
+        count = len(in_flight(running))
+    return in_flight(running)
+
+
+@pytest.mark.parametrize("label", BUTTONS)
+def test_every_button_refuses_what_is_too_large_and_says_so(running: Running, label: str) -> None:
+    page = WirePage(running.port)
+    page.begin_upload(page.element(label, "UploadButton"), "huge.png", MAX_UPLOAD_BYTES + 1, 300)
+    page.wait_for(lambda: any("huge.png is not taken" in n for n in page.notices))
+    assert not in_flight(running)
+    page.close()
+
+
+def test_more_than_was_announced_ends_the_upload(running: Running) -> None:
+    page = WirePage(running.port)
+    button = page.element("Upload a photo", "UploadButton")
+    transfer = page.begin_upload(button, "small.png", 10, 2)
+    for i in range(20):
+        page.send_part(button, transfer, i, bytes(4_000_000))
+    page.wait_for(lambda: any("more came than was announced" in n for n in page.notices))
+    assert not settled(running)
+    page.close()
+
+
+def test_uploads_at_once_are_counted_over_all_pages(running: Running) -> None:
+    pages = [WirePage(running.port) for _ in range(5)]
+    for page in pages:
+        button = page.element("Upload a photo", "UploadButton")
+        for i in range(8):
+            page.begin_upload(button, f"{i}.png", 1_000_000, 2)
+    states = settled(running)
+    assert len(states) == MAX_UPLOADS_IN_FLIGHT
+    owners = [s["client_id"] for s in states.values()]
+    assert max(owners.count(o) for o in owners) == MAX_UPLOADS_PER_CLIENT
+    for page in pages:
+        page.close()
+
+
+def test_an_upload_that_stands_still_gives_its_place_up(running: Running, monkeypatch: pytest.MonkeyPatch) -> None:
+    page = WirePage(running.port)
+    button = page.element("Upload a photo", "UploadButton")
+    for i in range(MAX_UPLOADS_PER_CLIENT):
+        page.begin_upload(button, f"{i}.png", 1_000_000, 2)
+    assert len(settled(running)) == MAX_UPLOADS_PER_CLIENT
+    monkeypatch.setattr(viser_adapter, "UPLOAD_STALLED_S", 0.0)
+    page.begin_upload(button, "next.png", 1_000_000, 2)
+    states = settled(running)
+    assert [s["filename"] for s in states.values()] == ["next.png"]
+    page.close()
+
+
+def test_what_a_page_announces_together_is_bounded(running: Running) -> None:
+    pages = [WirePage(running.port) for _ in range(4)]
+    for page in pages:
+        button = page.element("Upload a photo", "UploadButton")
+        page.begin_upload(button, "large.png", MAX_UPLOAD_BYTES, 256)
+    states = settled(running)
+    assert sum(s["total_bytes"] for s in states.values()) <= viser_adapter.MAX_BYTES_IN_FLIGHT
+    for page in pages:
+        page.close()
+
+
+def test_a_large_picture_is_decoded_while_others_go_on(running: Running) -> None:
+    """A picture of 63 megapixels in 0.2 MB takes seconds to decode; nobody else waits for that."""
+    page, session = WirePage(running.port), running.session
+    page.upload(page.element("Upload a photo", "UploadButton"), "large.png", png(9_000, 7_000, 8, 2, 3))
+    longest, deadline = 0.0, time.monotonic() + 60.0
+    while session.draft.photo is None or session.draft.photo.name != "large.png":
+        assert time.monotonic() < deadline, page.notices
+        began = time.monotonic()
+        assert session.ui_thread.wait(30.0)
+        longest = max(longest, time.monotonic() - began)
+        time.sleep(0.02)
+    assert longest < 1.5, "the thread that serves everybody was kept"
+    assert session.draft.photo.width == 1600
+    page.close()
+
+
+def test_a_bomb_is_one_line_and_the_next_photo_is_read(running: Running) -> None:
+    page, session = WirePage(running.port), running.session
+    button = page.element("Upload a photo", "UploadButton")
+    page.upload(button, "bomb.png", png(12_000, 9_800, 8, 2, 3))
+    page.wait_for(lambda: any("12000 x 9800 pixels are more than" in n for n in page.notices))
+    page.upload(button, "room.png", png(640, 480, 8, 2, 3))
+    deadline = time.monotonic() + 30.0
+    while session.draft.photo is None or session.draft.photo.name != "room.png":
+        assert time.monotonic() < deadline, page.notices
+        time.sleep(0.05)
+    page.close()

@@ -1,0 +1,85 @@
+"""Nothing is asked of any network: serve, build and export run where there is none, and the kernel is watched.
+
+`unshare` makes a namespace of its own with loopback only; `strace` lists every connection that is tried.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+ROOT = Path(__file__).resolve().parents[2]
+CONNECT = re.compile(r"connect\(\d+, \{sa_family=AF_INET6?, .*?(?:inet_addr\(\"|AF_INET6, \")([0-9a-f.:]+)\"")
+
+SERVE = """
+import sys, urllib.request
+from pathlib import Path
+from diorama_app.server import start
+from tests.app.small_room import PlainLibrary
+running = start(project=Path(sys.argv[1]), projects_dir=Path(sys.argv[1]).parent, library=PlainLibrary())
+with urllib.request.urlopen(running.url) as page:
+    assert page.status == 200 and len(page.read()) > 1000
+running.stop()
+"""
+BUILD = """
+import sys
+from diorama_app.cli import main
+sys.exit(main(["build", sys.argv[1], "-o", sys.argv[2], "--boxes", sys.argv[3]]))
+"""
+EXPORT = """
+import sys
+from diorama_app.cli import main
+sys.exit(main(["export", sys.argv[1], "--format", "glb", "-o", sys.argv[2]]))
+"""
+
+
+def cut_off() -> list[str]:
+    """A command's beginning that cuts it off from every network; skips where that is not allowed."""
+    loopback_up = 'ip link set lo up 2>/dev/null; exec "$@"'
+    prefix = ["unshare", "--net", "--map-root-user", "sh", "-c", loopback_up, "sh"]
+    if not shutil.which("unshare") or subprocess.run([*prefix, "true"], capture_output=True).returncode:
+        pytest.skip("needs unshare and the right to make a network namespace")
+    return prefix
+
+
+def traced(tmp_path: Path) -> list[str]:
+    if not shutil.which("strace"):
+        return []
+    return ["strace", "-f", "-qq", "-e", "trace=connect", "-o", str(tmp_path / "trace")]
+
+
+def run(prefix: list[str], code: str, *arguments: object) -> None:
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1", "HF_HUB_OFFLINE": ""}
+    command = [*prefix, sys.executable, "-c", code, *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=300)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+
+
+@pytest.mark.slow
+def test_serving_building_and_exporting_need_no_network(tmp_path: Path) -> None:
+    from tests.app.small_room import make_project
+
+    prefix, watched = cut_off(), traced(tmp_path)
+    project = make_project(tmp_path / "projects" / "demo")
+    rows = np.linspace(230, 90, 240)[:, None, None] * np.ones((1, 320, 3))
+    Image.fromarray(rows.astype(np.uint8)).save(tmp_path / "room.png")
+    (tmp_path / "boxes.json").write_text('[{"bbox": [90, 120, 200, 220], "class": "chair"}]')
+    steps = (
+        (SERVE, (project.folder,)),
+        (BUILD, (tmp_path / "room.png", tmp_path / "built", tmp_path / "boxes.json")),
+        (EXPORT, (tmp_path / "built", tmp_path / "room.glb")),
+    )
+    for code, arguments in steps:
+        run([*prefix, *watched], code, *arguments)
+        if watched:
+            asked = {a for a in CONNECT.findall((tmp_path / "trace").read_text()) if not a.startswith(("127.", "::1"))}
+            assert not asked, f"connections were tried to {asked}"
+    assert (tmp_path / "room.glb").stat().st_size > 1000

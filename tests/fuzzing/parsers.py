@@ -1,0 +1,259 @@
+"""Everything that reads bytes from outside, each with small samples and a way to damage them."""
+
+from __future__ import annotations
+
+import io
+import json
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from PIL import Image
+
+from diorama_core.artefacts import Inputs
+from diorama_core.io.limited import LimitedProcess
+from diorama_core.library.ingest.limits import Limits
+from diorama_core.perception import exr
+from diorama_core.perception.inputs import read_inputs
+from diorama_core.pipeline import codec
+from diorama_core.project.storage import Project
+from diorama_core.scene.schema import scene_from_json, scene_to_json
+from tests.app.small_room import PlainLibrary, furnished_scene, make_project, plain_photo
+from tests.fuzzing.mutate import Mutate, damaged, strange_glb, strange_json, strange_zip
+
+CORPUS = Path(__file__).parent / "corpus"
+"""Small files that once broke a reader; a case is named after its parser."""
+
+limited = LimitedProcess(seconds=20.0)
+
+
+@dataclass(frozen=True)
+class Parser:
+    """A reader of bytes from outside. It returns, or raises a `DioramaError`: anything else is a finding."""
+
+    samples: Callable[[], tuple[bytes, ...]]
+    read: Callable[[bytes], object]
+    mutate: Mutate
+
+
+def _picture(kind: str, size: tuple[int, int] = (96, 64), mode: str = "RGB", **options: object) -> bytes:
+    buffer = io.BytesIO()
+    Image.new(mode, size, (90, 120, 200) if mode == "RGB" else 90).save(buffer, kind, **options)
+    return buffer.getvalue()
+
+
+def _photo() -> bytes:
+    rows = np.linspace(0, 255, 64)[:, None, None] * np.ones((1, 96, 3))
+    buffer = io.BytesIO()
+    exif = Image.Exif()
+    exif[0x0112] = 6
+    Image.fromarray(rows.astype(np.uint8)).save(buffer, "JPEG", exif=exif)
+    return buffer.getvalue()
+
+
+def _photos() -> tuple[bytes, ...]:
+    kinds = ("PNG", "WEBP", "BMP", "TIFF", "GIF", "PPM")
+    return (_photo(), *(_picture(kind) for kind in kinds), _picture("PNG", mode="P"), _picture("PNG", mode="I;16"))
+
+
+def _depths() -> tuple[bytes, ...]:
+    metres = np.linspace(1, 4, 96 * 64, dtype=np.float32).reshape(64, 96)
+    npy, png = io.BytesIO(), io.BytesIO()
+    np.save(npy, metres)
+    Image.fromarray((metres * 1000).astype(np.uint16)).save(png, "PNG")
+    return npy.getvalue(), png.getvalue()
+
+
+def _exrs() -> tuple[bytes, ...]:
+    folder = Path(__file__).parents[1] / "perception" / "exr"
+    return tuple(p.read_bytes() for p in sorted(folder.glob("*.exr")))
+
+
+def _masks() -> tuple[bytes, ...]:
+    colours = np.zeros((64, 96, 3), np.uint8)
+    colours[10:30, 10:40], colours[35:60, 50:90] = (255, 0, 0), (0, 255, 0)
+    buffers = [io.BytesIO() for _ in range(3)]
+    Image.fromarray(colours).save(buffers[0], "PNG")
+    Image.fromarray(colours).quantize(8).save(buffers[1], "PNG")
+    Image.fromarray(colours[..., 0] // 255).save(buffers[2], "PNG")
+    return tuple(b.getvalue() for b in buffers)
+
+
+def _boxes() -> tuple[bytes, ...]:
+    rows = [{"bbox": [5, 5, 40, 50], "class": "chair", "score": 0.5}, {"bbox": [45, 8, 90, 60], "class": "night_stand"}]
+    return (json.dumps(rows).encode(),)
+
+
+def _scenes() -> tuple[bytes, ...]:
+    return (scene_to_json(furnished_scene()).encode(),)
+
+
+def _stages() -> tuple[bytes, ...]:
+    inputs = Inputs(plain_photo(48, 36), depth_m=np.ones((36, 48), np.float32))
+    return codec.dump(inputs), codec.dump((furnished_scene(), ())), codec.dump((np.zeros((4, 5), bool),))
+
+
+def _stage(data: bytes) -> object:
+    return codec.load(data, Inputs)
+
+
+@cache
+def _photo_bytes() -> bytes:
+    return _picture("PNG")
+
+
+def _with_depth(data: bytes) -> object:
+    return read_inputs(_photo_bytes(), name="p.png", depth=data)
+
+
+def _with_boxes(data: bytes) -> object:
+    return read_inputs(_photo_bytes(), name="p.png", boxes=data)
+
+
+def _with_masks(data: bytes) -> object:
+    return read_inputs(_photo_bytes(), name="p.png", masks=data)
+
+
+def _as_photo(data: bytes) -> object:
+    return read_inputs(data, name="photo.jpg")
+
+
+def _inside(read: Callable[[bytes], object]) -> Callable[[bytes], object]:
+    """In the decoding process, so that a crash is a line there too."""
+    return lambda data: limited.call("the file", read, data)
+
+
+@cache
+def _project() -> Project:
+    folder = Path(tempfile.mkdtemp(prefix="fuzz-"))
+    return make_project(folder / "demo")
+
+
+def _infos() -> tuple[bytes, ...]:
+    return ((_project().folder / "project.json").read_bytes(),)
+
+
+def _as_info(data: bytes) -> object:
+    project = _project()
+    path = project.folder / "project.json"
+    good = path.read_bytes()
+    try:
+        path.write_bytes(data)
+        opened = Project.open(project.folder)
+        json.dumps([opened.name], ensure_ascii=False).encode()
+        opened.update_info(note="x")
+        return opened
+    finally:
+        path.write_bytes(good)
+
+
+def _as_inputs(data: bytes) -> object:
+    path = _project().stages_folder / "inputs.zip"
+    path.write_bytes(data)
+    return _project().load_inputs()
+
+
+def _inputs() -> tuple[bytes, ...]:
+    return (codec.dump(Inputs(plain_photo(48, 36), depth_m=np.ones((36, 48), np.float32))),)
+
+
+def _textures() -> tuple[bytes, ...]:
+    return _photo(), _picture("PNG"), _picture("WEBP")
+
+
+def _as_texture(data: bytes) -> object:
+    path = _project().folder / "textures" / "floor.jpg"
+    path.parent.mkdir(exist_ok=True)
+    path.write_bytes(data)
+    return _project().texture("floor")
+
+
+def _used_scene(data: bytes) -> object:
+    """Whatever passes the schema can be written, shown and exported."""
+    from diorama_app.panels.outliner import tree_html
+    from diorama_core.export.gltf import glb_bytes
+
+    scene = scene_from_json(data)
+    scene_to_json(scene).encode()
+    tree_html(scene, ()).encode()
+    return glb_bytes(scene, PlainLibrary())
+
+
+def _model(suffix: str) -> Callable[[bytes], object]:
+    def read(data: bytes) -> object:
+        from diorama_core.library.ingest.models import read_model
+        from diorama_core.library.ingest.repair import repaired
+
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / f"model{suffix}"
+            path.write_bytes(data)
+            (Path(folder) / "model.mtl").write_bytes(_MTL)
+            return repaired(read_model(path, Path(folder), Limits()).scene, Limits())
+
+    return read
+
+
+_MTL = b"newmtl wood\nKd 0.5 0.4 0.3\nNs 10\nmap_Kd wood.png\n"
+_OBJ = b"""mtllib model.mtl
+o seat
+v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+v 0 0 1
+vt 0 0
+vt 1 0
+vt 1 1
+vn 0 0 1
+usemtl wood
+f 1/1/1 2/2/1 3/3/1
+f 1 3 4
+f 1 2 5
+"""
+
+
+def _mesh(kind: str) -> bytes:
+    return bytes(trimesh.creation.box((0.5, 0.4, 0.9)).export(file_type=kind))
+
+
+def _mtl(data: bytes) -> object:
+    from diorama_core.library.ingest.models import read_model
+    from diorama_core.library.ingest.repair import repaired
+
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "model.obj").write_bytes(_OBJ)
+        (Path(folder) / "model.mtl").write_bytes(data)
+        (Path(folder) / "wood.png").write_bytes(_picture("PNG"))
+        return repaired(read_model(Path(folder) / "model.obj", Path(folder), Limits()).scene, Limits())
+
+
+def _language(data: bytes) -> object:
+    from diorama_core.perception.language.json_text import json_in
+
+    return json_in(data.decode("utf-8", "replace"))
+
+
+PARSERS: dict[str, Parser] = {
+    "photo": Parser(_photos, _inside(_as_photo), damaged),
+    "depth": Parser(_depths, _inside(_with_depth), damaged),
+    "exr": Parser(_exrs, exr.read_depth_channel, damaged),
+    "masks": Parser(_masks, _inside(_with_masks), damaged),
+    "boxes": Parser(_boxes, _with_boxes, strange_json),
+    "scene": Parser(_scenes, _used_scene, strange_json),
+    "stage": Parser(_stages, _stage, strange_zip),
+    "project": Parser(_infos, _as_info, strange_json),
+    "inputs": Parser(_inputs, _as_inputs, strange_zip),
+    "texture": Parser(_textures, _as_texture, damaged),
+    "glb": Parser(lambda: (_mesh("glb"),), _model(".glb"), strange_glb),
+    "obj": Parser(lambda: (_OBJ,), _model(".obj"), damaged),
+    "ply": Parser(lambda: (_mesh("ply"),), _model(".ply"), damaged),
+    "stl": Parser(lambda: (_mesh("stl"),), _model(".stl"), damaged),
+    "language": Parser(
+        lambda: (b"Here it is:\n```json\n" + _boxes()[0] + b"\n```", b'{"a": {"b": [1]}}'), _language, damaged
+    ),
+    "mtl": Parser(lambda: (_MTL,), _mtl, damaged),
+}

@@ -1,0 +1,74 @@
+"""Decoding in a process of its own: bounded, restarted, one line."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import time
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from diorama_core.errors import InputError, LibraryError
+from diorama_core.io.limited import LimitedProcess
+
+
+def double(number: int) -> int:
+    return 2 * number
+
+
+def greedy(megabytes: int) -> int:
+    return int(np.ones(megabytes * 1_000_000, np.uint8).sum())
+
+
+def crash() -> None:
+    ctypes.string_at(0)
+
+
+def refuse() -> None:
+    raise LibraryError("a chair has no legs")
+
+
+def pid() -> int:
+    return os.getpid()
+
+
+@pytest.fixture
+def process() -> Iterator[LimitedProcess]:
+    made = LimitedProcess(memory=800_000_000, seconds=3.0)
+    yield made
+    made.close()
+
+
+def test_it_answers_from_another_process(process: LimitedProcess) -> None:
+    assert process.call("x", double, 21) == 42
+    assert process.call("x", pid) != os.getpid()
+    assert process.call("x", pid) == process.call("x", pid), "one process for all calls"
+
+
+def test_too_much_memory_is_one_line_and_the_next_call_works(process: LimitedProcess) -> None:
+    with pytest.raises(InputError, match=r"room\.png: it needs more memory"):
+        process.call("room.png", greedy, 5000)
+    assert process.call("x", greedy, 10) == 10_000_000
+
+
+def test_a_crash_is_one_line_and_the_next_call_works(process: LimitedProcess) -> None:
+    with pytest.raises(InputError, match=r"room\.exr: .*damaged"):
+        process.call("room.exr", crash)
+    assert process.call("x", double, 1) == 2
+
+
+def test_what_takes_too_long_is_ended(process: LimitedProcess) -> None:
+    began = time.monotonic()
+    with pytest.raises(InputError, match="takes too long"):
+        process.call("room.png", time.sleep, 60.0)
+    assert time.monotonic() - began < 10.0
+    assert process.call("x", double, 1) == 2
+
+
+def test_errors_meant_for_people_arrive_as_they_are(process: LimitedProcess) -> None:
+    with pytest.raises(LibraryError, match="a chair has no legs"):
+        process.call("x", refuse)
+    with pytest.raises(InputError, match=r"x: it cannot be read \(TypeError\)"):
+        process.call("x", double, None)  # type: ignore[arg-type]

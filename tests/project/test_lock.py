@@ -1,0 +1,75 @@
+"""One program at a time changes a project."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from diorama_core.errors import ProjectError
+from diorama_core.project.lock import ProjectLock, ProjectLockedError
+from diorama_core.project.storage import Project
+
+TAKE = """
+import sys, time
+from pathlib import Path
+from diorama_core.project.lock import ProjectLock
+lock = ProjectLock(Path(sys.argv[1]), "the editor")
+print("taken", flush=True)
+time.sleep(60)
+"""
+
+
+def test_the_second_is_told_who_has_it(tmp_path: Path) -> None:
+    folder = Project.create(tmp_path / "room").folder
+    with ProjectLock(folder, "the editor"):
+        with pytest.raises(ProjectLockedError, match=r"room is open in the editor of .* \(process \d+") as told:
+            ProjectLock(folder, "diorama build")
+        assert "\n" not in str(told.value)
+    ProjectLock(folder).release()
+
+
+def test_a_lock_ends_with_the_program_that_has_it(tmp_path: Path) -> None:
+    folder = Project.create(tmp_path / "room").folder
+    other = subprocess.Popen([sys.executable, "-c", TAKE, str(folder)], stdout=subprocess.PIPE, text=True)
+    try:
+        assert other.stdout is not None
+        assert other.stdout.readline() == "taken\n"
+        with pytest.raises(ProjectLockedError, match=f"process {other.pid}"):
+            ProjectLock(folder)
+    finally:
+        other.kill()
+        other.wait()
+        assert other.stdout is not None
+        other.stdout.close()
+    deadline = time.monotonic() + 10.0
+    while True:
+        try:
+            ProjectLock(folder).release()
+            return
+        except ProjectLockedError:
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
+
+
+def test_who_has_it_may_say_anything_of_itself(tmp_path: Path) -> None:
+    folder = Project.create(tmp_path / "room").folder
+    with ProjectLock(folder, "the editor"):
+        (folder / ".diorama-holder.lock").write_bytes(b"\xff[[")
+        with pytest.raises(ProjectLockedError, match="another program"):
+            ProjectLock(folder)
+
+
+def test_a_folder_that_is_none_is_one_line(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("x")
+    with pytest.raises(ProjectError, match="cannot be changed"):
+        ProjectLock(tmp_path / "file")
+
+
+def test_a_lock_and_parts_are_no_other_files(tmp_path: Path) -> None:
+    (tmp_path / ".project.json.1234.part").write_bytes(b"half")
+    ProjectLock(tmp_path).release()
+    assert Project.create(tmp_path).name == tmp_path.name
