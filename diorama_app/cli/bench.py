@@ -47,7 +47,13 @@ def add_bench(commands: Any) -> None:
         )
         if name == "rooms":
             one.add_argument("--sheet", type=Path, metavar="FILE", help="write a sheet of all pictures (PNG or JPEG)")
+        if name in ("system", "architecture"):
+            one.add_argument(
+                "--seeds", metavar="S,S", help="several series of rooms; development or reporting name the usual ones"
+            )
         if name == "system":
+            one.add_argument("--given", default="depth,photo", metavar="A,B", help="rows (default: %(default)s)")
+            one.add_argument("--substitute", default="", metavar="A,B+C", help="rows with the truth in place of inputs")
             one.add_argument("--physics", action="store_true", help="measure drift under gravity too (needs MuJoCo)")
             one.add_argument(
                 "--dataset", choices=("ssdb", "scan2cad", "sunrgbd"), help="other people's pictures instead"
@@ -79,6 +85,7 @@ def _bench_rooms(a: argparse.Namespace) -> None:
     from diorama_core.evaluation.benchmarks import pose as pose_bench
     from diorama_core.evaluation.benchmarks import relations as relations_bench
     from diorama_core.evaluation.benchmarks import retrieval as retrieval_bench
+    from diorama_core.evaluation.benchmarks.cases import parse_seeds
     from diorama_core.library.catalogue import built_in_library
 
     _check(a)
@@ -86,7 +93,7 @@ def _bench_rooms(a: argparse.Namespace) -> None:
     with progress_bar() as progress:
         bench: _Bench
         if a.table == "architecture":
-            bench = architecture_bench.run(library, a.scenes, a.seed, progress)
+            bench = architecture_bench.run(library, a.scenes, parse_seeds(a.seeds, a.seed), progress)
         elif a.table == "retrieval":
             bench = retrieval_bench.run(library, a.scenes, a.seed, progress)
         elif a.table == "relations":
@@ -99,16 +106,30 @@ def _bench_rooms(a: argparse.Namespace) -> None:
 def _bench_system(a: argparse.Namespace) -> None:
     from diorama_core.evaluation.benchmarks import system as system_bench
     from diorama_core.evaluation.benchmarks.case_pictures import case_writer
+    from diorama_core.evaluation.benchmarks.cases import parse_seeds
+    from diorama_core.evaluation.substitution import parse_substitutes
     from diorama_core.library.catalogue import built_in_library
 
     _check(a)
     if a.dataset or a.path:
         _bench_dataset(a)
         return
+    given = [word.strip() for word in a.given.split(",") if word.strip()]
+    ways = system_bench.ways_of(given, parse_substitutes(a.substitute))
     library = built_in_library()
     show = case_writer(a.pictures, library) if a.pictures else None
     with progress_bar() as progress:
-        bench = system_bench.run(library, a.scenes, a.seed, progress, offered=a.offered, physics=a.physics, show=show)
+        bench = system_bench.run(
+            library,
+            a.scenes,
+            parse_seeds(a.seeds, a.seed),
+            progress,
+            ways=ways,
+            offered=a.offered,
+            physics=a.physics,
+            show=show,
+            after_room=lambda so_far: _write(a.json, so_far.to_json()),
+        )
     _show(bench, a)
 
 

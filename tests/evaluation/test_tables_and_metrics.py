@@ -23,7 +23,7 @@ from diorama_core.evaluation.benchmarks.pose_tables import (
     retrievals_table,
 )
 from diorama_core.evaluation.benchmarks.retrieval import ObjectResult, recall_table, retrieval_table
-from diorama_core.evaluation.benchmarks.system import CaseResult, build_case, scene_table, system_table
+from diorama_core.evaluation.benchmarks.system import Way, build_case
 from diorama_core.evaluation.metrics.architecture import architecture_scores
 from diorama_core.evaluation.metrics.scene import (
     SceneScores,
@@ -37,6 +37,13 @@ from diorama_core.evaluation.metrics.scene import (
 from diorama_core.evaluation.metrics.shape import chamfer, shape_distance
 from diorama_core.evaluation.reports import paper
 from diorama_core.evaluation.speed.bench import Series, speed_table
+from diorama_core.evaluation.system_tables import (
+    CaseResult,
+    scene_table,
+    series_table,
+    substitution_table,
+    system_table,
+)
 from diorama_core.progress import Progress
 from diorama_core.render.raycast import MeshCaster
 from diorama_core.scene.types import Architecture, Camera, Intrinsics, Scene, yaw_rotation
@@ -79,6 +86,9 @@ def test_the_truth_scores_full_marks(view, library):
     assert scores.structure == 1
     assert scores.shape_distance == 0
     assert scores.supported == 1
+    assert scores.truly_supported == 1
+    assert scores.each_axis.acc == scores.headed.acc == 1
+    assert scores.height_off == pytest.approx(0)
     assert scores.out_of_bounds == 0
 
 
@@ -168,8 +178,8 @@ def test_litres_that_meshes_share(view, library):
 
 
 def test_a_build_that_fails_counts_as_wrong(view, library):
-    blank = Inputs(view.inputs.photo)
-    built, result = build_case(Case(0, "living"), view, blank, library, library, Progress())
+    way = Way("nothing but a picture", lambda view: Inputs(view.inputs.photo))
+    built, result = build_case(Case(0, "living"), view, way, library, library, Progress())
     assert built is None or not built.scene.objects
     assert result.failure
     assert (result.scores.asked, result.scores.found, result.scores.pairs.acc) == (8, 0, 0.0)
@@ -239,6 +249,8 @@ def _tables():
     return {
         "system": system_table([("true masks and depth", [result])]),
         "scenes": scene_table([("true masks and depth", [result])]),
+        "substitution": substitution_table([("true room", [result])]),
+        "series": series_table([("true masks and depth", [result, replace(result, seed=1)])]),
         "architecture": architecture_table([("d", [RoomResult("a", scores, 0.1), RoomResult("b", None, 0.1)])]),
         "retrieval": retrieval_table([item]),
         "recall": recall_table([item]),
@@ -259,12 +271,12 @@ def moved_camera() -> np.ndarray:
     return T
 
 
-WITHOUT_PAPER = ("scenes", "recall", "speed")
+WITHOUT_PAPER = ("scenes", "recall", "speed", "substitution", "series")
 
 
 TABLES = (
     "ablation", "all", "architecture", "category", "groups", "pose", "recall", "retrieval", "retrievals", "scenes",
-    "speed", "system",
+    "series", "speed", "substitution", "system",
 )  # fmt: skip
 
 
@@ -291,3 +303,16 @@ def test_failures_are_counted():
     assert tables["recall"].row("all")["first five"] == tables["recall"].row("all")["right kind"] == 1
     assert tables["recall"].row("furniture")["right kind OOD"] == 0
     assert tables["category"].row("embedded, true depth and shapes")["chair"] == 50
+
+
+def test_the_graph_of_the_scene_itself_does_not_vouch_for_its_supports(view, library):
+    """A thing that stands far from its table is supported by its own graph's floor, not by the true table."""
+    truth = without_unasked(view)
+    edge = next(s for s in truth.supports if not truth.has_plane(s.parent))
+    item = truth.object(edge.child)
+    fallen = replace(item, pose=item.pose.moved([30, 0, item.size_m[2] / 2 - item.pose.position[2]]))
+    edges = tuple(replace(s, parent="floor", parent_surface=None) if s is edge else s for s in truth.supports)
+    scene = replace(truth, objects=tuple(fallen if o is item else o for o in truth.objects), supports=edges)
+    scores = scene_scores(view, scene, library)
+    assert scores.supported == 1
+    assert scores.truly_supported < 1

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import logging
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from diorama_core.errors import Cancelled, InputError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.types import Camera, Scene
 from diorama_core.synthesis import ROOM_KINDS, RoomKind, TruthView, furnished_room, hold_cameras
 from diorama_core.synthesis.truth import Studio
 
+log = logging.getLogger(__name__)
+
 SIZE = (640, 480)
+SEEDS: Mapping[str, tuple[int, ...]] = {"development": (0, 91, 1000), "reporting": (2000, 3000, 4000)}
+"""Series of rooms on which methods are chosen, and those on which figures are told; the two share no room."""
 VIEWS = 3
 STANDARD_SCENES = 60
 MIN_ASKED = 4
@@ -50,6 +56,53 @@ def studio_of(case: Case, library: ShapeLibrary, size: tuple[int, int] = SIZE) -
     """The room of a case ready to be photographed, and where from."""
     scene = furnished(case, library)
     return Studio(scene, library), hold_cameras(scene, library, case.seed, max(VIEWS, case.view + 1), size)
+
+
+def parse_seeds(words: str | None, alone: int) -> tuple[int, ...]:
+    """Seeds of series of rooms: a name of `SEEDS`, or numbers with commas; one alone by default.
+
+    Raises:
+        InputError: where a word is neither.
+    """
+    if not words:
+        return (alone,)
+    if words in SEEDS:
+        return SEEDS[words]
+    try:
+        return tuple(int(word) for word in words.split(","))
+    except ValueError:
+        names = " or ".join(SEEDS)
+        raise InputError(f"--seeds {words}: give whole numbers with commas between them, or {names}") from None
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """A room that could not be made, and why: nothing is measured on it, nothing counts against a method."""
+
+    case: str
+    reason: str
+
+
+def attempted(
+    cases: tuple[Case, ...], library: ShapeLibrary, left_out: list[LeftOut]
+) -> Iterator[tuple[Case, TruthView]]:
+    """`views_of`, going on with the next room where one cannot be furnished or photographed.
+
+    Args:
+        cases: The pictures.
+        library: What rooms are furnished from.
+        left_out: Receives what could not be made.
+    """
+    for case in cases:
+        try:
+            found = next(views_of((case,), library))
+        except Cancelled:
+            raise
+        except Exception as error:  # whatever goes wrong, the other rooms' results are worth keeping
+            log.warning("%s is left out: %s", case.name, error)
+            left_out.append(LeftOut(case.name, f"{type(error).__name__}: {error}"))
+            continue
+        yield found
 
 
 def views_of(cases: tuple[Case, ...], library: ShapeLibrary) -> Iterator[tuple[Case, TruthView]]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from diorama_core.artefacts import RankedShapes
 from diorama_core.errors import Cancelled
-from diorama_core.evaluation.benchmarks.cases import recipe, views_of
+from diorama_core.evaluation.benchmarks.cases import attempted, recipe
 from diorama_core.evaluation.benchmarks.pose_comparison import (
     BASELINES,
     COMPARED_SHAPES,
@@ -142,7 +142,7 @@ def run(library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progres
     tally = _Tally()
     solvers = SideBySide.embedded(library)
     cases = recipe(scenes, 1, seed)
-    for number, (case, view) in enumerate(views_of(cases, library)):
+    for number, (case, view) in enumerate(attempted(cases, library, [])):
         step = progress.part(number / len(cases), (number + 1) / len(cases))
         _one_room(view, solvers, tally, step, case.name)
     progress.report(1.0, "done")

@@ -72,7 +72,8 @@ class PoseScores:
     orientation: float
     placement: float
     structure: float
-    box_overlap_cm: float
+    box_overlap_cm: float | None
+    """None where nothing came out: what is not there does not collide, and is not free of collisions either."""
 
     @classmethod
     def failed(cls, asked: int) -> PoseScores:
@@ -81,7 +82,7 @@ class PoseScores:
             Alignment(reading, asked, 0.0, 0.0, 0.0, 0.0)
             for reading in ("mean over pairs", "against every other object", "object-focus")
         )
-        return cls(asked, pairs, every, own, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return cls(asked, pairs, every, own, 0.0, 0.0, 0.0, 0.0, None)
 
 
 def pose_scores(view: TruthView, scene: Scene | None, library: ShapeLibrary) -> PoseScores:

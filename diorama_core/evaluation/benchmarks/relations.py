@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass
 
-from diorama_core.evaluation.benchmarks.cases import recipe, views_of
+from diorama_core.evaluation.benchmarks.cases import LeftOut, attempted, recipe
 from diorama_core.evaluation.metrics.relations import RelationCount, relations_of
 from diorama_core.evaluation.reports.tables import Column, Row, Table
 from diorama_core.library.record import ShapeLibrary
@@ -44,11 +44,12 @@ def run(library: ShapeLibrary, scenes: int = 18, seed: int = 0, progress: Progre
     progress = progress or Progress()
     counts = {WITH_DEPTH: RelationCount(), PHOTO_ALONE: RelationCount()}
     cases = recipe(scenes, 1, seed)
-    for k, (case, view) in enumerate(views_of(cases, library)):
+    left_out: list[LeftOut] = []
+    for k, (case, view) in enumerate(attempted(cases, library, left_out)):
         progress.report(k / len(cases), case.name)
         counts[WITH_DEPTH] += relations_of(view, with_depth=True)
         counts[PHOTO_ALONE] += relations_of(view, with_depth=False)
-    return RelationsBench(seed, scenes, tuple(counts.items()))
+    return RelationsBench(seed, scenes - len(left_out), tuple(counts.items()))
 
 
 def _mistakes(count: RelationCount) -> str:

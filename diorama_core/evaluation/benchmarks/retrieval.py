@@ -13,7 +13,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from diorama_core.errors import DioramaError
-from diorama_core.evaluation.benchmarks.cases import recipe, views_of
+from diorama_core.evaluation.benchmarks.cases import attempted, recipe
 from diorama_core.evaluation.metrics.shape import is_household, shape_distance
 from diorama_core.evaluation.reports import paper
 from diorama_core.evaluation.reports.tables import Column, Row, Table, paper_rows
@@ -86,7 +86,7 @@ def run(library: ShapeLibrary, scenes: int = 20, seed: int = 0, progress: Progre
     others = HierarchicalRetrieval(split_library(library, "train", "validation"))
     results: list[ObjectResult] = []
     cases = recipe(scenes, 1, seed)
-    for k, (case, view) in enumerate(views_of(cases, tested)):
+    for k, (case, view) in enumerate(attempted(cases, tested, [])):
         progress.report(k / len(cases), case.name)
         same, unseen = _ranked(everything, view), _ranked(others, view)
         results += [_result(case.name, view, index, same, unseen, library) for index in view.asked]

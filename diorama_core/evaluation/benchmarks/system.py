@@ -7,20 +7,27 @@ from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
-from diorama_core.artefacts import Inputs
-from diorama_core.errors import Cancelled
-from diorama_core.evaluation.benchmarks.cases import Case, recipe, views_of
-from diorama_core.evaluation.metrics.pose import pooled
+from diorama_core.artefacts import Box, Inputs
+from diorama_core.errors import Cancelled, InputError
+from diorama_core.evaluation.benchmarks.cases import Case, LeftOut, attempted, recipe
 from diorama_core.evaluation.metrics.scene import SceneScores, scene_scores
-from diorama_core.evaluation.reports import paper
-from diorama_core.evaluation.reports.tables import Column, Row, Table, paper_rows
+from diorama_core.evaluation.reports.tables import Table
+from diorama_core.evaluation.substitution import substituted, with_true_masks
+from diorama_core.evaluation.system_tables import (
+    CaseResult,
+    scene_table,
+    series_table,
+    substitution_table,
+    system_table,
+)
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.pipeline.run import Built, build_scene
+from diorama_core.library.taxonomy import UNKNOWN
+from diorama_core.pipeline.run import Built, build_scene, embedded_stages
 from diorama_core.progress import Progress
 from diorama_core.synthesis.artefacts import photo_only
 from diorama_core.synthesis.splits import split_library
@@ -30,86 +37,168 @@ log = logging.getLogger(__name__)
 
 TRUE_INPUTS = "true masks and depth"
 PHOTO_ALONE = "embedded perception"
+BOX_JITTER = 0.04
+"""Standard deviation of a detector's edges, as a share of the box."""
 Show = Callable[[str, TruthView, tuple[Built | None, ...]], None]
 
 
 @dataclass(frozen=True)
-class CaseResult:
-    """One build."""
+class Way:
+    """What a build is given: a row of the tables."""
 
-    case: str
-    scores: SceneScores
-    seconds: float
-    """Processor time of the build."""
-    wall_s: float
-    failure: str = ""
-    """Why nothing came out."""
+    name: str
+    inputs: Callable[[TruthView], Inputs]
+    truth: frozenset[str] = frozenset()
+    """Names of `substitution.SUBSTITUTES` that take the place of the stages' results."""
+
+
+def masks_only(view: TruthView) -> Inputs:
+    """The picture with true masks and classes; depth and intrinsics are left to the photo, as in the paper."""
+    return replace(view.inputs, depth_m=None, intrinsics=None)
+
+
+def unnamed(view: TruthView) -> Inputs:
+    """The picture with boxes of things that nobody named."""
+    given = photo_only(view)
+    return replace(given, boxes=tuple(replace(b, category=UNKNOWN.name, label=UNKNOWN.name) for b in given.boxes))
+
+
+def jittered(view: TruthView) -> Inputs:
+    """The picture with every edge of every box off by 4 % of the box (standard deviation), as detectors' are."""
+    given = photo_only(view)
+    rng = np.random.default_rng(len(view.asked))
+    return replace(given, boxes=tuple(replace(b, box=_jittered(b.box, view, rng)) for b in given.boxes))
+
+
+def _jittered(box: Box, view: TruthView, rng: np.random.Generator) -> Box:
+    k = view.camera.intrinsics
+    extent = np.tile([box[2] - box[0], box[3] - box[1]], 2)
+    x1, y1, x2, y2 = np.array(box) + BOX_JITTER * extent * rng.standard_normal(4)
+    x1, y1 = min(max(x1, 0.0), k.width - 2.0), min(max(y1, 0.0), k.height - 2.0)
+    return float(x1), float(y1), float(min(max(x2, x1 + 2), k.width)), float(min(max(y2, y1 + 2), k.height))
+
+
+WAYS: Mapping[str, Way] = {
+    "depth": Way(TRUE_INPUTS, lambda view: view.inputs),
+    "masks": Way("true masks, the photo's own depth", masks_only),
+    "photo": Way(PHOTO_ALONE, photo_only),
+    "unnamed": Way(f"{PHOTO_ALONE}, without classes", unnamed),
+    "jittered": Way(f"{PHOTO_ALONE}, boxes off by 4 %", jittered),
+}
+"""What may be given, by the name that `--given` takes."""
+USUAL_WAYS = ("depth", "photo")
+
+
+def ways_of(given: Sequence[str], substitutes: Sequence[frozenset[str]] = ()) -> tuple[Way, ...]:
+    """The rows of a run: what is given, then one row for every substitution on the picture and boxes.
+
+    Raises:
+        InputError: for a name that is not in `WAYS`.
+    """
+    for name in given:
+        if name not in WAYS:
+            raise InputError(f"--given {name}: give one or more of {', '.join(WAYS)}")
+    photo = WAYS["photo"]
+    rows = tuple(replace(photo, name="true " + ", ".join(sorted(truth)), truth=truth) for truth in substitutes)
+    return (*(WAYS[name] for name in given), *rows)
 
 
 @dataclass(frozen=True)
 class SystemBench:
-    """Results of both ways."""
+    """Results of every way."""
 
-    seed: int
+    seeds: tuple[int, ...]
     offered: bool
     """Whether the rooms' own shapes were among those searched."""
     results: tuple[tuple[str, tuple[CaseResult, ...]], ...]
     """(what was given, one result per case)."""
+    left_out: tuple[LeftOut, ...] = ()
+    substituted: tuple[str, ...] = ()
+    """The ways in which the truth took the place of something."""
 
     def tables(self) -> tuple[Table, ...]:
-        """The paper's system table, and what it does not measure."""
-        return system_table(self.results, offered=self.offered), scene_table(self.results)
+        """The paper's system table, what it does not measure, and what was asked for besides."""
+        plain = [(n, r) for n, r in self.results if n not in self.substituted]
+        tables = [system_table(plain, offered=self.offered), scene_table(plain)]
+        if self.substituted:
+            shown = [(n, r) for n, r in self.results if n in self.substituted or n == PHOTO_ALONE]
+            tables.append(substitution_table(shown))
+        if len(self.seeds) > 1:
+            tables.append(series_table(plain))
+        if self.left_out:
+            said = "; ".join(f"{r.case} ({r.reason})" for r in self.left_out)
+            tables[0] = replace(tables[0], note=f"{tables[0].note} Left out because they could not be made: {said}.")
+        return tuple(tables)
 
     def to_json(self) -> dict[str, object]:
         """Tables and every case."""
-        cases = {name: [asdict(r) for r in rows] for name, rows in self.results}
-        tables = [t.to_json() for t in self.tables()]
-        return {"bench": "system", "seed": self.seed, "offered": self.offered, "tables": tables, "cases": cases}
+        return {
+            "bench": "system",
+            "seeds": list(self.seeds),
+            "offered": self.offered,
+            "tables": [t.to_json() for t in self.tables()],
+            "cases": {name: [asdict(r) for r in rows] for name, rows in self.results},
+            "left_out": [asdict(r) for r in self.left_out],
+        }
 
 
 def run(
     library: ShapeLibrary,
     scenes: int = 20,
-    seed: int = 0,
+    seeds: Sequence[int] = (0,),
     progress: Progress | None = None,
     *,
+    ways: Sequence[Way] = (),
     offered: bool = False,
     physics: bool = False,
     show: Show | None = None,
+    after_room: Callable[[SystemBench], None] | None = None,
 ) -> SystemBench:
-    """Build every room twice. A build that fails counts as a scene in which everything is wrong.
+    """Build every room every way. A build that fails counts as a scene in which everything is wrong.
 
     Args:
         library: rooms are furnished from its test shapes; the others are searched.
-        scenes: rooms, one picture each.
-        seed: of the rooms.
+        scenes: rooms of every seed, one picture each.
+        seeds: of the series of rooms.
         progress: reports, and cancels between builds.
+        ways: what the builds are given; `USUAL_WAYS` by default.
         offered: search the whole library, the rooms' own shapes among it.
         physics: whether to measure drift under gravity as well.
-        show: called with every case's name, photo, and the results of both ways (None where one failed).
+        show: called with every case's name, photo, and the results of all ways (None where one failed).
+        after_room: called with the results so far after every room, so that an interrupted run has some.
     """
     progress = progress or Progress()
+    ways = tuple(ways) or ways_of(USUAL_WAYS)
     tested = split_library(library, "test")
     searched = library if offered else split_library(library, "train", "validation")
-    ways = {TRUE_INPUTS: list[CaseResult](), PHOTO_ALONE: list[CaseResult]()}
-    cases = recipe(scenes, 1, seed)
-    for k, (case, view) in enumerate(views_of(cases, tested)):
-        results: list[Built | None] = []
-        for turn, (name, inputs) in enumerate(((TRUE_INPUTS, view.inputs), (PHOTO_ALONE, photo_only(view)))):
-            progress.report((k + turn / 2) / len(cases), f"{case.name}: {name}")
-            built, result = build_case(case, view, inputs, library, searched, progress, physics=physics)
-            ways[name].append(result)
-            results.append(built)
-        if show is not None:
-            show(case.name, view, tuple(results))
+    cases = [(seed, case) for seed in seeds for case in recipe(scenes, 1, seed)]
+    results: dict[str, list[CaseResult]] = {way.name: [] for way in ways}
+    left_out: list[LeftOut] = []
+
+    def so_far() -> SystemBench:
+        rows = tuple((name, tuple(found)) for name, found in results.items())
+        return SystemBench(tuple(seeds), offered, rows, tuple(left_out), tuple(w.name for w in ways if w.truth))
+
+    for k, (seed, case) in enumerate(cases):
+        for _, view in attempted((case,), tested, left_out):
+            shown: list[Built | None] = []
+            for turn, way in enumerate(ways):
+                progress.report((k + turn / len(ways)) / len(cases), f"{case.name}: {way.name}")
+                built, result = build_case(case, view, way, library, searched, progress, physics=physics)
+                results[way.name].append(replace(result, seed=seed))
+                shown.append(built)
+            if show is not None:
+                show(case.name, view, tuple(shown))
+        if after_room is not None:
+            after_room(so_far())
     progress.report(1.0, "done")
-    return SystemBench(seed, offered, tuple((name, tuple(results)) for name, results in ways.items()))
+    return so_far()
 
 
 def build_case(
     case: Case,
     view: TruthView,
-    inputs: Inputs,
+    way: Way,
     library: ShapeLibrary,
     searched: ShapeLibrary,
     progress: Progress,
@@ -118,97 +207,29 @@ def build_case(
 ) -> tuple[Built | None, CaseResult]:
     """Build one scene from what is searched and score it with the library that knows the truth's shapes too."""
     begun, wall = time.process_time(), time.perf_counter()
-
-    def result(scores: SceneScores, failure: str = "") -> CaseResult:
-        return CaseResult(case.name, scores, spent, waited, failure)
-
     try:
-        built = build_scene(inputs, searched, progress=Progress(token=progress.token))
+        inputs = way.inputs(view)
+        if "masks" in way.truth:
+            inputs = with_true_masks(inputs, view)
+        stages = embedded_stages(inputs, searched)
+        if "shape" in way.truth:  # the true shapes are not among those searched
+            everything = embedded_stages(inputs, library)
+            stages = replace(stages, pose=everything.pose, layout=everything.layout)
+        stages = substituted(stages, view, way.truth)
+        known = library if "shape" in way.truth else searched
+        built = build_scene(inputs, known, stages=stages, progress=Progress(token=progress.token))
         spent, waited = time.process_time() - begun, time.perf_counter() - wall
+        before = scene_scores(view, built.observed, library)
         scores = scene_scores(view, built.scene, library, physics=physics)
-        return built, result(scores, "" if built.scene.objects else "no object came out")
+        failure = "" if built.scene.objects else "no object came out"
+        return built, CaseResult(case.name, scores, spent, waited, failure, before)
     except Cancelled:
         raise
     except Exception as error:  # whatever goes wrong, the scene counts as failed
         log.warning("%s failed: %s", case.name, error)
         spent, waited = time.process_time() - begun, time.perf_counter() - wall
-        return None, result(SceneScores.failed(len(view.asked)), f"{type(error).__name__}: {error}")
-
-
-def system_table(results: Sequence[tuple[str, Sequence[CaseResult]]], *, offered: bool = False) -> Table:
-    """Alignment, chamfer distance, failures and time (paper, table 2)."""
-    columns = (
-        Column("rAcc", better="↑"), Column("tAcc", better="↑"), Column("sAcc", better="↑"), Column("Acc", better="↑"),
-        Column("CD", ".1f", "↓"), Column("failed", "d", "↓"), Column("time s", ".1f", "↓"),
-    )  # fmt: skip
-    rows = []
-    for name, cases in results:
-        pairs, every = (pooled([getattr(c.scores, kind) for c in cases]) for kind in ("pairs", "every"))
-        tail = (
-            _mean([c.scores.shape_distance for c in cases]),
-            sum(bool(c.failure) for c in cases),
-            _mean([c.seconds for c in cases]),
-        )
-        rows.append(Row(f"{name}, mean over pairs", (pairs.r_acc, pairs.t_acc, pairs.s_acc, pairs.acc, *tail)))
-        rows.append(Row(f"{name}, against every other", (every.r_acc, every.t_acc, every.s_acc, every.acc, *tail)))
-    note = (
-        f"{len(results[0][1]) if results else 0} rooms; their own shapes are {'' if offered else 'not '}in the library "
-        "searched. Scenes that fail count as wrong in every share. CD: chamfer of normalised shapes x 1000, over the "
-        "objects found. Time: processor seconds a scene."
-    )
-    return Table("System", columns, (*rows, *paper_rows(paper.SYSTEM)), note)
-
-
-def scene_table(results: Sequence[tuple[str, Sequence[CaseResult]]]) -> Table:
-    """What the paper does not measure, or measures elsewhere."""
-    columns = (
-        Column("found", ".2f", "↑"), Column("own Acc", better="↑"), Column("relation", better="↑"),
-        Column("structure", better="↑"), Column("boxes cm", ".2f", "↓"), Column("meshes l", ".2f", "↓"),
-        Column("supported", better="↑"), Column("out of bounds", better="↓"), Column("stable", better="↑"),
-        Column("drift cm", ".1f", "↓"), Column("image IoU", better="↑"), Column("chamfer cm", ".1f", "↓"),
-        Column("F@10 cm", better="↑"),
-    )  # fmt: skip
-    rows = []
-    for name, cases in results:
-        s = [c.scores for c in cases]
-        asked = max(sum(x.asked for x in s), 1)
-        own = pooled([x.own for x in s])
-        rows.append(
-            Row(
-                name,
-                (
-                    sum(x.found for x in s) / asked,
-                    own.acc,
-                    *(_mean([getattr(x, key) for x in s]) for key in _SCENE_KEYS),
-                ),
-            )
-        )
-    note = (
-        "own Acc: each object within 20 cm, 20 degrees and 20 % of its truth. meshes: litres that meshes share "
-        "although neither holds the other up. supported and out of bounds as SceneEval; stable and drift: two seconds "
-        "of gravity (with --physics). chamfer and F: surfaces of all objects, in the true camera's world."
-    )
-    return Table("Scenes", columns, tuple(rows), note)
-
-
-_SCENE_KEYS = (
-    "relation",
-    "structure",
-    "box_overlap_cm",
-    "mesh_overlap_l",
-    "supported",
-    "out_of_bounds",
-    "stable",
-    "drift_cm",
-    "image_iou",
-    "chamfer_cm",
-    "f_score",
-)
-
-
-def _mean(values: Sequence[float | None]) -> float | None:
-    known = [v for v in values if v is not None]
-    return float(np.mean(known)) if known else None
+        failed = SceneScores.failed(len(view.asked))
+        return None, CaseResult(case.name, failed, spent, waited, f"{type(error).__name__}: {error}")
 
 
 def without_times(bench: SystemBench) -> SystemBench:

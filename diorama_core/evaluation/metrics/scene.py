@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy.spatial import cKDTree
 
-from diorama_core.evaluation.metrics.pose import Alignment, Placed, object_alignment, scene_alignment
+from diorama_core.evaluation.metrics.pose import Alignment, Placed, object_alignment, scene_alignment, without_symmetry
 from diorama_core.evaluation.metrics.shape import shape_distance, shape_points
 from diorama_core.geometry.planes import in_plane_polygon
 from diorama_core.geometry.projection import box_iou
@@ -22,6 +22,7 @@ from diorama_core.layout.problem.problem import build_problem
 from diorama_core.layout.report import measure
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.render.raycast import Caster, MeshCaster
+from diorama_core.scene.room_edits import floor_height
 from diorama_core.scene.types import Camera, Intrinsics, Scene, SceneObject
 from diorama_core.synthesis.artefacts import true_supports
 from diorama_core.synthesis.truth import TruthView, moved
@@ -53,8 +54,15 @@ class SceneScores:
     """Scene-aware alignment, against every other object."""
     own: Alignment
     """Object-focus alignment."""
+    headed: Alignment
+    """`pairs` with every heading counting: the symmetry of shapes is ignored."""
+    each_axis: Alignment
+    """`pairs` with relative sizes right along each axis, not only in the mean over the three."""
+    height_off: float | None
+    """Estimated over true camera height, less 1; None without a camera."""
     shape_distance: float | None
-    """Mean chamfer of the chosen shapes to the true ones, times 1000, over found objects; None without any."""
+    """Mean chamfer (squared, both ways added) of the chosen shapes to the true ones, times 1000, over found objects;
+    None without any."""
     relation: float
     """Share of the true support edges among the objects asked for whose parent and relation were found."""
     orientation: float
@@ -66,7 +74,9 @@ class SceneScores:
     mesh_overlap_l: float | None
     """Volume in litres shared by meshes of objects that do not hold each other up; None without any."""
     supported: float
-    """SceneEval: share of found objects within 1 cm of their supporter."""
+    """SceneEval: share of found objects within 1 cm of what the scene's own graph says holds them up."""
+    truly_supported: float
+    """Share of the true support edges whose child is within 1 cm of the true supporter's counterpart."""
     out_of_bounds: float
     """SceneEval: share of found objects with a part of their footprint not over the scene's own floor."""
     stable: float | None
@@ -89,9 +99,9 @@ class SceneScores:
             for reading in ("mean over pairs", "against every other object", "object-focus")
         )
         return cls(
-            asked, 0, pairs, every, own, None, relation=0.0, orientation=0.0, placement=0.0, structure=0.0,
-            box_overlap_cm=None, mesh_overlap_l=None, supported=0.0, out_of_bounds=1.0, stable=None, drift_cm=None,
-            image_iou=0.0, chamfer_cm=None, f_score=0.0,
+            asked, 0, pairs, every, own, pairs, pairs, None, None, relation=0.0, orientation=0.0, placement=0.0,
+            structure=0.0, box_overlap_cm=None, mesh_overlap_l=None, supported=0.0, truly_supported=0.0,
+            out_of_bounds=1.0, stable=None, drift_cm=None, image_iou=0.0, chamfer_cm=None, f_score=0.0,
         )  # fmt: skip
 
 
@@ -107,6 +117,7 @@ def scene_scores(view: TruthView, scene: Scene, library: ShapeLibrary, *, physic
     truth = [view.scene.objects[k] for k in view.asked]
     if not scene.objects:
         return SceneScores.failed(len(truth))
+    height_off = _height_off(scene, view)
     scene = in_true_world(scene, view)
     match = matched(truth, scene)
     placed = [None if m is None else as_placed(m) for m in match]
@@ -123,6 +134,9 @@ def scene_scores(view: TruthView, scene: Scene, library: ShapeLibrary, *, physic
         pairs=pairs,
         every=every,
         own=object_alignment(true, placed),
+        headed=scene_alignment(without_symmetry(true), placed)[0],
+        each_axis=scene_alignment(true, placed, every_axis=True)[0],
+        height_off=height_off,
         shape_distance=float(np.mean(distances)) if distances else None,
         relation=relation_accuracy(view, scene, match),
         orientation=layout["orientation"],
@@ -131,6 +145,7 @@ def scene_scores(view: TruthView, scene: Scene, library: ShapeLibrary, *, physic
         box_overlap_cm=100 * layout["box_overlap_m"],
         mesh_overlap_l=1000 * mesh_overlap_m3(scene, library),
         supported=supported_share(scene, library),
+        truly_supported=truly_supported_share(view, scene, match, library),
         out_of_bounds=out_of_bounds_share(scene),
         stable=None if moved_by is None else stable_share(moved_by),
         drift_cm=None if moved_by is None else 100 * float(np.mean([d for d, _ in moved_by.values()])),
@@ -138,6 +153,13 @@ def scene_scores(view: TruthView, scene: Scene, library: ShapeLibrary, *, physic
         chamfer_cm=100 * chamfer_m,
         f_score=f_score,
     )
+
+
+def _height_off(scene: Scene, view: TruthView) -> float | None:
+    if scene.camera is None:
+        return None
+    above = float(scene.camera.position[2]) - floor_height(scene)
+    return above / float(view.camera.position[2]) - 1.0
 
 
 def in_true_world(scene: Scene, view: TruthView) -> Scene:
@@ -188,6 +210,25 @@ def supported_share(scene: Scene, library: ShapeLibrary) -> float:
         if edge is not None:
             good += _gap(item, edge.parent, scene, library) <= SUPPORT_M
     return good / max(len(scene.objects), 1)
+
+
+def truly_supported_share(
+    view: TruthView, scene: Scene, match: list[SceneObject | None], library: ShapeLibrary
+) -> float:
+    """Share of the true support edges whose child touches (within 1 cm) what stands for its true supporter.
+
+    For a plane any plane of the same role stands; whatever the scene's own graph says does not count.
+    """
+    found = {view.scene.objects[k].id: m for k, m in zip(view.asked, match) if m is not None}
+    edges, good = true_supports(view), 0
+    for edge in edges:
+        if view.scene.has_plane(edge.parent):
+            parents = [p.id for p in scene.architecture.by_role(view.scene.plane(edge.parent).role)]
+        else:
+            parents = [found[edge.parent].id] if edge.parent in found else []
+        if edge.child in found:
+            good += any(_gap(found[edge.child], p, scene, library) <= SUPPORT_M for p in parents)
+    return good / len(edges) if edges else 1.0
 
 
 def _gap(item: SceneObject, parent: str, scene: Scene, library: ShapeLibrary) -> float:

@@ -27,6 +27,9 @@ class Row:
     name: str
     values: tuple[Value, ...]
     from_paper: bool = False
+    intervals: tuple[tuple[float, float] | None, ...] = ()
+    """For each value where its 90 % interval begins and ends (`intervals.bootstrap_interval`); none at all by default.
+    """
 
 
 @dataclass(frozen=True)
@@ -44,7 +47,11 @@ class Table:
         lines = [f"### {self.title}", "", f"| | {' | '.join(heads)} |", f"|---|{'---:|' * len(heads)}"]
         for row in self.rows:
             name = f"{row.name} (paper, {OTHER})" if row.from_paper else f"**{row.name}**"
-            cells = [_written(v, c.form) for v, c in zip(row.values, self.columns, strict=True)]
+            spans = row.intervals or (None,) * len(row.values)
+            cells = [
+                _written(v, c.form) + _span(span, c.form)
+                for v, c, span in zip(row.values, self.columns, spans, strict=True)
+            ]
             lines.append(f"| {name} | {' | '.join(cells)} |")
         return "\n".join(lines) + (f"\n\n{self.note}" if self.note else "") + "\n"
 
@@ -58,6 +65,7 @@ class Table:
                     "name": r.name,
                     "source": f"paper, {OTHER}" if r.from_paper else "measured",
                     "values": dict(zip((c.name for c in self.columns), r.values, strict=True)),
+                    "intervals": {c.name: list(span) for c, span in zip(self.columns, r.intervals) if span is not None},
                 }
                 for r in self.rows
             ],
@@ -81,3 +89,8 @@ def _written(value: Value, form: str) -> str:
     if value is None:
         return "–"
     return value if isinstance(value, str) else format(value, form)
+
+
+def _span(interval: tuple[float, float] | None, form: str) -> str:
+    """An interval as written behind its value."""
+    return "" if interval is None else f" ({_written(interval[0], form)} to {_written(interval[1], form)})"

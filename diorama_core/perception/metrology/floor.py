@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.library.taxonomy import UNKNOWN, Category
+from diorama_core.library.taxonomy import UNKNOWN, Category, with_kin
 from diorama_core.perception.metrology.box_observations import BoxObservations
-from diorama_core.perception.metrology.priors import size_modes
-from diorama_core.perception.metrology.problem import UNTOLD, Problems, View, stacked
+from diorama_core.perception.metrology.priors import PORTABLE, SizeMode, size_modes, standing_costs
+from diorama_core.perception.metrology.problem import UNKNOWNS, UNTOLD, Problems, View, stacked
 from diorama_core.perception.metrology.rows import contact_start, row, size_start
 from diorama_core.perception.metrology.solver import Solutions, solve
 
@@ -24,7 +24,13 @@ _DOUBTFUL_CAP = 9.0
 _ODD_ANGLE_COST = 1.5
 _ODD_ANGLES_DEG = (30.0, -30.0, 60.0, -60.0)
 _SCAN_ITERATIONS = 10
+_CONTINUED_ITERATIONS = 5
 _FARTHER = 1.6
+TELL_LITTLE = PORTABLE | with_kin("rug")
+"""Things that vote on the camera's height only where nothing else does: they may stand on furniture, or be as large as
+they like and half hidden by what stands on them."""
+ALIKE = 0.7
+"""How far the sizes of two things of a kind in one room are the same surprise: sets have one vote, not one each."""
 _MAYBE_ELSEWHERE = frozenset({UNKNOWN.name, "box", "plant", "basket", "sink"})
 
 
@@ -49,7 +55,8 @@ def scan_heights(observations: BoxObservations, view: View) -> HeightScan:
 
     Without any, the prior decides.
     """
-    voters = [i for i in range(len(observations)) if stands_on_floor(observations.categories[i])]
+    standing = [i for i in range(len(observations)) if stands_on_floor(observations.categories[i])]
+    voters = [i for i in standing if observations.categories[i].name not in TELL_LITTLE] or standing
     log_heights = np.log(HEIGHTS_M)
     total = ((log_heights - np.log(HEIGHT_PRIOR_M)) / HEIGHT_LOG_SIGMA) ** 2
     if voters:
@@ -59,12 +66,19 @@ def scan_heights(observations: BoxObservations, view: View) -> HeightScan:
     return HeightScan(float(np.exp(log_height)), log_sigma, cost)
 
 
-def place_on_floor(observations: BoxObservations, index: int, height_m: float) -> list[Problems]:
-    """Rows for an object on the floor, with odd headings where its category stands freely."""
-    rows = []
-    for mode in size_modes(observations.categories[index].name):
-        for yaw, cost in _headings(observations.categories[index]):
-            rows.append(row(observations, index, mode, camera_height_m=height_m, yaw_rad=yaw, extra=mode.cost + cost))
+def place_on_floor(
+    observations: BoxObservations, index: int, height_m: float, modes: tuple[SizeMode, ...] | None = None
+) -> list[Problems]:
+    """Rows for an object on the floor, with odd headings where its category stands freely.
+
+    `modes` are the sizes it may have, those of its category by default.
+    """
+    category, rows = observations.categories[index], []
+    for mode in modes or size_modes(category.name):
+        raised = standing_costs(category.name, mode)[0]
+        for yaw, cost in _headings(category):
+            extra = mode.cost + cost + raised
+            rows.append(row(observations, index, mode, camera_height_m=height_m, yaw_rad=yaw, extra=extra))
     return rows
 
 
@@ -98,20 +112,44 @@ def _scan_rows(observations: BoxObservations, index: int) -> list[Problems]:
 
 
 def _votes(rows: Problems, observations: BoxObservations, view: View) -> Float[np.ndarray, "13"]:
-    """Sum over objects of their best cost at every height."""
+    """Sum over objects of how badly all their readings together fit at every height.
+
+    `rows` come in runs of one assumption at every height. A solution made larger with the camera's height projects
+    alike, so every height starts once more from its neighbours' solutions: no vote hangs on an unlucky start.
+    """
     named = np.array([observations.categories[int(i)] is not UNKNOWN for i in rows.item])
     doubled = stacked([rows, rows.rows(named)])
     starts = np.concatenate([contact_start(rows, view), size_start(rows.rows(named), view)])
-    solved = solve(doubled, starts, view, _SCAN_ITERATIONS)
+    first = solve(doubled, starts, view, _SCAN_ITERATIONS)
+    own = np.concatenate([np.arange(len(rows)), np.flatnonzero(named)])
+    cost, unknowns = np.full(len(rows), np.inf), np.zeros((len(rows), UNKNOWNS))
+    for k in np.argsort(-first.cost, kind="stable"):
+        cost[own[k]], unknowns[own[k]] = first.cost[k], first.unknowns[k]
+    for step in (1, -1):
+        start = _from_neighbours(unknowns, rows, step)
+        again = solve(rows, start, view, _CONTINUED_ITERATIONS)
+        better = again.cost < cost
+        cost, unknowns = np.where(better, again.cost, cost), np.where(better[:, None], again.unknowns, unknowns)
     total = np.zeros(len(HEIGHTS_M))
-    slots = np.searchsorted(HEIGHTS_M, doubled.camera_height_m - 1e-9)
-    for index in np.unique(doubled.item).astype(int):
-        mine = doubled.item == index
-        best = np.full(len(HEIGHTS_M), np.inf)
-        np.minimum.at(best, slots[mine], solved.cost[mine])
-        doubtful = observations.categories[index].name in _MAYBE_ELSEWHERE
-        total += np.minimum(best, _DOUBTFUL_CAP if doubtful else _CAP)
+    slots = np.searchsorted(HEIGHTS_M, rows.camera_height_m - 1e-9)
+    for index in np.unique(rows.item).astype(int):
+        mine = rows.item == index
+        best = np.full(len(HEIGHTS_M), -np.inf)
+        np.logaddexp.at(best, slots[mine], -0.5 * cost[mine])
+        best *= -2.0
+        name = observations.categories[index].name
+        alike = sum(observations.categories[int(i)].name == name for i in np.unique(rows.item))
+        total += np.minimum(best, _DOUBTFUL_CAP if name in _MAYBE_ELSEWHERE else _CAP) / (1 + (alike - 1) * ALIKE)
     return total
+
+
+def _from_neighbours(unknowns: Float[np.ndarray, "n 6"], rows: Problems, step: int) -> Float[np.ndarray, "n 6"]:
+    """For every row the solution at the next height of its run, scaled to its own height."""
+    by_run = unknowns.reshape(-1, len(HEIGHTS_M), UNKNOWNS)
+    place = np.clip(np.arange(len(HEIGHTS_M)) + step, 0, len(HEIGHTS_M) - 1)
+    start = by_run[:, place].reshape(-1, UNKNOWNS).copy()
+    start[:, 1:5] += np.tile(np.log(HEIGHTS_M / HEIGHTS_M[place]), len(by_run))[:, None]
+    return start
 
 
 def _minimum(x: Float[np.ndarray, "n"], y: Float[np.ndarray, "n"]) -> tuple[float, float, float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,11 +13,13 @@ from diorama_core.library.taxonomy import UNKNOWN, Category, with_kin
 from diorama_core.perception.metrology.arrangement import arrange, distinct
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.floor import place_on_floor, solve_all
+from diorama_core.perception.metrology.priors import SizeMode, plain_mode
 from diorama_core.perception.metrology.problem import Cuboids, Problems, View, cuboids
 from diorama_core.perception.metrology.silhouette import corner_costs
-from diorama_core.perception.metrology.solver import Solutions
+from diorama_core.perception.metrology.solver import Solutions, joined
 from diorama_core.perception.metrology.supported_objects import (
     AGAINST_WALLS,
+    FLOOR_THING_COST,
     Extent,
     extent_of,
     place_below_ceiling,
@@ -29,7 +32,7 @@ FLOOR, WALL, CEILING = -1, -2, -3
 """Supporters that are no objects."""
 
 _NEVER = np.inf
-_ON_TOP_COST = {"floor": 4.0, "surface": 0.0, "wall": 4.0, "ceiling": _NEVER}
+_ON_TOP_COST = {"floor": FLOOR_THING_COST, "surface": 0.0, "wall": 4.0, "ceiling": _NEVER}
 _FLOOR_COST = {"floor": 0.0, "surface": 6.0, "wall": 12.0, "ceiling": _NEVER}
 _WALL_COST = {"floor": 12.0, "surface": 8.0, "wall": 0.0, "ceiling": 6.0}
 _CEILING_COST = {"floor": _NEVER, "surface": _NEVER, "wall": _NEVER, "ceiling": 0.0}
@@ -49,6 +52,14 @@ _LARGE = _FIXED_TO_WALLS | with_kin(
 _SURE_COST = 12.0
 """Things on the floor that cost less than this tell how far the room reaches."""
 _CHILD_CAP = 12.0
+SETS = with_kin("chair", "office chair", "stool", "night stand", "ottoman", "table", "desk")
+"""What often comes in sets of one shape on the floor of one room."""
+SET_SIGMA = 0.05
+"""Of the logarithms of a set's extents: how well those that are seen well are measured."""
+ODD_ONE_COST = 3.0
+"""Of a size of its own beside others of its kind: one in five."""
+MAX_UNSEEN = 1
+"""Edges that may be hidden or cut of a member that tells the others' size."""
 _AVERTED_COST = 2.0
 
 
@@ -100,7 +111,7 @@ def place_all(observations: BoxObservations, view: View, height_m: float) -> tup
 
 
 def _on_floor(observations: BoxObservations, view: View, height_m: float) -> dict[int, Placement]:
-    """Every object that may stand on the floor, arranged so that they fit together."""
+    """Every object that may stand on the floor, arranged so that they fit together; sets are of one size."""
     rows: list[Problems] = []
     for index, category in enumerate(observations.categories):
         if category.mount != "ceiling" and category.name not in _FIXED_TO_WALLS:
@@ -108,12 +119,38 @@ def _on_floor(observations: BoxObservations, view: View, height_m: float) -> dic
             rows += [p.changed(extra=p.extra + cost) for p in place_on_floor(observations, index, height_m)]
     if not rows:
         return {}
-    readings = _readings(solve_all(rows, view), observations, view)
+    solved = solve_all(rows, view)
+    placed = _arranged(solved, observations, view, height_m)
+    sets = set_sizes(placed, observations)
+    if not sets:
+        return placed
+    shared = [p for i, mode in sets.items() for p in place_on_floor(observations, i, height_m, (mode,))]
+    alone = np.isin(solved.problems.item, list(sets))
+    solved = joined(solved.dearer(np.where(alone, ODD_ONE_COST, 0.0)), solve_all(shared, view))
+    return _arranged(solved, observations, view, height_m)
+
+
+def _arranged(solved: Solutions, observations: BoxObservations, view: View, height_m: float) -> dict[int, Placement]:
+    readings = _readings(solved, observations, view)
     standing = [i for i in readings if observations.categories[i].mount == "floor"]
     costs = [readings[i].costs + _children_costs(observations, view, height_m, i, readings[i]) for i in standing]
     chosen = arrange([readings[i].boxes for i in standing], costs, [observations.categories[i] for i in standing])
     picked = dict(zip(standing, chosen, strict=True))
     return {i: r.placement(picked.get(i, 0), FLOOR) for i, r in readings.items()}
+
+
+def set_sizes(placed: Mapping[int, Placement], observations: BoxObservations) -> dict[int, SizeMode]:
+    """For every member of a set the size that the well-seen members have, as a narrow mode."""
+    found: dict[int, SizeMode] = {}
+    for name in sorted({observations.categories[i].name for i in placed} & SETS):
+        members = [i for i in placed if observations.categories[i].name == name]
+        unseen = np.array([int((observations.hidden(i) | observations.truncated[i]).sum()) for i in members])
+        if len(members) < 2 or unseen.min() > MAX_UNSEEN:
+            continue
+        sizes = np.log([placed[i].cuboid.size_m[0] for i in members])
+        best = [k for k in np.argsort(unseen, kind="stable") if unseen[k] <= MAX_UNSEEN]
+        found |= {i: plain_mode(np.median(sizes[best], axis=0), np.full(3, SET_SIGMA), 0.0, name) for i in members}
+    return found
 
 
 def _children_costs(

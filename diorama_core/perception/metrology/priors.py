@@ -12,7 +12,8 @@ from functools import cache
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.library.taxonomy import UNKNOWN, SizePrior, category
+from diorama_core.library.kinds import modes_of_kind, outline_of
+from diorama_core.library.taxonomy import UNKNOWN, SizePrior, category, with_kin
 
 _ALSO = {
     "table": (("coffee table", 1.5), ("side table", 2.5)),
@@ -38,6 +39,9 @@ _UNNAMED = {
 """What unnamed furniture may be, with the cost of the rarer kinds."""
 _UNNAMED_WIDENED = 1.3
 _UNNAMED_ANYTHING_COST = 6.0
+BROAD_SHARE = 0.3
+"""Of the mixture that is the taxonomy's: of things unlike all in the library."""
+MAX_MODES = 3
 _USUAL_SPREAD = 3 * np.log(0.16)
 """Sum of the logarithms of the sigmas of an ordinary category: wider ones explain anything, and pay for it."""
 
@@ -49,7 +53,12 @@ class SizeMode:
     log_size: Float[np.ndarray, "3"]
     """Logarithms of depth, width, height in metres."""
     sigma: Float[np.ndarray, "3"]
+    """Of each logarithm by itself."""
     cost: float
+    outline: Float[np.ndarray, "40 3"]
+    """What is filled of the cuboid (`library.kinds`)."""
+    whitening: Float[np.ndarray, "3 3"]
+    """Turns a difference of logarithms into independent sigmas: extents of a kind grow together."""
 
     @property
     def square(self) -> bool:
@@ -61,19 +70,34 @@ class SizeMode:
 def size_modes(name: str) -> tuple[SizeMode, ...]:
     """The modes of a canonical category, the most usual first."""
     if name == UNKNOWN.name:
-        priors = [(category(kind).priors[0], cost) for kind, cost in _UNNAMED.items()]
-        kinds = tuple(_mode(p, cost + _breadth_cost(p), _UNNAMED_WIDENED) for p, cost in priors)
-        return (*kinds, _mode(UNKNOWN.priors[0], _UNNAMED_ANYTHING_COST))
-    own = tuple(_mode(prior, 0.0) for prior in category(name).priors)
-    also = tuple(_mode(category(kind).priors[0], cost) for kind, cost in _ALSO.get(name, ()))
+        kinds = tuple(
+            _mode(kind, cost + _breadth_cost(category(kind).priors[0]), _UNNAMED_WIDENED)
+            for kind, cost in _UNNAMED.items()
+        )
+        return (*kinds, _mode(UNKNOWN.name, _UNNAMED_ANYTHING_COST))
+    own = _own_modes(name)
+    also = tuple(_mode(kind, cost) for kind, cost in _ALSO.get(name, ()))
     return own + also
+
+
+SMALL_M, SMALL_SIGMA_M = 0.55, 0.12
+"""Portable things lower than this are more often found on furniture than on the floor."""
+PORTABLE = with_kin("plant", "box", "basket", "speaker", "fan", "heater") - {"hanging plant", "suitcase"}
+
+
+def standing_costs(name: str, mode: SizeMode) -> tuple[float, float]:
+    """What speaks against a portable thing of this size standing on the floor, and on furniture; 0 for all others."""
+    if name not in PORTABLE:
+        return 0.0, 0.0
+    raised = (SMALL_M - float(np.exp(mode.log_size[2]))) / SMALL_SIGMA_M
+    return 2.0 * float(np.logaddexp(0.0, raised)), 2.0 * float(np.logaddexp(0.0, -raised))
 
 
 @cache
 def supported_modes(name: str) -> tuple[SizeMode, ...]:
     """The modes of a thing that lies on another; unnamed things are small there."""
     if name == UNKNOWN.name:
-        return (SizeMode(np.log([0.2, 0.24, 0.24]), np.array([0.7, 0.7, 0.7]), 0.0),)
+        return (plain_mode(np.log([0.2, 0.24, 0.24]), np.array([0.7, 0.7, 0.7]), 0.0, name),)
     return size_modes(name)
 
 
@@ -81,7 +105,7 @@ def supported_modes(name: str) -> tuple[SizeMode, ...]:
 def hung_modes(name: str) -> tuple[SizeMode, ...]:
     """The modes of a thing on a wall; unnamed things are flat there."""
     if name == UNKNOWN.name:
-        return (SizeMode(np.log([0.05, 0.8, 0.7]), np.array([0.4, 0.5, 0.5]), 0.0),)
+        return (plain_mode(np.log([0.05, 0.8, 0.7]), np.array([0.4, 0.5, 0.5]), 0.0, name),)
     return size_modes(name)
 
 
@@ -89,9 +113,33 @@ def hung_modes(name: str) -> tuple[SizeMode, ...]:
 def hanging_modes(name: str) -> tuple[SizeMode, ...]:
     """The modes of a thing below the ceiling; unnamed things are lamps there."""
     if name == UNKNOWN.name:
-        lamp = category("ceiling lamp").priors[0]
-        return (_mode(lamp, 0.0, _UNNAMED_WIDENED),)
+        return (_mode("ceiling lamp", 0.0, _UNNAMED_WIDENED),)
     return size_modes(name)
+
+
+def _own_modes(name: str) -> tuple[SizeMode, ...]:
+    """A mixture of the library's usual sizes of a kind and the taxonomy's broader ones, by log density."""
+    broad = category(name).priors
+    outline = outline_of(name)
+    parts = [(p.log_median_xyz, np.diag(p.log_sigma_xyz**2), BROAD_SHARE / len(broad), outline) for p in broad]
+    parts += [
+        (m.log_size, m.covariance, (1 - BROAD_SHARE) * m.share, m.outline) for m in modes_of_kind(name)[:MAX_MODES]
+    ]
+    costs = [float(np.linalg.slogdet(covariance)[1]) - 2.0 * np.log(share) for _, covariance, share, _ in parts]
+    modes = [
+        SizeMode(size, np.sqrt(np.diag(covariance)), cost - min(costs), points, _whitening(covariance))
+        for (size, covariance, _, points), cost in zip(parts, costs, strict=True)
+    ]
+    return tuple(sorted(modes, key=lambda m: m.cost))
+
+
+def _whitening(covariance: Float[np.ndarray, "3 3"]) -> Float[np.ndarray, "3 3"]:
+    return np.asarray(np.linalg.inv(np.linalg.cholesky(covariance)))
+
+
+def plain_mode(log_size: Float[np.ndarray, "3"], sigma: Float[np.ndarray, "3"], cost: float, name: str) -> SizeMode:
+    """A mode whose extents vary independently."""
+    return SizeMode(log_size, sigma, cost, outline_of(name), np.diag(1.0 / sigma))
 
 
 def _breadth_cost(prior: SizePrior) -> float:
@@ -99,5 +147,6 @@ def _breadth_cost(prior: SizePrior) -> float:
     return max(0.0, 2.0 * float(np.log(prior.log_sigma_xyz).sum() - _USUAL_SPREAD))
 
 
-def _mode(prior: SizePrior, cost: float, widened: float = 1.0) -> SizeMode:
-    return SizeMode(prior.log_median_xyz, prior.log_sigma_xyz * widened, cost)
+def _mode(name: str, cost: float, widened: float = 1.0) -> SizeMode:
+    prior = category(name).priors[0]
+    return plain_mode(prior.log_median_xyz, prior.log_sigma_xyz * widened, cost, name)

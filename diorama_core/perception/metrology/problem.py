@@ -20,7 +20,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from jaxtyping import Bool, Float
 
-from diorama_core.geometry.projection import cuboid_corners, visible_bounds
+from diorama_core.geometry.projection import NEAR_M, cuboid_corners, visible_bounds
 from diorama_core.scene.types import Intrinsics
 
 UNKNOWNS = 6
@@ -68,6 +68,9 @@ class Problems:
     log_size: Float[np.ndarray, "n 3"]
     """Prior of the logarithms of depth, width, height."""
     log_size_sigma: Float[np.ndarray, "n 3"]
+    """Of each by itself."""
+    whitening: Float[np.ndarray, "n 3 3"]
+    """Turns a difference from the prior into independent sigmas."""
     base_m: Float[np.ndarray, "n"]
     """Expected height of the base."""
     base_sigma_m: Float[np.ndarray, "n"]
@@ -83,6 +86,8 @@ class Problems:
     """Of the logarithm of that coordinate's ratio."""
     cut_sigma: Float[np.ndarray, "n"]
     """How readily the cuboid may reach beyond the picture (of a logarithm of box sizes)."""
+    outline: Float[np.ndarray, "n 40 3"]
+    """Points in a unit box that bound what the object fills of its cuboid (`library.kinds`)."""
     extra: Float[np.ndarray, "n"]
     """Constant cost of the row's assumptions."""
 
@@ -140,15 +145,25 @@ def corners_camera(boxes: Cuboids, camera_height_m: Float[np.ndarray, "n"], view
     return corners @ view.R_world_camera
 
 
-def residuals(unknowns: Float[np.ndarray, "n 6"], problems: Problems, view: View) -> Float[np.ndarray, "n r"]:
-    """Everything that speaks against a row's cuboid, in sigmas: their squares sum to its cost."""
+def residuals(
+    unknowns: Float[np.ndarray, "n 6"],
+    problems: Problems,
+    view: View,
+    inset_px: Float[np.ndarray, "n 4"] | None = None,
+) -> Float[np.ndarray, "n r"]:
+    """Everything that speaks against a row's cuboid, in sigmas: their squares sum to its cost.
+
+    `inset_px` is what `outline_inset` says nearby, where it is known: it hardly changes with small steps.
+    """
     boxes = cuboids(unknowns, problems, view)
     corners = corners_camera(boxes, problems.camera_height_m, view)
+    if inset_px is None:
+        inset_px = _unfilled(boxes, corners, problems, view)
     return np.concatenate(
         [
-            _edges(corners, problems, view),
+            _edges(corners, inset_px, problems, view),
             _cut_off(corners, problems, view),
-            (unknowns[:, 2:5] - problems.log_size) / problems.log_size_sigma,
+            np.einsum("nij,nj->ni", problems.whitening, unknowns[:, 2:5] - problems.log_size),
             unknowns[:, 5:6],
             ((boxes.top_m - problems.top_m) / problems.top_sigma_m)[:, None],
             _outside_footprint(boxes, problems),
@@ -157,6 +172,12 @@ def residuals(unknowns: Float[np.ndarray, "n 6"], problems: Problems, view: View
         ],
         axis=1,
     )
+
+
+def outline_inset(unknowns: Float[np.ndarray, "n 6"], problems: Problems, view: View) -> Float[np.ndarray, "n 4"]:
+    """By how many pixels the objects' own outlines stay within their cuboids', at each edge of their boxes."""
+    boxes = cuboids(unknowns, problems, view)
+    return _unfilled(boxes, corners_camera(boxes, problems.camera_height_m, view), problems, view)
 
 
 def _cut_off(corners: Float[np.ndarray, "n 8 3"], problems: Problems, view: View) -> Float[np.ndarray, "n 2"]:
@@ -169,10 +190,43 @@ def _cut_off(corners: Float[np.ndarray, "n 8 3"], problems: Problems, view: View
     return np.log1p(np.maximum(outside, 0.0) / extent) / problems.cut_sigma[:, None]
 
 
-def _edges(corners: Float[np.ndarray, "n 8 3"], problems: Problems, view: View) -> Float[np.ndarray, "n 4"]:
+def _unfilled(
+    boxes: Cuboids, corners: Float[np.ndarray, "n 8 3"], problems: Problems, view: View
+) -> Float[np.ndarray, "n 4"]:
+    """By how many pixels the object's own outline stays within its cuboid's, at each edge of the box.
+
+    0 where the cuboid reaches behind the camera: there nothing is known of the outline's ends.
+    """
+    k = view.intrinsics
+    inset = np.zeros((len(boxes.centre), 4))
+    ahead = (corners[..., 2] > CUT_NEAR_M).all(axis=1)
+    local = problems.outline[ahead] * boxes.size_m[ahead, None]
+    c, s = np.cos(boxes.yaw_rad[ahead])[:, None], np.sin(boxes.yaw_rad[ahead])[:, None]
+    x, y, z = local[..., 0], local[..., 1], local[..., 2]
+    R, centre = view.R_world_camera, corners[ahead].mean(axis=1)
+    wx, wy = c * x - s * y, s * x + c * y
+    outline, whole = [], []
+    for axis, f in ((0, k.fx), (1, k.fy)):
+        across = wx * R[0, axis] + wy * R[1, axis] + z * R[2, axis] + centre[:, axis, None]
+        depth = wx * R[0, 2] + wy * R[1, 2] + z * R[2, 2] + centre[:, 2, None]
+        outline.append(f * across / np.maximum(depth, NEAR_M))
+        whole.append(f * corners[ahead, :, axis] / corners[ahead, :, 2])
+    low = [o.min(axis=1) - w.min(axis=1) for o, w in zip(outline, whole, strict=True)]
+    high = [w.max(axis=1) - o.max(axis=1) for o, w in zip(outline, whole, strict=True)]
+    inset[ahead] = np.maximum(np.stack([*low, *high], axis=-1), 0.0)
+    return inset
+
+
+def _edges(
+    corners: Float[np.ndarray, "n 8 3"], unfilled: Float[np.ndarray, "n 4"], problems: Problems, view: View
+) -> Float[np.ndarray, "n 4"]:
     """How far the projected box is from the observed one, edge by edge; lenient where something hides the rest."""
     bounds, visible = visible_bounds(corners, view.intrinsics)
-    outward = (bounds - problems.box_px) * np.array([-1.0, -1.0, 1.0, 1.0])
+    k = view.intrinsics
+    border = np.abs(bounds - [0.0, 0.0, k.width, k.height]) < 1e-6
+    inward = np.array([1.0, 1.0, -1.0, -1.0])
+    bounds = bounds + np.where(border, 0.0, unfilled) * inward
+    outward = (bounds - problems.box_px) * -inward
     off = outward / problems.edge_sigma_px
     off = np.where(problems.hidden_beyond & (outward > 0), OCCLUDED_WEIGHT * off, off)
     robust = np.where(

@@ -44,6 +44,7 @@ def row(
         "hidden_beyond": observations.hidden(index, parent),
         "log_size": mode.log_size,
         "log_size_sigma": mode.sigma,
+        "whitening": mode.whitening,
         "base_m": 0.0,
         "base_sigma_m": 0.0,
         "top_m": 0.0,
@@ -53,6 +54,7 @@ def row(
         "wall_m": 1.0,
         "wall_sigma": UNTOLD,
         "cut_sigma": _CUT_LOG_SIGMA,
+        "outline": mode.outline,
         "extra": mode.cost,
     }
     columns.update(more)

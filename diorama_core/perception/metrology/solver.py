@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.perception.metrology.problem import UNKNOWNS, Problems, View, residuals
+from diorama_core.perception.metrology.problem import UNKNOWNS, Problems, View, outline_inset, residuals, stacked
 
 _STEP = 1e-5
 _LONGEST_STEP = 0.7
@@ -32,6 +32,17 @@ class Solutions:
         """The chosen rows."""
         return Solutions(self.problems.rows(chosen), self.unknowns[chosen], self.cost[chosen])
 
+    def dearer(self, by: Float[np.ndarray, "n"]) -> Solutions:
+        """The same rows with more against each."""
+        return Solutions(self.problems, self.unknowns, self.cost + by)
+
+
+def joined(a: Solutions, b: Solutions) -> Solutions:
+    """The rows of both."""
+    return Solutions(
+        stacked([a.problems, b.problems]), np.concatenate([a.unknowns, b.unknowns]), np.concatenate([a.cost, b.cost])
+    )
+
 
 def solve(problems: Problems, start: Float[np.ndarray, "n 6"], view: View, iterations: int = 14) -> Solutions:
     """Minimise every row's cost from its start; rows that have settled are left alone."""
@@ -44,7 +55,7 @@ def solve(problems: Problems, start: Float[np.ndarray, "n 6"], view: View, itera
         if not len(active):
             break
         part, here = problems.rows(active), unknowns[active]
-        step = _step(part, here, damping[active], view)
+        step = _step(part, here, damping[active], (low[active], high[active]), view)
         there = np.clip(here + step, low[active], high[active])
         reached = _cost(residuals(there, part, view))
         gain = cost[active] - reached
@@ -70,19 +81,28 @@ def _cost(r: Float[np.ndarray, "n r"]) -> Float[np.ndarray, "n"]:
 
 
 def _step(
-    problems: Problems, unknowns: Float[np.ndarray, "n 6"], damping: Float[np.ndarray, "n"], view: View
+    problems: Problems,
+    unknowns: Float[np.ndarray, "n 6"],
+    damping: Float[np.ndarray, "n"],
+    bounds: tuple[Float[np.ndarray, "n 6"], Float[np.ndarray, "n 6"]],
+    view: View,
 ) -> Float[np.ndarray, "n 6"]:
-    """The damped Gauss-Newton step, with derivatives by forward differences."""
+    """The damped Gauss-Newton step of the unknowns that no bound stops, with derivatives by forward differences."""
     count = len(problems)
     moves = _STEP * np.concatenate([np.zeros((1, UNKNOWNS)), np.eye(UNKNOWNS)])
     probes = (unknowns[None] + moves[:, None]).reshape(-1, UNKNOWNS)
     repeated = problems.rows(np.tile(np.arange(count), UNKNOWNS + 1))
-    values = residuals(probes, repeated, view).reshape(UNKNOWNS + 1, count, -1)
+    inset = np.tile(outline_inset(unknowns, problems, view), (UNKNOWNS + 1, 1))
+    values = residuals(probes, repeated, view, inset).reshape(UNKNOWNS + 1, count, -1)
     r = values[0]
     jacobian = ((values[1:] - r) / _STEP).transpose(1, 2, 0)
     normal = np.einsum("nri,nrj->nij", jacobian, jacobian)
     gradient = np.einsum("nri,nr->ni", jacobian, r)
-    diagonal = np.einsum("nii->ni", normal)
+    low, high = bounds
+    free = ~(((unknowns <= low) & (gradient > 0)) | ((unknowns >= high) & (gradient < 0)))
+    gradient = gradient * free
+    normal = normal * free[:, :, None] * free[:, None, :]
+    diagonal = np.where(free, np.einsum("nii->ni", normal), 1.0)
     normal = normal + np.eye(UNKNOWNS) * (damping[:, None] * (diagonal + 1e-2))[:, None]
     step = -np.linalg.solve(normal, gradient[..., None])[..., 0]
     longest = np.abs(step).max(axis=1, keepdims=True)

@@ -10,14 +10,18 @@ from jaxtyping import Float
 from diorama_core.library.taxonomy import UNKNOWN, with_kin
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.priors import (
+    PORTABLE,
     SizeMode,
     hanging_modes,
     hung_modes,
+    standing_costs,
     supported_modes,
 )
 from diorama_core.perception.metrology.problem import Cuboids, Problems
 from diorama_core.perception.metrology.rows import row
 
+FLOOR_THING_COST = 4.0
+"""Of a thing that usually stands on the floor and stands on another; portable things pay by their size instead."""
 CEILING_M = 2.6
 CEILING_SIGMA_M = 0.25
 _TOP_SIGMA_M = 0.04
@@ -119,7 +123,8 @@ def place_on(
         observations.categories[parent].seat_height_m is not None and observations.categories[index].name not in _SEATS
     )
     for base, sigma, level_cost in _levels(observations, parent, tall):
-        for mode in supported_modes(observations.categories[index].name):
+        for mode in supported_modes(names[1]):
+            raised = standing_costs(names[1], mode)[1] - (FLOOR_THING_COST if names[1] in PORTABLE else 0.0)
             for turn in (0.0,) if mode.square else (0.0, np.pi / 2):
                 rows.append(
                     row(
@@ -133,7 +138,7 @@ def place_on(
                         base_sigma_m=sigma,
                         footprint=footprint,
                         footprint_sigma_m=_FOOTPRINT_SIGMA_M,
-                        extra=mode.cost + level_cost + cost + (_ODD_ON_SEAT_COST if soft else 0.0),
+                        extra=mode.cost + raised + level_cost + cost + (_ODD_ON_SEAT_COST if soft else 0.0),
                     )
                 )
     return rows

@@ -10,10 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from diorama_core.artefacts import CameraEstimate, CameraHypothesis, DetectedObject, Inputs, ObjectGeometry, Photo
-from diorama_core.geometry.projection import box_iou, cuboid_corners, visible_bounds
+from diorama_core.geometry.projection import box_iou
+from diorama_core.library.kinds import outline_of
 from diorama_core.perception.metrology import SingleViewMetrology
 from diorama_core.progress import Progress
-from diorama_core.scene.types import Intrinsics
+from diorama_core.scene.types import Intrinsics, yaw_rotation
 
 K = Intrinsics(640, 480, 540.0, 540.0, 320.0, 240.0)
 
@@ -46,10 +47,9 @@ def rotation(pitch_deg: float, yaw_deg: float = 0.0) -> np.ndarray:
 
 
 def seen(items: tuple[RequestedObject, ...], R: np.ndarray, height_m: float) -> tuple[DetectedObject, ...]:
-    arrays = [np.array([getattr(t, name) for t in items], dtype=float) for name in ("centre", "yaw", "size")]
-    corners = cuboid_corners(*arrays) - [0, 0, height_m]
-    bounds, visible = visible_bounds(corners @ R, K)
-    assert visible.all()
+    """What a camera sees of things that have the outlines of their kinds: none fills its cuboid's corners."""
+    points = [outline_of(t.category) * t.size @ yaw_rotation(t.yaw).T + t.centre for t in items]
+    bounds = bounds_of((np.array(points) - [0, 0, height_m]) @ R)
     return tuple(
         detected(f"{t.category.replace(' ', '_')}_{n}", t.category, tuple(b), n + 1)
         for n, (t, b) in enumerate(zip(items, bounds, strict=True))
@@ -67,9 +67,20 @@ def measure(objects: tuple[DetectedObject, ...], *rotations: np.ndarray) -> Obje
     return SingleViewMetrology().measure(inputs, CameraEstimate(hypotheses, 0.9, "test"), objects, Progress())
 
 
+def bounds_of(points_camera: np.ndarray) -> np.ndarray:
+    assert (points_camera[..., 2] > 0.1).all()
+    pixels = points_camera[..., :2] / points_camera[..., 2:] * [K.fx, K.fy] + [K.cx, K.cy]
+    return np.clip(np.concatenate([pixels.min(axis=1), pixels.max(axis=1)], axis=1), 0, [640, 480, 640, 480])
+
+
 def ious(objects: tuple[DetectedObject, ...], geometry: ObjectGeometry) -> np.ndarray:
-    corners = np.array([geometry.camera.to_camera(c.corners_world) for c in geometry.cuboids])
-    return box_iou(visible_bounds(corners, K)[0], np.array([o.box for o in objects]))
+    """Of the given boxes with those of things that fill the cuboids as their kinds do."""
+    points = [
+        outline_of(o.category) * c.size_m @ c.R_world_object.T + c.centre
+        for o, c in zip(objects, geometry.cuboids, strict=True)
+    ]
+    found = bounds_of(np.array([geometry.camera.to_camera(p) for p in points]))
+    return box_iou(found, np.array([o.box for o in objects]))
 
 
 @settings(max_examples=6, deadline=None)
