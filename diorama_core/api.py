@@ -300,7 +300,7 @@ def export(
     Args:
         reconstruction: what to write; hidden objects are left out.
         path: the file; an existing one is replaced.
-        format: a key of `diorama_core.export.FORMATS`; by default what the file's name ends in.
+        format: a key of `diorama_core.export.FORMATS`; by default the one whose files usually end like this one.
         options: what of the scene is written, and how; see `diorama_core.export.gathering.ExportOptions`.
         progress: reports and cancellation.
 
@@ -317,7 +317,7 @@ def export(
         reconstruction.scene,
         reconstruction.library,
         path,
-        format or path.suffix.lower().removeprefix("."),
+        format or _usual_format(path),
         options=options,
         textures=reconstruction.textures,
         photo=None if inputs is None else inputs.photo.rgb,
@@ -358,6 +358,13 @@ def _planes_over_photo(reconstruction: Reconstruction, size: tuple[int, int] | N
         raise InputError("this scene has no photo to draw over; choose another view, such as top")
     rgb = inputs.photo.rgb if size is None else cv2.resize(inputs.photo.rgb, size, interpolation=cv2.INTER_AREA)
     return planes_over_photo(rgb, scene.architecture.planes, scene.camera)
+
+
+def _usual_format(path: Path) -> str:
+    from diorama_core.export import FORMATS
+
+    ending = path.suffix.lower()
+    return next((name for name, f in FORMATS.items() if f.suffixes[0] == ending), ending.removeprefix("."))
 
 
 def _opened(library: str | ShapeLibrary) -> tuple[ShapeLibrary, str | None]:

@@ -136,10 +136,12 @@ def test_optimising_reports_costs_and_leaves_the_original(room: diorama.Reconstr
 
 def test_export_takes_the_format_from_the_name(room: diorama.Reconstruction, tmp_path: Path) -> None:
     diorama.export(room, tmp_path / "room.GLB")
-    diorama.export(room, tmp_path / "named", format="glb")
-    assert (tmp_path / "room.GLB").read_bytes() == (tmp_path / "named").read_bytes()
+    diorama.export(room, tmp_path / "room.xml")
+    assert "<mujoco" in (tmp_path / "room.xml").read_text()
     assert len(trimesh.load_scene(tmp_path / "room.GLB", file_type="glb").geometry) >= len(room.scene.objects)
-    with pytest.raises(ExportError, match="glb"):
+    with pytest.raises(ExportError, match=r"files end in \.stl"):
+        diorama.export(room, tmp_path / "room.glb", format="stl")
+    with pytest.raises(ExportError, match="choose one of: glb"):
         diorama.export(room, tmp_path / "room.doc")
 
 

@@ -1,84 +1,159 @@
-"""Outlines within cuboids, and that a picture does not tell its scale."""
-
 from __future__ import annotations
-
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from diorama_core.artefacts import DetectedObject
+from diorama_core.geometry.projection import cuboid_corners, visible_bounds
 from diorama_core.perception.metrology.box_observations import gather
-from diorama_core.perception.metrology.priors import size_modes
-from diorama_core.perception.metrology.problem import Problems, View, outline_inset, residuals
+from diorama_core.perception.metrology.priors import SizeMode
+from diorama_core.perception.metrology.problem import (
+    INVISIBLE_PENALTY,
+    OCCLUDED_WEIGHT,
+    ROBUST_BEYOND,
+    Problems,
+    View,
+    corners_camera,
+    cuboids,
+    residuals,
+    stacked,
+)
 from diorama_core.perception.metrology.rows import row
-from diorama_core.perception.metrology.solver import solve
-from diorama_core.scene.types import Intrinsics, box_corners
+from tests.perception.metrology.test_metrology import K, detected, rotation
 
-K = Intrinsics(640, 480, 540.0, 540.0, 320.0, 240.0)
-VIEW = View(K, np.array([[1.0, 0, 0], [0, -0.17, 0.985], [0, -0.985, -0.17]]))
-EDGES = slice(0, 4)
-WHOLE = np.tile(box_corners((1.0, 1.0, 1.0)), (5, 1))
-"""An outline that fills its cuboid."""
-
-
-def problem(category: str = "table", height_m: float = 1.5) -> Problems:
-    item = DetectedObject("a", category, category, (200.0, 220.0, 420.0, 380.0), np.zeros((480, 640), bool), 1, 0.1)
-    return row(gather((item,), 640, 480), 0, size_modes(category)[0], camera_height_m=height_m, yaw_rad=0.3)
+VIEW = View(K, rotation(12.0))
+SIZE = np.array([0.6, 0.9, 0.8])
+CENTRE = np.array([0.3, 3.0, 0.4])
+ASIDE = CENTRE + np.array([1.9, 0.0, 0.0])
+HEIGHT = 1.5
+EDGES, CUT, SIZES, BASE, TOP, FOOTPRINT, WALL, FAR = (
+    slice(0, 4), slice(4, 6), slice(6, 9), 9, 10, slice(11, 13), 13, 14,
+)  # fmt: skip
 
 
-def unknowns(distance_m: float, scale: float = 1.0) -> np.ndarray:
-    return np.array([[0.05, np.log(distance_m * scale), *np.log(np.array([0.8, 1.3, 0.75]) * scale), 0.0]])
+def unknowns(centre=CENTRE, size=SIZE, view: View = VIEW) -> np.ndarray:
+    """The row of unknowns that stands for a cuboid on the floor."""
+    ahead, right = view.heading, np.array([view.heading[1], -view.heading[0]])
+    forward = centre[:2] @ ahead
+    return np.array([[centre[:2] @ right / forward, np.log(forward), *np.log(size), 0.0]])
 
 
-@settings(max_examples=25, deadline=None)
-@given(st.floats(2.0, 6.0), st.sampled_from(["table", "chair", "plant", "sofa", "object"]))
-def test_outlines_stay_within_their_cuboids(distance_m: float, category: str) -> None:
-    inset = outline_inset(unknowns(distance_m), problem(category), VIEW)
-    assert (inset >= 0).all()
-    assert inset.max() > 0.5
-    filled = problem(category).changed(outline=WHOLE)
-    assert np.allclose(outline_inset(unknowns(distance_m), filled, VIEW), 0, atol=1e-6)
+def problem(yaw: float = -np.pi / 2, box: np.ndarray | None = None, **more) -> Problems:
+    """One row whose box is the cuboid's own projection, unless another is given."""
+    if box is None:
+        corners = cuboid_corners(CENTRE[None], np.array([yaw]), SIZE[None]) - [0, 0, HEIGHT]
+        box = visible_bounds(corners @ VIEW.R_world_camera, K)[0][0]
+    observations = gather((detected("o", "cabinet", tuple(box)),), K.width, K.height)
+    mode = SizeMode(np.log(SIZE), np.full(3, 0.2), 0.0)
+    return row(observations, 0, mode, camera_height_m=HEIGHT, yaw_rad=yaw, **more)
 
 
-@settings(max_examples=25, deadline=None)
-@given(st.floats(0.6, 1.6), st.floats(2.0, 4.0))
-def test_a_larger_world_projects_alike(scale: float, distance_m: float) -> None:
-    """Only the priors tell scale: that is what carrying solutions from height to height rests on."""
-    here, there = problem(height_m=1.5), problem(height_m=1.5 * scale)
-    a = residuals(unknowns(distance_m), here, VIEW)[0, EDGES]
-    b = residuals(unknowns(distance_m, scale), there, VIEW)[0, EDGES]
-    assert np.allclose(a, b, atol=1e-6)
+@settings(max_examples=40, deadline=None)
+@given(x=st.floats(-2, 2), y=st.floats(1, 6), yaw=st.floats(-3.1, 3.1), turn=st.floats(-40, 40))
+def test_unknowns_stand_for_their_cuboid_whatever_the_heading(x, y, yaw, turn) -> None:
+    view = View(K, rotation(12.0, turn))
+    centre = np.array([*(y * view.heading + x * np.array([view.heading[1], -view.heading[0]])), 0.4])
+    boxes = cuboids(unknowns(centre, view=view), problem(yaw=yaw), view)
+    np.testing.assert_allclose(boxes.centre[0], centre, atol=1e-9)
+    np.testing.assert_allclose(boxes.size_m[0], SIZE)
+    assert boxes.base_m[0] == pytest.approx(0.0, abs=1e-12)
+    assert boxes.top_m[0] == pytest.approx(0.8)
+    assert boxes.yaw_rad[0] == yaw
 
 
-def test_what_is_behind_the_camera_has_no_known_outline() -> None:
-    assert np.allclose(outline_inset(unknowns(0.3), problem(), VIEW), 0)
+def test_the_heading_looks_along_the_floor_even_straight_down() -> None:
+    np.testing.assert_allclose(View(K, rotation(80.0, 30.0)).heading, [-0.5, np.sqrt(0.75)], atol=1e-9)
+    down = np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]])
+    assert View(K, down).heading.tolist() == [0.0, 1.0]
 
 
-@settings(max_examples=10, deadline=None)
-@given(st.floats(1.0, 2.0))
-def test_solutions_keep_their_bounds_and_never_grow_worse(height_m: float) -> None:
-    batch = problem(height_m=height_m)
-    start = unknowns(3.0)
-    before = (residuals(start, batch, VIEW) ** 2).sum()
-    found = solve(batch, start, VIEW)
-    assert found.cost[0] <= before + batch.extra[0] + 1e-9
-    reach = 2.0 * batch.log_size_sigma[0] + 1e-9
-    assert (np.abs(found.unknowns[0, 2:5] - batch.log_size[0]) <= reach).all()
+def test_corners_in_the_camera_frame_are_those_of_the_posed_cuboid() -> None:
+    boxes = cuboids(unknowns(), problem(), VIEW)
+    found = corners_camera(boxes, np.array([HEIGHT]), VIEW)[0]
+    world = found @ VIEW.R_world_camera.T + [0, 0, HEIGHT]
+    np.testing.assert_allclose(world.min(axis=0), [0.3 - 0.45, 3.0 - 0.3, 0.0], atol=1e-9)
+    np.testing.assert_allclose(world.max(axis=0), [0.3 + 0.45, 3.0 + 0.3, 0.8], atol=1e-9)
 
 
-def test_extents_that_grow_together_cost_less_than_those_that_do_not() -> None:
-    batch = problem()
-    together = replace(
-        batch, whitening=np.linalg.inv(np.linalg.cholesky([[[0.04, 0.03, 0], [0.03, 0.04, 0], [0, 0, 0.04]]]))
-    )
-    prior = slice(6, 9)
-    base = np.array([[0.0, 1.0, *batch.log_size[0], 0.0]])
-    alike, against = base.copy(), base.copy()
-    alike[0, 2:4] += 0.1
-    against[0, 2:4] += [0.1, -0.1]
-    costs = [(residuals(u, together, VIEW)[0, prior] ** 2).sum() for u in (alike, against)]
-    assert costs[0] == pytest.approx(0.02 / 0.07)
-    assert costs[1] == pytest.approx(0.02 / 0.01)
+def test_nothing_speaks_against_the_true_cuboid() -> None:
+    np.testing.assert_allclose(residuals(unknowns(), problem(), VIEW), 0.0, atol=1e-5)
+
+
+def test_sizes_and_heights_are_measured_in_their_sigmas() -> None:
+    found = residuals(unknowns(size=SIZE * np.exp([0.2, -0.4, 0.0])), problem(), VIEW)[0]
+    assert found[SIZES] == pytest.approx([1.0, -2.0, 0.0])
+    lifted = unknowns()
+    lifted[0, 5] = 1.5
+    raised = residuals(lifted, problem(base_sigma_m=0.1, top_m=0.8, top_sigma_m=0.05), VIEW)[0]
+    assert raised[BASE] == 1.5
+    assert raised[TOP] == pytest.approx(3.0)
+
+
+def test_edges_are_robust_and_lenient_where_something_hides_the_rest() -> None:
+    true = problem().box_px[0]
+    sigma = problem().edge_sigma_px[0, 0]
+
+    def left(shift: float, hidden: bool = False) -> float:
+        moved = problem(box=true).changed(box_px=true + np.array([shift, 0.0, 0.0, 0.0]))
+        return float(residuals(unknowns(), moved.changed(hidden_beyond=[hidden] * 4), VIEW)[0, 0])
+
+    assert left(sigma) == pytest.approx(1.0)
+    assert left(-sigma) == pytest.approx(-1.0)
+    assert left(10 * sigma) == pytest.approx(np.sqrt(20.0 * ROBUST_BEYOND - ROBUST_BEYOND**2))
+    assert left(sigma, hidden=True) == pytest.approx(OCCLUDED_WEIGHT)
+    assert left(-sigma, hidden=True) == pytest.approx(-1.0)
+
+
+def test_a_cuboid_that_the_camera_cannot_see_is_refused_dearly() -> None:
+    upward = View(K, rotation(-75.0))
+    unseen, seen = residuals(unknowns(), problem(), upward)[0, EDGES], residuals(unknowns(), problem(), VIEW)[0, EDGES]
+    assert np.abs(seen).max() < 1e-6
+    assert (unseen**2).sum() > 2.0 * INVISIBLE_PENALTY**2
+
+
+def test_reaching_beyond_the_picture_costs_against_the_box() -> None:
+    inside = problem(cut_sigma=1.0)
+    out = residuals(unknowns(ASIDE), inside, VIEW)[0]
+    corners = cuboid_corners(ASIDE[None], np.array([-np.pi / 2]), SIZE[None])[0] - [0, 0, HEIGHT]
+    camera = corners @ VIEW.R_world_camera
+    beyond = (camera[:, 0] / camera[:, 2] * K.fx + K.cx).max() - K.width
+    width = inside.box_px[0, 2] - inside.box_px[0, 0]
+    assert out[CUT] == pytest.approx([np.log1p(beyond / width), 0.0])
+
+
+@settings(max_examples=30, deadline=None)
+@given(yaw=st.floats(-3.1, 3.1), off=st.floats(-1.5, 1.5))
+def test_a_base_beyond_its_supporter_costs_by_how_far(yaw, off) -> None:
+    c, s = np.cos(yaw), np.sin(yaw)
+    middle = CENTRE[:2] - off * np.array([c, s])
+    rested = problem(yaw=yaw, footprint=np.array([*middle, yaw, 1.0, 2.0]), footprint_sigma_m=0.1)
+    found = residuals(unknowns(), rested, VIEW)[0, FOOTPRINT]
+    assert found == pytest.approx([max(abs(off) - 0.7, 0.0) / 0.1, 0.0], abs=1e-6)
+
+
+def test_a_back_off_its_wall_costs_more_when_nearer() -> None:
+    # Facing the camera from ahead, its back is 3.3 m away.
+    def off(wall_m: float) -> float:
+        return float(residuals(unknowns(), problem(wall_m=wall_m, wall_sigma=0.3), VIEW)[0, WALL])
+
+    assert off(3.3) == pytest.approx(0.0, abs=1e-9)
+    assert off(3.3 / np.exp(0.3)) == pytest.approx(1.0)
+    assert off(3.3 * np.exp(0.3)) == pytest.approx(-5.0)
+
+
+def test_far_places_are_doubted() -> None:
+    assert residuals(unknowns(CENTRE * [1, 1.9, 1]), problem(), VIEW)[0, FAR] == 0.0
+    away = np.array([0.0, 6.0 * np.exp(0.15), 0.4])
+    assert residuals(unknowns(away), problem(), VIEW)[0, FAR] == pytest.approx(1.0)
+
+
+def test_rows_are_stacked_chosen_and_changed() -> None:
+    both = stacked([problem(), problem(yaw=0.5)])
+    assert len(both) == 2
+    assert both.rows(np.array([1])).yaw_rad.tolist() == [0.5]
+    assert both.rows(both.yaw_rad > 0).yaw_rad.tolist() == [0.5]
+    changed = both.changed(extra=2.0, box_px=[1.0, 2.0, 3.0, 4.0])
+    assert changed.extra.tolist() == [2.0, 2.0]
+    assert changed.box_px.tolist() == [[1.0, 2.0, 3.0, 4.0]] * 2
+    assert both.extra.tolist() == [0.0, 0.0]

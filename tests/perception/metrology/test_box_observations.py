@@ -1,0 +1,85 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diorama_core.artefacts import DetectedObject
+from diorama_core.perception.metrology.box_observations import BoxObservations, gather
+from tests.perception.metrology.test_metrology import detected
+
+LEFT, TOP, RIGHT, BOTTOM = range(4)
+
+
+def of(*items: tuple[str, tuple[float, float, float, float]]) -> BoxObservations:
+    return gather(tuple(detected(f"o{n}", name, box) for n, (name, box) in enumerate(items)), 640, 480)
+
+
+def masked(box: tuple[int, int, int, int], share: float, confidence: float = 1.0) -> DetectedObject:
+    """A mask that fills the left share of a box."""
+    mask = np.zeros((480, 640), dtype=bool)
+    x1, y1, x2, y2 = box
+    mask[y1:y2, x1 : x1 + round(share * (x2 - x1))] = True
+    item = detected("m", "chair", tuple(float(v) for v in box))
+    return replace(item, mask=mask, mask_confidence=confidence)
+
+
+def test_a_thing_in_front_hides_the_edges_inside_its_box() -> None:
+    seen = of(("sofa", (100, 100, 300, 250)), ("coffee table", (90, 200, 320, 400)))
+    assert seen.hidden(0).tolist() == [False, False, False, True]
+    assert not seen.hidden(1).any()
+    assert seen.in_front.tolist() == [[False, True], [False, False]]
+
+
+def test_a_thing_that_ends_little_lower_or_covers_little_hides_nothing() -> None:
+    assert not of(("sofa", (100, 100, 300, 250)), ("chair", (90, 200, 320, 260))).hidden(0).any()
+    assert not of(("sofa", (100, 100, 300, 250)), ("chair", (90, 200, 220, 400))).hidden(0).any()
+
+
+def test_what_rests_on_a_parent_is_not_hidden_by_it() -> None:
+    seen = of(("books", (150, 150, 200, 250)), ("table", (100, 200, 300, 400)), ("lamp", (140, 240, 210, 420)))
+    assert seen.hidden(0).tolist() == [False, False, False, True]
+    # The lamp on another surface still hides it; a thing on the floor beyond the table does not.
+    assert seen.hidden(0, parent=1)[BOTTOM]
+    behind = of(("books", (150, 150, 200, 250)), ("table", (100, 200, 300, 400)), ("chair", (140, 240, 210, 300)))
+    assert not behind.hidden(0, parent=1).any()
+
+
+def test_edges_on_the_border_are_cut_and_tell_no_corner() -> None:
+    seen = of(("chair", (0, 100, 200, 480)))
+    assert seen.truncated[0].tolist() == [True, False, False, True]
+    exact = gather((replace(masked((0, 100, 200, 480), 1.0), box=(0.0, 100.0, 200.0, 480.0)),), 640, 480)
+    assert exact.corner_weight[0].tolist() == [0.0, 1.0, 0.0, 0.0]
+
+
+def test_sigmas_grow_with_the_box_and_the_picture() -> None:
+    seen = of(("chair", (100, 100, 200, 300)))
+    assert seen.edge_sigma_px[0] == pytest.approx([6.0, 9.0, 6.0, 9.0])
+    double = gather((detected("o", "chair", (200, 200, 400, 600)),), 1280, 960)
+    assert double.edge_sigma_px[0] == pytest.approx([12.0, 18.0, 12.0, 18.0])
+
+
+def test_own_masks_are_trusted_wholly_and_their_fill_counts() -> None:
+    own = gather((masked((100, 100, 200, 300), 0.5),), 640, 480)
+    guessed = gather((masked((100, 100, 200, 300), 0.5, 0.8),), 640, 480)
+    assert (own.mask_exact[0], guessed.mask_exact[0]) == (True, False)
+    assert own.corner_weight[0] == pytest.approx([1.0] * 4)
+    assert guessed.corner_weight[0] == pytest.approx([0.32] * 4)
+    assert own.fill[0] == pytest.approx(0.5)
+    assert guessed.fill[0] == 1.0
+    # The mask's right edge is the box's middle: it reaches the left corners only.
+    assert own.mask_reach[0] == pytest.approx([2.0, 1.0, 2.0, 1.0])
+
+
+@pytest.mark.parametrize("box", [(-5.0, -5.0, -1.0, -1.0), (700.0, 500.0, 800.0, 600.0), (50.0, 60.0, 50.0, 60.0)])
+def test_boxes_out_of_the_picture_or_without_extent_become_proper(box: tuple) -> None:
+    x1, y1, x2, y2 = of(("chair", box)).box_px[0]
+    assert 0 <= x1 <= x2 - 2 <= 638
+    assert 0 <= y1 <= y2 - 2 <= 478
+
+
+def test_no_objects() -> None:
+    seen = of()
+    assert len(seen) == 0
+    assert seen.box_px.shape == seen.corner_weight.shape == (0, 4)

@@ -1,0 +1,69 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diorama_core.perception.metrology.box_observations import gather
+from diorama_core.perception.metrology.placement import CEILING, FLOOR, WALL, Placement, place_all
+from diorama_core.perception.metrology.problem import View
+from tests.perception.metrology.test_metrology import ROOM, K, RequestedObject, rotation, seen
+
+R = rotation(8.0)
+VIEW = View(K, R)
+
+
+def placed(*items: RequestedObject, height_m: float = 1.5) -> tuple[Placement, ...]:
+    return place_all(gather(seen(items, R, height_m), K.width, K.height), VIEW, height_m)
+
+
+def test_every_object_gets_its_supporter_and_place() -> None:
+    found = placed(*ROOM)
+    assert [p.index for p in found] == list(range(len(ROOM)))
+    assert [p.supporter for p in found] == [FLOOR, FLOOR, FLOOR, FLOOR, 3, 0, WALL]
+    for item, placement in zip(ROOM, found, strict=True):
+        assert np.abs(placement.cuboid.centre[0] - item.centre).max() < 0.55, item.category
+        assert len(placement.problem) == 1
+
+
+def test_what_supports_another_thing_stands_on_the_floor() -> None:
+    found = placed(*ROOM)
+    for placement in found:
+        if placement.supporter >= 0:
+            assert found[placement.supporter].supporter == FLOOR
+            under = found[placement.supporter].cuboid
+            assert placement.cuboid.base_m[0] <= under.top_m[0] + 0.15
+
+
+def test_lamps_of_the_ceiling_hang_and_doors_are_on_walls_down_to_the_floor() -> None:
+    lamp = RequestedObject("ceiling lamp", (0.2, 3.5, 2.35), (0.4, 0.45, 0.45))
+    door = RequestedObject("door", (-1.6, 4.5, 1.02), (0.06, 0.9, 2.04))
+    found = placed(*ROOM[:3], lamp, door)
+    assert [p.supporter for p in found[3:]] == [CEILING, WALL]
+    assert found[4].cuboid.base_m[0] == pytest.approx(0.0, abs=1e-6)
+    assert found[3].cuboid.base_m[0] > 1.7
+
+
+def test_a_television_is_on_its_stand_when_there_is_one_and_on_the_wall_otherwise() -> None:
+    stand = RequestedObject("tv stand", (0.2, 4.0, 0.27), (0.42, 1.5, 0.54))
+    on_stand = RequestedObject("television", (0.2, 4.0, 0.9), (0.08, 1.1, 0.7))
+    on_wall = RequestedObject("television", (0.2, 4.2, 1.45), (0.08, 1.1, 0.7))
+    assert placed(stand, on_stand)[1].supporter == 0
+    assert placed(ROOM[0], on_wall)[1].supporter == WALL
+
+
+def test_large_things_never_stand_on_others() -> None:
+    sofa, table = ROOM[0], RequestedObject("desk", (0.2, 3.6, 0.37), (0.7, 1.4, 0.74))
+    assert [p.supporter for p in placed(sofa, table)] == [FLOOR, FLOOR]
+
+
+def test_overlapping_readings_are_parted() -> None:
+    found = placed(
+        RequestedObject("bed", (0.0, 4.0, 0.3), (2.0, 1.6, 0.6)),
+        RequestedObject("chair", (1.2, 2.6, 0.43), (0.52, 0.5, 0.86)),
+    )
+    gap = np.linalg.norm(found[0].cuboid.centre[0, :2] - found[1].cuboid.centre[0, :2])
+    assert gap > 1.2
+
+
+def test_no_objects() -> None:
+    assert place_all(gather((), 640, 480), VIEW, 1.4) == ()

@@ -1,0 +1,56 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from diorama_core.library.taxonomy import UNKNOWN, category
+from diorama_core.perception.metrology.box_observations import gather
+from diorama_core.perception.metrology.placement import FLOOR, WALL, Placement
+from diorama_core.perception.metrology.problem import Cuboids
+from diorama_core.perception.metrology.reading import confidence_of, heading_and_size
+from tests.perception.metrology.test_metrology import detected
+from tests.perception.metrology.test_problem import problem
+
+SIZE = np.array([0.5, 1.2, 0.8])
+
+
+def placement(yaw: float, supporter: int = FLOOR, centre=(0.5, 3.0, 0.4), cost: float = 0.0) -> Placement:
+    box = Cuboids(np.array([centre], dtype=float), np.array([yaw]), SIZE[None])
+    return Placement(0, supporter, problem(), box, cost)
+
+
+@settings(max_examples=40, deadline=None)
+@given(yaw=st.floats(-3.1, 3.1), x=st.floats(-3, 3), y=st.floats(0.5, 5))
+def test_fronts_face_the_camera_and_the_cuboid_stays_itself(yaw, x, y) -> None:
+    for name in ("sofa", UNKNOWN.name):
+        turned, size = heading_and_size(placement(yaw, centre=(x, y, 0.4)), category(name))
+        front = np.array([np.cos(turned), np.sin(turned)])
+        toward = -np.array([x, y]) / np.hypot(x, y)
+        assert front @ toward >= (np.cos(np.pi / 4) if name == UNKNOWN.name else 0.0) - 1e-9
+        quarter = round((turned - yaw) / (np.pi / 2))
+        assert (turned - yaw) / (np.pi / 2) == pytest.approx(quarter)
+        assert size == pytest.approx(SIZE[[1, 0, 2]] if quarter % 2 else SIZE)
+        assert name == UNKNOWN.name or quarter % 2 == 0
+        assert -np.pi <= turned <= np.pi
+
+
+def test_what_hangs_on_a_wall_faces_away_from_it() -> None:
+    yaw, size = heading_and_size(placement(0.3, WALL), category("picture"))
+    assert yaw == 0.3
+    np.testing.assert_array_equal(size, SIZE)
+
+
+def confidence(placed: Placement, box=(100, 100, 200, 300), log_sigma: float = 0.0, **front) -> float:
+    items = [detected("o", "sofa", box)] + [detected("f", "chair", b) for b in front.values()]
+    return confidence_of(placed, gather(tuple(items), 640, 480), log_sigma)
+
+
+def test_confidence_falls_with_cost_hidden_edges_and_an_unsure_height() -> None:
+    assert confidence(placement(0.0)) == 1.0
+    assert confidence(placement(0.0, cost=18.0)) == pytest.approx(np.exp(-1))
+    assert confidence(placement(0.0), log_sigma=0.5) == pytest.approx(np.exp(-0.5))
+    assert confidence(placement(0.0), box=(0, 100, 200, 480)) == pytest.approx(0.85**2)
+    assert confidence(placement(0.0), chair=(90, 250, 210, 400)) == pytest.approx(0.85)
+    assert confidence(placement(0.0, cost=1e6)) == 0.02
