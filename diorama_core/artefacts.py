@@ -196,6 +196,8 @@ class SceneGraph:
     """(object id, brief description); may hold anything, to be shown escaped."""
     source: str = ""
     """Where it comes from, in words shown to the user."""
+    provisional: bool = False
+    """Whether it stands in for what could not be asked just now: the next build asks again."""
 
 
 @dataclass(frozen=True)

@@ -34,14 +34,14 @@ ROOT = Path(__file__).resolve().parents[1]
 EDITS = """
 import sys, time
 from pathlib import Path
-from diorama_app.recovery import Recovery
-from diorama_app.saver import Saver
+from diorama_app.session.recovery import Recovery
+from diorama_app.session.autosave import Autosave
 from diorama_core.project.lock import ProjectLock
 from diorama_core.project.storage import Project
 from diorama_core.scene.edits import rename
 project = Project.open(Path(sys.argv[1]))
 lock = ProjectLock(project.folder, "crash")
-saver = Saver(print, Recovery(Path(sys.argv[2])))
+saver = Autosave(print, Recovery(Path(sys.argv[2])))
 scene = project.load_scene()
 number = int(sys.argv[3])
 while True:

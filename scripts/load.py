@@ -79,7 +79,7 @@ class Person:
 SERVE = """
 import sys
 from pathlib import Path
-from diorama_app.server import serve
+from diorama_app.serve import serve
 from tests.app.small_room import PlainLibrary
 folder = Path(sys.argv[1])
 serve(project=folder, projects_dir=folder.parent, host="127.0.0.1", port=0, open_browser=False, low_graphics=True,

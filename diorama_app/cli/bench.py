@@ -107,7 +107,7 @@ def _bench_system(a: argparse.Namespace) -> None:
     from diorama_core.evaluation.benchmarks import system as system_bench
     from diorama_core.evaluation.benchmarks.case_pictures import case_writer
     from diorama_core.evaluation.benchmarks.cases import parse_seeds
-    from diorama_core.evaluation.substitution import parse_substitutes
+    from diorama_core.evaluation.benchmarks.substitution import parse_substitutes
     from diorama_core.library.catalogue import built_in_library
 
     _check(a)

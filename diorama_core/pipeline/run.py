@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import UInt8
 
+from diorama_core.architecture.room_extent import containing_room
 from diorama_core.architecture.texture.plane_textures import plane_textures
 from diorama_core.artefacts import (
     ArchitectureEstimate,
@@ -19,6 +20,8 @@ from diorama_core.artefacts import (
     LayoutReport,
     ObjectGeometry,
 )
+from diorama_core.layout.noise import MEASURED, REASONED
+from diorama_core.layout.support_check import checked_supports
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.foundation.depth_prediction import with_network_wording
 from diorama_core.pipeline.assemble import assemble
@@ -86,7 +89,9 @@ def build_scene(
     found = evaluate(stages, {"given": inputs}, ("graph", "posed"), runner, progress.part(0.0, 0.85))
     inputs, geometry, room = found["inputs"], found["geometry"], found["architecture"]
     textures = plane_textures(inputs, found["objects"], geometry.camera, room.architecture, stages.filler)
-    observed = _textured(_observed(found, library), textures)
+    noise = REASONED if inputs.depth_m is None else MEASURED
+    checked, changed = checked_supports(_observed(found, library), library, noise)
+    observed = _textured(containing_room(checked), textures)
 
     scene, report = observed, None
     if observed.objects:
@@ -109,7 +114,7 @@ def build_scene(
         textures=textures,
         inputs=inputs,
         runs=tuple(runner.runs),
-        notes=_notes(found, report),
+        notes=_notes(found, changed, report),
     )
 
 
@@ -133,11 +138,12 @@ def _textured(scene: Scene, textures: Mapping[str, object]) -> Scene:
     return replace(scene, architecture=replace(scene.architecture, planes=planes))
 
 
-def _notes(found: Artefacts, report: LayoutReport | None) -> tuple[str, ...]:
+def _notes(found: Artefacts, changed: tuple[str, ...], report: LayoutReport | None) -> tuple[str, ...]:
     camera, geometry, room, graph = (found[n] for n in ("camera", "geometry", "architecture", "graph"))
     sources: tuple[str, ...] = (f"camera: {camera.source}", f"objects: {geometry.source}", f"room: {room.source}")
     if found["inputs"].depth_source == "network":
         sources = tuple(with_network_wording(s) for s in sources)
     if graph is not None:
         sources = (*sources, f"what stands on what: {graph.source}")
-    return (*sources, *(s.note for s in found["shapes"] if s.note), *(report.reasons if report else ()))
+    notes = (*(s.note for s in found["shapes"] if s.note), *changed)
+    return (*sources, *notes, *(report.reasons if report else ()))

@@ -74,7 +74,8 @@ class Runner:
         if result is None:
             result = call(*artefacts, progress)
             progress.check()
-            _write(path, result)
+            if not getattr(result, "provisional", False):
+                _write(path, result)
         progress.report(1.0, f"{name}: done")
         self.runs.append(StageRun(name, repr(stage), time.perf_counter() - started, cached))
         return result

@@ -20,6 +20,8 @@ PlaneRole = Literal["floor", "ceiling", "wall"]
 Relation = Literal["placed on", "mounted on"]
 FaceName = Literal["bottom", "top", "front", "back", "left", "right"]
 Finish = Literal["matt", "satin", "gloss", "metal"]
+SEEN_CONFIDENCE = 0.35
+"""Planes of at least this confidence were observed."""
 
 
 @dataclass(frozen=True)
@@ -189,6 +191,11 @@ class Plane(ArrayValue):
         object.__setattr__(self, "polygon", frozen_array(self.polygon, (-1, 3)))
         if len(self.polygon) < 3:
             raise ValueError(f"plane {self.id} needs at least three corners")
+
+    @property
+    def seen(self) -> bool:
+        """Whether the plane was observed rather than assumed: assumed ones give way to objects."""
+        return self.confidence >= SEEN_CONFIDENCE
 
     @cached_property
     def normal(self) -> Float[np.ndarray, "3"]:

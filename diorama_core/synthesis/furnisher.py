@@ -159,7 +159,7 @@ class Furnisher:
     ) -> str | None:
         """Back to a wall: at `t_m` along it, in a corner, or anywhere that is free."""
         width, depth = item.size_m[1], item.size_m[0]
-        options = [w for w in (walls or self.plan.walls) if w.length_m > width + 0.02]
+        options = [w for w in (walls or self.plan.walls) if w.length_m > width + 2 * WALL_GAP_M]
         for _ in range(TRIES if t_m is None else 1):
             if not options:
                 return None

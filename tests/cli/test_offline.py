@@ -22,7 +22,7 @@ CONNECT = re.compile(r"connect\(\d+, \{sa_family=AF_INET6?, .*?(?:inet_addr\(\"|
 SERVE = """
 import sys, urllib.request
 from pathlib import Path
-from diorama_app.server import start
+from diorama_app.serve import start
 from tests.app.small_room import PlainLibrary
 running = start(project=Path(sys.argv[1]), projects_dir=Path(sys.argv[1]).parent, library=PlainLibrary())
 with urllib.request.urlopen(running.url) as page:

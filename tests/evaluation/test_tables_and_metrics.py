@@ -24,6 +24,13 @@ from diorama_core.evaluation.benchmarks.pose_tables import (
 )
 from diorama_core.evaluation.benchmarks.retrieval import ObjectResult, recall_table, retrieval_table
 from diorama_core.evaluation.benchmarks.system import Way, build_case
+from diorama_core.evaluation.benchmarks.system_tables import (
+    CaseResult,
+    scene_table,
+    series_table,
+    substitution_table,
+    system_table,
+)
 from diorama_core.evaluation.metrics.architecture import architecture_scores
 from diorama_core.evaluation.metrics.scene import (
     SceneScores,
@@ -37,13 +44,6 @@ from diorama_core.evaluation.metrics.scene import (
 from diorama_core.evaluation.metrics.shape import chamfer, shape_distance
 from diorama_core.evaluation.reports import paper
 from diorama_core.evaluation.speed.bench import Series, speed_table
-from diorama_core.evaluation.system_tables import (
-    CaseResult,
-    scene_table,
-    series_table,
-    substitution_table,
-    system_table,
-)
 from diorama_core.progress import Progress
 from diorama_core.render.raycast import MeshCaster
 from diorama_core.scene.types import Architecture, Camera, Intrinsics, Scene, yaw_rotation

@@ -15,19 +15,20 @@ import numpy as np
 from diorama_core.artefacts import Box, Inputs
 from diorama_core.errors import Cancelled, InputError
 from diorama_core.evaluation.benchmarks.cases import Case, LeftOut, attempted, recipe
-from diorama_core.evaluation.metrics.scene import SceneScores, scene_scores
-from diorama_core.evaluation.reports.tables import Table
-from diorama_core.evaluation.substitution import substituted, with_true_masks
-from diorama_core.evaluation.system_tables import (
+from diorama_core.evaluation.benchmarks.substitution import substituted, with_true_masks
+from diorama_core.evaluation.benchmarks.system_tables import (
     CaseResult,
     scene_table,
     series_table,
     substitution_table,
     system_table,
 )
+from diorama_core.evaluation.metrics.scene import SceneScores, scene_scores
+from diorama_core.evaluation.reports.tables import Table
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import UNKNOWN
-from diorama_core.pipeline.run import Built, build_scene, embedded_stages
+from diorama_core.pipeline.run import Built, build_scene
+from diorama_core.pipeline.stages import embedded_stages
 from diorama_core.progress import Progress
 from diorama_core.synthesis.artefacts import photo_only
 from diorama_core.synthesis.splits import split_library

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diorama_core.layout.feasible.relocate import relocate
-from diorama_core.layout.feasible.separate import build_program, separate
+from diorama_core.layout.feasible.separate import base, build_program, relaxed, separate
 from diorama_core.layout.feasible.structure import Structure, exact_structure
 from diorama_core.layout.problem.problem import Problem, build_problem
 from diorama_core.layout.problem.supports import Surface, object_surfaces, outside_m, plane_surface
@@ -53,7 +53,7 @@ class DragSolver:
         program = build_program(problem, structure, weight)
         found = separate(program, rounds=self.rounds, check=lambda y, depth: None)
         if found.stuck:
-            found = relocate(program, found)
+            found = relaxed(program, relocate(program, base(program)))
         p = structure.p + program.moves(found.y)
         moved = edits.place(self.scene, problem.poses(structure.R, p, structure.scale))
         return moved if edge is None else edits.attach(moved, edge)
@@ -114,7 +114,8 @@ class DragSolver:
         kin = problem.kin.copy()
         for k in problem.rides(i):
             kin[k, :] = kin[:, k] = False
-        changed = replace(problem, parent=parent, surface=tuple(surfaces), on_plane=tuple(planes))
+        levels = tuple(() if k == i else own for k, own in enumerate(problem.levels))
+        changed = replace(problem, parent=parent, surface=tuple(surfaces), levels=levels, on_plane=tuple(planes))
         for k in problem.rides(i):
             for above in changed.chain(k):
                 kin[k, above] = kin[above, k] = True

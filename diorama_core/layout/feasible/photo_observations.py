@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.geometry.projection import box_iou
 from diorama_core.layout.problem.problem import Problem
 from diorama_core.scene.types import Camera
 
@@ -20,6 +21,10 @@ MOVED_M = 2e-3
 arranged."""
 MAX_STRETCH = 1.2
 """Sizes change by at most this factor either way."""
+FAR_M = 0.2
+"""Objects that a layout moves farther are named,"""
+SHARED_OUTLINE = 0.6
+"""and those whose outline shares less than this with the observed one (intersection over union of bounds)."""
 _NEAREST_M = 0.1
 _STEPS = 4
 _KEEP_PLACE = 0.1
@@ -202,3 +207,25 @@ def photo_observations(problem: Problem, camera: Camera, *, depth_weight: float)
         size=problem.shape_size,
         points=points,
     )
+
+
+def disagreements(
+    problem: Problem,
+    camera: Camera,
+    R: Float[np.ndarray, "n 3 3"],
+    p: Float[np.ndarray, "n 3"],
+    scale: Float[np.ndarray, "n 3"],
+) -> tuple[str, ...]:
+    """A line for each free object that a layout took clearly away from where the camera saw it."""
+    seen = photo_observations(problem, camera, depth_weight=1.0).bounds_px
+    now = photo_observations(replace(problem, R=R, p=p, scale=scale), camera, depth_weight=1.0).bounds_px
+    lines = []
+    for i in np.flatnonzero(problem.free):
+        moved = float(np.linalg.norm(p[i] - problem.p[i]))
+        shared = float(box_iou(seen[i], now[i])) if np.isfinite([seen[i], now[i]]).all() else 1.0
+        if moved > FAR_M or shared < SHARED_OUTLINE:
+            lines.append(
+                f"agrees less with the photo: {problem.labels[i]} moved {100 * moved:.0f} cm; its outline still covers "
+                f"{100 * shared:.0f} % of where it was seen"
+            )
+    return tuple(lines)

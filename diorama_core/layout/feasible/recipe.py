@@ -10,9 +10,9 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import LayoutReport
-from diorama_core.layout.feasible.photo_observations import PhotoObservations, photo_observations
+from diorama_core.layout.feasible.photo_observations import PhotoObservations, disagreements, photo_observations
 from diorama_core.layout.feasible.relocate import relocate
-from diorama_core.layout.feasible.separate import Program, Separation, build_program, separate
+from diorama_core.layout.feasible.separate import Program, Separation, base, build_program, relaxed, separate
 from diorama_core.layout.feasible.structure import Structure, exact_structure
 from diorama_core.layout.problem.problem import Problem, build_problem
 from diorama_core.layout.report import measure
@@ -28,6 +28,12 @@ MEASURED_WEIGHT, REASONED_WEIGHT = 2.0, 0.3
 that was reasoned from a photo alone."""
 SHRINK = 0.95
 """What a stuck object's footprint is multiplied by, each attempt."""
+
+
+MIN_CERTAINTY = 0.1
+"""An object that is hardly seen still counts so much."""
+RIDING = 0.05
+"""What moving on its supporter costs an object, against moving in the picture."""
 
 
 @dataclass(frozen=True)
@@ -70,17 +76,18 @@ class FeasibleRecipe:
         for attempt in range(self.attempts):
             seen = None if observations is None else observations.limited(wanted.scale)
             structure = exact_structure(wanted, self._rays(wanted, scene.camera), seen)
-            program = build_program(wanted, structure, self._weights(wanted, structure, scene.camera))
-            found = separate(program, rounds=self.rounds, check=self._watcher(scene, program, progress, preview))
-            found = relocate(program, found) if found.stuck else found
+            program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
+            found = _apart(program, self.rounds, self._watcher(scene, program, progress, preview))
             if not found.stuck or attempt == self.attempts - 1:
                 break
             wanted = _smaller(wanted, structure, found)
         p = structure.p + program.moves(found.y)
-        after = measure(problem, structure.R, p, structure.scale)
+        after = measure(replace(problem, surface=structure.surface), structure.R, p, structure.scale)
         reasons = (
             problem.reasons + structure.reasons + _shrunk_reasons(problem, wanted) + _stuck_reasons(problem, found)
         )
+        if scene.camera is not None:
+            reasons += disagreements(problem, scene.camera, structure.R, p, structure.scale)
         report = LayoutReport("feasible", before, after, time.perf_counter() - begun, reasons)
         settled = edits.place(scene, problem.poses(structure.R, p, structure.scale))
         return edits.set_metrics(settled, after), report
@@ -119,20 +126,39 @@ class FeasibleRecipe:
             return None
         return photo_observations(problem, camera, depth_weight=self.depth_weight * self.weights.distance)
 
-    def _weights(self, problem: Problem, structure: Structure, camera: Camera | None) -> Float[np.ndarray, "n 2 2"]:
-        """What a move costs: things that hold up much move less; moves across the viewing ray cost more."""
-        load = np.array([float(len(problem.rides(i))) for i in range(problem.count)])
+    def _costs(
+        self, problem: Problem, camera: Camera | None
+    ) -> tuple[Float[np.ndarray, "n 2 2"], Float[np.ndarray, "n 3 3"] | None]:
+        """What moves cost: relative to the supporter and, with a photo, away from where each object was seen.
+
+        Without a photo what carries much moves less, and its load rides along. With one, the load stays where it was
+        seen while its supporter moves below it, and what is surely seen moves less.
+        """
         rays = self._rays(problem, camera)
-        weights = np.tile(np.eye(2), (problem.count, 1, 1))
-        if rays is not None:
-            for i in range(problem.count):
-                along = structure.basis[i].T @ rays[i]
-                weights[i] = self._across * np.eye(2) - (self._across - 1.0) * np.outer(along, along)
-        return weights * load[:, None, None]
+        if rays is None:
+            load = np.array([float(len(problem.rides(i))) for i in range(problem.count)])
+            return load[:, None, None] * np.eye(2), None
+        along = rays[:, :, None] * rays[:, None, :]
+        seen = self._across * np.eye(3) - (self._across - 1.0) * along
+        certainty = np.maximum(problem.certainty, MIN_CERTAINTY)
+        return np.tile(RIDING * np.eye(2), (problem.count, 1, 1)), certainty[:, None, None] * seen
+
+
+def _apart(program: Program, rounds: int, check: Callable[[np.ndarray, float], None]) -> Separation:
+    """The cheaper of two ways to take overlaps away: all at once, and one after another."""
+    together = separate(program, rounds=rounds, check=check)
+    if not program.tried:
+        return together
+    single = relocate(program, base(program))
+    found = [relaxed(program, f) for f in (together, single)]
+    best = min(found, key=lambda f: (len(f.stuck), float(program.cost(f.y))))
+    check(best.y, best.depth_m)
+    return best
 
 
 def _smaller(problem: Problem, structure: Structure, found: Separation) -> Problem:
-    """The lighter object of each stuck pair a little smaller across."""
+    """The lighter object of each stuck pair a little smaller across, and both free to leave their walls."""
+    stuck = {k for pair in found.stuck for k in pair}
     scale = problem.scale.copy()
     for pair in found.stuck:
         free = [k for k in pair if problem.free[k]]
@@ -140,7 +166,7 @@ def _smaller(problem: Problem, structure: Structure, found: Separation) -> Probl
         if free:
             k = min(free, key=lambda k: (volume[k], k))
             scale[k] *= np.where(np.abs(problem.contact[k]) > 0.5, 1.0, SHRINK)
-    return replace(problem, scale=scale)
+    return replace(problem, scale=scale, adheres=tuple(a for a in problem.adheres if a[0] not in stuck))
 
 
 def _shrunk_reasons(problem: Problem, wanted: Problem) -> tuple[str, ...]:

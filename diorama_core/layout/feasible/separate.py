@@ -1,9 +1,8 @@
 """Taking collisions away: a sequence of least-distance programs over convex parts.
 
-Rotations are fixed by then, so "apart along this axis" is an exact linear inequality in the free coordinates. Each
-round picks, for every pair of parts that touch, the axis along which the smallest move of anything that can move
-parts them, and solves for the least total move under all rows chosen so far; pairs that turn out stuck try their
-next axis.
+Rotations are fixed by then, so "apart along this axis" is an exact linear inequality in the free coordinates. Which of
+the many axes is chosen decides everything; so for two compounds that touch the cheapest way out is computed exactly
+(`escape.exits`), and each pair of their parts gets the axis that parts it best there.
 """
 
 from __future__ import annotations
@@ -12,10 +11,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from diorama_core.geometry.planes import in_polygon
 from diorama_core.geometry.sat import Bodies, PairAxes, pair_axes, place_bodies
+from diorama_core.layout.escape import exits, ring
 from diorama_core.layout.feasible.quadratic import HARD, SOFT, least_distance
 from diorama_core.layout.feasible.structure import Structure
 from diorama_core.layout.problem.problem import Problem
@@ -27,31 +27,46 @@ TOUCHING_M = 1e-4
 """Parts nearer than this (or overlapping) count as touching."""
 _REACH_M = 0.02
 """Pairs of parts nearer than this are watched."""
+_SAME_WAY = float(np.cos(np.deg2rad(20.0)))
+"""A way out within this of one that was blocked is not tried again."""
+_RELAXATIONS = 3
+_MAX_AXES = 64
+"""So many axes of a pair of parts are looked at for a way out; fewer axes never part what overlaps."""
+_WORTH = 0.01
+"""Relaxing goes on as long as it saves this share of the move."""
 
 
 @dataclass(eq=False)
 class Program:
-    """The moves that are possible and the rows that bound them, in whitened coordinates y."""
+    """The moves that are possible, what they cost, and the rows that bound them; y are the objects' own coordinates."""
 
     problem: Problem
     structure: Structure
     bodies: Bodies
     J: Float[np.ndarray, "n 3 v"]
     """World move of object i: w_i = J_i @ y."""
+    own: Bool[np.ndarray, "n v"]
+    """Which variables are an object's own coordinates, not its supporters'."""
     rows: Float[np.ndarray, "m v"]
     """Hard rows: rows @ y >= need."""
     need: Float[np.ndarray, " m"]
+    whiten: Float[np.ndarray, "v v"]
+    """y = whiten @ z, where |z|^2 is what a move costs."""
     watched: dict[tuple[int, int], int] = field(default_factory=dict)
     """Part pairs whose axes are known: (a, b) -> running number."""
     blocks: list[PairAxes] = field(default_factory=list)
     chosen: dict[tuple[int, int], tuple[np.ndarray, float]] = field(default_factory=dict)
     """Part pairs that are kept apart: axis and gap at the base positions."""
     tried: dict[tuple[int, int], list[np.ndarray]] = field(default_factory=dict)
-    """Axes that turned out to be blocked."""
+    """Ways out, by pair of objects, that turned out to be blocked."""
 
     def moves(self, y: Float[np.ndarray, " v"]) -> Float[np.ndarray, "n 3"]:
         """World move of every object."""
         return self.J @ y
+
+    def cost(self, y: Float[np.ndarray, "*s v"]) -> Float[np.ndarray, "*s"]:
+        """What moves cost: metres, weighted."""
+        return np.asarray(np.linalg.norm(np.linalg.solve(self.whiten, np.asarray(y).T), axis=0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,33 +80,50 @@ class Separation:
     """Pairs of objects that still overlap."""
 
 
-def build_program(problem: Problem, structure: Structure, weight: Float[np.ndarray, "n 2 2"]) -> Program:
-    """Variables, hard rows and posed parts.
+def build_program(
+    problem: Problem,
+    structure: Structure,
+    weight: Float[np.ndarray, "n 2 2"],
+    seen: Float[np.ndarray, "n 3 3"] | None = None,
+) -> Program:
+    """Variables, their cost, hard rows and posed parts.
 
     Args:
         problem: who may collide with whom.
         structure: the base layout.
-        weight: cost of each object's own two coordinates: r^T weight r.
+        weight: cost of each object's move relative to its supporter, in its own two coordinates: r^T weight r.
+        seen: cost of each object's move in the world: w^T seen w.
     """
     n = problem.count
     moving = [i for i in range(n) if problem.free[i] and np.abs(structure.basis[i]).max() > 0]
     J, own = np.zeros((n, 3, 2 * len(moving))), np.zeros((n, 3, 2 * len(moving)))
-    # r = L^-T y whitens the cost, so the least move is the least |y|.
-    whiten = np.linalg.inv(np.linalg.cholesky(weight)).transpose(0, 2, 1)
+    cost = np.zeros((2 * len(moving), 2 * len(moving)))
     for column, i in enumerate(moving):
-        lever = structure.basis[i] @ whiten[i]
-        J[problem.rides(i), :, 2 * column : 2 * column + 2] = lever
-        own[i, :, 2 * column : 2 * column + 2] = lever
+        mine = slice(2 * column, 2 * column + 2)
+        J[problem.rides(i), :, mine] = structure.basis[i]
+        own[i, :, mine] = structure.basis[i]
+        cost[mine, mine] = weight[i]
+    if seen is not None:
+        cost += np.tensordot(J, np.matmul(seen, J), axes=([0, 1], [0, 1]))
     bodies = place_bodies(problem.packed, structure.R, structure.p, structure.scale)
     bound = -np.einsum("bc,bcv->bv", structure.bound_normal, own[structure.bound_owner])
     wall_rows, wall_need = _wall_rows(problem, structure, bodies, J)
     rows, need = np.vstack([bound, wall_rows]), np.concatenate([-structure.bound_slack, wall_need])
     alive = np.linalg.norm(rows, axis=1) > 1e-9
-    return Program(problem, structure, bodies, J, rows[alive], need[alive])
+    return Program(
+        problem,
+        structure,
+        bodies,
+        J,
+        np.abs(own).max(axis=1, initial=0.0) > 1e-12,
+        rows[alive],
+        need[alive],
+        np.linalg.inv(np.linalg.cholesky(cost)).T,
+    )
 
 
 def _wall_rows(problem: Problem, structure: Structure, bodies: Bodies, J: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Every object stays in front of the walls it could reach.
+    """Every object stays in front of the walls it could reach, as far as those were seen.
 
     Round the corner of a wall that stands into the room an object is behind that wall's plane and rightly so.
     """
@@ -101,6 +133,8 @@ def _wall_rows(problem: Problem, structure: Structure, bodies: Bodies, J: np.nda
     radius = 0.5 * np.linalg.norm(problem.shape_size * structure.scale, axis=1)
     in_room = in_polygon(structure.p[:, :2], problem.floor_outline)
     for w, wall in enumerate(problem.walls if problem.count else ()):
+        if not wall.seen:
+            continue
         surface = plane_surface(wall)
         ahead = structure.p @ wall.normal - wall.offset
         beside = (structure.p @ surface.outward.T - surface.offset).max(axis=1)
@@ -114,14 +148,14 @@ def _wall_rows(problem: Problem, structure: Structure, bodies: Bodies, J: np.nda
 
 
 def separate(program: Program, *, rounds: int, check: Callable[[Float[np.ndarray, " v"], float], None]) -> Separation:
-    """Rounds of choosing axes and solving, until nothing overlaps or the rounds are spent.
+    """Rounds of choosing ways out and solving, until nothing overlaps or the rounds are spent.
 
     Args:
         program: what may move and how.
         rounds: most rounds.
         check: called each round with the moves and the deepest overlap; may raise to cancel.
     """
-    y = least_distance(program.rows, program.need, np.full(len(program.need), HARD))
+    y = base(program)
     best: tuple[float, np.ndarray] = (np.inf, y)
     for _ in range(rounds):
         depth, touching = _touching(program, y)
@@ -130,13 +164,40 @@ def separate(program: Program, *, rounds: int, check: Callable[[Float[np.ndarray
             best = (depth, y)
         if not touching:
             return Separation(y, max(depth, 0.0), ())
-        for pair, axes in touching.items():
-            _choose_axis(program, pair, *axes)
-        y = _solve(program)
+        for i, j in sorted({_owners(program, pair) for pair in touching}):
+            _choose_way(program, y, i, j)
+        y = _solve(program, SOFT)
     depth, _ = _touching(program, y)
     if depth > best[0]:
         depth, y = best
     return Separation(y, *overlaps(program, y))
+
+
+def base(program: Program) -> Float[np.ndarray, " v"]:
+    """The least move that respects the hard rows."""
+    return program.whiten @ least_distance(
+        program.rows @ program.whiten, program.need, np.full(len(program.need), HARD)
+    )
+
+
+def relaxed(program: Program, found: Separation) -> Separation:
+    """The least move in the neighbourhood of one that is free of overlap: as free of it, and never farther.
+
+    Each pair of parts keeps the axis that parts it best where it was found; rows enter when they are violated.
+    """
+    for _ in range(_RELAXATIONS):
+        program.chosen.clear()
+        y = found.y
+        while True:
+            y = base(program) if not program.chosen else _solve(program, HARD)
+            fresh = [pair for pair in _touching(program, y)[1] if pair not in program.chosen]
+            if not fresh:
+                break
+            _keep_apart(program, fresh, found.y)
+        if _touching(program, y)[1] or program.cost(y) > (1.0 - _WORTH) * program.cost(found.y):
+            break
+        found = Separation(y, found.depth_m, found.stuck)
+    return found
 
 
 def overlaps(program: Program, y: Float[np.ndarray, " v"]) -> tuple[float, tuple[tuple[int, int], ...]]:
@@ -149,14 +210,15 @@ def _owners(program: Program, pair: tuple[int, int]) -> tuple[int, int]:
     return int(program.bodies.owner[pair[0]]), int(program.bodies.owner[pair[1]])
 
 
-def _solve(program: Program) -> Float[np.ndarray, " v"]:
+def _solve(program: Program, yielding: float) -> Float[np.ndarray, " v"]:
     owner, J = program.bodies.owner, program.J
     pairs = np.array(list(program.chosen), dtype=int).reshape(-1, 2)
     axes = np.array([axis for axis, _ in program.chosen.values()])
     gaps = np.array([gap for _, gap in program.chosen.values()])
     rows = np.einsum("mc,mcv->mv", axes, J[owner[pairs[:, 0]]] - J[owner[pairs[:, 1]]])
-    compliance = np.concatenate([np.full(len(program.need), HARD), np.full(len(gaps), SOFT)])
-    return least_distance(np.vstack([program.rows, rows]), np.concatenate([program.need, APART_M - gaps]), compliance)
+    compliance = np.concatenate([np.full(len(program.need), HARD), np.full(len(gaps), yielding)])
+    need = np.concatenate([program.need, APART_M - gaps])
+    return program.whiten @ least_distance(np.vstack([program.rows, rows]) @ program.whiten, need, compliance)
 
 
 def _touching(
@@ -201,17 +263,56 @@ def _near_parts(program: Program, w: Float[np.ndarray, "n 3"]) -> list[tuple[int
     return found
 
 
-def _choose_axis(program: Program, pair: tuple[int, int], normals: np.ndarray, gaps: np.ndarray) -> None:
-    """The axis along which the least move parts a pair, leaving out those that turned out blocked."""
-    i, j = _owners(program, pair)
+def _between(program: Program, i: int, j: int, offset: Float[np.ndarray, "3"]) -> list[PairAxes]:
+    """The watched pairs of parts of two objects, with the axes along which they are deepest apart or least deep."""
+    owner = program.bodies.owner
+    found = []
+    for block in program.blocks:
+        rows = np.flatnonzero((owner[block.a] == i) & (owner[block.b] == j))
+        if len(rows):
+            normals, gaps = block.normals[rows], block.gaps[rows]
+            if gaps.shape[1] > _MAX_AXES:
+                best = np.argpartition(-(gaps + normals @ offset), _MAX_AXES, axis=1)[:, :_MAX_AXES]
+                normals = np.take_along_axis(normals, best[..., None], axis=1)
+                gaps = np.take_along_axis(gaps, best, axis=1)
+            found.append(PairAxes(block.a[rows], block.b[rows], normals, gaps))
+    return found
+
+
+def _choose_way(program: Program, y: Float[np.ndarray, " v"], i: int, j: int) -> None:
+    """Rows that part two objects along the direction in which that costs least, counted from where they began."""
     lever = program.J[i] - program.J[j]
-    mobility = np.linalg.norm(normals @ lever, axis=1)
-    effort = np.where(mobility > 1e-3, (APART_M - gaps) / np.maximum(mobility, 1e-3), np.inf)
-    previous = program.chosen.get(pair)
-    if previous is not None:
-        program.tried.setdefault(pair, []).append(previous[0])
-    for axis in program.tried.get(pair, []):
-        effort = np.where(normals @ axis > 0.99, effort + 10.0, effort)
-    best = int(np.argmin(effort))
-    if np.isfinite(effort[best]):
-        program.chosen[pair] = (normals[best], float(gaps[best]))
+    directions = ring(program.structure.R[i], lever)
+    if not len(directions):
+        return
+    now = lever @ y
+    blocks = _between(program, i, j, now)
+    offsets = [np.tile(now, (len(block.a), 1)) for block in blocks]
+    far = exits(blocks, offsets, [np.ones(len(block.a)) for block in blocks], directions, APART_M)
+    known = np.isfinite(far)
+    target = now + np.where(known, far, 0.0)[:, None] * directions
+    effort = np.linalg.norm(target @ np.linalg.pinv(lever @ program.whiten).T, axis=1)
+    for way in program.tried.get((i, j), []):
+        known &= directions @ way < _SAME_WAY
+    if not known.any():
+        return
+    best = int(np.where(known, effort, np.inf).argmin())
+    program.tried.setdefault((i, j), []).append(directions[best])
+    for block in blocks:
+        _set_axes(program, block, np.tile(target[best], (len(block.a), 1)))
+
+
+def _set_axes(program: Program, block: PairAxes, offset: Float[np.ndarray, "m 3"]) -> None:
+    """Each pair's row along the axis that parts it best once a has moved by `offset` relative to b."""
+    axis = block.separations(offset).argmax(axis=1)
+    for k, best in enumerate(axis):
+        program.chosen[int(block.a[k]), int(block.b[k])] = (block.normals[k, best], float(block.gaps[k, best]))
+
+
+def _keep_apart(program: Program, pairs: list[tuple[int, int]], y: Float[np.ndarray, " v"]) -> None:
+    wanted, owner, w = set(pairs), program.bodies.owner, program.moves(y)
+    for block in program.blocks:
+        rows = np.array([k for k in range(len(block.a)) if (int(block.a[k]), int(block.b[k])) in wanted], dtype=int)
+        if len(rows):
+            own = PairAxes(block.a[rows], block.b[rows], block.normals[rows], block.gaps[rows])
+            _set_axes(program, own, w[owner[own.a]] - w[owner[own.b]])

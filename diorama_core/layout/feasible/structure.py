@@ -18,7 +18,8 @@ from diorama_core.geometry.planes import plane_axes
 from diorama_core.layout.feasible.photo_observations import PhotoObservations
 from diorama_core.layout.feasible.quadratic import HARD, least_distance
 from diorama_core.layout.problem.problem import Problem
-from diorama_core.layout.problem.supports import Surface, is_wall_like
+from diorama_core.layout.problem.supports import Surface, box_misfit, is_wall_like
+from diorama_core.scene.types import box_corners
 
 SMALLEST_SHRINK = 0.8
 """An object that does not fit is made smaller by at most this factor; beyond, it stays large and is named."""
@@ -50,6 +51,8 @@ class Structure:
     bound_normal: Float[np.ndarray, "b 3"]
     bound_slack: Float[np.ndarray, " b"]
     """Rows m . (basis_i @ r_i) <= slack: the contact face stays on its surface."""
+    surface: tuple[Surface | None, ...]
+    """Where each object came to rest."""
     reasons: tuple[str, ...]
 
 
@@ -61,6 +64,7 @@ class _Walk:
     p: np.ndarray
     scale: np.ndarray
     basis: np.ndarray
+    surface: list[Surface | None]
     owners: list[int] = field(default_factory=list)
     normals: list[np.ndarray] = field(default_factory=list)
     slacks: list[float] = field(default_factory=list)
@@ -84,13 +88,13 @@ def exact_structure(
         only: indices of the objects to settle; the others keep their poses and cannot move. All free ones when None.
     """
     n = problem.count
-    walk = _Walk(problem.R.copy(), problem.p.copy(), problem.scale.copy(), np.zeros((n, 3, 2)))
+    walk = _Walk(problem.R.copy(), problem.p.copy(), problem.scale.copy(), np.zeros((n, 3, 2)), list(problem.surface))
     against: dict[int, list[tuple[int, np.ndarray]]] = {}
     for i, w, face in problem.adheres:
         against.setdefault(i, []).append((w, face))
     for i in problem.top_down:
         if problem.free[i] and (only is None or i in only):
-            surface = problem.surface[i]
+            walk.surface[i] = surface = _level(problem, walk, i)
             if surface is None:
                 walk.basis[i] = np.eye(3)[:, :2]
             else:
@@ -98,8 +102,17 @@ def exact_structure(
     owners = np.array(walk.owners, dtype=int)
     return Structure(
         walk.R, walk.p, walk.scale, walk.basis, owners,
-        np.array(walk.normals).reshape(-1, 3), np.array(walk.slacks), tuple(walk.reasons),
+        np.array(walk.normals).reshape(-1, 3), np.array(walk.slacks), tuple(walk.surface), tuple(walk.reasons),
     )  # fmt: skip
+
+
+def _level(problem: Problem, walk: _Walk, i: int) -> Surface | None:
+    """Of the places on a supporter as it stands now, the one that agrees best with where the object was observed."""
+    if len(problem.levels[i]) < 2:
+        return problem.surface[i]
+    size = problem.shape_size[i] * problem.scale[i]
+    corners = problem.p[i] + box_corners(size) @ problem.R[i].T
+    return min(problem.levels[i], key=lambda s: box_misfit(corners, size, _posed(walk, problem, i, s)))
 
 
 def _posed(walk: _Walk, problem: Problem, i: int, surface: Surface) -> Surface:

@@ -22,6 +22,7 @@ from diorama_core.layout.problem.supports import (
     complete_edges,
     is_soft,
     is_wall_like,
+    possible_surfaces,
     wall_faces,
 )
 from diorama_core.library.record import ShapeLibrary
@@ -48,12 +49,16 @@ class Problem:
     """Extents at scale 1, metres."""
     firm: Float[np.ndarray, " n"]
     """Share of the extents that does not give way: 1, less for soft things."""
+    certainty: Float[np.ndarray, " n"]
+    """How far the evidence supports each observed pose, 0 to 1."""
     parent: Int[np.ndarray, " n"]
     """Index of the supporting object, or -1."""
     on_plane: tuple[str | None, ...]
     """Id of the supporting plane, where one supports."""
     surface: tuple[Surface | None, ...]
     """Where each object rests; None when nothing holds it."""
+    levels: tuple[tuple[Surface, ...], ...]
+    """Where each object may rest on its supporter; which of these it is depends on where the supporter ends."""
     contact: Float[np.ndarray, "n 3"]
     """Outward normal of the touching face, in the object frame."""
     free: Bool[np.ndarray, " n"]
@@ -136,10 +141,12 @@ def build_problem(
         if edge is not None and edge.parent in index:
             parent[k] = index[edge.parent]
     surfaces: list[Surface | None] = []
+    levels: list[tuple[Surface, ...]] = []
     contacts = np.zeros((len(objects), 3))
     for k, (item, edge) in enumerate(zip(objects, edges)):
         supported_by = shapes[parent[k]] if parent[k] >= 0 else None
         surfaces.append(choose_surface(scene, item, edge, supported_by) if edge is not None else None)
+        levels.append(possible_surfaces(scene, item, edge, supported_by) if edge is not None else ())
         contacts[k] = choose_contact(scene, item, edge, surfaces[-1])
     walls = tuple(sorted(scene.architecture.by_role("wall"), key=lambda w: w.id))
     floor = scene.architecture.floor
@@ -158,9 +165,11 @@ def build_problem(
         scale=np.array([o.pose.scale for o in objects]).reshape(-1, 3),
         shape_size=np.array([o.shape_size_m for o in objects]).reshape(-1, 3),
         firm=firm,
+        certainty=np.array([o.confidence for o in objects]).reshape(-1),
         parent=parent,
         on_plane=on_plane,
         surface=tuple(surfaces),
+        levels=tuple(levels),
         contact=contacts,
         free=free,
         adheres=_adherences(R, p, sizes, edges, surfaces, walls, adherence_m),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -22,6 +22,8 @@ SMALLEST_SHARE = 0.35
 """A supporter narrower than this share of what it should hold cannot be meant."""
 SMALLEST_CLEARANCE = 0.75
 """A place with less than this share of a thing's height above it is chosen only where there is no other."""
+NEAR_SURFACE_M = 0.1
+"""What misses a surface by more does not rest on it."""
 FLAT = 0.7
 """A surface counts as upward when its normal's z is at least this."""
 
@@ -135,18 +137,25 @@ def _box_face(size: tuple[float, float, float], axis: int, sign: float) -> Surfa
 
 
 def choose_surface(scene: Scene, item: SceneObject, edge: Support, supporter: Shape | None) -> Surface:
-    """The surface on which the child of an edge rests."""
+    """The surface on which the child of an edge rests, as observed."""
+    options = possible_surfaces(scene, item, edge, supporter)
+    if len(options) == 1:
+        return options[0]
+    pose = scene.object(edge.parent).pose
+    return min(options, key=lambda s: misfit(item, s.in_world(pose)))
+
+
+def possible_surfaces(scene: Scene, item: SceneObject, edge: Support, supporter: Shape | None) -> tuple[Surface, ...]:
+    """The surfaces on which the child of an edge may rest: several where a supporter has several levels."""
     if supporter is None:
-        return plane_surface(scene.plane(edge.parent))
+        return (plane_surface(scene.plane(edge.parent)),)
     parent = scene.object(edge.parent)
     if edge.relation == "mounted on":
-        return _nearest_side(item, parent)
+        return (_nearest_side(item, parent),)
     options = object_surfaces(supporter, parent)
     if edge.parent_surface is not None and 0 <= edge.parent_surface < len(options):
-        return options[edge.parent_surface]
-    if is_soft(item):
-        return _spread(options)
-    return min(options, key=lambda s: misfit(item, s.in_world(parent.pose)))
+        return (options[edge.parent_surface],)
+    return (_spread(options),) if is_soft(item) else options
 
 
 def _spread(options: Sequence[Surface]) -> Surface:
@@ -170,18 +179,22 @@ def _nearest_side(item: SceneObject, parent: SceneObject) -> Surface:
 
 def misfit(item: SceneObject, surface: Surface) -> float:
     """How badly an object's observed pose agrees with resting on a surface (world): metres, lower is better."""
-    n = surface.normal
-    along = item.corners_world @ n
+    return box_misfit(item.corners_world, item.size_m, surface)
+
+
+def box_misfit(corners: Float[np.ndarray, "8 3"], size: Float[np.ndarray, "3"], surface: Surface) -> float:
+    """The same for a box with these corners (world) and extents."""
+    along = corners @ surface.normal
     low, height = float(along.min()), float(np.ptp(along))
     gap = abs(low - surface.level)
     over = max(height - surface.clearance_m, 0.0)
     squeezed = 1.0 if surface.clearance_m < SMALLEST_CLEARANCE * height else 0.0
-    return gap + outside_m(surface, item.pose.position) + 0.5 * over + squeezed + 0.5 * _too_wide(item, surface)
+    return gap + outside_m(surface, corners.mean(axis=0)) + 0.5 * over + squeezed + 0.5 * _too_wide(size, surface)
 
 
-def _too_wide(item: SceneObject, surface: Surface) -> float:
-    """How much the object's box exceeds the surface in the narrower direction, metres."""
-    widths = sorted(item.size_m)[1:]
+def _too_wide(size: Float[np.ndarray, "3"], surface: Surface) -> float:
+    """How much a box exceeds the surface in the narrower direction, metres."""
+    widths = sorted(size)[1:]
     u, v = plane_axes(surface.normal)
     room = sorted([float(np.ptp(surface.polygon @ u)), float(np.ptp(surface.polygon @ v))])
     return max(min(widths) - room[0], 0.0) + max(max(widths) - room[1], 0.0)
@@ -257,9 +270,9 @@ def complete_edges(
         edge = scene.support_of(item.id)
         if edge is not None and not (scene.has_object(edge.parent) or scene.has_plane(edge.parent)):
             edge = None
-        if edge is not None and _closes_cycle(edges, item.id, edge.parent):
+        if edge is not None and closes_cycle(edges, item.id, edge.parent):
             reasons.append(
-                f"cycle: {item.label} and {_label(scene, edge.parent)} support each other; one edge was left out"
+                f"cycle: {item.label} and {label_of(scene, edge.parent)} support each other; one edge was left out"
             )
             edge = None
         if edge is not None and scene.has_object(edge.parent):
@@ -272,16 +285,18 @@ def complete_edges(
         if edges[item.id] is None:
             edges[item.id] = _most_plausible(scene, item, objects, shapes, edges)
             found = edges[item.id]
-            on = f"taken to rest on {_label(scene, found.parent)}" if found is not None else "left at its height"
+            on = f"taken to rest on {label_of(scene, found.parent)}" if found is not None else "left at its height"
             reasons.append(f"no support edge: {objects[k].label} was {on}")
     return [edges[o.id] for o in objects], tuple(reasons)
 
 
-def _label(scene: Scene, any_id: str) -> str:
+def label_of(scene: Scene, any_id: str) -> str:
+    """What people call an object or a plane."""
     return scene.object(any_id).label if scene.has_object(any_id) else f"the {scene.plane(any_id).role}"
 
 
-def _closes_cycle(edges: dict[str, Support | None], child: str, parent: str) -> bool:
+def closes_cycle(edges: Mapping[str, Support | None], child: str, parent: str) -> bool:
+    """Whether a child would hold up itself if it stood on this parent."""
     above: str | None = parent
     while above is not None:
         if above == child:
@@ -306,22 +321,28 @@ def _most_plausible(
         if plane.role != usual and not (plane.role == "floor" and mount != "ceiling"):
             continue
         edge = Support(item.id, plane.id, "placed on" if plane.role == "floor" else "mounted on")
-        cost = _resting_cost(scene, item, edge, plane_surface(plane))
+        cost = resting_cost(scene, item, edge, plane_surface(plane))
         options.append((cost + (0.0 if plane.role == usual else 0.3), plane.id, edge))
     for other, shape in zip(objects, shapes):
-        if other.id == item.id or mount == "ceiling" or other.pose.position[2] >= item.pose.position[2]:
+        if mount == "ceiling" or closes_cycle(edges, item.id, other.id):
             continue
-        if _closes_cycle(edges, item.id, other.id):
-            continue
-        for surface in object_surfaces(shape, other):
-            world = surface.in_world(other.pose)
-            if outside_m(world, item.pose.position) < 0.1:
-                cost = misfit(item, world) + (0.15 if mount == "surface" else 0.4)
-                options.append((cost, other.id, Support(item.id, other.id)))
+        for world in surfaces_below(item, other, shape):
+            cost = misfit(item, world) + (0.15 if mount == "surface" else 0.4)
+            options.append((cost, other.id, Support(item.id, other.id)))
     return min(options, key=lambda o: o[:2])[2] if options else None
 
 
-def _resting_cost(scene: Scene, item: SceneObject, edge: Support, surface: Surface) -> float:
+def surfaces_below(item: SceneObject, other: SceneObject, shape: Shape) -> list[Surface]:
+    """Surfaces of another object, in the world, that lie below an object's centre."""
+    if other.id == item.id:
+        return []
+    found = (surface.in_world(other.pose) for surface in object_surfaces(shape, other))
+    centre = item.pose.position
+    return [w for w in found if w.level < float(w.normal @ centre) and outside_m(w, centre) < NEAR_SURFACE_M]
+
+
+def resting_cost(scene: Scene, item: SceneObject, edge: Support, surface: Surface) -> float:
+    """Distance in metres of an object's touching face from a surface (world), and by which it misses it."""
     contact = choose_contact(scene, item, edge, surface)
     centre = item.pose.position + item.pose.R_world_object @ (contact * item.size_m / 2)
     return abs(float(surface.normal @ centre) - surface.level) + outside_m(surface, item.pose.position)

@@ -21,8 +21,8 @@ ALIGNED_RAD = float(np.deg2rad(12.0))
 LEVEL_RAD = float(np.deg2rad(8.0))
 MIN_LEVEL_M2 = 0.12
 """Least area of level surface at one height that counts as a floor."""
-FLOOR_HEIGHT_M = (0.35, 3.5)
-"""Camera heights over a floor; nearer level surfaces are tables."""
+FLOOR_HEIGHT_M = (0.35, 30.0)
+"""Camera heights over a floor: nearer level surfaces are tables, and no hall is seen from higher up."""
 BELOW_SHARE = 0.02
 """More than this share of all points clearly below a surface means that it is not the floor."""
 POINT_NOISE_M, DEPTH_NOISE_PER_M = 0.006, 0.003

@@ -64,6 +64,7 @@ class LanguageGraph:
             facing=ballot.facing,
             captions=ballot.captions,
             source=_told(self.settings, usage, len(replies), failed, mended, len(supports), trouble),
+            provisional=bool(trouble) and not replies,
         )
 
     def _replies(self, prompt: str, picture: bytes, progress: Progress) -> tuple[list[GraphReply], Usage, int, str]:

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from diorama_core.perception.camera.frames import frame_difference_rad
 from diorama_core.perception.camera.gravity_depth import frame_from_depth
 from diorama_core.perception.camera.vanishing import prior_frame
+from tests.perception.camera import boxroom
 from tests.perception.camera.boxroom import depth, room_frame, view
 
 TABLE = ((-0.9, 1.1, 0.70), (1.0, 2.2, 0.75))
@@ -39,6 +40,24 @@ def test_larger_surfaces_above_the_floor_are_not_taken_for_it(obstacle: tuple) -
     frame = frame_from_depth(depth(v, boxes=(obstacle,), noise=0.0015), v.intrinsics, prior_frame())
     assert frame is not None
     assert frame.height_m == pytest.approx(1.5, rel=0.02)
+
+
+@pytest.mark.parametrize("height", [5.0, 12.6])
+def test_the_floor_of_a_hall_is_found_from_high_up(height: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(boxroom, "ROOM", ((-14.0, -2.0, 0.0), (16.0, 30.0, 15.0)))
+    v = view(pitch_deg=35, roll_deg=1, heading_deg=12, focal=0.7, height_m=height)
+    crates = tuple(((x, y, 0.0), (x + 1.2, y + 1.0, 1.0)) for x in range(-8, 10, 4) for y in range(8, 24, 5))
+    frame = frame_from_depth(depth(v, boxes=crates, noise=0.0005), v.intrinsics, prior_frame())
+    assert frame is not None
+    assert frame.height_m == pytest.approx(height, rel=0.02)
+    assert degrees_between(frame.R_world_camera[2], room_frame(v)[2]) < 1.0
+
+
+def test_what_is_absurdly_far_below_is_no_floor(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(boxroom, "ROOM", ((-60.0, -10.0, 0.0), (60.0, 110.0, 50.0)))
+    v = view(pitch_deg=35, roll_deg=1, heading_deg=12, focal=0.7, height_m=42.0)
+    frame = frame_from_depth(depth(v, boxes=()), v.intrinsics, prior_frame())
+    assert frame is None or frame.height_m is None
 
 
 def test_a_table_that_hides_the_floor_is_not_taken_for_it() -> None:

@@ -9,7 +9,13 @@ from hypothesis import strategies as st
 
 from diorama_core.artefacts import Cuboid, Inputs, ObjectGeometry, Photo
 from diorama_core.errors import InputError
-from diorama_core.evaluation.substitution import along, geometry_with, heading_change, parse_substitutes, scaled
+from diorama_core.evaluation.benchmarks.substitution import (
+    along,
+    geometry_with,
+    heading_change,
+    parse_substitutes,
+    scaled,
+)
 from diorama_core.scene.types import Camera, Intrinsics, Pose, Scene, SceneObject, Support, yaw_rotation
 from diorama_core.synthesis.layout_rooms import room_box
 from diorama_core.synthesis.truth import TruthView

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diorama_core.evaluation.intervals import Interval, bootstrap_interval
 from diorama_core.evaluation.metrics.pose import Alignment, pooled
 from diorama_core.evaluation.metrics.scene import SceneScores
 from diorama_core.evaluation.reports import paper
+from diorama_core.evaluation.reports.intervals import Interval, bootstrap_interval
 from diorama_core.evaluation.reports.tables import Column, Row, Table, Value, paper_rows
 
 

@@ -25,7 +25,7 @@ from diorama_core.artefacts import (
 )
 from diorama_core.errors import InputError
 from diorama_core.geometry.projection import box_iou
-from diorama_core.pipeline.run import Stages
+from diorama_core.pipeline.stages import Stages
 from diorama_core.progress import Progress
 from diorama_core.protocols import ArchitectureStage, GeometryStage, RetrievalStage
 from diorama_core.scene.types import Plane, SceneObject, Support, yaw_rotation

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from diorama_core.evaluation.intervals import bootstrap_interval
+from diorama_core.evaluation.reports.intervals import bootstrap_interval
 
 
 @settings(max_examples=30, deadline=None)

@@ -1,0 +1,102 @@
+"""A room that contains what was observed in it: the floor reaches under everything that stands on it.
+
+How far a floor or an unseen wall reaches is a guess; where an object stands was observed. So guesses give way to
+objects before any object gives way to them. Walls that were seen stay where they are.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import manifold3d
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.errors import EditRefused
+from diorama_core.geometry.planes import clip_polygon
+from diorama_core.scene.room_edits import move_plane
+from diorama_core.scene.types import Architecture, Plane, Scene, SceneObject
+
+_MARGIN_M = 0.01
+"""Left around what stands on the floor."""
+_MIN_AREA_M2 = 1e-4
+
+
+def containing_room(scene: Scene) -> Scene:
+    """The scene with unseen walls moved behind what stands on the floor, and the floor drawn out under it."""
+    floor = scene.architecture.floor
+    if floor is None:
+        return scene
+    standing = [o for o in scene.objects if (edge := scene.support_of(o.id)) is not None and edge.parent == floor.id]
+    for wall in scene.architecture.by_role("wall"):
+        if not wall.seen:
+            scene = _given_way(scene, wall.id, standing)
+    prints = [_footprint(scene, o) for o in standing]
+    return _with_floor_under(scene, [p for p in prints if len(p) >= 3])
+
+
+def _given_way(scene: Scene, wall_id: str, standing: list[SceneObject]) -> Scene:
+    """The wall behind everything whose middle is in front of it; objects and what is fastened to it stay."""
+    wall = scene.plane(wall_id)
+    deepest = min((_behind(o, wall) for o in standing), default=0.0)
+    if deepest >= 0.0:
+        return scene
+    try:
+        moved = move_plane(scene, wall_id, _MARGIN_M - deepest)
+    except EditRefused:
+        return scene
+    return replace(moved, objects=scene.objects)
+
+
+def _behind(item: SceneObject, wall: Plane) -> float:
+    """Height of an object's hindmost corner before a wall; 0 for objects beside it or behind it."""
+    along = np.cross([0.0, 0.0, 1.0], wall.normal)
+    spread, reach = wall.polygon @ along, float(item.pose.position @ along)
+    if not spread.min() < reach < spread.max() or float(item.pose.position @ wall.normal) < wall.offset:
+        return 0.0
+    return min(float((item.corners_world @ wall.normal).min()) - wall.offset, 0.0)
+
+
+def _footprint(scene: Scene, item: SceneObject) -> Float[np.ndarray, "k 2"]:
+    """What an object covers of the floor before the walls that were seen, counter-clockwise in plan."""
+    half = item.size_m / 2 + _MARGIN_M
+    signs = np.array([[1, 1, -1], [-1, 1, -1], [-1, -1, -1], [1, -1, -1]])
+    corners = item.pose.position + (signs * half) @ item.pose.R_world_object.T
+    polygon = np.column_stack([corners[:, :2], np.zeros(4)])
+    for wall in scene.architecture.by_role("wall"):
+        if wall.seen and _behind(item, wall) < 0.0:
+            level = wall.normal * [1.0, 1.0, 0.0]
+            polygon = clip_polygon(polygon, level, wall.offset)
+    return polygon[:, :2]
+
+
+def _with_floor_under(scene: Scene, prints: list[Float[np.ndarray, "k 2"]]) -> Scene:
+    floor = scene.architecture.floor
+    assert floor is not None
+    here = manifold3d.CrossSection([floor.polygon[:, :2]], manifold3d.FillRule.NonZero)
+    missing = [p for p in prints if (_area(p) - (_section(p) ^ here).area()) > _MIN_AREA_M2]
+    if not missing:
+        return scene
+    union = manifold3d.CrossSection.batch_boolean([here, *map(_section, missing)], manifold3d.OpType.Add)
+    outlines = union.to_polygons()
+    outer = [o for o in outlines if _signed_area(o) > 0]
+    # Footprints away from the floor are reached by the hull of both.
+    outline = outer[0] if len(outer) == 1 else union.hull().to_polygons()[0]
+    height = float(floor.centre[2])
+    polygon = np.column_stack([outline, np.full(len(outline), height)])
+    wide = replace(floor, polygon=polygon)
+    planes = tuple(wide if p.id == floor.id else p for p in scene.architecture.planes)
+    return replace(scene, architecture=Architecture(planes))
+
+
+def _section(polygon: Float[np.ndarray, "k 2"]) -> manifold3d.CrossSection:
+    return manifold3d.CrossSection([polygon], manifold3d.FillRule.NonZero)
+
+
+def _area(polygon: Float[np.ndarray, "k 2"]) -> float:
+    return abs(_signed_area(polygon))
+
+
+def _signed_area(polygon: Float[np.ndarray, "k 2"]) -> float:
+    x, y = polygon[:, 0], polygon[:, 1]
+    return 0.5 * float(x @ np.roll(y, -1) - np.roll(x, -1) @ y)

@@ -1,0 +1,83 @@
+"""How far two compounds of convex parts must go to be apart, exactly, along any one direction."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.geometry.cross import cross
+from diorama_core.geometry.sat import PairAxes
+
+DIRECTIONS = 24
+
+
+def ring(R: Float[np.ndarray, "3 3"], span: Float[np.ndarray, "3 c"]) -> Float[np.ndarray, "d 3"]:
+    """Unit directions in which an object may move, evenly spread from its own axes on.
+
+    They turn with the object, so that a layout does not depend on how the world is turned.
+
+    Args:
+        R: rotation of the object.
+        span: world directions of its coordinates; one or two of them are independent.
+    """
+    left, size, _ = np.linalg.svd(span, full_matrices=False)
+    plane = left[:, size > 1e-6 * max(float(size[0]), 1e-12)]
+    if plane.shape[1] == 0:
+        return np.zeros((0, 3))
+    if plane.shape[1] == 1:
+        return np.stack([plane[:, 0], -plane[:, 0]])
+    flat = plane @ (plane.T @ R)
+    first = flat[:, int(np.linalg.norm(flat, axis=0).argmax() if np.linalg.norm(flat[:, 0]) < 0.5 else 0)]
+    first = first / np.linalg.norm(first)
+    second = cross(cross(plane[:, 0], plane[:, 1]), first)
+    angles = np.arange(DIRECTIONS) * (2 * np.pi / DIRECTIONS)
+    return np.outer(np.cos(angles), first) + np.outer(np.sin(angles), second)
+
+
+def exits(
+    blocks: Sequence[PairAxes],
+    offsets: Sequence[Float[np.ndarray, "m 3"]],
+    signs: Sequence[Float[np.ndarray, " m"]],
+    directions: Float[np.ndarray, "d 3"],
+    apart_m: float,
+) -> Float[np.ndarray, " d"]:
+    """Least distance to go along each direction until every pair of parts is apart.
+
+    A convex pair overlaps for one interval of the distance; what is sought is the end of the intervals that follow on
+    one another from 0.
+
+    Args:
+        blocks: the pairs' separating axes.
+        offsets: how far a has already moved relative to b, a block.
+        signs: 1 where a is what goes, -1 where b is.
+        directions: unit.
+        apart_m: separation asked for.
+    """
+    lows, highs = [np.zeros((0, len(directions)))], [np.zeros((0, len(directions)))]
+    for block, offset, sign in zip(blocks, offsets, signs, strict=True):
+        missing = apart_m - block.separations(offset)
+        slope = (block.normals @ directions.T) * sign[:, None, None]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            meets = missing[..., None] / slope
+        steep = np.abs(slope) > 1e-9
+        always = ~steep & (missing <= 0)[..., None]
+        highs.append(np.where(steep & (slope > 0), meets, np.inf).min(axis=1))
+        low = np.where(steep & (slope < 0), meets, -np.inf).max(axis=1)
+        lows.append(np.where(always.any(axis=1), np.inf, low))
+    low, high = np.concatenate(lows), np.concatenate(highs)
+    return np.array([_first_gap(low[:, k], high[:, k]) for k in range(len(directions))])
+
+
+def _first_gap(low: Float[np.ndarray, " m"], high: Float[np.ndarray, " m"]) -> float:
+    """The least t >= 0 that is inside none of the open intervals."""
+    ahead = (low < high) & (high > 0)
+    low, high = low[ahead], high[ahead]
+    order = np.argsort(low)
+    t = 0.0
+    for begin, end in zip(low[order], high[order]):
+        if begin >= t:
+            break
+        t = max(t, float(end))
+    return t

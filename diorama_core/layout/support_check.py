@@ -1,0 +1,138 @@
+"""The support graph against what was measured: edges that the observed gap contradicts, and what is there instead.
+
+A graph says what is likely; the observed poses say how far an object is from what should hold it up or stand behind
+it. Where that gap is larger than the observation's noise explains and another supporter fits, the edge is changed;
+where an object does not stand against its wall, it need not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from diorama_core.layout.noise import ObservationNoise
+from diorama_core.layout.problem.supports import (
+    choose_surface,
+    closes_cycle,
+    holds,
+    label_of,
+    misfit,
+    outside_m,
+    plane_surface,
+    resting_cost,
+    surfaces_below,
+)
+from diorama_core.library import taxonomy
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.scene import edits
+from diorama_core.scene.frames import UP_WORLD
+from diorama_core.scene.types import Scene, SceneObject, Support
+
+CLEARLY = 0.5
+"""Another supporter is taken only where its gap is at most this share of the contradicted one."""
+WALL_FACTOR = 2.0
+"""Things that belong on walls stay on theirs up to so many times the tolerance: the wall may be wrong as well."""
+UNUSUAL_M = 0.3
+"""Things that people put on surfaces hang on a wall only where nothing is below them: this is added to their gap."""
+
+
+def checked_supports(scene: Scene, library: ShapeLibrary, noise: ObservationNoise) -> tuple[Scene, tuple[str, ...]]:
+    """The scene with the edges that agree with the observed poses, and what was changed.
+
+    Args:
+        scene: as observed, before any layout.
+        library: where shapes come from.
+        noise: of the observed positions.
+    """
+    reasons = []
+    for item in scene.objects:
+        edge = scene.support_of(item.id)
+        if edge is None:
+            continue
+        better = _better(scene, library, item, edge, noise)
+        if better is not None:
+            reasons.append(
+                f"support changed: {item.label} is {100 * _gap(scene, library, item, edge):.0f} cm from "
+                f"{label_of(scene, edge.parent)} and rests on {label_of(scene, better.parent)}"
+            )
+            scene = edits.attach(scene, better)
+        elif (walls := _touched(scene, item, edge, noise)) != edge.adheres_to:
+            scene = edits.attach(scene, replace(edge, adheres_to=walls))
+    return scene, tuple(reasons)
+
+
+def _better(
+    scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support, noise: ObservationNoise
+) -> Support | None:
+    """The supporter that is there, where the measured gap contradicts the edge; None where it may stay.
+
+    What lies on the same supporter right under the object is there, too: a tray under a bottle.
+    """
+    gap = _gap(scene, library, item, edge)
+    contradicted = gap > _tolerance(scene, item, edge, noise)
+    options = []
+    for other in _candidates(scene, library, item):
+        if other.parent == edge.parent or closes_cycle({s.child: s for s in scene.supports}, item.id, other.parent):
+            continue
+        cost, limit = _gap(scene, library, item, other), _tolerance(scene, item, other, noise)
+        beneath = scene.support_of(other.parent)
+        between = beneath is not None and beneath.parent == edge.parent and _is_thin(scene, other.parent, limit)
+        if cost <= (min(CLEARLY * gap, limit) if contradicted else limit * between):
+            options.append((cost, other.parent, other))
+    return min(options, key=lambda option: option[:2])[2] if options else None
+
+
+def _is_thin(scene: Scene, object_id: str, limit_m: float) -> bool:
+    return float(np.ptp(scene.object(object_id).corners_world @ UP_WORLD)) <= limit_m
+
+
+def _candidates(scene: Scene, library: ShapeLibrary, item: SceneObject) -> list[Support]:
+    """What holds things of this kind: walls what hangs, the floor furniture, surfaces the rest."""
+    mount = taxonomy.resolve(item.category).category.mount
+    roles = {"wall": ("wall", "floor") if item.category == "door" else ("wall",), "ceiling": ("ceiling",)}
+    usual = roles.get(mount, ("floor",))
+    found = [
+        Support(item.id, plane.id, "placed on" if plane.role == "floor" else "mounted on")
+        for plane in scene.architecture.planes
+        if plane.role in usual
+    ]
+    if mount == "surface":
+        for other in scene.objects:
+            edge, shape = Support(item.id, other.id), library.shape(other.shape_id)
+            if surfaces_below(item, other, shape) and holds(item, edge, other, shape):
+                found.append(edge)
+    return found
+
+
+def _gap(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support) -> float:
+    """How badly the observed pose agrees with an edge, metres."""
+    if scene.has_plane(edge.parent):
+        plane = scene.plane(edge.parent)
+        unusual = plane.role == "wall" and taxonomy.resolve(item.category).category.mount == "surface"
+        # How far the floor reaches is a guess where it was not seen; how high it is, is not.
+        beside = outside_m(plane_surface(plane), item.pose.position) if plane.role == "floor" else 0.0
+        return resting_cost(scene, item, edge, plane_surface(plane)) - beside + UNUSUAL_M * unusual
+    parent = scene.object(edge.parent)
+    surface = choose_surface(scene, item, edge, library.shape(parent.shape_id))
+    world = surface.in_world(parent.pose)
+    return resting_cost(scene, item, edge, world) if edge.relation == "mounted on" else misfit(item, world)
+
+
+def _tolerance(scene: Scene, item: SceneObject, edge: Support, noise: ObservationNoise) -> float:
+    up = scene.plane(edge.parent).normal if scene.has_plane(edge.parent) else UP_WORLD
+    hangs = taxonomy.resolve(item.category).category.mount == "wall" and edge.relation == "mounted on"
+    return noise.tolerance_m(scene.camera, item.pose.position, up) * (WALL_FACTOR if hangs else 1.0)
+
+
+def _touched(scene: Scene, item: SceneObject, edge: Support, noise: ObservationNoise) -> tuple[str, ...]:
+    """The walls of an edge that the object stands against as far as was measured."""
+    retained = []
+    for wall_id in edge.adheres_to:
+        if not scene.has_plane(wall_id):
+            continue
+        wall = scene.plane(wall_id)
+        gap = abs(float((item.corners_world @ wall.normal).min()) - wall.offset)
+        if gap <= noise.tolerance_m(scene.camera, item.pose.position, wall.normal):
+            retained.append(wall_id)
+    return tuple(retained)

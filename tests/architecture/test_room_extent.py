@@ -1,0 +1,66 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from diorama_core.architecture.room_extent import containing_room
+from diorama_core.evaluation.metrics.scene import out_of_bounds_share
+from diorama_core.layout.feasible.recipe import FeasibleRecipe
+from diorama_core.progress import Progress
+from diorama_core.scene.types import Architecture, Plane, Scene
+from diorama_core.synthesis.layout_rooms import box_library
+from tests.layout.feasible.test_photo_observations import looking_north
+from tests.layout.small_rooms import Room
+
+LIBRARY = box_library()
+
+
+def sliver(confidence: float = 0.95) -> Architecture:
+    """A bedroom of which one wall and a strip of floor before it were found."""
+    floor = np.array([[-1.0, 1.6, 0], [1.0, 1.6, 0], [1.0, 2.5, 0], [-1.0, 2.5, 0]], dtype=float)
+    wall = np.array([[-1.0, 2.5, 0], [1.0, 2.5, 0], [1.0, 2.5, 2.5], [-1.0, 2.5, 2.5]])
+    return Architecture((Plane("floor", "floor", floor), Plane("wall_1", "wall", wall, confidence=confidence)))
+
+
+def test_a_bed_on_a_sliver_of_floor_stays_where_it_was_seen() -> None:
+    room = Room(LIBRARY)
+    bed = room.put("sofa_9", (-0.9, 0.2, 0.43))
+    box = room.put("box_24", (2.0, -1.0, 0.15))
+    scene = containing_room(room.scene(architecture=sliver(), camera=looking_north(5.0)))
+    settled = FeasibleRecipe(LIBRARY).optimise(scene, Progress())[0]
+    for name in (bed, box):
+        assert np.linalg.norm(settled.object(name).pose.position - scene.object(name).pose.position) < 0.03
+    assert out_of_bounds_share(settled) == 0.0
+
+
+def test_an_assumed_wall_gives_way_and_a_seen_one_does_not() -> None:
+    room = Room(LIBRARY)
+    box = room.put("box_24", (0.0, 2.4, 0.15))
+    for confidence, moves in ((0.15, False), (0.95, True)):
+        scene = containing_room(room.scene(architecture=sliver(confidence), camera=looking_north(5.0)))
+        settled = FeasibleRecipe(LIBRARY).optimise(scene, Progress())[0]
+        moved = np.linalg.norm(settled.object(box).pose.position - scene.object(box).pose.position) > 0.03
+        assert moved == moves
+        behind = float((settled.object(box).corners_world @ scene.plane("wall_1").normal).min())
+        assert behind >= scene.plane("wall_1").offset - 1e-6
+
+
+def test_a_room_that_contains_everything_is_left_alone() -> None:
+    room = Room(LIBRARY)
+    room.put("box_24", (0.0, 2.0, 0.15))
+    scene = room.scene(camera=looking_north(5.0))
+    assert containing_room(scene) is scene
+    assert containing_room(Scene()) == Scene()
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.lists(st.tuples(st.floats(-3, 3), st.floats(-4, 2), st.floats(-3, 3)), min_size=1, max_size=6))
+def test_the_floor_reaches_under_everything(places: list[tuple[float, float, float]]) -> None:
+    room = Room(LIBRARY)
+    for x, y, yaw in places:
+        room.put("box_24", (x, y, 0.15), yaw=yaw)
+    scene = room.scene(architecture=replace(sliver(), planes=sliver().planes[:1]))
+    assert out_of_bounds_share(containing_room(scene)) == 0.0

@@ -1,0 +1,51 @@
+from __future__ import annotations
+
+import numpy as np
+
+from diorama_core.layout.feasible.recipe import FeasibleRecipe
+from diorama_core.layout.noise import MEASURED, REASONED
+from diorama_core.layout.support_check import checked_supports
+from diorama_core.progress import Progress
+from diorama_core.synthesis.layout_rooms import room_box
+from tests.layout.feasible.test_photo_observations import LIBRARY, looking_north
+from tests.layout.small_rooms import Room
+
+
+def test_a_cup_on_a_cabinet_is_not_mounted_on_the_wall_behind(room: Room) -> None:
+    cabinet = room.put("cabinet_10", (0.0, 2.25, 0.4), yaw=-np.pi / 2)
+    top = room.objects[0].size_m[2]
+    cup = room.put("cup_21", (0.0, 2.25, top + 0.05), on="wall_2", relation="mounted on")
+    scene = room.scene(camera=looking_north())
+    checked, reasons = checked_supports(scene, LIBRARY, MEASURED)
+    assert checked.support_of(cup).parent == cabinet
+    assert checked.support_of(cabinet) == scene.support_of(cabinet)
+    assert len(reasons) == 1
+    assert "cup" in reasons[0]
+    settled = FeasibleRecipe(LIBRARY).optimise(checked, Progress())[0]
+    assert np.linalg.norm(settled.object(cup).pose.position - scene.object(cup).pose.position) < 0.02
+
+
+def test_an_edge_within_the_noise_stays(room: Room) -> None:
+    table = room.put("table_0", (0.0, 0.0, 0.37))
+    room.put("cup_21", (0.0, 0.1, 0.82), on=table)
+    scene = room.scene(camera=looking_north())
+    assert checked_supports(scene, LIBRARY, MEASURED) == (scene, ())
+
+
+def test_a_contradicted_edge_stays_where_nothing_else_fits(room: Room) -> None:
+    picture = room.put("picture_13", (0.0, 1.7, 1.5), on="wall_2", relation="mounted on", yaw=-np.pi / 2)
+    scene = room.scene(camera=looking_north())
+    assert checked_supports(scene, LIBRARY, MEASURED)[0].support_of(picture).parent == "wall_2"
+
+
+def test_a_measured_gap_to_a_wall_is_no_adherence(room: Room) -> None:
+    shelf = room.put("bookshelf_6", (0.0, 2.15, 0.9), yaw=-np.pi / 2, adheres_to=("wall_2",))
+    scene = room.scene(camera=looking_north(6.0))
+    assert checked_supports(scene, LIBRARY, MEASURED)[0].support_of(shelf).adheres_to == ()
+    assert checked_supports(scene, LIBRARY, REASONED)[0].support_of(shelf).adheres_to == ("wall_2",)
+
+
+def test_without_a_camera_and_without_edges_nothing_breaks(room: Room) -> None:
+    room.put("cup_21", (0.0, 0.1, 0.82), on=None)
+    scene = room.scene(architecture=room_box(6.0, 5.0))
+    assert checked_supports(scene, LIBRARY, MEASURED) == (scene, ())
