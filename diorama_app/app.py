@@ -41,7 +41,8 @@ from diorama_app.panels.unsaved import UnsavedChanges
 from diorama_app.panels.walls import Walls
 from diorama_app.projects.example import example_project
 from diorama_app.reconstruction.photo_outlines import PhotoOutlines
-from diorama_app.session.client import Client, Panel
+from diorama_app.session.client import Client
+from diorama_app.session.connected_client import Panel
 from diorama_app.session.preferences import Preferences, remembered
 from diorama_app.session.session import EditorSession
 from diorama_app.viewport.client_view import set_theme
@@ -67,7 +68,7 @@ class Editor:
     ) -> None:
         self.server = server
         library = UserLibrary(library)
-        self.session = EditorSession(server, library, projects_dir, low_graphics=low_graphics)
+        self.session = EditorSession(server, library, projects_dir, Client, low_graphics=low_graphics)
         self.session.viewport.light(low_graphics=low_graphics)
         self.views = Views(self.session)
         self._collisions = Collisions(library)
@@ -87,7 +88,7 @@ class Editor:
 
     def _asked(self, command: Command, client_id: int | None) -> None:
         client = None if client_id is None else self.session.clients.get(client_id)
-        if client is not None:
+        if isinstance(client, Client):
             client.post(lambda: command.run(client))
 
     def _hand(self, event: Any, act: Callable[[Gestures], None]) -> None:
@@ -133,7 +134,7 @@ class Editor:
     def refuse_upload(self, client_id: int, line: str) -> None:
         """Tell a person why a file was not taken. May be called from any thread."""
         self.session.ui_thread.post(
-            lambda: self.session.notice(client_id, line, "bad"), viser_client=client_id, key="upload refused"
+            lambda: self.session.notice(client_id, line, "bad"), client_id=client_id, key="upload refused"
         )
 
     def close(self) -> None:
@@ -199,7 +200,7 @@ class Editor:
 
         def take() -> None:
             client = self.session.clients.get(viser_client.client_id)
-            if client is not None and client.preferences == Preferences() != retained:
+            if isinstance(client, Client) and client.preferences == Preferences() != retained:
                 client.take_preferences(retained)
 
         self.session.ui_thread.post(take)

@@ -66,7 +66,7 @@ while True:
 """
 UPLOADS = """
 import sys
-from diorama_app.reconstruction.reading import Upload, read_packed
+from diorama_app.session.reading import Upload, read_packed
 from diorama_core.io.limited import LimitedProcess
 from tests.io.test_bombs import png
 process, data = LimitedProcess(), png(3000, 2000, 8, 2, 3)

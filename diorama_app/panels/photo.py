@@ -18,10 +18,10 @@ from diorama_app.panels.fields import enable, on_change, on_press, show_if, show
 from diorama_app.reconstruction import build_job as work
 from diorama_app.reconstruction.networks import NO_DETECTOR
 from diorama_app.reconstruction.object_correction import add_from_photo
-from diorama_app.reconstruction.reading import Upload
 from diorama_app.reconstruction.text_to_scene import describe_room, how_pictures_come
 from diorama_app.session.client import Client
 from diorama_app.session.draft import Draft, boxes_json, can_find_furniture
+from diorama_app.session.reading import Upload
 from diorama_app.viewport.scene_view import reduced
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_app.web.viser_adapter import component_uuid

@@ -9,31 +9,22 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any
 
 import viser
 
+from diorama_app.session.connected_client import Panel
 from diorama_app.session.preferences import Preferences, remember
+from diorama_app.session.session import EditorSession
 from diorama_app.viewport.client_view import ClientView, NoticeKind
 from diorama_app.viewport.decorations import Decorations
 from diorama_core.errors import DioramaError, EditRefused
 from diorama_core.scene.types import Camera, Scene, SceneObject
 
-if TYPE_CHECKING:
-    from diorama_app.session.session import EditorSession
-
 log = logging.getLogger(__name__)
 
 COLOURS = ((38, 150, 96), (160, 80, 200), (20, 130, 190), (200, 60, 110), (150, 120, 20), (90, 100, 120))
 """Of the others' cursors; one's own selection is orange."""
-
-
-class Panel(Protocol):
-    """A part of the page that shows something of the room."""
-
-    def refresh(self) -> None:
-        """Draw what differs from what is drawn."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -55,15 +46,15 @@ Doing = Placing | Measuring | None
 
 
 class Client:
-    """Used from the desk's thread only, except where a method says otherwise."""
+    """Implements `ConnectedClient`. Used from the desk's thread only, except where a method says otherwise."""
 
     def __init__(self, session: EditorSession, viser_client: viser.ClientHandle, number: int) -> None:
         self.session = session
         self.viser_client = viser_client
-        self.id = viser_client.client_id
-        self.name = f"Guest {number}"
-        self.colour = COLOURS[(number - 1) % len(COLOURS)]
-        self.view = ClientView(viser_client)
+        self.id: int = viser_client.client_id
+        self.name: str = f"Guest {number}"
+        self.colour: tuple[int, int, int] = COLOURS[(number - 1) % len(COLOURS)]
+        self.view: ClientView = ClientView(viser_client)
         self.marks = Decorations(viser_client)
         self.selection: tuple[str, ...] = ()
         self.preferences = Preferences()

@@ -8,13 +8,13 @@ other people's edits take their turn.
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 from diorama_app.session.ui_thread import UiThread
 
 if TYPE_CHECKING:
-    from diorama_app.session.client import Client
+    from diorama_app.session.connected_client import ConnectedClient
 
 EVERY_S = 0.1
 """Between two redraws of one browser."""
@@ -25,17 +25,18 @@ SHARE = 0.4
 class Redraws:
     """Used from the desk's thread only."""
 
-    def __init__(self, ui_thread: UiThread) -> None:
-        self._desk = ui_thread
+    def __init__(self, ui_thread: UiThread, is_connected: Callable[[int], bool]) -> None:
+        self._ui_thread = ui_thread
+        self._is_connected = is_connected
         self._drawn_at: dict[int, float] = {}
         self._took_s = 0.0
         """What a redraw takes, a running mean."""
 
-    def ask(self, clients: Iterable[Client], first: Client | None = None) -> None:
+    def ask(self, clients: Iterable[ConnectedClient], first: ConnectedClient | None = None) -> None:
         """Draw these browsers' panels soon.
 
         Args:
-            guests: whose panels are out of date.
+            clients: whose panels are out of date.
             first: whoever caused it: drawn at once unless that was done just now.
         """
         all_of_them = list(clients)
@@ -48,15 +49,15 @@ class Redraws:
             if due_s <= 0 and (client is first or len(all_of_them) == 1):
                 self._draw(client)
             else:
-                self._desk.post(
+                self._ui_thread.post(
                     lambda client=client: self._draw(client),  # type: ignore[misc]
                     key="redraw",
-                    viser_client=("redraw", client.id),
+                    client_id=("redraw", client.id),
                     after_s=max(0.0, due_s),
                 )
 
-    def _draw(self, client: Client) -> None:
-        if client.id not in client.session.clients:
+    def _draw(self, client: ConnectedClient) -> None:
+        if not self._is_connected(client.id):
             return  # went away meanwhile
         began = time.monotonic()
         client.refresh()

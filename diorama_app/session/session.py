@@ -12,19 +12,20 @@ import time
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import viser
 from jaxtyping import UInt8
 
-from diorama_app.reconstruction.reading import Reader
 from diorama_app.session.autosave import Autosave
-from diorama_app.session.client import Client
+from diorama_app.session.connected_client import ConnectedClient
 from diorama_app.session.document import Document
 from diorama_app.session.draft import Draft
 from diorama_app.session.jobs import Jobs, JobStatus, Outcome
 from diorama_app.session.layout_run import LayoutRun
 from diorama_app.session.problem_checker import Checker, Problems
+from diorama_app.session.reading import Reader
 from diorama_app.session.redraws import Redraws
 from diorama_app.session.shape_preparation import Preparer
 from diorama_app.session.ui_thread import UiThread
@@ -51,13 +52,23 @@ MESH_OVERLAP_S = 0.45
 """How long an old mesh stays while the browser parses its successor."""
 
 
+MakeClient = Callable[["EditorSession", viser.ClientHandle, int], ConnectedClient]
+
+
 class EditorSession:
     """The open project and everyone in it."""
 
     def __init__(
-        self, server: viser.ViserServer, library: ShapeLibrary, projects_dir: Path, *, low_graphics: bool = False
+        self,
+        server: viser.ViserServer,
+        library: ShapeLibrary,
+        projects_dir: Path,
+        make_client: MakeClient,
+        *,
+        low_graphics: bool = False,
     ) -> None:
         self.server = server
+        self._make_client = make_client
         self.library: ShapeLibrary = library
         self.projects_dir = projects_dir
         self.low_graphics = low_graphics
@@ -70,10 +81,10 @@ class EditorSession:
         self.notes: tuple[str, ...] = ()
         """What the pipeline had to say of how the scene was made."""
         self.textures: Mapping[str, UInt8[np.ndarray, "h w 3"]] = {}
-        self.clients: dict[int, Client] = {}
+        self.clients: dict[int, ConnectedClient] = {}
         self.badges: Problems = {}
         """What is wrong with objects just now, in a word or two each."""
-        self.on_client: Callable[[Client], None] | None = None
+        self.on_client: Callable[[Any], None] | None = None
         """Lays out the page of somebody who came."""
         self._clients_so_far = 0
         self.clip: Clip | None = None
@@ -84,7 +95,7 @@ class EditorSession:
         """The last optimisation, as the panels show it."""
         self._job_told_at = 0.0
         self.ui_thread = UiThread(lambda message: self.notice_all(message, "bad"))
-        self.redraws = Redraws(self.ui_thread)
+        self.redraws = Redraws(self.ui_thread, lambda client_id: client_id in self.clients)
         self.jobs = Jobs(self._job_changed, self._job_ended)
         self.autosave = Autosave(on_error=lambda line: self._saver_says(line, "bad"), on_saved=self._saver_says)
         self._lock: ProjectLock | None = None
@@ -97,7 +108,7 @@ class EditorSession:
         self.records = ShapeRecords(library)
         self.thumbnails = Thumbnails(library, self.records)
         self.viewport = Viewport(server, self.shapes, pick=self._picked, drag=self._dragged, later=self._later)
-        self.on_photo_camera: Callable[[Client], None] | None = None
+        self.on_photo_camera: Callable[[Any], None] | None = None
         self.on_pick: Callable[[str, viser.SceneNodePointerEvent], None] | None = None
         self.on_drag: Callable[[str, viser.SceneNodeDragEvent], None] | None = None
 
@@ -113,7 +124,7 @@ class EditorSession:
         label: str,
         change: Callable[[Scene], Scene],
         *,
-        by: Client | None = None,
+        by: ConnectedClient | None = None,
         selection: Iterable[str] | None = None,
         merge_key: str | None = None,
         inputs: Inputs | None = None,
@@ -164,7 +175,7 @@ class EditorSession:
         label: str,
         scene: Scene,
         *,
-        by: Client | None = None,
+        by: ConnectedClient | None = None,
         selection: Iterable[str] | None = None,
         merge_key: str | None = None,
         inputs: Inputs | None = None,
@@ -185,25 +196,25 @@ class EditorSession:
         if self.read_only:
             raise EditRefused(self.read_only)
 
-    def undo(self, by: Client) -> None:
+    def undo(self, by: ConnectedClient) -> None:
         """Take back the last change, whoever made it."""
         self.need_writable()
         undone = self.document.undo()
         self._time_travelled(by, f"Undone: {undone.label}", self.document.history.current.selection)
 
-    def redo(self, by: Client) -> None:
+    def redo(self, by: ConnectedClient) -> None:
         """Do again what was undone."""
         self.need_writable()
         done = self.document.redo()
         self._time_travelled(by, f"Done again: {done.label}", done.selection)
 
-    def _time_travelled(self, by: Client, message: str, selection: tuple[str, ...]) -> None:
+    def _time_travelled(self, by: ConnectedClient, message: str, selection: tuple[str, ...]) -> None:
         by.selection = selection or by.selection
         for client in self.clients.values():
             client.to_say = (message, False)
         self.changed(by)
 
-    def changed(self, by: Client | None = None) -> None:
+    def changed(self, by: ConnectedClient | None = None) -> None:
         """The document changed: save and show it. Nothing that is shown can keep it from being saved."""
         if self.project is not None:
             self.autosave.save_soon(self.project, self.scene)
@@ -233,7 +244,7 @@ class EditorSession:
         """Show poses that are not (yet) part of the document."""
         self.viewport.preview(poses)
 
-    def refresh(self, by: Client | None = None) -> None:
+    def refresh(self, by: ConnectedClient | None = None) -> None:
         """Bring every browser in line with the document: the scene at once, panels as often as can be followed.
 
         Args:
@@ -246,11 +257,11 @@ class EditorSession:
             self._draw("the photo's camera", partial(self._show_photo_camera, client))
         self.refresh_panels(by)
 
-    def refresh_panels(self, by: Client | None = None) -> None:
+    def refresh_panels(self, by: ConnectedClient | None = None) -> None:
         """Redraw the panels only."""
         self.redraws.ask(self.clients.values(), first=by)
 
-    def refresh_cursors(self, by: Client | None = None) -> None:
+    def refresh_cursors(self, by: ConnectedClient | None = None) -> None:
         """Redraw what everyone sees of the others' selections."""
         self.redraws.ask(self.clients.values(), first=by)
 
@@ -341,7 +352,7 @@ class EditorSession:
     def joined(self, viser_client: viser.ClientHandle) -> None:
         """A browser connected (or reloaded): the shared scene is replayed to it by the server, its panels are made."""
         self._clients_so_far += 1
-        client = self.clients[viser_client.client_id] = Client(self, viser_client, self._clients_so_far)
+        client = self.clients[viser_client.client_id] = self._make_client(self, viser_client, self._clients_so_far)
         with viser_client.atomic():
             if self.on_client is not None:
                 self.on_client(client)
@@ -367,7 +378,7 @@ class EditorSession:
     def post(self, client_id: int | None, task: Callable[[], None], *, key: str | None = None) -> None:
         """Do `task` on the desk for one browser, which is told when it fails. May be called from any thread."""
         self.ui_thread.post(
-            task, key=key, viser_client=client_id, on_error=lambda message: self.notice(client_id, message, "bad")
+            task, key=key, client_id=client_id, on_error=lambda message: self.notice(client_id, message, "bad")
         )
 
     def close(self) -> None:
@@ -383,7 +394,7 @@ class EditorSession:
         self.reader.close()
         self.thumbnails.stop()
 
-    def _show_photo_camera(self, client: Client) -> None:
+    def _show_photo_camera(self, client: ConnectedClient) -> None:
         photo = None if self.photo is None else self.photo.rgb
 
         def through_it() -> None:

@@ -30,7 +30,7 @@ OnError = Callable[[str], None]
 class _Posted:
     task: Task
     on_error: OnError
-    viser_client: Hashable | None
+    client_id: Hashable | None
     key: str | None
 
 
@@ -62,7 +62,7 @@ class UiThread:
         *,
         key: str | None = None,
         on_error: OnError | None = None,
-        viser_client: Hashable | None = None,
+        client_id: Hashable | None = None,
         after_s: float = 0.0,
     ) -> None:
         """Do `task` soon, after those posted before for the same browser.
@@ -74,17 +74,17 @@ class UiThread:
             client: whose turn it takes; the server's own when None.
             after_s: how long it waits at least.
         """
-        posted = _Posted(task, on_error or self._on_error, viser_client, key)
+        posted = _Posted(task, on_error or self._on_error, client_id, key)
         with self._changed:
-            waiting = None if key is None else self._keyed.get((viser_client, key))
+            waiting = None if key is None else self._keyed.get((client_id, key))
             if waiting is not None:
                 waiting.task, waiting.on_error = task, posted.on_error
                 return
-            if viser_client is not None and len(self._queues.get(viser_client, ())) >= MAX_WAITING:
+            if client_id is not None and len(self._queues.get(client_id, ())) >= MAX_WAITING:
                 self._refuse(posted)
                 return
             if key is not None:
-                self._keyed[(viser_client, key)] = posted
+                self._keyed[(client_id, key)] = posted
             if after_s > 0:
                 self._number += 1
                 heapq.heappush(self._delayed, _Delayed(time.monotonic() + after_s, self._number, posted))
@@ -92,13 +92,13 @@ class UiThread:
                 self._enqueue(posted)
             self._changed.notify_all()
 
-    def forget(self, viser_client: Hashable) -> None:
+    def forget(self, client_id: Hashable) -> None:
         """Drop what waits for a browser that went away."""
         with self._changed:
-            self._queues.pop(viser_client, None)
-            self._delayed = [d for d in self._delayed if d.posted.viser_client != viser_client]
+            self._queues.pop(client_id, None)
+            self._delayed = [d for d in self._delayed if d.posted.client_id != client_id]
             heapq.heapify(self._delayed)
-            for key in [k for k in self._keyed if k[0] == viser_client]:
+            for key in [k for k in self._keyed if k[0] == client_id]:
                 del self._keyed[key]
             self._changed.notify_all()
 
@@ -124,10 +124,10 @@ class UiThread:
             self._thread.join(timeout=5.0)
 
     def _enqueue(self, posted: _Posted) -> None:
-        self._queues.setdefault(posted.viser_client, deque()).append(posted)
+        self._queues.setdefault(posted.client_id, deque()).append(posted)
 
     def _refuse(self, posted: _Posted) -> None:
-        key, told = (None, f"refused {posted.viser_client!r}"), posted.on_error
+        key, told = (None, f"refused {posted.client_id!r}"), posted.on_error
         if key in self._keyed:
             return
         message = f"the server is busy with your last {MAX_WAITING} actions; what came after them was left out"
@@ -143,18 +143,18 @@ class UiThread:
                 now = time.monotonic()
                 while self._delayed and (self._delayed[0].due <= now or self._stopping):
                     self._enqueue(heapq.heappop(self._delayed).posted)
-                viser_client = next((c for c, q in self._queues.items() if q), self)
-                if viser_client is not self:
+                client_id = next((c for c, q in self._queues.items() if q), self)
+                if client_id is not self:
                     break
                 self._queues.clear()
                 self._changed.notify_all()
                 if self._stopping:
                     return None
                 self._changed.wait(self._delayed[0].due - now if self._delayed else None)
-            posted = self._queues[viser_client].popleft()
-            self._queues.move_to_end(viser_client)
+            posted = self._queues[client_id].popleft()
+            self._queues.move_to_end(client_id)
             if posted.key is not None:
-                self._keyed.pop((posted.viser_client, posted.key), None)
+                self._keyed.pop((posted.client_id, posted.key), None)
             self._busy = True
             return posted
 

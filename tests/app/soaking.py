@@ -10,6 +10,7 @@ import numpy as np
 from diorama_app.commands import edit as editing
 from diorama_app.commands import swap as swapping
 from diorama_app.commands.insert import insert_shape
+from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_app.web.viser_adapter import Visitors, create_server, last_message_arrived, stop_server
 from diorama_core.editing import aligning as arranging
@@ -29,7 +30,7 @@ class Soak:
 
     def __init__(self, folder: Path, seed: int) -> None:
         self.server = create_server(host="127.0.0.1", port=0, label="soak", visitors=Visitors("127.0.0.1"))
-        self.session = EditorSession(self.server, PlainLibrary(), folder / "projects")
+        self.session = EditorSession(self.server, PlainLibrary(), folder / "projects", Client)
         self.session.open_project(make_project(folder / "projects" / "demo"))
         self.client = join(self.session)
         self.rng = np.random.default_rng(seed)

@@ -47,7 +47,7 @@ def inputs() -> Inputs:
 @pytest.fixture
 def client(tmp_path: Path) -> Iterator[Client]:
     server = create_server(host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1"))
-    session = EditorSession(server, PlainLibrary(), tmp_path / "projects")
+    session = EditorSession(server, PlainLibrary(), tmp_path / "projects", Client)
     session.open_project(make_project(tmp_path / "projects" / "demo"))
     yield join(session)
     session.close()

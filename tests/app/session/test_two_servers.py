@@ -9,6 +9,7 @@ import pytest
 
 from diorama_app.commands.edit import rename
 from diorama_app.reconstruction import build_job as work
+from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
 from diorama_core.errors import DioramaError, EditRefused
@@ -27,7 +28,7 @@ def new_room(tmp_path: Path) -> Iterator[NewRoom]:
 
     def begin() -> EditorSession:
         server = create_server(host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1"))
-        made.append(EditorSession(server, PlainLibrary(), tmp_path / "projects"))
+        made.append(EditorSession(server, PlainLibrary(), tmp_path / "projects", Client))
         return made[-1]
 
     yield begin

@@ -40,7 +40,7 @@ def blocked(ui_thread: UiThread) -> threading.Event:
 def test_tasks_of_one_browser_run_in_order(ui_thread: UiThread) -> None:
     done: list[int] = []
     for i in range(50):
-        ui_thread.post(lambda i=i: done.append(i), viser_client=1)  # type: ignore[misc]
+        ui_thread.post(lambda i=i: done.append(i), client_id=1)  # type: ignore[misc]
     assert ui_thread.wait()
     assert done == list(range(50))
 
@@ -48,8 +48,8 @@ def test_tasks_of_one_browser_run_in_order(ui_thread: UiThread) -> None:
 def test_a_flood_of_one_delays_the_others_by_one_task_and_is_bounded(ui_thread: UiThread, told: list[str]) -> None:
     go, order, mine = blocked(ui_thread), [], []
     for _ in range(10_000):
-        ui_thread.post(lambda: order.append("flood"), viser_client=1, on_error=mine.append)
-    ui_thread.post(lambda: order.append("edit"), viser_client=2)
+        ui_thread.post(lambda: order.append("flood"), client_id=1, on_error=mine.append)
+    ui_thread.post(lambda: order.append("edit"), client_id=2)
     assert ui_thread.waiting <= MAX_WAITING + 2
     go.set()
     assert ui_thread.wait()
@@ -62,9 +62,9 @@ def test_a_flood_of_one_delays_the_others_by_one_task_and_is_bounded(ui_thread: 
 def test_what_a_departed_browser_asked_for_is_dropped(ui_thread: UiThread) -> None:
     go, done = blocked(ui_thread), []
     for _ in range(20):
-        ui_thread.post(lambda: done.append("gone"), viser_client=1)
-    ui_thread.post(lambda: done.append("gone"), viser_client=1, key="redraw", after_s=0.05)
-    ui_thread.post(lambda: done.append("here"), viser_client=2)
+        ui_thread.post(lambda: done.append("gone"), client_id=1)
+    ui_thread.post(lambda: done.append("gone"), client_id=1, key="redraw", after_s=0.05)
+    ui_thread.post(lambda: done.append("here"), client_id=2)
     ui_thread.forget(1)
     go.set()
     assert ui_thread.wait()
@@ -74,8 +74,8 @@ def test_what_a_departed_browser_asked_for_is_dropped(ui_thread: UiThread) -> No
 def test_a_newer_task_of_the_same_key_replaces_the_one_that_waits(ui_thread: UiThread) -> None:
     go, done = blocked(ui_thread), []
     for i in range(200):
-        ui_thread.post(lambda i=i: done.append(i), key="drag", viser_client=1)  # type: ignore[misc]
-    ui_thread.post(lambda: done.append(-1), key="drag", viser_client=2)
+        ui_thread.post(lambda i=i: done.append(i), key="drag", client_id=1)  # type: ignore[misc]
+    ui_thread.post(lambda: done.append(-1), key="drag", client_id=2)
     go.set()
     assert ui_thread.wait()
     assert done == [199, -1]

@@ -1,0 +1,51 @@
+"""What a session needs of a browser that is connected to it; `Client` has it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol, runtime_checkable
+
+from diorama_app.viewport.client_view import ClientView, NoticeKind
+
+
+@runtime_checkable
+class Panel(Protocol):
+    """A part of the page that shows something of the scene."""
+
+    def refresh(self) -> None:
+        """Draw what differs from what is drawn."""
+        ...
+
+
+@runtime_checkable
+class ConnectedClient(Protocol):
+    """One browser, as the session sees it."""
+
+    id: int
+    name: str
+    colour: tuple[int, int, int]
+    view: ClientView
+    selection: tuple[str, ...]
+    doing: Any
+    job_panel: Panel | None
+    curves: Panel | None
+    """What is redrawn while a layout is optimised."""
+    to_say: tuple[str, bool] | None
+    """A line for the foot of the view, and whether it offers undo."""
+    toast: Callable[[str, bool], None]
+
+    def drop_missing(self) -> None:
+        """Forget selected objects that are gone."""
+        ...
+
+    def refresh(self) -> None:
+        """Bring this browser's marks and panels in line with the document."""
+        ...
+
+    def notice(self, message: str, kind: NoticeKind = "info") -> None:
+        """Tell the person something."""
+        ...
+
+    def post(self, task: Callable[[], None], *, key: str | None = None) -> None:
+        """Do `task` on the UI thread; the person is told when it fails. May be called from any thread."""
+        ...
