@@ -109,23 +109,25 @@ def set_yaw(client: Client, object_id: str, yaw_deg: float) -> None:
     turn = np.radians(yaw_deg) - item.pose.yaw_rad
     if abs(np.arctan2(np.sin(turn), np.cos(turn))) < 1e-4:
         return
-    _turn(client, item, float(turn))
+    _turn(client, (object_id,), float(turn))
 
 
 def turn_selected(client: Client, by_deg: float) -> None:
-    """Turn what is selected about world up, each about itself."""
-    for object_id in client.need_selection():
-        _turn(client, client.session.scene.object(object_id), np.radians(by_deg))
+    """Turn what is selected about world up, each about itself, as one step."""
+    _turn(client, client.need_selection(), float(np.radians(by_deg)))
 
 
-def _turn(client: Client, item: SceneObject, turn_rad: float) -> None:
-    pose = replace(item.pose, R_world_object=yaw_rotation(turn_rad) @ item.pose.R_world_object)
-    client.session.edit(
-        f"turn {item.label}",
-        lambda s: edits.move(s, item.id, pose),
-        by=client,
-        merge_key=f"{NUDGE_MERGE} {item.id} yaw",
-    )
+def _turn(client: Client, ids: tuple[str, ...], turn_rad: float) -> None:
+    def turned(scene: Scene) -> Scene:
+        for object_id in ids:
+            pose = scene.object(object_id).pose
+            scene = edits.move(
+                scene, object_id, replace(pose, R_world_object=yaw_rotation(turn_rad) @ pose.R_world_object)
+            )
+        return scene
+
+    label = f"turn {names_of(client.session.scene, ids)}"
+    client.session.edit(label, turned, by=client, merge_key=f"{NUDGE_MERGE} {' '.join(ids)} yaw")
 
 
 def set_size(client: Client, object_id: str, size_m: Float[np.ndarray, "3"]) -> None:

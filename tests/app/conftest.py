@@ -1,0 +1,61 @@
+"""An open project on a real server, and somebody at it without a browser."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import viser
+
+from diorama_app.commands.camera_presets import Views
+from diorama_app.commands.definitions import build_commands
+from diorama_app.commands.registry import CommandTable
+from diorama_app.reconstruction.photo_outlines import PhotoOutlines
+from diorama_app.session import autosave
+from diorama_app.session.client import Client
+from diorama_app.session.session import EditorSession
+from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
+from tests.app.page import Page
+from tests.app.people import join
+from tests.app.small_room import PlainLibrary, make_project
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[viser.ViserServer]:
+    """One for all tests of a module: starting and stopping takes half a second."""
+    made = create_server(host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1"))
+    yield made
+    stop_server(made)
+
+
+@pytest.fixture
+def session(server: viser.ViserServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[EditorSession]:
+    monkeypatch.setattr(autosave, "SETTLE_S", 0.01)
+    made = EditorSession(server, PlainLibrary(), tmp_path / "projects")
+    made.checker.look_at = lambda scene: None  # type: ignore[method-assign]  # its thread would post to the desk
+    made.open_project(make_project(tmp_path / "projects" / "demo"))
+    yield made
+    made.close()
+    server.scene.reset()
+    server.gui.reset()
+
+
+@pytest.fixture
+def client(session: EditorSession) -> Client:
+    return join(session)
+
+
+@pytest.fixture
+def page(session: EditorSession, client: Client) -> Page:
+    return Page(session.server.gui, client)
+
+
+@pytest.fixture
+def views(session: EditorSession) -> Views:
+    return Views(session)
+
+
+@pytest.fixture
+def commands(session: EditorSession, views: Views) -> CommandTable:
+    return build_commands(session, views, PhotoOutlines(session), lambda client: False, lambda client: None)

@@ -1,0 +1,316 @@
+"""The mouse in the 3D view, on a real server: every gesture arrives as viser's event and ends as an edit."""
+
+from __future__ import annotations
+
+import asyncio
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from diorama_app.commands import edit as editing
+from diorama_app.interaction.gestures import NODE, Gestures
+from diorama_app.session.client import Client, Measuring, Placing
+from diorama_app.session.session import EditorSession
+from diorama_core.editing.collisions import Collisions
+from diorama_core.geometry.rotations import quaternion_wxyz
+from diorama_core.scene.types import Pose, yaw_rotation
+
+
+@pytest.fixture
+def gestures(session: EditorSession, client: Client) -> Gestures:
+    made = Gestures(client, Collisions(session.library))
+    client.panels = [made]
+    # As a person works who wants neither grid nor bumps: what the hand says is what happens.
+    client.change_preferences(snap=False, slide=False)
+    return made
+
+
+def settle(session: EditorSession) -> None:
+    assert session.ui_thread.wait(20.0)
+
+
+def pick(gestures: Gestures, object_id: str, modifier: str | None = None, at=(0.5, 0.5)) -> None:
+    gestures.picked(object_id, SimpleNamespace(screen_pos=at, modifier=modifier))  # type: ignore[arg-type]
+
+
+def drag(session: EditorSession, gestures: Gestures, object_id: str, by: tuple, *, phases=("update", "end"), alt=False):
+    """Take an object at its middle and carry it by some metres, as the eye sees it."""
+    grabbed = session.scene.object(object_id).pose.position
+    for phase in ("start", *phases):
+        hand = grabbed if phase == "start" else grabbed + np.array(by)
+        event = SimpleNamespace(
+            phase=phase, modifier="alt" if alt else None, start_position=tuple(grabbed), end_position=tuple(hand)
+        )
+        gestures.dragged(object_id, event)  # type: ignore[arg-type]
+        settle(session)
+
+
+def shown_at(session: EditorSession, object_id: str) -> np.ndarray:
+    """Where the page draws an object."""
+    return np.array(node(session, session.viewport.node_name(object_id)).position)
+
+
+def node(session: EditorSession, name: str | None):
+    return session.server.scene._handle_from_node_name.get(name)
+
+
+def gizmo(session: EditorSession):
+    return node(session, NODE)
+
+
+def turn(session: EditorSession, gestures: Gestures, phase: str, pose: Pose) -> None:
+    """Move the gizmo as the browser does."""
+    handle = gizmo(session)
+    target = SimpleNamespace(wxyz=quaternion_wxyz(pose.R_world_object), position=pose.position)
+    for callback in list(handle._impl_aux.update_cb):
+        asyncio.run(callback(SimpleNamespace(target=target, phase=phase, client_id=0)))
+    settle(session)
+
+
+# -- pointing ---------------------------------------------------------------------------------------------------
+
+
+def test_a_click_selects_and_a_modified_one_adds_or_takes_away(session, client, gestures) -> None:
+    pick(gestures, "chair_1")
+    settle(session)
+    assert client.selection == ("chair_1",)
+    pick(gestures, "lamp_1", "shift")
+    settle(session)
+    assert client.selection == ("chair_1", "lamp_1")
+    pick(gestures, "chair_1", "cmd/ctrl")
+    settle(session)
+    assert client.selection == ("lamp_1",)
+    pick(gestures, "chair_2")
+    settle(session)
+    assert client.selection == ("chair_2",)
+
+
+def test_a_click_beside_selects_nothing_but_the_echo_of_an_objects_own_click_does_not(
+    session, client, gestures
+) -> None:
+    pick(gestures, "chair_1", at=(0.4, 0.6))
+    settle(session)
+    gestures._clicked(np.zeros(3), np.array([0.0, 1.0, 0.0]), on_object=True)
+    assert client.selection == ("chair_1",)
+    gestures._clicked(np.zeros(3), np.array([0.0, 1.0, 0.0]), on_object=False)
+    assert client.selection == ()
+
+
+def test_while_a_place_is_asked_for_a_click_puts_the_shape_there(session, client, gestures) -> None:
+    before = len(session.scene.objects)
+    client.doing = Placing("chair_c")
+    pick(gestures, "table_1")
+    settle(session)
+    assert client.selection == ()
+    eye = np.array([-1.2, 0.5, 2.0])
+    gestures._clicked(eye, np.array([0.0, 0.0, -1.0]), on_object=False)
+    assert len(session.scene.objects) == before + 1
+    new = session.scene.objects[-1]
+    assert new.shape_id == "chair_c"
+    np.testing.assert_allclose(new.pose.position[:2], eye[:2], atol=0.05)
+    assert new.corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-6)
+    assert client.doing is None
+
+
+def test_while_measuring_clicks_are_ends_of_the_tape(session, client, gestures) -> None:
+    client.doing = Measuring()
+    gestures._clicked(np.array([-1.0, 0.5, 2.0]), np.array([0.0, 0.0, -1.0]), on_object=False)
+    gestures._clicked(np.array([-1.0, 0.9, 2.0]), np.array([0.0, 0.0, -1.0]), on_object=False)
+    assert isinstance(client.doing, Measuring)
+    a, b = np.array(client.doing.points)
+    np.testing.assert_allclose(b - a, [0.0, 0.4, 0.0], atol=1e-6)
+
+
+def test_a_frame_adds_what_it_takes_in(session, client, gestures) -> None:
+    camera, eyes = session.scene.camera, client.viser_client.camera
+    eyes.wxyz, eyes.position = quaternion_wxyz(camera.T_world_camera[:3, :3]), camera.position
+    client.select(["picture_1"])
+    gestures._framed((0.0, 0.0), (1.0, 1.0))
+    everything = set(client.selection)
+    client.select(["picture_1"])
+    gestures._framed((0.0, 0.0), (0.001, 0.001))
+    assert client.selection == ("picture_1",)
+    assert everything > {"picture_1"}
+
+
+def test_while_boxes_are_drawn_the_view_means_nothing(session, client, gestures) -> None:
+    client.select(["chair_1"])
+    client.view.open_board(session.photo.rgb, lambda box: None)
+    gestures._framed((0.0, 0.0), (1.0, 1.0))
+    gestures._clicked(np.zeros(3), np.array([0.0, 1.0, 0.0]), on_object=False)
+    drag(session, gestures, "chair_2", (0.3, 0.0, 0.0))
+    assert client.selection == ("chair_1",)
+    assert session.scene.object("chair_2").pose.position[0] == 1.2
+
+
+# -- dragging ---------------------------------------------------------------------------------------------------
+
+
+def test_a_drag_is_seen_while_it_lasts_and_one_step_when_it_ends(session, client, gestures) -> None:
+    start, steps = session.scene, len(session.document.history.entries)
+    drag(session, gestures, "chair_1", (0.2, -0.1, 0.0), phases=("update",))
+    assert session.scene is start
+    assert client.selection == ("chair_1",)
+    assert gizmo(session) is None
+    seen = shown_at(session, "chair_1")
+    assert np.linalg.norm(seen - start.object("chair_1").pose.position) > 0.1
+    grabbed = start.object("chair_1").pose.position
+    end = SimpleNamespace(phase="end", modifier=None, start_position=tuple(grabbed), end_position=tuple(grabbed))
+    gestures.dragged("chair_1", end)
+    settle(session)
+    after = session.scene.object("chair_1")
+    np.testing.assert_allclose(after.pose.position, seen, atol=1e-6)
+    assert after.corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-6)
+    assert len(session.document.history.entries) == steps + 1
+    assert session.document.history.current.label == "move chair"
+    session.undo(client)
+    assert session.scene == start
+
+
+def test_what_stands_on_it_goes_along(session, client, gestures) -> None:
+    before = {i: session.scene.object(i).pose.position for i in ("table_1", "lamp_1")}
+    drag(session, gestures, "table_1", (-0.3, 0.1, 0.0))
+    moved = {i: session.scene.object(i).pose.position - p for i, p in before.items()}
+    assert np.linalg.norm(moved["table_1"]) > 0.1
+    np.testing.assert_allclose(moved["lamp_1"], moved["table_1"], atol=1e-9)
+
+
+def test_selected_things_go_along_with_the_one_dragged(session, client, gestures) -> None:
+    client.select(["chair_2", "chair_1"])
+    before = {i: session.scene.object(i).pose.position for i in ("chair_1", "chair_2")}
+    drag(session, gestures, "chair_1", (0.1, 0.1, 0.0))
+    assert client.selection == ("chair_2", "chair_1")
+    moved = [session.scene.object(i).pose.position - p for i, p in before.items()]
+    np.testing.assert_allclose(moved[0], moved[1], atol=1e-9)
+    assert np.linalg.norm(moved[0]) > 0.05
+
+
+def test_a_thing_lifted_onto_a_table_stands_on_it(session, client, gestures) -> None:
+    drag(session, gestures, "lamp_1", (-1.4, -0.6, 0.0))
+    assert session.scene.support_of("lamp_1").parent == "floor"
+    table = session.scene.object("table_1").pose.position
+    drag(
+        session,
+        gestures,
+        "lamp_1",
+        tuple(table + np.array([0.0, 0.0, 0.595]) - session.scene.object("lamp_1").pose.position),
+    )
+    assert session.scene.support_of("lamp_1").parent == "table_1"
+
+
+def test_a_drag_that_comes_back_is_no_step(session, client, gestures) -> None:
+    steps = len(session.document.history.entries)
+    drag(session, gestures, "chair_1", (0.0, 0.0, 0.0), phases=("end",))
+    assert len(session.document.history.entries) == steps
+    assert gizmo(session) is not None
+
+
+def test_snapping_keeps_to_the_grid_and_alt_inverts_it(session, client, gestures) -> None:
+    client.change_preferences(snap=True)
+    drag(session, gestures, "chair_1", (0.113, 0.037, 0.0))
+    on_grid = session.scene.object("chair_1").pose.position[:2] / 0.05
+    np.testing.assert_allclose(on_grid, on_grid.round(), atol=1e-6)
+    drag(session, gestures, "chair_1", (0.113, 0.037, 0.0), alt=True)
+    off_grid = session.scene.object("chair_1").pose.position[:2] / 0.05
+    assert np.abs(off_grid - off_grid.round()).max() > 0.05
+
+
+def test_what_collides_is_marked_until_the_drag_ends(session, client, gestures) -> None:
+    to_the_table = session.scene.object("table_1").pose.position - session.scene.object("chair_1").pose.position
+    drag(session, gestures, "chair_1", (*to_the_table[:2], 0.0), phases=("update",))
+    assert client.marks._colliding >= {"chair_1", "table_1"}
+    assert gestures.cancel()
+    assert client.marks._colliding == frozenset()
+
+
+def test_esc_puts_everything_back(session, client, gestures) -> None:
+    start = session.scene
+    drag(session, gestures, "chair_1", (0.5, 0.0, 0.0), phases=("update",))
+    assert gestures.cancel()
+    np.testing.assert_allclose(shown_at(session, "chair_1"), start.object("chair_1").pose.position)
+    drag_end = SimpleNamespace(phase="end", modifier=None, start_position=(0, 0, 0), end_position=(0, 0, 0))
+    gestures.dragged("chair_1", drag_end)
+    settle(session)
+    assert session.scene is start
+    assert not gestures.cancel()
+
+
+def test_a_locked_thing_is_not_dragged_and_says_why(session, client, gestures) -> None:
+    editing.set_locked(client, ["chair_1"], True)
+    drag(session, gestures, "chair_1", (0.5, 0.0, 0.0))
+    assert session.scene.object("chair_1").pose.position[0] == -0.9
+    assert any("locked" in told for told in client.viser_client.told)
+
+
+def test_a_drag_ends_on_the_scene_as_it_is_by_then(session, client, gestures) -> None:
+    drag(session, gestures, "chair_1", (0.2, 0.0, 0.0), phases=("update",))
+    editing.rename(client, "lamp_1", "a lamp renamed meanwhile")
+    grabbed = tuple(session.scene.object("chair_1").pose.position)
+    end = SimpleNamespace(phase="end", modifier=None, start_position=grabbed, end_position=grabbed)
+    gestures.dragged("chair_1", end)
+    settle(session)
+    assert session.scene.object("lamp_1").label == "a lamp renamed meanwhile"
+    assert session.scene.object("chair_1").pose.position[0] != -0.9
+
+
+# -- the gizmo --------------------------------------------------------------------------------------------------
+
+
+def test_the_gizmo_is_where_the_selected_thing_is_if_it_can_be_moved(session, client, gestures) -> None:
+    assert gizmo(session) is None
+    client.select(["table_1"])
+    np.testing.assert_allclose(gizmo(session).position, session.scene.object("table_1").pose.position)
+    client.select(["chair_1"])
+    np.testing.assert_allclose(gizmo(session).position, session.scene.object("chair_1").pose.position)
+    editing.set_locked(client, ["chair_1"], True)
+    assert gizmo(session) is None
+    client.select(["chair_2"])
+    client.change_preferences(gizmo="size")
+    assert gizmo(session) is None
+    assert node(session, "/size/front") is not None
+    client.change_preferences(gizmo="free")
+    assert gizmo(session) is not None
+    assert node(session, "/size/front") is None
+
+
+def test_the_gizmo_moves_and_turns_in_one_step(session, client, gestures) -> None:
+    client.select(["chair_1"])
+    start, steps = session.scene.object("chair_1").pose, len(session.document.history.entries)
+    there = Pose(yaw_rotation(1.0), start.position + np.array([0.1, 0.2, 0.0]), start.scale)
+    turn(session, gestures, "start", start)
+    turn(session, gestures, "update", there)
+    np.testing.assert_allclose(shown_at(session, "chair_1"), there.position, atol=1e-9)
+    assert session.scene.object("chair_1").pose == start
+    turn(session, gestures, "end", there)
+    np.testing.assert_allclose(session.scene.object("chair_1").pose.R_world_object, there.R_world_object, atol=1e-9)
+    np.testing.assert_allclose(session.scene.object("chair_1").pose.position, there.position)
+    assert len(session.document.history.entries) == steps + 1
+
+
+def test_the_gizmo_snaps_to_steps_of_the_turn(session, client, gestures) -> None:
+    client.change_preferences(snap=True)
+    client.select(["chair_1"])
+    start = session.scene.object("chair_1").pose
+    there = Pose(yaw_rotation(start.yaw_rad + np.deg2rad(28.0)), start.position, start.scale)
+    turn(session, gestures, "start", start)
+    turn(session, gestures, "end", there)
+    # Headings are steps of 15 degrees of the world: 50.9 becomes 45.
+    assert np.rad2deg(session.scene.object("chair_1").pose.yaw_rad) == pytest.approx(45.0)
+
+
+def test_a_gizmo_that_comes_back_or_loses_its_object_changes_nothing(session, client, gestures) -> None:
+    client.select(["chair_1"])
+    start, steps = session.scene.object("chair_1").pose, len(session.document.history.entries)
+    turn(session, gestures, "start", start)
+    turn(session, gestures, "end", start)
+    assert len(session.document.history.entries) == steps
+    handle = gizmo(session)
+    turn(session, gestures, "start", start)
+    editing.delete_selected(client)
+    target = SimpleNamespace(wxyz=quaternion_wxyz(start.R_world_object), position=start.position + 1.0)
+    for callback in list(handle._impl_aux.update_cb):
+        asyncio.run(callback(SimpleNamespace(target=target, phase="end", client_id=0)))
+    settle(session)
+    assert not session.scene.has_object("chair_1")
+    assert len(session.document.history.entries) == steps + 1

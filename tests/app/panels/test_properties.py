@@ -1,0 +1,102 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diorama_app.commands import edit as editing
+from diorama_app.panels.properties import Properties
+from diorama_core.scene.types import Scene
+from tests.app.page import Page
+
+
+@pytest.fixture
+def panel(page: Page, client, commands) -> Properties:
+    made = Properties(page, client, commands)
+    client.panels = [made]
+    made.refresh()
+    return made
+
+
+def chair(session):
+    return session.scene.object("chair_1")
+
+
+def test_without_a_selection_the_panel_says_what_to_do(session, client, page, panel) -> None:
+    assert "Click an object" in page.html
+    assert not page.field("Name").visible
+    session.document.open(Scene())
+    session.refresh()
+    assert "The room is empty" in page.html
+
+
+def test_fields_show_the_selected_thing(session, client, page, panel) -> None:
+    client.select(["chair_2"])
+    item = session.scene.object("chair_2")
+    assert page.field("Name").value == item.label
+    assert page.field("Size (m)").value == pytest.approx((0.52, 0.55, 0.8))
+    assert page.field("Place (m)").value == pytest.approx((1.2, 1.4, 0.0))
+    assert page.field("Turn (°)").value == pytest.approx(np.degrees(2.6), abs=0.05)
+    assert "chair &lt;b&gt;by the window&lt;/b&gt;" in page.html
+
+
+def test_what_is_written_becomes_an_edit(session, client, page, panel) -> None:
+    client.select(["chair_1"])
+    page.write("Name", "throne")
+    page.write("Turn (°)", 90.0)
+    page.write("Size (m)", (0.6, 0.7, 1.0))
+    page.write("Place (m)", (-1.0, 1.0, 0.0))
+    page.write("Colour", (255, 0, 51))
+    item = chair(session)
+    assert item.label == "throne"
+    assert np.degrees(item.pose.yaw_rad) == pytest.approx(90.0)
+    np.testing.assert_allclose(item.size_m, [0.7, 0.6, 1.0])
+    np.testing.assert_allclose(editing.base_position(item), [-1.0, 1.0, 0.0], atol=1e-9)
+    assert item.colour == pytest.approx((1.0, 0.0, 0.2))
+    page.act("own")
+    assert chair(session).colour is None
+
+
+def test_lengths_are_written_in_the_persons_unit(session, client, page, panel) -> None:
+    client.select(["chair_1"])
+    page.write("Unit", "cm")
+    assert page.field("Size (cm)").value == pytest.approx((46.0, 50.0, 86.0))
+    page.write("Size (cm)", (50.0, 50.0, 100.0))
+    np.testing.assert_allclose(chair(session).size_m, [0.5, 0.5, 1.0])
+    page.write("Unit", "ft-in")
+    assert not page.field("Size (cm)").visible
+    page.write("Size (ft)", "2', 2', 3")
+    np.testing.assert_allclose(chair(session).size_m[:2], 0.6096)
+    before = session.scene
+    page.write("Size (ft)", "2', 2',")
+    assert session.scene is before, "still being typed"
+
+
+def test_finishes_are_put_on_and_taken_off(session, client, page, panel) -> None:
+    client.select(["chair_1", "chair_2"])
+    page.act("finish", "gloss")
+    assert {o.finish for o in session.scene.objects if o.category == "chair"} == {"gloss"}
+    page.act("finish", "")
+    assert chair(session).finish is None
+
+
+def test_several_things_are_aligned_and_three_distributed(session, client, page, panel) -> None:
+    client.select(["chair_1", "chair_2"])
+    assert "and 1 more" in page.html
+    assert page.shows("run", "align_left")
+    assert not page.shows("run", "distribute")
+    client.select(["chair_1", "chair_2", "table_1"])
+    assert page.shows("run", "distribute")
+    page.act("run", "align_front")
+    near = [session.scene.object(i).corners_world[:, 1].min() for i in client.selection]
+    np.testing.assert_allclose(near, near[0], atol=1e-9)
+
+
+def test_a_refused_value_is_said_and_the_field_goes_back(session, client, page, panel) -> None:
+    client.select(["chair_1"])
+    editing.set_locked(client, ["chair_1"], True)
+    before = session.scene
+    page.write("Turn (°)", 10.0)
+    assert session.scene is before
+    assert any("locked" in told for told in client.viser_client.told)
+    assert page.field("Turn (°)").value == pytest.approx(np.degrees(0.4), abs=0.05)
+    assert " · locked" in page.html

@@ -1,0 +1,86 @@
+from __future__ import annotations
+
+import html
+from types import SimpleNamespace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from diorama_app.web.html import Action, LiveHtml, button, run_once, text
+from tests.app.page import Page
+
+
+@given(st.text(max_size=60))
+def test_escaped_text_comes_back_and_opens_no_tag(value: str) -> None:
+    escaped = text(value)
+    assert html.unescape(escaped) == value or "&" in value
+    assert not set(escaped) & set("<>\"'")
+
+
+def test_a_button_says_what_it_does_and_escapes_its_argument() -> None:
+    drawn = button("&#8630; Undo", "run", 'a"b<c', title="It's", on=True)
+    assert 'data-do="run" data-arg="a&quot;b&lt;c"' in drawn
+    assert 'title="It&#x27;s"' in drawn
+    assert 'class="on"' in drawn
+    assert ">&#8630; Undo</button>" in drawn
+    assert " disabled>" in button("x", "y", disabled=True)
+
+
+@pytest.mark.parametrize(
+    ("arg", "pair"),
+    [('["a", "b"]', ("a", "b")), ("[1, 2]", ("1", "2")), ("a", ("", "")), ("[1]", ("", "")), ("3", ("", ""))],
+)
+def test_two_words_in_one_argument(arg: str, pair: tuple[str, str]) -> None:
+    assert Action("change", arg, False).pair == pair
+
+
+def test_html_is_redrawn_only_when_it_differs(page: Page) -> None:
+    live = LiveHtml(page)
+    handle = page.made[-1][2]
+    assert not handle.visible
+    live.show("<b>100%</b>")
+    first = handle.content
+    assert live.body in first
+    handle.content = "touched"
+    live.show("<b>100%</b>")
+    assert handle.content == "touched"
+    live.show("<b>100%</b>", again=True)
+    assert handle.content == first
+    live.show("")
+    assert not handle.visible
+
+
+def test_clicks_arrive_and_what_others_write_is_ignored(page: Page) -> None:
+    told: list[Action] = []
+    live = LiveHtml(page, told.append)
+    live.show(button("Go", "run", "there"))
+    page.act("run", "there")
+    assert told == [Action("run", "there", False)]
+    hidden = next(h for kind, label, h in page.made if label == "·")
+    for junk in ("", "hello", "[1]", '{"do": "x"}', "null"):
+        hidden.value = junk
+        page._told(hidden)
+    assert len(told) == 1
+    hidden.value = '{"do": "run", "arg": "there", "add": false}'
+    for callback in hidden._impl.update_cb:
+        with pytest.raises(StopIteration):
+            callback(SimpleNamespace(client_id=None, target=hidden)).send(None)
+    assert len(told) == 1, "the program's own writing is no click"
+
+
+def test_floating_html_starts_over_each_time(page: Page) -> None:
+    live = LiveHtml(page, floating="dio-x")
+    handle = page.made[-1][2]
+    live.show("<i>said</i>", again=True)
+    first = handle.content
+    live.show("<i>said</i>", again=True)
+    assert handle.content != first
+    assert 'data-float="dio-x"' in handle.content
+    live.show("")
+    assert 'data-empty="1"' in handle.content
+
+
+def test_a_script_runs_when_it_is_drawn() -> None:
+    drawn = run_once('const a = "x";\n  go(a);')
+    assert 'onerror="const a = &quot;x&quot;; go(a);"' in drawn
