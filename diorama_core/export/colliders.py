@@ -16,7 +16,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.export.gathering import ExportObject, ExportScene
 from diorama_core.export.limbs import ExportLimb, limb_parts
-from diorama_core.export.physics import MIN_MASS_KG, friction_of, material_mass_kg, plausible_mass_kg
+from diorama_core.export.physics import Inertia, friction_of, inertia_of, plausible_mass_kg
 from diorama_core.geometry.convex import ConvexPart, hull_part
 from diorama_core.geometry.planes import plane_axes
 from diorama_core.geometry.sat import pack_parts, pair_axes, place_bodies
@@ -43,7 +43,8 @@ class MovingPart:
     limb: ExportLimb
     parts: tuple[Points, ...]
     """Corners of convex bodies in the object's rigid frame, scale applied, metres."""
-    mass_kg: float
+    inertia: Inertia
+    """In the object's rigid frame."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,14 +54,20 @@ class RigidBody:
     node: ExportObject
     parts: tuple[Points, ...]
     """Corners of convex bodies in the object's rigid frame, scale applied, metres."""
-    mass_kg: float
+    inertia: Inertia
+    """In the object's rigid frame."""
     friction: float
     free: bool
     """Whether it may move; otherwise it is welded to `carrier`, or to the room."""
     carrier: str | None = None
     """Id of the object it is welded to; None for the room and for free bodies."""
     moving: tuple[MovingPart, ...] = ()
-    """What its joints move; `parts` and `mass_kg` are then those of the rest."""
+    """What its joints move; `parts` and `inertia` are then those of the rest."""
+
+    @property
+    def mass_kg(self) -> float:
+        """Mass without what its joints move."""
+        return self.inertia.mass_kg
 
     @property
     def volume_m3(self) -> float:
@@ -160,13 +167,13 @@ def _scaled(parts: Iterable[ConvexPart], node: ExportObject) -> tuple[Points, ..
     return tuple(np.asarray(p.vertices) * node.scale for p in parts)
 
 
-def _weights(gathered: ExportScene, node: ExportObject, record: Shape) -> dict[int | None, float]:
-    """Mass of what stays (None) and of what each joint moves."""
+def _weights(gathered: ExportScene, node: ExportObject, record: Shape) -> dict[int | None, Inertia]:
+    """Inertia of what stays (None) and of what each joint moves."""
     keys: dict[int | None, str] = {None: node.mesh, **{limb.number: limb.mesh for limb in node.limbs}}
-    loose = {k: material_mass_kg(gathered.meshes[key].surfaces, node.scale) for k, key in keys.items()}
-    total = sum(loose.values())
-    whole = plausible_mass_kg(total, node.scale, record)
-    return {k: max(whole * mass / total, MIN_MASS_KG) for k, mass in loose.items()}
+    loose = {k: inertia_of(gathered.meshes[key].surfaces, node.scale) for k, key in keys.items()}
+    total = sum(part.mass_kg for part in loose.values())
+    factor = plausible_mass_kg(total, node.scale, record) / total
+    return {k: part.weighing(part.mass_kg * factor) for k, part in loose.items()}
 
 
 _STANDING = "standing free"
