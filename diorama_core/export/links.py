@@ -14,7 +14,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 
-from diorama_core.export.colliders import PhysicalScene, Points, RigidBody
+from diorama_core.export.bodies import PhysicalScene, Points, RigidBody
 from diorama_core.export.files import Entry
 from diorama_core.export.gathering import ExportMesh, ExportScene, rigid_inverse
 from diorama_core.export.limbs import ExportLimb

@@ -14,14 +14,8 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
-from diorama_core.export.colliders import (
-    MovingPart,
-    PhysicalScene,
-    Points,
-    RigidBody,
-    StaticSlab,
-    physical_scene,
-)
+from diorama_core.export.bodies import MovingPart, PhysicalScene, Points, RigidBody, StaticSlab
+from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import Entry, companion_folder, write_package
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene, rigid_inverse
 from diorama_core.export.lights import ExportLight

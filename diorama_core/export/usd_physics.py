@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade
 
-from diorama_core.export.colliders import MovingPart, PhysicalScene, Points, RigidBody
+from diorama_core.export.bodies import MovingPart, PhysicalScene, Points, RigidBody
 from diorama_core.export.gathering import ExportScene, rigid_inverse
 from diorama_core.export.limbs import ExportLimb
 from diorama_core.export.links import hull_faces
