@@ -61,14 +61,14 @@ class Cuts:
         first, second = self._near_pairs()
         if len(first) == 0:
             return
-        convex = [hull_part(w) for w in self._world]
-        packed = pack_parts([[part] for part in convex])
-        count = len(convex)
+        near, place = np.unique(np.concatenate([first, second]), return_inverse=True)
+        packed = pack_parts([[hull_part(self._world[k])] for k in near])
+        count = len(near)
         here = place_bodies(packed, np.tile(np.eye(3), (count, 1, 1)), np.zeros((count, 3)), np.ones((count, 3)))
-        for block in pair_axes(here, first, second):
-            inside = block.gaps.max(axis=1) < 0.0
-            for k in np.flatnonzero(inside):
-                self._part(int(block.a[k]), int(block.b[k]), block.normals[k][np.isfinite(block.gaps[k])])
+        for block in pair_axes(here, *np.split(place.reshape(-1), 2)):
+            for k in np.flatnonzero(block.gaps.max(axis=1) < 0.0):
+                pair = int(near[block.a[k]]), int(near[block.b[k]])
+                self._part(*pair, block.normals[k][np.isfinite(block.gaps[k])])
 
     def _near_pairs(self) -> tuple[np.ndarray, np.ndarray]:
         """Parts of different owners whose boxes overlap and of which at least one can move against the other."""
