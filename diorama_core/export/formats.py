@@ -175,6 +175,8 @@ def export_scene(
         provenance=provenance,
         progress=progress.part(0.0, 0.5),
     )
+    progress.report(0.5, f"writing {path.name}")
+    progress.check()
     write(gathered, path, progress.part(0.5, 1.0))
     progress.report(1.0, f"wrote {path.name}")
     return gathered

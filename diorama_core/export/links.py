@@ -11,27 +11,18 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import trimesh
 from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 
-from diorama_core.export.colliders import PhysicalScene, Points, RigidBody, hull_volume
+from diorama_core.export.bodies import PhysicalScene, Points, RigidBody
 from diorama_core.export.files import Entry
 from diorama_core.export.gathering import ExportMesh, ExportScene, rigid_inverse
 from diorama_core.export.limbs import ExportLimb
+from diorama_core.export.physics import Inertia
 from diorama_core.export.wavefront import hull_text, material_text, obj_text, png_bytes
 from diorama_core.progress import Progress
 
 LinkJoint = Literal["free", "fixed", "hinge", "slide", "swivel"]
-
-
-@dataclass(frozen=True, eq=False)
-class Inertia:
-    """Of a link, about its centre of mass, in the link's axes."""
-
-    mass_kg: float
-    centre: Float[np.ndarray, "3"]
-    tensor: Float[np.ndarray, "3 3"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +62,7 @@ def links_of(gathered: ExportScene, physical: PhysicalScene) -> tuple[Link, ...]
                 mesh=gathered.meshes[node.mesh],
                 scale=node.scale,
                 parts=body.parts,
-                inertia=inertia_of(body.parts, body.mass_kg),
+                inertia=body.inertia,
                 friction=body.friction,
             )
         )
@@ -85,7 +76,7 @@ def links_of(gathered: ExportScene, physical: PhysicalScene) -> tuple[Link, ...]
                     mesh=gathered.meshes[moving.limb.mesh],
                     scale=node.scale,
                     parts=moving.parts,
-                    inertia=inertia_of(moving.parts, moving.mass_kg),
+                    inertia=moving.inertia,
                     friction=body.friction,
                     limb=moving.limb,
                 )
@@ -103,32 +94,6 @@ def _carriers_first(bodies: tuple[RigidBody, ...]) -> list[RigidBody]:
         names |= {b.node.id for b in ready}
         waiting = [b for b in waiting if b.node.id not in names]
     return done
-
-
-def inertia_of(parts: tuple[Points, ...], mass_kg: float) -> Inertia:
-    """Inertia of convex bodies of one density that together have a mass."""
-    volumes = np.array([max(hull_volume(p), 1e-9) for p in parts]) if parts else np.ones(1)
-    masses = mass_kg * volumes / volumes.sum()
-    solids = [_solid(p, float(m)) for p, m in zip(parts, masses, strict=False)]
-    if not solids:
-        return Inertia(mass_kg, np.zeros(3), np.eye(3) * mass_kg * 1e-4)
-    centre = np.average([c for c, _ in solids], axis=0, weights=masses)
-    tensor = np.zeros((3, 3))
-    for (c, own), mass in zip(solids, masses, strict=True):
-        arm = c - centre
-        tensor += own + mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
-    return Inertia(mass_kg, centre, tensor)
-
-
-def _solid(points: Points, mass_kg: float) -> tuple[np.ndarray, np.ndarray]:
-    """Centre and inertia of one convex body; a flat one is taken as its box."""
-    try:
-        hull = trimesh.convex.convex_hull(points)
-        hull.density = mass_kg / hull.volume
-        return np.asarray(hull.center_mass), np.asarray(hull.moment_inertia)
-    except (QhullError, ValueError, ZeroDivisionError):
-        sides = np.maximum(np.ptp(points, axis=0), 1e-3) ** 2
-        return points.mean(axis=0), np.diag(mass_kg / 12.0 * (sides.sum() - sides))
 
 
 def visual_file(folder: str, mesh: ExportMesh, number: int) -> str:

@@ -14,19 +14,12 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
-from diorama_core.export.colliders import (
-    MovingPart,
-    PhysicalScene,
-    Points,
-    RigidBody,
-    StaticSlab,
-    hull_volume,
-    physical_scene,
-)
+from diorama_core.export.bodies import MovingPart, PhysicalScene, Points, RigidBody, StaticSlab
+from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import Entry, companion_folder, write_package
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene, rigid_inverse
 from diorama_core.export.lights import ExportLight
-from diorama_core.export.physics import FLOOR_FRICTION
+from diorama_core.export.physics import FLOOR_FRICTION, Inertia
 from diorama_core.export.wavefront import obj_text, png_bytes
 from diorama_core.io.srgb import linear_to_srgb
 from diorama_core.progress import Progress
@@ -120,7 +113,8 @@ class _BodyWriter:
         element = SubElement(parent, "body", {"name": node.slug, **_placement(T)})
         if body.free:
             SubElement(element, "freejoint", name=f"{node.slug}_free")
-        self._colliders(element, body, body.parts, body.mass_kg, node.slug)
+        _inertial(element, body.inertia)
+        self._colliders(element, body, body.parts, node.slug)
         if self._folder is not None:
             _visuals(element, self._assets, self._gathered.meshes[node.mesh], node, self._folder)
             for light in self._lights.get(node.id, ()):
@@ -140,21 +134,26 @@ class _BodyWriter:
         if limb.kind != "swivel":
             joint["range"] = f"{limb.lower:.8g} {limb.upper:.8g}"
         SubElement(element, "joint", joint)
-        self._colliders(element, body, moving.parts, moving.mass_kg, name)
+        _inertial(element, moving.inertia)
+        self._colliders(element, body, moving.parts, name)
         if self._folder is not None:
             mesh = self._gathered.meshes[limb.mesh]
             _visuals(element, self._assets, mesh, body.node, self._folder, name)
 
-    def _colliders(
-        self, element: Element, body: RigidBody, parts: tuple[Points, ...], mass_kg: float, name: str
-    ) -> None:
-        volumes = [max(hull_volume(p), 1e-9) for p in parts]
-        for number, (part, volume) in enumerate(zip(parts, volumes, strict=True)):
+    def _colliders(self, element: Element, body: RigidBody, parts: tuple[Points, ...], name: str) -> None:
+        for number, part in enumerate(parts):
             mesh = f"{name}_part_{number}"
             SubElement(self._assets, "mesh", name=mesh, vertex=_numbers(part.ravel()), inertia="convex")
-            mass = mass_kg * volume / sum(volumes)
-            attributes = {"type": "mesh", "mesh": mesh, "mass": f"{mass:.6g}", "friction": f"{body.friction:.3g}"}
+            attributes = {"type": "mesh", "mesh": mesh, "friction": f"{body.friction:.3g}"}
             SubElement(element, "geom", {"name": mesh, "class": "collider", **attributes})
+
+
+def _inertial(element: Element, inertia: Inertia) -> None:
+    moments, axes = inertia.principal
+    quaternion = Rotation.from_matrix(axes).as_quat(canonical=True, scalar_first=True)
+    values = {"pos": inertia.centre, "quat": quaternion, "diaginertia": moments}
+    attributes = {name: _numbers(value) for name, value in values.items()}
+    SubElement(element, "inertial", {"mass": f"{inertia.mass_kg:.8g}", **attributes})
 
 
 def _defaults(root: Element) -> None:

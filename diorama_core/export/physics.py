@@ -22,6 +22,8 @@ MAX_PRIOR_RATIO = 3.0
 UNKNOWN_MASS_KG = 1.0
 """The mass of a library record that nobody estimated."""
 MIN_MASS_KG = 0.01
+MIN_RADIUS_M = 0.005
+"""Radius of gyration that is added to all, so that thin things do not spin without end."""
 
 
 @dataclass(frozen=True)
@@ -80,16 +82,57 @@ def substance_of(material: Material) -> Substance:
     return _named("steel") if material.metallic > 0.5 else OTHER
 
 
-def material_mass_kg(surfaces: tuple[Surface, ...], scale: Float[np.ndarray, "3"]) -> float:
-    """Mass of surfaces at a scale: each material's closed volume, or its walls, times its density."""
-    whole, mean_square = float(np.prod(scale)), float(np.prod(scale)) ** (2 / 3)
-    total = 0.0
+@dataclass(frozen=True, eq=False)
+class Inertia:
+    """Of a rigid body, about its centre of mass, in the axes of its frame."""
+
+    mass_kg: float
+    centre: Float[np.ndarray, "3"]
+    tensor: Float[np.ndarray, "3 3"]
+
+    def weighing(self, mass_kg: float) -> Inertia:
+        """The same distribution at another mass."""
+        return Inertia(mass_kg, self.centre, self.tensor * (mass_kg / self.mass_kg))
+
+    @property
+    def principal(self) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3 3"]]:
+        """Moments about the principal axes, and the rotation whose columns they are."""
+        moments, axes = np.linalg.eigh(self.tensor)
+        if np.linalg.det(axes) < 0:
+            axes[:, 2] = -axes[:, 2]
+        return moments, axes
+
+
+def inertia_of(surfaces: tuple[Surface, ...], scale: Float[np.ndarray, "3"]) -> Inertia:
+    """Mass and its distribution for surfaces at a scale.
+
+    Each material weighs its closed volume, or its walls where that is less, spread over its surface: a lamp's foot
+    outweighs its shade, whatever air the shade encloses.
+    """
+    whole = float(np.prod(scale))
+    points, masses = [np.zeros((0, 3))], [np.zeros(0)]
     for surface in surfaces:
-        kind, area = substance_of(surface.material), surface.area_m2 * mean_square
+        corners = (surface.vertices * scale)[surface.faces].astype(np.float64)
+        areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+        kind, area = substance_of(surface.material), float(areas.sum())
         volume = enclosed_m3(surface) * whole
         sheet = float(np.clip(kind.wall_m, MIN_SHEET_M, MAX_SHEET_M))
-        total += kind.density * (min(volume, area * kind.wall_m) if volume > 0 else area * sheet)
-    return max(total, MIN_MASS_KG)
+        mass = kind.density * (min(volume, area * kind.wall_m) if volume > 0 else area * sheet)
+        points.append(corners.mean(axis=1))
+        masses.append(areas * (mass / max(area, 1e-12)))
+    return _of_points(np.concatenate(points), np.concatenate(masses))
+
+
+def _of_points(points: Float[np.ndarray, "n 3"], masses: Float[np.ndarray, " n"]) -> Inertia:
+    total = float(masses.sum())
+    if total < 1e-9:
+        return Inertia(MIN_MASS_KG, np.zeros(3), np.eye(3) * MIN_MASS_KG * MIN_RADIUS_M**2)
+    centre = masses @ points / total
+    arms = points - centre
+    squares = float(masses @ (arms**2).sum(axis=1))
+    tensor = squares * np.eye(3) - (arms * masses[:, None]).T @ arms
+    found = Inertia(total, centre, tensor + np.eye(3) * total * MIN_RADIUS_M**2)
+    return found.weighing(max(total, MIN_MASS_KG))
 
 
 def plausible_mass_kg(mass_kg: float, scale: Float[np.ndarray, "3"], record: Shape) -> float:

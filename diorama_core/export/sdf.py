@@ -13,7 +13,8 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
-from diorama_core.export.colliders import PhysicalScene, physical_scene
+from diorama_core.export.bodies import PhysicalScene
+from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import Entry, companion_folder, write_package
 from diorama_core.export.gathering import ExportMesh, ExportScene
 from diorama_core.export.lights import ExportLight

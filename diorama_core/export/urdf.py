@@ -14,11 +14,13 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
-from diorama_core.export.colliders import PhysicalScene, physical_scene
+from diorama_core.export.bodies import PhysicalScene
+from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import Entry, companion_folder, write_package
 from diorama_core.export.gathering import ExportMesh, ExportScene
-from diorama_core.export.links import Inertia, Link, collider_file, links_of, mesh_files, visual_file
+from diorama_core.export.links import Link, collider_file, links_of, mesh_files, visual_file
 from diorama_core.export.mjcf import srgb_rgba
+from diorama_core.export.physics import Inertia
 from diorama_core.progress import Progress
 from diorama_core.render.appearance import Material
 

@@ -6,11 +6,11 @@ import numpy as np
 from jaxtyping import Float
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade
 
-from diorama_core.export.colliders import MovingPart, PhysicalScene, Points, RigidBody
+from diorama_core.export.bodies import MovingPart, PhysicalScene, Points, RigidBody
 from diorama_core.export.gathering import ExportScene, rigid_inverse
 from diorama_core.export.limbs import ExportLimb
 from diorama_core.export.links import hull_faces
-from diorama_core.export.physics import FLOOR_FRICTION
+from diorama_core.export.physics import FLOOR_FRICTION, Inertia
 from diorama_core.export.usd_values import extent, integers, quaternion, vectors
 
 ROOT = "/Scene"
@@ -34,7 +34,7 @@ def add_physics(stage: Usd.Stage, gathered: ExportScene, physical: PhysicalScene
         moves = body.free or _moves(physical, body)
         if moves:
             UsdPhysics.RigidBodyAPI.Apply(stage.GetPrimAtPath(path))
-            UsdPhysics.MassAPI.Apply(stage.GetPrimAtPath(path)).CreateMassAttr(body.mass_kg)
+            _mass(stage.GetPrimAtPath(path), body.inertia)
         if moves and not body.free and body.carrier is not None:
             _weld(stage, paths[body.carrier], path, gathered, body)
         for moving in body.moving:
@@ -90,13 +90,22 @@ def _colliders(stage: Usd.Stage, path: str, parts: tuple[Points, ...], grip: Usd
         binding.Bind(grip, materialPurpose="physics")
 
 
+def _mass(prim: Usd.Prim, inertia: Inertia) -> None:
+    moments, axes = inertia.principal
+    mass = UsdPhysics.MassAPI.Apply(prim)
+    mass.CreateMassAttr(inertia.mass_kg)
+    mass.CreateCenterOfMassAttr(Gf.Vec3f(*(float(v) for v in inertia.centre)))
+    mass.CreateDiagonalInertiaAttr(Gf.Vec3f(*(float(v) for v in moments)))
+    mass.CreatePrincipalAxesAttr(Gf.Quatf(quaternion(axes)))
+
+
 def _limb(stage: Usd.Stage, owner: str, moving: MovingPart, grip: UsdShade.Material) -> None:
     """A body of its own beside its object, whose frame it shares, on a joint with limits."""
     path = limb_path(owner, moving.limb)
     prim = stage.GetPrimAtPath(path)
     _colliders(stage, path, moving.parts, grip)
     UsdPhysics.RigidBodyAPI.Apply(prim)
-    UsdPhysics.MassAPI.Apply(prim).CreateMassAttr(moving.mass_kg)
+    _mass(prim, moving.inertia)
     limb = moving.limb
     slide = limb.kind == "slide"
     kind = UsdPhysics.PrismaticJoint if slide else UsdPhysics.RevoluteJoint

@@ -21,16 +21,12 @@ def obj_text(surface: Surface, material: str | None = None) -> str:
     """
     lines = [] if material is None else [f"mtllib {material}.mtl"]
     lines += [_rows("v", surface.vertices, 6), _rows("vn", surface.normals, 4)]
-    corner = (surface.faces + 1).astype(int)
-    if surface.uv is None:
-        corners = [f"{i}//{i}" for i in range(1, len(surface.vertices) + 1)]
-    else:
+    corner = "%d/%d/%d" if surface.uv is not None else "%d//%d"
+    if surface.uv is not None:
         lines.append(_rows("vt", surface.uv, 5))
-        corners = [f"{i}/{i}/{i}" for i in range(1, len(surface.vertices) + 1)]
     lines += [] if material is None else [f"usemtl {material}"]
-    names = np.array(corners, dtype=object)[corner - 1]
-    lines.append("\n".join(f"f {a} {b} {c}" for a, b, c in names.tolist()))
-    return "\n".join(lines) + "\n"
+    numbers = np.repeat(surface.faces.reshape(-1) + 1, corner.count("%"))
+    return "\n".join(lines) + "\n" + _filled(f"f {corner} {corner} {corner}\n", len(surface.faces), numbers)
 
 
 def hull_text(points: Float[np.ndarray, "n 3"], faces: Int[np.ndarray, "m 3"]) -> str:
@@ -56,6 +52,10 @@ def png_bytes(picture: UInt8[np.ndarray, "h w c"]) -> bytes:
 
 
 def _rows(word: str, values: np.ndarray, digits: int) -> str:
-    buffer = io.StringIO()
-    np.savetxt(buffer, values, fmt=f"{word} " + " ".join([f"%.{digits}f"] * values.shape[1]))
-    return buffer.getvalue().rstrip("\n")
+    row = f"{word}{f' %.{digits}f' * values.shape[1]}\n"
+    return _filled(row, len(values), values.reshape(-1)).rstrip("\n")
+
+
+def _filled(row: str, count: int, values: np.ndarray) -> str:
+    """A row's format, repeated and filled at once: many times faster than row by row."""
+    return (row * count) % tuple(values.tolist())

@@ -9,9 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diorama_core.export.colliders import cut, hull_volume, physical_scene
+from diorama_core.export.bodies import hull_volume
+from diorama_core.export.colliders import physical_scene
 from diorama_core.export.gathering import gather
 from diorama_core.export.mjcf import write_mjcf
+from diorama_core.export.overlaps import cut
 from diorama_core.export.stability import stability
 from diorama_core.layout.problem.parts import parts_of_shape
 from diorama_core.scene.types import box_corners
@@ -84,8 +86,8 @@ def test_masses_are_those_of_furniture() -> None:
 
 def test_a_cut_leaves_the_part_on_one_side() -> None:
     cube = box_corners((1.0, 1.0, 1.0))
-    rest = cut(cube, np.array([0.0, 0.0, 1.0]), -0.3)
+    rest = cut(cube, np.array([0.0, 0.0, 1.0]), -0.3, 0.4)
     assert rest is not None
     assert hull_volume(rest) == pytest.approx(0.8)
     assert rest[:, 2].min() == pytest.approx(-0.3)
-    assert cut(cube, np.array([0.0, 0.0, 1.0]), 0.2) is None
+    assert cut(cube, np.array([0.0, 0.0, 1.0]), 0.2, 0.4) is None

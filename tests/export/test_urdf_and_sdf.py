@@ -10,11 +10,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from diorama_core.export.colliders import physical_scene
-from diorama_core.export.links import inertia_of, links_of
+from diorama_core.export.links import links_of
 from diorama_core.export.mjcf import mjcf_text, write_mjcf
 from diorama_core.export.sdf import write_sdf
 from diorama_core.export.urdf import write_urdf
-from diorama_core.scene.types import box_corners
 from tests.export.scenes import gathered
 
 mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed (optional extra 'sim')")
@@ -101,11 +100,3 @@ def test_every_joint_moves_freely_through_its_range() -> None:
             mujoco.mj_step(model, data)
             reached = max(reached, float(data.qpos[joint.qposadr[0]]))
         assert reached > 0.97 * end, f"{joint.name} stops at {reached / end:.0%}"
-
-
-def test_inertia_of_a_box_in_two_halves() -> None:
-    half, up = box_corners((1.0, 2.0, 1.5)), np.array([0.0, 0.0, 0.75])
-    parts = (half + up, half - up)
-    inertia = inertia_of(parts, 12.0)
-    np.testing.assert_allclose(inertia.centre, 0, atol=1e-12)
-    np.testing.assert_allclose(np.diag(inertia.tensor), [4 + 9, 1 + 9, 1 + 4], rtol=1e-9)

@@ -42,7 +42,7 @@ def joint_of(geometry_name: str) -> int | None:
     return None if owner == _FIXED else int(owner)
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=1024)
 def articulation(shape_id: str) -> Articulation | None:
     """The moving parts of a built-in shape; None where it has none, or is not built in."""
     design = _designs().get(shape_id)

@@ -1,0 +1,172 @@
+"""Bodies start apart: what convex parts overlap by is cut off, because what starts inside another is shot out."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial import ConvexHull, QhullError
+
+from diorama_core.export.bodies import MovingPart, Points, RigidBody, StaticSlab, is_soft
+from diorama_core.geometry.convex import hull_part
+from diorama_core.geometry.sat import pack_parts, pair_axes, place_bodies
+from diorama_core.scene.frames import UP_WORLD
+
+MAX_CUT = 0.4
+"""A part is cut by at most this share of its extent; what overlaps more is left to interpenetrate without contact."""
+MAX_RIGID_CUT_M = 0.02
+"""Parts of things that do not give way are cut by at most this."""
+SKIN_M = 1e-4
+"""Bodies start this far apart where they were cut."""
+
+
+class Cuts:
+    """Takes overlaps away from convex parts, pair by pair, at the poses in which the scene starts."""
+
+    def __init__(self, bodies: Mapping[str, RigidBody], slabs: Iterable[StaticSlab]) -> None:
+        self._bodies = bodies
+        self._owners: list[str | None] = []
+        self._limbs: list[int | None] = []
+        self._world: list[Points] = []
+        for body in bodies.values():
+            T = body.node.T_world
+            own = [(None, p) for p in body.parts] + [(m.limb.number, p) for m in body.moving for p in m.parts]
+            for limb, part in own:
+                self._owners.append(body.node.id)
+                self._limbs.append(limb)
+                self._world.append(part @ T[:3, :3].T + T[:3, 3])
+        for slab in slabs:
+            for piece in slab.pieces:
+                self._owners.append(None)
+                self._limbs.append(None)
+                self._world.append(piece)
+        self.ignored: set[tuple[str, str]] = set()
+        self.sunk: dict[str, str | None] = {}
+
+    def parts(self, object_id: str, limb: int | None = None) -> tuple[Points, ...]:
+        """The parts of an object, or of one of its limbs, that are left, in the object's rigid frame."""
+        T = self._bodies[object_id].node.T_world
+        rows = zip(self._owners, self._limbs, self._world, strict=True)
+        return tuple((w - T[:3, 3]) @ T[:3, :3] for o, k, w in rows if o == object_id and k == limb)
+
+    def moving(self, body: RigidBody) -> tuple[MovingPart, ...]:
+        """The limbs of an object with the parts that are left."""
+        return tuple(replace(m, parts=self.parts(body.node.id, m.limb.number)) for m in body.moving)
+
+    def resolve(self) -> None:
+        """Cut every pair that overlaps."""
+        first, second = self._near_pairs()
+        if len(first) == 0:
+            return
+        near, place = np.unique(np.concatenate([first, second]), return_inverse=True)
+        packed = pack_parts([[hull_part(self._world[k])] for k in near])
+        count = len(near)
+        here = place_bodies(packed, np.tile(np.eye(3), (count, 1, 1)), np.zeros((count, 3)), np.ones((count, 3)))
+        for block in pair_axes(here, *np.split(place.reshape(-1), 2)):
+            for k in np.flatnonzero(block.gaps.max(axis=1) < 0.0):
+                pair = int(near[block.a[k]]), int(near[block.b[k]])
+                self._part(*pair, block.normals[k][np.isfinite(block.gaps[k])])
+
+    def _near_pairs(self) -> tuple[np.ndarray, np.ndarray]:
+        """Parts of different owners whose boxes overlap and of which at least one can move against the other."""
+        low = np.array([w.min(axis=0) for w in self._world]).reshape(-1, 3)
+        high = np.array([w.max(axis=0) for w in self._world]).reshape(-1, 3)
+        pairs = []
+        for i in range(len(low)):
+            near = (low[i + 1 :] < high[i]).all(axis=1) & (high[i + 1 :] > low[i]).all(axis=1)
+            pairs += [(i, i + 1 + int(j)) for j in np.flatnonzero(near) if self._collide(i, i + 1 + int(j))]
+        found = np.array(pairs, dtype=int).reshape(-1, 2)
+        return found[:, 0], found[:, 1]
+
+    def _collide(self, i: int, j: int) -> bool:
+        a, b = self._owners[i], self._owners[j]
+        if a == b or not any(o is not None and self._bodies[o].free for o in (a, b)):
+            return False
+        if a is None or b is None:
+            return True
+        if self._yields(a, b) or self._yields(b, a):
+            self.ignored.add((min(a, b), max(a, b)))
+            return False
+        return True
+
+    def _yields(self, rug: str, other: str) -> bool:
+        """Whether a rug lies under the other without carrying it."""
+        item, node = self._bodies[rug].node.item, self._bodies[other].node
+        return item.category == "rug" and item.size_m[2] < 0.06 and node.parent != rug
+
+    def _part(self, i: int, j: int, normals: Float[np.ndarray, "k 3"]) -> None:
+        """Part two bodies: a rider from what carries it upward, others along the direction of least overlap."""
+        a, b = self._owners[i], self._owners[j]
+        if a is not None and b is not None and (min(a, b), max(a, b)) in self.ignored:
+            return
+        along_i, along_j = self._world[i] @ normals.T, self._world[j] @ normals.T
+        gaps = along_i.min(axis=0) - along_j.max(axis=0)
+        if gaps.max() >= 0 or self._lifted(i, j) or self._lifted(j, i):
+            return
+        for k in np.argsort(-gaps, kind="stable"):
+            options = [(i, j, normals[k], float(along_j[:, k].max())), (j, i, -normals[k], float(-along_i[:, k].min()))]
+            for part, other, normal, level in sorted(options, key=lambda option: self._firmness(option[0])):
+                if not self._rides(other, part) and self._cut(part, normal, level + SKIN_M):
+                    return
+        self._give_up(a, b)
+
+    def _lifted(self, rider: int, carrier: int) -> bool:
+        """Cut a rider's part level above its carrier's, where it only dips into it."""
+        top = float(self._world[carrier][:, 2].max())
+        dips = top - float(self._world[rider][:, 2].min()) < MAX_RIGID_CUT_M
+        return dips and self._rides(rider, carrier) and self._cut(rider, UP_WORLD, top + SKIN_M)
+
+    def _rides(self, rider: int, carrier: int) -> bool:
+        """Whether one part's object is carried by the other's, directly or not; all ride on the room."""
+        a, b = self._owners[rider], self._owners[carrier]
+        if a is None or b is None:
+            return a is not None
+        while a is not None and a != b:
+            a = self._bodies[a].node.parent
+        return a == b
+
+    def _cut(self, part: int, normal: Float[np.ndarray, "3"], level: float) -> bool:
+        owner = self._owners[part]
+        if owner is None:
+            return False
+        depth = MAX_CUT * float(np.ptp(self._world[part] @ normal))
+        if not is_soft(self._bodies[owner].node):
+            depth = min(depth, MAX_RIGID_CUT_M)
+        rest = cut(self._world[part], normal, level, depth)
+        if rest is not None:
+            self._world[part] = rest
+        return rest is not None
+
+    def _firmness(self, part: int) -> tuple[int, float]:
+        owner = self._owners[part]
+        if owner is None:
+            return (2, 0.0)
+        return (0 if is_soft(self._bodies[owner].node) else 1, float(np.prod(np.ptp(self._world[part], axis=0))))
+
+    def _give_up(self, a: str | None, b: str | None) -> None:
+        """Two parts overlap too deeply to be cut: their objects do not collide, or one is welded to the other."""
+        for child, carrier in itertools.permutations((a, b)):
+            if child is not None and (carrier is None or self._bodies[child].node.parent == carrier):
+                self.sunk[child] = carrier
+        if a is not None and b is not None:
+            self.ignored.add((min(a, b), max(a, b)))
+
+
+def cut(points: Points, normal: Float[np.ndarray, "3"], level: float, depth: float) -> Points | None:
+    """The part of a convex body where `normal . p >= level`; None when more than `depth` would go, or all."""
+    height = points @ normal - level
+    above, below = points[height >= 0], points[height < 0]
+    if len(below) == 0:
+        return points
+    if len(above) == 0 or height.min() < -depth:
+        return None
+    t = height[height >= 0][:, None] / (height[height >= 0][:, None] - height[height < 0][None])
+    crossing = above[:, None] * (1.0 - t[..., None]) + below[None] * t[..., None]
+    retained = np.vstack([above, crossing.reshape(-1, 3)])
+    try:
+        return np.asarray(retained[ConvexHull(retained).vertices])
+    except (QhullError, ValueError):
+        return None
