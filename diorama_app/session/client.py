@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import viser
 
@@ -25,6 +25,7 @@ COLOURS = ((38, 150, 96), (160, 80, 200), (20, 130, 190), (200, 60, 110), (150, 
 """Of the others' cursors; one's own selection is orange."""
 
 
+@runtime_checkable
 class Panel(Protocol):
     """A part of the page that shows something of the room."""
 

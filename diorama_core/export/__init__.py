@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING, Protocol, cast, runtime_checkable
 
 from diorama_core.errors import ExportError
 
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from diorama_core.scene.types import Scene
 
 
+@runtime_checkable
 class Writer(Protocol):
     """Writes a scene as one file; raises `ExportError` when it cannot."""
 

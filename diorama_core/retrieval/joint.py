@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, Float32, UInt8
@@ -24,6 +24,7 @@ _SPREAD = 0.08
 _PROMPT = "a photo of {}"
 
 
+@runtime_checkable
 class JointEmbedding(Protocol):
     """Words, pictures and shapes in one space; all vectors of unit length."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import cv2
 import numpy as np
@@ -14,6 +14,7 @@ from diorama_core.geometry.planes import plane_rectangle
 from diorama_core.scene.types import Camera, Plane
 
 
+@runtime_checkable
 class EmptyRoomFiller(Protocol):
     """Paints a part of a photo out, as LaMa and MI-GAN do (PlainRecon's first step)."""
 

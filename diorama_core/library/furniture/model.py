@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import ModuleType
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 import trimesh
@@ -37,6 +37,7 @@ class Part:
 Parts = list[Part]
 
 
+@runtime_checkable
 class NamedStyle(Protocol):
     """What runs through every piece of one style (`styles.Style`)."""
 
