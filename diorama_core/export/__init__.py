@@ -27,7 +27,7 @@ class Writer(Protocol):
         library: ShapeLibrary,
         path: Path,
         *,
-        textures: Mapping[str, UInt8[np.ndarray, "h w c"]] | None = None,
+        textures: Mapping[str, UInt8[np.ndarray, "_ _ _"]] | None = None,
     ) -> None:
         """Write `scene` to `path`, replacing what is there only when all went well."""
         ...

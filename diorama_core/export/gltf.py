@@ -21,7 +21,7 @@ from diorama_core.render.appearance import Paint, shape_surfaces
 from diorama_core.render.slabs import plane_surfaces
 from diorama_core.scene.types import Camera, Plane, Scene, SceneObject, Support
 
-Textures = Mapping[str, UInt8[np.ndarray, "h w c"]]
+Textures = Mapping[str, UInt8[np.ndarray, "_ _ _"]]
 _HALF_TURN = float(np.sqrt(0.5))
 _CAMERA_AXES = np.diag([1.0, -1.0, -1.0])
 """glTF cameras look along their -z with y up; ours along +z with y down."""

@@ -144,7 +144,7 @@ def _depth_and_gap(
     return np.maximum(depth, 0), above
 
 
-def _regions(spots: _Spots, caster: RaycastingScene) -> list[Int[np.ndarray, "k"]]:
+def _regions(spots: _Spots, caster: RaycastingScene) -> list[Int[np.ndarray, "_"]]:
     """Spots grown together over neighbouring cells of nearly equal height, as far as nothing stands between them."""
     n = len(spots.z)
     bins = np.round(spots.z / STEP_M).astype(np.int64)

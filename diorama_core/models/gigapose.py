@@ -37,7 +37,7 @@ class GigaPoseScale:
     weights: str = "gigapose-scale"
     pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
-    def maps(self, crops: Sequence[UInt8[np.ndarray, "h w 3"]]) -> Float32[np.ndarray, "b c n n"]:
+    def maps(self, crops: Sequence[UInt8[np.ndarray, "_ _ 3"]]) -> Float32[np.ndarray, "b c n n"]:
         """Feature maps of crops, each stretched to 224 x 224."""
         session = self.pool.get(self.features)
         name = next(iter(session.inputs))

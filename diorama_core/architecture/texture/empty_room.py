@@ -33,7 +33,7 @@ def empty_room(
     hidden: Bool[np.ndarray, "h w"],
     planes: tuple[Plane, ...],
     camera: Camera,
-    textures: Mapping[str, UInt8[np.ndarray, "th tw 3"]],
+    textures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]],
 ) -> UInt8[np.ndarray, "h w 3"]:
     """The photo with hidden pixels repainted from the planes behind them: the embedded filler, in perspective.
 
