@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, Float32, Int, UInt8
@@ -23,6 +24,25 @@ class PatchTurns:
     """Size in the photo over size in the template."""
     angle_rad: Float[np.ndarray, "n"]
     """In-plane turn, from the picture's x axis toward its y axis."""
+
+
+@runtime_checkable
+class ScaleNetwork(Protocol):
+    """Input: feature maps of two crops and pairs of patches that match. Output: how the pairs are scaled and turned."""
+
+    def maps(self, crops: Sequence[UInt8[np.ndarray, "_ _ 3"]]) -> Float32[np.ndarray, "b c n n"]:
+        """Feature maps of crops."""
+        ...
+
+    def turns(
+        self,
+        template: Float32[np.ndarray, "c n n"],
+        photo: Float32[np.ndarray, "c n n"],
+        template_cells: Int[np.ndarray, "k 2"],
+        photo_cells: Int[np.ndarray, "k 2"],
+    ) -> PatchTurns:
+        """Scale and angle of every pair of cells (column, row)."""
+        ...
 
 
 @dataclass(frozen=True)
