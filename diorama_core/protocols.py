@@ -26,7 +26,7 @@ internal error.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from diorama_core.artefacts import (
     ArchitectureEstimate,
@@ -47,6 +47,7 @@ from diorama_core.progress import Progress
 from diorama_core.scene.types import Intrinsics, Scene
 
 
+@runtime_checkable
 class RecognitionStage(Protocol):
     """Names the kinds of objects in a photo, for a detector that needs words."""
 
@@ -66,6 +67,7 @@ class RecognitionStage(Protocol):
         ...
 
 
+@runtime_checkable
 class DetectionStage(Protocol):
     """Proposes boxes where the user gave neither boxes nor masks."""
 
@@ -87,6 +89,7 @@ class DetectionStage(Protocol):
         ...
 
 
+@runtime_checkable
 class DepthPredictionStage(Protocol):
     """Predicts depth, normals and intrinsics from the photo where no depth was measured."""
 
@@ -108,6 +111,7 @@ class DepthPredictionStage(Protocol):
         ...
 
 
+@runtime_checkable
 class GraphStage(Protocol):
     """Decides what supports what; replaces the geometry stage's edges."""
 
@@ -132,6 +136,7 @@ class GraphStage(Protocol):
         ...
 
 
+@runtime_checkable
 class CameraStage(Protocol):
     """Estimates intrinsics and orientation."""
 
@@ -155,6 +160,7 @@ class CameraStage(Protocol):
         ...
 
 
+@runtime_checkable
 class ObjectStage(Protocol):
     """Segments every object that was given or detected."""
 
@@ -176,6 +182,7 @@ class ObjectStage(Protocol):
         ...
 
 
+@runtime_checkable
 class GeometryStage(Protocol):
     """Measures the metric camera, a cuboid per object, and support edges."""
 
@@ -202,6 +209,7 @@ class GeometryStage(Protocol):
         ...
 
 
+@runtime_checkable
 class ArchitectureStage(Protocol):
     """Reconstructs floor, walls and ceiling."""
 
@@ -227,6 +235,7 @@ class ArchitectureStage(Protocol):
         ...
 
 
+@runtime_checkable
 class DepthStage(Protocol):
     """Gives depth and normals for every pixel."""
 
@@ -254,6 +263,7 @@ class DepthStage(Protocol):
         ...
 
 
+@runtime_checkable
 class RetrievalStage(Protocol):
     """Retrieves shapes of the library."""
 
@@ -279,6 +289,7 @@ class RetrievalStage(Protocol):
         ...
 
 
+@runtime_checkable
 class PoseStage(Protocol):
     """Finds poses of nine degrees of freedom: rotation, position, and a scale per axis."""
 
@@ -315,6 +326,7 @@ Preview = Callable[[Scene, Sequence[tuple[str, float]]], None]
 """Receives an intermediate scene and the current (cost name, value) pairs."""
 
 
+@runtime_checkable
 class LayoutStage(Protocol):
     """Makes poses respect support, contact and space."""
 

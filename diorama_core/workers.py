@@ -13,7 +13,7 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from itertools import islice
 from multiprocessing import get_context
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeVar, runtime_checkable
 
 from diorama_core.errors import DioramaError, InputError, UnavailableError
 
@@ -43,6 +43,7 @@ class Done(Generic[Item, Result]):
         return self.value  # type: ignore[return-value]  # without an error the value is the function's own
 
 
+@runtime_checkable
 class Workers(Protocol):
     """Where pieces of work are done."""
 

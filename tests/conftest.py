@@ -11,9 +11,19 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import settings
+from jaxtyping import config, install_import_hook
+
+from tests import typechecking
+
+if typechecking.wanted():  # before anything of Diorama is imported
+    install_import_hook(["diorama_core", "diorama_app"], f"{typechecking.__name__}.check")
 
 from diorama_core.artefacts import Inputs
 from diorama_core.perception.inputs import ReadInputs, read_inputs
+
+settings.register_profile("deterministic", derandomize=True, deadline=None)
+settings.load_profile("deterministic")
 
 SHARED = Path(__file__).resolve().parents[2] / "shared"
 
@@ -91,6 +101,15 @@ def _own_folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
         patch.setenv("DIORAMA_CACHE", str(tmp_path_factory.mktemp("cache")))
         patch.setenv("DIORAMA_LIBRARIES", str(tmp_path_factory.mktemp("libraries")))
         yield
+
+
+@pytest.fixture(autouse=True)
+def _checks_of_this_test(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Shapes and types are checked as the test's markers say, and the same items of lists every time."""
+    typechecking.items.seed(0)
+    config.update("jaxtyping_disable", request.node.get_closest_marker("unchecked") is not None)
+    yield
+    config.update("jaxtyping_disable", False)
 
 
 @pytest.fixture

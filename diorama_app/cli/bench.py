@@ -6,12 +6,13 @@ import argparse
 import json
 import sys
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 from diorama_app.cli.arguments import command, progress_bar
 from diorama_core.errors import InputError
 
 
+@runtime_checkable
 class _Bench(Protocol):
     """What every bench returns."""
 

@@ -80,7 +80,7 @@ class EditorSession:
         self.photo: Photo | None = None
         self.notes: tuple[str, ...] = ()
         """What the pipeline had to say of how the scene was made."""
-        self.textures: Mapping[str, UInt8[np.ndarray, "h w 3"]] = {}
+        self.textures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]] = {}
         self.clients: dict[int, ConnectedClient] = {}
         self.badges: Problems = {}
         """What is wrong with objects just now, in a word or two each."""

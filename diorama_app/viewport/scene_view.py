@@ -83,7 +83,7 @@ class Viewport:
             )
             scene.add_light_ambient("/lights/around", color=(255, 250, 244), intensity=0.55)
 
-    def show(self, scene: Scene, textures: Mapping[str, UInt8[np.ndarray, "h w 3"]]) -> None:
+    def show(self, scene: Scene, textures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]]) -> None:
         """Make the page show this scene, changing only what differs."""
         with self._server.atomic():
             self._show_planes(scene, textures)
@@ -123,7 +123,7 @@ class Viewport:
         shown = self._planes.get(plane_id)
         return None if shown is None else shown[1].name
 
-    def _show_planes(self, scene: Scene, textures: Mapping[str, UInt8[np.ndarray, "h w 3"]]) -> None:
+    def _show_planes(self, scene: Scene, textures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]]) -> None:
         wanted = {p.id: p for p in scene.architecture.planes}
         for plane_id, (plane, handle) in list(self._planes.items()):
             if wanted.get(plane_id) != plane:

@@ -126,7 +126,7 @@ def seated(scene: Scene, library: ShapeLibrary, object_id: str) -> Scene:
     base = item.pose.position - item.pose.R_world_object[:, 2] * item.size_m[2] / 2
 
     def far(place: Place) -> tuple[bool, float]:
-        tight = item.size_m[2] > place.surface.clearance_m + TALLER_M
+        tight = bool(item.size_m[2] > place.surface.clearance_m + TALLER_M)
         return tight, outside_m(place.surface, base) + abs(place.surface.level - float(base[2]))
 
     place = min(options, key=far)

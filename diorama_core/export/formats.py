@@ -11,7 +11,7 @@ import importlib.util
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from typing import TYPE_CHECKING, Any, Protocol, cast, runtime_checkable
 
 from diorama_core.errors import ExportError, UnavailableError
 from diorama_core.progress import Progress
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from diorama_core.scene.types import Scene
 
 
+@runtime_checkable
 class Writer(Protocol):
     """Writes a gathered scene, whole or not at all; raises `ExportError` when it cannot."""
 

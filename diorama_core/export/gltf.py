@@ -35,7 +35,7 @@ from diorama_core.progress import Progress
 from diorama_core.scene.schema import scene_to_json
 from diorama_core.scene.types import Camera, Scene
 
-Textures = Mapping[str, UInt8[np.ndarray, "h w c"]]
+Textures = Mapping[str, UInt8[np.ndarray, "_ _ _"]]
 _HALF_TURN = float(np.sqrt(0.5))
 _CAMERA_AXES = np.diag([1.0, -1.0, -1.0])
 """glTF cameras look along their -z with y up; ours along +z with y down."""

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 
-def cross(a: Float[np.ndarray, "*n 3"], b: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
+def cross(a: Float[np.ndarray, "*#n 3"], b: Float[np.ndarray, "*#n 3"]) -> Float[np.ndarray, "*_ 3"]:
     """a x b over the last axis, broadcasting."""
     if a.ndim == 1 and b.ndim == 1:
         p0, p1, p2 = a.tolist()

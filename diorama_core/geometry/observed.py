@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -16,6 +16,7 @@ from diorama_core.scene.types import Camera
 Box = tuple[float, float, float, float]
 
 
+@runtime_checkable
 class Outlined(Protocol):
     """Anything with a box and a mask in the photo (`artefacts.DetectedObject`)."""
 

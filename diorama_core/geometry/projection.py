@@ -1,15 +1,17 @@
 """Where cuboids land in a picture, for many cuboids at once.
 
-Edges are clipped to the view frustum, so that a cuboid that is cut by the picture's border, or that reaches behind
-the camera, has exactly the bounds that a person would draw around its visible part.
+Edges are clipped to the view frustum, and the near plane's cut with them, so that a cuboid that is cut by the
+picture's border, or that reaches behind the camera, has exactly the bounds that a person would draw around its
+visible part.
 """
 
 from __future__ import annotations
 
 from functools import cache
+from itertools import combinations
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Float, Int, Real
 
 from diorama_core.scene.types import Intrinsics, box_corners
 
@@ -49,12 +51,12 @@ def visible_bounds(
     return bounds, visible
 
 
-def box_iou(a: Float[np.ndarray, "*n 4"], b: Float[np.ndarray, "*n 4"]) -> Float[np.ndarray, "*n"]:
+def box_iou(a: Real[np.ndarray, "*#n 4"], b: Real[np.ndarray, "*#n 4"]) -> Float[np.ndarray, "*_"]:
     """Intersection over union of boxes x1, y1, x2, y2, element by element (broadcasting)."""
     a, b = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
     overlap = np.clip(np.minimum(a[..., 2:], b[..., 2:]) - np.maximum(a[..., :2], b[..., :2]), 0, None).prod(axis=-1)
     union = (a[..., 2:] - a[..., :2]).prod(axis=-1) + (b[..., 2:] - b[..., :2]).prod(axis=-1) - overlap
-    return overlap / np.maximum(union, 1e-12)
+    return np.asarray(overlap / np.maximum(union, 1e-12))
 
 
 def _project(points: Float[np.ndarray, "*n 3"], k: Intrinsics) -> Float[np.ndarray, "*n 2"]:
@@ -84,28 +86,55 @@ def _frustum_slack(points: Float[np.ndarray, "n p 3"], k: Intrinsics) -> Float[n
 def _clipped_bounds(
     corners: Float[np.ndarray, "n 8 3"], slack: Float[np.ndarray, "n 8 5"], k: Intrinsics
 ) -> tuple[Float[np.ndarray, "n 4"], Bool[np.ndarray, "n"]]:
-    """Bounds of the clipped edges and of the picture's corners that the cuboid covers."""
-    edges = _edges()
-    a, b = slack[:, edges[:, 0]], slack[:, edges[:, 1]]
-    span = a - b
-    crossing = a / np.where(np.abs(span) < 1e-12, 1e-12, span)
-    enter = np.where(a < 0, np.where(b < 0, 2.0, crossing), 0.0).max(axis=-1)
-    leave = np.where(b < 0, np.where(a < 0, -1.0, crossing), 1.0).min(axis=-1)
-    retained = (enter <= leave)[..., None]
-    start, way = corners[:, edges[:, 0]], corners[:, edges[:, 1]] - corners[:, edges[:, 0]]
-    ends = np.concatenate([start + enter[..., None] * way, start + leave[..., None] * way], axis=1)
-    retained = np.concatenate([retained, retained], axis=1)
-    pixels = _project(ends, k)
+    """Bounds of the clipped edges, of the near plane's cut, and of the picture's corners that the cuboid covers."""
+    a, b = _edges().T
+    low, high = _segment_bounds(corners[:, a], corners[:, b], slack[:, a], slack[:, b], k)
+    near = slack[..., 0]
+    straddling = (near < 0).any(axis=1) & (near > 0).any(axis=1)
+    if straddling.any():
+        cut_low, cut_high = _near_cut_bounds(corners[straddling], near[straddling], k)
+        low[straddling] = np.minimum(low[straddling], cut_low)
+        high[straddling] = np.maximum(high[straddling], cut_high)
     picture = np.array([[0.0, 0.0], [k.width, 0.0], [0.0, k.height], [k.width, k.height]])
-    covered = _covers_rays(corners, (picture - [k.cx, k.cy]) / [k.fx, k.fy])
-    pixels = np.concatenate([pixels, np.broadcast_to(picture, (len(corners), 4, 2))], axis=1)
-    retained = np.concatenate([retained, covered[..., None]], axis=1)
-    low = np.where(retained, pixels, np.inf).min(axis=1)
-    high = np.where(retained, pixels, -np.inf).max(axis=1)
-    visible = np.asarray(retained.any(axis=(1, 2)))
+    covered = _covers_rays(corners, (picture - [k.cx, k.cy]) / [k.fx, k.fy])[..., None]
+    low = np.minimum(low, np.where(covered, picture, np.inf).min(axis=1))
+    high = np.maximum(high, np.where(covered, picture, -np.inf).max(axis=1))
+    visible = np.isfinite(low).all(axis=1)
     nearest = np.clip(_project(corners.mean(axis=1), k), 0.0, [k.width, k.height])
     bounds = np.where(visible[:, None], np.concatenate([low, high], -1), np.concatenate([nearest, nearest], -1))
     return np.clip(bounds, 0.0, [k.width, k.height, k.width, k.height]), visible
+
+
+def _segment_bounds(
+    start: Float[np.ndarray, "n s 3"],
+    end: Float[np.ndarray, "n s 3"],
+    start_slack: Float[np.ndarray, "n s 5"],
+    end_slack: Float[np.ndarray, "n s 5"],
+    k: Intrinsics,
+) -> tuple[Float[np.ndarray, "n 2"], Float[np.ndarray, "n 2"]]:
+    """Least and greatest pixels of the parts of segments inside the frustum; infinite where nothing is."""
+    span = start_slack - end_slack
+    crossing = start_slack / np.where(np.abs(span) < 1e-12, 1e-12, span)
+    enter = np.where(start_slack < 0, np.where(end_slack < 0, 2.0, crossing), 0.0).max(axis=-1)[..., None]
+    leave = np.where(end_slack < 0, np.where(start_slack < 0, -1.0, crossing), 1.0).min(axis=-1)[..., None]
+    retained = np.concatenate([enter <= leave] * 2, axis=1)
+    way = end - start
+    pixels = _project(np.concatenate([start + enter * way, start + leave * way], axis=1), k)
+    return np.where(retained, pixels, np.inf).min(axis=1), np.where(retained, pixels, -np.inf).max(axis=1)
+
+
+def _near_cut_bounds(
+    corners: Float[np.ndarray, "n 8 3"], near: Float[np.ndarray, "n 8"], k: Intrinsics
+) -> tuple[Float[np.ndarray, "n 2"], Float[np.ndarray, "n 2"]]:
+    """Bounds of the polygon in which the near plane cuts cuboids: its sides are no edges of the cuboids."""
+    a, b = _edges().T
+    cut = (near[:, a] < 0) != (near[:, b] < 0)
+    share = near[:, a] / np.where(cut, near[:, a] - near[:, b], 1.0)
+    points = corners[:, a] + share[..., None] * (corners[:, b] - corners[:, a])
+    slack = _frustum_slack(points, k)
+    slack[..., 0] = np.where(cut, 0.0, -1.0)
+    first, second = _edge_pairs_of_faces().T
+    return _segment_bounds(points[:, first], points[:, second], slack[:, first], slack[:, second], k)
 
 
 def _covers_rays(corners: Float[np.ndarray, "n 8 3"], rays_xy: Float[np.ndarray, "r 2"]) -> Bool[np.ndarray, "n r"]:
@@ -128,3 +157,11 @@ def _covers_rays(corners: Float[np.ndarray, "n 8 3"], rays_xy: Float[np.ndarray,
 def _edges() -> Int[np.ndarray, "12 2"]:
     """Pairs of corner indices that differ in one axis."""
     return np.array([(i, i | (1 << axis)) for i in range(8) for axis in range(3) if not i & (1 << axis)])
+
+
+@cache
+def _edge_pairs_of_faces() -> Int[np.ndarray, "36 2"]:
+    """Pairs of indices into `_edges` whose edges lie in one face; a plane's cut through a face joins such a pair."""
+    edges = _edges()
+    in_face = [((edges >> axis & 1) == side).all(axis=1) for axis in range(3) for side in (0, 1)]
+    return np.array([pair for face in in_face for pair in combinations(np.flatnonzero(face), 2)])

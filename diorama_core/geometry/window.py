@@ -78,7 +78,9 @@ def _at(integral: np.ndarray, rows: np.ndarray, columns: np.ndarray) -> np.ndarr
 
 
 def soft_iou(
-    seen: Float[np.ndarray, "n"], rendered: Float[np.ndarray, "p n"], weight: Float[np.ndarray, "n"]
+    seen: Float[np.ndarray, "n"],
+    rendered: Float[np.ndarray, "p n"],
+    weight: Float[np.ndarray, "n"] | Float[np.ndarray, "p n"],
 ) -> Float[np.ndarray, "p"]:
     """Weighted intersection over union of coverages in 0..1; zero where neither covers anything."""
     both = (np.minimum(seen, rendered) * weight).sum(axis=-1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import Any, Literal, Protocol, cast
+from typing import Any, Literal, Protocol, cast, runtime_checkable
 
 import numpy as np
 import trimesh
@@ -94,6 +94,7 @@ class Shape:
     """None when nothing had to be assumed (built-in shapes)."""
 
 
+@runtime_checkable
 class ShapeLibrary(Protocol):
     """Where shapes come from. Read-only and safe to share between threads."""
 

@@ -144,7 +144,7 @@ def _depth_and_gap(
     return np.maximum(depth, 0), above
 
 
-def _regions(spots: _Spots, caster: RaycastingScene) -> list[Int[np.ndarray, "k"]]:
+def _regions(spots: _Spots, caster: RaycastingScene) -> list[Int[np.ndarray, "_"]]:
     """Spots grown together over neighbouring cells of nearly equal height, as far as nothing stands between them."""
     n = len(spots.z)
     bins = np.round(spots.z / STEP_M).astype(np.int64)
@@ -195,7 +195,7 @@ def _cell_key(i: Int[np.ndarray, "s"], j: Int[np.ndarray, "s"], level: Int[np.nd
     return (i * 100_000 + j) * 100_000 + level
 
 
-def _flat_core(spots: _Spots, region: Int[np.ndarray, "k"]) -> Int[np.ndarray, "k"]:
+def _flat_core(spots: _Spots, region: Int[np.ndarray, "k"]) -> Int[np.ndarray, "core"]:
     """The part of a region at its most common level: the slopes of a cushion's rim and a shell's sides fall away."""
     z = spots.z[region]
     tolerance = float(np.clip(0.02 * np.sqrt(len(region)) * spots.cell_m, 0.003, 0.03))

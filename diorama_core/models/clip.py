@@ -42,7 +42,7 @@ class OpenClip:
         rows = [next(iter(session.run({name: one[None]}).values())) for one in ids]
         return unit(np.concatenate(rows)) if rows else np.zeros((0, 512), np.float32)
 
-    def images(self, pictures: Sequence[UInt8[np.ndarray, "h w 3"]]) -> Float32[np.ndarray, "n 512"]:
+    def images(self, pictures: Sequence[UInt8[np.ndarray, "_ _ 3"]]) -> Float32[np.ndarray, "n 512"]:
         """One vector per picture."""
         session = self.pool.get(self.image_graph)
         name = next(iter(session.inputs))
@@ -58,7 +58,7 @@ class DuoduoClip:
     weights: str = "duoduoclip"
     pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
-    def shape(self, views: Sequence[UInt8[np.ndarray, "h w 3"]]) -> Float32[np.ndarray, "512"]:
+    def shape(self, views: Sequence[UInt8[np.ndarray, "_ _ 3"]]) -> Float32[np.ndarray, "512"]:
         """The shape that the views show; the order of the views does not matter, one is enough (a photo's crop)."""
         session = self.pool.get(self.graph)
         count = next(iter(session.inputs.values())).shape[1]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import cv2
 import numpy as np
@@ -39,6 +39,7 @@ class SeenDepth:
     intrinsics: Intrinsics
 
 
+@runtime_checkable
 class GeometryNetwork(Protocol):
     """Input: an upright RGB picture, eight bits, and its intrinsics where they are known."""
 

@@ -34,7 +34,7 @@ class Dinov2:
         """Features of the picture stretched to a square of `side` pixels, a multiple of 14."""
         return self.batch([rgb], side)[0]
 
-    def batch(self, pictures: list[UInt8[np.ndarray, "h w 3"]], side: int = 224) -> Float32[np.ndarray, "b n n d"]:
+    def batch(self, pictures: list[UInt8[np.ndarray, "_ _ 3"]], side: int = 224) -> Float32[np.ndarray, "b n n d"]:
         """The same of several pictures at once."""
         if side % PATCH:
             raise ValueError(f"the side {side} must be a multiple of {PATCH}")

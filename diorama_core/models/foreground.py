@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Bool, Float32, UInt8
@@ -13,6 +14,15 @@ from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
 
 SIDE = 1024
 WHITE = 255
+
+
+@runtime_checkable
+class ForegroundNetwork(Protocol):
+    """Input: an upright RGB picture, eight bits. Output: where the foreground is in its pixels."""
+
+    def mask(self, rgb: UInt8[np.ndarray, "h w 3"], threshold: float = 0.5) -> Bool[np.ndarray, "h w"]:
+        """Where the probability of foreground is above the threshold."""
+        ...
 
 
 @dataclass(frozen=True)

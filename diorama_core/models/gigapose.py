@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, Float32, Int, UInt8
@@ -25,6 +26,25 @@ class PatchTurns:
     """In-plane turn, from the picture's x axis toward its y axis."""
 
 
+@runtime_checkable
+class ScaleNetwork(Protocol):
+    """Input: feature maps of two crops and pairs of patches that match. Output: how the pairs are scaled and turned."""
+
+    def maps(self, crops: Sequence[UInt8[np.ndarray, "_ _ 3"]]) -> Float32[np.ndarray, "b c n n"]:
+        """Feature maps of crops."""
+        ...
+
+    def turns(
+        self,
+        template: Float32[np.ndarray, "c n n"],
+        photo: Float32[np.ndarray, "c n n"],
+        template_cells: Int[np.ndarray, "k 2"],
+        photo_cells: Int[np.ndarray, "k 2"],
+    ) -> PatchTurns:
+        """Scale and angle of every pair of cells (column, row)."""
+        ...
+
+
 @dataclass(frozen=True)
 class GigaPoseScale:
     """Input: feature maps of two 224 x 224 crops and pairs of patches (column, row) that match.
@@ -37,7 +57,7 @@ class GigaPoseScale:
     weights: str = "gigapose-scale"
     pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
-    def maps(self, crops: Sequence[UInt8[np.ndarray, "h w 3"]]) -> Float32[np.ndarray, "b c n n"]:
+    def maps(self, crops: Sequence[UInt8[np.ndarray, "_ _ 3"]]) -> Float32[np.ndarray, "b c n n"]:
         """Feature maps of crops, each stretched to 224 x 224."""
         session = self.pool.get(self.features)
         name = next(iter(session.inputs))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import cv2
 import numpy as np
@@ -17,6 +17,7 @@ LAMA_SIDE = 512
 _FEATHER_PX = 3
 
 
+@runtime_checkable
 class Filler(Protocol):
     """Input: an upright RGB picture, eight bits, and a mask that is true in the holes.
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float32, Int64, UInt8
@@ -20,6 +20,15 @@ TOKENS = 16
 DEFAULT_SIDE = 960
 MAX_PHRASES = 64
 """Phrases in one run; more are asked in turns."""
+
+
+@runtime_checkable
+class BoxDetector(Protocol):
+    """Input: an upright RGB picture, eight bits, and phrases. Output: boxes, each with the phrase that fits best."""
+
+    def detect(self, rgb: UInt8[np.ndarray, "h w 3"], phrases: Sequence[str], threshold: float) -> Detections:
+        """Boxes above the threshold, best first."""
+        ...
 
 
 @dataclass(frozen=True)

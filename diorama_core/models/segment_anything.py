@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
@@ -25,6 +25,7 @@ class PromptedMask:
     """The network's own estimate of the mask's intersection over union, 0 to 1."""
 
 
+@runtime_checkable
 class BoxSegmenter(Protocol):
     """Input: an upright RGB picture and boxes (x1, y1, x2, y2) in its pixels. Output: one mask per box."""
 

@@ -50,7 +50,7 @@ class Built:
     """The scene before the layout optimiser."""
     layout: LayoutReport | None
     """None when there was nothing to arrange."""
-    textures: Mapping[str, UInt8[np.ndarray, "h w 3"]]
+    textures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]]
     """The planes' pictures by name."""
     inputs: Inputs
     """What the user gave, with the boxes and the depth that networks added."""

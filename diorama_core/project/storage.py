@@ -178,7 +178,7 @@ class Project:
         """Record which stage used what, and how long it took."""
         self.update_info(stages=[asdict(r) for r in runs])
 
-    def save_textures(self, textures: Mapping[str, UInt8[np.ndarray, "h w 3"]]) -> None:
+    def save_textures(self, textures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]]) -> None:
         """Keep the planes' pictures under their names."""
         for name, picture in textures.items():
             write_atomically(self._texture_path(name), _jpeg(picture), error=ProjectError)
@@ -188,7 +188,7 @@ class Project:
         path = self._texture_path(name)
         return read_picture(path, ProjectError) if path.exists() else None
 
-    def textures(self, scene: Scene) -> dict[str, UInt8[np.ndarray, "h w 3"]]:
+    def textures(self, scene: Scene) -> dict[str, UInt8[np.ndarray, "_ _ 3"]]:
         """All pictures that the scene's planes name."""
         names = {p.texture for p in scene.architecture.planes if p.texture is not None}
         found: dict[str, UInt8[np.ndarray, "h w 3"]] = {}

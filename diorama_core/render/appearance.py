@@ -37,7 +37,7 @@ class Material:
     emissive: Colour = (0.0, 0.0, 0.0)
     texture: UInt8[np.ndarray, "h w c"] | None = None
     """sRGB picture multiplied onto the colour; first row on top; may carry alpha."""
-    maps: dict[str, UInt8[np.ndarray, "h w 3"]] = field(default_factory=dict)
+    maps: dict[str, UInt8[np.ndarray, "_ _ 3"]] = field(default_factory=dict)
     """Further glTF maps, kept for export: normalTexture, metallicRoughnessTexture, occlusionTexture, ..."""
     double_sided: bool = False
     photographed: bool = False

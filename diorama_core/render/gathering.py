@@ -58,7 +58,9 @@ def _noisy(world: World, blockers: Caster, grid: Grid, rows: slice, light: Light
     return noisy
 
 
-def _gathered(noisy: Light, grid: Grid, rows: slice) -> tuple[Light, Bool[np.ndarray, "h w"]]:
+def _gathered(
+    noisy: Light, grid: Grid, rows: slice
+) -> tuple[Float32[np.ndarray, "rows w 3"], Bool[np.ndarray, "rows w"]]:
     """Light of some rows without its noise, gathered over blocks from the rows and those around them.
 
     Returns:
@@ -74,7 +76,7 @@ def _gathered(noisy: Light, grid: Grid, rows: slice) -> tuple[Light, Bool[np.nda
 
 def _spread(
     smooth: Light, sure: Bool[np.ndarray, "h w"], coarse: Grid, grid: Grid, rows: slice
-) -> tuple[Light, Bool[np.ndarray, "h w"]]:
+) -> tuple[Float32[np.ndarray, "rows columns 3"], Bool[np.ndarray, "rows columns"]]:
     """Light of the fine rows that belong to some coarse ones, and where the gathered pixels beside them tell it."""
     fine = grid.part(slice(2 * rows.start, 2 * rows.stop))
     total, mixed = np.zeros(fine.found.shape, np.float32), np.zeros(fine.points.shape, np.float32)

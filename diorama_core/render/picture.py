@@ -32,7 +32,7 @@ def picture(
     *,
     view: str = "photo",
     size: tuple[int, int] | None = None,
-    textures: Mapping[str, UInt8[np.ndarray, "h w c"]] | None = None,
+    textures: Mapping[str, UInt8[np.ndarray, "_ _ _"]] | None = None,
     photographed: bool = True,
     light: Lighting | None = None,
     effort: Effort = PICTURE_EFFORT,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import manifold3d
 import numpy as np
-from jaxtyping import Float, Int32, UInt8
+from jaxtyping import Float, Int, Int32, UInt8
 
 from diorama_core.geometry.planes import plane_axes, plane_uv
 from diorama_core.io.srgb import srgb_to_linear
@@ -44,7 +44,7 @@ def plane_surfaces(
 
 def _surface(
     vertices: Float[np.ndarray, "n 3"],
-    faces: Int32[np.ndarray, "m 3"],
+    faces: Int[np.ndarray, "m 3"],
     normals: Float[np.ndarray, "*n 3"],
     material: Material,
     uv: Float[np.ndarray, "n 2"] | None,

@@ -18,7 +18,7 @@ import cv2
 import numpy as np
 import open3d as o3d
 import trimesh
-from jaxtyping import Bool, Float, Float32, Int, Int32, UInt8, UInt16
+from jaxtyping import Bool, Float, Float32, Int, Int32, UInt8, UInt16, UInt32
 from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.errors import LibraryError
@@ -249,7 +249,7 @@ class _UnitCaster:
     """Triangles in template units around the origin, seen from the grid's cameras."""
 
     def __init__(
-        self, vertices: Float32[np.ndarray, "n 3"], faces: UInt8[np.ndarray, "m 3"], grid: TemplateGrid
+        self, vertices: Float32[np.ndarray, "n 3"], faces: UInt32[np.ndarray, "m 3"], grid: TemplateGrid
     ) -> None:
         self._grid = grid
         self._scene = _OPEN3D.t.geometry.RaycastingScene(nthreads=1)

@@ -89,7 +89,7 @@ def squared_around(
 
 def _box(mask: Bool[np.ndarray, "h w"]) -> tuple[int, int, int, int] | None:
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-    return (columns[0], rows[0], columns[-1] + 1, rows[-1] + 1) if len(rows) else None
+    return (int(columns[0]), int(rows[0]), int(columns[-1]) + 1, int(rows[-1]) + 1) if len(rows) else None
 
 
 def colour_feature(palette: Palette) -> Float[np.ndarray, "c"]:

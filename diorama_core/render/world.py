@@ -126,7 +126,7 @@ def scene_world(
     scene: Scene,
     library: ShapeLibrary,
     *,
-    textures: Mapping[str, UInt8[np.ndarray, "h w c"]] | None = None,
+    textures: Mapping[str, UInt8[np.ndarray, "_ _ _"]] | None = None,
     photographed: bool = True,
     without: frozenset[str] = frozenset(),
 ) -> World:

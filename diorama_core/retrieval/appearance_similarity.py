@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import cv2
 import numpy as np
@@ -76,6 +76,7 @@ class ObjectCrop(ArrayValue):
         return square
 
 
+@runtime_checkable
 class AppearanceSimilarity(Protocol):
     """Compares things with shapes."""
 

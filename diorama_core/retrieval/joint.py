@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, Float32, UInt8
@@ -24,6 +24,7 @@ _SPREAD = 0.08
 _PROMPT = "a photo of {}"
 
 
+@runtime_checkable
 class JointEmbedding(Protocol):
     """Words, pictures and shapes in one space; all vectors of unit length."""
 
@@ -40,7 +41,7 @@ class JointEmbedding(Protocol):
         """What a picture shows."""
         ...
 
-    def shape(self, views: Sequence[UInt8[np.ndarray, "h w 3"]]) -> Float32[np.ndarray, " d"]:
+    def shape(self, views: Sequence[UInt8[np.ndarray, "_ _ 3"]]) -> Float32[np.ndarray, " d"]:
         """The thing that several pictures show."""
         ...
 
@@ -65,7 +66,7 @@ class ClipEmbedding:
         """The tower takes a single picture too."""
         return self.shape([rgb])
 
-    def shape(self, views: Sequence[UInt8[np.ndarray, "h w 3"]]) -> Float32[np.ndarray, " d"]:
+    def shape(self, views: Sequence[UInt8[np.ndarray, "_ _ 3"]]) -> Float32[np.ndarray, " d"]:
         """The tower's, or the mean direction of the pictures."""
         if self.tower is not None:
             return self.tower.shape(views)
@@ -99,7 +100,7 @@ class JointSimilarity:
     def _made(self, shape: Shape) -> Float32[np.ndarray, "1 d"]:
         return self.embedding.shape(self._views(shape))[None]
 
-    def _views(self, shape: Shape) -> list[UInt8[np.ndarray, "h w 3"]]:
+    def _views(self, shape: Shape) -> list[UInt8[np.ndarray, "_ _ 3"]]:
         """The shape from four sides on the neutral ground."""
         pictures = []
         for view in _VIEWS:

@@ -27,6 +27,7 @@ from diorama_core.scene.room_edits import (
 )
 from diorama_core.scene.support import check_edge, descendants
 from diorama_core.scene.types import Candidate, Finish, Plane, Pose, Scene, SceneObject, Support
+from diorama_core.scene.values import Vector3
 
 __all__ = [
     "attach", "ceiling_height", "detach", "duplicate", "edge_length_m", "floor_height", "fresh_id", "insert", "move",
@@ -116,7 +117,7 @@ def remove(scene: Scene, object_ids: Iterable[str]) -> Scene:
     return replace(scene, objects=tuple(o for o in scene.objects if o.id not in gone), supports=tuple(supports))
 
 
-def duplicate(scene: Scene, object_id: str, *, offset_world: object = (0.3, 0.3, 0.0)) -> tuple[Scene, str]:
+def duplicate(scene: Scene, object_id: str, *, offset_world: Vector3 = (0.3, 0.3, 0.0)) -> tuple[Scene, str]:
     """Copy one object beside itself, on the same supporter. Returns the scene and the copy's id."""
     item = _existing(scene, object_id)
     copy_id = fresh_id(scene, item.category)

@@ -14,7 +14,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.scene.frames import UP_WORLD
-from diorama_core.scene.values import ArrayValue, frozen_array
+from diorama_core.scene.values import ArrayValue, Vector3, frozen_array
 
 PlaneRole = Literal["floor", "ceiling", "wall"]
 Relation = Literal["placed on", "mounted on"]
@@ -131,9 +131,9 @@ class Pose(ArrayValue):
             raise ValueError("scale must be positive")
 
     @classmethod
-    def upright(cls, position: object, yaw_rad: float = 0.0, scale: object = (1.0, 1.0, 1.0)) -> Pose:
+    def upright(cls, position: Vector3, yaw_rad: float = 0.0, scale: Vector3 = (1.0, 1.0, 1.0)) -> Pose:
         """A pose turned by `yaw_rad` about world up, so that the front points to (cos yaw, sin yaw, 0)."""
-        return cls(yaw_rotation(yaw_rad), position, scale)  # type: ignore[arg-type]
+        return cls(yaw_rotation(yaw_rad), np.asarray(position, np.float64), np.asarray(scale, np.float64))
 
     @property
     def T_world_object(self) -> Float[np.ndarray, "4 4"]:
@@ -159,7 +159,7 @@ class Pose(ArrayValue):
         """Shape points in the world."""
         return (np.asarray(points_object) * self.scale) @ self.R_world_object.T + self.position
 
-    def moved(self, offset_world: object) -> Pose:
+    def moved(self, offset_world: Vector3) -> Pose:
         """The pose shifted by a world offset."""
         return replace(self, position=self.position + np.asarray(offset_world, dtype=np.float64))
 
@@ -283,7 +283,7 @@ class SceneObject:
         return self.pose.apply(box_corners(self.shape_size_m))
 
 
-def box_corners(size_m: object) -> Float[np.ndarray, "8 3"]:
+def box_corners(size_m: Vector3) -> Float[np.ndarray, "8 3"]:
     """Corners of a centred box; index bits 0, 1, 2 are the signs of x, y, z."""
     signs = np.array([[(i >> axis) & 1 for axis in range(3)] for i in range(8)]) * 2.0 - 1.0
     return 0.5 * signs * np.asarray(size_m, dtype=np.float64)

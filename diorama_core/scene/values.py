@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import fields
 from typing import Any
 
 import numpy as np
+from jaxtyping import Real
+
+Vector3 = Real[np.ndarray, "3"] | Sequence[float]
+"""Three numbers along x, y and z as a caller has them; made an array of floats where they arrive."""
 
 
 def frozen_array(value: Any, shape: tuple[int, ...], dtype: Any = np.float64) -> np.ndarray:

@@ -13,6 +13,7 @@ from jaxtyping import Float
 
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.scene.types import Pose
+from diorama_core.scene.values import Vector3
 
 LIFT_M = 1e-3
 """Resting things are tested this much above their place, so that contact is not collision."""
@@ -52,7 +53,7 @@ class Bodies:
         del self._placed[object_id]
 
     def hit_by(
-        self, item: Item, pose: Pose, *, ignore: Collection[str] = (), lift: object = (0.0, 0.0, LIFT_M)
+        self, item: Item, pose: Pose, *, ignore: Collection[str] = (), lift: Vector3 = (0.0, 0.0, LIFT_M)
     ) -> str | None:
         """Id of a placed body whose surface the posed item would cut, or None."""
         body, bounds = self._posed(item, pose, np.asarray(lift, dtype=np.float64))

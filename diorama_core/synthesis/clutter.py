@@ -108,7 +108,7 @@ def _leave(f: Furnisher, parent: str, index: int, habit: Habit) -> str | None:
     def fits(s: Shape) -> bool:
         if s.category == "clock" and s.size_m[2] > 0.22:
             return False  # made for a wall
-        return s.size_m[2] < headroom and s.size_m[0] < 0.95 * room[0] and s.size_m[1] < 0.9 * room[1]
+        return bool(s.size_m[2] < headroom and s.size_m[0] < 0.95 * room[0] and s.size_m[1] < 0.9 * room[1])
 
     kind = habit.items[int(f.rng.integers(len(habit.items)))]
     item = f.pick(kind, where=fits)

@@ -92,7 +92,7 @@ def _style_splits() -> dict[str, Split]:
     return share_out((f"{f} on {w}" for f in FLOORS for w in WALLS), TEXTURE_VALIDATION)
 
 
-def finish_textures(architecture: Architecture) -> dict[str, UInt8[np.ndarray, "h w 3"]]:
+def finish_textures(architecture: Architecture) -> dict[str, UInt8[np.ndarray, "_ _ 3"]]:
     """Pictures of all planes whose `texture` names a finish, by plane id, laid out as `plane_uv` says.
 
     Planes share a finish's name but not its picture, which has each plane's own size.

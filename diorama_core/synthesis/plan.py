@@ -143,7 +143,7 @@ class RoomPlan(ArrayValue):
         t = (self.slope.run_m - offs[0]) / (offs[1] - offs[0])
         return np.stack([ends[0], ends[0] + t * (ends[1] - ends[0]), ends[1]])
 
-    def _ceilings(self) -> tuple[Float[np.ndarray, "n 2"], ...]:
+    def _ceilings(self) -> tuple[Float[np.ndarray, "_ 2"], ...]:
         """Places on the floor below the corners of the level and the sloping part, counter-clockwise from above."""
         if self.slope is None:
             return (self.outline,)

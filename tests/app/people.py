@@ -27,7 +27,7 @@ class Drawer:
         return self.retained.get(key)
 
 
-class LocalClient:
+class LocalClient(viser.ClientHandle):
     """Stands in for a browser's handle; nodes and panels go to the shared scene of the server."""
 
     def __init__(self, server: viser.ViserServer, client_id: int) -> None:
@@ -57,5 +57,5 @@ class LocalClient:
 
 def join(session: EditorSession, client_id: int = 0) -> Client:
     """Somebody comes into the room."""
-    session.joined(LocalClient(session.server, client_id))  # type: ignore[arg-type]
+    session.joined(LocalClient(session.server, client_id))
     return session.clients[client_id]

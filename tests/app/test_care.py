@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from diorama_app.commands.arrangements import Arrangements
 from diorama_app.commands.import_model import import_model
 from diorama_app.commands.measure import point_under
 from diorama_app.projects import manage as project_care
+from diorama_app.session.client import Client
 from diorama_app.session.layout_run import LayoutRun
 from diorama_core.editing.outline import Outline
 from diorama_core.errors import EditRefused, ProjectError
@@ -82,12 +84,10 @@ def test_a_shelf_grows_with_ones_own_models(tmp_path: Path, monkeypatch: pytest.
 
 
 def test_a_library_that_cannot_grow_says_so() -> None:
-    class Client:
-        class session:  # noqa: N801
-            library = PlainLibrary()
-
+    client = Client.__new__(Client)
+    client.session = SimpleNamespace(library=PlainLibrary())  # type: ignore[assignment]
     with pytest.raises(EditRefused, match="cannot take models"):
-        import_model(Client(), "x.glb", b"")  # type: ignore[arg-type]
+        import_model(client, "x.glb", b"")
 
 
 def test_arrangements_leave_what_is_locked() -> None:

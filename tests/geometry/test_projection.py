@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from diorama_core.geometry.projection import NEAR_M, box_iou, cuboid_corners, visible_bounds
@@ -41,6 +41,7 @@ coordinate = st.floats(-2.5, 2.5)
     x=coordinate, y=st.floats(0.3, 5.0), z=st.floats(-1.5, 1.5), yaw=st.floats(-3.2, 3.2),
     size=st.tuples(*[st.floats(0.2, 2.5)] * 3),
 )  # fmt: skip
+@example(x=0.5, y=0.5, z=0.0, yaw=0.0, size=(1.03125, 1.0, 1.0))  # only the near plane's cut reaches the picture
 def test_bounds_are_those_of_the_visible_surface(x: float, y: float, z: float, yaw: float, size: tuple) -> None:
     corners = cuboid_corners(np.array([[x, y, z]]), np.array([yaw]), np.array([size])) @ FROM_WORLD.T
     expected = surface_bounds(corners[0])

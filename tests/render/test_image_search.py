@@ -13,6 +13,7 @@ from diorama_core.library.catalogue import built_in_library, default_cache_dir
 from diorama_core.library.ingest.sink import Ingested
 from diorama_core.library.store import StoredLibrary, create_library
 from diorama_core.pipeline.prepare import prepare_library
+from diorama_core.render import image_search
 from diorama_core.render.crops import Crop, foreground, read_crop
 from diorama_core.render.image_search import SEARCH_GRID, ImageSearch
 from diorama_core.render.template_cache import TemplateCache
@@ -71,7 +72,7 @@ def test_features_are_made_once(library: StoredLibrary, monkeypatch: pytest.Monk
     first = search.prepared(library.shapes()[:2])
     assert len(first) == 2
     assert first.values.shape == (2, len(SEARCH_GRID), WIDTH)
-    monkeypatch.setattr("diorama_core.render.image_search.shape_features", None)  # calling it would fail
+    monkeypatch.setattr(image_search, "shape_features", None)  # calling it would fail
     assert len(search.prepared(library.shapes()[:2])) == 2
 
 

@@ -42,7 +42,8 @@ def rotations(draw: st.DrawFn) -> np.ndarray:
 
 @st.composite
 def poses(draw: st.DrawFn) -> Pose:
-    return Pose(draw(rotations()), draw(st.tuples(numbers, numbers, numbers)), draw(st.tuples(scales, scales, scales)))
+    position, scale = draw(st.tuples(numbers, numbers, numbers)), draw(st.tuples(scales, scales, scales))
+    return Pose(draw(rotations()), np.array(position), np.array(scale))
 
 
 @st.composite

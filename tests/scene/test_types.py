@@ -59,6 +59,7 @@ def test_corner_order_is_the_bits_of_the_index() -> None:
     np.testing.assert_allclose(corners[6], [-1, 2, 3])
 
 
+@pytest.mark.unchecked
 @pytest.mark.parametrize("bad", [np.diag([1.0, 1, -1]), np.zeros((3, 3)), np.eye(4), np.full((3, 3), np.nan)])
 def test_a_pose_refuses_what_is_no_rotation(bad: np.ndarray) -> None:
     with pytest.raises(ValueError, match=r"rotation|shape|finite"):

@@ -75,7 +75,7 @@ def _grown(points: Float[np.ndarray, "n 3"], normals: Float[np.ndarray, "n 3"], 
     return labels
 
 
-def _connected(points: Float[np.ndarray, "n 3"], member: Bool[np.ndarray, "n"]) -> list[Int[np.ndarray, "m"]]:
+def _connected(points: Float[np.ndarray, "n 3"], member: Bool[np.ndarray, "n"]) -> list[Int[np.ndarray, "_"]]:
     """Indices of the dense pieces of the members that are large enough, largest first."""
     chosen = np.flatnonzero(member)
     if len(chosen) < MIN_POINTS:

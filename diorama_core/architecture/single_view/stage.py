@@ -134,7 +134,7 @@ def _pieces(chain: Chain, scorer: ChainScorer, sure: Float[np.ndarray, "r"]) -> 
     for k in range(len(chain.walls)):
         first, last = float(ends[k]), float(ends[k + 1])
         wall = _as_candidate(chain.walls, k, float(sure[k]))
-        runs.append(Run(_pushed(wall, first, last, scorer.cues, sure=sure[k] > SURE), first, last))
+        runs.append(Run(_pushed(wall, first, last, scorer.cues, sure=bool(sure[k] > SURE)), first, last))
     for k in range(len(runs) - 1):
         corner = meeting_point(runs[k].wall, runs[k + 1].wall)
         before = meeting_point(_as_candidate(chain.walls, k), _as_candidate(chain.walls, k + 1))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import cv2
 import numpy as np
@@ -14,6 +14,7 @@ from diorama_core.geometry.planes import plane_rectangle
 from diorama_core.scene.types import Camera, Plane
 
 
+@runtime_checkable
 class EmptyRoomFiller(Protocol):
     """Paints a part of a photo out, as LaMa and MI-GAN do (PlainRecon's first step)."""
 
@@ -32,7 +33,7 @@ def empty_room(
     hidden: Bool[np.ndarray, "h w"],
     planes: tuple[Plane, ...],
     camera: Camera,
-    textures: Mapping[str, UInt8[np.ndarray, "th tw 3"]],
+    textures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]],
 ) -> UInt8[np.ndarray, "h w 3"]:
     """The photo with hidden pixels repainted from the planes behind them: the embedded filler, in perspective.
 

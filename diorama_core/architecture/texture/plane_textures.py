@@ -69,7 +69,7 @@ def plane_textures(
     camera: Camera,
     architecture: Architecture,
     filler: EmptyRoomFiller | None = None,
-) -> dict[str, UInt8[np.ndarray, "h w 3"]]:
+) -> dict[str, UInt8[np.ndarray, "_ _ 3"]]:
     """RGB pictures of the planes that are seen well enough, by plane id.
 
     Texture coordinates are `geometry.planes.plane_uv`: row 0 is v = 1. At most `MAX_SIDE_PX` a side.

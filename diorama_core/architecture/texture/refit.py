@@ -19,12 +19,12 @@ SAME_M = 1e-3
 MARK = "@"
 """Before what a refitted picture's name adds to the original's."""
 
-Pictures = Mapping[str, UInt8[np.ndarray, "h w 3"]]
+Pictures = Mapping[str, UInt8[np.ndarray, "_ _ 3"]]
 
 
 def refitted_textures(
     before: Scene, after: Scene, textures: Pictures
-) -> tuple[Scene, dict[str, UInt8[np.ndarray, "h w 3"]]]:
+) -> tuple[Scene, dict[str, UInt8[np.ndarray, "_ _ 3"]]]:
     """The edited scene with every picture at the scale it had, and the pictures made for that, by name.
 
     Pictures belong to their planes' rectangles (`geometry.planes.plane_uv`), so one whose plane changed its rectangle
@@ -38,7 +38,7 @@ def refitted_textures(
     """
     if _scaled(before, after):
         return after, {}
-    made: dict[str, UInt8[np.ndarray, "h w 3"]] = {}
+    made: dict[str, UInt8[np.ndarray, "_ _ 3"]] = {}
     planes = []
     for plane in after.architecture.planes:
         name = plane.texture

@@ -100,7 +100,7 @@ def _directions(surface: MeasuredSurface, upright: Bool[np.ndarray, "n"]) -> lis
 
 
 def _turn(angle_rad: np.ndarray | float) -> np.ndarray:
-    return (np.asarray(angle_rad) + np.pi) % (2 * np.pi) - np.pi
+    return np.asarray((np.asarray(angle_rad) + np.pi) % (2 * np.pi) - np.pi)
 
 
 def _parallel_walls(

@@ -61,7 +61,7 @@ class _Headings:
 def heading(point: Float[np.ndarray, "*n 2"], origin: Float[np.ndarray, "2"]) -> Float[np.ndarray, "*n"]:
     """Heading of points seen from `origin`, from +Y to the right, radians."""
     offset = np.asarray(point) - origin
-    return np.arctan2(offset[..., 0], offset[..., 1])
+    return np.asarray(np.arctan2(offset[..., 0], offset[..., 1]))
 
 
 def wall_runs(

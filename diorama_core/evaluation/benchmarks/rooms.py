@@ -116,7 +116,7 @@ def views_table(views: Sequence[ViewSurvey]) -> Table:
     return Table("Pictures", columns, (row,), note)
 
 
-def sheet(pictures: Sequence[UInt8[np.ndarray, "h w 3"]], names: Sequence[str]) -> UInt8[np.ndarray, "H W 3"]:
+def sheet(pictures: Sequence[UInt8[np.ndarray, "_ _ 3"]], names: Sequence[str]) -> UInt8[np.ndarray, "H W 3"]:
     """All pictures side by side, each with its name."""
     labelled = []
     for picture, name in zip(pictures, names, strict=True):

@@ -138,10 +138,10 @@ def pooled(alignments: Sequence[Alignment]) -> Alignment:
     return Alignment(alignments[0].reading, int(weights.sum()), r, t, s, every)
 
 
-def rotation_angle(a: Float[np.ndarray, "*n 3 3"], b: Float[np.ndarray, "*n 3 3"]) -> Float[np.ndarray, "*n"]:
+def rotation_angle(a: Float[np.ndarray, "*#n 3 3"], b: Float[np.ndarray, "*#n 3 3"]) -> Float[np.ndarray, "*_"]:
     """Geodesic angle between rotations, radians."""
     trace = np.einsum("...ij,...ij->...", a, b)
-    return np.arccos(np.clip((trace - 1.0) / 2.0, -1.0, 1.0))
+    return np.asarray(np.arccos(np.clip((trace - 1.0) / 2.0, -1.0, 1.0)))
 
 
 def symmetry_turns(fold: int) -> Float[np.ndarray, "k 3 3"]:

@@ -51,7 +51,7 @@ class PhotoObservations:
     """How much a metre along the viewing ray counts against a metre across: high where depth was measured."""
     size: Float[np.ndarray, "n 3"]
     """Extents at scale 1."""
-    points: tuple[Float[np.ndarray, "v 3"], ...]
+    points: tuple[Float[np.ndarray, "_ 3"], ...]
     """Outline points of each shape at scale 1, object frame."""
 
     def limited(self, scale: Float[np.ndarray, "n 3"]) -> PhotoObservations:

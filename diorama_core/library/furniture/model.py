@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import ModuleType
-from typing import Any, Literal, Protocol
+from typing import Any, Literal, Protocol, runtime_checkable
 
 import numpy as np
 import trimesh
@@ -44,6 +44,7 @@ class Part:
 Parts = list[Part]
 
 
+@runtime_checkable
 class NamedStyle(Protocol):
     """What runs through every piece of one style (`styles.Style`)."""
 

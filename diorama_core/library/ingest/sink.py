@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Set
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from diorama_core.library.record import Shape
 
@@ -25,6 +25,7 @@ class Ingested:
     """What was repaired or left out, one line each."""
 
 
+@runtime_checkable
 class ShapeSink(Protocol):
     """A store that takes shapes in. Used by one thread of one process; readers may read meanwhile.
 

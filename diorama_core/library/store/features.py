@@ -77,8 +77,8 @@ class FeatureMatrix:
         """The keys with features that are not among these, in order."""
         return [key for key in self.keys if key not in keys]
 
-    def append(self, keys: Sequence[str], values: Float[np.ndarray, "n rows width"]) -> None:
-        """Add the features of new keys.
+    def append(self, keys: Sequence[str], values: Float[np.ndarray, "n *feature"]) -> None:
+        """Add the features of new keys, `rows` times `width` numbers for each.
 
         Raises:
             LibraryError: when a key is there already, the sizes do not fit, a number is too large for half precision or

@@ -9,7 +9,7 @@ from __future__ import annotations
 import importlib.util
 import logging
 import os
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
@@ -24,6 +24,7 @@ INDEX_FROM = 1_000_000
 _BATCH = 20_000
 
 
+@runtime_checkable
 class VectorIndex(Protocol):
     """Finds the features nearest to a query; features and queries of unit length make scores cosines."""
 

@@ -64,7 +64,7 @@ class EmbeddedCamera:
         return _with_depth(estimate, inputs, self.hypotheses)
 
 
-def _of_the_room(segments_px: Float[np.ndarray, "n 4"], photo: Photo) -> Float[np.ndarray, "n 4"]:
+def _of_the_room(segments_px: Float[np.ndarray, "n 4"], photo: Photo) -> Float[np.ndarray, "m 4"]:
     """Without the edges of a plain frame around the picture, which many cameras' rectification leaves behind."""
     size = np.array([photo.width, photo.height])
     margin = FRAME_MARGIN * size.max()

@@ -20,7 +20,8 @@ def up_in_camera(
 def pitch_and_roll(up_camera: Float[np.ndarray, "*n 3"]) -> tuple[Float[np.ndarray, "*n"], Float[np.ndarray, "*n"]]:
     """Inverse of `up_in_camera`, radians."""
     up = np.asarray(up_camera, dtype=np.float64)
-    return np.arcsin(np.clip(-up[..., 2], -1, 1)), np.arctan2(-up[..., 0], -up[..., 1])
+    pitch, roll = np.arcsin(np.clip(-up[..., 2], -1, 1)), np.arctan2(-up[..., 0], -up[..., 1])
+    return np.asarray(pitch), np.asarray(roll)
 
 
 def world_frame(
@@ -57,4 +58,4 @@ def frame_difference_rad(a: Float[np.ndarray, "*n 3 3"], b: Float[np.ndarray, "3
     straight = (a * np.stack([x, y, zero])).sum(axis=(-2, -1))
     turned = (a * np.stack([-y, x, zero])).sum(axis=(-2, -1))
     trace = np.maximum(np.abs(straight), np.abs(turned)) + a[..., 2, :] @ z
-    return np.arccos(np.clip((trace - 1.0) / 2.0, -1.0, 1.0))
+    return np.asarray(np.arccos(np.clip((trace - 1.0) / 2.0, -1.0, 1.0)))

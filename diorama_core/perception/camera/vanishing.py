@@ -226,7 +226,7 @@ def _rotation(vector: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
 def _frame_log_prior(up_camera: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n"]:
     pitch, roll = pitch_and_roll(up_camera)
     centre, spread = PITCH_PRIOR_RAD
-    return -0.5 * (np.square((pitch - centre) / spread) + np.square(roll / ROLL_SIGMA_RAD))
+    return np.asarray(-0.5 * (np.square((pitch - centre) / spread) + np.square(roll / ROLL_SIGMA_RAD)))
 
 
 def _focal_log_prior(focal: float, known: float | None) -> float:

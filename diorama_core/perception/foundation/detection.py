@@ -9,7 +9,7 @@ import numpy as np
 from diorama_core.artefacts import LabelledBox, Photo
 from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN, resolve
 from diorama_core.models.boxes import Detections, without_doubles, without_parts_of_same
-from diorama_core.models.owlv2 import Owlv2
+from diorama_core.models.owlv2 import BoxDetector
 from diorama_core.models.yolox import COCO_CLASSES, Yolox
 from diorama_core.perception.foundation.vocabulary import INDOOR_WORDS
 from diorama_core.progress import Progress
@@ -38,7 +38,7 @@ _IN_ROOMS = frozenset(_IN_ROOM_NAMES.split(","))
 class OpenVocabularyDetection:
     """OWLv2 with "a photo of CLASS" (paper, supplement A): suppression across classes, then of parts within a class."""
 
-    detector: Owlv2
+    detector: BoxDetector
     threshold: float = 0.2
     double_iou: float = 0.8
     part_share: float = 0.8

@@ -14,7 +14,7 @@ from jaxtyping import Bool, Float32, UInt8
 
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry
 from diorama_core.models.depth import GeometryNetwork, SeenDepth
-from diorama_core.models.foreground import Foreground
+from diorama_core.models.foreground import ForegroundNetwork
 from diorama_core.models.inpainting import Filler
 from diorama_core.progress import Progress
 from diorama_core.protocols import ArchitectureStage
@@ -35,7 +35,7 @@ class EmptyRoomArchitecture:
     room: ArchitectureStage
     filler: Filler
     depth_prediction: GeometryNetwork
-    foregrounds: tuple[Foreground, ...] = ()
+    foregrounds: tuple[ForegroundNetwork, ...] = ()
     """Find what no mask covers; without any, the objects' masks are all that is painted out."""
 
     def reconstruct(

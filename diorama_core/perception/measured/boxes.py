@@ -86,7 +86,7 @@ def completed(
     top_seen = _top_seen(points @ R, extent)
     for axis in (0, 1):
         facing = abs(away[axis]) / max(float(np.linalg.norm(away)), 1e-9)
-        unseen_back = facing > 0.5 and not top_seen[axis] and extent.size[axis] < SHORT_OF_USUAL * usual[axis]
+        unseen_back = bool(facing > 0.5 and not top_seen[axis] and extent.size[axis] < SHORT_OF_USUAL * usual[axis])
         side_cut = facing <= 0.7 and cut_off[:2].any() and extent.size[axis] < usual[axis]
         if not unseen_back and not side_cut:
             continue

@@ -52,7 +52,7 @@ def _footprint_axes(boxes: Cuboids, row: int) -> Float[np.ndarray, "2"]:
     return np.array([c * depth + s * width, s * depth + c * width])
 
 
-def arrange(readings: list[Cuboids], costs: list[Float[np.ndarray, "k"]], categories: list[Category]) -> list[int]:
+def arrange(readings: list[Cuboids], costs: list[Float[np.ndarray, "_"]], categories: list[Category]) -> list[int]:
     """One reading per object: starting from the cheapest, objects change in turn while the whole becomes cheaper.
 
     Args:
@@ -76,7 +76,7 @@ def arrange(readings: list[Cuboids], costs: list[Float[np.ndarray, "k"]], catego
     return chosen
 
 
-def _pair_costs(readings: list[Cuboids], categories: list[Category]) -> list[list[Float[np.ndarray, "k l"]]]:
+def _pair_costs(readings: list[Cuboids], categories: list[Category]) -> list[list[Float[np.ndarray, "_ _"]]]:
     count = len(readings)
     table = [[np.zeros((1, 1))] * count for _ in range(count)]
     for i in range(count):

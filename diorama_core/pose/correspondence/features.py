@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Bool, Float32
@@ -14,6 +14,7 @@ from diorama_core.pose.correspondence.crops import PATCHES, View, pooled
 _VIEWS_AT_ONCE = 12
 
 
+@runtime_checkable
 class PatchFeatures(Protocol):
     """Features of the 16 x 16 patches of every view, of unit length."""
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from diorama_core.models.gigapose import GigaPoseScale
+from diorama_core.models.gigapose import ScaleNetwork
 from diorama_core.pose.correspondence.crops import PATCHES, Crop, patch_pixels
 from diorama_core.pose.correspondence.matching import Matches
 from diorama_core.pose.correspondence.umeyama import ransac_umeyama, umeyama
@@ -59,7 +59,7 @@ class Compared:
 
 
 def from_matches(
-    compared: Compared, views: Int[np.ndarray, " n"], scale_network: GigaPoseScale | None = None
+    compared: Compared, views: Int[np.ndarray, " n"], scale_network: ScaleNetwork | None = None
 ) -> Rigid | None:
     """RANSAC-Umeyama over the lifted matches of the chosen views, the tightest tolerance first.
 
@@ -104,7 +104,7 @@ def from_view(compared: Compared, view: int, similarity: float) -> Rigid | None:
     return Rigid(R, np.median(seen, axis=0) - scale * R @ np.median(shown, axis=0), scale, similarity)
 
 
-def from_one_match(compared: Compared, view: int, scale_network: GigaPoseScale | None = None) -> Rigid | None:
+def from_one_match(compared: Compared, view: int, scale_network: ScaleNetwork | None = None) -> Rigid | None:
     """The turn of a view turned further in the picture's plane, hung on its best match.
 
     Relative size and in-plane turn come from the network, or from where the view's matches lie in the picture.
@@ -138,7 +138,7 @@ def _plane_similarity(
     return float(size2d[0]), float(np.arctan2(turn[0, 1, 0], turn[0, 0, 0]))
 
 
-def _predicted(compared: Compared, view: int, network: GigaPoseScale) -> tuple[float, float]:
+def _predicted(compared: Compared, view: int, network: ScaleNetwork) -> tuple[float, float]:
     """The same of the best match alone, by the network."""
     pictures = [
         np.repeat(g[..., None], 3, axis=-1) for g in (compared.templates.gray[view], compared.crop.view.gray[0])

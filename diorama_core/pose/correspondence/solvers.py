@@ -28,7 +28,7 @@ from diorama_core.artefacts import (
 )
 from diorama_core.io.cache import LruCache
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.models.gigapose import GigaPoseScale
+from diorama_core.models.gigapose import ScaleNetwork
 from diorama_core.pose.correspondence.crops import Crop, crop_object, template_view
 from diorama_core.pose.correspondence.encoded import EncodedViews
 from diorama_core.pose.correspondence.features import GeometricFeatures, PatchFeatures
@@ -67,7 +67,7 @@ class CorrespondencePose:
     library: ShapeLibrary
     kind: Kind = "correspondence"
     features: PatchFeatures = field(default_factory=GeometricFeatures)
-    scale_network: GigaPoseScale | None = None
+    scale_network: ScaleNetwork | None = None
     """Predicts relative scale and in-plane turn; used by `correspondence` and `gigapose-like`."""
     grid: TemplateGrid = PAPER_GRID
     cache: TemplateCache = field(default_factory=TemplateCache, repr=False, compare=False)

@@ -47,8 +47,8 @@ def test_every_setting_is_retained_except_that_outlines_are_shown() -> None:
     same = [f.name for f in fields(Preferences) if getattr(CHANGED, f.name) == getattr(Preferences(), f.name)]
     assert same == ["masks"], "this test forgot a setting"
     one = viser_client()
-    remember(one, replace(CHANGED, masks=True))  # type: ignore[arg-type]
-    assert remembered(one) == CHANGED  # type: ignore[arg-type]
+    remember(one, replace(CHANGED, masks=True))
+    assert remembered(one) == CHANGED
 
 
 @pytest.mark.parametrize("retained", [None, "", "{", "[]", '{"unit": "parsec"}', '{"snap": "perhaps"}'])
@@ -62,4 +62,4 @@ def test_settings_of_another_version_keep_what_is_known() -> None:
 
 
 def test_a_browser_that_keeps_nothing_is_somebody_new() -> None:
-    assert remembered(viser_client(Shut())) == Preferences()  # type: ignore[arg-type]
+    assert remembered(viser_client(Shut())) == Preferences()

@@ -164,6 +164,7 @@ def test_no_folder_is_an_input_error(tmp_path: Path) -> None:
         model_files(tmp_path / "nowhere")
 
 
+@pytest.mark.unchecked
 def test_a_file_that_takes_too_long_is_given_up(folder: Path, library: StoredLibrary) -> None:
     report = added(folder, library, limits=Limits(seconds=1e-3))
     assert report.added == ()

@@ -133,6 +133,7 @@ def test_threads_share_a_library(library: StoredLibrary) -> None:
     assert len(library) == 8
 
 
+@pytest.mark.unchecked
 def test_a_failed_batch_leaves_nothing(library: StoredLibrary) -> None:
     broken = dataclasses.replace(ingested("b"), source_key=None)  # type: ignore[arg-type]
     with pytest.raises(LibraryError, match="NOT NULL"):

@@ -34,13 +34,13 @@ class _Detector:
 
 
 def _found(words: tuple[str, ...], *rows: Row) -> tuple[LabelledBox, ...]:
-    stage = OpenVocabularyDetection(_Detector(rows))  # type: ignore[arg-type]
+    stage = OpenVocabularyDetection(_Detector(rows))
     return stage.detect(PHOTO, words, Progress())
 
 
 def test_without_words_a_vocabulary_of_rooms_is_asked_for_in_the_papers_phrase() -> None:
     detector = _Detector()
-    OpenVocabularyDetection(detector).detect(PHOTO, (), Progress())  # type: ignore[arg-type]
+    OpenVocabularyDetection(detector).detect(PHOTO, (), Progress())
     assert detector.asked == [f"a photo of {word}" for word in INDOOR_WORDS]
     assert 300 < len(INDOOR_WORDS) == len(set(INDOOR_WORDS))
     assert {c.name for c in CATEGORIES if c is not UNKNOWN} - ARCHITECTURE_WORDS <= set(INDOOR_WORDS)
@@ -49,7 +49,7 @@ def test_without_words_a_vocabulary_of_rooms_is_asked_for_in_the_papers_phrase()
 def test_parts_of_the_room_are_never_objects() -> None:
     detector = _Detector()
     words = ("wall", "chair", "floor", "Ceiling", "chair")
-    OpenVocabularyDetection(detector).detect(PHOTO, words, Progress())  # type: ignore[arg-type]
+    OpenVocabularyDetection(detector).detect(PHOTO, words, Progress())
     assert detector.asked == ["a photo of chair"]
     assert not ARCHITECTURE_WORDS & set(INDOOR_WORDS)
 

@@ -9,7 +9,7 @@ import pytest
 
 from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.models.depth import SeenDepth
-from diorama_core.models.foreground import Foreground
+from diorama_core.models.foreground import ForegroundNetwork
 from diorama_core.perception.foundation.empty_room import EmptyRoomArchitecture
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Intrinsics
@@ -80,7 +80,7 @@ def test_what_no_mask_covers_is_found_by_the_foreground_networks() -> None:
     full, empty = _shots()
     unmasked = replace(full, objects=())
     painter, depth_prediction = _Painter(empty.inputs.photo.rgb), _DepthPrediction(empty, 1.0)
-    finds: tuple[Foreground, ...] = (_Finds(full.inputs.instances > 0),)  # type: ignore[assignment]
+    finds: tuple[ForegroundNetwork, ...] = (_Finds(full.inputs.instances > 0),)
     assert _back_wall_m(unmasked, EmptyRoomArchitecture(PlanarRoom(), painter, depth_prediction)) < 4.0
     assert _back_wall_m(
         unmasked, EmptyRoomArchitecture(PlanarRoom(), painter, depth_prediction, finds)
@@ -89,7 +89,7 @@ def test_what_no_mask_covers_is_found_by_the_foreground_networks() -> None:
 
 def test_a_foreground_that_takes_the_room_for_a_object_is_not_believed() -> None:
     full, _ = _shots()
-    everything: tuple[Foreground, ...] = (_Finds(np.ones((240, 320), dtype=bool)),)  # type: ignore[assignment]
+    everything: tuple[ForegroundNetwork, ...] = (_Finds(np.ones((240, 320), dtype=bool)),)
     stage = EmptyRoomArchitecture(
         PlanarRoom(), _Painter(full.inputs.photo.rgb), _DepthPrediction(full, 1.0), everything
     )

@@ -1,0 +1,67 @@
+"""Shapes and types are checked while tests run (`tests/typechecking.py`)."""
+
+from __future__ import annotations
+
+import random
+from typing import Any
+
+import numpy as np
+import pytest
+from jaxtyping import TypeCheckError
+
+from diorama_app.web import html
+from diorama_core.geometry.projection import cuboid_corners
+from diorama_core.scene.types import Architecture, Plane, Pose
+from tests import typechecking
+
+pytestmark = pytest.mark.skipif(not typechecking.wanted(), reason="DIORAMA_CHECK_SHAPES=0 turned the checks off")
+SQUARE = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        (np.zeros((2, 2)), np.zeros(2), np.ones((2, 3))),  # a wrong size
+        (np.zeros((2, 3)), np.zeros(3), np.ones((2, 3))),  # two numbers of cuboids
+        (np.zeros((2, 3), dtype=int), np.zeros(2), np.ones((2, 3))),  # whole numbers
+        ([[0.0, 0.0, 0.0]], np.zeros(1), np.ones((1, 3))),  # no array
+    ],
+)
+def test_wrong_arrays_raise(arguments: tuple[Any, ...]) -> None:
+    with pytest.raises(TypeCheckError, match="cuboid_corners"):
+        cuboid_corners(*arguments)
+
+
+def test_wrong_fields_of_values_raise() -> None:
+    with pytest.raises(TypeCheckError, match="position"):
+        Pose(np.eye(3), np.zeros(2), np.ones(3))
+
+
+def test_wrong_types_raise_in_both_packages() -> None:
+    with pytest.raises(TypeCheckError, match="role"):
+        Architecture((Plane("floor", "floor", SQUARE),)).by_role("roof")  # type: ignore[arg-type]
+    with pytest.raises(TypeCheckError, match="script"):
+        html.run_once(3)  # type: ignore[arg-type]
+
+
+def test_wrong_results_raise() -> None:
+    plane = Plane("floor", "floor", SQUARE)
+    object.__setattr__(plane, "polygon", np.zeros((4, 2)))
+    with pytest.raises(TypeCheckError, match="return value"):
+        _ = plane.centre
+
+
+def test_a_whole_number_is_a_float() -> None:
+    assert Plane("floor", "floor", SQUARE, thickness=1).thickness == 1
+
+
+@pytest.mark.unchecked
+def test_a_marked_test_is_not_checked() -> None:
+    with pytest.raises(ValueError, match="shape"):
+        Pose(np.eye(3), np.zeros(2), np.ones(3))
+
+
+def test_checks_leave_the_chance_of_tests_alone() -> None:
+    before = random.getstate()
+    Architecture(tuple(Plane(f"p{i}", "wall", SQUARE) for i in range(9))).by_role("wall")
+    assert random.getstate() == before
