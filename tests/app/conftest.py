@@ -12,7 +12,7 @@ from diorama_app.commands.camera_presets import Views
 from diorama_app.commands.definitions import build_commands
 from diorama_app.commands.registry import CommandTable
 from diorama_app.reconstruction.photo_outlines import PhotoOutlines
-from diorama_app.session import autosave
+from diorama_app.session import autosave, redraws
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
@@ -32,7 +32,9 @@ def server() -> Iterator[viser.ViserServer]:
 @pytest.fixture
 def session(server: viser.ViserServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[EditorSession]:
     monkeypatch.setattr(autosave, "SETTLE_S", 0.01)
-    made = EditorSession(server, PlainLibrary(), tmp_path / "projects")
+    monkeypatch.setattr(redraws, "EVERY_S", 0.0)  # panels are drawn at once
+    monkeypatch.setattr(redraws, "SHARE", 1e9)
+    made = EditorSession(server, PlainLibrary(), tmp_path / "projects", Client)
     made.checker.look_at = lambda scene: None  # type: ignore[method-assign]  # its thread would post to the desk
     made.open_project(make_project(tmp_path / "projects" / "demo"))
     yield made

@@ -3,29 +3,65 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, category
-from diorama_core.perception.metrology.priors import SizeMode, hanging_modes, hung_modes, size_modes, supported_modes
+from diorama_core.library.kinds import modes_of_kind
+from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, Category, category
+from diorama_core.perception.metrology.priors import (
+    BROAD_SHARE,
+    MAX_MODES,
+    SizeMode,
+    hanging_modes,
+    hung_modes,
+    plain_mode,
+    size_modes,
+    supported_modes,
+)
+
+
+def usual_sizes(kind: Category) -> list[np.ndarray]:
+    """The sizes of a category by the taxonomy, then by the library."""
+    return [p.log_median_xyz for p in kind.priors] + [m.log_size for m in modes_of_kind(kind.name)[:MAX_MODES]]
+
+
+def own_modes(kind: Category) -> tuple[SizeMode, ...]:
+    """Without what a general word is used for besides."""
+    return size_modes(kind.name)[: len(usual_sizes(kind))]
 
 
 @pytest.mark.parametrize("modes", [size_modes, supported_modes, hung_modes, hanging_modes])
-def test_every_category_has_finite_modes_and_its_own_first(modes) -> None:
+def test_every_category_has_finite_modes_and_the_cheapest_first(modes) -> None:
     for kind in CATEGORIES:
         found = modes(kind.name)
         for mode in found:
             assert np.isfinite(mode.log_size).all()
             assert (mode.sigma > 0).all()
-            assert mode.cost >= 0
+            assert np.abs(mode.outline).max() == pytest.approx(0.5)
+            assert mode.cost >= found[0].cost == 0
+
+
+def test_every_category_has_the_sizes_of_the_taxonomy_and_of_the_library() -> None:
+    for kind in CATEGORIES:
         if kind is not UNKNOWN:
-            np.testing.assert_array_equal(found[0].log_size, kind.priors[0].log_median_xyz)
-            assert found[0].cost == 0
+            found = own_modes(kind)
+            assert [m.cost for m in found] == sorted(m.cost for m in found)
+            expected = sorted(size.tolist() for size in usual_sizes(kind))
+            assert sorted(m.log_size.tolist() for m in found) == expected
+
+
+def test_costs_are_log_densities_of_a_mixture_with_the_taxonomys_share() -> None:
+    kinds = [k for k in CATEGORIES if k is not UNKNOWN and 0 < len(modes_of_kind(k.name)) <= MAX_MODES]
+    assert len(kinds) > 50
+    for kind in kinds:
+        shares = {tuple(m.log_size): np.exp(-m.cost / 2) / abs(np.linalg.det(m.whitening)) for m in own_modes(kind)}
+        broad = sum(shares[tuple(p.log_median_xyz)] for p in kind.priors)
+        # The library's shares are rounded to thousandths.
+        assert broad / sum(shares.values()) == pytest.approx(BROAD_SHARE, abs=2e-3)
 
 
 def test_general_words_cover_more_at_a_price() -> None:
-    own = len(category("table").priors)
-    extra = size_modes("table")[own:]
+    extra = size_modes("table")[len(own_modes(category("table"))) :]
     assert [m.cost for m in extra] == [1.5, 2.5]
     np.testing.assert_array_equal(extra[0].log_size, category("coffee table").priors[0].log_median_xyz)
-    assert len(size_modes("bed")) == len(category("bed").priors)
+    assert len(size_modes("bed")) == len(own_modes(category("bed")))
 
 
 def test_unnamed_things_are_furniture_on_the_floor_small_on_top_flat_on_walls_and_lamps_above() -> None:
@@ -41,4 +77,4 @@ def test_unnamed_things_are_furniture_on_the_floor_small_on_top_flat_on_walls_an
 
 @pytest.mark.parametrize(("depth", "square"), [(0.5, True), (0.54, True), (0.6, False)])
 def test_square_sizes_need_no_quarter_turn(depth: float, square: bool) -> None:
-    assert SizeMode(np.log([depth, 0.5, 0.9]), np.ones(3), 0.0).square is square
+    assert plain_mode(np.log([depth, 0.5, 0.9]), np.ones(3), 0.0, "chair").square is square

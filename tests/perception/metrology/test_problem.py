@@ -20,6 +20,7 @@ from diorama_core.perception.metrology.problem import (
     stacked,
 )
 from diorama_core.perception.metrology.rows import row
+from tests.perception.metrology.test_kind_outlines import WHOLE
 from tests.perception.metrology.test_metrology import K, detected, rotation
 
 VIEW = View(K, rotation(12.0))
@@ -40,12 +41,12 @@ def unknowns(centre=CENTRE, size=SIZE, view: View = VIEW) -> np.ndarray:
 
 
 def problem(yaw: float = -np.pi / 2, box: np.ndarray | None = None, **more) -> Problems:
-    """One row whose box is the cuboid's own projection, unless another is given."""
+    """One row whose outline fills its cuboid and whose box is the cuboid's projection, unless another is given."""
     if box is None:
         corners = cuboid_corners(CENTRE[None], np.array([yaw]), SIZE[None]) - [0, 0, HEIGHT]
         box = visible_bounds(corners @ VIEW.R_world_camera, K)[0][0]
     observations = gather((detected("o", "cabinet", tuple(box)),), K.width, K.height)
-    mode = SizeMode(np.log(SIZE), np.full(3, 0.2), 0.0)
+    mode = SizeMode(np.log(SIZE), np.full(3, 0.2), 0.0, WHOLE, np.eye(3) / 0.2)
     return row(observations, 0, mode, camera_height_m=HEIGHT, yaw_rad=yaw, **more)
 
 

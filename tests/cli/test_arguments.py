@@ -1,0 +1,60 @@
+from __future__ import annotations
+
+import argparse
+
+import pytest
+
+from diorama_app.cli.arguments import command, field_of_view, intrinsics, positive, print_note, size, view
+
+
+@pytest.mark.parametrize(
+    ("read", "text", "value"),
+    [
+        (positive, "2.5", 2.5),
+        (field_of_view, "66", 66.0),
+        (intrinsics, "500,510,320,240.5", (500.0, 510.0, 320.0, 240.5)),
+        (intrinsics, "500,510,-3,240", (500.0, 510.0, -3.0, 240.0)),
+        (view, "orbit:-30", "orbit:-30"),
+        (view, "turntable", "turntable"),
+        (size, "1024X768", (1024, 768)),
+    ],
+)
+def test_good_words_are_read(read, text: str, value: object) -> None:
+    assert read(text) == value
+
+
+@pytest.mark.parametrize(
+    ("read", "text"),
+    [
+        (positive, "0"), (positive, "-1"), (positive, "inf"), (positive, "nan"),
+        (field_of_view, "4"), (field_of_view, "151"),
+        (intrinsics, "500"), (intrinsics, "500,500,320,240,1"), (intrinsics, "0,500,320,240"), (intrinsics, "a,b,c,d"),
+        (view, "orbit:"), (view, "orbit:inf"), (view, "below"), (view, "photo:3"),
+        (size, "1024"), (size, "15x100"), (size, "100x9000"), (size, "axb"),
+    ],
+)  # fmt: skip
+def test_bad_words_are_refused_naming_them(read, text: str) -> None:
+    with pytest.raises(argparse.ArgumentTypeError, match=text.split(":")[0]):
+        read(text)
+
+
+def test_a_command_runs_its_function_and_shows_its_example(capsys: pytest.CaptureFixture[str]) -> None:
+    parser = argparse.ArgumentParser()
+    made = command(parser.add_subparsers(), "go", lambda a: 7, "Goes.", "diorama go --far")
+    made.add_argument("--far", action="store_true")
+    a = parser.parse_args(["go", "--far", "--verbose"])
+    assert a.run(a) == 7
+    assert a.far
+    assert a.verbose
+    with pytest.raises(SystemExit):
+        parser.parse_args(["go", "--fa"])
+    with pytest.raises(SystemExit):
+        parser.parse_args(["go", "--help"])
+    assert "example:\n  diorama go --far" in capsys.readouterr().out
+
+
+def test_notes_go_to_stderr(capsys: pytest.CaptureFixture[str]) -> None:
+    print_note("the floor was guessed")
+    captured = capsys.readouterr()
+    assert captured.err == "diorama: note: the floor was guessed\n"
+    assert captured.out == ""

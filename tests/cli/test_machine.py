@@ -1,0 +1,51 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from diorama_app.cli import machine
+from diorama_app.cli.machine import examine
+
+
+@pytest.fixture
+def findings(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
+    """What is found with only a few packages looked for."""
+    monkeypatch.setenv("DIORAMA_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setattr(machine, "PACKAGES", {"numpy": "numpy", "nobody-has-this": "nobody_has_this"})
+    monkeypatch.setattr(machine, "OPTIONAL_PACKAGES", {"nor-this": "nor_this"})
+    return lambda: {f.name: f for f in examine()}
+
+
+def test_packages_are_present_or_named_with_the_reason(findings) -> None:
+    import numpy
+
+    found = findings()
+    assert (found["numpy"].ok, found["numpy"].detail) == (True, numpy.__version__)
+    assert not found["nobody-has-this"].ok
+    assert found["nobody-has-this"].needed
+    assert "does not load" in found["nobody-has-this"].detail
+    assert (found["nor-this"].ok, found["nor-this"].needed) == (False, False)
+
+
+def test_the_library_and_the_cache_are_looked_at(findings, tmp_path: Path) -> None:
+    found = findings()
+    assert found["shape library"].ok
+    assert "categories" in found["shape library"].detail
+    assert found["cache folder"].ok
+    assert (tmp_path / "cache").is_dir()
+
+
+def test_a_cache_folder_that_cannot_be_written_says_what_to_do(findings, tmp_path: Path, monkeypatch) -> None:
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("DIORAMA_CACHE", str(tmp_path / "file" / "cache"))
+    found = findings()["cache folder"]
+    assert not found.ok
+    assert "set DIORAMA_CACHE" in found.detail
+
+
+def test_without_accelerator_or_browser_it_still_runs(findings, monkeypatch) -> None:
+    monkeypatch.setattr(machine.shutil, "which", lambda name: None)
+    found = findings()
+    assert (found["browser"].ok, found["browser"].needed) == (False, False)
+    assert not found["accelerator"].needed

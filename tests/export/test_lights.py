@@ -1,0 +1,48 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diorama_core.export.lights import LAMP_LUMENS, WINDOW_LUX, lights_of
+from diorama_core.render.appearance import Material
+from diorama_core.scene.types import Pose
+from tests.app.small_room import furnished_scene
+from tests.export.surfaces import ball
+
+SCENE = furnished_scene()
+LAMP = replace(SCENE.object("lamp_1"), pose=Pose.upright((0.4, 2.3, 0.965), 0.3))
+
+
+def test_a_lamp_shines_from_what_glows() -> None:
+    bulb = ball(Material("bulb", (1, 1, 1), emissive=(1.0, 0.9, 0.7)), 0.04)
+    raised = replace(bulb, vertices=bulb.vertices + np.array([0, 0, 0.1], np.float32))
+    (light,) = lights_of(SCENE, [LAMP], {"lamp_1": (ball(), raised)})
+    np.testing.assert_allclose(light.T_world[:3, 3], [0.4, 2.3, 1.065], atol=1e-6)
+    assert light.lumens == LAMP_LUMENS["lamp"]
+    assert light.radius_m == pytest.approx(0.02, abs=1e-3)
+    assert light.candela == pytest.approx(light.lumens / (4 * np.pi))
+
+
+def test_where_nothing_is_known_to_glow_its_middle_does() -> None:
+    (light,) = lights_of(SCENE, [LAMP], {"lamp_1": (ball(),)})
+    np.testing.assert_allclose(light.T_world[:3, 3], LAMP.pose.position, atol=1e-6)
+    assert light.owner == "lamp_1"
+
+
+@pytest.mark.parametrize("yaw", [-np.pi / 2, np.pi / 2])
+def test_a_window_lets_daylight_into_the_room_whichever_way_it_was_made(yaw: float) -> None:
+    picture = SCENE.object("picture_1")
+    window = replace(picture, category="window", pose=Pose.upright(picture.pose.position, yaw))
+    (light,) = lights_of(SCENE, [window], {})
+    np.testing.assert_allclose(-light.T_world[:3, 2], [0, -1, 0], atol=1e-9)
+    np.testing.assert_allclose(light.T_world[:3, 1], [0, 0, 1], atol=1e-9)
+    assert np.linalg.det(light.T_world[:3, :3]) == pytest.approx(1.0)
+    assert light.size_m == pytest.approx((0.8, 0.6))
+    assert light.lumens == pytest.approx(WINDOW_LUX * 0.48)
+    assert light.T_world[1, 3] < picture.pose.position[1], "before its face"
+
+
+def test_other_things_give_no_light() -> None:
+    assert lights_of(SCENE, [SCENE.object("table_1"), SCENE.object("chair_1")], {}) == ()
