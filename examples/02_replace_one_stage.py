@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 
 import diorama_core as diorama
-from diorama_core.provenance import AttitudeSource, HeadingSource
 
 
 @dataclass(frozen=True)
@@ -29,7 +28,7 @@ class LevelCamera:
         # Columns are the camera's axes in the world: x right, y down, z forward along the room's +Y.
         R_world_camera = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
         level = replace(found.best, R_world_camera=R_world_camera)
-        source = replace(found.source, attitude=AttitudeSource.GIVEN, heading=HeadingSource.GIVEN)
+        source = replace(found.source, attitude_corrected=True)
         return replace(found, hypotheses=(level,), source=source)
 
 
@@ -39,7 +38,7 @@ def with_level_camera(stages: diorama.Stages) -> diorama.Stages:
 
 def main(photo: str, boxes: str, folder: str) -> None:
     room = diorama.build(photo, boxes=boxes, stages=with_level_camera, output=folder)
-    print(f"{folder}: {len(room.scene.objects)} objects; attitude of the camera: {room.built.camera.source.attitude}")
+    print(f"{folder}: {len(room.scene.objects)} objects; {room.built.notes[0]}")
 
 
 if __name__ == "__main__":
