@@ -7,12 +7,12 @@ Image arrays have the photo's height and width (h w); `Photo` is already rotated
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Literal
 
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int32, UInt8
 
 from diorama_core.geometry.camera_attitude import CameraAttitude
+from diorama_core.provenance import CameraSource, DepthSource, GraphSource, RoomSource, ScaleSource
 from diorama_core.scene.types import Architecture, Camera, Candidate, Intrinsics, Support
 from diorama_core.scene.values import ArrayValue
 
@@ -70,8 +70,8 @@ class Inputs(ArrayValue):
     intrinsics: Intrinsics | None = None
     normals_camera: Float32[np.ndarray, "h w 3"] | None = None
     """Unit normals that came with the depth, toward the camera; zero where unknown."""
-    depth_source: Literal["measured", "network"] = "measured"
-    """Who says how deep it is: a sensor, or a network that looked at the photo."""
+    depth_source: DepthSource = DepthSource.MEASURED
+    """Whether a sensor measured the depth or a network predicted it."""
     camera_attitude: CameraAttitude | None = field(default=None, metadata={"absent when none": True})
     """How the camera was held, where somebody said it; found from the photo otherwise."""
     camera_height_m: float | None = field(default=None, metadata={"absent when none": True})
@@ -101,8 +101,8 @@ class CameraEstimate(ArrayValue):
     hypotheses: tuple[CameraHypothesis, ...]
     """Best first, at least one."""
     confidence: float
-    source: str
-    """Where intrinsics and gravity come from, in words shown to the user."""
+    source: CameraSource
+    """Where intrinsics and gravity come from."""
     height_m: float | None = None
     """Camera height above the floor, when depth measured it."""
 
@@ -156,7 +156,7 @@ class ObjectGeometry(ArrayValue):
     cuboids: tuple[Cuboid, ...]
     supports: tuple[Support, ...]
     """Parents are object ids, or "floor", "ceiling" or "wall", for which the architecture will say which plane."""
-    source: str
+    source: ScaleSource
     confidence: float = 1.0
 
 
@@ -168,7 +168,7 @@ class DepthMap(ArrayValue):
     """z in camera, 0 where unknown."""
     normals_world: Float32[np.ndarray, "h w 3"]
     """Unit, toward the camera; zero where unknown."""
-    source: Literal["measured", "network", "rendered from cuboids and room"]
+    source: DepthSource
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,8 +194,8 @@ class SceneGraph:
     """(object id, direction seen from the camera): "toward camera", "away from camera", "left" or "right"."""
     captions: tuple[tuple[str, str], ...] = ()
     """(object id, brief description); may hold anything, to be shown escaped."""
-    source: str = ""
-    """Where it comes from, in words shown to the user."""
+    source: GraphSource = field(default_factory=GraphSource)
+    """Who says so."""
     provisional: bool = False
     """Whether it stands in for what could not be asked just now: the next build asks again."""
 
@@ -208,7 +208,7 @@ class ArchitectureEstimate:
     supports: tuple[Support, ...]
     """The support edges with "floor" and "wall" resolved to plane ids."""
     confidence: float
-    source: str
+    source: RoomSource
     openings: tuple[str, ...] = ()
     """Objects that are holes in the walls, open doorways, and get no shape."""
 

@@ -28,7 +28,8 @@ class LevelCamera:
         # Columns are the camera's axes in the world: x right, y down, z forward along the room's +Y.
         R_world_camera = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
         level = replace(found.best, R_world_camera=R_world_camera)
-        return replace(found, hypotheses=(level,), source="assumed level")
+        source = replace(found.source, attitude_corrected=True)
+        return replace(found, hypotheses=(level,), source=source)
 
 
 def with_level_camera(stages: diorama.Stages) -> diorama.Stages:
@@ -37,7 +38,7 @@ def with_level_camera(stages: diorama.Stages) -> diorama.Stages:
 
 def main(photo: str, boxes: str, folder: str) -> None:
     room = diorama.build(photo, boxes=boxes, stages=with_level_camera, output=folder)
-    print(f"{folder}: {len(room.scene.objects)} objects; camera {room.built.camera.source}")
+    print(f"{folder}: {len(room.scene.objects)} objects; {room.built.notes[0]}")
 
 
 if __name__ == "__main__":

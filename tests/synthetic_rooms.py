@@ -16,6 +16,7 @@ from diorama_core.artefacts import (
     Photo,
 )
 from diorama_core.geometry.casting import camera_rays, cast_box, cast_planes
+from diorama_core.provenance import CameraSource, ScaleSource
 from diorama_core.scene.types import Camera, Intrinsics, Plane, Support, yaw_rotation
 
 PALETTE = np.array(
@@ -78,13 +79,13 @@ class Shot:
     def geometry(self) -> ObjectGeometry:
         """What a perfect metrology would have found."""
         supports = tuple(Support(c.object_id, "floor") for c in self.cuboids)
-        return ObjectGeometry(self.camera, self.cuboids, supports, "known")
+        return ObjectGeometry(self.camera, self.cuboids, supports, ScaleSource.GIVEN)
 
     @property
     def estimate(self) -> CameraEstimate:
         """What a perfect camera stage would have found."""
         best = CameraHypothesis(self.camera.intrinsics, self.camera.T_world_camera[:3, :3], 1.0)
-        return CameraEstimate((best,), 1.0, "known", float(self.camera.position[2]))
+        return CameraEstimate((best,), 1.0, CameraSource.given(), float(self.camera.position[2]))
 
 
 def shoot(camera: Camera, planes, cuboids=(), categories=(), noise: float = 0.0, seed: int = 0) -> Shot:

@@ -10,6 +10,7 @@ from diorama_core.artefacts import LayoutReport
 from diorama_core.errors import ProjectError
 from diorama_core.io.atomic import write_atomically
 from diorama_core.pipeline.arrangements import arrangement, arrangement_count
+from diorama_core.pipeline.provenance_text import camera_sentence
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
 from diorama_core.scene.schema import scene_to_json
@@ -55,6 +56,7 @@ def build_report(room: Reconstruction, scenes: tuple[str, ...]) -> dict[str, Any
     planes = scene.architecture.planes
     walls = len(scene.architecture.by_role("wall"))
     seconds = sum(run.seconds for run in built.runs)
+    camera = camera_sentence(built.camera, built.inputs.depth_source)
     return {
         "project": str(room.project.folder),
         "scenes": list(scenes),
@@ -71,7 +73,7 @@ def build_report(room: Reconstruction, scenes: tuple[str, ...]) -> dict[str, Any
             for o in scene.objects
         ],
         "planes": [{"id": p.id, "role": p.role} for p in planes],
-        "camera": {"confidence": built.camera.confidence, "source": built.camera.source},
+        "camera": {"confidence": built.camera.confidence, "source": camera},
         "stages": [{"stage": r.stage, "seconds": round(r.seconds, 3), "cached": r.cached} for r in built.runs],
         "notes": list(built.notes),
         "metrics": dict(scene.metrics),

@@ -10,7 +10,7 @@ from diorama_core.architecture.supports import resolve_supports
 from diorama_core.architecture.texture.colours import coloured, object_pixels
 from diorama_core.architecture.walls.ceilings import CeilingPiece, find_ceilings
 from diorama_core.architecture.walls.closed_room import GUESS_CONFIDENCE, room_planes
-from diorama_core.architecture.walls.openings import Opening, counted, find_openings, is_shut
+from diorama_core.architecture.walls.openings import Opening, counts, find_openings, is_shut
 from diorama_core.architecture.walls.passages import is_passage, with_passages
 from diorama_core.architecture.walls.surface import MeasuredSurface, measured_surface
 from diorama_core.architecture.walls.wall_candidates import find_walls, tolerance_m
@@ -18,6 +18,7 @@ from diorama_core.architecture.walls.wall_path import heading
 from diorama_core.architecture.walls.wall_sequence import WallPiece, outline
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry
 from diorama_core.progress import Progress
+from diorama_core.provenance import RoomMethod, RoomSource
 from diorama_core.scene.types import Architecture, Camera
 
 USUAL_CEILING_M = 2.6
@@ -53,7 +54,6 @@ class PlanarRoom:
         walls = find_walls(surface, top_m)
         progress.report(0.6, "Closing the room at its corners")
         pieces = outline(surface, walls, view_headings(geometry.camera), top_m)
-        guessed = not pieces
         pieces = pieces or (_guessed_wall(surface, geometry.camera),)
         floor_seen = _share(surface, 0.0, 1.0) > MIN_FLAT_SHARE
         openings: tuple[tuple[Opening, ...], ...] = ((),) * len(pieces)
@@ -77,7 +77,7 @@ class PlanarRoom:
             architecture=architecture,
             supports=resolve_supports(geometry, architecture),
             confidence=float(np.mean([p.confidence for p in architecture.planes])),
-            source=_source(pieces, guessed, floor_seen, ceilings) + counted(openings),
+            source=_source(pieces, floor_seen, top_m, ceilings, openings),
             openings=pointed,
         )
 
@@ -126,16 +126,21 @@ def _sloped(ceilings: tuple[CeilingPiece, ...]) -> bool:
 
 def _source(
     pieces: tuple[WallPiece, ...],
-    guessed: bool,
     floor_seen: bool,
+    top_m: float,
     ceilings: tuple[CeilingPiece, ...],
-) -> str:
+    openings: tuple[tuple[Opening, ...], ...],
+) -> RoomSource:
     seen = sum(p.candidate is not None for p in pieces)
-    walls = "no wall was measured; one is assumed behind everything seen" if guessed else f"{seen} walls measured"
-    assumed = "" if guessed or seen == len(pieces) else f" and {len(pieces) - seen} assumed to close the room"
-    floor = "floor measured" if floor_seen else "floor not seen, its height assumed"
-    slopes = sum(not c.is_flat for c in ceilings)
-    overhead = [f"ceiling at {-c.offset:.2f} m" for c in ceilings if c.is_flat]
-    overhead += [f"{slopes} sloped ceiling{'s' * (slopes > 1)}"] * bool(slopes)
-    above = " and ".join(overhead) or "ceiling not seen"
-    return f"planes of the measured depth: {floor}, {walls}{assumed}, {above}"
+    doorways, windows = counts(openings)
+    return RoomSource(
+        RoomMethod.DEPTH_PLANES,
+        walls_found=seen,
+        walls_assumed=len(pieces) - seen,
+        floor_found=floor_seen,
+        wall_height_m=float(top_m),
+        ceilings_m=tuple(-float(c.offset) for c in ceilings if c.is_flat),
+        sloped_ceilings=sum(not c.is_flat for c in ceilings),
+        doorways=doorways,
+        windows=windows,
+    )

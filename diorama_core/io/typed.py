@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import types
 from dataclasses import fields, is_dataclass
+from enum import StrEnum
 from functools import cache
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
@@ -49,11 +50,22 @@ def _instance_fits(value: Any, annotation: type) -> bool:
     if not isinstance(value, annotation):
         return False
     if is_dataclass(value):
-        return all(fits(getattr(value, name), hint) for name, hint in _hints(value.__class__))
+        return all(fits(getattr(value, name), hint) for name, hint in field_types(value.__class__).items())
     return not isinstance(value, np.ndarray) or value.dtype.kind != "f" or bool(np.isfinite(value).all())
 
 
 @cache
-def _hints(kind: type) -> tuple[tuple[str, Any], ...]:
+def field_types(kind: type) -> dict[str, Any]:
+    """The annotated types of a dataclass's fields by name."""
     hints = get_type_hints(kind)
-    return tuple((f.name, hints[f.name]) for f in fields(kind))
+    return {f.name: hints[f.name] for f in fields(kind)}
+
+
+def as_member(value: Any, annotation: Any) -> Any:
+    """A string as the member of the `StrEnum` that is asked for; any other value as it is.
+
+    Raises:
+        ValueError: when the enum has no such member.
+    """
+    named = isinstance(annotation, type) and issubclass(annotation, StrEnum) and isinstance(value, str)
+    return annotation(value) if named else value

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from jaxtyping import Float, Float32
@@ -19,6 +18,7 @@ from diorama_core.artefacts import (
 from diorama_core.geometry.casting import camera_rays, cast_box, cast_planes
 from diorama_core.geometry.depth_grid import smooth_normals_camera
 from diorama_core.progress import Progress
+from diorama_core.provenance import DepthSource
 from diorama_core.scene.types import Architecture, Camera
 
 
@@ -38,7 +38,7 @@ class RenderedDepth:
         progress.report(0.0, "Rendering depth from room and objects")
         depth, normals = render_geometry(geometry, objects, architecture.architecture)
         progress.report(1.0, "Depth is rendered")
-        return DepthMap(depth, normals, "rendered from cuboids and room")
+        return DepthMap(depth, normals, DepthSource.RENDERED)
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class MeasuredDepth:
         progress.report(0.0, "Filling holes of the measured depth")
         normals_camera = smooth_normals_camera(inputs.depth_m, geometry.camera.intrinsics)
         rendered = render_geometry(geometry, objects, architecture.architecture)
-        filled = filled_depth(inputs.depth_m, normals_camera, geometry.camera, rendered, "measured")
+        filled = filled_depth(inputs.depth_m, normals_camera, geometry.camera, rendered, DepthSource.MEASURED)
         progress.report(1.0, "Depth is complete")
         return filled
 
@@ -73,7 +73,7 @@ def filled_depth(
     normals_camera: Float[np.ndarray, "h w 3"],
     camera: Camera,
     rendered: tuple[Float32[np.ndarray, "h w"], Float32[np.ndarray, "h w 3"]],
-    source: Literal["measured", "network"],
+    source: DepthSource,
 ) -> DepthMap:
     """A depth map and its normals; where either is zero, the rendered depth or world normal stands instead."""
     depth, normals = rendered

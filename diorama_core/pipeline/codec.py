@@ -18,11 +18,11 @@ from typing import Any
 import numpy as np
 from numpy.lib import format as npy
 
-from diorama_core import artefacts
+from diorama_core import artefacts, provenance
 from diorama_core.errors import ProjectError
 from diorama_core.geometry import camera_attitude
 from diorama_core.io.bounded import parse_json, shortened
-from diorama_core.io.typed import fits
+from diorama_core.io.typed import as_member, field_types, fits
 from diorama_core.scene import types
 
 MAX_BYTES = 400_000_000
@@ -49,6 +49,10 @@ _CLASSES: dict[str, type] = {
         artefacts.PosedCandidates,
         artefacts.LayoutReport,
         camera_attitude.CameraAttitude,
+        provenance.CameraSource,
+        provenance.RoomSource,
+        provenance.GraphSource,
+        provenance.LanguageModelUse,
         types.Intrinsics,
         types.Camera,
         types.Pose,
@@ -60,6 +64,9 @@ _CLASSES: dict[str, type] = {
         types.Scene,
     )
 }
+_FORMER_CLASSES = {"Held": "CameraAttitude"}
+_FORMER_FIELDS = {("Inputs", "held"): "camera_attitude", ("CameraAttitude", "tilt_rad"): "pitch_rad"}
+"""Names that have changed in what a user gave, which must stay readable: no stage can compute it again."""
 
 
 def dump(value: Any) -> bytes:
@@ -181,8 +188,15 @@ def _decode(tree: Any, arrays: list[np.ndarray]) -> Any:
     if "array" in tree:
         return arrays[tree["array"]]
     if "class" in tree:
-        content = {name: _decode(v, arrays) for name, v in tree["fields"].items()}
-        return _CLASSES[tree["class"]](**content)
+        return _instance(tree["class"], {name: _decode(v, arrays) for name, v in tree["fields"].items()})
     if "tuple" in tree:
         return tuple(_decode(v, arrays) for v in tree["tuple"])
     return {k: _decode(v, arrays) for k, v in tree["dict"]}
+
+
+def _instance(saved_name: str, content: dict[str, Any]) -> Any:
+    """An artefact of a class and fields under the names they have or had, with strings as the enums' members."""
+    name = _FORMER_CLASSES.get(saved_name, saved_name)
+    hints = field_types(_CLASSES[name])
+    renamed = {_FORMER_FIELDS.get((name, field), field): value for field, value in content.items()}
+    return _CLASSES[name](**{field: as_member(value, hints.get(field)) for field, value in renamed.items()})

@@ -30,7 +30,6 @@ from diorama_core.perception.foundation.depth_prediction import (
     NetworkCamera,
     NetworkDepth,
     NetworkDepthPrediction,
-    NetworkGeometry,
 )
 from diorama_core.perception.foundation.detection import EverydayDetection, OpenVocabularyDetection
 from diorama_core.perception.foundation.empty_room import EmptyRoomArchitecture
@@ -38,6 +37,7 @@ from diorama_core.perception.foundation.outlines import PromptedMasks
 from diorama_core.perception.graph.geometric import GeometricGraph
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.perception.language.stages import LanguageGraph, LanguageRecognition
+from diorama_core.perception.measured import MeasuredGeometry
 from diorama_core.pipeline.choices import (
     DEPTH_NETWORKS,
     DETECTORS,
@@ -113,7 +113,7 @@ def foundation_stages(base: Stages, inputs: Inputs, store: ModelStore, lmm: LmmS
             stages,
             depth_prediction=NetworkDepthPrediction(depth_prediction),
             camera=with_given_attitude(NetworkCamera(), inputs.camera_attitude),
-            geometry=NetworkGeometry(),
+            geometry=MeasuredGeometry(),
             architecture=PlanarRoom()
             if filler is None
             else EmptyRoomArchitecture(PlanarRoom(), filler, depth_prediction, _foregrounds(store)),

@@ -19,14 +19,15 @@ from diorama_core.artefacts import (
     Inputs,
     LayoutReport,
     ObjectGeometry,
+    SceneGraph,
 )
 from diorama_core.layout.noise import MEASURED, REASONED
 from diorama_core.layout.support_check import checked_supports
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.perception.foundation.depth_prediction import with_network_wording
 from diorama_core.pipeline.assemble import assemble
 from diorama_core.pipeline.colours import photo_colours, shared_by_sets
 from diorama_core.pipeline.plan import Artefacts, evaluate
+from diorama_core.pipeline.provenance_text import camera_sentence, geometry_sentence, graph_sentence, room_sentence
 from diorama_core.pipeline.runner import Runner, StageRun
 from diorama_core.pipeline.stages import Stages, embedded_stages
 from diorama_core.progress import Progress
@@ -44,6 +45,8 @@ class Built:
     camera: CameraEstimate
     objects: tuple[DetectedObject, ...]
     geometry: ObjectGeometry
+    graph: SceneGraph | None
+    """What holds up what; None where no graph stage ran."""
     architecture: ArchitectureEstimate
     depth: DepthMap
     observed: Scene
@@ -107,6 +110,7 @@ def build_scene(
         camera=found["camera"],
         objects=found["furniture_objects"],
         geometry=geometry,
+        graph=found["graph"],
         architecture=room,
         depth=found["depth"],
         observed=observed,
@@ -139,11 +143,13 @@ def _textured(scene: Scene, textures: Mapping[str, object]) -> Scene:
 
 
 def _notes(found: Artefacts, changed: tuple[str, ...], report: LayoutReport | None) -> tuple[str, ...]:
-    camera, geometry, room, graph = (found[n] for n in ("camera", "geometry", "architecture", "graph"))
-    sources: tuple[str, ...] = (f"camera: {camera.source}", f"objects: {geometry.source}", f"room: {room.source}")
-    if found["inputs"].depth_source == "network":
-        sources = tuple(with_network_wording(s) for s in sources)
+    depth, graph = found["inputs"].depth_source, found["graph"]
+    sources = [
+        f"camera: {camera_sentence(found['camera'], depth)}",
+        f"objects: {geometry_sentence(found['geometry'], depth)}",
+        f"room: {room_sentence(found['architecture'], depth)}",
+    ]
     if graph is not None:
-        sources = (*sources, f"what stands on what: {graph.source}")
+        sources.append(f"what stands on what: {graph_sentence(graph)}")
     notes = (*(s.note for s in found["shapes"] if s.note), *changed)
     return (*sources, *notes, *(report.reasons if report else ()))

@@ -11,8 +11,8 @@ from diorama_core.artefacts import DepthMap
 from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.silhouette import Hits
 from diorama_core.geometry.window import Window
+from diorama_core.provenance import DepthSource
 
-RENDERED = "rendered from cuboids and room"
 _NORMALS_SHARE = 0.4
 _MIN_NORMALS_SHARE = 0.05
 """Below which normals are not worth their price."""
@@ -29,7 +29,7 @@ def noise_of(depth: DepthMap) -> float:
 
     Second differences along the rows vanish on planes (of inverse depth); their median is deaf to edges.
     """
-    if depth.source == RENDERED:
+    if depth.source is DepthSource.RENDERED:
         return 0.0
     step = max(1, depth.depth_m.shape[0] * depth.depth_m.shape[1] // _NOISE_SAMPLES)
     rows = depth.depth_m[::step].astype(np.float64)
@@ -84,7 +84,7 @@ def measured_surface(
         mask: the object's visible pixels.
         noise: from `noise_of`.
     """
-    if depth.source == RENDERED:
+    if depth.source is DepthSource.RENDERED:
         return None
     metres = seen.window.sample(depth.depth_m).astype(np.float64)
     spread = np.full(len(metres), noise)

@@ -18,6 +18,7 @@ from diorama_core.artefacts import (
 )
 from diorama_core.progress import Progress
 from diorama_core.protocols import Preview
+from diorama_core.provenance import CameraSource, DepthSource, RoomMethod, RoomSource, ScaleSource
 from diorama_core.scene.types import Scene, Support
 from diorama_core.synthesis.truth import TruthView
 
@@ -30,7 +31,7 @@ def photo_only(view: TruthView) -> Inputs:
 def true_camera(view: TruthView) -> CameraEstimate:
     """The camera as a perfect stage would report it."""
     reading = CameraHypothesis(view.camera.intrinsics, view.camera.T_world_camera[:3, :3], 1.0)
-    return CameraEstimate((reading,), 1.0, "truth", height_m=float(view.camera.position[2]))
+    return CameraEstimate((reading,), 1.0, CameraSource.given(), height_m=float(view.camera.position[2]))
 
 
 def true_objects(view: TruthView) -> tuple[DetectedObject, ...]:
@@ -66,18 +67,18 @@ def true_geometry(view: TruthView) -> ObjectGeometry:
     for index in view.asked:
         o = view.scene.objects[index]
         cuboids.append(Cuboid(o.id, o.pose.R_world_object, o.pose.position, o.size_m, 1.0, front_known=True))
-    return ObjectGeometry(view.camera, tuple(cuboids), true_supports(view), "truth")
+    return ObjectGeometry(view.camera, tuple(cuboids), true_supports(view), ScaleSource.GIVEN)
 
 
 def true_architecture(view: TruthView) -> ArchitectureEstimate:
     """The room itself."""
-    return ArchitectureEstimate(view.scene.architecture, true_supports(view), 1.0, "truth")
+    return ArchitectureEstimate(view.scene.architecture, true_supports(view), 1.0, RoomSource(RoomMethod.GIVEN))
 
 
 def true_depth(view: TruthView) -> DepthMap:
     """Depth and normals of every pixel."""
     assert view.inputs.depth_m is not None
-    return DepthMap(view.inputs.depth_m, view.normals_world, "measured")
+    return DepthMap(view.inputs.depth_m, view.normals_world, DepthSource.MEASURED)
 
 
 @dataclass(frozen=True)

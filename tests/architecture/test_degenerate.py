@@ -12,6 +12,7 @@ from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.architecture.plainrecon.stage import PlainRecon
 from diorama_core.architecture.single_view.stage import PhotoRoom
 from diorama_core.progress import Progress
+from diorama_core.provenance import RoomSource
 from tests.synthetic_rooms import box_room, cuboid, look, shoot
 
 SOLVERS = {"closed": PlanarRoom(), "plainrecon": PlainRecon(), "photo": PhotoRoom()}
@@ -63,7 +64,7 @@ def test_what_is_known_comes_back_with_a_reason(solver, case):
     estimate = SOLVERS[solver].reconstruct(shot.inputs, shot.objects, shot.geometry, Progress())
     planes = estimate.architecture.planes
     assert estimate.architecture.floor is not None
-    assert estimate.source
+    assert isinstance(estimate.source, RoomSource)
     assert 0.0 < estimate.confidence <= 1.0
     assert all(np.isfinite(p.polygon).all() and np.isfinite(p.normal).all() for p in planes)
     if solver != "plainrecon":
@@ -71,16 +72,18 @@ def test_what_is_known_comes_back_with_a_reason(solver, case):
 
 
 @pytest.mark.parametrize(
-    ("case", "words"),
+    ("case", "floor", "walls"),
     [
-        ("empty depth", "assumed"), ("fifty points", "assumed"), ("all masked", "assumed"),
-        ("no floor seen", "floor not seen"), ("one plane", "floor not seen"), ("corridor", "floor measured"),
+        ("empty depth", False, False), ("fifty points", False, False), ("all masked", True, False),
+        ("no floor seen", False, True), ("one plane", False, True), ("corridor", True, True),
     ],
 )  # fmt: skip
-def test_the_reason_says_what_was_assumed(case, words):
+def test_the_source_states_what_was_found(case, floor, walls):
     shot = seen(case)
     estimate = PlanarRoom().reconstruct(shot.inputs, shot.objects, shot.geometry, Progress())
-    assert words in estimate.source
+    source = estimate.source
+    assert (source.floor_found, source.walls_found > 0) == (floor, walls)
+    assert source.walls_assumed > 0 or walls
 
 
 def test_a_mirror_opens_no_room_behind_the_wall():

@@ -10,6 +10,7 @@ import pytest
 
 from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.progress import Progress
+from diorama_core.provenance import RoomMethod
 from tests.synthetic_rooms import box_room, cuboid, floor, look, shoot, wall
 
 FURNITURE = (
@@ -117,7 +118,7 @@ def test_degenerate_depth_gives_what_is_known(case):
     estimate = reconstruct(shot, with_masks=True)
     assert estimate.architecture.floor is not None
     assert estimate.architecture.by_role("wall")
-    assert estimate.source
+    assert estimate.source.method is RoomMethod.DEPTH_PLANES
 
 
 def test_needs_depth():

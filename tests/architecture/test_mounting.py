@@ -7,6 +7,7 @@ import pytest
 
 from diorama_core.architecture.mounting import MAX_SCALE, mounted_on_ceiling, mounted_on_walls
 from diorama_core.artefacts import ArchitectureEstimate, ObjectGeometry
+from diorama_core.provenance import RoomMethod, RoomSource, ScaleSource
 from diorama_core.scene.types import Architecture, Support
 from tests.synthetic_rooms import box_room, cuboid, look
 
@@ -16,8 +17,10 @@ ROOM = box_room(-2.0, 2.0, 4.0, 2.6)
 
 def hung(item, relation="mounted on", parent="back"):
     edge = Support(item.object_id, parent, relation)
-    geometry = ObjectGeometry(CAMERA, (item,), (edge,), "known")
-    (found,) = mounted_on_walls(geometry, ArchitectureEstimate(Architecture(ROOM), (edge,), 1.0, "known")).cuboids
+    geometry = ObjectGeometry(CAMERA, (item,), (edge,), ScaleSource.GIVEN)
+    (found,) = mounted_on_walls(
+        geometry, ArchitectureEstimate(Architecture(ROOM), (edge,), 1.0, RoomSource(RoomMethod.GIVEN))
+    ).cuboids
     return found
 
 
@@ -48,8 +51,8 @@ def test_standing_objects_stay():
 def test_a_lamp_reaches_the_ceiling_inside_the_room(z):
     lamp = cuboid("lamp", (0.1, 2.6, z), (0.4, 0.4, 0.3))
     edge = Support("lamp", "ceiling", "mounted on")
-    geometry = ObjectGeometry(CAMERA, (lamp,), (edge,), "known")
-    room = ArchitectureEstimate(Architecture(ROOM), (edge,), 1.0, "known")
+    geometry = ObjectGeometry(CAMERA, (lamp,), (edge,), ScaleSource.GIVEN)
+    room = ArchitectureEstimate(Architecture(ROOM), (edge,), 1.0, RoomSource(RoomMethod.GIVEN))
     (found,) = mounted_on_ceiling(geometry, room).cuboids
     assert found.corners_world[:, 2].max() == pytest.approx(2.6, abs=1e-9)
     assert found.corners_world[:, 1].max() < 4.0

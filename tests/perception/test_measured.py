@@ -11,6 +11,7 @@ from diorama_core.perception.measured import MeasuredGeometry
 from diorama_core.perception.measured.cloud import largest_piece, main_layer
 from diorama_core.perception.measured.stage import ASSUMED_HEIGHT_M
 from diorama_core.progress import Progress
+from diorama_core.provenance import ScaleSource
 from tests.synthetic_rooms import box_room, cuboid, look, shoot
 
 CATEGORIES = ("sofa", "coffee table", "box", "bookshelf", "chair")
@@ -90,7 +91,7 @@ def test_height_comes_from_the_floor_or_is_assumed():
     empty = replace(shot.inputs, depth_m=np.zeros_like(shot.inputs.depth_m))
     guessed = MeasuredGeometry().measure(empty, unknown, (), Progress())
     assert guessed.camera.position[2] == pytest.approx(ASSUMED_HEIGHT_M)
-    assert "assumed" in guessed.source
+    assert (seen.source, guessed.source) == (ScaleSource.DEPTH, ScaleSource.DEPTH_WITHOUT_FLOOR)
 
 
 def test_the_heaviest_layer_wins():

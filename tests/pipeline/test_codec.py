@@ -4,6 +4,7 @@ import io
 import json
 import time
 import zipfile
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +12,9 @@ from hypothesis import given, settings
 
 from diorama_core.artefacts import DetectedObject, Inputs, LabelledBox, Photo
 from diorama_core.errors import ProjectError
+from diorama_core.geometry.camera_attitude import CameraAttitude
 from diorama_core.pipeline import codec
+from diorama_core.provenance import DepthSource
 from diorama_core.scene.types import Scene
 from tests.scene.strategies import scenes
 
@@ -74,5 +77,28 @@ def test_pickled_arrays_are_refused() -> None:
     with zipfile.ZipFile(buffer, "w") as archive:
         archive.writestr("tree.json", json.dumps({"array": 0}))
         archive.writestr("0.npy", raw.getvalue())
+    with pytest.raises(ProjectError, match="damaged"):
+        codec.load(buffer.getvalue())
+
+
+def test_inputs_saved_under_former_names_are_read() -> None:
+    """The file was written by the version that called a camera's attitude `Held` and its pitch `tilt_rad`."""
+    saved = (Path(__file__).parent / "saved" / "inputs_with_held.zip").read_bytes()
+    assert b"Held" in saved
+    inputs = codec.load(saved, Inputs)
+    assert inputs.camera_attitude == CameraAttitude(pitch_rad=0.25, roll_rad=-0.125)
+    assert inputs.camera_height_m == 1.5
+    assert inputs.depth_source is DepthSource.NETWORK
+    assert inputs.boxes == (LabelledBox((1, 1, 4, 3), "chair", "seat", 0.5),)
+    np.testing.assert_array_equal(inputs.photo.rgb.ravel(), np.arange(72))
+    assert b"Held" not in codec.dump(inputs)
+    assert codec.load(codec.dump(inputs), Inputs) == inputs
+
+
+def test_a_source_that_no_enum_names_is_refused() -> None:
+    tree = {"class": "CameraSource", "fields": {"focal": "hearsay", "attitude": "floor", "heading": "walls"}}
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        archive.writestr("tree.json", json.dumps(tree))
     with pytest.raises(ProjectError, match="damaged"):
         codec.load(buffer.getvalue())

@@ -22,7 +22,7 @@ def _room() -> Room:
 
 
 def _graph(room: Room, direction: str) -> SceneGraph:
-    return SceneGraph(room.geometry.supports, (1.0,), facing=(("o0", direction),), source="stub")
+    return SceneGraph(room.geometry.supports, (1.0,), facing=(("o0", direction),))
 
 
 def _off_deg(heading_rad: float, wanted_deg: float) -> float:

@@ -18,10 +18,12 @@ from diorama_core.models.store import FileRecord, Installed, ModelStore, sha256_
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.pipeline.choices import profile_status
 from diorama_core.pipeline.presets import propose_boxes, stages_for
+from diorama_core.pipeline.provenance_text import camera_sentence
 from diorama_core.pipeline.run import Built, build_scene
 from diorama_core.pipeline.stages import Stages
 from diorama_core.pose import RenderAndCompare
 from diorama_core.progress import Progress
+from diorama_core.provenance import DepthSource, FocalSource, GraphMethod
 from diorama_core.synthesis.layout_rooms import box_library
 from tests.models import tiny_networks
 from tests.models.test_depth import HEIGHT, WIDTH, _Moge
@@ -120,11 +122,12 @@ def test_both_profiles_make_the_same_kinds_of_artefacts(
     assert _types(embedded) == _types(foundation)
     assert [o.category for o in foundation.objects] == ["chair"]
     np.testing.assert_allclose(foundation.objects[0].box, BOX, atol=1.0)
-    assert foundation.depth.source == "network"
-    assert foundation.inputs.depth_source == "network"
+    assert foundation.depth.source is DepthSource.NETWORK
+    assert foundation.inputs.depth_source is DepthSource.NETWORK
     assert foundation.inputs.intrinsics is not None
     assert foundation.inputs.intrinsics.fx == pytest.approx(110.0, rel=1e-2)
-    assert [n for n in foundation.notes if "measured" in n] == []
+    assert foundation.camera.source.focal is FocalSource.NETWORK
+    assert foundation.notes[0] == f"camera: {camera_sentence(foundation.camera, DepthSource.NETWORK)}"
     assert foundation.objects[0].mask.shape == embedded.objects[0].mask.shape
 
 
@@ -231,14 +234,16 @@ def test_a_language_model_takes_the_graph_and_is_asked_again_after_a_failure(
         lmm = LmmSettings(stub.address, "stub", votes=1)
         stages = stages_for("auto", inputs, box_library(), store=store, lmm=lmm)
         without = _build(stages, inputs, cache)
-        assert any("stands on what: geometry" in note for note in without.notes)
+        assert without.graph is not None
+        assert without.graph.source.method is GraphMethod.GEOMETRY
         stub.answers = [reply]
         built = _build(stages, inputs, cache)
     cached = {r.stage: r.cached for r in built.runs}
     assert cached["camera"]
     assert cached["geometry"]
     assert not cached["graph"]
-    assert any("stub, 1 reply" in note for note in built.notes)
+    assert built.graph is not None
+    assert built.graph.source.method is GraphMethod.LANGUAGE_MODEL
 
 
 def test_progress_reaches_the_proposals(photo: Photo, store: ModelStore, graphs: dict[str, list[Path]]) -> None:

@@ -21,6 +21,7 @@ from diorama_core.artefacts import (
 )
 from diorama_core.errors import LibraryError
 from diorama_core.library.record import Shape
+from diorama_core.provenance import DepthSource, ScaleSource
 from diorama_core.render.raycast import render_buffers
 from diorama_core.scene.types import Camera, Intrinsics, Pose, Support, yaw_rotation
 from tests.primitives import material
@@ -202,7 +203,7 @@ class Room:
             size = item.size_m if turn % 2 == 0 else item.size_m[[1, 0, 2]]
             cuboids.append(Cuboid(f"o{i}", R, item.pose.position, size, 0.9))
         supports = tuple(Support(c.object_id, "floor") for c in cuboids)
-        return ObjectGeometry(self.camera, tuple(cuboids), supports, "known")
+        return ObjectGeometry(self.camera, tuple(cuboids), supports, ScaleSource.GIVEN)
 
     @cached_property
     def inputs(self) -> Inputs:
@@ -212,7 +213,7 @@ class Room:
         return Inputs(Photo(rgb, "room", (k.width, k.height)))
 
     def depth(self, measured: bool) -> DepthMap:
-        source = "measured" if measured else "rendered from cuboids and room"
+        source = DepthSource.MEASURED if measured else DepthSource.RENDERED
         return DepthMap(self.buffers.depth_m, self.buffers.normals_world, source)
 
     def ranked(self) -> tuple[RankedShapes, ...]:

@@ -13,6 +13,7 @@ from diorama_core.geometry.projection import box_iou
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.pose import RenderAndCompare
 from diorama_core.progress import CancelToken, Progress
+from diorama_core.provenance import DepthSource, ScaleSource
 from diorama_core.scene.types import Pose
 from tests.pose.rooms import LIBRARY, Room, camera_at, random_room, standing, yaw_error_deg
 
@@ -116,7 +117,7 @@ def test_flat_or_missing_depth_is_survived(value: float) -> None:
     room = random_room(5)
     flat = np.full(room.buffers.depth_m.shape, value, np.float32)
     normals = np.full((*flat.shape, 3), np.nan if np.isnan(value) else 0.0, np.float32)
-    for item in posed(room, DepthMap(flat, normals, "measured")):
+    for item in posed(room, DepthMap(flat, normals, DepthSource.MEASURED)):
         check_finite(item)
 
 
@@ -172,7 +173,7 @@ def test_a_tiny_box_and_a_object_behind_the_camera_are_survived_with_low_confide
     room = Room(camera_at(), (standing("chair", 0.0, 3.0, 20.0),), (0,))
     tiny = (replace(room.objects[0], box=(100.0, 100.0, 101.0, 101.0), mask=np.zeros_like(room.objects[0].mask)),)
     behind = Cuboid("o0", np.eye(3), np.array([0.0, -3.0, 0.4]), np.array([0.5, 0.5, 0.8]), 0.1)
-    geometry = ObjectGeometry(room.camera, (behind,), (), "wrong")
+    geometry = ObjectGeometry(room.camera, (behind,), (), ScaleSource.GIVEN)
     found = STAGE.pose(room.inputs, tiny, geometry, room.depth(False), room.ranked(), Progress())
     check_finite(found[0])
     assert found[0].confidence < 0.1

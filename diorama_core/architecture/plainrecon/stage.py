@@ -19,6 +19,7 @@ from diorama_core.architecture.walls.closed_room import GUESS_CONFIDENCE
 from diorama_core.architecture.walls.surface import MeasuredSurface, measured_surface
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry
 from diorama_core.progress import Progress
+from diorama_core.provenance import RoomMethod, RoomSource
 from diorama_core.scene.types import Architecture, Plane
 
 UP_COSINE = 0.7
@@ -54,12 +55,11 @@ class PlainRecon:
         planes += [_plane(f"wall_{k}", w, CONFIDENCE) for k, w in enumerate(standing, 1)]
         architecture = Architecture(coloured(tuple(planes), inputs.photo.rgb, geometry.camera, objects))
         progress.report(1.0, "Floor and walls are bounded")
-        found = "floor" if floor is not None else "no floor (one is assumed)"
         return ArchitectureEstimate(
             architecture=architecture,
             supports=resolve_supports(geometry, architecture),
             confidence=float(np.mean([p.confidence for p in architecture.planes])),
-            source=f"PlainRecon as published: {found} and {len(walls)} walls from clusters of normals",
+            source=RoomSource(RoomMethod.PLAINRECON, walls_found=len(walls), floor_found=floor is not None),
         )
 
     def _sheets(self, surface: MeasuredSurface) -> tuple[Sheet | None, list[Sheet]]:

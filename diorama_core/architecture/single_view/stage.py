@@ -25,13 +25,14 @@ from diorama_core.architecture.supports import resolve_supports
 from diorama_core.architecture.texture.colours import coloured, visible_planes
 from diorama_core.architecture.walls.ceilings import CeilingPiece
 from diorama_core.architecture.walls.closed_room import GUESS_CONFIDENCE, room_planes
-from diorama_core.architecture.walls.openings import Opening, counted
+from diorama_core.architecture.walls.openings import Opening, counts
 from diorama_core.architecture.walls.passages import with_passages
 from diorama_core.architecture.walls.wall_candidates import WallCandidate
 from diorama_core.architecture.walls.wall_path import Run, heading
 from diorama_core.architecture.walls.wall_sequence import CORNER_SLACK_RAD, WallPiece, chained, meeting_point
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry
 from diorama_core.progress import Progress
+from diorama_core.provenance import RoomMethod, RoomSource
 from diorama_core.scene.types import Architecture, Plane
 
 CEILINGS_M = np.geomspace(2.1, MAX_CEILING_M, 28)
@@ -81,7 +82,7 @@ class PhotoRoom:
             architecture=architecture,
             supports=resolve_supports(geometry, architecture),
             confidence=float(np.mean([w.confidence for w in walls])),
-            source=_source(pieces, top_m, float(sure.max())) + counted(openings),
+            source=_source(pieces, top_m, float(sure.max()), openings),
             openings=pointed,
         )
 
@@ -191,9 +192,16 @@ def _planes(
     return tuple(replace(p, confidence=sure.get(p.id, p.confidence)) for p in retained)
 
 
-def _source(pieces: tuple[WallPiece, ...], top_m: float, sure: float) -> str:
-    seen = [p for p in pieces if p.candidate is not None]
-    count = f"{len(seen)} wall{'s' * (len(seen) > 1)}, {top_m:.1f} m high,"
-    if sure <= 2 * GUESS_CONFIDENCE:
-        return f"{count} from the objects and usual room sizes; few lines were seen"
-    return f"{count} from lines, edges and colours of the photo and the objects"
+def _source(
+    pieces: tuple[WallPiece, ...], top_m: float, sure: float, openings: tuple[tuple[Opening, ...], ...]
+) -> RoomSource:
+    seen = sum(p.candidate is not None for p in pieces)
+    doorways, windows = counts(openings)
+    return RoomSource(
+        RoomMethod.USUAL_SIZES if sure <= 2 * GUESS_CONFIDENCE else RoomMethod.PHOTO_CUES,
+        walls_found=seen,
+        walls_assumed=len(pieces) - seen,
+        wall_height_m=float(top_m),
+        doorways=doorways,
+        windows=windows,
+    )

@@ -74,11 +74,10 @@ def is_shut(surface: MeasuredSurface, piece: WallPiece, opening: Opening, top_m:
     return bool(stopped[rows, columns].sum() > passed[rows, columns].sum())
 
 
-def counted(openings: tuple[tuple[Opening, ...], ...]) -> str:
-    """How many doorways and windows the walls have, to go on with a sentence; nothing where there is none."""
-    doors, cut = sum(o.is_doorway for wall in openings for o in wall), sum(len(wall) for wall in openings)
-    named = ((doors, "doorway"), (cut - doors, "window"))
-    return "".join(f", {n} {name}{'s' * (n > 1)}" for n, name in named if n)
+def counts(openings: tuple[tuple[Opening, ...], ...]) -> tuple[int, int]:
+    """How many doorways and how many windows the walls have."""
+    doorways = sum(o.is_doorway for wall in openings for o in wall)
+    return doorways, sum(len(wall) for wall in openings) - doorways
 
 
 def _rays(

@@ -28,6 +28,7 @@ from diorama_core.geometry.projection import box_iou
 from diorama_core.pipeline.stages import Stages
 from diorama_core.progress import Progress
 from diorama_core.protocols import ArchitectureStage, GeometryStage, RetrievalStage
+from diorama_core.provenance import RoomMethod, RoomSource
 from diorama_core.scene.types import Plane, SceneObject, Support, yaw_rotation
 from diorama_core.synthesis.artefacts import true_camera, true_geometry
 from diorama_core.synthesis.truth import TruthView
@@ -113,7 +114,7 @@ class _TrueRoom:
         Q = heading_change(geometry, self.view)
         planes = tuple(_turned(p, Q) for p in self.view.scene.architecture.planes)
         room = replace(self.view.scene.architecture, planes=planes)
-        return ArchitectureEstimate(room, resolve_supports(geometry, room), 1.0, "truth")
+        return ArchitectureEstimate(room, resolve_supports(geometry, room), 1.0, RoomSource(RoomMethod.GIVEN))
 
 
 @dataclass(frozen=True)

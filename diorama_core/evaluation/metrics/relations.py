@@ -11,6 +11,7 @@ from diorama_core.perception.measured import MeasuredGeometry
 from diorama_core.perception.metrology import SingleViewMetrology
 from diorama_core.progress import Progress
 from diorama_core.protocols import GraphStage
+from diorama_core.provenance import CameraSource
 from diorama_core.scene.types import Scene, Support
 from diorama_core.synthesis import TruthView
 
@@ -66,7 +67,7 @@ def relations_of(view: TruthView, *, with_depth: bool, graph: GraphStage | None 
     camera = view.camera
     reading = CameraHypothesis(camera.intrinsics, camera.T_world_camera[:3, :3], 1.0)
     height = float(camera.position[2]) if with_depth else None
-    estimate = CameraEstimate((reading,), 1.0, "known", height)
+    estimate = CameraEstimate((reading,), 1.0, CameraSource.given(), height)
     quiet = Progress()
     objects = EmbeddedMasks().segment(inputs, quiet)
     stage = MeasuredGeometry() if with_depth else SingleViewMetrology()

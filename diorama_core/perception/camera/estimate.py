@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -13,6 +13,7 @@ from diorama_core.perception.camera.frames import frame_difference_rad
 from diorama_core.perception.camera.gravity_depth import DepthFrame, frame_from_depth
 from diorama_core.perception.camera.vanishing import FOCAL_PRIOR, FrameFit, Lines, prior_frame, search_frames
 from diorama_core.progress import Progress
+from diorama_core.provenance import AttitudeSource, CameraSource, FocalSource, HeadingSource
 from diorama_core.scene.types import Intrinsics
 
 MIN_SEGMENTS = 6
@@ -28,6 +29,10 @@ CLEAR_GAP = 0.05
 """A second reading whose score is nearer than this to the best one's makes the best one doubtful."""
 SURE_SUPPORT, UNSURE_SUPPORT = 0.6, 0.2
 """Shares of agreeing lines at which confidence is full and none."""
+DOUBTFUL = 0.35
+"""Confidence up to which users are asked to check what lines say."""
+MIN_WALL_SHARE = 0.02
+"""Share of the measured points on walls from which on they decide about the room's directions."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +48,7 @@ class EmbeddedCamera:
     def estimate(self, inputs: Inputs, progress: Progress) -> CameraEstimate:
         """The readings of one photo, best first; never fails on a picture without lines, but says so."""
         photo = inputs.photo
-        given, source = _stated_intrinsics(inputs)
+        given, stated = _stated_intrinsics(inputs)
         progress.report(0.1, "looking for straight lines")
         segments = _of_the_room(line_segments_px(photo.rgb), photo)
         assumed = given or _habitual_intrinsics(photo, FOCAL_PRIOR[0])
@@ -57,7 +62,7 @@ class EmbeddedCamera:
             CameraHypothesis(given or _habitual_intrinsics(photo, f.focal), f.R_world_camera, _unit(f.score))
             for f in fits
         )
-        estimate = _from_lines(readings, fits, assumed, source, given is not None)
+        estimate = _from_lines(readings, fits, assumed, stated)
         if inputs.depth_m is None:
             return estimate
         progress.report(0.7, "looking for the floor in the measured depth")
@@ -74,14 +79,14 @@ def _of_the_room(segments_px: Float[np.ndarray, "n 4"], photo: Photo) -> Float[n
     return segments_px[~(straight & near).any(axis=1)]
 
 
-def _stated_intrinsics(inputs: Inputs) -> tuple[Intrinsics | None, str]:
+def _stated_intrinsics(inputs: Inputs) -> tuple[Intrinsics | None, FocalSource | None]:
     photo = inputs.photo
     if inputs.intrinsics is not None:
-        return inputs.intrinsics, "focal length given"
+        return inputs.intrinsics, FocalSource.GIVEN
     if photo.exif_focal_px is not None:
         focal = photo.exif_focal_px / max(photo.width, photo.height)
-        return _habitual_intrinsics(photo, focal), "focal length from the photo's header"
-    return None, ""
+        return _habitual_intrinsics(photo, focal), FocalSource.HEADER
+    return None, None
 
 
 def _habitual_intrinsics(photo: Photo, focal: float) -> Intrinsics:
@@ -102,19 +107,27 @@ def _distinct(fits: tuple[FrameFit, ...], count: int) -> tuple[FrameFit, ...]:
 
 
 def _from_lines(
-    readings: tuple[CameraHypothesis, ...], fits: tuple[FrameFit, ...], assumed: Intrinsics, source: str, known: bool
+    readings: tuple[CameraHypothesis, ...],
+    fits: tuple[FrameFit, ...],
+    assumed: Intrinsics,
+    stated: FocalSource | None,
 ) -> CameraEstimate:
+    """The readings of the lines; the usual camera where there are none."""
     if not readings:
         habit = CameraHypothesis(assumed, prior_frame(), 0.0)
-        focal = source or "usual focal length assumed"
-        return CameraEstimate((habit,), 0.05, f"{focal}; too few straight lines, usual tilt assumed")
+        focal = stated or FocalSource.ASSUMED
+        return CameraEstimate((habit,), 0.05, CameraSource(focal, AttitudeSource.ASSUMED, HeadingSource.ASSUMED))
     confidence = _unit((fits[0].support - UNSURE_SUPPORT) / (SURE_SUPPORT - UNSURE_SUPPORT))
     if len(fits) > 1:
         confidence *= 1.0 - 0.5 * (1.0 - _unit((fits[0].score - fits[1].score) / CLEAR_GAP))
-    confidence = max(0.05, confidence if known else 0.85 * confidence)
-    focal = source or "focal length from vanishing points"
-    doubt = "" if confidence > 0.35 else " (few agreeing lines: check it)"
-    return CameraEstimate(readings, confidence, f"{focal}; tilt and room directions from vanishing points{doubt}")
+    confidence = max(0.05, 0.85 * confidence if stated is None else confidence)
+    source = CameraSource(
+        stated or FocalSource.VANISHING_POINTS,
+        AttitudeSource.VANISHING_POINTS,
+        HeadingSource.VANISHING_POINTS,
+        few_lines=confidence <= DOUBTFUL,
+    )
+    return CameraEstimate(readings, confidence, source)
 
 
 def _with_depth(estimate: CameraEstimate, inputs: Inputs, count: int) -> CameraEstimate:
@@ -122,10 +135,9 @@ def _with_depth(estimate: CameraEstimate, inputs: Inputs, count: int) -> CameraE
     assert inputs.depth_m is not None
     best = estimate.best
     frame = frame_from_depth(inputs.depth_m, best.intrinsics, best.R_world_camera)
-    focal = estimate.source.split(";")[0]
     if frame is None:
-        said = f"{estimate.source}; no floor or other level surface in the measured depth"
-        return CameraEstimate(estimate.hypotheses, 0.8 * estimate.confidence, said)
+        source = replace(estimate.source, no_level_surface=True)
+        return CameraEstimate(estimate.hypotheses, 0.8 * estimate.confidence, source)
     reading = CameraHypothesis(best.intrinsics, frame.R_world_camera, 1.0)
     others = [
         h for h in estimate.hypotheses if frame_difference_rad(h.R_world_camera, frame.R_world_camera) > DISTINCT_RAD
@@ -133,7 +145,7 @@ def _with_depth(estimate: CameraEstimate, inputs: Inputs, count: int) -> CameraE
     return CameraEstimate(
         hypotheses=(reading, *others[: count - 1]),
         confidence=_depth_confidence(frame),
-        source=f"{focal}; {_depth_words(frame)}",
+        source=_depth_source(frame, estimate.source.focal),
         height_m=frame.height_m,
     )
 
@@ -144,11 +156,12 @@ def _depth_confidence(frame: DepthFrame) -> float:
     return 0.8 + 0.2 * _unit(frame.level_share / 0.15)
 
 
-def _depth_words(frame: DepthFrame) -> str:
-    axes = "room directions from measured walls" if frame.wall_share > 0.02 else "room directions from lines"
-    if frame.height_m is None:
-        return f"tilt from measured level surfaces, {axes}; no floor visible, so the height over it is unknown"
-    return f"tilt from the measured floor, {axes}; camera {frame.height_m:.2f} m above it"
+def _depth_source(frame: DepthFrame, focal: FocalSource) -> CameraSource:
+    return CameraSource(
+        focal,
+        AttitudeSource.LEVEL_SURFACES if frame.height_m is None else AttitudeSource.FLOOR,
+        HeadingSource.WALLS if frame.wall_share > MIN_WALL_SHARE else HeadingSource.VANISHING_POINTS,
+    )
 
 
 def _unit(value: float) -> float:

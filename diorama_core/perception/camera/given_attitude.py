@@ -23,7 +23,8 @@ class GivenAttitudeCamera:
         best = replace(
             found.best, R_world_camera=self.camera_attitude.rotation(found.best.R_world_camera[:, 2]), score=1.0
         )
-        return replace(found, hypotheses=(best,), confidence=1.0, source=f"{found.source}; tilt set by hand")
+        source = replace(found.source, attitude_corrected=True)
+        return replace(found, hypotheses=(best,), confidence=1.0, source=source)
 
 
 def with_given_attitude(stage: CameraStage, camera_attitude: CameraAttitude | None) -> CameraStage:

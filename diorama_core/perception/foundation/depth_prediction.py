@@ -17,8 +17,8 @@ from diorama_core.artefacts import (
 from diorama_core.models.depth import GeometryNetwork
 from diorama_core.perception.camera.estimate import EmbeddedCamera
 from diorama_core.perception.depth import filled_depth, render_geometry
-from diorama_core.perception.measured import MeasuredGeometry
 from diorama_core.progress import Progress
+from diorama_core.provenance import DepthSource, FocalSource
 from diorama_core.scene.types import Intrinsics
 
 
@@ -42,7 +42,7 @@ def with_depth(inputs: Inputs, seen: DepthPrediction) -> Inputs:
         depth_m=seen.depth_m,
         normals_camera=seen.normals_camera,
         intrinsics=inputs.intrinsics or seen.intrinsics,
-        depth_source="network",
+        depth_source=DepthSource.NETWORK,
     )
 
 
@@ -55,22 +55,9 @@ class NetworkCamera:
     def estimate(self, inputs: Inputs, progress: Progress) -> CameraEstimate:
         """The readings of one photo, best first."""
         found = self.reader.estimate(inputs, progress)
-        given = "focal length given", "focal length from the network"
-        return replace(found, source=with_network_wording(found.source.replace(*given)))
-
-
-@dataclass(frozen=True)
-class NetworkGeometry:
-    """Objects in metres from a network's depth, measured as in measured depth."""
-
-    reader: MeasuredGeometry = field(default_factory=MeasuredGeometry)
-
-    def measure(
-        self, inputs: Inputs, camera: CameraEstimate, objects: tuple[DetectedObject, ...], progress: Progress
-    ) -> ObjectGeometry:
-        """The posed camera, a cuboid for every object, and what stands on what."""
-        found = self.reader.measure(inputs, camera, objects, progress)
-        return replace(found, source=with_network_wording(found.source))
+        if found.source.focal is not FocalSource.GIVEN:
+            return found
+        return replace(found, source=replace(found.source, focal=FocalSource.NETWORK))
 
 
 @dataclass(frozen=True)
@@ -94,9 +81,4 @@ class NetworkDepth:
             raise ValueError("NetworkDepth needs depth and normals from a network; use RenderedDepth without them")
         progress.report(0.0, "Filling holes of the depth")
         rendered = render_geometry(geometry, objects, architecture.architecture)
-        return filled_depth(inputs.depth_m, inputs.normals_camera, geometry.camera, rendered, "network")
-
-
-def with_network_wording(words: str) -> str:
-    """What the readers of measured depth say, of depth that nobody measured."""
-    return words.replace("measured depth", "depth read from the photo").replace("measured", "seen")
+        return filled_depth(inputs.depth_m, inputs.normals_camera, geometry.camera, rendered, DepthSource.NETWORK)

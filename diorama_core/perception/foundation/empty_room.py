@@ -67,7 +67,7 @@ class EmptyRoomArchitecture:
             normals_camera=normals,
         )
         found = self.room.reconstruct(cleared, (), geometry, progress.part(0.7, 1.0))
-        return replace(found, source=f"{found.source}; the furniture painted out")
+        return replace(found, source=replace(found.source, furniture_inpainted=True))
 
     def hole(self, rgb: UInt8[np.ndarray, "h w 3"], objects: tuple[DetectedObject, ...]) -> Bool[np.ndarray, "h w"]:
         """Pixels of things and their margin: masks, and what the foreground networks see beyond them."""

@@ -65,7 +65,7 @@ class GeometricGraph:
             relation: Relation = "mounted on" if parent in ("wall", "ceiling") else "placed on"
             edges.append(Support(obj.id, parent, relation))
             scores.append(_sureness(cost, options[obj.id], parent))
-        return SceneGraph(tuple(edges), tuple(scores), source="geometry: contact, containment and usual places")
+        return SceneGraph(tuple(edges), tuple(scores))
 
 
 Options = tuple[tuple[str, float], ...]

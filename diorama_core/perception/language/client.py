@@ -131,14 +131,17 @@ class Usage:
             self.output_tokens + other.output_tokens,
         )
 
-    def words(self, settings: LmmSettings) -> str:
-        """For people: "3 calls, 4120 tokens, 0.021 at your prices"."""
-        tokens = self.input_tokens + self.output_tokens
-        said = f"{self.calls} call{'s' if self.calls != 1 else ''}, {tokens} tokens"
+    @property
+    def tokens(self) -> int:
+        """Tokens read and written."""
+        return self.input_tokens + self.output_tokens
+
+    def cost(self, settings: LmmSettings) -> float | None:
+        """In currency units; None where the settings state no prices."""
         if settings.price_per_million is None:
-            return said
-        cost = self.input_tokens * settings.price_per_million[0] + self.output_tokens * settings.price_per_million[1]
-        return f"{said}, {cost / 1e6:.3f} at your prices"
+            return None
+        read, written = settings.price_per_million
+        return (self.input_tokens * read + self.output_tokens * written) / 1e6
 
 
 @dataclass(frozen=True)

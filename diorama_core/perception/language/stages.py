@@ -13,6 +13,7 @@ from diorama_core.perception.language.marks import marked, picture_bytes
 from diorama_core.perception.language.replies import RECOGNITION_PROMPT, ClassesReply, GraphReply, graph_prompt
 from diorama_core.perception.language.votes import counted
 from diorama_core.progress import Progress
+from diorama_core.provenance import GraphMethod, GraphSource, LanguageModelUse
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ class LanguageGraph:
             scores=scores,
             facing=ballot.facing,
             captions=ballot.captions,
-            source=_told(self.settings, usage, len(replies), failed, mended, len(supports), trouble),
+            source=_source(self.settings, usage, len(replies), failed, mended, trouble),
             provisional=bool(trouble) and not replies,
         )
 
@@ -87,15 +88,7 @@ class LanguageGraph:
         return replies, usage, failed, ""
 
 
-def _told(
-    settings: LmmSettings, usage: Usage, used: int, failed: int, mended: int, count: int, trouble: str = ""
-) -> str:
-    if not used and trouble:
-        return f"geometry ({trouble})"
-    if not used:
-        took = f": {usage.words(settings)}" if usage.calls else ""
-        return f"geometry ({settings.model} gave no usable answer in {failed} tries{took})"
-    said = f"{settings.model}, {used} {'reply' if used == 1 else 'replies'}"
-    if usage.calls:
-        said += f" ({usage.words(settings)})"
-    return f"{said}; {mended} of {count} relations from geometry" if mended else said
+def _source(settings: LmmSettings, usage: Usage, used: int, failed: int, mended: int, trouble: str) -> GraphSource:
+    method = GraphMethod.LANGUAGE_MODEL if used else GraphMethod.GEOMETRY
+    asked = LanguageModelUse(settings.model, used, failed, usage.calls, usage.tokens, usage.cost(settings), trouble)
+    return GraphSource(method, asked, mended)

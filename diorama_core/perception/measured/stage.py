@@ -15,6 +15,7 @@ from diorama_core.perception.measured.boxes import Extent, completed, observed_e
 from diorama_core.perception.measured.cloud import MIN_POINTS, object_points
 from diorama_core.perception.measured.standing import grounded, supporters
 from diorama_core.progress import Progress
+from diorama_core.provenance import ScaleSource
 from diorama_core.scene.types import Camera
 
 ASSUMED_HEIGHT_M = 1.4
@@ -41,7 +42,7 @@ class MeasuredGeometry:
         if inputs.depth_m is None:
             raise ValueError("MeasuredGeometry needs measured depth; use SingleViewMetrology for a photo alone")
         progress.report(0.0, "Reading the measured depth")
-        posed, told = posed_camera(camera, inputs.depth_m)
+        posed, scale = posed_camera(camera, inputs.depth_m)
         depth = inputs.depth_m
         world = points_camera(depth, posed.intrinsics) @ posed.T_world_camera[:3, :3].T + posed.position
         extents: dict[str, Extent] = {}
@@ -56,20 +57,20 @@ class MeasuredGeometry:
             to_cuboid(key, extent, categories[key], posed.position, sureness[key]) for key, extent in standing.items()
         )
         progress.report(1.0, "Objects are measured")
-        return ObjectGeometry(posed, cuboids, edges, told, camera.confidence)
+        return ObjectGeometry(posed, cuboids, edges, scale, camera.confidence)
 
 
-def posed_camera(camera: CameraEstimate, depth_m: Float[np.ndarray, "h w"]) -> tuple[Camera, str]:
-    """The camera over the world's origin, and where its height comes from, in words."""
+def posed_camera(camera: CameraEstimate, depth_m: Float[np.ndarray, "h w"]) -> tuple[Camera, ScaleSource]:
+    """The camera over the world's origin, and where its height comes from."""
     best = camera.best
-    height, told = camera.height_m, "measured depth; camera height from the floor"
+    height, scale = camera.height_m, ScaleSource.DEPTH
     if height is None:
         height = floor_distance(depth_m, camera)
     if height is None:
-        height, told = ASSUMED_HEIGHT_M, f"measured depth; no floor seen, camera assumed {ASSUMED_HEIGHT_M} m above it"
+        height, scale = ASSUMED_HEIGHT_M, ScaleSource.DEPTH_WITHOUT_FLOOR
     T = np.eye(4)
     T[:3, :3], T[2, 3] = best.R_world_camera, height
-    return Camera(best.intrinsics, T), told
+    return Camera(best.intrinsics, T), scale
 
 
 def floor_distance(depth_m: Float[np.ndarray, "h w"], camera: CameraEstimate) -> float | None:

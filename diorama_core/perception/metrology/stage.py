@@ -13,6 +13,7 @@ from diorama_core.perception.metrology.placement import CEILING, FLOOR, WALL, Pl
 from diorama_core.perception.metrology.problem import View
 from diorama_core.perception.metrology.reading import confidence_of, heading_and_size
 from diorama_core.progress import Progress
+from diorama_core.provenance import ScaleSource
 from diorama_core.scene.types import Camera, Relation, Support, yaw_rotation
 
 _COST_WEIGHT = 0.003
@@ -46,7 +47,7 @@ class SingleViewMetrology:
             camera=_camera(hypothesis, scan.height_m),
             cuboids=tuple(_cuboid(o, p, observations, scan) for o, p in zip(objects, placements, strict=True)),
             supports=tuple(_support(p, objects) for p in placements),
-            source=_source(len(objects)),
+            source=ScaleSource.OBJECT_SIZES if objects else ScaleSource.CAMERA_HEIGHT,
             confidence=_overall(camera, scan, len(objects)),
         )
 
@@ -86,12 +87,6 @@ def _support(placement: Placement, objects: tuple[DetectedObject, ...]) -> Suppo
     parent = _PARENT_NAMES.get(placement.supporter)
     relation: Relation = "mounted on" if placement.supporter in (WALL, CEILING) else "placed on"
     return Support(child, parent if parent is not None else objects[placement.supporter].id, relation)
-
-
-def _source(count: int) -> str:
-    if not count:
-        return "no objects: the camera is taken to be at the usual height"
-    return "scale from the usual sizes of the named things and the camera's usual height"
 
 
 def _overall(camera: CameraEstimate, scan: HeightScan, count: int) -> float:

@@ -13,6 +13,7 @@ from diorama_core.errors import InputError
 from diorama_core.geometry.camera_attitude import CameraAttitude
 from diorama_core.perception.camera.given_attitude import GivenAttitudeCamera
 from diorama_core.progress import Progress
+from diorama_core.provenance import CameraSource
 from diorama_core.scene.types import Intrinsics, yaw_rotation
 from tests.app.small_room import photo_camera, plain_photo
 
@@ -38,7 +39,7 @@ class Found:
     def estimate(self, inputs: Inputs, progress: Progress) -> CameraEstimate:
         R = yaw_rotation(0.2) @ photo_camera().T_world_camera[:3, :3]
         reading = CameraHypothesis(Intrinsics.from_fov(640, 480, 1.0), R, 0.5)
-        return CameraEstimate((reading, replace(reading, score=0.1)), 0.4, "lines")
+        return CameraEstimate((reading, replace(reading, score=0.1)), 0.4, CameraSource.given())
 
 
 def test_what_is_said_of_the_tilt_leaves_heading_and_focal_length() -> None:
@@ -50,7 +51,7 @@ def test_what_is_said_of_the_tilt_leaves_heading_and_focal_length() -> None:
     assert after.intrinsics == before.intrinsics
     forward = [R[:2, 2] / np.linalg.norm(R[:2, 2]) for R in (before.R_world_camera, after.R_world_camera)]
     np.testing.assert_allclose(*forward, atol=1e-9)
-    assert "set by hand" in estimate.source
+    assert estimate.source == replace(CameraSource.given(), attitude_corrected=True)
 
 
 @pytest.mark.parametrize(("tilt", "roll"), [(85.0, 0.0), (0.0, -50.0)])

@@ -14,6 +14,7 @@ from diorama_core.architecture.single_view.stage import PhotoRoom
 from diorama_core.artefacts import Inputs, ObjectGeometry, Photo
 from diorama_core.evaluation.metrics.architecture import architecture_scores
 from diorama_core.progress import CancelToken, Progress
+from diorama_core.provenance import RoomMethod, ScaleSource
 from diorama_core.scene.types import Support
 from tests.synthetic_rooms import box_room, cuboid, floor, look, shoot, wall
 
@@ -99,7 +100,7 @@ def test_supports_are_resolved_to_planes():
         ("bookshelf", "picture", "chair"),
     )
     edges = (Support("shelf", "floor"), Support("picture", "wall"), Support("chair", "floor"))
-    estimate = reconstruct(shot, ObjectGeometry(shot.camera, shot.cuboids, edges, "known"))
+    estimate = reconstruct(shot, ObjectGeometry(shot.camera, shot.cuboids, edges, ScaleSource.GIVEN))
     resolved = {s.child: s for s in estimate.supports}
     far, left = wall_facing(estimate, (0, -1, 0)), wall_facing(estimate, (1, 0, 0))
     assert resolved["picture"].parent == far.id
@@ -111,12 +112,12 @@ def test_supports_are_resolved_to_planes():
 def test_a_blank_picture_gives_a_usual_room_and_says_so():
     camera = look()
     blank = Inputs(Photo(np.full((480, 640, 3), 128, np.uint8), "blank", (640, 480)))
-    geometry = ObjectGeometry(camera, (), (), "assumed")
+    geometry = ObjectGeometry(camera, (), (), ScaleSource.CAMERA_HEIGHT)
     estimate = PhotoRoom().reconstruct(blank, (), geometry, Progress())
     assert estimate.architecture.floor is not None
     assert estimate.architecture.by_role("wall")
     assert estimate.confidence < 0.3
-    assert "usual room sizes" in estimate.source
+    assert estimate.source.method is RoomMethod.USUAL_SIZES
 
 
 @pytest.mark.parametrize("pitch", [-60, 60, 85])

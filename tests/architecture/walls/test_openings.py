@@ -13,6 +13,7 @@ from diorama_core.artefacts import DetectedObject
 from diorama_core.evaluation.metrics.architecture import plane_points
 from diorama_core.geometry.casting import camera_rays, cast_plane
 from diorama_core.progress import Progress
+from diorama_core.provenance import RoomMethod
 from diorama_core.scene import edits
 from diorama_core.scene.types import Architecture, Plane, Scene
 from tests.synthetic_rooms import box_room, floor, look, shoot, wall
@@ -51,7 +52,7 @@ def test_a_wall_with_openings_is_one_polygon_of_the_right_area():
 
 def test_a_doorway_and_a_window_are_found_where_they_are():
     estimate = reconstruct(opened_room(DOORWAY, WINDOW))
-    assert "1 doorway, 1 window" in estimate.source
+    assert (estimate.source.doorways, estimate.source.windows) == (1, 1)
     found = next(p for p in estimate.architecture.by_role("wall") if abs(p.offset + 4.0) < 0.05 and p.normal[1] < -0.9)
     camera = look(0, 6, fov_deg=70, size=SIZE)
     origin, rays = camera_rays(camera, 2)
@@ -60,8 +61,8 @@ def test_a_doorway_and_a_window_are_found_where_they_are():
 
 
 def test_a_closed_wall_has_none():
-    assert "doorway" not in reconstruct(opened_room()).source
-    assert "window" not in reconstruct(opened_room()).source
+    source = reconstruct(opened_room()).source
+    assert (source.doorways, source.windows) == (0, 0)
 
 
 def test_a_mirror_does_not_cost_the_wall():
@@ -85,7 +86,8 @@ def test_views_of_ceiling_or_floor_alone_give_a_room_with_a_reason(pitch):
     estimate = reconstruct(shoot(look(0, pitch, size=SIZE), box_room(-2.0, 2.0, 4.0, 2.6)))
     assert estimate.architecture.floor is not None
     assert estimate.architecture.by_role("wall")
-    assert "floor" in estimate.source
+    assert estimate.source.method is RoomMethod.DEPTH_PLANES
+    assert estimate.source.floor_found == (pitch > 0)
 
 
 def test_depth_that_is_no_number_counts_as_missing():
@@ -114,4 +116,4 @@ def test_what_is_seen_through_is_a_hole_and_only_a_doorway_is_no_object(label, e
     found = DetectedObject("it", "door", label, box, mask, 1, 1.0)
     estimate = PlanarRoom().reconstruct(shot.inputs, (found,), shot.geometry, Progress())
     assert estimate.openings == expected
-    assert "1 doorway" in estimate.source
+    assert estimate.source.doorways == 1

@@ -15,6 +15,7 @@ from diorama_core.architecture.walls.wall_sequence import WallPiece
 from diorama_core.artefacts import DetectedObject, ObjectGeometry
 from diorama_core.geometry.casting import cast_plane
 from diorama_core.progress import Progress
+from diorama_core.provenance import ScaleSource
 from diorama_core.scene.types import Support
 from tests.synthetic_rooms import box_room, cuboid, look, shoot
 
@@ -86,7 +87,7 @@ def _room_with(label):
     leaf = cuboid("it", (0.6, 3.985, 0.0), (0.03, 0.9, 2.0), yaw_deg=-90)
     shot = shoot(camera, box_room(-2.0, 2.0, 4.0, 2.6), (leaf,), ("door",))
     objects = tuple(replace(o, label=label) for o in shot.objects)
-    geometry = ObjectGeometry(camera, shot.cuboids, (Support("it", "wall"),), "known")
+    geometry = ObjectGeometry(camera, shot.cuboids, (Support("it", "wall"),), ScaleSource.GIVEN)
     return shot, objects, geometry
 
 
@@ -105,7 +106,7 @@ def test_a_doorway_in_a_photo_is_a_hole_and_no_object():
     shot, objects, geometry = _room_with("doorway")
     estimate = PhotoRoom().reconstruct(shot.inputs, objects, geometry, Progress())
     assert estimate.openings == ("it",)
-    assert "1 doorway" in estimate.source
+    assert estimate.source.doorways == 1
     wall = next(w for w in estimate.architecture.by_role("wall") if w.normal[1] < -0.99)
     eye = shot.camera.position
     rays = np.array([[0.6, 4.0, 1.0], [0.6, 4.0, 2.3], [-1.0, 4.0, 1.0]]) - eye

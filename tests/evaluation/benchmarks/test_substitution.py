@@ -16,6 +16,7 @@ from diorama_core.evaluation.benchmarks.substitution import (
     parse_substitutes,
     scaled,
 )
+from diorama_core.provenance import ScaleSource
 from diorama_core.scene.types import Camera, Intrinsics, Pose, Scene, SceneObject, Support, yaw_rotation
 from diorama_core.synthesis.layout_rooms import room_box
 from diorama_core.synthesis.truth import TruthView
@@ -43,7 +44,7 @@ def view(height_m: float = 1.5) -> TruthView:
 
 def estimate(height_m: float = 1.8, yaw: float = 0.0) -> ObjectGeometry:
     cuboid = Cuboid("a", yaw_rotation(1.7 + yaw), yaw_rotation(yaw) @ [0.5, 4.0, 0.5], np.array([1.6, 1.0, 1.0]), 0.5)
-    return ObjectGeometry(camera(height_m, yaw), (cuboid,), (Support("a", "wall", "mounted on"),), "a test")
+    return ObjectGeometry(camera(height_m, yaw), (cuboid,), (Support("a", "wall", "mounted on"),), ScaleSource.GIVEN)
 
 
 def changed(*names: str, found: ObjectGeometry | None = None) -> ObjectGeometry:

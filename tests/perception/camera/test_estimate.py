@@ -12,8 +12,12 @@ from diorama_core.errors import Cancelled
 from diorama_core.perception.camera.estimate import EmbeddedCamera
 from diorama_core.perception.camera.frames import frame_difference_rad, pitch_and_roll
 from diorama_core.progress import CancelToken, Progress, ProgressEvent
+from diorama_core.provenance import AttitudeSource, CameraSource, FocalSource, HeadingSource
 from diorama_core.scene.types import Intrinsics
 from tests.perception.camera.boxroom import depth, room_frame, shaded_picture, view
+
+LINES = (AttitudeSource.VANISHING_POINTS, HeadingSource.VANISHING_POINTS)
+NOTHING = CameraSource(FocalSource.ASSUMED, AttitudeSource.ASSUMED, HeadingSource.ASSUMED)
 
 
 def inputs_of(rgb: np.ndarray, **more: object) -> Inputs:
@@ -37,27 +41,27 @@ class TestSyntheticRooms:
         assert gravity_error_deg(found, room_frame(self.v)) < 1.0
         assert found.best.intrinsics == self.v.intrinsics
         assert found.height_m is None
-        assert "given" in found.source
+        assert found.source == CameraSource(FocalSource.GIVEN, *LINES)
 
     def test_from_a_picture_alone(self) -> None:
         found = estimate(inputs_of(shaded_picture(self.v)))
         assert gravity_error_deg(found, room_frame(self.v)) < 1.5
         assert found.best.intrinsics.fx == pytest.approx(self.v.intrinsics.fx, rel=0.08)
-        assert "vanishing points" in found.source
+        assert found.source == CameraSource(FocalSource.VANISHING_POINTS, *LINES)
 
     def test_with_depth(self) -> None:
         given = inputs_of(shaded_picture(self.v), intrinsics=self.v.intrinsics, depth_m=depth(self.v, noise=0.0015))
         found = estimate(given)
         assert gravity_error_deg(found, room_frame(self.v)) < 0.5
         assert found.height_m == pytest.approx(1.4, rel=0.02)
-        assert "floor" in found.source
+        assert found.source == CameraSource(FocalSource.GIVEN, AttitudeSource.FLOOR, HeadingSource.WALLS)
 
     def test_the_header_is_believed_before_vanishing_points(self) -> None:
         given = inputs_of(shaded_picture(self.v))
         given = replace(given, photo=replace(given.photo, exif_focal_px=500.0))
         found = estimate(given)
         assert found.best.intrinsics.fx == 500.0
-        assert "header" in found.source
+        assert found.source.focal is FocalSource.HEADER
 
     def test_a_frame_around_the_picture_is_no_room(self) -> None:
         rgb = shaded_picture(self.v).copy()
@@ -73,7 +77,7 @@ class TestHopelessPictures:
         assert np.rad2deg(pitch) == pytest.approx(12)
         assert roll == pytest.approx(0)
         assert found.confidence < 0.1
-        assert "too few straight lines" in found.source
+        assert found.source == NOTHING
 
     def test_noise(self) -> None:
         rgb = np.random.default_rng(0).integers(0, 256, (240, 320, 3)).astype(np.uint8)
@@ -89,7 +93,7 @@ class TestHopelessPictures:
         rgb = np.full((240, 320, 3), 200, np.uint8)
         found = estimate(inputs_of(rgb, depth_m=np.full((240, 320), 2.0, np.float32)))
         assert found.height_m is None
-        assert "no floor" in found.source
+        assert found.source == replace(NOTHING, no_level_surface=True)
 
     def test_can_be_stopped(self) -> None:
         token = CancelToken()

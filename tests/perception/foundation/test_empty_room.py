@@ -12,6 +12,7 @@ from diorama_core.models.depth import SeenDepth
 from diorama_core.models.foreground import ForegroundNetwork
 from diorama_core.perception.foundation.empty_room import EmptyRoomArchitecture
 from diorama_core.progress import Progress
+from diorama_core.provenance import DepthSource
 from diorama_core.scene.types import Intrinsics
 from tests.synthetic_rooms import Shot, box_room, cuboid, look, shoot
 
@@ -59,7 +60,7 @@ class _Finds:
 
 def _shots() -> tuple[Shot, Shot]:
     full, empty = shoot(CAMERA, ROOM, ITEMS), shoot(CAMERA, ROOM)
-    return replace(full, inputs=replace(full.inputs, depth_source="network")), empty
+    return replace(full, inputs=replace(full.inputs, depth_source=DepthSource.NETWORK)), empty
 
 
 def _back_wall_m(shot: Shot, stage: EmptyRoomArchitecture | PlanarRoom) -> float:

@@ -28,6 +28,7 @@ from diorama_core.perception.language.marks import marked
 from diorama_core.perception.language.replies import ClassesReply, GraphReply, tidy_label
 from diorama_core.perception.language.stages import LanguageGraph, LanguageRecognition
 from diorama_core.progress import CancelToken, Progress
+from diorama_core.provenance import GraphMethod, LanguageModelUse, ScaleSource
 from diorama_core.scene.types import Camera, Intrinsics, Support
 from tests.perception.language.stub_lmm import StubLmm, answering
 
@@ -136,7 +137,11 @@ def test_the_same_question_is_paid_once(tmp_path: Path) -> None:
     assert (first.usage.calls, again.usage.calls) == (1, 0)
     assert len(stub.requests) == 2
     priced = _settings(stub, price_per_million=(2.0, 10.0))
-    assert first.usage.words(priced) == "1 call, 1050 tokens, 0.003 at your prices"
+    assert (first.usage.calls, first.usage.tokens) == (1, 1050)
+    assert first.usage.cost(priced) == pytest.approx(
+        (first.usage.input_tokens * 2 + first.usage.output_tokens * 10) / 1e6
+    )
+    assert first.usage.cost(_settings(stub)) is None
 
 
 def test_settings_come_from_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -177,7 +182,7 @@ def _scene(
         objects.append(DetectedObject(f"{name}_1", name, label, (x1, y1, x2, y2), mask, n, 1.0))
         centre, size = rows[name]
         cuboids.append(Cuboid(f"{name}_1", np.eye(3), np.array(centre, float), np.array(size), 1.0))
-    geometry = ObjectGeometry(CAMERA, tuple(cuboids), tuple(Support(o.id, "floor") for o in objects), "test")
+    geometry = ObjectGeometry(CAMERA, tuple(cuboids), tuple(Support(o.id, "floor") for o in objects), ScaleSource.GIVEN)
     photo = Photo(np.full((120, 160, 3), 200, np.uint8), "room.jpg", (160, 120))
     return Inputs(photo), tuple(objects), geometry
 
@@ -194,6 +199,11 @@ def _graph(stub: StubLmm, labels: tuple[str, ...] = ("table", "lamp", "chair"), 
 
 def _parents(graph: SceneGraph) -> dict[str, str]:
     return {s.child: s.parent for s in graph.supports}
+
+
+def _asked(graph: SceneGraph) -> LanguageModelUse:
+    assert graph.source.asked is not None
+    return graph.source.asked
 
 
 TRUTH = {"table_1": "floor", "lamp_1": "table_1", "chair_1": "floor"}
@@ -229,7 +239,7 @@ def test_bad_relations_are_mended_by_geometry(relations: list[tuple[int, str, in
         while at in chains:
             at, steps = chains[at], steps + 1
             assert steps <= len(chains)
-    assert "from geometry" in graph.source
+    assert graph.source.repaired > 0
 
 
 def test_the_majority_of_pairs_decides() -> None:
@@ -243,7 +253,8 @@ def test_the_majority_of_pairs_decides() -> None:
 def test_without_any_usable_reply_geometry_decides_and_says_so() -> None:
     graph = _graph(StubLmm(["no"]), votes=2)
     assert _parents(graph) == TRUTH
-    assert graph.source.startswith("geometry")
+    assert graph.source.method is GraphMethod.GEOMETRY
+    assert _asked(graph).unusable == 2
     assert len(graph.supports) == 3
 
 
@@ -343,7 +354,7 @@ def _two_objects() -> tuple[Inputs, tuple[DetectedObject, ...], ObjectGeometry]:
         Cuboid("lamp_1", np.eye(3), np.array([0, 2.0, 1.0]), np.array([0.2, 0.2, 0.4]), 0.9),
     )
     edges = (Support("table_1", "floor"), Support("lamp_1", "table_1"))
-    return Inputs(photo), (table, lamp), ObjectGeometry(camera, cuboids, edges, "test")
+    return Inputs(photo), (table, lamp), ObjectGeometry(camera, cuboids, edges, ScaleSource.GIVEN)
 
 
 ODD: list[Any] = [{"subject_id": 1, "type": "levitates", "target_id": 3}, "chair", None, {"subject_id": [1]}, 7]
@@ -355,31 +366,35 @@ def test_one_odd_relation_costs_itself_not_the_reply() -> None:
     graph = _graph_of(stub)
     assert len(stub.requests) == 1, "nothing is asked again"
     assert Support("lamp_1", "table_1") in graph.supports
-    assert "1 reply" in graph.source
+    assert graph.source.method is GraphMethod.LANGUAGE_MODEL
+    assert (_asked(graph).replies, _asked(graph).unusable) == (1, 0)
 
 
 def test_a_slow_model_leaves_it_to_geometry_and_says_so() -> None:
     graph = _graph_of(StubLmm([GOOD], delay_s=1.0), timeout_s=0.2, votes=3)
     assert {s.child for s in graph.supports} == {"table_1", "lamp_1"}
-    assert graph.source.startswith("geometry (the language model at")
-    assert "did not answer within" in graph.source
+    assert graph.source.method is GraphMethod.GEOMETRY
+    assert _asked(graph).trouble
+    assert (_asked(graph).replies, _asked(graph).unusable) == (0, 0)
 
 
 def test_a_reply_that_drips_ends() -> None:
     began = time.monotonic()
     graph = _graph_of(StubLmm([GOOD], drip_s=0.02), timeout_s=0.6, votes=1)
     assert time.monotonic() - began < 5.0
-    assert "did not finish its answer" in graph.source
+    assert graph.source.method is GraphMethod.GEOMETRY
+    assert _asked(graph).trouble
 
 
 def test_a_flood_is_no_answer_and_takes_no_memory() -> None:
     graph = _graph_of(StubLmm([GOOD], flood_bytes=60_000_000), votes=1, re_asks=0)
-    assert "no usable answer" in graph.source
+    assert graph.source.method is GraphMethod.GEOMETRY
+    assert (_asked(graph).unusable, _asked(graph).trouble) == (1, "")
 
 
 def test_tokens_of_tries_that_failed_are_told() -> None:
     graph = _graph_of(StubLmm(["no idea"]), votes=1)
-    assert "no usable answer in 1 tries: 3 calls, 3150 tokens" in graph.source
+    assert (_asked(graph).unusable, _asked(graph).calls, _asked(graph).tokens) == (1, 3, 3150)
 
 
 def test_the_schema_is_strict() -> None:

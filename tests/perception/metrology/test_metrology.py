@@ -14,6 +14,7 @@ from diorama_core.geometry.projection import box_iou
 from diorama_core.library.kinds import outline_of
 from diorama_core.perception.metrology import SingleViewMetrology
 from diorama_core.progress import Progress
+from diorama_core.provenance import CameraSource
 from diorama_core.scene.types import Intrinsics, yaw_rotation
 
 K = Intrinsics(640, 480, 540.0, 540.0, 320.0, 240.0)
@@ -64,7 +65,9 @@ def measure(objects: tuple[DetectedObject, ...], *rotations: np.ndarray) -> Obje
     inputs = Inputs(Photo(np.zeros((480, 640, 3), np.uint8), "synthetic", (640, 480)))
     scores = np.linspace(0.8, 0.79, len(rotations))
     hypotheses = tuple(CameraHypothesis(K, R, float(s)) for R, s in zip(rotations, scores, strict=True))
-    return SingleViewMetrology().measure(inputs, CameraEstimate(hypotheses, 0.9, "test"), objects, Progress())
+    return SingleViewMetrology().measure(
+        inputs, CameraEstimate(hypotheses, 0.9, CameraSource.given()), objects, Progress()
+    )
 
 
 def bounds_of(points_camera: np.ndarray) -> np.ndarray:
