@@ -42,7 +42,7 @@ GUIDES: Mapping[str, Guide] = {
     "glb": Guide(MODELS, "Blender, Unity, Unreal, Godot, three.js", _TEXTURED | frozenset[Choice]({"compressed"})),
     "usdz": Guide(MODELS, "iPhone and iPad (AR Quick Look)", _BODIES),
     "usdc": Guide(MODELS, "Isaac Sim, Blender, Unreal, Maya", _BODIES),
-    "usda": Guide(MODELS, "the same, as text to read and compare", _BODIES),
+    "usda": Guide(MODELS, "the same programs, as readable text", _BODIES),
     "obj": Guide(MODELS, "nearly every 3D program", _TEXTURED),
     "ply": Guide(MODELS, "MeshLab, CloudCompare, Open3D", _SHAPES),
     "stl": Guide(MODELS, "slicers for 3D printers", _SHAPES),
@@ -53,7 +53,7 @@ GUIDES: Mapping[str, Guide] = {
     "pdf": Guide(PLANS, "anything; prints in scale", _FURNITURE),
     "dxf": Guide(PLANS, "AutoCAD, LibreCAD, QCAD", _FURNITURE),
     "sh3d": Guide(PLANS, "version 5.3 and newer", _FURNITURE | frozenset[Choice]({"textures"})),
-    "ifc": Guide(PLANS, "Revit, Bonsai (BlenderBIM), IFC viewers", _SHAPES),
+    "ifc": Guide(PLANS, "Revit, Bonsai for Blender, IFC viewers", _SHAPES),
     "html": Guide(SHOW, "any browser, without a network", _TEXTURED),
     "scene-state": Guide(SHOW, "SceneEval, SmartScenes tools", _TEXTURED),
 }

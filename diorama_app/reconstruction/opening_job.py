@@ -12,6 +12,7 @@ from diorama_app.session.session import EditorSession
 from diorama_core.errors import InputError
 from diorama_core.importing.opening import SUFFIXES, Opened
 from diorama_core.importing.scene_import import read_scene
+from diorama_core.io.atomic import write_atomically
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.library.user_library import OWN, UserLibrary
 from diorama_core.progress import Progress
@@ -57,7 +58,7 @@ def _read(session: EditorSession, name: str, content: bytes, progress: Progress)
     try:
         with tempfile.TemporaryDirectory(prefix="upload-") as folder:
             path = Path(folder) / name
-            path.write_bytes(content)
+            write_atomically(path, content, error=InputError)
             opened = process.work(name, read_scene, path, known, progress=progress)
     finally:
         process.close()
