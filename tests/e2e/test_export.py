@@ -18,7 +18,7 @@ from diorama_app import formats
 from diorama_app.serve import Running
 from diorama_core.project.storage import Project
 from diorama_core.scene.schema import scene_to_json
-from tests.e2e.browser import PATIENCE_MS, EditorPage
+from tests.e2e.browser import LEARN_MS, PATIENCE_MS, EditorPage
 from tests.e2e.conftest import keep_picture
 
 pytestmark = pytest.mark.browser
@@ -200,3 +200,28 @@ def test_a_film_can_be_cancelled_and_leaves_nothing(editor: EditorPage) -> None:
     editor.until(lambda: session.jobs.status is None, "stopped")
     editor.notice("nothing was changed")
     assert downloads == []
+
+
+def test_a_file_of_another_program_becomes_objects_that_are_drawn(editor: EditorPage, tmp_path: Path) -> None:
+    session = editor.running.session
+    shapes = len(session.library.shapes())
+    foreign = trimesh.Scene()
+    floor, chair = trimesh.creation.box((4.0, 0.02, 4.0)), trimesh.creation.box((0.5, 0.9, 0.5))
+    foreign.add_geometry(floor, node_name="floor", transform=trimesh.transformations.translation_matrix((0, -0.01, 0)))
+    foreign.add_geometry(chair, node_name="chair", transform=trimesh.transformations.translation_matrix((1, 0.45, 0)))
+    path = tmp_path / "their flat.glb"
+    path.write_bytes(foreign.export(file_type="glb"))
+    editor.tab("Project")
+    editor.upload("Open a file", path)
+    editor.until(
+        lambda: session.project is not None and session.project.name == "their flat", "opened", LEARN_MS / 1000
+    )
+    (item,) = session.scene.objects
+    assert item.category == "chair"
+    np.testing.assert_allclose(item.corners_world.min(axis=0), (0.75, -0.25, 0.0), atol=1e-3)
+    np.testing.assert_allclose(item.corners_world.max(axis=0), (1.25, 0.25, 0.9), atol=1e-3)
+    assert session.scene.architecture.floor is not None
+    assert len(session.library.shapes()) == shapes + 1
+    editor.settle()
+    shown = editor.page.evaluate("Object.keys(window.__viserMutable.nodeRefFromName)")
+    assert any(n.startswith(f"{session.viewport.node_name(item.id)}/") for n in shown), "it is drawn"
