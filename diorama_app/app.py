@@ -18,6 +18,7 @@ from diorama_app.interaction.gestures import Gestures
 from diorama_app.panels.alternatives import Alternatives
 from diorama_app.panels.compare import Compare
 from diorama_app.panels.dropping import take_dropped_files
+from diorama_app.panels.export import ExportPanel
 from diorama_app.panels.help import show_help
 from diorama_app.panels.job import JobStrip
 from diorama_app.panels.library import LibraryPanel
@@ -30,6 +31,7 @@ from diorama_app.panels.own_model import OwnModel
 from diorama_app.panels.photo import PhotoPanel
 from diorama_app.panels.photo_camera import PhotoCamera
 from diorama_app.panels.photo_correction import PhotoCorrection
+from diorama_app.panels.picture import show_picture
 from diorama_app.panels.projects import Projects
 from diorama_app.panels.properties import Properties
 from diorama_app.panels.room_size import RoomSize
@@ -40,6 +42,7 @@ from diorama_app.panels.toolbar import Toolbar
 from diorama_app.panels.unsaved import UnsavedChanges
 from diorama_app.panels.walls import Walls
 from diorama_app.projects.example import example_project
+from diorama_app.reconstruction.opening_job import open_file
 from diorama_app.reconstruction.photo_outlines import PhotoOutlines
 from diorama_app.session.client import Client
 from diorama_app.session.connected_client import Panel
@@ -57,7 +60,7 @@ log = logging.getLogger(__name__)
 LEFT_WIDTH_PX = 292
 RIGHT_WIDTH_PX = 312
 LEFT_TABS = ("Scene", "Photo", "Arrange", "Project")
-RIGHT_TABS = ("Object", "Library")
+RIGHT_TABS = ("Object", "Library", "Export")
 
 
 class Editor:
@@ -79,7 +82,7 @@ class Editor:
         session.on_pick = lambda object_id, event: self._hand(event, lambda g: g.picked(object_id, event))
         session.on_drag = lambda object_id, event: self._hand(event, lambda g: g.dragged(object_id, event))
         self._outlines = PhotoOutlines(session)
-        self.commands = build_commands(session, self.views, self._outlines, self._cancel, self._help)
+        self.commands = build_commands(session, self.views, self._outlines, self._cancel, self._help, show_picture)
         self.commands.register(server.gui, self._asked)
         server.gui.set_panel_label("Diorama")
         set_theme(server.gui, dark=False)
@@ -174,7 +177,7 @@ class Editor:
         with projects:
             panels += [Projects(gui, client, self.commands, photo.take), Networks(gui, client)]
         right = gui.add_panel()
-        about, library = (right.add_tab(name) for name in RIGHT_TABS)
+        about, library, exporting = (right.add_tab(name) for name in RIGHT_TABS)
         with about:
             panels += [
                 Properties(gui, client, self.commands),
@@ -185,7 +188,15 @@ class Editor:
             ]
         with library:
             panels.append(LibraryPanel(gui, client))
-        take_dropped_files(gui, client, photo.take, lambda name, content: import_model(client, name, content))
+        with exporting:
+            panels.append(ExportPanel(gui, client))
+        take_dropped_files(
+            gui,
+            client,
+            photo.take,
+            lambda name, content: import_model(client, name, content),
+            lambda name, content: open_file(client, name, content),
+        )
         right.dock_right()
         right.set_width(RIGHT_WIDTH_PX)
         client.panels = panels

@@ -16,6 +16,7 @@ from diorama_core.errors import InputError
 
 if TYPE_CHECKING:
     from diorama_core.artefacts import Inputs, LayoutReport
+    from diorama_core.export import Format
     from diorama_core.export.gathering import ExportOptions, ExportScene
     from diorama_core.library.record import ShapeLibrary
     from diorama_core.perception.input_arrays import Boxes, Depth, Masks, Picture
@@ -291,7 +292,7 @@ def export(
     reconstruction: Reconstruction,
     path: Path | str,
     *,
-    format: str | None = None,
+    format: str | Format | None = None,
     options: ExportOptions | None = None,
     progress: Progress | None = None,
 ) -> ExportScene:

@@ -21,8 +21,8 @@ from diorama_app.cli.arguments import (
     size,
     view,
 )
+from diorama_app.formats import EXPORT_FORMATS
 from diorama_core.errors import InputError
-from diorama_core.export import FORMATS
 
 if TYPE_CHECKING:
     from diorama_core.library.record import ShapeLibrary
@@ -217,7 +217,7 @@ def add_export(commands: Any) -> None:
         "diorama export my-room --format glb -o room.glb",
     )
     p.add_argument("project", type=Path, metavar="PROJECT")
-    p.add_argument("--format", choices=tuple(FORMATS), required=True, help="docs/export.md says what each keeps")
+    p.add_argument("--format", choices=tuple(EXPORT_FORMATS), required=True, help="docs/export.md says what each keeps")
     p.add_argument("-o", "--output", type=Path, metavar="FILE", help="(default: in the project's exports folder)")
     p.add_argument("--no-ceiling", action="store_true", help="leave ceilings out, to look into the room from above")
     p.add_argument("--only", metavar="ID,ID", help="write these objects only, without the room")
@@ -248,11 +248,11 @@ def _export(a: argparse.Namespace) -> None:
         bodies="welded" if a.welded else "free",
     )
     assert room.project is not None
-    output = a.output or room.project.folder / "exports" / f"{room.project.name}{FORMATS[a.format].suffixes[0]}"
+    output = a.output or room.project.folder / "exports" / f"{room.project.name}{EXPORT_FORMATS[a.format].suffixes[0]}"
     if a.output is None:
         output.parent.mkdir(parents=True, exist_ok=True)
     with progress_bar() as progress:
-        written = diorama.export(room, output, format=a.format, options=options, progress=progress)
+        written = diorama.export(room, output, format=EXPORT_FORMATS[a.format], options=options, progress=progress)
     result: dict[str, Any] = {"file": str(output), "objects": len(written.objects), "planes": len(written.planes)}
     lines = [f"{output}: {len(written.objects)} objects, {len(written.planes)} planes"]
     if a.simulate:

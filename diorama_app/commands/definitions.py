@@ -24,7 +24,12 @@ Do = Callable[[Client], None]
 
 
 def build_commands(
-    session: EditorSession, views: Views, outlines: PhotoOutlines, cancel: Callable[[Client], bool], show_help: Do
+    session: EditorSession,
+    views: Views,
+    outlines: PhotoOutlines,
+    cancel: Callable[[Client], bool],
+    show_help: Do,
+    show_picture: Do,
 ) -> CommandTable:
     """Every command of the editor.
 
@@ -34,6 +39,7 @@ def build_commands(
         outlines: what the photo shows of the things found in it.
         cancel: stops what a person's hand is doing, and says whether it did.
         show_help: opens the list of commands.
+        show_picture: opens the choices for a picture.
     """
 
     def escape(client: Client) -> None:
@@ -68,6 +74,7 @@ def build_commands(
         *_ways(),
         Command("save", "Save", save, "S", "cmd/ctrl", "Save now (every change is saved anyway)"),
         Command("measure", "Measure", start_measuring, "M", None, "Measure between two clicks; rescale by it"),
+        Command("picture", "Picture", show_picture, "I", None, "Draw a picture or a film of the scene to download"),
         Command("find_furniture", "Find furniture", find_furniture, None, None, "Box the photo's furniture by network"),
         Command("help", "What you can do", show_help, "?", "shift", "Every command with its key"),
         Command("escape", "Clear selection", escape, "escape", None, "Stop what is under way, or select nothing"),

@@ -12,10 +12,12 @@ from diorama_app.session.client import Client
 from diorama_app.web.viser_adapter import component_uuid
 
 MODELS = ("glb", "gltf", "obj", "ply", "stl", "fbx")
+SCENES = ("usd", "usda", "usdc", "usdz", "sh3d")
+"""A GLB may be either; dropped, it is a model, and *Open a file* takes it as a scene."""
 Take = Callable[[str, bytes], None]
 
 _SCRIPT = """(()=>{const to=%s,veil=document.getElementById('dio-drop')||Object.assign(document.createElement('div'),
-{id:'dio-drop',textContent:'Drop a photo of a room, or a model file'});document.body.appendChild(veil);
+{id:'dio-drop',textContent:'Drop a photo of a room, a model or a scene file'});document.body.appendChild(veil);
 const hold=e=>e.dataTransfer&&[...e.dataTransfer.types].includes('Files');let deep=0;
 const show=on=>{veil.style.display=on?'flex':'none'};show(false);
 document.ondragenter=e=>{if(hold(e)){deep++;show(true)}};
@@ -33,7 +35,7 @@ _STYLE = """<style>#dio-drop { position: fixed; inset: 12px; z-index: 950; displ
   color: #fff; background: #1d4f9e99; } %s { display: none; }</style>"""
 
 
-def take_dropped_files(gui: viser.GuiApi, client: Client, photo: Take, model: Take) -> None:
+def take_dropped_files(gui: viser.GuiApi, client: Client, photo: Take, model: Take, scene: Take) -> None:
     """Listen to the page for dropped files. Call it where the panel is always there: uploads go through hidden buttons.
 
     Args:
@@ -41,11 +43,12 @@ def take_dropped_files(gui: viser.GuiApi, client: Client, photo: Take, model: Ta
         guest: whose it is.
         photo: takes name and content of a picture, and of what is of no known kind, to say what is wrong.
         model: takes those of a model.
+        scene: takes those of a scene.
     """
-    for_photos, for_models = (_hidden_upload(gui, client, take) for take in (photo, model))
-    to = {"": for_photos, **dict.fromkeys(MODELS, for_models)}
+    fields = [_hidden_upload(gui, client, take) for take in (photo, model, scene)]
+    to = {"": fields[0], **dict.fromkeys(MODELS, fields[1]), **dict.fromkeys(SCENES, fields[2])}
     script = html.escape(_SCRIPT.replace("\n", "") % json.dumps(to))
-    hidden = ", ".join(f"div:has(> #file_upload_{uuid})" for uuid in (for_photos, for_models))
+    hidden = ", ".join(f"div:has(> #file_upload_{uuid})" for uuid in fields)
     gui.add_html(f'{_STYLE % hidden}<img alt="" src="data:," style="display:none" onerror="{script}">')
 
 

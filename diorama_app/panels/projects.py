@@ -1,4 +1,4 @@
-"""Projects and files: what is open, recent ones, save, export, earlier versions."""
+"""Projects and files: what is open, recent ones, save, open a file, earlier versions."""
 
 from __future__ import annotations
 
@@ -14,11 +14,12 @@ from PIL import Image
 from diorama_app.commands.registry import CommandTable
 from diorama_app.panels.fields import QUIET_COLOUR, enable, on_press
 from diorama_app.projects import manage as project_care
-from diorama_app.reconstruction import build_job as work
+from diorama_app.reconstruction.opening_job import open_file
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.errors import EditRefused, ProjectError
+from diorama_core.importing.opening import SUFFIXES
 from diorama_core.io.bounded import read_picture
 from diorama_core.project.lock import ProjectLock
 from diorama_core.project.storage import Project
@@ -32,7 +33,7 @@ COPY = (
 
 
 class Projects:
-    """Save, export and the list of recent projects."""
+    """Save, open, and the list of recent projects."""
 
     def __init__(
         self, gui: viser.GuiApi, client: Client, commands: CommandTable, take_photo: Callable[[str, bytes], None]
@@ -40,8 +41,6 @@ class Projects:
         self._client = client
         self._pictures: dict[tuple[str, float], str] = {}
         self._status = LiveHtml(gui, self._act)
-        self._export = gui.add_button("Download GLB", hint="The whole room, for any 3D program")
-        on_press(self._export, lambda: client.post(lambda: work.export_glb(client)))
         save = gui.add_button("Save now", color=QUIET_COLOUR, hint=commands["save"].tooltip)
         on_press(save, lambda: client.post(lambda: commands["save"].run(client)))
         new = gui.add_upload_button(
@@ -53,13 +52,25 @@ class Projects:
             client.post(lambda: take_photo(file.name, file.content))
 
         new.on_upload(uploaded)
+        self._open = gui.add_upload_button(
+            "Open a file",
+            color=QUIET_COLOUR,
+            mime_type=",".join(SUFFIXES),
+            hint="GLB, USD, USDZ or Sweet Home 3D: a project of its own; what Diorama exported comes back as it was",
+        )
+
+        async def chosen(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
+            file = event.target.value
+            client.post(lambda: open_file(client, file.name, file.content))
+
+        self._open.on_upload(chosen)
         self._notes = LiveHtml(gui)
         self._list = LiveHtml(gui, self._act)
 
     def refresh(self) -> None:
         """Draw what is open and what else there is."""
         session = self._client.session
-        enable(self._export, session.jobs.status is None)
+        enable(self._open, session.jobs.status is None)
         if session.project is None:
             self._status.show('<div class="card">No project is open.</div>')
         else:

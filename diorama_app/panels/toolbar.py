@@ -14,6 +14,12 @@ HALF_MOON = (
     '<path d="M12 2a10 10 0 0 1 0 20z" fill="currentColor"/></svg>'
 )
 
+CAMERA = (
+    '<svg width="15" height="13" viewBox="0 0 26 22" style="display:block;margin:2px auto" aria-label="Picture" '
+    'fill="none" stroke="currentColor" stroke-width="2.4" stroke-linejoin="round">'
+    '<path d="M2 6h5l2-4h8l2 4h5v14H2z"/><circle cx="13" cy="12.5" r="4.3"/></svg>'
+)
+
 
 class Toolbar:
     """Buttons that run commands by id."""
@@ -33,6 +39,7 @@ class Toolbar:
             + self._button("undo", "&#8630; Undo", title=undo, disabled=not history.can_undo)
             + self._button("redo", "&#8631; Redo", disabled=not history.can_redo)
             + self._button("measure", on=self._client.doing is not None)
+            + self._button("picture", CAMERA)
             + self._button("theme", HALF_MOON)
             + self._button("help", "?")
             + "</div><div class='bar tight'>"

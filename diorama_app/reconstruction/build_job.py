@@ -1,16 +1,15 @@
-"""The long jobs: build a scene from a photo, export. Each runs beside the desk."""
+"""The longest job: building a scene from a photo, beside everything else."""
 
 from __future__ import annotations
 
 import contextlib
 import re
-from dataclasses import replace
 from pathlib import Path
 
 from diorama_app.session.client import Client
 from diorama_app.session.draft import Draft
 from diorama_app.session.session import EditorSession
-from diorama_core.errors import EditRefused, InputError
+from diorama_core.errors import InputError
 from diorama_core.progress import Progress
 from diorama_core.project.lock import ProjectLock
 from diorama_core.project.storage import Project
@@ -89,47 +88,12 @@ def show_built(
     session.notice_all(message or f"The scene has {len(scene.objects)} objects. Click one to change it.", "good")
 
 
-def fresh_folder(projects_dir: Path, name: str) -> Path:
-    """A folder for a new project, named after the photo; one without a scene yet is taken up again."""
+def fresh_folder(projects_dir: Path, name: str, *, resume: bool = True) -> Path:
+    """A folder for a new project, named after its photo or file; with `resume`, one without a scene yet is taken up."""
     stem = re.sub(r"[^A-Za-z0-9._-]+", "-", Path(name).stem).strip("-.")[:60] or "room"
     for number in range(1, 10_000):
         folder = projects_dir / (stem if number == 1 else f"{stem}-{number}")
         begun = (folder / "project.json").exists() and not (folder / "scene.json").exists()
-        if begun or not folder.exists():
-            return folder  # one that was begun is resumed
-    raise InputError(f"{projects_dir} holds too many projects called {stem}; rename the photo")
-
-
-def export_glb(client: Client) -> None:
-    """Write the scene as GLB and hand it to the browser that asked."""
-    session = client.session
-    scene, project, textures = session.scene, session.project, dict(session.textures)
-    if not scene.objects and not scene.architecture.planes:
-        raise EditRefused("there is nothing to export yet; build or open a scene first")
-    visible = replace_hidden(scene)
-    name = f"{project.folder.name if project is not None else 'scene'}.glb"
-
-    def work(progress: Progress) -> None:
-        from diorama_core.export.gltf import glb_bytes
-
-        progress.report(0.2, "Gathering meshes and materials")
-        data = glb_bytes(visible, session.library, textures=textures)
-        progress.check()
-
-        def hand_over() -> None:
-            client.view.download(name, data)
-            client.notice(f"{name} ({len(data) / 1e6:.1f} MB) is in your downloads.", "good")
-
-        client.post(hand_over)
-
-    session.jobs.start("export", "Exporting GLB", work)
-
-
-def replace_hidden(scene: Scene) -> Scene:
-    """The scene without hidden objects; what they hold up stays where it is."""
-    gone = {o.id for o in scene.objects if o.hidden}
-    return replace(
-        scene,
-        objects=tuple(o for o in scene.objects if o.id not in gone),
-        supports=tuple(s for s in scene.supports if s.child not in gone and s.parent not in gone),
-    )
+        if (begun and resume) or not folder.exists():
+            return folder
+    raise InputError(f"{projects_dir} holds too many projects called {stem}; rename the file")

@@ -14,7 +14,7 @@ from diorama_app.viewport.framing import DEFAULT_FOV_RAD
 from diorama_app.viewport.scene_view import reduced
 from diorama_core.artefacts import Box, LabelledBox
 from diorama_core.geometry.rotations import quaternion_wxyz, rotation_from_quaternion
-from diorama_core.scene.types import Camera, Plane
+from diorama_core.scene.types import Camera, Intrinsics, Plane
 
 BOARD_CENTRE = np.array([0.0, 0.0, 400.0])
 """The photo stands here, far above the room, while boxes are drawn on it."""
@@ -116,6 +116,15 @@ class ClientView:
     def aspect(self) -> float:
         """Width over height of this browser's 3D view."""
         return float(self._viser_client.camera.aspect)
+
+    def camera(self, width: int, height: int) -> Camera:
+        """What is seen here, as a camera for a picture of this size with the same height of view."""
+        handle = self._viser_client.camera
+        focal = 0.5 * height / float(np.tan(0.5 * self.fov_rad))
+        T_world_camera = np.eye(4)
+        T_world_camera[:3, :3] = rotation_from_quaternion(np.asarray(handle.wxyz))
+        T_world_camera[:3, 3] = handle.position
+        return Camera(Intrinsics(width, height, focal, focal, width / 2, height / 2), T_world_camera)
 
     def notice(self, message: str, kind: NoticeKind = "info", seconds: float | None = None) -> None:
         """A short notice at the edge of the view; what went wrong stays longer."""

@@ -44,7 +44,7 @@ class Format:
     keeps: str
     """What of the scene it keeps, in a few words for people who choose."""
     place: str
-    """Where its writer is: `module:function` inside `diorama_core.export`."""
+    """Where its writer is: `module:function` inside `diorama_core.export`, or with the module's full name."""
     extra: str | None = None
     """Optional dependency group that it needs."""
     needs: str | None = None
@@ -52,16 +52,24 @@ class Format:
     joints: bool = False
     """Whether shapes that know their joints are written in parts that move."""
 
+    @property
+    def missing(self) -> str:
+        """What to install before it can be written, in one line; empty when nothing is missing."""
+        if self.needs is None or importlib.util.find_spec(self.needs) is not None:
+            return ""
+        return f"{self.title} needs an optional library: pip install 'diorama[{self.extra}]'"
+
     def writer(self) -> Writer:
         """The function that writes it.
 
         Raises:
             UnavailableError: when its optional library is not installed.
         """
+        if self.missing:
+            raise UnavailableError(self.missing)
         module, function = self.place.split(":")
-        if self.needs is not None and importlib.util.find_spec(self.needs) is None:
-            raise UnavailableError(f"{self.title} needs an optional library: pip install 'diorama[{self.extra}]'")
-        return cast(Writer, getattr(importlib.import_module(f"diorama_core.export.{module}"), function))
+        full = module if "." in module else f"diorama_core.export.{module}"
+        return cast(Writer, getattr(importlib.import_module(full), function))
 
 
 _USD_KEEPS = "materials, textures, camera, lights, supports, colliders, masses, joints, the scene itself"
@@ -130,7 +138,7 @@ def export_scene(
     scene: Scene,
     library: ShapeLibrary,
     path: Path,
-    format_name: str,
+    format_name: str | Format,
     *,
     options: ExportOptions | None = None,
     textures: Mapping[str, Picture] | None = None,
@@ -145,7 +153,7 @@ def export_scene(
         scene: What to write; hidden objects are left out.
         library: Where its shapes are.
         path: The file; an existing one is replaced when everything went well.
-        format_name: A key of `FORMATS`.
+        format_name: A key of `FORMATS`, or a format of another table.
         options: What of the scene is written, and how.
         textures: Pictures of the planes by `Plane.texture`.
         photo: The photo that the scene was made from.
@@ -161,7 +169,8 @@ def export_scene(
     """
     from diorama_core.export.gathering import EVERYTHING, gather
 
-    chosen, path, progress = format_named(format_name), Path(path), progress or Progress()
+    path, progress = Path(path), progress or Progress()
+    chosen = format_name if isinstance(format_name, Format) else format_named(format_name)
     if path.suffix.lower() not in chosen.suffixes:
         endings = " or ".join(chosen.suffixes)
         raise ExportError(f"{path}: {chosen.title} files end in {endings}; choose such a name")

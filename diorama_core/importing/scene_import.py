@@ -7,6 +7,7 @@ from pathlib import Path
 
 from diorama_core.errors import LibraryError
 from diorama_core.importing.foreign import open_foreign, take_missing_shapes
+from diorama_core.importing.marked import MarkedFile
 from diorama_core.importing.opening import Opened, marked_file, open_marked
 from diorama_core.library.store import create_library, open_library, stored_libraries
 from diorama_core.library.user_library import OWN
@@ -41,15 +42,41 @@ def import_scene(path: Path, *, library_name: str | None = None, progress: Progr
         name = library_name or "built-in"
         open_library(name)
         return Imported(open_foreign(path, create_library(OWN), progress), _with_own(name))
-    opened = open_marked(marked)
     name = library_name or _known(str(marked.provenance.get("library", "built-in")))
     library = open_library(_with_own(name) if OWN in stored_libraries() else name)
-    known = {s.id for s in library.shapes()}
+    known = frozenset(s.id for s in library.shapes())
+    opened = _with_shapes(path, marked, known, progress)
+    complete = {o.shape_id for o in opened.scene.objects} <= known
+    return Imported(opened, name if complete else _with_own(name))
+
+
+def read_scene(path: Path, known: frozenset[str], progress: Progress) -> Opened:
+    """Open a file as a scene for a library that is open already; shapes it lacks join the user's own.
+
+    Args:
+        path: The file.
+        known: Ids of the shapes that the library has.
+        progress: Where it is reported and cancelling is noticed.
+
+    Raises:
+        InputError: the file cannot be read.
+        UnavailableError: an optional library is missing.
+        LibraryError: models cannot be kept.
+    """
+    progress.report(0.0, f"reading {path.name}")
+    marked = marked_file(path)
+    if marked is None:
+        return open_foreign(path, create_library(OWN), progress)
+    return _with_shapes(path, marked, known, progress)
+
+
+def _with_shapes(path: Path, marked: MarkedFile, known: frozenset[str], progress: Progress) -> Opened:
+    """What Diorama wrote; the shapes that are not known are taken out of the file."""
+    opened = open_marked(marked)
     missing = {o.shape_id for o in opened.scene.objects} - known
-    if not missing:
-        return Imported(opened, name)
-    take_missing_shapes(path, marked, opened.scene, missing, create_library(OWN), progress)
-    return Imported(opened, _with_own(name))
+    if missing:
+        take_missing_shapes(path, marked, opened.scene, missing, create_library(OWN), progress)
+    return opened
 
 
 def _with_own(name: str) -> str:

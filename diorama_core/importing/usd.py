@@ -29,7 +29,8 @@ def opened_stage(path: Path) -> Any:
     try:
         return Usd.Stage.Open(str(path))
     except Tf.ErrorException as error:
-        reason = str(error).strip().splitlines()[-1].strip()
+        # Of "Error in '...' at line ... : 'Failed to open layer @/path/room.usdz@'" people need the last words only.
+        reason = str(error).strip().splitlines()[-1].rpartition(" : ")[2].replace(f"@{path}@", "").strip(" '")
         raise InputError(f"{path.name} cannot be read as USD ({reason}); export it again") from error
 
 

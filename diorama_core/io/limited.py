@@ -17,6 +17,7 @@ from multiprocessing.connection import Connection
 from typing import Any, ParamSpec, TypeVar
 
 from diorama_core.errors import DioramaError, InputError
+from diorama_core.progress import Progress, ProgressEvent
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -25,6 +26,8 @@ MAX_MEMORY = 2_000_000_000
 """Address space of the process, code and libraries (up to half a gigabyte) included."""
 MAX_SECONDS = 60.0
 
+_GLANCE_S = 0.2
+"""How often a cancel is looked for."""
 _TOO_MUCH = "it needs more memory than a file of this kind should, or is damaged; reduce it or save it again"
 _TOO_LONG = "reading it takes too long; reduce it or save it again"
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
@@ -52,13 +55,31 @@ class LimitedProcess:
             InputError: the limit of memory or time was reached, or the process crashed.
             DioramaError: what the function raised.
         """
+        return self._asked(name, (function, args, kwargs), None)
+
+    def work(self, name: str, function: Callable[..., R], *args: Any, progress: Progress) -> R:
+        """`function(*args, progress)` in the process, for long work that reports its progress.
+
+        The limit of time is that between two reports. A cancel ends the process at once.
+
+        Args:
+            name: what is read, for messages.
+            function: importable by name, as are its arguments.
+            args: handed over.
+            progress: told what the function reports.
+
+        Raises:
+            InputError, DioramaError: as `call`.
+            Cancelled: when asked to stop.
+        """
+        return self._asked(name, (function, args, None), progress)
+
+    def _asked(self, name: str, task: tuple[Any, Any, Any], progress: Progress | None) -> Any:
         with self._lock:
             connection = self._started()
             try:
-                connection.send((function, args, kwargs))
-                if not connection.poll(self._seconds):
-                    raise InputError(f"{name}: {_TOO_LONG}")
-                good, value = connection.recv()
+                connection.send(task)
+                good, value = self._answer_from(connection, name, progress)
             except (EOFError, OSError) as error:
                 self._end()
                 raise InputError(f"{name}: {_TOO_MUCH}") from error
@@ -68,6 +89,25 @@ class LimitedProcess:
         if good:
             return value
         raise value if isinstance(value, DioramaError) else InputError(f"{name}: {value or _TOO_MUCH}")
+
+    def _answer_from(self, connection: Connection, name: str, progress: Progress | None) -> tuple[bool, Any]:
+        """The last message; the ones before it are steps of progress."""
+        quiet = 0.0
+        while True:
+            patience = self._seconds if progress is None else _GLANCE_S
+            if not connection.poll(patience):
+                quiet += patience
+                if quiet >= self._seconds:
+                    raise InputError(f"{name}: {_TOO_LONG}")
+            else:
+                good, value = connection.recv()
+                if good is not None:
+                    return good, value
+                quiet = 0.0
+                if progress is not None:
+                    progress.report(*value)
+            if progress is not None:
+                progress.check()
 
     def close(self) -> None:
         """End the process after what it does now; a later call starts another."""
@@ -124,7 +164,13 @@ def _serve(handle: int, memory: int) -> None:
     with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):
         while True:
             function, args, kwargs = connection.recv()
+            if kwargs is None:
+                args, kwargs = (*args, Progress(lambda event: _tell(connection, event))), {}
             connection.send(_answer(function, args, kwargs))
+
+
+def _tell(connection: Connection, event: ProgressEvent) -> None:
+    connection.send((None, (event.fraction, event.message)))
 
 
 def _answer(function: Callable[..., Any], args: tuple, kwargs: dict[str, Any]) -> tuple[bool, Any]:

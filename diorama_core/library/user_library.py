@@ -21,7 +21,8 @@ class UserLibrary:
         self._library = library
         self._own: StoredLibrary | None = None
         self._lock = threading.Lock()
-        if OWN in stored_libraries():
+        self._combined = OWN in stored_libraries()
+        if self._combined:
             self._library = CombinedLibrary([library, open_library(OWN)])
 
     def __repr__(self) -> str:
@@ -31,10 +32,9 @@ class UserLibrary:
         """Where uploads are kept, made when there is none yet; raises `LibraryError` when it cannot be written."""
         with self._lock:
             if self._own is None:
-                known = OWN in stored_libraries()
                 self._own = create_library(OWN)
-                if not known:
-                    self._library = CombinedLibrary([self._library, self._own])
+                if not self._combined:  # another process may have made it since
+                    self._library, self._combined = CombinedLibrary([self._library, self._own]), True
             return self._own
 
     def has_own(self, shape_id: str) -> bool:

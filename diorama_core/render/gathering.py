@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from jaxtyping import Bool, Float32, Int
 
+from diorama_core.progress import Progress
 from diorama_core.render.filters import Neighbours
 from diorama_core.render.grid import Grid, bands, each
 from diorama_core.render.lighting import TILE, Effort, Lighting, Spots, irradiance
@@ -24,7 +25,9 @@ ALONE = Effort(window_rays=5, sky_rays=9)
 """Rays of a pixel that gathers for itself and has no neighbours to share samples with."""
 
 
-def fallen_light(world: World, blockers: Caster, grid: Grid, light: Lighting, effort: Effort) -> Light:
+def fallen_light(
+    world: World, blockers: Caster, grid: Grid, light: Lighting, effort: Effort, progress: Progress | None = None
+) -> Light:
     """Light on every place of a grid; 0 where nothing is seen.
 
     Args:
@@ -33,17 +36,28 @@ def fallen_light(world: World, blockers: Caster, grid: Grid, light: Lighting, ef
         grid: The places.
         light: What lights the world.
         effort: Rays of each pixel that gathers.
+        progress: Where it is reported and cancelling is noticed.
     """
+    progress = progress or Progress()
     coarse = grid.part(slice(0, None, 2), slice(0, None, 2))
     rows = bands(coarse.found.shape[0])
-    noisy = np.concatenate(each(lambda band: _noisy(world, blockers, coarse.part(band), band, light, effort), rows))
+    noisy = np.concatenate(
+        each(
+            lambda band: _noisy(world, blockers, coarse.part(band), band, light, effort),
+            rows,
+            progress.part(0.0, 0.8),
+            "gathering light",
+        )
+    )
     gathered = each(lambda band: _gathered(noisy, coarse, band), rows)
     smooth, sure = (np.concatenate([pair[k] for pair in gathered]) for k in (0, 1))
     spread = each(lambda band: _spread(smooth, sure, coarse, grid, band), rows)
     fallen, known = (np.concatenate([pair[k] for pair in spread]) for k in (0, 1))
     pixels = np.argwhere(grid.found & ~known)
     groups = [group for group in np.array_split(pixels, 1 + len(pixels) // 4096) if len(group)]
-    for group, alone in zip(groups, each(lambda g: _alone(world, blockers, grid, g, light), groups), strict=True):
+    rest = progress.part(0.8, 1.0)
+    lit = each(lambda group: _alone(world, blockers, grid, group, light), groups, rest, "gathering light")
+    for group, alone in zip(groups, lit, strict=True):
         fallen[group[:, 0], group[:, 1]] = alone
     return fallen
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TypeVar
@@ -10,6 +10,7 @@ from typing import TypeVar
 import numpy as np
 from jaxtyping import Bool, Float32, Int
 
+from diorama_core.progress import Progress
 from diorama_core.render.raycast import View
 
 Item = TypeVar("Item")
@@ -58,7 +59,25 @@ def bands(height: int, rows: int = 48) -> list[slice]:
     return [slice(start, min(start + rows, height)) for start in range(0, height, rows)]
 
 
-def each(work: Callable[[Item], Result], items: Iterable[Item]) -> list[Result]:
-    """Work on all items, two at a time; results in order, so that threads change nothing."""
+def each(
+    work: Callable[[Item], Result], items: Sequence[Item], progress: Progress | None = None, message: str = ""
+) -> list[Result]:
+    """Work on all items, two at a time; results in order, so that threads change nothing.
+
+    Args:
+        work: Done with each item.
+        items: What there is to do.
+        progress: Told after every item; `Cancelled` drops the items that have not begun.
+        message: What is told.
+    """
+    results: list[Result] = []
     with ThreadPoolExecutor(max_workers=2) as pool:
-        return list(pool.map(work, items))
+        try:
+            for result in pool.map(work, items):
+                results.append(result)
+                if progress is not None:
+                    progress.report(len(results) / len(items), message)
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+    return results

@@ -10,6 +10,7 @@ from jaxtyping import Float, UInt8
 
 from diorama_core.errors import InputError, SceneError
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.progress import Progress
 from diorama_core.render.filters import as_bytes, tone_mapped
 from diorama_core.render.lighting import Effort, Lighting, studio
 from diorama_core.render.raycast import OrthographicView, PinholeView, View, unit
@@ -36,6 +37,7 @@ def picture(
     photographed: bool = True,
     light: Lighting | None = None,
     effort: Effort = PICTURE_EFFORT,
+    progress: Progress | None = None,
 ) -> UInt8[np.ndarray, "h w 3"]:
     """A rendered picture of the scene.
 
@@ -51,18 +53,22 @@ def picture(
             darkened where something stands in the way of the light, never lit a second time.
         light: None lights the room from above left of the viewer.
         effort: Rays per pixel.
+        progress: Where it is reported and cancelling is noticed.
 
     Raises:
         InputError: for an unknown view or size.
         SceneError: for "photo" when the scene has no camera.
+        Cancelled: when asked to stop.
     """
+    progress = progress or Progress()
+    progress.report(0.0, "gathering meshes and materials")
     source = scene_view(scene, view, size)
     without = _behind(scene, source)
     world = scene_world(scene, library, textures=textures, photographed=photographed, without=without)
     count = len(scene.objects)
     blockers = world.shadow_caster(without=range(count, count + len(scene.architecture.planes)))
     light = light or studio(_room_bounds(scene, world), -_axis(source))
-    shot = shoot(world, blockers, source, light, effort)
+    shot = shoot(world, blockers, source, light, effort, progress.part(0.1, 1.0))
     background = np.asarray(BACKGROUND_SRGB) * (1 - shot.coverage[..., None])
     return as_bytes(tone_mapped(_uncovered(shot.radiance, shot.coverage)) * shot.coverage[..., None] + background)
 

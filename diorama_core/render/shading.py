@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float32, Int
 
+from diorama_core.progress import Progress
 from diorama_core.render.filters import tone_mapped
 from diorama_core.render.gathering import fallen_light
 from diorama_core.render.grid import Grid, bands, each, pixel_footprint
@@ -32,7 +33,9 @@ class Shot:
     """What the middle of each pixel sees."""
 
 
-def shoot(world: World, blockers: Caster, view: View, light: Lighting, effort: Effort) -> Shot:
+def shoot(
+    world: World, blockers: Caster, view: View, light: Lighting, effort: Effort, progress: Progress | None = None
+) -> Shot:
     """The light that reaches every pixel of a view.
 
     Args:
@@ -41,19 +44,25 @@ def shoot(world: World, blockers: Caster, view: View, light: Lighting, effort: E
         view: The rays' source.
         light: What lights the world.
         effort: Rays per pixel.
+        progress: Where it is reported and cancelling is noticed.
+
+    Raises:
+        Cancelled: when asked to stop.
     """
-    rows = bands(view.height)
-    parts = each(lambda band: _first_sight(world, view, band), rows)
+    progress, rows = progress or Progress(), bands(view.height)
+    parts = each(lambda band: _first_sight(world, view, band), rows, progress.part(0.0, 0.15), "casting rays")
     grid = _grid(parts, view)
-    fallen = fallen_light(world, blockers, grid, light, effort)
+    fallen = fallen_light(world, blockers, grid, light, effort, progress.part(0.15, 0.6))
     seen = each(
         lambda pair: _seen(world, pair[1].places, pair[1].rays, fallen[pair[0]][pair[1].found], light),
         list(zip(rows, parts, strict=True)),
+        progress.part(0.6, 0.8),
+        "shading",
     )
     radiance = np.zeros((*grid.found.shape, 3), np.float32)
     radiance[grid.found] = np.concatenate(seen)
     shot = Shot(radiance, grid.found.astype(np.float32), grid)
-    return _with_smooth_edges(shot, world, view, light, fallen)
+    return _with_smooth_edges(shot, world, view, light, fallen, progress.part(0.8, 1.0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,7 +173,7 @@ def _beyond(
 
 
 def _with_smooth_edges(
-    shot: Shot, world: World, view: View, light: Lighting, fallen: Float32[np.ndarray, "h w 3"]
+    shot: Shot, world: World, view: View, light: Lighting, fallen: Float32[np.ndarray, "h w 3"], progress: Progress
 ) -> Shot:
     """Pixels at edges seen again through four more positions."""
     grid = shot.grid
@@ -172,7 +181,9 @@ def _with_smooth_edges(
     if not len(pixels):
         return shot
     groups = np.array_split(pixels, 1 + len(pixels) // 4096)
-    again = each(lambda group: _seen_again(world, view, light, grid, fallen, group), groups)
+    again = each(
+        lambda group: _seen_again(world, view, light, grid, fallen, group), groups, progress, "smoothing edges"
+    )
     radiance, coverage = np.minimum(shot.radiance, BRIGHTEST), shot.coverage.copy()
     at, weight = (pixels[:, 0], pixels[:, 1]), 1 / (1 + len(_SUBPIXELS))
     radiance[at] += (1 - weight) * (np.concatenate([colour for colour, _ in again]) - radiance[at])

@@ -47,7 +47,7 @@ def serve(tmp_path: Path) -> Iterator[StartServer]:
     """Starts servers that end with the test."""
     running: list[Running] = []
 
-    def begin(project: Path | None = None, library: ShapeLibrary | None = None, **options: object) -> Running:
+    def begin(project: Path | None = None, library: str | ShapeLibrary = "built-in", **options: object) -> Running:
         made = start(
             project=project,
             projects_dir=tmp_path / "projects",

@@ -58,9 +58,9 @@ def test_the_example_is_there_and_is_swapped_moved_undone_optimised_and_download
     assert session.document.history.current.label == "arrange the layout"
     expect(editor.page.get_by_text("Before → after")).to_be_visible()
 
-    editor.tab("Project")
+    editor.tab("Export")
     with editor.page.expect_download(timeout=90_000) as download:
-        editor.button("Download GLB").click()
+        editor.button("Export .glb").click()
     path = tmp_path / "room.glb"
     download.value.save_as(path)
     _check_model(path, session.scene)

@@ -161,13 +161,14 @@ def test_projects_are_saved_reopened_and_exported(editor: EditorPage, tmp_path: 
     editor.until(lambda: not session.scene.has_object("lamp_1"))
     saved = Project.open(projects / "demo")
     editor.until(lambda: not saved.load_scene().has_object("lamp_1"), "saved by itself", seconds=3)
-    editor.tab("Project")
+    editor.tab("Export")
     with editor.page.expect_download() as download:
-        editor.button("Download GLB").click()
+        editor.button("Export .glb").click()
     path = tmp_path / "room.glb"
     download.value.save_as(path)
     model = trimesh.load_scene(path)
     assert np.sort(model.extents)[-1] == pytest.approx(4.4, abs=0.3)
+    editor.tab("Project")
     session.ui_thread.post(session.refresh)
     editor.page.locator(".dio .row", has_text="second").get_by_role("button", name="Open").click()
     editor.until(lambda: session.project is not None and session.project.name == "second", "opened")

@@ -132,9 +132,9 @@ def test_paint_and_finish_are_seen_undone_and_in_the_glb(editor: EditorPage, tmp
     colour.fill("rgb(20, 60, 200)")
     colour.press("Enter")
     editor.until(lambda: scene(editor).object("table_1").colour == pytest.approx((20 / 255, 60 / 255, 200 / 255)))
-    editor.tab("Project")
+    editor.tab("Export")
     with editor.page.expect_download() as download:
-        editor.button("Download GLB").click()
+        editor.button("Export .glb").click()
     download.value.save_as(tmp_path / "room.glb")
     document = glb_json((tmp_path / "room.glb").read_bytes())
     node = next(n for n in document["nodes"] if n.get("extras", {}).get("id") == "table_1")

@@ -73,5 +73,7 @@ def test_foreign_and_broken_files(tmp_path) -> None:
     stage.Save()
     assert read_marked_usd(tmp_path / "foreign.usda") is None
     (tmp_path / "broken.usda").write_text("no usd")
-    with pytest.raises(InputError, match=r"broken\.usda"):
+    with pytest.raises(
+        InputError, match=r"^broken\.usda cannot be read as USD \(Failed to open layer\); export it again$"
+    ):
         read_marked_usd(tmp_path / "broken.usda")

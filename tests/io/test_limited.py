@@ -10,8 +10,9 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from diorama_core.errors import InputError, LibraryError
+from diorama_core.errors import Cancelled, InputError, LibraryError
 from diorama_core.io.limited import LimitedProcess
+from diorama_core.progress import CancelToken, Progress, ProgressEvent
 
 
 def double(number: int) -> int:
@@ -72,3 +73,37 @@ def test_errors_meant_for_people_arrive_as_they_are(process: LimitedProcess) -> 
         process.call("x", refuse)
     with pytest.raises(InputError, match=r"x: it cannot be read \(TypeError\)"):
         process.call("x", double, None)  # type: ignore[arg-type]
+
+
+def slowly(steps: int, progress: Progress) -> int:
+    for step in range(steps):
+        progress.report(step / steps, f"step {step}")
+        time.sleep(0.05)
+    return steps
+
+
+def silently(seconds: float, progress: Progress) -> None:
+    time.sleep(seconds)
+
+
+def test_long_work_reports_its_progress(process: LimitedProcess) -> None:
+    events: list[ProgressEvent] = []
+    assert process.work("x", slowly, 4, progress=Progress(events.append)) == 4
+    assert [e.message for e in events] == [f"step {i}" for i in range(4)]
+    assert process.call("x", double, 21) == 42, "nothing of it is left over"
+
+
+def test_a_cancel_ends_the_process_and_the_next_call_works(process: LimitedProcess) -> None:
+    token = CancelToken()
+    before = process.call("x", pid)
+    started = time.monotonic()
+    with pytest.raises(Cancelled):
+        process.work("x", slowly, 10_000, progress=Progress(lambda event: token.cancel(), token))
+    assert time.monotonic() - started < 5.0
+    assert process.call("x", pid) != before
+
+
+def test_the_limit_of_time_is_between_two_reports(process: LimitedProcess) -> None:
+    assert process.work("x", slowly, 80, progress=Progress()) == 80, "four seconds in all"
+    with pytest.raises(InputError, match="takes too long"):
+        process.work("room.glb", silently, 30.0, progress=Progress())

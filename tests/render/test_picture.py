@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.errors import InputError, SceneError
+from diorama_core.errors import Cancelled, InputError, SceneError
+from diorama_core.progress import CancelToken, Progress, ProgressEvent
 from diorama_core.render.lighting import Effort
 from diorama_core.render.picture import BACKGROUND_SRGB, picture, scene_view
 from diorama_core.render.raycast import PinholeView
@@ -200,3 +201,25 @@ def test_a_photographed_plane_is_not_lit_a_second_time() -> None:
     bare = picture(scene, LIBRARY, size=SMALL, textures={"c": grey}, photographed=False, effort=QUICK)[row, column]
     assert np.abs(photo.astype(int) - 180).max() < 45
     assert (bare < photo).all()
+
+
+def test_progress_rises_to_the_end_and_changes_nothing() -> None:
+    scene, events = furnished_room(LIBRARY), []
+    told = picture(scene, LIBRARY, size=SMALL, effort=QUICK, progress=Progress(events.append))
+    np.testing.assert_array_equal(told, picture(scene, LIBRARY, size=SMALL, effort=QUICK))
+    shares = [e.fraction for e in events]
+    assert shares == sorted(shares)
+    assert shares[-1] == pytest.approx(1.0)
+    assert len(set(shares)) > 8
+
+
+@pytest.mark.parametrize("after", ["gathering meshes", "casting", "gathering light", "shading"])
+def test_a_picture_is_cancelled_at_every_step(after: str) -> None:
+    token = CancelToken()
+
+    def stop(event: ProgressEvent) -> None:
+        if event.message.startswith(after):
+            token.cancel()
+
+    with pytest.raises(Cancelled):
+        picture(furnished_room(LIBRARY), LIBRARY, size=(160, 240), effort=QUICK, progress=Progress(stop, token))

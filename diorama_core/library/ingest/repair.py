@@ -147,7 +147,7 @@ def _visual(mesh: trimesh.Trimesh, faces: np.ndarray, materials: dict[int, PBRMa
 
 
 def _material(found: Any, limits: Limits) -> PBRMaterial:
-    made = found if isinstance(found, PBRMaterial) else found.to_pbr()
+    made = found if isinstance(found, PBRMaterial) else _physical(found)
     for name in (
         "baseColorTexture",
         "normalTexture",
@@ -159,6 +159,23 @@ def _material(found: Any, limits: Limits) -> PBRMaterial:
         if image is not None:
             setattr(made, name, _small(image, limits.texture_side_px))
     return made
+
+
+def _physical(found: Any) -> PBRMaterial:
+    """A material of an OBJ file as a physically based one. Without `Pm` it is no metal: glTF's default is all metal."""
+    made = found.to_pbr()
+    made.metallicFactor = _share(found, "pm", 0.0)
+    made.roughnessFactor = _share(found, "pr", made.roughnessFactor)
+    return made
+
+
+def _share(found: Any, name: str, default: float) -> float:
+    """A number from 0 to 1 among a material's further entries."""
+    try:
+        value = float(np.ravel(found.kwargs[name])[0])
+    except (AttributeError, KeyError, IndexError, TypeError, ValueError):
+        return default
+    return min(max(value, 0.0), 1.0) if np.isfinite(value) else default
 
 
 def _small(image: Image.Image, side_px: int) -> Image.Image | None:

@@ -1,0 +1,60 @@
+"""Every format the program exports, those of the library and the viewer that comes with the editor's toolkit, with what
+people who choose one want to know."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from diorama_core.export import FORMATS, Format
+
+Choice = Literal["ceiling", "selection", "textures", "compressed", "welded"]
+"""An export option that means something in a format; see `ExportOptions`."""
+
+
+@dataclass(frozen=True)
+class Guide:
+    """What a format is for."""
+
+    group: str
+    opens_in: str
+    choices: frozenset[Choice]
+
+
+HTML = Format(
+    "html",
+    "Viewer in one page",
+    (".html",),
+    "what one sees, to turn around in any browser without a server",
+    "diorama_app.web.html_viewer:write_html",
+)
+EXPORT_FORMATS: Mapping[str, Format] = {**FORMATS, HTML.name: HTML}
+"""By the name the command line knows them by."""
+
+MODELS, SIMULATORS, PLANS, SHOW = "3D models", "Simulators", "Plans and buildings", "To show and to compare"
+_SHAPES = frozenset[Choice]({"ceiling", "selection"})
+_TEXTURED = _SHAPES | frozenset[Choice]({"textures"})
+_BODIES = _TEXTURED | frozenset[Choice]({"welded"})
+_FURNITURE = frozenset[Choice]({"selection"})
+
+GUIDES: Mapping[str, Guide] = {
+    "glb": Guide(MODELS, "Blender, Unity, Unreal, Godot, three.js", _TEXTURED | frozenset[Choice]({"compressed"})),
+    "usdz": Guide(MODELS, "iPhone and iPad (AR Quick Look)", _BODIES),
+    "usdc": Guide(MODELS, "Isaac Sim, Blender, Unreal, Maya", _BODIES),
+    "usda": Guide(MODELS, "the same programs, as readable text", _BODIES),
+    "obj": Guide(MODELS, "nearly every 3D program", _TEXTURED),
+    "ply": Guide(MODELS, "MeshLab, CloudCompare, Open3D", _SHAPES),
+    "stl": Guide(MODELS, "slicers for 3D printers", _SHAPES),
+    "mjcf": Guide(SIMULATORS, "MuJoCo, dm_control", _BODIES),
+    "urdf": Guide(SIMULATORS, "RViz, MoveIt, PyBullet", _BODIES),
+    "sdf": Guide(SIMULATORS, "Gazebo, Drake", _BODIES),
+    "svg": Guide(PLANS, "browsers, Inkscape, Illustrator", _FURNITURE),
+    "pdf": Guide(PLANS, "anything; prints in scale", _FURNITURE),
+    "dxf": Guide(PLANS, "AutoCAD, LibreCAD, QCAD", _FURNITURE),
+    "sh3d": Guide(PLANS, "version 5.3 and newer", _FURNITURE | frozenset[Choice]({"textures"})),
+    "ifc": Guide(PLANS, "Revit, Bonsai for Blender, IFC viewers", _SHAPES),
+    "html": Guide(SHOW, "any browser, without a network", _TEXTURED),
+    "scene-state": Guide(SHOW, "SceneEval, SmartScenes tools", _TEXTURED),
+}
+"""By format name, in the order in which they are offered."""

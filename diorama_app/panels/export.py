@@ -1,0 +1,119 @@
+"""The scene for other programs: every format with what it keeps and where it opens, its options, one button."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+import viser
+
+from diorama_app.formats import EXPORT_FORMATS, GUIDES, Choice
+from diorama_app.reconstruction.export_job import download_suffix, export
+from diorama_app.session.client import Client
+from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_core.export import Format
+
+if TYPE_CHECKING:
+    from diorama_core.export.gathering import ExportOptions
+
+TEXTURE_SIZES = (0, 2048, 1024, 512, 256)
+"""Longest side in pixels; 0 leaves pictures as they are."""
+SWITCHES: dict[Choice, tuple[str, str]] = {
+    "ceiling": ("Without ceiling", "To look into the room from above"),
+    "selection": ("Only selection", "Only the selected objects, without the room around them"),
+    "compressed": ("Compressed", "Smaller file (meshopt): for three.js and Babylon.js; Blender does not read it"),
+    "welded": ("Welded", "Nothing moves: every object is fixed where it stands"),
+}
+"""What is switched on and off: name and explanation."""
+
+
+class ExportPanel:
+    """A list of formats; the one that is chosen shows its options and the button."""
+
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self._client = client
+        self._format = next(iter(GUIDES))
+        self._on: set[str] = set()
+        self._texture_px = 0
+        self._html = LiveHtml(gui, self._act)
+
+    def refresh(self) -> None:
+        """Draw the list."""
+        body = ""
+        for group, names in groupby(GUIDES, key=lambda name: GUIDES[name].group):
+            body += f"<h4>{text(group)}</h4>" + "".join(self._row(EXPORT_FORMATS[name]) for name in names)
+        self._html.show(body)
+
+    def _row(self, one: Format) -> str:
+        chosen = one.name == self._format
+        row = (
+            f'<div class="row {"on" if chosen else ""}" style="padding-left:9px" role="button" tabindex="0" '
+            f'data-do="choose" data-arg="{text(one.name)}" title="Keeps {text(one.keeps)}">'
+            f'<span class="name" style="white-space:normal">{text(one.title)}'
+            f'<br><span class="dim">{text(GUIDES[one.name].opens_in)}</span></span>'
+            f'<span class="dim">{text(download_suffix(one))}</span></div>'
+        )
+        return row + (self._details(one) if chosen else "")
+
+    def _details(self, one: Format) -> str:
+        """What the chosen format keeps, its options, and the button."""
+        choices = GUIDES[one.name].choices
+        switches = "".join(
+            button(name, "switch", choice, title=hint, on=self._is_on(choice), disabled=not self._is_possible(choice))
+            for choice, (name, hint) in SWITCHES.items()
+            if choice in choices
+        )
+        bar = f'<div class="bar tight" style="margin-top:6px">{switches}</div>' if switches else ""
+        pictures = self._texture_field() if "textures" in choices else ""
+        missing = f'<p class="bad">{text(one.missing)}</p>' if one.missing else ""
+        ready = not one.missing and self._client.session.jobs.status is None
+        go = button(f"Export {text(download_suffix(one))}", "export", one.name, on=ready, disabled=not ready)
+        return (
+            f'<div class="card" style="margin:2px 0 8px"><p><b>Keeps</b> {text(one.keeps)}.</p>'
+            f'{bar}{pictures}{missing}<div class="bar" style="margin:6px 0 0">{go}</div></div>'
+        )
+
+    def _texture_field(self) -> str:
+        options = "".join(
+            f'<option value="{px}" {"selected" if px == self._texture_px else ""}>'
+            f"{f'at most {px} pixels' if px else 'as they are'}</option>"
+            for px in TEXTURE_SIZES
+        )
+        return (
+            '<div style="display:flex;align-items:center;gap:6px"><span>Textures</span>'
+            f'<select data-change="textures" aria-label="Textures" style="flex:1">{options}</select></div>'
+        )
+
+    def _is_possible(self, choice: Choice) -> bool:
+        return choice != "selection" or bool(self._client.selection)
+
+    def _is_on(self, choice: Choice) -> bool:
+        return choice in self._on and self._is_possible(choice)
+
+    def _act(self, action: Action) -> None:
+        self._client.post(lambda: self._do(action))
+
+    def _do(self, action: Action) -> None:
+        if action.do == "choose" and action.arg in GUIDES:
+            self._format = action.arg
+        elif action.do == "switch" and action.arg in SWITCHES:
+            self._on ^= {action.arg}
+        elif action.do == "textures" and action.pair[1] in map(str, TEXTURE_SIZES):
+            self._texture_px = int(action.pair[1])
+        elif action.do == "export":
+            export(self._client, self._format, self._options())
+        self.refresh()
+
+    def _options(self) -> ExportOptions:
+        """What is switched on, as far as the format knows it."""
+        from diorama_core.export.gathering import ExportOptions
+
+        choices = GUIDES[self._format].choices
+        on = {choice for choice in choices if self._is_on(choice)}
+        return ExportOptions(
+            ceiling="ceiling" not in on,
+            only=frozenset(self._client.selection) if "selection" in on else None,
+            max_texture_px=(self._texture_px or None) if "textures" in choices else None,
+            compression="meshopt" if "compressed" in on else "none",
+            bodies="welded" if "welded" in on else "free",
+        )

@@ -1,0 +1,101 @@
+"""Writing the scene for other programs, beside everything else, and handing it to the browser that asked."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+import zipfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from diorama_app.formats import EXPORT_FORMATS
+from diorama_app.session.client import Client
+from diorama_core.errors import EditRefused, ExportError
+from diorama_core.export import Format, export_scene
+from diorama_core.progress import Progress
+
+if TYPE_CHECKING:
+    from diorama_core.export.gathering import ExportOptions
+
+
+def export(client: Client, format_name: str, options: ExportOptions) -> None:
+    """Write the scene in one of `EXPORT_FORMATS` and hand it over whole, or not at all.
+
+    Raises:
+        EditRefused: there is nothing to write.
+        ExportError: there is no such format.
+        UnavailableError: its optional library is missing.
+    """
+    session = client.session
+    scene, project, textures, photo = session.scene, session.project, dict(session.textures), session.photo
+    if not scene.objects and not scene.architecture.planes:
+        raise EditRefused("there is nothing to export yet; build or open a scene first")
+    if format_name not in EXPORT_FORMATS:
+        raise ExportError(f"cannot export as {format_name!r}; choose a format of the list")
+    chosen = EXPORT_FORMATS[format_name]
+    chosen.writer()  # says at once what is missing
+    name = project.name if project is not None else "scene"
+    info = project.info() if project is not None else None
+    stem = file_stem(name)
+
+    def work(progress: Progress) -> None:
+        with tempfile.TemporaryDirectory(prefix="export-") as folder:
+            export_scene(
+                scene,
+                session.library,
+                Path(folder) / f"{stem}{download_suffix(chosen)}",
+                chosen,
+                options=options,
+                textures=textures,
+                photo=None if photo is None else photo.rgb,
+                name=name,
+                provenance=info,
+                progress=progress.part(0.0, 0.95),
+            )
+            file_name, content = packed(Path(folder), f"{stem}-{chosen.name}.zip")
+        hand_over(client, file_name, content, progress)
+
+    session.jobs.start("export", f"Exporting {chosen.title}", work)
+
+
+def hand_over(client: Client, name: str, content: bytes, progress: Progress) -> None:
+    """Download a finished file in the browser that asked for it; not when it was cancelled meanwhile."""
+    progress.report(0.98, f"handing over {name}")
+
+    def download() -> None:
+        client.view.download(name, content)
+        client.notice(f"{name} ({size_in_words(len(content))}) is in your downloads.", "good")
+
+    client.post(download)
+
+
+def download_suffix(chosen: Format) -> str:
+    """How the one file ends that is downloaded: a format of several files is packed where it can be."""
+    return ".zip" if ".zip" in chosen.suffixes else chosen.suffixes[0]
+
+
+def packed(folder: Path, zip_name: str) -> tuple[str, bytes]:
+    """What was written into a folder as one file: that file, or a zip of all of them.
+
+    Returns:
+        Its name and its content.
+    """
+    files = sorted(p for p in folder.rglob("*") if p.is_file())
+    if len(files) == 1:
+        return files[0].name, files[0].read_bytes()
+    with tempfile.TemporaryFile() as whole:
+        with zipfile.ZipFile(whole, "w", zipfile.ZIP_DEFLATED) as archive:
+            for file in files:
+                archive.write(file, file.relative_to(folder).as_posix())
+        whole.seek(0)
+        return zip_name, whole.read()
+
+
+def file_stem(name: str) -> str:
+    """A project's name as the beginning of a file name."""
+    return re.sub(r"[^\w.-]+", "-", name).strip("-.")[:80] or "scene"
+
+
+def size_in_words(count: int) -> str:
+    """A number of bytes as people write it."""
+    return f"{count / 1e6:.1f} MB" if count >= 100_000 else f"{max(1, round(count / 1e3))} kB"

@@ -1,0 +1,99 @@
+"""A file that somebody uploads becomes a project of its own: what Diorama exported comes back as it was."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from pathlib import Path
+
+from diorama_app.reconstruction.build_job import fresh_folder
+from diorama_app.session.client import Client
+from diorama_app.session.session import EditorSession
+from diorama_core.errors import InputError
+from diorama_core.importing.opening import SUFFIXES, Opened
+from diorama_core.importing.scene_import import read_scene
+from diorama_core.io.atomic import write_atomically
+from diorama_core.io.limited import LimitedProcess
+from diorama_core.library.user_library import OWN, UserLibrary
+from diorama_core.progress import Progress
+from diorama_core.project.lock import ProjectLock
+from diorama_core.project.storage import Project
+
+MAX_MEMORY = 4_000_000_000
+"""Address space of the process that reads a scene: models, pictures, and what they are compared with."""
+MAX_QUIET_S = 90.0
+"""How long it may work on one part of a file."""
+MAX_NOTES = 40
+
+
+def open_file(client: Client, name: str, content: bytes) -> None:
+    """Read a scene file beside everything else and open it as a new project.
+
+    Args:
+        client: who uploaded it.
+        name: the file's name; its ending says what it is.
+        content: the file.
+
+    Raises:
+        InputError: files of this kind are not read.
+    """
+    session = client.session
+    file_name = Path(name.replace("\\", "/")).name[:100]
+    if Path(file_name).suffix.lower() not in SUFFIXES:
+        raise InputError(f"{file_name} is no scene that can be opened; choose a {', '.join(SUFFIXES)} file")
+
+    def work(progress: Progress) -> None:
+        opened = _read(session, file_name, content, progress.part(0.0, 0.9))
+        progress.report(0.9, "saving the project")
+        project = _saved(session, Path(file_name).stem, file_name, opened)
+        client.post(lambda: _show(session, project, file_name))
+
+    session.jobs.start("import", f"Opening {file_name}", work)
+
+
+def _read(session: EditorSession, name: str, content: bytes, progress: Progress) -> Opened:
+    """The scene in a file, read in a process of its own with limited memory."""
+    known = frozenset(shape.id for shape in session.library.shapes())
+    process = LimitedProcess(memory=MAX_MEMORY, seconds=MAX_QUIET_S)
+    try:
+        with tempfile.TemporaryDirectory(prefix="upload-") as folder:
+            path = Path(folder) / name
+            write_atomically(path, content, error=InputError)
+            opened = process.work(name, read_scene, path, known, progress=progress)
+    finally:
+        process.close()
+    taken_in = not {o.shape_id for o in opened.scene.objects} <= known
+    if taken_in and isinstance(session.library, UserLibrary):
+        session.library.own()  # from now on it lists what the other process took in
+    return opened
+
+
+def _saved(session: EditorSession, stem: str, file_name: str, opened: Opened) -> Project:
+    """A new project with the scene; none is left behind when it cannot be saved."""
+    folder = fresh_folder(session.projects_dir, stem, resume=False)
+    try:
+        project = Project.create(folder, name=stem)
+        with ProjectLock(folder, "the editor"):
+            notes = [f"opened from {file_name}", *opened.changes[:MAX_NOTES]]
+            project.update_info(library=_library_name(session, opened), notes=notes)
+            project.save_textures(opened.textures)
+            project.save_scene(opened.scene)
+        project.load_scene()  # what cannot be read back is refused now, while the open project is still open
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+    return project
+
+
+def _library_name(session: EditorSession, opened: Opened) -> str:
+    """The library by which commands find the shapes: that of the open project, with one's own models where needed."""
+    named = "built-in" if session.project is None else session.project.library_name
+    library = session.library
+    own = isinstance(library, UserLibrary) and any(library.has_own(o.shape_id) for o in opened.scene.objects)
+    return f"{named}+{OWN}" if own and OWN not in named.split("+") else named
+
+
+def _show(session: EditorSession, project: Project, file_name: str) -> None:
+    session.open_project(project)
+    count = len(session.scene.objects)
+    session.notice_all(f"{file_name} is open as a project of its own, with {count} objects.", "good")

@@ -1,0 +1,53 @@
+"""What is downloaded: one file, whatever a format writes."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from diorama_app.formats import EXPORT_FORMATS
+from diorama_app.reconstruction.export_job import download_suffix, file_stem, packed, size_in_words
+
+
+@pytest.mark.parametrize(("name", "suffix"), [("glb", ".glb"), ("mjcf", ".zip"), ("obj", ".zip"), ("html", ".html")])
+def test_formats_of_several_files_are_downloaded_as_a_zip(name: str, suffix: str) -> None:
+    assert download_suffix(EXPORT_FORMATS[name]) == suffix
+
+
+def test_one_file_is_handed_over_as_it_is(tmp_path: Path) -> None:
+    (tmp_path / "room.glb").write_bytes(b"model")
+    assert packed(tmp_path, "room.zip") == ("room.glb", b"model")
+
+
+def test_a_file_with_companions_is_packed_with_their_places(tmp_path: Path) -> None:
+    (tmp_path / "room.usda").write_text("stage")
+    (tmp_path / "room_files").mkdir()
+    (tmp_path / "room_files" / "wood.png").write_bytes(b"picture")
+    name, content = packed(tmp_path, "room-usda.zip")
+    assert name == "room-usda.zip"
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        assert {n: archive.read(n) for n in archive.namelist()} == {
+            "room.usda": b"stage",
+            "room_files/wood.png": b"picture",
+        }
+
+
+@pytest.mark.parametrize(
+    ("name", "stem"),
+    [
+        ("My room", "My-room"),
+        ("../../etc/passwd", "etc-passwd"),
+        ("Wohnküche", "Wohnküche"),
+        ("…", "scene"),
+        ("", "scene"),
+    ],
+)
+def test_names_of_projects_become_names_of_files(name: str, stem: str) -> None:
+    assert file_stem(name) == stem
+
+
+def test_sizes_are_said_in_words() -> None:
+    assert [size_in_words(n) for n in (3, 1500, 2_345_678)] == ["1 kB", "2 kB", "2.3 MB"]

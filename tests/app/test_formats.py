@@ -1,0 +1,55 @@
+"""The table of what can be exported from the page."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from diorama_app.formats import EXPORT_FORMATS, GUIDES
+from diorama_app.reconstruction.export_job import download_suffix
+from diorama_core.export import export_scene
+from diorama_core.export.gathering import ExportOptions
+from diorama_core.progress import Progress
+from tests.export.scenes import gathered, scene_of
+
+DOCS = Path(__file__).resolve().parents[2] / "docs" / "export.md"
+
+
+def test_every_format_has_a_guide_and_every_guide_a_format() -> None:
+    assert GUIDES.keys() == EXPORT_FORMATS.keys()
+
+
+@pytest.mark.parametrize("name", EXPORT_FORMATS)
+def test_every_format_is_in_the_documentation(name: str) -> None:
+    assert re.search(rf"^\|.*`{name}`", DOCS.read_text(), re.MULTILINE), name
+
+
+def test_the_viewer_is_written_by_its_place_in_the_table(tmp_path: Path) -> None:
+    EXPORT_FORMATS["html"].writer()(gathered("primitives"), tmp_path / "room.html", Progress())
+    assert (tmp_path / "room.html").read_text().startswith("<!")
+
+
+@pytest.mark.parametrize("only", [None, frozenset({"t"})], ids=["room", "selection"])
+@pytest.mark.parametrize("name", EXPORT_FORMATS)
+def test_every_format_is_written_with_the_choices_it_offers(
+    name: str, only: frozenset[str] | None, tmp_path: Path
+) -> None:
+    chosen, choices = EXPORT_FORMATS[name], GUIDES[name].choices
+    if chosen.missing:
+        pytest.skip(chosen.missing)
+    options = ExportOptions(
+        ceiling="ceiling" not in choices,
+        only=only if "selection" in choices else None,
+        max_texture_px=64 if "textures" in choices else None,
+        compression="meshopt" if "compressed" in choices else "none",
+        bodies="welded" if "welded" in choices else "free",
+    )
+    scene, library = scene_of("primitives")
+    written = export_scene(scene, library, tmp_path / f"room{download_suffix(chosen)}", chosen, options=options)
+    assert (tmp_path / f"room{download_suffix(chosen)}").stat().st_size > 100
+    assert all(plane.plane.role != "ceiling" for plane in written.planes) or "ceiling" not in choices
+    if only is not None and "selection" in choices:
+        assert {o.id for o in written.objects} == only
+        assert written.planes == ()
