@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import fsum
 
@@ -24,8 +24,10 @@ from diorama_core.retrieval.appearance_similarity import (
     EmbeddedSimilarity,
     ObjectCrop,
 )
+from diorama_core.retrieval.neighbours import neighbour_factors
 from diorama_core.retrieval.outlines import outline_agreement
 from diorama_core.retrieval.pools import Pool, RetrievalQuery, pool_for, size_cost
+from diorama_core.retrieval.word_senses import sense_probabilities
 from diorama_core.retrieval.words import described_share
 from diorama_core.scene.types import Support, yaw_rotation
 
@@ -82,7 +84,8 @@ class HierarchicalRetrieval:
         measured = [o for o in objects if o.id in cuboids]
         sizes = [cuboids[o.id].size_m for o in measured]
         groups = _groups([o.category for o in measured], sizes)
-        pools = self._pools(measured, sizes, groups, geometry.supports)
+        senses = _senses(measured, [cuboids[o.id] for o in measured], geometry)
+        pools = self._pools(measured, sizes, groups, geometry.supports, senses)
         centres = np.array([cuboids[o.id].centre for o in measured]).reshape(-1, 3)
         parents = _parent_indices(measured, geometry.supports)
         similarity = self.similarity or EmbeddedSimilarity(self.library)
@@ -117,6 +120,7 @@ class HierarchicalRetrieval:
         sizes_m: Sequence[np.ndarray],
         groups: Sequence[int],
         supports: Sequence[Support],
+        senses: Sequence[Mapping[str, float]],
     ) -> list[Pool]:
         """One pool per group of alike objects."""
         holders = {s.parent for s in supports}
@@ -130,6 +134,7 @@ class HierarchicalRetrieval:
                 size_m=np.exp(np.median([np.log(np.maximum(sizes_m[i], 1e-3)) for i in members], axis=0)),
                 supports_objects=any(measured[i].id in holders for i in members),
                 supported_by=parent_of.get(first.id, "floor"),
+                senses=_mean_senses([senses[i] for i in members]),
             )
             pools.append(pool_for(self.library, query))
         return pools
@@ -153,6 +158,28 @@ class HierarchicalRetrieval:
             self.silhouette_weight * (0.25 + 0.75 * seen.mask_trust) * (1.0 if named else _UNNAMED_OUTLINE),
             self.similarity_weight * (_MIN_SIMILARITY + (1 - _MIN_SIMILARITY) * visible),
         )
+
+
+def _senses(
+    objects: Sequence[DetectedObject], cuboids: Sequence[Cuboid], geometry: ObjectGeometry
+) -> list[Mapping[str, float]]:
+    """For every object how likely its word means each kind, by its box, its height and its neighbours."""
+    camera = geometry.camera
+    by_box = sense_probabilities(objects, camera.intrinsics, camera.T_world_camera[:3, :3], float(camera.position[2]))
+    found = []
+    for index, senses in enumerate(by_box):
+        factors = neighbour_factors(index, tuple(senses), objects, cuboids, geometry.supports)
+        found.append({kind: share * factors[kind] for kind, share in senses.items()})
+    return found
+
+
+def _mean_senses(senses: Sequence[Mapping[str, float]]) -> dict[str, float]:
+    """Of things that are taken to be alike."""
+    kinds = sorted({kind for of_one in senses for kind in of_one})
+    wholes = [sum(of_one.values()) for of_one in senses]
+    return {
+        k: fsum(s.get(k, 0.0) / whole for s, whole in zip(senses, wholes, strict=True)) / len(senses) for k in kinds
+    }
 
 
 def _fingerprint(library: ShapeLibrary) -> str:
