@@ -25,9 +25,13 @@ _NAMED_POOL = 50
 """Of one kind; the paper's text query keeps as many."""
 _OTHER_POOL = 14
 """Of every other kind that the word may mean."""
+_UNNAMED_EACH = 5
+"""Of every kind that a thing without a name may be."""
+_MAX_POOL = 110
+"""No more kinds are added to so many shapes."""
 _MIN_SENSE = 0.04
 """Kinds less likely than this share of the likeliest are not looked at."""
-_VIEWS_SAY = 14.0
+_VIEWS_SAY = 10.0
 """How sharply views tell kinds apart: agreeing better by a factor f makes up for a kind less likely by f to this."""
 _SUBSTITUTES = 3
 _UNNAMED_POOL = 30
@@ -165,14 +169,16 @@ class RetrievalQuery(ArrayValue):
 
 def pool_for(library: ShapeLibrary, query: RetrievalQuery) -> Pool:
     """Shapes worth comparing with the picture, some dozens; nearest sizes where there are more."""
-    if query.category == UNKNOWN.name:
+    unnamed = query.category == UNKNOWN.name
+    if unnamed and not query.senses:
         return Pool(_plausible(library, query))
     senses = dict(query.senses) or {query.category: 1.0}
     best = max(senses.values())
     members: list[Pooled] = []
     for kind, share in sorted(senses.items(), key=lambda row: (-row[1], row[0])):
-        if share >= _MIN_SENSE * best:
-            most = _NAMED_POOL if share == best or kind == query.category else _OTHER_POOL
+        if share >= _MIN_SENSE * best and len(members) < _MAX_POOL:
+            own = len(senses) == 1 or kind == query.category
+            most = _NAMED_POOL if own else _UNNAMED_EACH if unnamed else _OTHER_POOL
             near_shapes = _nearest(_usable(library, library.in_category(kind), query), query.size_m, most)
             members += [Pooled(shape, sense_factor(share / best)) for shape in near_shapes]
     found = bool(members)

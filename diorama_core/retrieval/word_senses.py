@@ -16,7 +16,7 @@ from jaxtyping import Float
 
 from diorama_core.artefacts import CameraEstimate, DetectedObject
 from diorama_core.library.hyponyms import meanings
-from diorama_core.library.taxonomy import SizePrior, category
+from diorama_core.library.taxonomy import UNKNOWN, SizePrior, category
 from diorama_core.scene.types import Intrinsics
 
 _HEIGHTS_M = np.linspace(0.7, 2.2, 16)
@@ -39,6 +39,8 @@ _UNSUPPORTED = 0.15
 _BORDER_PX = 3.0
 _SWITCH = 1.5
 """How many times likelier than the word's own kind another one must be before geometry takes it for that."""
+_SURE = 0.4
+"""How likely a kind must be before geometry takes a thing without a name for it."""
 _CERTAIN = 0.02
 """Of the likelihood that is spread evenly over all kinds: boxes are drawn by people."""
 
@@ -105,6 +107,9 @@ def sense_probabilities(
 
 
 def _chosen(own: str, senses: Mapping[str, float]) -> str:
+    if own == UNKNOWN.name:
+        best = max(senses, key=lambda kind: senses[kind])
+        return best if senses[best] > _SURE else own
     mounts: dict[str, float] = {}
     for kind, share in senses.items():
         mount = category(kind).mount

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from diorama_core.errors import InputError
 from diorama_core.evaluation.adapters.files import read_json
-from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, resolve
+from diorama_core.library.taxonomy import ARCHITECTURE_WORDS
 
 T = TypeVar("T")
 PICTURES = (".jpg", ".jpeg", ".png")
@@ -43,8 +43,8 @@ class AnnotatedThing(BaseModel):
 
     @property
     def loose(self) -> bool:
-        """Whether the plain word, understood as well as the taxonomy can, names another kind than the true one."""
-        return self.nameable and resolve(self.word).category.name != self.kind
+        """Whether the plain word is not the name of the true kind; also for synonyms, whatever the taxonomy knows."""
+        return self.nameable and self.word.lower() != self.kind
 
     @property
     def nameable(self) -> bool:
