@@ -36,7 +36,9 @@ TABLES = (
 def add_bench(commands: Any) -> None:
     """Declare `diorama bench`."""
     p: argparse.ArgumentParser = commands.add_parser("bench", help="Measure the stages on rooms of known truth.")
-    tables = p.add_subparsers(dest="table", required=True, metavar="|".join(name for name, _, _ in TABLES))
+    tables = p.add_subparsers(
+        dest="table", required=True, metavar="|".join([*(name for name, _, _ in TABLES), "photos"])
+    )
     runs = {"layout": _bench_layout, "speed": _bench_speed, "rooms": _bench_survey, "system": _bench_system}
     for name, scenes, summary in TABLES:
         one = command(tables, name, runs.get(name, _bench_rooms), summary, f"diorama bench {name} --scenes {scenes}")
@@ -67,6 +69,19 @@ def add_bench(commands: Any) -> None:
             one.add_argument("--against", type=Path, metavar="FILE", help="figures to compare with (default: built in)")
             one.add_argument("--tolerance", type=float, default=1.6, metavar="T", help="times (default: %(default)s)")
             one.add_argument("--quick", action="store_true", help="small quantities only, about a minute")
+    _add_photos(tables)
+
+
+def _add_photos(tables: Any) -> None:
+    example = "diorama bench photos annotations.json --photos pictures"
+    one = command(tables, "photos", _bench_photos, "Photos against what a person annotated in them.", example)
+    one.add_argument("annotations", type=Path, metavar="ANNOTATIONS", help="boxes, kinds, colours, fronts... (JSON)")
+    one.add_argument("--photos", type=Path, required=True, metavar="DIR", help="pictures named by the annotations' ids")
+    one.add_argument("--unnamed", action="store_true", help="give the boxes without their words")
+    one.add_argument("--only", nargs="+", default=(), metavar="ID", help="take these photos only")
+    one.add_argument("--stages", type=Path, metavar="DIR", help="keep stage results, so that a later run resumes")
+    one.add_argument("--json", type=Path, metavar="FILE", help="write the tables and every thing as JSON too")
+    one.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables as Markdown, or into their place")
 
 
 def _bench_layout(a: argparse.Namespace) -> None:
@@ -146,6 +161,28 @@ def _bench_dataset(a: argparse.Namespace) -> None:
     with progress_bar() as progress:
         bench = local_bench.run(a.dataset, a.path, built_in_library(), a.scenes, progress)
     _show(bench, a)
+
+
+def _bench_photos(a: argparse.Namespace) -> None:
+    from diorama_core.evaluation.benchmarks import photos as photos_bench
+    from diorama_core.library.catalogue import built_in_library
+
+    if not a.photos.is_dir():
+        raise InputError(f"{a.photos}: there is no such folder; give the folder of the annotated pictures")
+    with progress_bar() as progress:
+        bench = photos_bench.run(
+            a.annotations,
+            a.photos,
+            built_in_library(),
+            named=not a.unnamed,
+            only=tuple(a.only),
+            cache=a.stages,
+            progress=progress,
+        )
+    _show(bench, a)
+    for result in bench.results:
+        if result.failure:
+            print(f"diorama: {result.photo} failed: {result.failure}", file=sys.stderr)
 
 
 def _bench_survey(a: argparse.Namespace) -> None:

@@ -6,7 +6,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, ObjectGeometry, PosedCandidates
-from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.hyponyms import meanings
+from diorama_core.library.record import ShapeLibrary, record_of
+from diorama_core.library.taxonomy import UNKNOWN
 from diorama_core.scene.support import check_scene
 from diorama_core.scene.types import Scene, SceneObject
 
@@ -48,7 +50,8 @@ def _scene_object(
     colour: tuple[float, float, float] | None,
 ) -> SceneObject:
     best = posed.candidates[0]
-    category = item.category if item.category != "object" else library.shape(best.shape_id).category
+    kind = record_of(library, best.shape_id).category  # a chair that looks like an office chair is one
+    category = kind if item.category == UNKNOWN.name or kind in meanings(item.label, item.category) else item.category
     return SceneObject(
         id=item.id,
         label=item.label,

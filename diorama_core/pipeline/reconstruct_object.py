@@ -22,6 +22,7 @@ from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import Stages
 from diorama_core.progress import Progress
 from diorama_core.protocols import ObjectStage
+from diorama_core.retrieval.word_senses import with_word_senses
 from diorama_core.scene.types import Camera, Candidate, Plane, Pose, Scene, SceneObject, Support, yaw_rotation
 
 
@@ -95,7 +96,8 @@ def reconstruct_object(
     stages, runner = stages_for("auto", inputs, library), Runner(cache)
     photo = evaluate(stages, {"given": inputs}, ("architecture",), runner, progress.part(0.0, 0.5))
     known = next((o for o in photo["objects"] if o.id == object_id), None)
-    if known is not None and _says(known, box, mask):
+    outlined = next((o for o in photo["outlined_objects"] if o.id == object_id), None)
+    if known is not None and outlined is not None and _says(outlined, box, mask):
         built = evaluate(stages, photo, ("posed",), runner, progress.part(0.5, 1.0))
         candidates = next((p for p in built["posed"] if p.object_id == object_id and p.candidates), None)
         if candidates is not None:
@@ -131,7 +133,8 @@ def _posed_alone(
     stages: Stages, photo: Artefacts, detected: DetectedObject, progress: Progress
 ) -> tuple[Artefacts, PosedCandidates | None]:
     """The photo's artefacts with the object among the others, and the object's candidates, ranked for it alone."""
-    objects = (*(o for o in photo["objects"] if o.id != detected.id), detected)
+    others = tuple(o for o in photo["objects"] if o.id != detected.id)
+    objects = (*others, with_word_senses((*others, detected), photo["camera"])[-1])
     fixed = {name: photo[name] for name in ("given", "inputs", "camera", "architecture")}
     uncached = Runner(None)
     whole = evaluate(stages, {**fixed, "objects": objects}, ("geometry", "depth"), uncached, progress.part(0.0, 0.4))

@@ -42,6 +42,7 @@ _TOWARD_CAMERA = {
 """How much more likely a thing shows its front than its back; cupboards and the like are hardly seen from behind."""
 _DRAWN_UP_M = 0.9
 _DRAWN_UP_COFFEE_M = 1.6
+_LEANING = 1.5
 _WALL_REACH_M = 0.7
 _WALL_LATERAL_M = 3.0
 _WALL_SAMPLES = 3000
@@ -96,6 +97,7 @@ def facing_of(
     walls: WallSamples,
     out_of_wall: Float[np.ndarray, "2"] | None,
     pillows: Sequence[Cuboid] = (),
+    carrier: Cuboid | None = None,
 ) -> Facing:
     """Reasons to face somewhere for one object.
 
@@ -108,12 +110,15 @@ def facing_of(
         walls: Where walls are seen.
         out_of_wall: Into the room, for things that hang on a wall.
         pillows: What lies on it at its back or head.
+        carrier: What it lies on, if that is an object.
     """
     toward_camera = _unit(camera.position[:2] - cuboid.centre[:2])
     if cuboid.front_known:
         return Facing(((3.0, _unit(cuboid.R_world_object[:2, 0])),))
     if out_of_wall is not None:
         return Facing(((4.0, _unit(out_of_wall)),))
+    if item.category == "pillow" and carrier is not None:
+        return _leaning(cuboid, carrier, broad(categories.get(carrier.object_id, "")) == "bed", toward_camera)
     if item.category in _NO_FRONT:
         return Facing(())
     if item.category in _TOWARD_VIEWER:
@@ -128,6 +133,15 @@ def facing_of(
     if len(cuboids) >= 3 and np.linalg.norm(middle) > 0.3:
         preferences.append((0.3, _unit(middle)))
     return Facing(tuple(preferences))
+
+
+def _leaning(pillow: Cuboid, carrier: Cuboid, on_bed: bool, toward_camera: Float[np.ndarray, "2"]) -> Facing:
+    """Pillows lean on the head of a bed and look to its foot; on a sofa they look where it does, across its length."""
+    axes = _axes_xy(carrier)
+    longest = max(half for _, half in axes)
+    along = [axis for axis, half in axes if (half == longest) == on_bed] or [axis for axis, _ in axes]
+    inward = carrier.centre[:2] - pillow.centre[:2] if on_bed else toward_camera
+    return Facing(((_LEANING, max(along, key=lambda axis: float(axis @ inward))),))
 
 
 def _away_from_pillows(cuboid: Cuboid, pillows: Sequence[Cuboid]) -> list[tuple[float, Float[np.ndarray, "2"]]]:

@@ -207,7 +207,10 @@ class RenderAndCompare:
             lying = [cuboids[j] for j, parent in enumerate(parents) if parent == i and items[j].category == "pillow"]
             anchor = anchor_of(cuboids[i], on_wall, geometry.camera.position[:2] - cuboids[i].centre[:2])
             out_of_wall = anchor.axis_world[:2] if on_wall else None
-            facing = facing_of(item, cuboids[i], cuboids, categories, geometry.camera, walls, out_of_wall, lying)
+            carrier = None if parents[i] is None else cuboids[parents[i]]
+            facing = facing_of(
+                item, cuboids[i], cuboids, categories, geometry.camera, walls, out_of_wall, lying, carrier
+            )
             windows = [
                 observe_among(geometry.camera, items, centres, parents, i, cells)
                 for cells in (self.coarse_cells, self.fine_cells, cells_for(item.box))

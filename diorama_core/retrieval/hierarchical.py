@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import fsum
 
@@ -16,7 +16,7 @@ from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.library.taxonomy import UNKNOWN, with_kin
+from diorama_core.library.taxonomy import UNKNOWN, category, resolve, with_kin
 from diorama_core.progress import Progress
 from diorama_core.retrieval.appearance_similarity import (
     EMBEDDED_FEATURES,
@@ -24,8 +24,10 @@ from diorama_core.retrieval.appearance_similarity import (
     EmbeddedSimilarity,
     ObjectCrop,
 )
+from diorama_core.retrieval.neighbours import neighbour_factors
 from diorama_core.retrieval.outlines import outline_agreement
 from diorama_core.retrieval.pools import Pool, RetrievalQuery, pool_for, size_cost
+from diorama_core.retrieval.word_senses import sense_probabilities
 from diorama_core.retrieval.words import described_share
 from diorama_core.scene.types import Support, yaw_rotation
 
@@ -40,6 +42,11 @@ _MIN_SIMILARITY = 0.25
 _GUESSED_SIZE = 0.5
 """How much less the size of a thing counts of which nothing is seen: it is what such things usually have."""
 _MIN_VOICE = 0.1
+_MOUNTS = {"wall": ("wall",), "ceiling": ("ceiling",)}
+_OTHER_MOUNT = 0.1
+"""How likely a thing is of a kind that is held otherwise than it is."""
+_KINDS, _KINDS_OF_UNNAMED = 3, 7
+"""How many kinds are among the candidates of a thing with and without a name, where it may be of so many."""
 _OF_WORDS = 0.12
 """How much less a shape scores to which none of the words fit that describe the thing beside its kind."""
 
@@ -81,8 +88,10 @@ class HierarchicalRetrieval:
         cuboids = {c.object_id: c for c in geometry.cuboids}
         measured = [o for o in objects if o.id in cuboids]
         sizes = [cuboids[o.id].size_m for o in measured]
-        groups = _groups([o.category for o in measured], sizes)
-        pools = self._pools(measured, sizes, groups, geometry.supports)
+        named = [resolve(o.label).category is not UNKNOWN for o in measured]
+        groups = _groups([o.category if n else UNKNOWN.name for o, n in zip(measured, named, strict=True)], sizes)
+        senses = _senses(measured, [cuboids[o.id] for o in measured], geometry)
+        pools = self._pools(measured, sizes, groups, geometry.supports, senses)
         centres = np.array([cuboids[o.id].centre for o in measured]).reshape(-1, 3)
         parents = _parent_indices(measured, geometry.supports)
         similarity = self.similarity or EmbeddedSimilarity(self.library)
@@ -91,7 +100,6 @@ class HierarchicalRetrieval:
         for index, item in enumerate(measured):
             progress.report(index / len(measured), f"Looking for shapes: {item.label}")
             seen = observe_among(geometry.camera, measured, centres, parents, index, self.cells)
-            named = item.category != UNKNOWN.name
             members = pools[groups[index]].members
             visible = (1 - seen.border_share) * (1 - seen.hidden_share) * seen.mask_trust
             object_crop = ObjectCrop(inputs.photo.rgb, item.mask, item.label, visible, seen.mask_trust)
@@ -101,14 +109,18 @@ class HierarchicalRetrieval:
             sight.append(visible)
             scores.append(
                 {
-                    m.shape.id: factor * self._score(m.shape, cuboids[item.id], seen, visible, float(like), named)
+                    m.shape.id: factor
+                    * self._score(m.shape, cuboids[item.id], seen, visible, float(like), named[index])
                     for m, like, factor in zip(members, alike, factors, strict=True)
                 }
             )
         means = _means(groups, scores, sight)
+        kind_of = {m.shape.id: m.shape.category for pool in pools for m in pool.members}
         return tuple(
-            RankedShapes(item.id, _best(own, mean, self.keep), pools[group].note)
-            for item, own, mean, group in zip(measured, scores, means, groups, strict=True)
+            RankedShapes(
+                item.id, _best(own, mean, self.keep, kind_of, _KINDS if n else _KINDS_OF_UNNAMED), pools[group].note
+            )
+            for item, own, mean, group, n in zip(measured, scores, means, groups, named, strict=True)
         )
 
     def _pools(
@@ -117,6 +129,7 @@ class HierarchicalRetrieval:
         sizes_m: Sequence[np.ndarray],
         groups: Sequence[int],
         supports: Sequence[Support],
+        senses: Sequence[Mapping[str, float]],
     ) -> list[Pool]:
         """One pool per group of alike objects."""
         holders = {s.parent for s in supports}
@@ -130,6 +143,7 @@ class HierarchicalRetrieval:
                 size_m=np.exp(np.median([np.log(np.maximum(sizes_m[i], 1e-3)) for i in members], axis=0)),
                 supports_objects=any(measured[i].id in holders for i in members),
                 supported_by=parent_of.get(first.id, "floor"),
+                senses=_mean_senses([senses[i] for i in members]),
             )
             pools.append(pool_for(self.library, query))
         return pools
@@ -153,6 +167,35 @@ class HierarchicalRetrieval:
             self.silhouette_weight * (0.25 + 0.75 * seen.mask_trust) * (1.0 if named else _UNNAMED_OUTLINE),
             self.similarity_weight * (_MIN_SIMILARITY + (1 - _MIN_SIMILARITY) * visible),
         )
+
+
+def _senses(
+    objects: Sequence[DetectedObject], cuboids: Sequence[Cuboid], geometry: ObjectGeometry
+) -> list[Mapping[str, float]]:
+    """For every object how likely its word means each kind, by its box, its height and its neighbours."""
+    camera = geometry.camera
+    by_box = sense_probabilities(objects, camera.intrinsics, camera.T_world_camera[:3, :3], float(camera.position[2]))
+    parent_of = {s.child: s.parent for s in geometry.supports}
+    found = []
+    for index, senses in enumerate(by_box):
+        factors = neighbour_factors(index, tuple(senses), objects, cuboids, geometry.supports)
+        mounts = _MOUNTS.get(parent_of.get(objects[index].id, "floor"), ("floor", "surface"))
+        found.append(
+            {
+                kind: share * factors[kind] * (1.0 if category(kind).mount in mounts else _OTHER_MOUNT)
+                for kind, share in senses.items()
+            }
+        )
+    return found
+
+
+def _mean_senses(senses: Sequence[Mapping[str, float]]) -> dict[str, float]:
+    """Of things that are taken to be alike."""
+    kinds = sorted({kind for of_one in senses for kind in of_one})
+    wholes = [sum(of_one.values()) for of_one in senses]
+    return {
+        k: fsum(s.get(k, 0.0) / whole for s, whole in zip(senses, wholes, strict=True)) / len(senses) for k in kinds
+    }
 
 
 def _fingerprint(library: ShapeLibrary) -> str:
@@ -213,11 +256,26 @@ def _log_difference(a_m: np.ndarray, b_m: np.ndarray) -> float:
     return float(min(np.abs(a - b).max(), np.abs(a - b[[1, 0, 2]]).max()))
 
 
-def _best(own: dict[str, float], of_group: dict[str, float], keep: int) -> tuple[tuple[str, float], ...]:
-    """The best shapes by own and group's scores; most of them the group's, so that things of a kind can agree."""
+def _best(
+    own: dict[str, float], of_group: dict[str, float], keep: int, kind_of: Mapping[str, str], kinds: int
+) -> tuple[tuple[str, float], ...]:
+    """The best shapes by own and group's scores; most of them the group's, so that things of a kind can agree.
+
+    Some are the best of other kinds that the word may mean, so that posing can tell and a person can choose.
+
+    Args:
+        own: scores of one object.
+        of_group: mean scores of its group.
+        keep: how many shapes are kept.
+        kind_of: categories by shape id.
+        kinds: how many kinds are represented, where there are so many.
+    """
     mixed = {key: _OWN_EVIDENCE * own[key] + (1 - _OWN_EVIDENCE) * of_group[key] for key in own}
     shared = _in_order(of_group)[: 3 * keep // 4]
     retained = [*shared, *(key for key in _in_order(mixed) if key not in shared)][:keep]
+    of_kinds = {kind_of[key]: key for key in reversed(_in_order(mixed))}
+    firsts = _in_order({key: mixed[key] for key in of_kinds.values()})[:kinds]
+    retained = [*firsts, *(key for key in retained if key not in firsts)][:keep]
     return tuple((key, float(mixed[key])) for key in _in_order({key: mixed[key] for key in retained}))
 
 

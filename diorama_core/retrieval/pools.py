@@ -6,8 +6,8 @@ Things that hold other things up draw from their own pool: shapes with a surface
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cache
 
 import numpy as np
@@ -23,9 +23,16 @@ _USUAL_FACTOR = 0.92
 _RARE_FACTOR = 0.68
 _NAMED_POOL = 50
 """Of one kind; the paper's text query keeps as many."""
-_SPECIAL_POOL = 6
-_LOOSE_FACTOR = 0.97
-"""For kinds that a word is loosely used for: the word itself is some evidence against them."""
+_OTHER_POOL = 14
+"""Of every other kind that the word may mean."""
+_UNNAMED_EACH = 5
+"""Of every kind that a thing without a name may be."""
+_MAX_POOL = 110
+"""No more kinds are added to so many shapes."""
+_MIN_SENSE = 0.04
+"""Kinds less likely than this share of the likeliest are not looked at."""
+_VIEWS_SAY = 10.0
+"""How sharply views tell kinds apart: agreeing better by a factor f makes up for a kind less likely by f to this."""
 _SUBSTITUTES = 3
 _UNNAMED_POOL = 30
 _EACH_KIND = 2
@@ -116,18 +123,6 @@ def _alike_in_size(name: str) -> tuple[str, ...]:
     return tuple(others[i].name for i in np.argsort(unlike, kind="stable")[:_SUBSTITUTES])
 
 
-SAID_OF_MANY: dict[str, tuple[str, ...]] = {
-    "table": ("coffee table", "side table", "console table"),
-    "cabinet": ("night stand", "dresser", "sideboard"),
-}
-"""Words that people and detectors use for other kinds too, and which."""
-
-
-def special_kinds(name: str) -> tuple[str, ...]:
-    """The special kinds of a category: a stool may turn out to be a bar stool."""
-    return tuple(c.name for c in CATEGORIES if c.kin == name)
-
-
 USUAL = frozenset(
     {
         *("chair", "armchair", "office chair", "stool", "sofa", "ottoman", "bench", "bed", "night stand", "dresser"),
@@ -168,19 +163,25 @@ class RetrievalQuery(ArrayValue):
     """Whether something stands on it: then only shapes with a surface are taken, if any are."""
     supported_by: str
     """What holds it up: "floor", "wall", "ceiling" or an object's id."""
+    senses: Mapping[str, float] = field(default_factory=dict)
+    """How likely its word means each kind, views apart; by default its category alone."""
 
 
 def pool_for(library: ShapeLibrary, query: RetrievalQuery) -> Pool:
     """Shapes worth comparing with the picture, some dozens; nearest sizes where there are more."""
-    if query.category == UNKNOWN.name:
+    unnamed = query.category == UNKNOWN.name
+    if unnamed and not query.senses:
         return Pool(_plausible(library, query))
-    own = _nearest(_usable(library, library.in_category(query.category), query), query.size_m, _NAMED_POOL)
-    special, loose = (
-        _better_fitting(library, query, own, kinds)
-        for kinds in (special_kinds(query.category), SAID_OF_MANY.get(query.category, ()))
-    )
-    own = [*own, *special]
-    members = [Pooled(shape, 1.0) for shape in own] + [Pooled(shape, _LOOSE_FACTOR) for shape in loose]
+    senses = dict(query.senses) or {query.category: 1.0}
+    best = max(senses.values())
+    members: list[Pooled] = []
+    for kind, share in sorted(senses.items(), key=lambda row: (-row[1], row[0])):
+        if share >= _MIN_SENSE * best and len(members) < _MAX_POOL:
+            own = len(senses) == 1 or kind == query.category
+            most = _NAMED_POOL if own else _UNNAMED_EACH if unnamed else _OTHER_POOL
+            near_shapes = _nearest(_usable(library, library.in_category(kind), query), query.size_m, most)
+            members += [Pooled(shape, sense_factor(share / best)) for shape in near_shapes]
+    found = bool(members)
     factor = _RELATED_FACTOR
     for near in near_kinds(query.category):
         if len(members) >= _ENOUGH:
@@ -188,20 +189,15 @@ def pool_for(library: ShapeLibrary, query: RetrievalQuery) -> Pool:
         near_shapes = _nearest(_usable(library, library.in_category(near), query), query.size_m, _NAMED_POOL)
         members += [Pooled(shape, factor) for shape in near_shapes]
         factor *= _RELATED_FACTOR
-    if own:
+    if found:
         return Pool(tuple(members))
     note = f"no {query.category} among the shapes; the nearest kinds were taken"
     return Pool(tuple(members) or _plausible(library, query), note)
 
 
-def _better_fitting(
-    library: ShapeLibrary, query: RetrievalQuery, own: Sequence[Shape], kinds: Sequence[str]
-) -> list[Shape]:
-    """Shapes of other kinds that the word may mean, whose size fits better than that of any shape of its own kind."""
-    best = min((_fit_cost(shape, query.size_m) for shape in own), default=np.inf)
-    others = [shape for kind in kinds for shape in library.in_category(kind)]
-    fitting = [shape for shape in _usable(library, others, query) if _fit_cost(shape, query.size_m) < best]
-    return _nearest(fitting, query.size_m, _SPECIAL_POOL)
+def sense_factor(share: float) -> float:
+    """What a score is multiplied by for a kind that is so many times as likely as the likeliest."""
+    return float(share ** (1.0 / _VIEWS_SAY))
 
 
 def _usable(library: ShapeLibrary, shapes: Sequence[Shape], query: RetrievalQuery) -> Sequence[Shape]:

@@ -100,7 +100,7 @@ def test_only_the_steps_that_lead_to_what_is_wanted_run() -> None:
     plain = embedded_stages(inputs, LIBRARY)
     counted = {s.name: getattr(plain, s.name) for s in PLAN if isinstance(s, StageStep)}
     stages = replace(plain, **{n: Counting(stage, calls) for n, stage in counted.items() if stage is not None})
-    known = evaluate(stages, {"given": inputs}, ("objects",), Runner(None), Progress())
+    known = evaluate(stages, {"given": inputs}, ("outlined_objects",), Runner(None), Progress())
     assert calls == ["segment"]
     evaluate(stages, known, ("supported_geometry",), Runner(None), Progress())
     assert calls == ["segment", "estimate", "measure"]

@@ -8,13 +8,11 @@ import pytest
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, category
 from diorama_core.retrieval.pools import (
-    _LOOSE_FACTOR,
     RELATED,
-    SAID_OF_MANY,
     RetrievalQuery,
     near_kinds,
     pool_for,
-    special_kinds,
+    sense_factor,
 )
 
 LIBRARY = built_in_library()
@@ -29,21 +27,14 @@ def test_every_category_knows_its_near_kinds() -> None:
     assert set(RELATED) <= {name for name in names if not category(name).kin}
     assert all(near_kinds(name) for name in names)
     assert all(near in names and near != name for name in names for near in near_kinds(name))
-    assert all(name in special_kinds(category(name).kin) for name in names if category(name).kin)
-    assert all({name, *others} <= names for name, others in SAID_OF_MANY.items())
 
 
-def test_a_tall_stool_may_be_a_bar_stool_and_a_low_one_may_not() -> None:
-    tall, low = (pool("stool", (0.44, 0.44, height)) for height in (1.0, 0.44))
-    assert "bar stool" in {m.shape.category for m in tall.members}
-    assert {m.shape.category for m in low.members} == {"stool"}
-
-
-def test_a_low_table_may_be_a_coffee_table_and_one_to_eat_at_may_not() -> None:
-    low, high = pool("table", (0.65, 1.1, 0.45)), pool("table", (0.85, 1.6, 0.75))
-    assert {m.kind_factor for m in low.members if m.shape.category == "coffee table"} == {_LOOSE_FACTOR}
-    assert {m.kind_factor for m in low.members if m.shape.category == "table"} == {1.0}
-    assert {m.shape.category for m in high.members} == {"table"}
+def test_kinds_that_a_word_may_mean_are_looked_at_the_likelier_the_more_they_count() -> None:
+    senses = {"chair": 0.6, "office chair": 0.3, "recliner": 0.001}
+    found = pool_for(LIBRARY, RetrievalQuery("chair", np.array((0.5, 0.5, 0.9)), False, "floor", senses))
+    factors = {m.shape.category: m.kind_factor for m in found.members}
+    assert factors == {"chair": 1.0, "office chair": sense_factor(0.5)}
+    assert sense_factor(0.1) < sense_factor(0.5) < 1.0
 
 
 @pytest.mark.parametrize("name", [c.name for c in CATEGORIES])

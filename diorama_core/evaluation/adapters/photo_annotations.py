@@ -1,0 +1,117 @@
+"""Photos annotated by hand: boxes, kinds, form, colours, what carries what, and fronts.
+
+One JSON object: photo id -> `{"size": [w, h], "things": [...]}`; each thing has `bbox` (pixels of the original),
+`class` (the plain word), `kind`, `attributes`, `colour` (sRGB 0 to 255), `on` ("floor", "wall", "ceiling" or the index
+of another thing), `front` (degrees: 0 toward the camera, 90 to the picture's right, 180 away, 270 left) and `occluded`.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+
+from diorama_core.errors import InputError
+from diorama_core.evaluation.adapters.files import read_json
+from diorama_core.library.taxonomy import ARCHITECTURE_WORDS
+
+T = TypeVar("T")
+PICTURES = (".jpg", ".jpeg", ".png")
+_Channel = Annotated[float, Field(ge=0, le=255)]
+
+
+class AnnotatedThing(BaseModel):
+    """One thing in a photo."""
+
+    model_config = ConfigDict(frozen=True, populate_by_name=True, extra="ignore")
+
+    bbox: tuple[float, float, float, float]
+    """Visible extent x1, y1, x2, y2 in pixels of the original file."""
+    word: Annotated[str, Field(alias="class")]
+    """The plain word that a person types."""
+    kind: str
+    """The finest category of the library that is true; "object" where none is."""
+    attributes: dict[str, str | int] = {}
+    colour: tuple[_Channel, _Channel, _Channel] | None = None
+    """sRGB 0 to 255 of the main visible material."""
+    on: Literal["floor", "wall", "ceiling"] | int | None = None
+    """What carries it; a number is the index of a thing."""
+    front: float | None = None
+    """Degrees from toward the camera, anticlockwise seen from above: 90 is the picture's right."""
+    occluded: float = 0.0
+
+    @property
+    def loose(self) -> bool:
+        """Whether the plain word is not the name of the true kind; also for synonyms, whatever the taxonomy knows."""
+        return self.nameable and self.word.lower() != self.kind
+
+    @property
+    def nameable(self) -> bool:
+        """Whether the library has a kind for it."""
+        return self.kind != "object"
+
+
+class AnnotatedPhoto(BaseModel):
+    """One photo's things."""
+
+    model_config = ConfigDict(frozen=True, extra="ignore")
+
+    size: tuple[int, int]
+    """Width and height of the original file."""
+    things: tuple[AnnotatedThing, ...]
+
+
+class PhotoRecord(BaseModel):
+    """What a `photos.json` beside the photos says of one."""
+
+    model_config = ConfigDict(frozen=True, extra="ignore")
+
+    id: str
+    K: tuple[float, float, float, float] | None = None
+    """fx, fy, cx, cy in pixels of the original file."""
+
+
+_ANNOTATIONS = TypeAdapter(dict[str, AnnotatedPhoto])
+_RECORDS = TypeAdapter(list[PhotoRecord])
+
+
+def read_annotations(path: Path) -> dict[str, AnnotatedPhoto]:
+    """The annotated photos by id; words for the room itself (walls, the floor) are no things.
+
+    Raises:
+        InputError: one line, where the file is not laid out as the module says.
+    """
+    photos = _validated(_ANNOTATIONS, path)
+    for name, photo in photos.items():
+        for index, thing in enumerate(photo.things):
+            if isinstance(thing.on, int) and not 0 <= thing.on < len(photo.things):
+                raise InputError(
+                    f"{path}: {name}, thing {index}: on {thing.on}, but there are {len(photo.things)} things"
+                )
+            if thing.word.lower() in ARCHITECTURE_WORDS:
+                raise InputError(f"{path}: {name}, thing {index} is part of the room ('{thing.word}'); remove it")
+    return photos
+
+
+def read_intrinsics(folder: Path) -> dict[str, tuple[float, float, float, float]]:
+    """fx, fy, cx, cy by photo id from the folder's `photos.json`; nothing where it has none."""
+    path = folder / "photos.json"
+    if not path.is_file():
+        return {}
+    return {record.id: record.K for record in _validated(_RECORDS, path) if record.K is not None}
+
+
+def picture_of(folder: Path, name: str) -> Path | None:
+    """The picture whose file name without ending is the photo's id, if the folder has one."""
+    named = (folder / f"{name}{ending}" for ending in (*PICTURES, *(e.upper() for e in PICTURES)))
+    return next((path for path in named if path.is_file()), None)
+
+
+def _validated(adapter: TypeAdapter[T], path: Path) -> T:
+    try:
+        return adapter.validate_python(read_json(path))
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_input=False)[0]
+        place = ", ".join(str(p) for p in first["loc"])
+        raise InputError(f"{path}: {place}: {first['msg'].lower()}; see the annotations' format") from error

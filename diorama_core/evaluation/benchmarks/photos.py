@@ -1,0 +1,245 @@
+"""Photos against what a person annotated in them: kinds, form, colours, fronts, what carries what, outlines, ghosts.
+
+Every photo is built from the annotated boxes with their plain words, or without words. Ghosts are what nobody marked
+and what is smeared over the floor nevertheless: the share of the floor's picture that differs from its median colour by
+more than `GHOST_DIFFERENCE` (CIEDE2000, lightness at half weight). Shade, planks and tiles mostly stay below; a
+patterned carpet does not.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+import time
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import UInt8
+
+from diorama_core.artefacts import Inputs
+from diorama_core.errors import Cancelled, InputError
+from diorama_core.evaluation.adapters.photo_annotations import (
+    AnnotatedPhoto,
+    picture_of,
+    read_annotations,
+    read_intrinsics,
+)
+from diorama_core.evaluation.metrics.annotated import ThingResult, measured, not_built
+from diorama_core.evaluation.metrics.colour import perceived_difference
+from diorama_core.evaluation.reports.tables import Column, Row, Table, Value
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.perception.inputs import read_inputs
+from diorama_core.pipeline.run import Built, build_scene
+from diorama_core.progress import Progress
+
+log = logging.getLogger(__name__)
+
+GHOST_DIFFERENCE = 15.0
+_UNNAMED = "object"
+_TEXELS = 40_000
+"""Of the floor's picture that are looked at, evenly spread."""
+
+
+@dataclass(frozen=True)
+class PhotoResult:
+    """One photo."""
+
+    photo: str
+    things: tuple[ThingResult, ...]
+    ghosts: float | None = None
+    """Share of the floor's picture; None where the floor has no picture."""
+    seconds: float = 0.0
+    """Processor time."""
+    failure: str = ""
+
+
+@dataclass(frozen=True)
+class PhotosBench:
+    """Results of all photos."""
+
+    results: tuple[PhotoResult, ...]
+    missing: tuple[str, ...]
+    """Annotated photos that the folder does not have."""
+    named: bool
+
+    @property
+    def things(self) -> tuple[ThingResult, ...]:
+        """Of all photos."""
+        return tuple(thing for result in self.results for thing in result.things)
+
+    def tables(self) -> tuple[Table, ...]:
+        """All photos together, loose words by themselves, every photo, and the attributes of form."""
+        return (_table(self), _form_table(self.things))
+
+    def to_json(self) -> dict[str, object]:
+        """Tables, every photo and every thing."""
+        return {
+            "bench": "photos",
+            "named": self.named,
+            "missing": list(self.missing),
+            "tables": [t.to_json() for t in self.tables()],
+            "photos": [asdict(r) for r in self.results],
+        }
+
+
+def run(
+    annotations: Path,
+    photos: Path,
+    library: ShapeLibrary,
+    *,
+    named: bool = True,
+    only: Sequence[str] = (),
+    cache: Path | None = None,
+    progress: Progress | None = None,
+) -> PhotosBench:
+    """Build every annotated photo that the folder has; failures count as wrong.
+
+    Args:
+        annotations: file as `adapters.photo_annotations` describes it.
+        photos: folder of pictures named by id, with `photos.json` for known intrinsics where there is one.
+        library: where shapes come from.
+        named: whether boxes come with their plain words.
+        only: ids of photos to take; all where empty.
+        cache: folder for stage results, one folder a photo; a later run resumes from them.
+        progress: reports and cancellation.
+
+    Raises:
+        InputError: when the annotations cannot be read, or the folder has none of the photos.
+    """
+    progress = progress or Progress()
+    known = {name: photo for name, photo in read_annotations(annotations).items() if not only or name in only}
+    intrinsics = read_intrinsics(photos)
+    pictures = {name: picture_of(photos, name) for name in known}
+    present = {name: path for name, path in pictures.items() if path is not None}
+    missing = tuple(name for name in known if name not in present)
+    if not present:
+        raise InputError(f"{photos}: none of the {len(known)} annotated photos is there; name pictures by their ids")
+    results = []
+    for k, (name, path) in enumerate(present.items()):
+        folder = None if cache is None else cache / (name if named else f"{name}-{_UNNAMED}")
+        part = progress.part(k / len(present), (k + 1) / len(present))
+        part.report(0.0, name)
+        results.append(_result(name, known[name], path, intrinsics.get(name), library, named, folder, part))
+    progress.report(1.0, "done")
+    return PhotosBench(tuple(results), missing, named)
+
+
+def _result(
+    name: str,
+    photo: AnnotatedPhoto,
+    path: Path,
+    intrinsics: tuple[float, float, float, float] | None,
+    library: ShapeLibrary,
+    named: bool,
+    cache: Path | None,
+    progress: Progress,
+) -> PhotoResult:
+    begun = time.process_time()
+    try:
+        inputs = _inputs(photo, path, intrinsics, named)
+        built = build_scene(inputs, library, cache=cache, progress=progress)
+        spent = time.process_time() - begun
+        return PhotoResult(name, _things(name, photo, built, library), floor_ghosts(built), spent)
+    except Cancelled:
+        raise
+    except Exception as error:  # whatever goes wrong, the photo counts as failed and the others go on
+        log.warning("%s failed: %s", name, error)
+        wrong = tuple(not_built(name, i, thing) for i, thing in enumerate(photo.things))
+        spent = time.process_time() - begun
+        return PhotoResult(name, wrong, None, spent, f"{type(error).__name__}: {error}")
+
+
+def _inputs(
+    photo: AnnotatedPhoto, path: Path, intrinsics: tuple[float, float, float, float] | None, named: bool
+) -> Inputs:
+    boxes = [{"bbox": thing.bbox, "class": thing.word if named else _UNNAMED} for thing in photo.things]
+    inputs = read_inputs(path, intrinsics=intrinsics, boxes=json.dumps(boxes).encode()).inputs
+    if inputs.photo.original_size != photo.size:
+        stated, found = ("{} x {}".format(*size) for size in (photo.size, inputs.photo.original_size))
+        raise InputError(f"{path}: the annotations are of a picture of {stated} pixels, this one has {found}")
+    return inputs
+
+
+def _things(name: str, photo: AnnotatedPhoto, built: Built, library: ShapeLibrary) -> tuple[ThingResult, ...]:
+    """Objects are numbered by their mask ids in the order of the boxes."""
+    by_index = {o.mask_id - 1: o for o in built.scene.objects if o.mask_id is not None}
+    index_of = {item.id: index for index, item in by_index.items()}
+    furniture = {o.mask_id - 1 for o in built.objects}
+    return tuple(
+        measured(name, i, thing, by_index[i], built.scene, library, index_of)
+        if i in by_index
+        else not_built(name, i, thing, opening=i not in furniture)
+        for i, thing in enumerate(photo.things)
+    )
+
+
+def floor_ghosts(built: Built) -> float | None:
+    """Share of the floor's picture that is not of its colour; None where it has no picture."""
+    floor = built.scene.architecture.floor
+    picture = None if floor is None else built.textures.get(floor.id)
+    return None if picture is None else ghost_share(picture)
+
+
+def ghost_share(picture: UInt8[np.ndarray, "h w 3"]) -> float:
+    """Share of a picture that differs from its median colour by more than `GHOST_DIFFERENCE`."""
+    pixels = picture.reshape(-1, 3)[:: max(picture.shape[0] * picture.shape[1] // _TEXELS, 1)] / 255.0
+    usual = np.median(pixels, axis=0)
+    return float((perceived_difference(pixels, np.broadcast_to(usual, pixels.shape)) > GHOST_DIFFERENCE).mean())
+
+
+COLUMNS = (
+    Column("things", "d"), Column("kind first", better="↑"), Column("among", better="↑"), Column("form", better="↑"),
+    Column("colour", ".1f", "↓"), Column("no colour", better="↓"), Column("front", better="↑"),
+    Column("holder", better="↑"), Column("box IoU", better="↑"), Column("ghosts", better="↓"),
+    Column("time s", ".1f", "↓"),
+)  # fmt: skip
+
+
+def _table(bench: PhotosBench) -> Table:
+    loose = [thing for thing in bench.things if thing.loose]
+    mean_of = [r for r in bench.results if not r.failure]
+    overall = _values(bench.things)
+    ghosts, seconds = _mean([r.ghosts for r in mean_of]), _mean([r.seconds for r in mean_of])
+    rows = [
+        Row("all", (*overall, ghosts, seconds)),
+        Row("loose words", (*_values(loose), None, None)),
+        *(Row(r.photo, (*_values(r.things), r.ghosts, r.seconds)) for r in bench.results),
+    ]
+    words = "plain words" if bench.named else "no words"
+    notes = [f"not in the folder: {', '.join(bench.missing)}"] if bench.missing else []
+    notes += [f"{r.photo} failed: {r.failure}" for r in bench.results if r.failure]
+    note = "Photos that fail count as wrong. " + "; ".join(notes)
+    return Table(f"Annotated photos, {words}", COLUMNS, tuple(rows), note.strip())
+
+
+def _values(things: Sequence[ThingResult]) -> tuple[Value, ...]:
+    """The columns that are of things: colours by their median, everything else by its mean."""
+    differences = [t.colour_difference for t in things if t.colour_difference is not None]
+    return (
+        len(things),
+        _mean([t.kind_first for t in things]),
+        _mean([t.kind_among for t in things]),
+        _mean([right for t in things for right in t.form.values()]),
+        float(np.median(differences)) if differences else None,
+        _mean([None if t.has_colour is None else not t.has_colour for t in things]),
+        _mean([t.front for t in things]),
+        _mean([t.holder for t in things]),
+        _mean([t.iou for t in things]),
+    )
+
+
+def _form_table(things: Sequence[ThingResult]) -> Table:
+    of: dict[str, list[bool]] = {}
+    for thing in things:
+        for name, right in thing.form.items():
+            of.setdefault(name, []).append(right)
+    rows = tuple(Row(name, (len(right), _mean(right))) for name, right in sorted(of.items()))
+    note = "Of things whose annotation and whose chosen shape's design both state the attribute."
+    return Table("Form", (Column("things", "d"), Column("right", better="↑")), rows, note)
+
+
+def _mean(values: Sequence[float | None]) -> float | None:
+    known = [v for v in values if v is not None]
+    return float(np.mean(known)) if known else None

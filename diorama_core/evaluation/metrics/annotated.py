@@ -1,0 +1,143 @@
+"""One annotated thing against the object that a build made of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from diorama_core.evaluation.adapters.photo_annotations import AnnotatedThing
+from diorama_core.evaluation.metrics.colour import perceived_difference
+from diorama_core.evaluation.metrics.form import compared, form_of
+from diorama_core.evaluation.metrics.photo_agreement import shape_iou
+from diorama_core.library.record import ShapeLibrary, record_of
+from diorama_core.scene.types import Camera, Scene, SceneObject
+
+FRONT_TOLERANCE_DEG = 45.0
+
+
+@dataclass(frozen=True)
+class ThingResult:
+    """What a build made of one annotated thing; None where the annotation states nothing to compare with."""
+
+    photo: str
+    index: int
+    """In the photo's list of things."""
+    word: str
+    kind: str
+    loose: bool
+    """Whether the plain word names another kind than the true one."""
+    built: str = ""
+    """Category of the chosen shape; empty where nothing was built."""
+    shape: str = ""
+    kind_first: bool | None = None
+    kind_among: bool | None = None
+    """Whether any candidate is of the true kind."""
+    form: Mapping[str, bool] = field(default_factory=dict)
+    """For every attribute that both annotation and design state, whether they agree."""
+    has_colour: bool | None = None
+    colour_difference: float | None = None
+    """CIEDE2000 with lightness at half weight."""
+    front_error_deg: float | None = None
+    holder: bool | None = None
+    """Whether it stands on what carries it."""
+    iou: float | None = None
+    """The posed outline's box with the annotated one."""
+    opening: bool = False
+    """Built as a hole in a wall (an open doorway): nothing else is compared."""
+
+    @property
+    def front(self) -> bool | None:
+        """Whether the front is right within 45 degrees."""
+        return None if self.front_error_deg is None else self.front_error_deg <= FRONT_TOLERANCE_DEG
+
+
+def not_built(photo: str, index: int, thing: AnnotatedThing, opening: bool = False) -> ThingResult:
+    """Wrong in everything that is annotated; an opening is not judged."""
+    wrong = None if opening else False
+    return ThingResult(
+        photo,
+        index,
+        thing.word,
+        thing.kind,
+        thing.loose,
+        kind_first=wrong if thing.nameable else None,
+        kind_among=wrong if thing.nameable else None,
+        has_colour=wrong if thing.colour is not None else None,
+        front_error_deg=None if thing.front is None or opening else 180.0,
+        holder=wrong if thing.on is not None else None,
+        iou=None if opening else 0.0,
+        opening=opening,
+    )
+
+
+def measured(
+    photo: str,
+    index: int,
+    thing: AnnotatedThing,
+    item: SceneObject,
+    scene: Scene,
+    library: ShapeLibrary,
+    index_of: Mapping[str, int],
+) -> ThingResult:
+    """Compare one thing with its object.
+
+    Args:
+        photo: the photo's id.
+        index: the thing's place in the photo's list.
+        thing: as annotated.
+        item: what was built.
+        scene: the whole, for the camera and what carries what.
+        library: where its shapes are from.
+        index_of: places of the things by object id.
+    """
+    shape = record_of(library, item.shape_id)
+    among = {record_of(library, c.shape_id).category for c in item.candidates} | {shape.category}
+    design = form_of(shape.id, shape.category, library.mesh(shape.id), item.size_m) if thing.attributes else {}
+    coloured = thing.colour is not None and item.colour is not None
+    return ThingResult(
+        photo,
+        index,
+        thing.word,
+        thing.kind,
+        thing.loose,
+        built=shape.category,
+        shape=shape.id,
+        kind_first=shape.category == thing.kind if thing.nameable else None,
+        kind_among=thing.kind in among if thing.nameable else None,
+        form=compared(thing.attributes, design),
+        has_colour=None if thing.colour is None else item.colour is not None,
+        colour_difference=_colour_difference(thing, item) if coloured else None,
+        front_error_deg=_front_error_deg(thing, item, scene.camera, shape.symmetry),
+        holder=None if thing.on is None else _carrier(scene, item.id, index_of) == thing.on,
+        iou=None if item.box_px is None else shape_iou(scene, item.id, item.box_px, library),
+    )
+
+
+def front_deg(item: SceneObject, camera: Camera) -> float:
+    """Direction that an object faces: 0 toward the picture plane's side of the camera, 90 the picture's right."""
+    right, forward = camera.T_world_camera[:2, 0], camera.T_world_camera[:2, 2]
+    front = item.pose.R_world_object[:2, 0]
+    return float(np.degrees(np.arctan2(front @ right, -(front @ forward))) % 360.0)
+
+
+def _colour_difference(thing: AnnotatedThing, item: SceneObject) -> float:
+    stated, built = np.array(thing.colour) / 255.0, np.array(item.colour)
+    return float(perceived_difference(stated, built))
+
+
+def _front_error_deg(thing: AnnotatedThing, item: SceneObject, camera: Camera | None, fold: int) -> float | None:
+    """Smallest angle to any of the turns that leave the shape the same."""
+    if thing.front is None or camera is None:
+        return None
+    period = 360.0 / fold
+    off = (front_deg(item, camera) - thing.front) % period
+    return float(min(off, period - off))
+
+
+def _carrier(scene: Scene, object_id: str, index_of: Mapping[str, int]) -> str | int | None:
+    edge = scene.support_of(object_id)
+    if edge is None:
+        return None
+    return scene.plane(edge.parent).role if scene.has_plane(edge.parent) else index_of.get(edge.parent)

@@ -1,0 +1,141 @@
+"""The form of a shape in the words that people annotate: its top, its base, arms, doors and drawers.
+
+Read off the geometry at the size at which the shape stands, so that a round table stretched to twice its width is oval.
+Doors and drawers are counted by the joints of built-in shapes; of other shapes nobody knows them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import cv2
+import numpy as np
+import trimesh
+from jaxtyping import Bool, Float
+
+from diorama_core.library.furniture.articulation import articulation
+from diorama_core.library.taxonomy import broad, with_kin
+
+MEASURED = ("top", "base", "arms", "doors", "drawers")
+"""Attributes that a shape's design can tell; others of an annotation are not compared."""
+_TABLES = with_kin("table", "coffee table", "side table", "desk", "console table", "night stand", "stool", "ottoman")
+_SEATS = with_kin("chair", "office chair", "armchair", "sofa", "bench")
+_SAMPLES = 6000
+_TOP_SLAB = 0.06
+"""Of the height: what counts as the top."""
+_SQUARE_RATIO = 1.15
+_FULL_RECTANGLE = 0.92
+"""Share of its bounding rectangle that a rectangular top fills; a round one fills 0.785."""
+_FOOT, _SLABS = (0.0, 0.06), ((0.03, 0.1), (0.1, 0.2), (0.2, 0.3), (0.3, 0.42))
+"""Slabs of the height in which bases are told apart: a shelf or a stretcher between legs is in one of them only."""
+_DIRECTIONS = 24
+_CENTRAL, _WIDE_FOOT = 0.45, 0.6
+"""Radius, as a share of the footprint's: a pedestal is within the one, a star's foot beyond the other."""
+_CLOSED, _TWO_SIDES, _ON_RUNNERS = 0.9, 0.55, 0.25
+"""Shares of directions in which a plinth, a panel base, and how many more in which runners meet the floor."""
+_SIDE, _MIDDLE = 0.7, 0.35
+"""Of half the width: armrests are beyond the one, the seat is within the other."""
+_BEFORE = (0.05, 0.3)
+"""Of the depth from the middle: before the back, and behind the front edge."""
+_ARM_RISE = 0.1
+"""Of the height: by how much armrests are higher than the seat."""
+
+
+def form_of(
+    shape_id: str, category: str, mesh: trimesh.Trimesh, size_m: Float[np.ndarray, "3"]
+) -> dict[str, str | int]:
+    """What the design of a shape tells of its form; attributes that its kind does not have are left out.
+
+    Args:
+        shape_id: for the joints of built-in shapes.
+        category: its kind.
+        mesh: in the canonical frame at scale 1 (+X front, +Z up, centred).
+        size_m: at which it stands.
+    """
+    found: dict[str, str | int] = {}
+    points = _surface_points(mesh) * (np.asarray(size_m) / np.maximum(mesh.extents, 1e-6))
+    if broad(category) in _TABLES or category in _TABLES:
+        found["top"] = _top(points, size_m)
+    if category in _TABLES | _SEATS:
+        found["base"] = _base(points, size_m, castors=category in _SEATS)
+    if category in _SEATS:
+        found["arms"] = _arms(points, size_m)
+    moving = articulation(shape_id)
+    if category not in _SEATS:
+        names = [] if moving is None else [joint.name for joint in moving.joints]
+        found["doors"] = sum(name.startswith("door") for name in names)
+        found["drawers"] = sum(name.startswith("drawer") for name in names)
+    return found
+
+
+def agrees(stated: str | int, design: str | int) -> bool:
+    """Whether an annotated value is that of the design; "yes" is any number, "no" none; a square is a rectangle."""
+    if stated == design:
+        return True
+    if isinstance(design, int):
+        return {"yes": design > 0, "no": design == 0}.get(str(stated), str(stated) == str(design))
+    return {stated, design} == {"square", "rectangular"}
+
+
+def compared(stated: Mapping[str, str | int], design: Mapping[str, str | int]) -> dict[str, bool]:
+    """For every attribute that both state, whether they agree."""
+    return {name: agrees(stated[name], design[name]) for name in MEASURED if name in stated and name in design}
+
+
+def _surface_points(mesh: trimesh.Trimesh) -> Float[np.ndarray, "n 3"]:
+    """Spread evenly over the surface, always the same ones."""
+    return np.asarray(trimesh.sample.sample_surface(mesh, _SAMPLES, seed=0)[0], dtype=np.float64)
+
+
+def _slab(points: Float[np.ndarray, "n 3"], heights: tuple[float, float]) -> Float[np.ndarray, "m 2"]:
+    """Points between two shares of the height, seen from above."""
+    z = (points[:, 2] - points[:, 2].min()) / max(float(np.ptp(points[:, 2])), 1e-9)
+    inside: Bool[np.ndarray, "n"] = (z >= heights[0]) & (z <= heights[1])
+    return points[inside, :2]
+
+
+def _top(points: Float[np.ndarray, "n 3"], size_m: Float[np.ndarray, "3"]) -> str:
+    outline = cv2.convexHull(_slab(points, (1.0 - _TOP_SLAB, 1.0)).astype(np.float32))
+    filled = cv2.contourArea(outline) / max(float(np.prod(np.ptp(outline[:, 0], axis=0))), 1e-9)
+    even = max(size_m[:2]) / max(min(size_m[:2]), 1e-9) < _SQUARE_RATIO
+    if filled >= _FULL_RECTANGLE:
+        return "square" if even else "rectangular"
+    return "round" if even else "oval"
+
+
+def _base(points: Float[np.ndarray, "n 3"], size_m: Float[np.ndarray, "3"], castors: bool) -> str:
+    half = np.maximum(np.asarray(size_m[:2]) / 2, 1e-9)
+    foot = _slab(points, _FOOT) / half
+    slabs = [slab / half for slab in (_slab(points, heights) for heights in _SLABS) if len(slab)]
+    if not len(foot) or not slabs:
+        return "none"
+    if min(float(np.quantile(np.linalg.norm(slab, axis=1), 0.9)) for slab in slabs) < _CENTRAL:
+        wide = np.quantile(np.linalg.norm(foot, axis=1), 0.9) > _WIDE_FOOT
+        return "five-star" if castors and wide and _arms_of_star(foot) else "pedestal"
+    around, below = min(_directions_filled(slab) for slab in slabs), _directions_filled(foot)
+    if around >= _CLOSED:
+        return "plinth"
+    if around >= _TWO_SIDES:
+        return "panel"
+    return "sled" if below - around > _ON_RUNNERS else "four legs"
+
+
+def _arms_of_star(foot: Float[np.ndarray, "n 2"]) -> bool:
+    """Whether the foot stands on single points around it, as castors do, rather than on a disc."""
+    return _directions_filled(foot[np.linalg.norm(foot, axis=1) > _WIDE_FOOT]) < _CLOSED
+
+
+def _directions_filled(points: Float[np.ndarray, "n 2"]) -> float:
+    """Share of the directions from the middle in which there is a point."""
+    angle = np.arctan2(points[:, 1], points[:, 0])
+    return len(np.unique(np.floor(angle / (2 * np.pi) * _DIRECTIONS))) / _DIRECTIONS
+
+
+def _arms(points: Float[np.ndarray, "n 3"], size_m: Float[np.ndarray, "3"]) -> str:
+    """Whether something beside the sitter is higher than the seat, before the back."""
+    aside = np.abs(points[:, 1]) / max(size_m[1] / 2, 1e-9)
+    before = (points[:, 0] > _BEFORE[0] * size_m[0]) & (points[:, 0] < _BEFORE[1] * size_m[0])
+    side, seat = points[before & (aside > _SIDE), 2], points[before & (aside < _MIDDLE), 2]
+    if not len(side) or not len(seat):
+        return "no"
+    return "yes" if np.quantile(side, 0.98) - np.quantile(seat, 0.98) > _ARM_RISE * size_m[2] else "no"

@@ -1,0 +1,64 @@
+"""Attributes of form as a person would state them of built-in shapes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diorama_core.evaluation.metrics.form import agrees, compared, form_of
+from diorama_core.library.catalogue import built_in_library
+
+LIBRARY = built_in_library()
+
+
+def form(shape_id: str, stretch=(1.0, 1.0, 1.0)):
+    shape = LIBRARY.shape(shape_id)
+    return form_of(shape_id, shape.category, LIBRARY.mesh(shape_id), np.array(shape.size_m) * stretch)
+
+
+@pytest.mark.parametrize(
+    ("shape_id", "top", "base"),
+    [
+        ("table-oak-classic", "rectangular", "four legs"),
+        ("table-white-square", "square", "four legs"),
+        ("table-round-tulip", "round", "pedestal"),
+        ("table-steel-hoop", "rectangular", "sled"),
+        ("table-oval-walnut", "oval", "four legs"),
+        ("coffee-table-round-drum", "round", "plinth"),
+        ("coffee-table-oak-shelf", "rectangular", "four legs"),
+    ],
+)
+def test_tops_and_bases_of_tables(shape_id, top, base) -> None:
+    found = form(shape_id)
+    assert (found["top"], found["base"]) == (top, base)
+
+
+def test_a_round_table_stretched_is_oval() -> None:
+    assert form("table-round-tulip", (1.0, 1.6, 1.0))["top"] == "oval"
+
+
+@pytest.mark.parametrize(
+    ("shape_id", "arms"),
+    [("chair-slat-oak", "no"), ("chair-padded-blue", "yes"), ("office-chair-task-blue", "no"),
+     ("armchair-club-leather", "yes"), ("sofa-grey-three", "yes"), ("sofa-daybed", "no")],
+)  # fmt: skip
+def test_arms(shape_id, arms) -> None:
+    assert form(shape_id)["arms"] == arms
+
+
+def test_an_office_chair_stands_on_a_star() -> None:
+    assert form("office-chair-mesh-black")["base"] == "five-star"
+
+
+def test_drawers_and_doors_are_counted_by_their_joints() -> None:
+    assert form("dresser-oak-six")["drawers"] == 6
+    assert form("cabinet-two-door-white")["doors"] == 2
+
+
+def test_statements_agree_with_numbers_and_squares_with_rectangles() -> None:
+    assert agrees("yes", 3)
+    assert agrees("no", 0)
+    assert agrees("square", "rectangular")
+    assert not agrees("yes", 0)
+    assert not agrees(2, 3)
+    assert compared({"top": "round", "back": "high"}, {"top": "oval", "base": "sled"}) == {"top": False}
