@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import tempfile
 import xml.etree.ElementTree as ET
 import zipfile
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -34,9 +36,10 @@ def parts_of_sweet_home(path: Path) -> tuple[Part, ...]:
                 raise InputError(f"{path.name} unpacks to {size / 2**20:.0f} MB; the limit is 512 MB")
             archive.extractall(folder)  # zipfile keeps names inside the folder
             pieces = [_piece(p, Path(folder)) for p in home.iter() if p.tag in FURNITURE and _visible(p)]
-    except zipfile.BadZipFile as error:
+    except (zipfile.BadZipFile, zlib.error, OSError, RuntimeError, NotImplementedError) as error:
+        # Damaged, encrypted, compressed in an unknown way, or with names that cannot be files beside each other.
         raise InputError(f"{path.name} is no Sweet Home 3D file ({error}); save it again") from error
-    height = float(home.get("wallHeight", 250.0))
+    height = _number(home, "wallHeight", 250.0)
     walls = [_wall(w, height) for w in home.iter("wall")]
     rooms = [_room(r) for r in home.iter("room") if len(r.findall("point")) >= 3]
     return (*pieces, *walls, *rooms)
@@ -65,9 +68,12 @@ def _number(element: ET.Element, name: str, default: float | None = None) -> flo
     if value is None and default is not None:
         return default
     try:
-        return float(value if value is not None else "")
+        number = float(value if value is not None else "")
     except ValueError:
-        raise InputError(f"its Home.xml has a {element.tag} without a usable {name}") from None
+        number = float("nan")
+    if not math.isfinite(number):
+        raise InputError(f"its Home.xml has a {element.tag} without a usable {name}")
+    return number
 
 
 def _piece(piece: ET.Element, folder: Path) -> Part:
@@ -95,8 +101,8 @@ def _model(piece: ET.Element, folder: Path) -> trimesh.Scene:
             scene = read_model(model, folder).scene
             turn = np.eye(4)
             turn[:3, :3] = np.array(piece.get("modelRotation", "1 0 0 0 1 0 0 0 1").split(), float).reshape(3, 3)
-            scene.apply_transform(MODEL_TO_PART @ turn)
-            if scene.bounds is not None:
+            if scene.bounds is not None and np.isfinite(turn).all():
+                scene.apply_transform(MODEL_TO_PART @ turn)
                 return scene
         except (DioramaError, ValueError):
             pass  # the home is more than one broken model: its size is known, so a box stands for it

@@ -1,0 +1,114 @@
+"""Homes of Sweet Home 3D: what is in them, and what a broken or hostile one says."""
+
+from __future__ import annotations
+
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from diorama_core.errors import InputError
+from diorama_core.importing import sweethome
+from diorama_core.importing.sweethome import THIN_M, parts_of_sweet_home
+
+WALL = '<wall xStart="0" yStart="0" xEnd="400" yEnd="0" thickness="10"/>'
+ROOM = '<room><point x="0" y="0"/><point x="400" y="0"/><point x="400" y="300"/><point x="0" y="300"/></room>'
+PIECE = '<pieceOfFurniture name="Chair" x="100" y="200" width="50" depth="60" height="90" {}/>'
+
+
+def home(folder: Path, body: str, *files: tuple[str, bytes], head: str = '<home wallHeight="260">') -> Path:
+    path = folder / "home.sh3d"
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("Home.xml", f"{head}{body}</home>")
+        for name, content in files:
+            archive.writestr(name, content)
+    return path
+
+
+def parts(folder: Path, body: str, *files: tuple[str, bytes], **more):
+    return parts_of_sweet_home(home(folder, body, *files, **more))
+
+
+def test_walls_and_floors_are_in_metres_with_y_turned(tmp_path: Path) -> None:
+    wall, floor = parts(tmp_path, WALL + ROOM)
+    np.testing.assert_allclose(wall.scene.bounds, [[0, -0.05, 0], [4, 0.05, 2.6]], atol=1e-9)
+    np.testing.assert_allclose(floor.scene.bounds, [[0, -3, -THIN_M], [4, 0, 0]], atol=1e-6)
+    assert floor.scene.to_geometry().volume == pytest.approx(12 * THIN_M, rel=1e-4)
+
+
+def test_pieces_have_their_size_place_and_turn(tmp_path: Path) -> None:
+    (piece,) = parts(tmp_path, PIECE.format(f'elevation="10" angle="{np.pi / 2}"'))
+    low, high = piece.scene.bounds
+    np.testing.assert_allclose((low + high) / 2, [1.0, -2.0, 0.1 + 0.45], atol=1e-6)
+    np.testing.assert_allclose(high - low, [0.6, 0.5, 0.9], atol=1e-6)
+    assert piece.yaw_rad == pytest.approx(-np.pi / 2)
+    assert piece.name == "Chair"
+
+
+def test_models_are_stood_upright_and_stretched(tmp_path: Path) -> None:
+    cone = trimesh.creation.cone(0.5, 2.0)  # its tip along +Z of the file, which is the model's front
+    buffer = cone.export(file_type="stl")
+    (piece,) = parts(tmp_path, PIECE.format('model="0/cone.stl"'), ("0/cone.stl", buffer))
+    np.testing.assert_allclose(np.ptp(piece.scene.bounds, axis=0), [0.5, 0.6, 0.9], atol=1e-6)
+    points = piece.scene.to_geometry().vertices
+    tip = points[np.argmin(points[:, 1])]
+    assert tip[0] == pytest.approx(1.0, abs=1e-3), "the front looks to -Y"
+
+
+def test_a_missing_or_broken_model_is_a_box_and_hidden_pieces_are_left_out(tmp_path: Path) -> None:
+    body = PIECE.format('model="gone.obj"') + PIECE.format('model="bad.obj"') + PIECE.format('visible="false"')
+    found = parts(tmp_path, body, ("bad.obj", b"\x00\x01"))
+    assert len(found) == 2
+    for piece in found:
+        np.testing.assert_allclose(np.ptp(piece.scene.bounds, axis=0), [0.5, 0.6, 0.9], atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("body", "head", "reason"),
+    [
+        ('<wall xStart="0"/>', "<home>", "without a usable"),
+        (WALL, '<home wallHeight="high">', "usable wallHeight"),
+        (WALL.replace('"400"', '"nan"'), "<home>", "usable xEnd"),
+        (PIECE.format("").replace('width="50"', 'width="inf"'), "<home>", "usable width"),
+        ("<wall", "<home>", "is damaged"),
+        ("", '<!DOCTYPE home [<!ENTITY a "b">]><home>', "defines entities"),
+    ],
+)
+def test_broken_homes_are_one_clear_line(tmp_path: Path, body: str, head: str, reason: str) -> None:
+    with pytest.raises(InputError, match=reason):
+        parts(tmp_path, body, head=head)
+
+
+def test_what_is_no_home_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "home.sh3d"
+    path.write_bytes(b"no archive")
+    with pytest.raises(InputError, match="no Sweet Home 3D file"):
+        parts_of_sweet_home(path)
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("Home", b"")
+    with pytest.raises(InputError, match=r"no Home\.xml"):
+        parts_of_sweet_home(path)
+    monkeypatch.setattr(sweethome, "XML_BYTES", 10)
+    with pytest.raises(InputError, match="too large"):
+        parts(tmp_path, WALL)
+
+
+def test_damaged_and_encrypted_archives_are_refused(tmp_path: Path) -> None:
+    path = home(tmp_path, WALL)
+    data = bytearray(path.read_bytes())
+    data[6] |= 1  # the flag of an encrypted entry, here and in the directory
+    data[data.index(b"PK\x01\x02") + 8] |= 1
+    path.write_bytes(bytes(data))
+    with pytest.raises(InputError, match="no Sweet Home 3D file"):
+        parts_of_sweet_home(path)
+    clash = home(tmp_path, WALL, ("a", b"file"), ("a/b", b"inside it"))
+    with pytest.raises(InputError, match="no Sweet Home 3D file"):
+        parts_of_sweet_home(clash)
+
+
+def test_names_that_climb_stay_inside(tmp_path: Path) -> None:
+    outside = tmp_path.parent / "escaped.txt"
+    parts(tmp_path, WALL, ("../../../../../../../../" + str(outside)[1:], b"out"))
+    assert not outside.exists()

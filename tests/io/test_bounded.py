@@ -1,0 +1,117 @@
+from __future__ import annotations
+
+import io
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from PIL import Image
+
+from diorama_core.errors import InputError
+from diorama_core.io.bounded import (
+    MAX_JSON_DEPTH,
+    megabytes,
+    parse_json,
+    picture_of,
+    read_bytes,
+    read_json,
+    read_picture,
+    shortened,
+)
+
+
+def png(width: int = 6, height: int = 4) -> bytes:
+    buffer = io.BytesIO()
+    Image.fromarray(np.full((height, width, 3), 90, np.uint8)).save(buffer, "PNG")
+    return buffer.getvalue()
+
+
+def test_files_are_read_up_to_the_bound(tmp_path: Path) -> None:
+    path = tmp_path / "a"
+    path.write_bytes(b"x" * 10)
+    assert read_bytes(path, 10, InputError) == b"x" * 10
+    with pytest.raises(InputError, match="has more than the"):
+        read_bytes(path, 9, InputError)
+
+
+def test_what_is_no_file_is_refused_without_waiting(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    for path, reason in (
+        (tmp_path, "is not a file|cannot be read"),
+        (tmp_path / "pipe", "is not a file"),
+        (tmp_path / "gone", "cannot be read"),
+        (tmp_path / "a\0b", "cannot be read"),
+    ):
+        with pytest.raises(InputError, match=f"({reason}).*; use the copy"):
+            read_bytes(path, 100, InputError, "use the copy")
+
+
+values = st.recursive(
+    st.none() | st.booleans() | st.integers(-(2**53), 2**53) | st.floats(allow_nan=False, allow_infinity=False)
+    | st.text(st.characters(exclude_categories=("Cs",)), max_size=8),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text("ab{[\"\\", max_size=4), inner, max_size=4),
+    max_leaves=30,
+)  # fmt: skip
+
+
+@settings(max_examples=80, deadline=None)
+@given(values)
+def test_json_comes_back_as_it_was_written(value) -> None:
+    assert parse_json(json.dumps(value), "x", InputError) == value
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("{", r"is not valid JSON \(line 1"),
+        ("NaN", "NaN is no number"),
+        ("[-Infinity]", "is no number"),
+        ("1e999", "too large"),
+        (b"\xff\xfe", "no text"),
+        (r'"\ud800"', "no text"),
+        ("[" * (MAX_JSON_DEPTH + 1) + "]" * (MAX_JSON_DEPTH + 1), "levels deep"),
+    ],
+)
+def test_json_that_cannot_be_written_back_is_refused(text, reason: str) -> None:
+    with pytest.raises(InputError, match=reason):
+        parse_json(text, "scene.json", InputError)
+
+
+def test_brackets_in_strings_are_no_levels_and_infinity_may_be_allowed(tmp_path: Path) -> None:
+    deep = ["[" * 500, '\\"[' * 100]
+    assert parse_json(json.dumps(deep), "x", InputError) == deep
+    assert parse_json("[1e999, Infinity]", "x", InputError, finite=False) == [float("inf")] * 2
+    (tmp_path / "a.json").write_text("\ufeff[1]")
+    assert read_json(tmp_path / "a.json", InputError) == [1]
+
+
+def test_pictures_are_judged_before_they_are_decoded(tmp_path: Path) -> None:
+    assert picture_of(png(), "x", InputError).shape == (4, 6, 3)
+    with pytest.raises(InputError, match="6 x 4 pixels are more than"):
+        picture_of(png(), "x", InputError, most_pixels=23)
+    with pytest.raises(InputError, match="is not a whole picture"):
+        picture_of(png()[:50], "x", InputError)
+    with pytest.raises(InputError, match=r"not a whole picture \(JPEG\)"):
+        picture_of(png(), "x", InputError, formats=("JPEG",))
+    (tmp_path / "a.png").write_bytes(png(8, 2))
+    assert read_picture(tmp_path / "a.png", InputError).shape == (2, 8, 3)
+
+
+def test_a_jpeg_may_be_decoded_smaller_but_never_below_what_is_wanted() -> None:
+    buffer = io.BytesIO()
+    Image.fromarray(np.full((400, 800, 3), 90, np.uint8)).save(buffer, "JPEG")
+    found = picture_of(buffer.getvalue(), "x", InputError, within=(150, 100))
+    assert found.shape[0] < 400
+    assert found.shape[1] >= 150
+    assert found.shape[0] >= 100
+
+
+def test_messages_are_one_short_line() -> None:
+    assert shortened("a\nb\x1b[31m \ud800") == "a b[31m ?"
+    assert len(shortened("x" * 500)) == 200
+    assert megabytes(64_000_000) == "64 MB"
+    assert megabytes(1_500) == "1.5 kB"
