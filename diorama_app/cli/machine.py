@@ -97,7 +97,7 @@ def _accelerator() -> Finding:
 
     if torch.cuda.is_available():
         return Finding("accelerator", True, torch.cuda.get_device_name(0), needed=False)
-    return Finding("accelerator", False, "none found; none is needed", needed=False)
+    return Finding("accelerator", False, "none found; optional", needed=False)
 
 
 def _browser() -> Finding:

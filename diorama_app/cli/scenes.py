@@ -83,7 +83,13 @@ def add_build(commands: Any) -> None:
     )
     p.add_argument("--masks", type=Path, metavar="FILE", help="PNG with one colour or id per object, black is none")
     p.add_argument("--profile", choices=PROFILES, default="auto", help="which networks to use (default: %(default)s)")
-    p.add_argument("--arrangements", type=int, default=1, metavar="N", help="scenes with other shapes to write beside")
+    p.add_argument(
+        "--arrangements",
+        type=int,
+        default=1,
+        metavar="N",
+        help="number of scenes to write, each with other candidate shapes",
+    )
     p.add_argument(
         "--library",
         default="built-in",
@@ -103,7 +109,7 @@ def add_build(commands: Any) -> None:
         help="how shapes are posed, to compare with: the paper's correspondences or a baseline, with the embedded "
         "features (default: the profile's)",
     )
-    p.add_argument("--seed", type=int, default=0, help="seed of random stages (the embedded ones draw nothing)")
+    p.add_argument("--seed", type=int, default=0, help="seed of random stages (the built-in ones use none)")
     p.add_argument("--json", action="store_true", help="print the result as JSON")
 
 
@@ -217,7 +223,7 @@ def add_export(commands: Any) -> None:
         "diorama export my-room --format glb -o room.glb",
     )
     p.add_argument("project", type=Path, metavar="PROJECT")
-    p.add_argument("--format", choices=tuple(FORMATS), required=True, help="docs/export.md says what each keeps")
+    p.add_argument("--format", choices=tuple(FORMATS), required=True, help="docs/export.md lists what each preserves")
     p.add_argument("-o", "--output", type=Path, metavar="FILE", help="(default: in the project's exports folder)")
     p.add_argument("--no-ceiling", action="store_true", help="leave ceilings out, to look into the room from above")
     p.add_argument("--only", metavar="ID,ID", help="write these objects only, without the room")

@@ -65,7 +65,7 @@ def set_colour(client: Client, ids: Iterable[str], colour: tuple[float, float, f
     """Paint objects, or give back the shape's own colours with None."""
     chosen = tuple(ids)
     client.session.edit(
-        f"{'paint' if colour is not None else 'own colours of'} {names_of(client.session.scene, chosen)}",
+        f"{'paint' if colour is not None else 'reset the colour of'} {names_of(client.session.scene, chosen)}",
         lambda s: _fold(s, chosen, lambda scene, i: edits.recolour(scene, i, colour)),
         by=client,
         merge_key=f"{NUDGE_MERGE} colour {' '.join(chosen)}",
@@ -77,7 +77,7 @@ def set_finish(client: Client, ids: Iterable[str], finish: Finish | None) -> Non
     chosen = tuple(ids)
     names = names_of(client.session.scene, chosen)
     client.session.edit(
-        f"{finish} {names}" if finish is not None else f"own finish of {names}",
+        f"{finish} {names}" if finish is not None else f"reset the finish of {names}",
         lambda s: _fold(s, chosen, lambda scene, i: edits.refinish(scene, i, finish)),
         by=client,
     )
@@ -138,7 +138,7 @@ def set_size(client: Client, object_id: str, size_m: Float[np.ndarray, "3"]) -> 
         return
     if (size <= 0).any():
         client.refresh()
-        raise EditRefused(f"{item.label} must be larger than nothing; give sizes above 0")
+        raise EditRefused(f"{item.label} needs sizes above 0")
     session.edit(
         f"resize {item.label}",
         lambda s: resized(s, object_id, size),
@@ -169,7 +169,7 @@ def attach(client: Client, object_id: str, parent_id: str) -> None:
     session = client.session
     scene = session.scene
     if not scene.has_object(object_id):
-        raise EditRefused("that object is gone")
+        raise EditRefused("that object no longer exists")
     wall = scene.has_plane(parent_id) and scene.plane(parent_id).role != "floor"
     support = scene.support_of(object_id)
     edge = Support(
@@ -196,7 +196,7 @@ def set_relation(client: Client, object_id: str, mounted: bool) -> None:
     """Say whether an object lies on its supporter or is fastened to it."""
     edge = client.session.scene.support_of(object_id)
     if edge is None:
-        raise EditRefused("nothing holds it up; choose a supporter first")
+        raise EditRefused("it has no support; choose one first")
     changed = replace(edge, relation="mounted on" if mounted else "placed on", child_face=None, parent_surface=None)
     label = client.session.scene.object(object_id).label
     client.session.edit(f"support of {label}", lambda s: edits.attach(s, changed), by=client)
@@ -209,7 +209,7 @@ def set_adherence(client: Client, object_id: str, wall_id: str | None) -> None:
     scene = client.session.scene
     edge = scene.support_of(object_id)
     if edge is None:
-        raise EditRefused("nothing holds it up; choose a supporter first")
+        raise EditRefused("it has no support; choose one first")
     changed = replace(edge, adheres_to=() if wall_id is None else (wall_id,))
     label = scene.object(object_id).label
 

@@ -22,7 +22,7 @@ def import_model(client: Client, name: str, content: bytes) -> None:
     session = client.session
     user_library = session.library
     if not isinstance(user_library, UserLibrary):
-        raise EditRefused("this library cannot take models in")
+        raise EditRefused("models cannot be added to this library")
     file_name = Path(name).name or "model.glb"
 
     def work(progress: Progress) -> None:
@@ -49,7 +49,7 @@ def _taken_in(user_library: UserLibrary, name: str, content: bytes, progress: Pr
         paths, skipped = model_files(Path(folder))
         if not paths:
             reason = (
-                skipped[0].reason if skipped else "this is no model that can be read; upload a GLB, OBJ, PLY or STL"
+                skipped[0].reason if skipped else "this file is not a readable 3D model; upload a GLB, OBJ, PLY or STL"
             )
             raise InputError(f"{name}: {reason}")
         found = sources(Path(folder), paths, Given(), {})
@@ -74,14 +74,14 @@ class Fix:
 
 
 FIXES: dict[str, Fix] = {
-    "left": Fix("Front is left", "Its left side is really its front", front="+y"),
-    "back": Fix("Front is back", "Its back is really its front", front="-x"),
-    "tip": Fix("Tip over", "What is its back now ought to be on top", up="-x", front="+z"),
-    "roll": Fix("Roll over", "What is its left side now ought to be on top", up="+y", front="+x"),
-    "flip": Fix("Upside down", "What is at the bottom now ought to be on top", up="-z", front="+x"),
-    "metres": Fix("x 100", "Its sizes were meant in metres, not centimetres", scale=100.0),
-    "centimetres": Fix("/ 100", "Its sizes were meant in centimetres, not metres", scale=0.01),
-    "inches": Fix("x 2.54", "Its sizes were meant in inches, not centimetres", scale=2.54),
+    "left": Fix("Front is left", "Make the left side the front", front="+y"),
+    "back": Fix("Front is back", "Make the back the front", front="-x"),
+    "tip": Fix("Tip over", "Turn the back to the top", up="-x", front="+z"),
+    "roll": Fix("Roll over", "Turn the left side to the top", up="+y", front="+x"),
+    "flip": Fix("Upside down", "Turn the bottom to the top", up="-z", front="+x"),
+    "metres": Fix("x 100", "The file is in metres, not centimetres", scale=100.0),
+    "centimetres": Fix("/ 100", "The file is in centimetres, not metres", scale=0.01),
+    "inches": Fix("x 2.54", "The file is in inches, not centimetres", scale=2.54),
 }
 """The corrections that a person can choose from."""
 

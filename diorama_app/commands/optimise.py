@@ -86,7 +86,7 @@ def show_before(session: EditorSession, before: bool) -> None:
     """Show where everything was before the last optimisation, or where it is now; the document stays."""
     run = session.layout_run
     if run is None or run.final is None:
-        raise EditRefused("no layout was optimised yet")
+        raise EditRefused("there is no optimised layout yet; run the optimiser first")
     run.showing_before = before
     poses = {o.id: o.pose for o in session.scene.objects}
     if before:
@@ -99,13 +99,13 @@ def put_back(client: Client) -> None:
     """Take the last optimisation back, with one more undo step when something else was done since."""
     session, run = client.session, client.session.layout_run
     if run is None or run.final is None:
-        raise EditRefused("no layout was optimised yet")
+        raise EditRefused("there is no optimised layout yet; run the optimiser first")
     run.showing_before = False
     if session.scene is run.final:
         session.undo(client)
     else:
         there = {o.id: o.pose for o in run.start.objects if session.scene.has_object(o.id)}
-        session.edit("put the layout back", lambda s: edits.place(s, there), by=client)
+        session.edit("revert the layout", lambda s: edits.place(s, there), by=client)
     session.layout_run = None
     session.refresh_panels()
 

@@ -86,7 +86,7 @@ def next_alternative(client: Client, step: int) -> None:
     item = client.session.scene.object(client.need_selected())
     shapes = list(dict.fromkeys(c.shape_id for c in item.candidates))
     if len(shapes) < 2:
-        raise EditRefused(f"{item.label} has no alternatives of its own; search the library for others")
+        raise EditRefused(f"{item.label} has no alternatives; search the library for others")
     at = shapes.index(item.shape_id) if item.shape_id in shapes else -1
     swap(client, item.id, shapes[(at + step) % len(shapes)])
 

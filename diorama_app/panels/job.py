@@ -25,10 +25,10 @@ class JobStrip:
             self._head.show("")
             self._meter.show("")
             return
-        buttons = button("Cancel", "cancel", disabled=status.cancelling, title="Stop and change nothing")
+        buttons = button("Cancel", "cancel", disabled=status.cancelling, title="Stop without changing anything")
         run = session.layout_run
         if status.kind == "optimise" and run is not None and not status.cancelling:
-            buttons = button("Go on" if run.paused else "Pause", "pause") + buttons
+            buttons = button("Resume" if run.paused else "Pause", "pause") + buttons
         self._head.show(f'<div class="job"><b class="words">{text(status.title)}</b>{buttons}</div>')
         self._meter.show(
             f'<div class="meter"><i style="width:{round(100 * status.fraction)}%"></i></div>'

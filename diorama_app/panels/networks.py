@@ -25,16 +25,18 @@ POLL_EVERY_S = 3.0
 
 
 class Networks:
-    """The list of stages, the choice of a set with its licences, and "Get networks"."""
+    """The list of stages, the choice of a set with its licences, and "Download networks"."""
 
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
         with gui.add_folder("Networks", expand_by_default=False):
             self._stages = LiveHtml(gui)
-            self._choice = gui.add_dropdown("Set", tuple(SETS), hint="Which networks to get; all are optional")
+            self._choice = gui.add_dropdown("Set", tuple(SETS), hint="Networks to download; all are optional")
             self._offer = LiveHtml(gui)
             self._accept = gui.add_checkbox("I accept these licences", False)
-            self._get = gui.add_button("Get networks", color="blue", hint="Fetches what is missing; can be stopped")
+            self._get = gui.add_button(
+                "Download networks", color="blue", hint="Downloads missing networks; can be cancelled"
+            )
         self._state: tuple[object, ...] = ()
         self._polled_at = 0.0
         on_change(self._choice, lambda _: client.post(self._chosen))
@@ -99,7 +101,7 @@ def _stage_html(stage: StageStatus) -> str:
 
 def _offer_html(missing: tuple[Network, ...], store: ModelStore) -> str:
     if not missing:
-        return '<p class="dim">All of this set is on this machine.</p>'
+        return '<p class="dim">All networks of this set are installed.</p>'
     total = sum(n.size_bytes for n in missing) / 1e6
     rows = "".join(
         f"<tr><td>{text(n.title)}</td><td style='white-space:nowrap'>{_size(n.size_bytes / 1e6)}<br>"
@@ -108,7 +110,7 @@ def _offer_html(missing: tuple[Network, ...], store: ModelStore) -> str:
     )
     known = all(n.id in store.accepted_licences() for n in missing)
     words = "Their licences were accepted on this machine." if known else "Their licences are accepted once."
-    return f'<div class="card"><b>{_size(total)} to fetch.</b> {words}<table>{rows}</table></div>'
+    return f'<div class="card"><b>{_size(total)} to download.</b> {words}<table>{rows}</table></div>'
 
 
 def _size(megabytes: float) -> str:

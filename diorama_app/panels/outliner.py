@@ -123,7 +123,7 @@ def tree_html(
             parts.append(_plane_row(scene, plane) + _children(tree, children))
     loose = [o.id for o in scene.objects if scene.support_of(o.id) is None]
     if loose:
-        parts.append('<div class="row" style="cursor:default"><span class="dim name">Held up by nothing</span></div>')
+        parts.append('<div class="row" style="cursor:default"><span class="dim name">Without support</span></div>')
         parts.append(_children(tree, tuple(loose)))
     if not scene.objects:
         parts.append('<p class="dim">No furniture yet. Insert some from the <b>Library</b>.</p>')
@@ -134,8 +134,8 @@ def _problems(tree: _Tree) -> str:
     count = len(tree.badges)
     if not count:
         return ""
-    words = "1 object needs a look" if count == 1 else f"{count} objects need a look"
-    show = button("Select", "wrong", title="Select what collides, floats or is outside the room")
+    words = "1 object has a problem" if count == 1 else f"{count} objects have problems"
+    show = button("Select", "wrong", title="Select objects that collide, float or are outside the room")
     style = "padding:5px 9px;margin-bottom:6px"
     return f'<div class="job card warn" style="{style}"><span class="words">⚠ {words}</span>{show}</div>'
 
@@ -176,7 +176,7 @@ def _row(tree: _Tree, item: SceneObject) -> str:
 def _chips(tree: _Tree, item: SceneObject) -> str:
     chips = "".join(f'<span class="chip bad">{text(word)}</span>' for word in tree.badges.get(item.id, ()))
     if is_unsure(item):
-        sure = f"{100 * item.confidence:.0f}% sure of its place; compare it with the photo"
+        sure = f"{100 * item.confidence:.0f}% confidence in its pose; compare it with the photo"
         chips += f'<span class="chip" title="{sure}">unsure</span>'
     return chips
 

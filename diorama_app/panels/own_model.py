@@ -30,7 +30,7 @@ class OwnModel:
             f'<div class="bar tight">{fixes}</div>'
             '<div style="display:flex;gap:4px;margin-bottom:4px">'
             f'<input data-change="is" aria-label="What the model is" value="{text(shape.category)}" '
-            'title="Say what the model is and press Enter"></div>'
+            'title="Type what the model is and press Enter"></div>'
         )
 
     def _act(self, action: Action) -> None:
@@ -44,7 +44,7 @@ class OwnModel:
 def _guessed(shape: Shape) -> str:
     """What was taken for granted, in words."""
     if shape.guess is None:
-        return f"Taken for: {shape.category}."
+        return f"Guessed: {shape.category}."
     sure = round(100 * min(shape.guess.up.confidence, shape.guess.front.confidence))
     unit = shape.guess.unit.value
-    return f"Taken for: {shape.category}; one unit is {unit} m; {sure} % sure how it stands. Correct it here."
+    return f"Guessed: {shape.category}; one unit is {unit} m; {sure} % sure which side is up. Correct it here."

@@ -23,10 +23,10 @@ class Supports:
         self._ids: dict[str, str] = {}
         self._walls: dict[str, str] = {}
         self._parent = gui.add_dropdown(
-            "Stands on", [NOTHING], visible=False, hint="What holds it up: it moves along with that"
+            "Stands on", [NOTHING], visible=False, hint="The object or surface that supports it; it moves along"
         )
-        self._relation = gui.add_dropdown("and", [LIES, HANGS], visible=False, hint="How it is held")
-        self._wall = gui.add_dropdown("Against", [NO_WALL], visible=False, hint="A wall it also stands against")
+        self._relation = gui.add_dropdown("and", [LIES, HANGS], visible=False, hint="Kind of support")
+        self._wall = gui.add_dropdown("Against", [NO_WALL], visible=False, hint="The wall it stands against")
         on_change(self._parent, lambda name: client.post(lambda: self._chosen(name)))
         on_change(self._relation, lambda name: client.post(lambda: self._related(name)))
         on_change(self._wall, lambda name: client.post(lambda: self._adhered(name)))

@@ -91,7 +91,7 @@ def title_bar(client: Client) -> str:
     name = text(session.project.name) if session.project is not None else "No project"
     others = [g for g in session.clients.values() if g is not client]
     here = "".join(
-        f' <span class="chip" style="border-color:rgb{g.colour}" title="also here">{text(g.name)}</span>'
+        f' <span class="chip" style="border-color:rgb{g.colour}" title="also has this open">{text(g.name)}</span>'
         for g in others[:4]
     )
     return f"<b>{name}</b> <span class='dim'>{len(session.scene.objects)} objects</span>{here}"

@@ -101,4 +101,4 @@ def earlier_scene(project: Project, name: str) -> Scene:
     for path in project.backups():
         if path.name == name:
             return read_scene(path)
-    raise ProjectError("that earlier version is gone; choose another")
+    raise ProjectError("that version no longer exists; choose another")

@@ -112,7 +112,7 @@ def export_glb(client: Client) -> None:
     def work(progress: Progress) -> None:
         from diorama_core.export.gltf import glb_bytes
 
-        progress.report(0.2, "Gathering meshes and materials")
+        progress.report(0.2, "Collecting meshes and materials")
         data = glb_bytes(visible, session.library, textures=textures)
         progress.check()
 

@@ -43,7 +43,7 @@ def rebuild_as_found(client: Client) -> None:
     """Build the scene anew with the tilt that the photo tells, not what a person said."""
     inputs = client.session.document.inputs
     if inputs is None or inputs.camera_attitude is None:
-        raise EditRefused("nobody said how this camera was held")
+        raise EditRefused("no tilt was set by hand")
     _rebuild(client, replace(inputs, camera_attitude=None))
 
 
@@ -61,7 +61,7 @@ def _rebuild(client: Client, inputs: Inputs) -> None:
 
         session.autosave.flush()
         built = build_project(project, told, session.library, progress=progress)
-        message = "Built again with this camera. Undo brings back what was there."
+        message = "Rebuilt with this camera. Undo restores the previous scene."
         client.post(
             lambda: show_built(session, draft, project, built.scene, own=True, message=message, label="set the camera")
         )
@@ -100,7 +100,7 @@ def camera_height_m(scene: Scene) -> float | None:
 def check_fov(fov_deg: float) -> None:
     """Raises `InputError` when no camera sees so much or so little."""
     if not MIN_FOV_DEG <= fov_deg <= MAX_FOV_DEG:
-        raise InputError(f"a field of view of {fov_deg:g}° is no camera's; give {MIN_FOV_DEG:g} to {MAX_FOV_DEG:g}°")
+        raise InputError(f"a field of view of {fov_deg:g}° is not possible; give {MIN_FOV_DEG:g} to {MAX_FOV_DEG:g}°")
 
 
 def checked_angles(tilt_deg: float, roll_deg: float) -> CameraAttitude:

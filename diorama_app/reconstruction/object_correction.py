@@ -39,7 +39,7 @@ def rename_class(client: Client, object_id: str, label: str) -> None:
     item = _seen(client, object_id)
     words = label.strip()
     if not words:
-        raise EditRefused("say what it is, for example armchair")
+        raise EditRefused("type what it is, for example armchair")
 
     def put(scene: Scene, found: Found) -> Scene:
         return renamed(scene, object_id, found)
@@ -51,7 +51,7 @@ def rename_class(client: Client, object_id: str, label: str) -> None:
 def redraw_box(client: Client, object_id: str, box: Box) -> None:
     """Say where in the photo an object is: it is outlined, retrieved and posed again."""
     item = client.session.scene.object(object_id)
-    now, label = _labelled(box, item.label), f"look again at {item.label}"
+    now, label = _labelled(box, item.label), f"reconstruct {item.label}"
     _reconstruct(client, item.box_px, now, object_id, label, _replaced(client, object_id))
 
 
@@ -59,7 +59,7 @@ def use_outline(client: Client, object_id: str, outline: Outline) -> None:
     """Say which pixels an object has: it is retrieved and posed again."""
     item = client.session.scene.object(object_id)
     if not outline.mask.any():
-        raise EditRefused("the outline is empty; click on the thing first")
+        raise EditRefused("the outline is empty; click the object first")
     box = _labelled(outline.bounds, item.label)
     label = f"outline of {item.label}"
     _reconstruct(client, item.box_px, box, object_id, label, _replaced(client, object_id), drawn=outline.mask)
@@ -118,7 +118,7 @@ def _reconstruct(
 
         client.post(show)
 
-    session.jobs.start("look", f"Looking at the {box.label}", work)
+    session.jobs.start("look", f"Reconstructing the {box.label}", work)
 
 
 def _replaced(client: Client, object_id: str) -> Callable[[Scene, Found], Scene]:

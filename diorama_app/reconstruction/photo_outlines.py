@@ -45,4 +45,4 @@ class PhotoOutlines:
 
             client.post(keep)
 
-        session.jobs.start("look", "Outlining what is in the photo", work)
+        session.jobs.start("look", "Segmenting the photo", work)

@@ -52,7 +52,7 @@ class Client:
         self.session = session
         self.viser_client = viser_client
         self.id: int = viser_client.client_id
-        self.name: str = f"Guest {number}"
+        self.name: str = f"User {number}"
         self.colour: tuple[int, int, int] = COLOURS[(number - 1) % len(COLOURS)]
         self.view: ClientView = ClientView(viser_client)
         self.marks = Decorations(viser_client)

@@ -65,7 +65,7 @@ class Recovery:
         try:
             write_atomically(self._path(project, self._session), scene_to_json(scene).encode())
         except (OSError, ValueError, DioramaError) as error:
-            log.warning("unsaved changes cannot be kept in %s (%s)", self._folder, error)
+            log.warning("unsaved changes cannot be stored in %s (%s)", self._folder, error)
             return False
         return True
 

@@ -149,7 +149,7 @@ class EditorSession:
             raise
         except ValueError as error:  # the scene's own values refuse what is no number
             self.refresh(by)
-            raise EditRefused(f"this cannot be: {shortened(str(error))}; give another value") from error
+            raise EditRefused(f"this is not possible: {shortened(str(error))}; give another value") from error
         if scene == self.scene and inputs is None:
             self.refresh(by)
             return
@@ -206,7 +206,7 @@ class EditorSession:
         """Do again what was undone."""
         self.need_writable()
         done = self.document.redo()
-        self._time_travelled(by, f"Done again: {done.label}", done.selection)
+        self._time_travelled(by, f"Redone: {done.label}", done.selection)
 
     def _time_travelled(self, by: ConnectedClient, message: str, selection: tuple[str, ...]) -> None:
         by.selection = selection or by.selection
@@ -231,7 +231,7 @@ class EditorSession:
             if self.project is not None:
                 self.project.save_inputs(inputs, self.project.info().get("warnings", ()))
         except DioramaError as error:
-            self.notice_all(f"what you said of the photo is not saved: {error}", "bad")
+            self.notice_all(f"corrections of the photo are not saved: {error}", "bad")
         if self.draft.from_project:
             self.draft = self.draft.following(inputs)
         self._inputs_saved, self.photo = inputs, inputs.photo
@@ -433,7 +433,7 @@ class EditorSession:
         def tell() -> None:
             self.refresh()
             if outcome.cancelled:
-                self.notice_all("Stopped; nothing was changed.")
+                self.notice_all("Cancelled; nothing was changed.")
             elif outcome.error is not None:
                 self.notice_all(outcome.error, "bad")
 

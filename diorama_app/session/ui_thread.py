@@ -130,7 +130,7 @@ class UiThread:
         key, told = (None, f"refused {posted.client_id!r}"), posted.on_error
         if key in self._keyed:
             return
-        message = f"the server is busy with your last {MAX_WAITING} actions; what came after them was left out"
+        message = f"the server is busy with your last {MAX_WAITING} actions; later ones were ignored"
         self._keyed[key] = refusal = _Posted(lambda: told(message), told, None, key[1])
         self._enqueue(refusal)
         self._changed.notify_all()
@@ -166,4 +166,4 @@ class UiThread:
                 posted.on_error(str(error))
             except Exception:
                 log.exception("an unexpected error in the editor")
-                posted.on_error("Something went wrong; what was changed before is kept. See the server's log.")
+                posted.on_error("Something went wrong; earlier changes are safe. See the server's log.")

@@ -120,7 +120,7 @@ class ClientView:
     def notice(self, message: str, kind: NoticeKind = "info", seconds: float | None = None) -> None:
         """A short notice at the edge of the view; what went wrong stays longer."""
         seconds = seconds or (9.0 if kind == "bad" else 4.0)
-        title = {"info": "Diorama", "good": "Done", "bad": "That did not work"}[kind]
+        title = {"info": "Diorama", "good": "Done", "bad": "Could not do that"}[kind]
         colour = {"info": (47, 111, 214), "good": (38, 150, 96), "bad": (210, 62, 50)}[kind]
         self._viser_client.add_notification(title, message, color=colour, auto_close_seconds=seconds)
 

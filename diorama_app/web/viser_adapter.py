@@ -115,7 +115,7 @@ class Visitors:
         try:
             return self._refusal(request)
         except (ValueError, LookupError, CookieError):  # headers given twice, half an IPv6 address, a broken cookie
-            return "the request's headers make no sense"
+            return "the request headers are invalid"
 
     def _refusal(self, request: Request) -> str | None:
         host_header = request.headers.get("Host", "")
@@ -288,7 +288,7 @@ def _checked(handler: HttpHandler | None, visitors: Visitors, pictures: Pictures
         try:
             return served(connection, request)
         except (ValueError, LookupError, OSError):  # an address that names no file: a null character, half a name
-            return connection.respond(http.HTTPStatus.BAD_REQUEST, "This request makes no sense.\n")
+            return connection.respond(http.HTTPStatus.BAD_REQUEST, "This request is invalid.\n")
 
     def served(connection: ServerConnection, request: Request) -> Response | Awaitable[Response] | None:
         name = urlsplit(request.path).path.removeprefix(f"/{PICTURES}")
@@ -368,7 +368,7 @@ class _Uploads:
                 self._moved_at[message.transfer_uuid] = time.monotonic()
                 start(client_id, message)
             else:
-                self._refuse(gui, client_id, message, f"{message.filename[:100]} is not taken: {reason}")
+                self._refuse(gui, client_id, message, f"{message.filename[:100]} was refused: {reason}")
 
         def capped_part(client_id: Any, message: _messages.FileTransferPart) -> None:
             state = gui._current_file_upload_states.get(message.transfer_uuid)
@@ -377,7 +377,9 @@ class _Uploads:
             if state["transferred_bytes"] + len(message.content) > state["total_bytes"]:
                 gui._current_file_upload_states.pop(message.transfer_uuid, None)
                 name = state["filename"][:100]
-                self._refuse(gui, client_id, message, f"{name} is not taken: more came than was announced; try again")
+                self._refuse(
+                    gui, client_id, message, f"{name} was refused: more data arrived than announced; try again"
+                )
                 return
             self._moved_at[message.transfer_uuid] = time.monotonic()
             part(client_id, message)
@@ -392,14 +394,14 @@ class _Uploads:
         """Why an upload may not begin, or None."""
         size, parts = message.size_bytes, message.part_count
         if not (isinstance(size, int) and isinstance(parts, int) and isinstance(message.filename, str)):
-            return "the page sent nonsense; reload it"
+            return "the page sent an invalid request; reload it"
         if size > MAX_UPLOAD_BYTES:
             return (
                 f"it has {size / 1e6:.0f} MB, and files up to {MAX_UPLOAD_BYTES / 1e6:.0f} MB can be uploaded; "
                 "make it smaller"
             )
         if size < 0 or not 0 <= parts <= size // MIN_PART_BYTES + 2:
-            return "the page sent nonsense; reload it"
+            return "the page sent an invalid request; reload it"
         running = self._running()
         if message.transfer_uuid in {uuid for uuid, _ in running}:
             return "it is being uploaded already"

@@ -7,7 +7,7 @@ from diorama_app.panels.networks import Networks
 from diorama_core.models.manifest import networks_of
 from tests.app.page import Page
 
-GET, ACCEPT = "Get networks", "I accept these licences"
+GET, ACCEPT = "Download networks", "I accept these licences"
 
 
 @pytest.fixture

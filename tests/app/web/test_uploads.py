@@ -46,7 +46,7 @@ def settled(running: Running) -> dict[str, dict]:
 def test_every_button_refuses_what_is_too_large_and_says_so(running: Running, label: str) -> None:
     page = WirePage(running.port)
     page.begin_upload(page.element(label, "UploadButton"), "huge.png", MAX_UPLOAD_BYTES + 1, 300)
-    page.wait_for(lambda: any("huge.png is not taken" in n for n in page.notices))
+    page.wait_for(lambda: any("huge.png was refused" in n for n in page.notices))
     assert not in_flight(running)
     page.close()
 
