@@ -91,7 +91,7 @@ def _bench_layout(a: argparse.Namespace) -> None:
 
 
 def _bench_rooms(a: argparse.Namespace) -> None:
-    """Architecture, retrieval, relations or pose on rendered rooms."""
+    """Run the architecture, retrieval, relations or pose benchmark on rendered rooms."""
     from diorama_core.evaluation.benchmarks import architecture as architecture_bench
     from diorama_core.evaluation.benchmarks import pose as pose_bench
     from diorama_core.evaluation.benchmarks import relations as relations_bench
@@ -145,7 +145,7 @@ def _bench_system(a: argparse.Namespace) -> None:
 
 
 def _bench_dataset(a: argparse.Namespace) -> None:
-    """The whole system on a local copy of other people's pictures."""
+    """Run the system benchmark on a local copy of a public dataset."""
     from diorama_core.evaluation.benchmarks import local_datasets as local_bench
     from diorama_core.library.catalogue import built_in_library
 
@@ -216,7 +216,7 @@ def _write(path: Path | None, document: dict[str, object]) -> None:
 
 
 def _write_text(a: argparse.Namespace, text: str) -> None:
-    """Tables into a file: between `<!-- bench NAME -->` and `<!-- end NAME -->` where it has them, else whole."""
+    """Write tables into a file: between `<!-- bench NAME -->` and `<!-- end NAME -->` where it has them, else whole."""
     from diorama_core.io.atomic import write_atomically
 
     if not a.markdown:

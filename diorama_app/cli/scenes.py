@@ -315,7 +315,7 @@ def _picture(a: argparse.Namespace) -> None:
 
 
 def _turntable(room: diorama.Reconstruction, a: argparse.Namespace) -> None:
-    """A film of the scene from all around."""
+    """Render a turntable video of the scene."""
     from diorama_core.export.turntable import FRAMES, SIZE, write_turntable
 
     with progress_bar() as progress:

@@ -1,4 +1,4 @@
-"""Whole-scene hypotheses: every unlocked object, or set of them, in its best, second best... alternative."""
+"""Whole-scene hypotheses: the k-th uses the k-th ranked candidate of every unlocked object or set of objects."""
 
 from __future__ import annotations
 

@@ -29,10 +29,10 @@ def build_commands(
     """Every command of the editor.
 
     Args:
-        room: what they act on.
+        session: what they act on.
         views: where cameras go.
         outlines: what the photo shows of the things found in it.
-        cancel: stops what a person's hand is doing, and says whether it did.
+        cancel: cancels the current gesture; returns whether there was one.
         show_help: opens the list of commands.
     """
 

@@ -1,4 +1,4 @@
-"""A model file that somebody uploads: checked, put the right way up, sized, kept in a library of one's own, placed."""
+"""Uploaded model files: checked, oriented, sized, added to the user's library and placed."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from diorama_core.scene.types import Scene
 
 
 def import_model(client: Client, name: str, content: bytes) -> None:
-    """Take a model file into the library of one's own models; the next click in the view puts it there."""
+    """Add a model file to the user's library; the next click in the view places it."""
     session = client.session
     user_library = session.library
     if not isinstance(user_library, UserLibrary):
@@ -62,14 +62,14 @@ def _taken_in(user_library: UserLibrary, name: str, content: bytes, progress: Pr
 
 @dataclass(frozen=True)
 class Fix:
-    """One way in which a model was taken wrongly, and the change that mends it."""
+    """One kind of wrong guess about a model, and the change that corrects it."""
 
     name: str
     hint: str
     up: str = "+z"
-    """Axis of the shape as it stands that ought to point up."""
+    """Current axis of the shape that becomes up."""
     front: str | None = None
-    """Axis of the shape as it stands that ought to be the front."""
+    """Current axis of the shape that becomes the front."""
     scale: float = 1.0
 
 
@@ -87,13 +87,13 @@ FIXES: dict[str, Fix] = {
 
 
 def is_own_model(session: EditorSession, shape_id: str) -> bool:
-    """Whether a shape is one that somebody uploaded, so that it may be corrected."""
+    """Whether a shape was uploaded, so that it can be corrected."""
     user_library = session.library
     return isinstance(user_library, UserLibrary) and user_library.has_own(shape_id)
 
 
 def correct_model(client: Client, object_id: str, fix: Fix | None = None, *, category: str | None = None) -> None:
-    """Take a model of one's own as it was meant, and show the object in it, in the size it then has.
+    """Correct an uploaded model and swap the object to it, at the corrected size.
 
     The corrected model gets an id of its own: undo leads back to the one before.
 

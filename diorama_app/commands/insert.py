@@ -1,4 +1,4 @@
-"""Shapes of the library into the room: where the person looks, or where they click."""
+"""Insertion of library shapes: at the centre of the view, or where the user clicks."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from diorama_core.scene.types import Pose, SceneObject, Support
 
 
 def insert_shape(client: Client, shape_id: str) -> None:
-    """Put a shape on the selected object, or else on the floor where the person looks."""
+    """Insert a shape on the selected object, or else on the floor at the centre of the view."""
     session = client.session
     shape, scene, parent = session.library.shape(shape_id), session.scene, client.selected
     mount = resolve(shape.category).category.mount

@@ -68,7 +68,7 @@ def rescale_measured(client: Client, length_true_m: float) -> None:
 
 
 def stop_measuring(client: Client) -> None:
-    """Put the tape away."""
+    """End measuring."""
     if isinstance(client.doing, Measuring):
         client.doing = None
     client.view.show_measure((), "")

@@ -1,4 +1,4 @@
-"""Other shapes for the selected object: its ranked alternatives, or the whole library by words; point to preview."""
+"""Shapes to swap to: the object's ranked candidates, or a search of the library; hover to preview."""
 
 from __future__ import annotations
 
@@ -132,7 +132,7 @@ class Alternatives:
 
 
 def shape_caption(session: EditorSession, shape_id: str) -> str:
-    """What people call a shape; its category at the least."""
+    """Display name of a shape; at least its category."""
     try:
         shape = session.records.shape(shape_id)
     except LibraryError:

@@ -1,4 +1,4 @@
-"""The list of everything that can be done, with its keys: made from the one table of commands."""
+"""The help dialog: mouse actions and all commands with their keys, from the table of commands."""
 
 from __future__ import annotations
 

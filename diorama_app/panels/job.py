@@ -1,4 +1,4 @@
-"""The strip below the toolbar while something long is running: what, how far, and buttons to pause and stop it."""
+"""The status of the running job below the toolbar: title, progress, pause and cancel."""
 
 from __future__ import annotations
 

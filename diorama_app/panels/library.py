@@ -1,4 +1,4 @@
-"""The whole library: search by words, insert where one looks, or place by a click in the view."""
+"""The library panel: search by words, insert at the centre of the view, or place by a click."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The measured length, and the field that says what it truly is."""
+"""The measured length, and a field for the true length."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What each stage uses now, and a way to get the networks that do it better."""
+"""The implementation each stage uses, and the download of better networks."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Networks:
         on_press(self._get, lambda: client.post(self._start))
 
     def refresh(self) -> None:
-        """Draw what is here and what the chosen set would add; looks at the disk now and then, not at every edit."""
+        """Draw the installed networks and those the chosen set adds; reads the disk now and then, not at every edit."""
         state = (self._choice.value, self._accept.value, self._client.session.jobs.status is None)
         if state == self._state and time.monotonic() - self._polled_at < POLL_EVERY_S:
             return
@@ -64,7 +64,7 @@ class Networks:
         return missing_networks(store, self._networks())
 
     def _unknown(self, store: ModelStore) -> frozenset[str]:
-        """Ids of what would be fetched under licences that nobody accepted on this machine yet."""
+        """Ids of missing networks whose licences were not accepted on this machine yet."""
         return frozenset(n.id for n in self._missing(store)) - store.accepted_licences()
 
     def _chosen(self) -> None:

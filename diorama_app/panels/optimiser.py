@@ -58,7 +58,7 @@ COSTS = {
     "e_vol": "Within support",
     "e_col": "Separation",
 }
-"""What the curves and the table of costs call them."""
+"""Labels of the costs in curves and tables."""
 MIN_COST = 1e-6
 
 

@@ -1,4 +1,4 @@
-"""The tree of what stands on what: click selects, drag puts a thing on another, buttons lock and hide."""
+"""The support tree: a click selects, a drag changes the support, buttons lock and hide."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Outliner:
         self._paused_until = 0.0
 
     def refresh(self) -> None:
-        """Draw the tree of the current scene; not while a row is being dragged, which would let go of it."""
+        """Draw the tree of the current scene, except while a row is dragged, since a redraw ends the drag."""
         if time.monotonic() < self._paused_until:
             return
         client, session = self._client, self._client.session
@@ -101,7 +101,7 @@ class Outliner:
 
 
 def plane_name(scene: Scene, plane: Plane) -> str:
-    """What people call a plane: walls are numbered."""
+    """Display name of a plane; walls are numbered."""
     return editing.supporter_name(scene, plane.id).capitalize()
 
 

@@ -1,4 +1,4 @@
-"""The photo: upload it with what goes with it, mark the furniture, build the scene."""
+"""The photo panel: upload the photo and its inputs, draw boxes, build the scene."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ class PhotoPanel:
         self._session.refresh_panels(self._client)
 
     def _read(self, files: dict[str, bytes], draft: Draft, take: Callable[[Draft], None]) -> None:
-        """Read the files together, beside the desk; then `take` the draft they make."""
+        """Read the files together, in the background; then `take` the draft they make."""
         files = dict(files)
         if "photo" not in files:
             files["photo"] = _png(draft)

@@ -1,4 +1,4 @@
-"""What is known of the photo's camera, to be put right: field of view, tilt against the floor, height above it."""
+"""Corrections of the photo's camera: field of view, tilt, roll, height above the floor."""
 
 from __future__ import annotations
 

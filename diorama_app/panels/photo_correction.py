@@ -1,4 +1,4 @@
-"""What the photo says of the selected object, and ways to put it right: its name, its box, its outline."""
+"""Corrections of the selected object in the photo: category, box, outline."""
 
 from __future__ import annotations
 

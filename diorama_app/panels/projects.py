@@ -1,4 +1,4 @@
-"""Projects and files: what is open, recent ones, save, export, earlier versions."""
+"""The project panel: the open project, recent projects, save, export, earlier versions."""
 
 from __future__ import annotations
 

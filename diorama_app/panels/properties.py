@@ -1,4 +1,4 @@
-"""The selected objects: name, place, turn, size, colour; several at once: align and distribute."""
+"""Properties of the selection: name, position, rotation, size, colour; align and distribute several."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from diorama_core.errors import InputError
 from diorama_core.scene.types import Finish, SceneObject
 
 SIZE_ORDER = [1, 0, 2]
-"""People say width, depth, height; the object's axes are depth, width, height."""
+"""Fields show width, depth, height; the object's axes are depth, width, height."""
 
 FINISHES: dict[Finish | None, tuple[str, str]] = {
     None: ("Original", "The original finish of the shape"),

@@ -1,4 +1,4 @@
-"""The room itself: how high it is, and its walls moved in or out; what is fastened to them follows."""
+"""The size of the room: its height and the offsets of its walls; mounted objects follow."""
 
 from __future__ import annotations
 

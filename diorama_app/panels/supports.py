@@ -1,4 +1,4 @@
-"""What holds the selected object up: shown and chosen; an impossible choice is refused with the reason."""
+"""The support of the selected object; an impossible choice is refused with the reason."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Supports:
             elif name in self._ids:
                 editing.attach(client, object_id, self._ids[name])
         finally:
-            self.refresh()  # a refused choice goes back to what holds
+            self.refresh()  # a refused choice reverts to the current support
 
     def _related(self, name: str) -> None:
         try:
@@ -75,7 +75,7 @@ class Supports:
 
 
 def supporters(scene: Scene, object_id: str) -> dict[str, str]:
-    """Names people read, to ids of the planes and objects that could be asked to hold an object up."""
+    """Display names mapped to ids of planes and objects that can support an object."""
     planes = [p for p in scene.architecture.planes if p.role != "ceiling" or scene.children_of(p.id)]
     others = [o for o in scene.objects if o.id != object_id]
     names = unique_names([plane_name(scene, p) for p in planes] + [o.label for o in others])

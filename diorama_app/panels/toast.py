@@ -1,4 +1,4 @@
-"""A line at the foot of the view that says what happened, with a button that takes it back; what a click means now."""
+"""Toast messages with an undo button, and the prompt for a pending click."""
 
 from __future__ import annotations
 

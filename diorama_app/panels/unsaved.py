@@ -1,4 +1,4 @@
-"""What stands between a change and the disk: another program, a full disk, changes that an earlier session lost."""
+"""Notices about unsaved changes: a locked project, a full disk, recovery of an earlier session."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The long jobs: build a scene from a photo, export. Each runs beside the desk."""
+"""The long jobs: build a scene from a photo, export. Each runs in the background."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def show_built(
     message: str = "",
     label: str = "build the scene",
 ) -> None:
-    """Show everyone what a build made.
+    """Show the built scene to all clients.
 
     Args:
         room: where.

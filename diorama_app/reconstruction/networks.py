@@ -15,11 +15,11 @@ from diorama_core.progress import Progress
 
 NO_DETECTOR = "Detecting furniture needs a network: download “lite” under Project, Networks."
 SAME_IOU = 0.5
-"""A found box that overlaps one on the photo by so much is the same thing."""
+"""A detected box with at least this IoU with an existing box is a duplicate."""
 
 
 def missing_networks(store: ModelStore, networks: Sequence[Network]) -> tuple[Network, ...]:
-    """Those that are not wholly on this machine and can be fetched."""
+    """Networks that are not fully installed and can be downloaded."""
     return tuple(n for n in networks if n.pullable and not store.has(n))
 
 
@@ -27,7 +27,7 @@ def get_networks(client: Client, networks: Sequence[Network], accepted: frozense
     """Fetch what is missing, in the background.
 
     Args:
-        guest: who asks.
+        client: the requesting client.
         networks: what to fetch.
         accepted: ids of the networks whose licences this person was shown and accepts.
     """

@@ -12,7 +12,7 @@ COMPOSED = "No image endpoint is set up: the room is composed from the library, 
 
 
 def how_pictures_come() -> str:
-    """One sentence on who makes the picture of a described room."""
+    """One sentence on how the picture of a described room is made."""
     from diorama_core.text.pictures import ImageSettings  # the room grammar; opening a project does without it
 
     try:
@@ -23,7 +23,7 @@ def how_pictures_come() -> str:
 
 
 def describe_room(client: Client, words: str) -> None:
-    """Make a project of a description, in the background, and open it."""
+    """Create a project from a description, in the background, and open it."""
     from diorama_core.text.pictures import ImageSettings, picture_of
 
     session, draft = client.session, client.session.draft

@@ -20,7 +20,7 @@ from diorama_core.errors import DioramaError
 log = logging.getLogger(__name__)
 
 MAX_WAITING = 64
-"""Tasks of one browser that may wait; what comes on top is left out, and the person is told."""
+"""Maximum pending tasks of one browser; further ones are dropped and the user is notified."""
 
 Task = Callable[[], None]
 OnError = Callable[[str], None]
@@ -136,7 +136,7 @@ class UiThread:
         self._changed.notify_all()
 
     def _next(self) -> _Posted | None:
-        """The next task, waiting for it; None when the desk is stopped and everything is done."""
+        """The next task, waiting for it; None when the UI thread is stopped and everything is done."""
         with self._changed:
             self._busy = False
             while True:

@@ -1,4 +1,4 @@
-"""One browser: its camera, its drawing board, its notices. Holds nothing that a reload must not lose."""
+"""One browser's view: camera, drawing board, notices. Has no state that must survive a reload."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from diorama_core.geometry.rotations import quaternion_wxyz, rotation_from_quate
 from diorama_core.scene.types import Camera, Plane
 
 BOARD_CENTRE = np.array([0.0, 0.0, 400.0])
-"""The photo stands here, far above the room, while boxes are drawn on it."""
+"""Position of the photo, far above the room, while boxes are drawn on it."""
 BOARD_HEIGHT_M = 1.0
 BOARD_DISTANCE_M = 1.25
 PYRAMID_SCALE = 0.22
@@ -81,7 +81,7 @@ def fitting_fov(width: float, height: float, fx: float, fy: float, cx: float, cy
 
 
 class ClientView:
-    """What differs between browsers. Used from the desk's thread only."""
+    """What differs between browsers. Used from the UI thread only."""
 
     def __init__(self, viser_client: viser.ClientHandle) -> None:
         self._viser_client = viser_client

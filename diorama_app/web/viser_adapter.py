@@ -46,7 +46,7 @@ MAX_UPLOADS_PER_CLIENT = 3
 MAX_BYTES_IN_FLIGHT = 2 * MAX_UPLOAD_BYTES
 """Announced by all uploads that are under way: viser holds them in memory."""
 UPLOAD_STALLED_S = 60.0
-"""An upload of which nothing came for so long is given up when its place is needed."""
+"""An upload idle for this long is dropped when its slot is needed."""
 MIN_PART_BYTES = 4096
 """The page sends parts of half a megabyte; very many small ones are only memory."""
 MESSAGES_PER_S, MESSAGES_AT_ONCE = 300, 600
@@ -103,7 +103,7 @@ Pictures = Callable[[str], "Future[bytes | None]"]
 
 @dataclass(frozen=True)
 class Visitors:
-    """Who may talk to the server."""
+    """Access rules of the server."""
 
     host: str
     """The address it listens on."""
@@ -148,13 +148,13 @@ class Visitors:
 
 
 def with_token(host: str, token: str | None) -> str | None:
-    """The token that visitors must bring: the one given; where others can reach the server, one is made otherwise."""
+    """The token that clients must present: the given one, or a generated one when others can reach the server."""
     return token or (None if host in LOOPBACK_NAMES else secrets.token_urlsafe(18))
 
 
 @functools.cache
 def own_names() -> frozenset[str]:
-    """Names by which this machine is known, in small letters."""
+    """Host names of this machine, in lower case."""
     name = socket.gethostname().lower()
     return frozenset({name, f"{name}.local", socket.getfqdn().lower()})
 
@@ -391,7 +391,7 @@ class _Uploads:
             handlers[kind] = [new if known == old else known for known in handlers[kind]]
 
     def _against(self, client_id: Any, message: _messages.FileTransferStartUpload) -> str | None:
-        """Why an upload may not begin, or None."""
+        """Why an upload is refused, or None."""
         size, parts = message.size_bytes, message.part_count
         if not (isinstance(size, int) and isinstance(parts, int) and isinstance(message.filename, str)):
             return "the page sent an invalid request; reload it"
