@@ -80,7 +80,7 @@ def remember(viser_client: viser.ClientHandle, preferences: Preferences) -> None
 
 
 def remembered(viser_client: viser.ClientHandle) -> Preferences:
-    """The preferences stored in the browser. Waits for the answer: call neither on viser's event loop nor the UI thread.
+    """The preferences stored in the browser. Waits for the answer: not for viser's event loop or the UI thread."""
     try:
         return read_preferences(viser_client.local_storage.get_item(KEY, timeout=ANSWER_WITHIN_S))
     except (RuntimeError, TimeoutError) as error:  # it left, or keeps nothing for any page
