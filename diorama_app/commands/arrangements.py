@@ -50,7 +50,7 @@ class Arrangements:
     def _offers(self) -> dict[str, tuple[Candidate, ...]]:
         """For every unlocked object its shapes, best first: those that its set finds likely, where it is of one.
 
-        Things of one kind are a set when the same shape was found best for them.
+        Objects of one kind are a set when the same shape was found best for them.
         """
         sets: dict[tuple[str, str], list[SceneObject]] = {}
         for item in self.scene.objects:

@@ -31,7 +31,7 @@ def build_commands(
     Args:
         session: what they act on.
         views: where cameras go.
-        outlines: what the photo shows of the things found in it.
+        outlines: what the photo shows of the objects found in it.
         cancel: cancels the current gesture; returns whether there was one.
         show_help: opens the list of commands.
     """

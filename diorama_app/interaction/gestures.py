@@ -144,7 +144,7 @@ class Gestures:
         if phase == "update":
             eye = np.asarray(client.viser_client.camera.position, dtype=np.float64)
             snap = client.preferences.snap != inverted
-            # Until every shape is prepared, things go through each other (and are shown colliding).
+            # Until every shape is prepared, objects go through each other (and are shown colliding).
             prepared = session.preparer.ready(o.shape_id for o in drag.slide.scene.objects)
             drag.scene, poses = drag.slide.to(eye, hand - eye, snap=snap, slide=client.preferences.slide and prepared)
             self._show(drag.slide.scene, poses, drag.scene)

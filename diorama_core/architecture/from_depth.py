@@ -30,7 +30,7 @@ class PlanarRoom:
     """PlainRecon (Diorama, section 3.1) on measured points, with walls checked by visibility.
 
     Directions that much vertical surface shares give parallel wall candidates; a candidate through which farther
-    things are measured is furniture and dropped. The walls that lead in each heading form a chain whose neighbours
+    objects are measured is furniture and dropped. The walls that lead in each heading form a chain whose neighbours
     meet in corners or are joined by hidden pieces.
     """
 

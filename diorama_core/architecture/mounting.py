@@ -1,4 +1,4 @@
-"""Things that hang on a wall or from the ceiling, brought to it along their lines of sight once it is known."""
+"""Objects that hang on a wall or from the ceiling, brought to it along their lines of sight once it is known."""
 
 from __future__ import annotations
 

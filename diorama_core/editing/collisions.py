@@ -18,7 +18,7 @@ TOUCHING_M = 0.006
 """Objects shrunk by this much still overlap where they collide, not where they merely touch."""
 CACHE_SIZE = 400
 WALKED_ON_M = 0.035
-"""Flatter things (rugs, mats) lie under others by right."""
+"""Flatter objects (rugs, mats) lie under others by right."""
 
 Pair = tuple[str, str]
 

@@ -76,7 +76,7 @@ class Slide:
 
     @cached_property
     def solver(self) -> DragSolver:
-        """Keeps it out of walls and other things."""
+        """Keeps it out of walls and other objects."""
         return DragSolver.prepare(self.scene, self.library, self.item.id)
 
     def to(
@@ -205,6 +205,6 @@ def _turn(before: np.ndarray, after: np.ndarray) -> np.ndarray:
 
 
 def _clamped_to(surface: Surface, position: np.ndarray, item: SceneObject) -> np.ndarray:
-    """The centre moved so that the thing's middle stays over the surface."""
+    """The centre moved so that the object's middle stays over the surface."""
     foot = position - (float(surface.normal @ position) - surface.level) * surface.normal
     return position + inside(surface, foot) - foot

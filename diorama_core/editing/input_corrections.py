@@ -21,7 +21,7 @@ def with_correction(
 
     Args:
         inputs: as they are.
-        before: the box that the thing had; None for something that was missed until now.
+        before: the box that the object had; None for something that was missed until now.
         now: its box and what it is.
         mask: its outline, where a person drew it. A given outline stays with an unchanged box and goes with a new one.
     """

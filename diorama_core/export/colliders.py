@@ -1,6 +1,6 @@
 """What a simulator needs of a scene: rigid bodies of convex parts that start without touching each other's inside.
 
-The parts are those that the layout keeps apart, so shelves stay open inside. What soft things, sunk feet and rounded
+The parts are those that the layout keeps apart, so shelves stay open inside. What soft objects, sunk feet and rounded
 hulls still overlap by is cut off (`overlaps`).
 """
 
@@ -127,7 +127,7 @@ def _body(gathered: ExportScene, node: ExportObject) -> RigidBody:
     if node.limbs:
         parts = tuple(_boxed(p, half) for p in _scaled(limb_parts(shape.id, None), node))
     elif is_soft(node):
-        parts = (box_corners(item.size_m),)  # soft things lie on a face, not on their rim
+        parts = (box_corners(item.size_m),)  # soft objects lie on a face, not on their rim
     else:
         parts = tuple(_boxed(p, half) for p in _scaled(parts_of_shape(library, shape), node))
     body = RigidBody(node, parts, weights[None], friction_of(surfaces), True, moving=moving)

@@ -1,4 +1,4 @@
-"""Rays against the simple things of a room: bounded planes and oriented boxes. Vectorised over rays."""
+"""Rays against the simple objects of a room: bounded planes and oriented boxes. Vectorised over rays."""
 
 from __future__ import annotations
 

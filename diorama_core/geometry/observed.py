@@ -120,7 +120,7 @@ def observe_among(
     index: int,
     cells: int,
 ) -> Observed:
-    """Look at thing `index`, given which of the others may hide it.
+    """Look at object `index`, given which of the others may hide it.
 
     Args:
         camera: The photo's camera.

@@ -1,4 +1,4 @@
-"""How good a layout is: costs, structure, overlap and how far things moved."""
+"""How good a layout is: costs, structure, overlap and how far objects moved."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ class _Similarity:
         return cls(R, scene.position - scale * R @ measured.position, scale)
 
     def pose(self, pose: Pose) -> Pose:
-        """The pose in the scene; where the scene's camera was tilted since, things stay upright all the same."""
+        """The pose in the scene; where the scene's camera was tilted since, objects stay upright all the same."""
         level = yaw_rotation(float(np.arctan2(self.R[1, 0], self.R[0, 0])))
         position = self.scale * self.R @ pose.position + self.t
         return Pose(level @ pose.R_world_object, position, pose.scale * self.scale)

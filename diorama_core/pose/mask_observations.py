@@ -21,7 +21,7 @@ _BOX_WEIGHT = 0.5
 _SILHOUETTE_WEIGHT_WITH_DEPTH = 0.7
 _DEPTH_WEIGHT = 0.7
 _STRENGTH_WITH_DEPTH = 2.0
-"""How much more than an outline alone measured depth says against what things usually do."""
+"""How much more than an outline alone measured depth says against what objects usually do."""
 _NOISE_FLOOR = 0.03
 """Error below which two poses are not told apart: the resolution of the silhouettes."""
 _FACING_STRENGTH = 0.7
@@ -74,7 +74,7 @@ class Evidence:
     ) -> Float[np.ndarray, "p"]:
         """Scores by which poses of this object are compared; higher is better.
 
-        The logarithm lets a nearly perfect silhouette overrule what things usually do, and lets habit decide
+        The logarithm lets a nearly perfect silhouette overrule what objects usually do, and lets habit decide
         between silhouettes that fit equally badly.
         """
         cost = self.habit_cost(poses, limits)

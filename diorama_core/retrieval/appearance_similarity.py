@@ -1,4 +1,4 @@
-"""How like shapes are to a thing in the photo, whatever their size and pose.
+"""How like shapes are to an object in the photo, whatever their size and pose.
 
 The paper's second query (section 3.2 and supplement, "Multimodal 3D shape retrieval"): the masked crop orders what the
 words found. Which features compare is the provider's affair: the embedded one is here, the learned one in `joint`.
@@ -38,11 +38,11 @@ EMBEDDED_FEATURES = f"views-3-{_GRID.key}"
 """Names what is kept of shapes; changes with what features are."""
 _FORM_WIDTH = 2 * (OUTLINE_WIDTH + EDGES_WIDTH)
 _EDGES_SHARE, _EDGES_OF_DOUBTFUL = 0.5, 0.45
-"""What inner edges say of a thing's form beside its outline, and how much more where the outline is doubtful."""
+"""What inner edges say of an object's form beside its outline, and how much more where the outline is doubtful."""
 _LAYOUT_WEIGHT = 0.5
 """What the places of colours say beside the form."""
 _COLOUR_WEIGHTS = (0.1, 0.4)
-"""Of main colours, beside the views of a thing that is seen whole, and of one of which little is seen."""
+"""Of main colours, beside the views of an object that is seen whole, and of one of which little is seen."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +52,7 @@ class ObjectCrop(ArrayValue):
     rgb: UInt8[np.ndarray, "h w 3"]
     """The photo."""
     mask: Bool[np.ndarray, "h w"]
-    """The thing's visible pixels; may be empty."""
+    """The object's visible pixels; may be empty."""
     label: str
     """What it is called."""
     visible: float = 1.0
@@ -62,7 +62,7 @@ class ObjectCrop(ArrayValue):
 
     @property
     def crop(self) -> UInt8[np.ndarray, "s s 3"]:
-        """The thing alone on a neutral ground, square; all ground for an empty mask."""
+        """The object alone on a neutral ground, square; all ground for an empty mask."""
         rows, columns = np.flatnonzero(self.mask.any(axis=1)), np.flatnonzero(self.mask.any(axis=0))
         if not len(rows):
             return np.full((SIDE_PX, SIDE_PX, 3), NEUTRAL, np.uint8)
@@ -78,7 +78,7 @@ class ObjectCrop(ArrayValue):
 
 @runtime_checkable
 class AppearanceSimilarity(Protocol):
-    """Compares things with shapes."""
+    """Compares objects with shapes."""
 
     def of(self, item: ObjectCrop, shapes: Sequence[Shape]) -> Float[np.ndarray, " n"]:
         """0 (unlike) to 1, comparable among these shapes."""
@@ -94,7 +94,7 @@ class EmbeddedSimilarity:
     """Where features of views are kept; `features` in the cache folder by default."""
 
     def of(self, item: ObjectCrop, shapes: Sequence[Shape]) -> Float[np.ndarray, " n"]:
-        """The better seen the thing, the more the views say beside the main colours."""
+        """The better seen the object, the more the views say beside the main colours."""
         appearances = [self._appearance(s) for s in shapes]
         seen = palette_of_crop(item.rgb, item.mask)
         colours = np.array([palette_agreement(seen, palette_of_appearance(appearance)) for appearance in appearances])

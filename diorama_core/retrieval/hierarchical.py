@@ -34,14 +34,14 @@ _SIMILAR_LOG_SIZE_OF_SEATS = 0.8
 """Seats in one room are usually of a set, so that different sizes are rather errors of measurement."""
 _SEATS = with_kin("chair", "office chair", "stool", "armchair")
 _UNNAMED_OUTLINE, _UNNAMED_SIZE = 3.0, 0.5
-"""How much more the outline, and how much less the guessed size, of a thing without a name counts."""
+"""How much more the outline, and how much less the guessed size, of an object without a name counts."""
 _OWN_EVIDENCE = 0.4
 _MIN_SIMILARITY = 0.25
 _GUESSED_SIZE = 0.5
-"""How much less the size of a thing counts of which nothing is seen: it is what such things usually have."""
+"""How much less the size of an object counts of which nothing is seen: it is what such objects usually have."""
 _MIN_VOICE = 0.1
 _OF_WORDS = 0.12
-"""How much less a shape scores to which none of the words fit that describe the thing beside its kind."""
+"""How much less a shape scores to which none of the words fit that describe the object beside its kind."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class HierarchicalRetrieval:
     silhouette_weight: float = 0.4
     """Of a mask that can be trusted; less for doubtful ones."""
     similarity_weight: float = 1.3
-    """Of a thing that is seen whole; less, down to a quarter, for cut, hidden and badly outlined ones."""
+    """Of an object that is seen whole; less, down to a quarter, for cut, hidden and badly outlined ones."""
     similarity: AppearanceSimilarity | None = None
     """Compares looks; by colours, outline and edges where None."""
 
@@ -147,7 +147,7 @@ class HierarchicalRetrieval:
         return float((fit.max() + of_appearances * like) / (of_size + of_outline + of_appearances))
 
     def _weights(self, seen: Observed, visible: float, named: bool) -> tuple[float, float, float]:
-        """How much size, outline and looks say about a thing of which so much is seen."""
+        """How much size, outline and looks say about an object of which so much is seen."""
         return (
             self.size_weight * (1 - _GUESSED_SIZE * (1 - visible)) * (1.0 if named else _UNNAMED_SIZE),
             self.silhouette_weight * (0.25 + 0.75 * seen.mask_trust) * (1.0 if named else _UNNAMED_OUTLINE),
@@ -214,7 +214,7 @@ def _log_difference(a_m: np.ndarray, b_m: np.ndarray) -> float:
 
 
 def _best(own: dict[str, float], of_group: dict[str, float], keep: int) -> tuple[tuple[str, float], ...]:
-    """The best shapes by own and group's scores; most of them the group's, so that things of a kind can agree."""
+    """The best shapes by own and group's scores; most of them the group's, so that objects of a kind can agree."""
     mixed = {key: _OWN_EVIDENCE * own[key] + (1 - _OWN_EVIDENCE) * of_group[key] for key in own}
     shared = _in_order(of_group)[: 3 * keep // 4]
     retained = [*shared, *(key for key in _in_order(mixed) if key not in shared)][:keep]

@@ -42,7 +42,7 @@ class JointEmbedding(Protocol):
         ...
 
     def shape(self, views: Sequence[UInt8[np.ndarray, "_ _ 3"]]) -> Float32[np.ndarray, " d"]:
-        """The thing that several pictures show."""
+        """The object that several pictures show."""
         ...
 
 

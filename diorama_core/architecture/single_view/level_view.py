@@ -47,7 +47,7 @@ class LevelView:
     share: Float[np.ndarray, "m k"]
     """Of the picture, that each cell covers; 0 outside it."""
     floor_ratio: Float[np.ndarray, "m k"]
-    """-1 to 1: whether the colour is the floor's or the walls'; 0 where that is unknown or a thing hides it."""
+    """-1 to 1: whether the colour is the floor's or the walls'; 0 where that is unknown or an object hides it."""
     lines: Float[np.ndarray, "m k 3"]
     """Share of all line evidence that runs along each room axis in a cell."""
     upright: Float[np.ndarray, "m1 k"]
@@ -141,7 +141,7 @@ def _floor_ratio(
     slopes: Float[np.ndarray, "k"],
     cues: RoomCues,
 ) -> Float[np.ndarray, "m k"]:
-    """Whether colours are rather those between the things on the floor, or those about the height of the eye."""
+    """Whether colours are rather those between the objects on the floor, or those about the height of the eye."""
     shape = np.array(lab.shape[1::-1])
     columns, rows = np.moveaxis(np.where(free[..., None], place, 0) * shape, -1, 0).astype(int)
     cells = (lab[rows.clip(0, lab.shape[0] - 1), columns.clip(0, lab.shape[1] - 1)] / LAB_BINS).astype(int)
@@ -166,7 +166,7 @@ def _frequency(cells: Int[np.ndarray, "m k 3"], chosen: Bool[np.ndarray, "m k"])
 def _on_sure_floor(
     headings: Float[np.ndarray, "m"], slopes: Float[np.ndarray, "k"], cues: RoomCues
 ) -> Bool[np.ndarray, "m k"]:
-    """Lines of sight that would meet the floor between the camera and the things that stand in the room."""
+    """Lines of sight that would meet the floor between the camera and the objects that stand in the room."""
     eye = cues.camera.position
     reach = np.where(slopes < -1e-3, eye[2] / np.maximum(-slopes, 1e-3), np.inf)
     on_floor = np.broadcast_to(np.isfinite(reach)[None], (len(headings), len(slopes)))

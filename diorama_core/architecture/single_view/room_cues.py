@@ -72,7 +72,7 @@ class RoomCues:
     object_high: Float[np.ndarray, "k 3"]
     object_weights: Float[np.ndarray, "k"]
     hung_top_m: float
-    """Top of the highest thing that hangs from the ceiling; 0 when nothing does."""
+    """Top of the highest object that hangs from the ceiling; 0 when nothing does."""
     slants_rad: tuple[float, ...] = ()
     """Headings, counter-clockwise from +X and below a half turn, of level lines that run along none of the axes."""
     slant_maps: tuple[Float32[np.ndarray, "hm wm"], ...] = ()
@@ -135,7 +135,7 @@ class RoomCues:
         return clipped, inside & ~((za < NEAR_M) & (zb < NEAR_M))
 
     def objects(self, boxes: Float[np.ndarray, "b 4"]) -> Float[np.ndarray, "b"]:
-        """Minus how far things stick out of the box: standing ones 0 to 2, and half as much for hanging ones."""
+        """Minus how far objects stick out of the box: standing ones 0 to 2, and half as much for hanging ones."""
         hung = -0.5 * np.clip((self.hung_top_m - boxes[:, 3]) / (2.0 * PROTRUSION_SCALE_M), 0.0, 1.0)
         if len(self.object_low) == 0:
             return hung

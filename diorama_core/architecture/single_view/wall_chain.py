@@ -1,7 +1,7 @@
 """The chain of walls that a photo supports best, boxes or not: dynamic programming over the level view's headings.
 
 Candidates are upright planes of a few directions at many distances. In a heading each costs what it makes of the
-column: floor-coloured wall, lines that stand out of their surface, missing edges at its foot and top, things that
+column: floor-coloured wall, lines that stand out of their surface, missing edges at its foot and top, objects that
 would stick through it. Going over from one wall to another costs a corner, less where an upright edge is seen.
 """
 
@@ -30,7 +30,7 @@ OBJECT_WEIGHT = 0.5
 PRIOR_WEIGHT = 0.1
 PROTRUSION_M = 0.25
 UNSURE_SHARE = 0.2
-"""Of its distance, by which a thing may be nearer than its cuboid."""
+"""Of its distance, by which an object may be nearer than its cuboid."""
 CORNER_COST, PROTRUDING_COST, JUMP_COST = 0.05, 0.2, 0.3
 """Of a corner that the room folds in at, of one that stands into the room, and of a wall that ends in the open."""
 MIN_SHARE = 0.3
@@ -176,7 +176,7 @@ class ChainScorer:
         return np.where(free, found * step, 0.0), np.where(free, step, 0.0)
 
     def _objects(self, near: Float[np.ndarray, "w m"]) -> Float[np.ndarray, "w m"]:
-        """Things that would stick through a wall, in the headings of their corners."""
+        """Objects that would stick through a wall, in the headings of their corners."""
         e = self.cues
         total = np.zeros(near.shape)
         if len(e.object_low) == 0:
@@ -203,7 +203,7 @@ class ChainScorer:
         return np.broadcast_to((PRIOR_WEIGHT * odd / near.shape[1])[:, None], near.shape)
 
     def ceiling_prior(self, ceiling_m: float) -> float:
-        """Cost of a height, and of things that hang from above it."""
+        """Cost of a height, and of objects that hang from above it."""
         odd = float(0.5 * min((np.log(ceiling_m / PRIOR_MEDIAN_M[2]) / PRIOR_LOG_SIGMA[2]) ** 2, 9.0))
         e = self.cues
         highest = max(float(e.object_high[:, 2].max()) if len(e.object_high) else 0.0, e.hung_top_m)

@@ -71,7 +71,7 @@ class LocalResult:
     relation: float | None
     """Share of annotated supporters that were found; None where nobody noted them."""
     aligned: tuple[tuple[str, bool], ...]
-    """For every aligned model its category and whether a thing of it stands there (20 cm, 20 degrees, 20 %)."""
+    """For every aligned model its category and whether an object of it stands there (20 cm, 20 degrees, 20 %)."""
     structure: float
     supported: float
     out_of_bounds: float

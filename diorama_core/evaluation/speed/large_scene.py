@@ -17,7 +17,7 @@ PICTURE = (960, 720)
 
 
 def large_scene(library: ShapeLibrary, count: int, seed: int) -> tuple[Scene, Camera]:
-    """Things in rows on the floor of a hall as large as they need, and a camera high on a wall that sees them all."""
+    """Objects in rows on the floor of a hall as large as they need, and a camera high on a wall that sees them all."""
     rng = np.random.default_rng((seed, count))
     across = int(np.ceil(np.sqrt(count)))
     side = CELL_M * across + 1.5

@@ -16,7 +16,7 @@ from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene, Support
 
 _LEAVES_M = 0.02
-"""A thing dragged this far past the edge of its supporter looks for another."""
+"""An object dragged this far past the edge of its supporter looks for another."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -57,7 +57,7 @@ class FeasibleRecipe:
     support or wall moved, when the scene has a camera."""
     adherence_m: float = 0.0
     """Faces parallel to a wall and nearer than this are set against it, besides those whose support edge says so. Above
-    0 a second run may change a layout: the first can bring things near walls."""
+    0 a second run may change a layout: the first can bring objects near walls."""
     weights: Weights = AS_IT_IS
     """Of the costs in `weights.DEFAULT_COSTS`."""
 

@@ -1,4 +1,4 @@
-"""Where things rest: surfaces of supporters, touching faces, and edges that the graph leaves out."""
+"""Where objects rest: surfaces of supporters, touching faces, and edges that the graph leaves out."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ BOTTOM_FAVOURED = float(np.cos(np.deg2rad(55.0)))
 SMALLEST_SHARE = 0.35
 """A supporter narrower than this share of what it should hold cannot be meant."""
 SMALLEST_CLEARANCE = 0.75
-"""A place with less than this share of a thing's height above it is chosen only where there is no other."""
+"""A place with less than this share of an object's height above it is chosen only where there is no other."""
 NEAR_SURFACE_M = 0.1
 """What misses a surface by more does not rest on it."""
 FLAT = 0.7
@@ -81,12 +81,12 @@ class Surface:
 
 
 def is_soft(item: SceneObject) -> bool:
-    """Whether a thing gives way: it sinks into its neighbours and leans over edges."""
+    """Whether an object gives way: it sinks into its neighbours and leans over edges."""
     return taxonomy.resolve(item.category).category.soft
 
 
 def is_wall_like(surface: Surface | None) -> bool:
-    """Whether things are mounted on a surface rather than placed on it."""
+    """Whether objects are mounted on a surface rather than placed on it."""
     return surface is not None and surface.of_plane and abs(float(surface.normal[2])) < FLAT
 
 
@@ -245,7 +245,7 @@ def wall_faces(
 
 
 def holds(item: SceneObject, edge: Support, supporter: SceneObject, shape: Shape) -> bool:
-    """Whether some surface of a supporter is at least `SMALLEST_SHARE` as wide as the thing on it."""
+    """Whether some surface of a supporter is at least `SMALLEST_SHARE` as wide as the object on it."""
     if edge.relation == "mounted on":
         return True
     widths = sorted(np.sort(item.size_m)[1:] if edge.child_face else item.size_m[:2])

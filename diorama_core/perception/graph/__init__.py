@@ -1,1 +1,1 @@
-"""What holds up what, from where things are: without asking anybody."""
+"""What holds up what, from where objects are: without asking anybody."""

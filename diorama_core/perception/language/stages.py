@@ -17,7 +17,7 @@ from diorama_core.progress import Progress
 
 @dataclass(frozen=True)
 class LanguageRecognition:
-    """Asks for the kinds of things in the photo."""
+    """Asks for the kinds of objects in the photo."""
 
     settings: LmmSettings
 

@@ -1,4 +1,4 @@
-"""Patch features of views: what makes two patches look like the same place of a thing."""
+"""Patch features of views: what makes two patches look like the same place of an object."""
 
 from __future__ import annotations
 
