@@ -88,7 +88,7 @@ def _is_thin(scene: Scene, object_id: str, limit_m: float) -> bool:
 
 
 def _candidates(scene: Scene, library: ShapeLibrary, item: SceneObject) -> list[Support]:
-    """What holds objects of this kind: walls what hangs, the floor furniture, surfaces the rest."""
+    """Usual supporter of a category: walls for mounted objects, the floor for furniture, surfaces otherwise."""
     mount = taxonomy.resolve(item.category).category.mount
     roles = {"wall": ("wall", "floor") if item.category == "door" else ("wall",), "ceiling": ("ceiling",)}
     usual = roles.get(mount, ("floor",))

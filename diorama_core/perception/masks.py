@@ -1,4 +1,4 @@
-"""Masks of the objects that were pointed at, with nothing learned: GrabCut inside boxes.
+"""Masks of objects in boxes without networks: GrabCut inside each box.
 
 Several starts (margins around the box, and an oval inside it) vote; how far they agree is the confidence. Masks that
 the user gave are taken as they are.

@@ -1,4 +1,4 @@
-"""Other readings of one picture: every object in another of its ranked shapes (the paper's Arrangement 1, 2, 3).
+"""Alternative arrangements: every object with another of its ranked shapes (the paper's Arrangement 1, 2, 3).
 
 In one arrangement objects of a set stay a set: what has one shape in the best reading has one shape in every other.
 Arrangements are to look different: of shapes of one form, which the photo's colours would make the same, one is taken.
@@ -17,7 +17,7 @@ from diorama_core.scene.types import Candidate, Pose, Scene, SceneObject
 MIN_PLAUSIBLE = 0.3
 """A shape is offered in another arrangement when it scores at least this share of its set's best."""
 SAME_FORM = 0.89
-"""Shapes as alike as this in form (`EmbeddedSimilarity.form_agreement`) are told apart by their colours only."""
+"""Shapes with a higher agreement of form (`EmbeddedSimilarity.form_agreement`) differ in colour only."""
 
 Alike = Callable[[str, str], float]
 """How alike two shapes are in form, 0 to 1, by their ids."""
@@ -79,7 +79,7 @@ def plausible_shapes(
 
 
 def _sets(scene: Scene) -> list[list[SceneObject]]:
-    """Unlocked objects by kind and shape."""
+    """Unlocked objects grouped by category and shape."""
     found: dict[tuple[str, str], list[SceneObject]] = {}
     for item in scene.objects:
         if not item.locked and item.candidates:
@@ -88,7 +88,7 @@ def _sets(scene: Scene) -> list[list[SceneObject]]:
 
 
 def _swapped(scene: Scene, item: SceneObject, shape_id: str, members: Sequence[SceneObject]) -> Scene:
-    """The object in another shape: in its own fitted pose, or where the shape was not tried on it, on its own spot."""
+    """The object with another shape: in that candidate's fitted pose, or at its own place without one."""
     own = _candidate(item, shape_id)
     if own is not None:
         return edits.swap(scene, item.id, own)

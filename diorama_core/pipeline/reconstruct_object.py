@@ -1,4 +1,4 @@
-"""One object reconstructed anew from the photo: segmented, measured, retrieved and posed in the scene as it is now.
+"""Reconstruction of a single object from the photo: segmented, measured, retrieved and posed in the scene as it is now.
 
 Camera, room and everything else stay. The photo's own artefacts come from the plan, with the project's cached results;
 only what is downstream of the one box is evaluated again. Where nothing differs from what was built, nothing changes.
@@ -34,7 +34,7 @@ class Found:
     support: Support | None
     detected: DetectedObject
     as_built: bool
-    """Whether nothing was said that the build did not know: the scene's object is this one already."""
+    """Whether the correction changes nothing: the scene has this object already."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +73,7 @@ def reconstruct_object(
     cache: Path | None = None,
     progress: Progress | None = None,
 ) -> Found:
-    """Find out what is in a box of the photo.
+    """Reconstruct the object in a box of the photo.
 
     Args:
         scene: as it is now; gives the camera and the room.

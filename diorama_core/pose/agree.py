@@ -12,7 +12,7 @@ _OVERLAP = 0.5
 _TIE = 0.15
 """Two shapes whose log ranks differ by less are as good for one thing of a set: then it takes what the set likes."""
 MAX_LOSS_WITH_DEPTH = 1.0
-"""What agreeing may cost where depth was measured: it shows when objects of a kind are not the same."""
+"""Maximum cost of agreement where depth was measured, since depth shows when objects differ."""
 SETS = with_kin("chair", "office chair", "stool", "armchair", "night stand", "ottoman", "lamp")
 """What comes in sets; books and pictures of one room are different ones."""
 
@@ -23,7 +23,7 @@ def agreed_ranks(
     trust: Sequence[float],
     max_loss: Sequence[float],
 ) -> list[dict[str, float]]:
-    """Each object's log ranks of shapes, mixed with those of objects of its kind.
+    """Each object's log ranks of shapes, mixed with those of objects of its category.
 
     Args:
         categories: Category of every object; unnamed objects stand alone.

@@ -1,4 +1,4 @@
-"""Which way objects face, where the picture leaves it open: costs of a heading, 0 for the expected one.
+"""Priors on headings where the photo is ambiguous: costs of a heading, 0 for the expected one.
 
 Sofas, beds and cabinets turn their backs to a wall and their fronts to the room; chairs face the table they are
 drawn up to; screens face whoever looks at them.
@@ -39,7 +39,7 @@ _TOWARD_CAMERA = {
     "object": 0.6,
     "toy": 0.8,
 }
-"""How much more likely an object shows its front than its back; cupboards and the like are hardly seen from behind."""
+"""Log odds of an object showing its front rather than its back; cupboards are hardly seen from behind."""
 _DRAWN_UP_M = 0.9
 _DRAWN_UP_COFFEE_M = 1.6
 _WALL_REACH_M = 0.7

@@ -37,7 +37,7 @@ _HARD_LIMITS_M: dict[str, tuple[int, float, float]] = {
     "desk": (2, 0.6, 1.1),
     "sofa": (1, 1.2, 3.0),
 }
-"""(axis, least, most) beyond which nobody builds an object of this kind, in metres."""
+"""(axis, least, most) of plausible sizes of a category, in metres."""
 
 
 @dataclass(frozen=True, eq=False)

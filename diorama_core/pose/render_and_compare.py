@@ -47,12 +47,12 @@ _RETRIEVAL_WITH_DEPTH = 0.7
 _MAX_THREADS = 4
 """Objects posed side by side: casting and array work let go of the interpreter, the rest of it does not."""
 _LOSS_FOR_A_SET = 0.02
-"""By how much more an object may disagree with the picture to be as large as the others of its set."""
+"""Additional image error allowed for an object to take the size of its set."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Task:
-    """One object with everything its shapes are posed against."""
+    """One object with the observations for posing its shapes."""
 
     item: DetectedObject
     cuboid: Cuboid

@@ -116,7 +116,7 @@ class TurnSearch:
         )
 
     def _scores(self, poses: PoseBatch) -> Float[np.ndarray, "p"]:
-        """By everything that is known."""
+        """Ranked by all observations."""
         errors, nothing = self.observations.errors(self.appearance.caster, poses), np.zeros(len(poses))
         usual = self.observations.log_scores(errors, poses, nothing, nothing, self.limits)
         more_habit = _HABIT_STRENGTH * self.observations.facing.cost(poses.R)

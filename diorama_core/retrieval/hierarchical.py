@@ -34,14 +34,14 @@ _SIMILAR_LOG_SIZE_OF_SEATS = 0.8
 """Seats in one room are usually of a set, so that different sizes are rather errors of measurement."""
 _SEATS = with_kin("chair", "office chair", "stool", "armchair")
 _UNNAMED_OUTLINE, _UNNAMED_SIZE = 3.0, 0.5
-"""How much more the outline, and how much less the guessed size, of an object without a name counts."""
+"""Increased weight of the outline, and reduced weight of the guessed size, of an object without a name."""
 _OWN_EVIDENCE = 0.4
 _MIN_SIMILARITY = 0.25
 _GUESSED_SIZE = 0.5
-"""How much less the size of an object counts of which nothing is seen: it is what such objects usually have."""
+"""Reduced weight of a size that was not observed but taken from the category's prior."""
 _MIN_VOICE = 0.1
 _OF_WORDS = 0.12
-"""How much less a shape scores to which none of the words fit that describe the object beside its kind."""
+"""Penalty of a shape that matches none of the label's describing words."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class HierarchicalRetrieval:
 
     library: ShapeLibrary
     keep: int = 8
-    """How many shapes are kept for an object."""
+    """Number of candidates per object."""
     cells: int = 36
     """Resolution of the silhouettes, both ways."""
     size_weight: float = 0.3
@@ -147,7 +147,7 @@ class HierarchicalRetrieval:
         return float((fit.max() + of_appearances * like) / (of_size + of_outline + of_appearances))
 
     def _weights(self, seen: Observed, visible: float, named: bool) -> tuple[float, float, float]:
-        """How much size, outline and looks say about an object of which so much is seen."""
+        """Weights of size, outline and appearance for an object with this visibility."""
         return (
             self.size_weight * (1 - _GUESSED_SIZE * (1 - visible)) * (1.0 if named else _UNNAMED_SIZE),
             self.silhouette_weight * (0.25 + 0.75 * seen.mask_trust) * (1.0 if named else _UNNAMED_OUTLINE),

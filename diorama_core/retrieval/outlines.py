@@ -13,7 +13,7 @@ _GAP_SHARE = 0.12
 """Of an object's longer side: wider gaps stay open."""
 _MAX_OPEN = 0.5
 _DOUBTFUL = 0.5
-"""Trust in a mask below which its gaps say nothing."""
+"""Mask confidence below which its gaps are ignored."""
 
 
 def filled(mask: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:

@@ -71,7 +71,7 @@ def test_an_uploaded_model_is_clicked_into_the_room(editor: EditorPage, tmp_path
     trimesh.creation.box((1.8, 0.6, 0.3)).export(tmp_path / "bookcase.glb")
     editor.tab("Library")
     editor.upload("Add a model file", tmp_path / "bookcase.glb")
-    expect(editor.page.get_by_text("Click where it should stand")).to_be_visible(timeout=LEARN_MS)
+    expect(editor.page.get_by_text("Click where to place it")).to_be_visible(timeout=LEARN_MS)
     editor.click_world(np.array([1.1, 0.3, 0.0]))
     editor.until(lambda: len(scene(editor).objects) == 6, "placed")
     placed = scene(editor).object(editor.selection[0])

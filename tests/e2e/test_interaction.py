@@ -137,14 +137,14 @@ def test_a_shape_is_clicked_onto_the_table_and_lengths_are_measured_and_rescaled
     editor.tab("Library")
     tile = editor.page.locator(".dio .tile:visible", has_text="lamp a")
     tile.get_by_role("button", name="Place").click()
-    expect(editor.page.get_by_text("Click where it should stand")).to_be_visible()
+    expect(editor.page.get_by_text("Click where to place it")).to_be_visible()
     table = scene(editor).object("table_1")
     editor.click_world(table.pose.apply(np.array([0.2, 0.4, 0.37])))
     editor.until(lambda: len(scene(editor).objects) == 6, "placed")
     new = scene(editor).object(editor.selection[0])
     assert scene(editor).support_of(new.id).parent == "table_1"
     np.testing.assert_allclose(new.pose.position[:2], table.pose.apply(np.array([0.2, 0.4, 0.0]))[:2], atol=0.03)
-    expect(editor.page.get_by_text("Click where it should stand")).to_have_count(0)
+    expect(editor.page.get_by_text("Click where to place it")).to_have_count(0)
     editor.page.keyboard.press("m")
     expect(editor.page.get_by_text("Click the first point")).to_be_visible()
     floor = scene(editor).architecture.floor

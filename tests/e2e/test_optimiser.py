@@ -33,7 +33,7 @@ def test_a_cost_left_out_is_not_followed_and_every_cost_has_a_curve(editor: Edit
     editor.page.get_by_text("Weights", exact=True).click()
     touching = editor.page.locator(".mantine-Flex-root", has_text="Touching").locator("input[type=text]")
     expect(touching).to_be_visible()
-    expect(editor.page.get_by_text("As far away", exact=True)).not_to_be_visible()
+    expect(editor.page.get_by_text("Distance", exact=True)).not_to_be_visible()
     touching.fill("0")
     touching.press("Tab")
     expect(editor.button("Reset weights")).to_be_enabled()
@@ -45,7 +45,7 @@ def test_a_cost_left_out_is_not_followed_and_every_cost_has_a_curve(editor: Edit
     assert {"align", "heading", "place", "neighbours", "volume", "collision"} == set(run.costs)
     editor.page.wait_for_function("!!document.querySelector('.u-legend')")
     legend = editor.page.locator(".u-legend").first
-    for name in ("Upright", "Facing", "Neighbours", "Apart"):
+    for name in ("Upright", "Facing", "Neighbours", "Separation"):
         expect(legend).to_contain_text(name)
     expect(editor.page.get_by_text("Moved, mean")).to_be_visible()
     expect(editor.page.get_by_text("Overlapping pairs")).to_be_visible()

@@ -98,7 +98,7 @@ def test_files_dropped_on_the_view_go_where_they_belong(editor: EditorPage, tmp_
     trimesh.creation.box((0.4, 0.5, 0.9)).export(tmp_path / "cupboard.glb")
     drop(editor, tmp_path / "cupboard.glb", "model/gltf-binary")
     editor.until(lambda: isinstance(editor.client.doing, Placing), "it is read", seconds=90)
-    expect(editor.page.get_by_text("Click where it should stand")).to_be_visible(timeout=LEARN_MS)
+    expect(editor.page.get_by_text("Click where to place it")).to_be_visible(timeout=LEARN_MS)
     editor.click_world(np.array([0.9, 0.4, 0.0]))
     editor.until(lambda: len(session.scene.objects) == 6, "placed")
     photo = session.project.folder / "photo.jpg"

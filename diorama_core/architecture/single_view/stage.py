@@ -37,7 +37,7 @@ from diorama_core.scene.types import Architecture, Plane
 CEILINGS_M = np.geomspace(2.1, MAX_CEILING_M, 28)
 FLOOR_CONFIDENCE = 0.6
 LINES = 14
-"""So many of the longest lines along an axis are tried as feet of walls."""
+"""Number of longest lines per axis that are tried as feet of walls."""
 SURE = 0.4
 MAX_PUSH_M, MAX_SURE_PUSH_M = 2.0, 1.0
 """Walls give way to objects by at most this, those that are clearly seen by less; what is farther out is a mistake."""
@@ -47,7 +47,7 @@ MEASURED = 0.95
 MIN_VISIBLE_SHARE = 0.004
 """A ceiling seen in less of the picture than this is left out."""
 CEILING_STEP = 8
-"""Every so many pixels it is looked whether a ceiling shows."""
+"""Pixel stride of the ceiling visibility test."""
 
 
 @dataclass(frozen=True)
@@ -117,7 +117,7 @@ def candidate_walls(cues: RoomCues, box: Float[np.ndarray, "4"]) -> PhotoWalls:
 
 
 def _distances_of_lines(cues: RoomCues, normal: Float[np.ndarray, "2"], axis: int) -> Float[np.ndarray, "n"]:
-    """How far away a wall is whose foot is one of the longest lines along an axis."""
+    """Distances of walls whose foot is one of the longest lines along an axis."""
     rays = cues.segment_rays[cues.segment_axes == axis]
     rays = rays[rays[:, 2] < -1e-3][:LINES]
     reach = cues.camera.position[2] / -rays[:, 2]
@@ -150,7 +150,7 @@ def _as_candidate(walls: PhotoWalls, k: int, sure: float = 0.0) -> WallCandidate
 
 
 def _pushed(wall: WallCandidate, first: float, last: float, cues: RoomCues, *, sure: bool) -> WallCandidate:
-    """The wall moved outward until no believable object within its headings sticks through it."""
+    """The wall moved outward until no reliable object within its headings protrudes through it."""
     eye = cues.camera.position[:2]
     out = 0.0
     for low, high in zip(cues.object_low, cues.object_high, strict=True):

@@ -1,8 +1,8 @@
-"""The chain of walls that a photo supports best, boxes or not: dynamic programming over the level view's headings.
+"""The best chain of walls for a photo, by dynamic programming over the headings of the level view.
 
 Candidates are upright planes of a few directions at many distances. In a heading each costs what it makes of the
 column: floor-coloured wall, lines that stand out of their surface, missing edges at its foot and top, objects that
-would stick through it. Going over from one wall to another costs a corner, less where an upright edge is seen.
+would stick through it. A transition between walls costs a corner, less at a visible vertical edge.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ UNSURE_SHARE = 0.2
 CORNER_COST, PROTRUDING_COST, JUMP_COST = 0.05, 0.2, 0.3
 """Of a corner that the room folds in at, of one that stands into the room, and of a wall that ends in the open."""
 MIN_SHARE = 0.3
-"""However clear the upright edge, going over costs at least this share: pictures are full of upright edges."""
+"""Minimum share of the corner cost at a clear vertical edge, since photos have many vertical edges."""
 NEAREST_M, FARTHEST_M = 0.5, 12.0
 DISTANCES = 32
 FINE = np.linspace(-0.08, 0.08, 9)
@@ -42,7 +42,7 @@ CORNER_BINS = 1.5
 ENOUGH_EDGE, EDGE_TRUST = 0.25, 0.7
 """Edges free to be seen over so many picture diagonals can be relied on; and how much they count for confidence."""
 ENOUGH_COLOUR, COLOUR_TRUST = 0.004, 0.45
-"""Floor and wall that show on so much of the picture can be told apart; and how much that counts."""
+"""Visible share of floor and wall at which their colours are distinguishable, and its weight."""
 GRAZING = 0.06
 """Walls are not looked for where they are seen more aslant than this, nor beyond"""
 REACH_M = 15.0

@@ -1,4 +1,4 @@
-"""Each plane's own picture: the photo rectified onto it, completed where something hides it or it is out of view."""
+"""Plane textures: the photo rectified onto each plane, completed where occluded or out of view."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from diorama_core.scene.types import Architecture, Camera, Plane
 MAX_SIDE_PX = 512
 PIXELS_PER_M = 150.0
 MIN_SEEN_SHARE = 0.06
-"""A plane seen in less of its area keeps its plain colour."""
+"""Minimum visible share of a plane's area for a texture; below it the plane keeps its plain colour."""
 MIN_SEEN_PX = 400
 MIN_FLOOR_M2 = 0.15
 """Except a floor, of which so much is enough to continue its material from."""

@@ -38,9 +38,9 @@ RIDING = 0.05
 
 @dataclass(frozen=True)
 class FeasibleRecipe:
-    """Support is exact by construction; what remains moves as little as possible until nothing overlaps.
+    """Support is exact by construction; the remaining freedom is used for minimal moves until nothing overlaps.
 
-    With a camera, moves that would be seen in the photo cost more than moves along the viewing ray.
+    With a camera, moves visible in the photo cost more than moves along the viewing ray.
     """
 
     library: ShapeLibrary

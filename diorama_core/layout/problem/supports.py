@@ -1,4 +1,4 @@
-"""Where objects rest: surfaces of supporters, touching faces, and edges that the graph leaves out."""
+"""Supports for the layout: surfaces of supporters, contact faces, and edges missing in the graph."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class Surface:
 
 
 def is_soft(item: SceneObject) -> bool:
-    """Whether an object gives way: it sinks into its neighbours and leans over edges."""
+    """Whether an object is soft: it sinks into its neighbours and leans over edges."""
     return taxonomy.resolve(item.category).category.soft
 
 
@@ -261,7 +261,7 @@ def complete_edges(
 ) -> tuple[list[Support | None], tuple[str, ...]]:
     """One support edge per object where there is anything to rest on: the graph's own, or the most plausible one.
 
-    Edges that close a cycle or lead nowhere are replaced. The reasons say what was assumed.
+    Edges that close a cycle or lead nowhere are replaced. The reasons list the assumptions.
     """
     reasons: list[str] = []
     edges: dict[str, Support | None] = {}
@@ -313,7 +313,7 @@ def _most_plausible(
     shapes: Sequence[Shape],
     edges: dict[str, Support | None],
 ) -> Support | None:
-    """The supporter whose surface the observed pose agrees with best; None when there is nothing to rest on."""
+    """The supporter whose surface agrees best with the observed pose; None when there is none."""
     mount = taxonomy.resolve(item.category).category.mount
     options: list[tuple[float, str, Support]] = []
     for plane in scene.architecture.planes:

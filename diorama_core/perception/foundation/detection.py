@@ -45,9 +45,9 @@ class OpenVocabularyDetection:
     """A box that lies within another of its class by more than this share of itself goes."""
 
     def detect(self, photo: Photo, words: tuple[str, ...], progress: Progress) -> tuple[LabelledBox, ...]:
-        """Boxes of everything that the words name (a built-in indoor vocabulary without words), best first.
+        """Boxes of all objects that match the words (a built-in indoor vocabulary without words), best first.
 
-        Walls, floor and ceiling are the room's and never come back as objects.
+        Walls, floor and ceiling are never returned as objects.
         """
         asked = tuple(dict.fromkeys(w for w in words or INDOOR_WORDS if w.lower() not in ARCHITECTURE_WORDS))
         progress.report(0.0, f"Looking for {len(asked)} kinds of things")
@@ -66,7 +66,7 @@ class EverydayDetection:
     part_share: float = 0.8
 
     def detect(self, photo: Photo, words: tuple[str, ...], progress: Progress) -> tuple[LabelledBox, ...]:
-        """Boxes of the everyday objects in the photo, best first; `words` restrict nothing."""
+        """Boxes of everyday objects in the photo, best first; `words` is ignored."""
         progress.report(0.0, "Looking for furniture")
         found = self.detector.detect(photo.rgb, self.threshold)
         inside = np.array([COCO_CLASSES[k] in _IN_ROOMS for k in found.labels], dtype=bool)

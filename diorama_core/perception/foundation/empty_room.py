@@ -23,7 +23,7 @@ DILATION_PX = 10
 """Margin of what is painted out, at a picture of `USUAL_SIDE_PX`: shadows and rims go too."""
 USUAL_SIDE_PX = 1008
 MAX_FOREGROUND = 0.9
-"""A foreground that covers more of the picture than this has taken the room itself for an object."""
+"""A foreground larger than this share of the photo is rejected as a false detection of the room."""
 MIN_SHARED_PX = 200
 """Pixels of the room that both depths must have before one is scaled to the other."""
 

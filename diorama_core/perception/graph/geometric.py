@@ -1,4 +1,4 @@
-"""The scene graph without a language model: every way to hold an object up competes by cost.
+"""The support graph without a language model: every possible support of an object competes by cost.
 
 Costs are negative logarithms of likelihoods. They weigh where the object ends and what is seen just below it in the
 photo, the gap between its underside and what could carry it, whether it is above that, how near a wall it is, what

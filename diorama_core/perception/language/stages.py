@@ -17,7 +17,7 @@ from diorama_core.progress import Progress
 
 @dataclass(frozen=True)
 class LanguageRecognition:
-    """Asks for the kinds of objects in the photo."""
+    """Asks the model for the categories of objects in the photo."""
 
     settings: LmmSettings
 

@@ -28,7 +28,7 @@ def panel(page: Page, client, asked) -> Networks:
 
 
 def test_licences_are_accepted_before_anything_is_fetched(page, panel, asked) -> None:
-    assert "to fetch" in page.html
+    assert "to download" in page.html
     for network in networks_of("lite"):
         assert network.title in page.html
     assert page.field(GET).disabled

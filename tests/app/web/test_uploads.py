@@ -57,7 +57,7 @@ def test_more_than_was_announced_ends_the_upload(running: Running) -> None:
     transfer = page.begin_upload(button, "small.png", 10, 2)
     for i in range(20):
         page.send_part(button, transfer, i, bytes(4_000_000))
-    page.wait_for(lambda: any("more came than was announced" in n for n in page.notices))
+    page.wait_for(lambda: any("more data arrived than announced" in n for n in page.notices))
     assert not settled(running)
     page.close()
 
