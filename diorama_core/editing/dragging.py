@@ -76,13 +76,13 @@ class Slide:
 
     @cached_property
     def solver(self) -> DragSolver:
-        """Keeps it out of walls and other objects."""
+        """Prevents collisions with walls and other objects."""
         return DragSolver.prepare(self.scene, self.library, self.item.id)
 
     def to(
         self, eye: Float[np.ndarray, "3"], direction: Float[np.ndarray, "3"], *, snap: bool, slide: bool
     ) -> tuple[Scene, Mapping[str, Pose]]:
-        """Where everything is with the hand on this ray.
+        """The scene with the drag at this pointer ray.
 
         Args:
             eye: where the person looks from, world.

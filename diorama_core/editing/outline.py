@@ -1,4 +1,4 @@
-"""An outline put right by clicks: what is part of the object, what is not (GrabCut with certain seeds)."""
+"""Mask correction by clicks on object and background (GrabCut with fixed seeds)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where objects go: the surface under a ray, sitting down on a support, against a wall, a free spot.
+"""Placement of objects: the surface under a ray, resting on a support, against a wall, a free spot.
 
 Pure geometry over the scene; what is dragged, clicked in or dropped asks here.
 """

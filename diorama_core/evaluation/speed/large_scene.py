@@ -1,4 +1,4 @@
-"""A hall of any number of objects, none hidden: what a build costs as objects grow in number and nothing else does."""
+"""A large scene with any number of visible objects: build cost as a function of the number of objects."""
 
 from __future__ import annotations
 
