@@ -1,1 +1,1 @@
-"""What a person touches: the command line and the browser editor."""
+"""The user interfaces: the command line and the browser editor."""

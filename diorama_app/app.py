@@ -1,4 +1,4 @@
-"""The editor: a room, its panels, its gestures and its commands, put together in one place."""
+"""The editor: assembles a session, its panels, gestures and commands."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ RIGHT_TABS = ("Object", "Library", "Export")
 
 
 class Editor:
-    """Everything behind one page."""
+    """The session and everything that serves its pages."""
 
     def __init__(
         self, server: viser.ViserServer, library: ShapeLibrary, projects_dir: Path, *, low_graphics: bool
@@ -135,7 +135,7 @@ class Editor:
         session.refresh()
 
     def refuse_upload(self, client_id: int, line: str) -> None:
-        """Tell a person why a file was not taken. May be called from any thread."""
+        """Tell the user why an upload was refused. May be called from any thread."""
         self.session.ui_thread.post(
             lambda: self.session.notice(client_id, line, "bad"), client_id=client_id, key="upload refused"
         )
@@ -145,7 +145,7 @@ class Editor:
         self.session.close()
 
     def _lay_out(self, client: Client) -> None:
-        """Make the panels of somebody who came."""
+        """Create the panels of a newly connected client."""
         gui = client.viser_client.gui
         gui.main_panel.dock_left()
         gui.main_panel.set_width(LEFT_WIDTH_PX)
@@ -206,7 +206,7 @@ class Editor:
         threading.Thread(target=self._recall, args=(viser_client,), daemon=True, name="settings").start()
 
     def _recall(self, viser_client: viser.ClientHandle) -> None:
-        """Let somebody work as they did the last time, unless they were quicker to choose."""
+        """Restore the client's stored preferences, unless it has changed them already."""
         retained = remembered(viser_client)
 
         def take() -> None:

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Running:
-    """A server that runs."""
+    """A running server."""
 
     server: viser.ViserServer
     editor: Editor
@@ -41,7 +41,7 @@ class Running:
 
     @property
     def session(self) -> EditorSession:
-        """The open room."""
+        """The open session."""
         return self.editor.session
 
     @property
@@ -74,7 +74,7 @@ def start(
         host: address to listen on; loopback unless asked otherwise.
         port: 0 lets the system choose.
         low_graphics: no shadows, no environment map.
-        token: visitors must bring it; where other machines can reach the server and none is given, one is made.
+        token: access token of clients; generated when other machines can reach the server and none is given.
         library: where shapes come from, or its name.
 
     Raises:

@@ -56,7 +56,7 @@ class Reconstruction:
     layout: LayoutReport | None = None
     """Report of the last layout run; None where none ran."""
     warnings: tuple[str, ...] = ()
-    """Remarks about what was given."""
+    """Warnings about the inputs."""
     library_name: str | None = None
     """Name that opens the library again; None where a library itself was given."""
     project: Project | None = None
@@ -130,10 +130,10 @@ def build(
             `lambda stages: dataclasses.replace(stages, camera=MyCamera())`.
         output: project folder to build in. Stage results are cached there, and an interrupted build resumes.
         progress: reports and cancellation.
-        warn: receives each remark about what was given; logs it by default.
+        warn: receives each warning about the inputs; logs it by default.
 
     Raises:
-        InputError: something given cannot be used.
+        InputError: an input cannot be used.
         LibraryError: the library does not exist.
         UnavailableError: the foundation profile lacks a network.
         ProjectError: `output` cannot be written, or holds something else.
@@ -177,8 +177,8 @@ def build_from_text(
     of the library's shapes and rendered.
 
     Args:
-        prompt: what the room is and what is in it, in plain English.
-        seed: another number gives another room.
+        prompt: description of the room and its furniture, in English.
+        seed: random seed of the room.
         profile, recipe, library, stages, output, progress, warn: as for `build`.
 
     Raises:

@@ -45,7 +45,7 @@ class Photo(ArrayValue):
 
 @dataclass(frozen=True)
 class LabelledBox:
-    """A thing that a person or a detector pointed at."""
+    """An object marked by the user or found by a detector."""
 
     box: Box
     category: str
@@ -73,9 +73,9 @@ class Inputs(ArrayValue):
     depth_source: DepthSource = DepthSource.MEASURED
     """Whether a sensor measured the depth or a network predicted it."""
     camera_attitude: CameraAttitude | None = field(default=None, metadata={"absent when none": True})
-    """How the camera was held, where somebody said it; found from the photo otherwise."""
+    """Given camera attitude; None where it is estimated from the photo."""
     camera_height_m: float | None = field(default=None, metadata={"absent when none": True})
-    """How high above the floor the camera was, where somebody said it or any length of the room."""
+    """Given camera height above the floor, also from a known length; None where it is estimated."""
 
     @property
     def of_any_camera(self) -> Inputs:
@@ -85,7 +85,7 @@ class Inputs(ArrayValue):
 
 @dataclass(frozen=True, eq=False)
 class CameraHypothesis(ArrayValue):
-    """One reading of how the camera is held."""
+    """One camera hypothesis."""
 
     intrinsics: Intrinsics
     R_world_camera: Float[np.ndarray, "3 3"]
@@ -184,7 +184,7 @@ class DepthPrediction(ArrayValue):
 
 @dataclass(frozen=True)
 class SceneGraph:
-    """What holds up what, and which way things face, as far as it is known."""
+    """The support graph, and known facing directions of objects."""
 
     supports: tuple[Support, ...]
     """One edge per object; parents as in `ObjectGeometry.supports`."""
@@ -241,4 +241,4 @@ class LayoutReport:
     after: dict[str, float]
     seconds: float
     reasons: tuple[str, ...] = field(default=())
-    """Named reasons where a wish could not be met (an object larger than its support, a cycle)."""
+    """Reasons why a constraint could not be met (an object larger than its support, a cycle)."""

@@ -28,7 +28,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         return int(arguments.run(arguments) or 0)
     except KeyboardInterrupt:
-        print("diorama: stopped; finished stages are kept and the next run resumes there", file=sys.stderr)
+        print("diorama: stopped; finished stages are cached and the next run resumes there", file=sys.stderr)
         return 130
     except Cancelled as error:
         print(f"diorama: {error}", file=sys.stderr)

@@ -22,14 +22,14 @@ class _Bench(Protocol):
 
 
 TABLES = (
-    ("rooms", 60, "The rooms themselves: valid, varied, and worth a picture."),
-    ("architecture", 20, "The empty room: planes against the truth."),
-    ("retrieval", 20, "Shapes for objects, offered and never offered."),
-    ("relations", 18, "What holds up what, from geometry alone."),
+    ("rooms", 60, "The generated rooms themselves: validity, variety, pictures."),
+    ("architecture", 20, "Architecture: planes compared with ground truth."),
+    ("retrieval", 20, "Retrieval of shapes that are, and are not, in the library."),
+    ("relations", 18, "Supports, from geometry alone."),
     ("pose", 6, "Poses with true and estimated depth, groups, ablations."),
-    ("layout", 40, "The layout recipes against each other."),
-    ("system", 20, "Pictures to scenes, end to end."),
-    ("speed", 1, "Time and memory against size, and against the committed figures."),
+    ("layout", 40, "The layout recipes compared with each other."),
+    ("system", 20, "Images to scenes, end to end."),
+    ("speed", 1, "Time and memory by scene size, compared with the committed figures."),
 )
 
 
@@ -43,31 +43,39 @@ def add_bench(commands: Any) -> None:
     for name, scenes, summary in TABLES:
         one = command(tables, name, runs.get(name, _bench_rooms), summary, f"diorama bench {name} --scenes {scenes}")
         one.add_argument("--scenes", type=int, default=scenes, metavar="N", help="rooms (default: %(default)s)")
-        one.add_argument("--seed", type=int, default=0, metavar="S", help="of the rooms (default: %(default)s)")
+        one.add_argument("--seed", type=int, default=0, metavar="S", help="seed of the rooms (default: %(default)s)")
         one.add_argument("--json", type=Path, metavar="FILE", help="write the results as JSON too")
         one.add_argument(
-            "--markdown", type=Path, metavar="FILE", help="write the tables as Markdown, or into their place in it"
+            "--markdown", type=Path, metavar="FILE", help="write the tables as Markdown, or replace them in a document"
         )
         if name == "rooms":
             one.add_argument("--sheet", type=Path, metavar="FILE", help="write a sheet of all pictures (PNG or JPEG)")
         if name in ("system", "architecture"):
             one.add_argument(
-                "--seeds", metavar="S,S", help="several series of rooms; development or reporting name the usual ones"
+                "--seeds", metavar="S,S", help="seeds of several series, or a named series: development, reporting"
             )
         if name == "system":
-            one.add_argument("--given", default="depth,photo", metavar="A,B", help="rows (default: %(default)s)")
-            one.add_argument("--substitute", default="", metavar="A,B+C", help="rows with the truth in place of inputs")
+            one.add_argument(
+                "--given", default="depth,photo", metavar="A,B", help="inputs to compare (default: %(default)s)"
+            )
+            one.add_argument("--substitute", default="", metavar="A,B+C", help="add rows with ground-truth inputs")
             one.add_argument("--physics", action="store_true", help="measure drift under gravity too (needs MuJoCo)")
             one.add_argument(
-                "--dataset", choices=("ssdb", "scan2cad", "sunrgbd"), help="other people's pictures instead"
+                "--dataset", choices=("ssdb", "scan2cad", "sunrgbd"), help="a public dataset instead of generated rooms"
             )
             one.add_argument("--path", type=Path, metavar="DIR", help="where the dataset's local copy is")
-            one.add_argument("--offered", action="store_true", help="search the shapes that stand in the rooms too")
-            one.add_argument("--pictures", type=Path, metavar="DIR", help="write every photo beside its two results")
+            one.add_argument("--offered", action="store_true", help="add the rooms' own shapes to the searched library")
+            one.add_argument("--pictures", type=Path, metavar="DIR", help="write every photo next to its two results")
         if name == "speed":
-            one.add_argument("--keep", type=Path, metavar="FILE", help="write the figures as a regression file")
+            one.add_argument("--keep", type=Path, metavar="FILE", help="write the figures to a regression file")
             one.add_argument("--against", type=Path, metavar="FILE", help="figures to compare with (default: built in)")
-            one.add_argument("--tolerance", type=float, default=1.6, metavar="T", help="times (default: %(default)s)")
+            one.add_argument(
+                "--tolerance",
+                type=float,
+                default=1.6,
+                metavar="T",
+                help="allowed slowdown as a factor (default: %(default)s)",
+            )
             one.add_argument("--quick", action="store_true", help="small quantities only, about a minute")
     _add_photos(tables)
 
@@ -96,7 +104,7 @@ def _bench_layout(a: argparse.Namespace) -> None:
 
 
 def _bench_rooms(a: argparse.Namespace) -> None:
-    """Architecture, retrieval, relations or pose on rendered rooms."""
+    """Run the architecture, retrieval, relations or pose benchmark on rendered rooms."""
     from diorama_core.evaluation.benchmarks import architecture as architecture_bench
     from diorama_core.evaluation.benchmarks import pose as pose_bench
     from diorama_core.evaluation.benchmarks import relations as relations_bench
@@ -150,7 +158,7 @@ def _bench_system(a: argparse.Namespace) -> None:
 
 
 def _bench_dataset(a: argparse.Namespace) -> None:
-    """The whole system on a local copy of other people's pictures."""
+    """Run the system benchmark on a local copy of a public dataset."""
     from diorama_core.evaluation.benchmarks import local_datasets as local_bench
     from diorama_core.library.catalogue import built_in_library
 
@@ -243,7 +251,7 @@ def _write(path: Path | None, document: dict[str, object]) -> None:
 
 
 def _write_text(a: argparse.Namespace, text: str) -> None:
-    """Tables into a file: between `<!-- bench NAME -->` and `<!-- end NAME -->` where it has them, else whole."""
+    """Write tables into a file: between `<!-- bench NAME -->` and `<!-- end NAME -->` where it has them, else whole."""
     from diorama_core.io.atomic import write_atomically
 
     if not a.markdown:

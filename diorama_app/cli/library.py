@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
 def add_library(commands: Any) -> None:
     """Declare `diorama library`."""
-    p: argparse.ArgumentParser = commands.add_parser("library", help="The shapes that scenes are made of.")
+    p: argparse.ArgumentParser = commands.add_parser("library", help="Manage the shape libraries.")
     actions = p.add_subparsers(dest="action", required=True, metavar="build|add|list|search|info|sheet")
     build = command(
         actions, "build", _library_build, "Prepare a library's shapes once.", "diorama library build --library mine"
     )
     _add_library_name(build)
     build.add_argument("--parts", action="store_true", help="also the convex parts that keep shapes apart (minutes)")
-    build.add_argument("--views", action="store_true", help="also what retrieval and a search by picture compare")
+    build.add_argument("--views", action="store_true", help="also the image features for retrieval and image search")
     build.add_argument("--templates", action="store_true", help="also all pose templates, some 2 MB a shape")
     build.add_argument("--workers", type=int, metavar="N", help="processes (default: all cores)")
     build.add_argument("--ray", metavar="ADDRESS", help="work on a Ray cluster: auto, HOST:PORT, or local to start one")
@@ -43,8 +43,8 @@ def add_library(commands: Any) -> None:
         "Find shapes by words, a picture, or both.",
         'diorama library search "wooden armchair"',
     )
-    search.add_argument("text", metavar="TEXT", nargs="?", default="", help="what it is; may be left out with --image")
-    search.add_argument("--image", type=Path, metavar="FILE", help="a picture of the thing, best cut out")
+    search.add_argument("text", metavar="TEXT", nargs="?", default="", help="what to find; optional with --image")
+    search.add_argument("--image", type=Path, metavar="FILE", help="a picture of the object, best cut out")
     _add_library_name(search)
     search.add_argument("-k", type=int, default=10, help="how many (default: %(default)s)")
     search.add_argument("--json", action="store_true")

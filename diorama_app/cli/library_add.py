@@ -39,7 +39,7 @@ def add_adding(actions: Any) -> None:
     p.add_argument("--up", type=axis, metavar="AXIS", help="axis of the files that points up: x, y, z, or --up=-z")
     p.add_argument("--front", type=axis, metavar="AXIS", help="axis that the front looks along: z, or --front=-y")
     p.add_argument("--unit", type=unit, metavar="m|cm|mm|in|ft|METRES", help="unit of the files (default: guessed)")
-    p.add_argument("--category", help="what all of them are, such as chair (default: guessed)")
+    p.add_argument("--category", help="category of all models, such as chair (default: guessed)")
     p.add_argument("--table", type=Path, metavar="CSV", help="columns file and any of up,front,unit,category,caption")
     p.add_argument("--dataset", choices=DATASETS, default="auto", help="layout of the folder (default: %(default)s)")
     p.add_argument("--ray", metavar="ADDRESS", help="work on a Ray cluster: auto, HOST:PORT, or local to start one")
@@ -47,7 +47,7 @@ def add_adding(actions: Any) -> None:
     p.add_argument("--json", action="store_true", help="print the report as JSON")
     p.epilog = f"{p.epilog}\n\nWhat was guessed is shown by 'diorama library info ID --library NAME'."
     info = command(
-        actions, "info", _info, "Show what is known of a shape.", "diorama library info chair --library mine"
+        actions, "info", _info, "Show the properties of a shape.", "diorama library info chair --library mine"
     )
     info.add_argument("id", metavar="ID")
     info.add_argument("--library", default="built-in", metavar="NAME", help="(default: %(default)s)")

@@ -1,4 +1,4 @@
-"""What this machine has and lacks for Diorama."""
+"""Checks of what Diorama needs on this machine."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ OPTIONAL_PACKAGES = {"mujoco": "mujoco"}
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing that was looked at."""
+    """The result of one check."""
 
     name: str
     ok: bool
@@ -40,7 +40,7 @@ class Finding:
 
 
 def examine() -> tuple[Finding, ...]:
-    """Everything Diorama depends on, in the order a person would mend it."""
+    """Check everything Diorama depends on, in the order in which to fix it."""
     version = ".".join(map(str, sys.version_info[:3]))
     return (
         Finding("python", sys.version_info >= (3, 11), f"{version} (3.11 or later)"),
@@ -97,7 +97,7 @@ def _accelerator() -> Finding:
 
     if torch.cuda.is_available():
         return Finding("accelerator", True, torch.cuda.get_device_name(0), needed=False)
-    return Finding("accelerator", False, "none found; none is needed", needed=False)
+    return Finding("accelerator", False, "none found; optional", needed=False)
 
 
 def _browser() -> Finding:

@@ -20,19 +20,19 @@ def add_models(commands: Any) -> None:
     """Declare `diorama models`."""
     p: argparse.ArgumentParser = commands.add_parser("models", help="Networks that Diorama can use, all optional.")
     actions = p.add_subparsers(dest="action", required=True, metavar="list|pull|verify|path")
-    lists = command(actions, "list", _list, "List the networks and which are here.", "diorama models list")
+    lists = command(actions, "list", _list, "List the networks and which are installed.", "diorama models list")
     lists.add_argument("--json", action="store_true")
-    pulls = command(actions, "pull", _pull, "Fetch networks.", "diorama models pull lite")
+    pulls = command(actions, "pull", _pull, "Download networks.", "diorama models pull lite")
     pulls.add_argument(
-        "what", nargs="*", default=None, metavar="lite|default|paper|ID", help="sets or networks (default: lite)"
+        "what", nargs="*", default=None, metavar="lite|default|paper|ID", help="sets or single networks (default: lite)"
     )
     pulls.add_argument("--yes", action="store_true", help="accept the licences without asking")
     pulls.add_argument(
-        "--from", dest="source", type=Path, metavar="FOLDER", help="take files that were fetched elsewhere; no network"
+        "--from", dest="source", type=Path, metavar="FOLDER", help="use files downloaded elsewhere; works offline"
     )
-    verify = command(actions, "verify", _verify, "Read every byte and compare.", "diorama models verify")
+    verify = command(actions, "verify", _verify, "Verify the checksums of installed networks.", "diorama models verify")
     verify.add_argument("--json", action="store_true")
-    command(actions, "path", _path, "Where the networks lie.", "diorama models path")
+    command(actions, "path", _path, "Print the folder of the networks.", "diorama models path")
 
 
 def _list(a: argparse.Namespace) -> None:
@@ -63,7 +63,7 @@ def _list(a: argparse.Namespace) -> None:
             f"{mark:<5} {row['id']:<17} {row['role']:<15} {row['size_mb']:>5} MB  {row['licence']:<13}"
             f" {', '.join(row['sets']):<22} {row['title']}{unsure}"
         )
-    print("* no published checksum: later downloads are held to the first one's")
+    print("* no published checksum: later downloads must match the first")
 
 
 def _pull(a: argparse.Namespace) -> None:

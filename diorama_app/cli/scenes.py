@@ -83,7 +83,13 @@ def add_build(commands: Any) -> None:
     )
     p.add_argument("--masks", type=Path, metavar="FILE", help="PNG with one colour or id per object, black is none")
     p.add_argument("--profile", choices=PROFILES, default="auto", help="which networks to use (default: %(default)s)")
-    p.add_argument("--arrangements", type=int, default=1, metavar="N", help="scenes with other shapes to write beside")
+    p.add_argument(
+        "--arrangements",
+        type=int,
+        default=1,
+        metavar="N",
+        help="number of scenes to write, each with other candidate shapes",
+    )
     p.add_argument(
         "--library",
         default="built-in",
@@ -103,7 +109,7 @@ def add_build(commands: Any) -> None:
         help="how shapes are posed, to compare with: the paper's correspondences or a baseline, with the embedded "
         "features (default: the profile's)",
     )
-    p.add_argument("--seed", type=int, default=0, help="seed of random stages (the embedded ones draw nothing)")
+    p.add_argument("--seed", type=int, default=0, help="seed of random stages (the built-in ones use none)")
     p.add_argument("--json", action="store_true", help="print the result as JSON")
 
 
@@ -309,7 +315,7 @@ def _picture(a: argparse.Namespace) -> None:
 
 
 def _turntable(room: diorama.Reconstruction, a: argparse.Namespace) -> None:
-    """A film of the scene from all around."""
+    """Render a turntable video of the scene."""
     from diorama_core.export.turntable import FRAMES, SIZE, write_turntable
 
     with progress_bar() as progress:

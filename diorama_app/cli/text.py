@@ -20,12 +20,12 @@ def add_text(commands: Any) -> None:
         "Make a scene from a description.",
         'diorama text "a reading corner with two armchairs" -o my-corner',
     )
-    p.add_argument("prompt", metavar="TEXT", help="what the room is and what is in it")
+    p.add_argument("prompt", metavar="TEXT", help="description of the room and its furniture")
     p.add_argument("-o", "--output", type=Path, required=True, metavar="PROJECT", help="project folder to write")
     p.add_argument("--profile", choices=PROFILES, default="auto", help="which networks to use (default: %(default)s)")
     p.add_argument("--library", default="built-in", metavar="NAME", help="shape library (default: %(default)s)")
     p.add_argument("--recipe", choices=RECIPES, default=RECIPES[0], help="layout optimiser (default: %(default)s)")
-    p.add_argument("--seed", type=int, default=0, help="another number, another room (default: %(default)s)")
+    p.add_argument("--seed", type=int, default=0, help="random seed (default: %(default)s)")
     p.add_argument("--json", action="store_true", help="print the result as JSON")
 
 

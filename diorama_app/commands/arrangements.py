@@ -1,4 +1,4 @@
-"""Whole-scene hypotheses: every unlocked object, or set of them, in its best, second best... alternative."""
+"""Whole-scene hypotheses: the k-th uses the k-th ranked candidate of every unlocked object or set of objects."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Arrangements:
     def _offers(self) -> dict[str, tuple[Candidate, ...]]:
         """For every unlocked object its shapes, best first: those that its set finds likely, where it is of one.
 
-        Things of one kind are a set when the same shape was found best for them.
+        Objects of one kind are a set when the same shape was found best for them.
         """
         sets: dict[tuple[str, str], list[SceneObject]] = {}
         for item in self.scene.objects:

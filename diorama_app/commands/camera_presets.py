@@ -1,4 +1,4 @@
-"""Where the cameras of the browsers go."""
+"""Camera presets of the browsers."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from diorama_core.errors import EditRefused
 
 
 class Views:
-    """The views that buttons and keys ask for."""
+    """The views that buttons and keys select."""
 
     def __init__(self, session: EditorSession) -> None:
         self._session = session
 
     def room_view(self, client: Client) -> None:
-        """See the whole room."""
+        """Show the whole room."""
         self._plain(client)
         client.view.move_camera(*room_view(self._session.scene, client.view.aspect))
 
     def along(self, client: Client, back: tuple[float, float, float]) -> None:
-        """See the room along an axis from far away, nearly without perspective."""
+        """Show the room along an axis from far away, with hardly any perspective."""
         self._plain(client)
         position, target = side_view(self._session.scene, np.array(back), client.view.aspect)
         client.view.move_camera(position, target, float(NARROW_FOV_RAD))
@@ -42,7 +42,7 @@ class Views:
         client.refresh()
 
     def overlay(self, client: Client, opacity: float) -> None:
-        """Lay the photo over the model, as much as wanted."""
+        """Overlay the photo on the model with the given opacity."""
         photo, camera = self._session.photo, self._session.scene.camera
         if photo is None or camera is None:
             raise EditRefused("this scene has no photo to lay over the model; upload one in the Photo panel")
@@ -52,7 +52,7 @@ class Views:
         client.show_marks()
 
     def focus(self, client: Client) -> None:
-        """Look at what is selected from nearby."""
+        """Move the camera close to the selection."""
         items = [self._session.scene.object(i) for i in client.need_selection()]
         corners = np.concatenate([o.corners_world for o in items])
         middle = (corners.min(axis=0) + corners.max(axis=0)) / 2

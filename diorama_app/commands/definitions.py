@@ -34,10 +34,10 @@ def build_commands(
     """Every command of the editor.
 
     Args:
-        room: what they act on.
+        session: what they act on.
         views: where cameras go.
-        outlines: what the photo shows of the things found in it.
-        cancel: stops what a person's hand is doing, and says whether it did.
+        outlines: what the photo shows of the objects found in it.
+        cancel: cancels the current gesture; returns whether there was one.
         show_help: opens the list of commands.
         show_picture: opens the choices for a picture.
     """
@@ -56,7 +56,7 @@ def build_commands(
 
     def save(client: Client) -> None:
         if session.project is None:
-            raise EditRefused("there is no project open to save")
+            raise EditRefused("no project is open")
         session.need_writable()
         session.autosave.save_soon(session.project, session.scene)
         session.autosave.flush()
@@ -84,8 +84,8 @@ def build_commands(
 
 def _history(session: EditorSession) -> tuple[Command, ...]:
     return (
-        Command("undo", "Undo", lambda g: session.undo(g), "Z", "cmd/ctrl", "Take back the last change"),
-        Command("redo", "Redo", lambda g: session.redo(g), "Z", "cmd/ctrl+shift", "Do it again"),
+        Command("undo", "Undo", lambda g: session.undo(g), "Z", "cmd/ctrl", "Undo the last change"),
+        Command("redo", "Redo", lambda g: session.redo(g), "Z", "cmd/ctrl+shift", "Redo the last undone change"),
     )
 
 
@@ -108,10 +108,12 @@ def _selection(session: EditorSession) -> tuple[Command, ...]:
         client.select(session.badges)
 
     return (
-        Command("select_all", "Select all", everything, "A", "cmd/ctrl", "Select everything that is shown"),
-        Command("select_invert", "Invert selection", invert, "I", "cmd/ctrl", "Select what is not selected"),
-        Command("select_same", "Select alike", same, None, None, "Select everything of the same shape"),
-        Command("select_bad", "Select what is wrong", wrong, None, None, "What collides, floats or is outside"),
+        Command("select_all", "Select all", everything, "A", "cmd/ctrl", "Select all visible objects"),
+        Command(
+            "select_invert", "Invert selection", invert, "I", "cmd/ctrl", "Select all objects that are not selected"
+        ),
+        Command("select_same", "Select same shape", same, None, None, "Select all objects with the same shape"),
+        Command("select_bad", "Select problems", wrong, None, None, "Objects that collide, float or are outside"),
     )
 
 
@@ -146,21 +148,21 @@ def _objects(session: EditorSession) -> tuple[Command, ...]:
                 scene = seated(scene, session.library, object_id)
             return scene
 
-        session.edit(f"put down {editing.names_of(session.scene, chosen)}", down, by=client)
+        session.edit(f"drop {editing.names_of(session.scene, chosen)}", down, by=client)
 
     return (
-        Command("duplicate", "Duplicate", editing.duplicate_selected, "D", "cmd/ctrl", "Copy beside"),
-        Command("copy", "Copy", copy, "C", "cmd/ctrl", "Copy with what stands on it; paste in any project"),
+        Command("duplicate", "Duplicate", editing.duplicate_selected, "D", "cmd/ctrl", "Duplicate next to it"),
+        Command("copy", "Copy", copy, "C", "cmd/ctrl", "Copy with everything on it; paste into any project"),
         Command("cut", "Cut", cut, "X", "cmd/ctrl", "Copy and delete"),
-        Command("paste", "Paste", paste, "V", "cmd/ctrl", "Put down what was copied"),
+        Command("paste", "Paste", paste, "V", "cmd/ctrl", "Paste the copied objects"),
         Command("delete", "Delete", editing.delete_selected, "delete", None, "Delete the selection"),
-        Command("hide", "Hide or show", hide, "H", None, "Hide the selection"),
-        Command("show_all", "Show everything", editing.show_all, "H", "shift", "Show all that is hidden"),
-        Command("lock", "Lock or unlock", lock, "L", None, "Keep the selection as it is"),
-        Command("drop", "Drop to support", drop, "G", None, "Put it down on what holds it up"),
-        Command("turn_left", "Turn left", lambda g: editing.turn_selected(g, TURN_DEG), "J", None, "15° left"),
-        Command("turn_right", "Turn right", lambda g: editing.turn_selected(g, -TURN_DEG), "K", None, "15° right"),
-        Command("next_shape", "Next alternative", lambda g: swapping.next_alternative(g, 1), "X", None, "Swap on"),
+        Command("hide", "Hide or show", hide, "H", None, "Hide or show the selection"),
+        Command("show_all", "Show everything", editing.show_all, "H", "shift", "Show all hidden objects"),
+        Command("lock", "Lock or unlock", lock, "L", None, "Protect the selection from changes"),
+        Command("drop", "Drop to support", drop, "G", None, "Lower the selection onto its support"),
+        Command("turn_left", "Rotate left", lambda g: editing.turn_selected(g, TURN_DEG), "J", None, "15° left"),
+        Command("turn_right", "Rotate right", lambda g: editing.turn_selected(g, -TURN_DEG), "K", None, "15° right"),
+        Command("next_shape", "Next alternative", lambda g: swapping.next_alternative(g, 1), "X", None, "Swap shape"),
         Command("previous_shape", "Previous alternative", lambda g: swapping.next_alternative(g, -1), "X", "shift"),
     )
 
@@ -191,26 +193,28 @@ def _several(session: EditorSession) -> tuple[Command, ...]:
         session.edit(f"mirror {names}", lambda s: arranging.mirror(s, chosen, axis), by=client)
 
     return (
-        Command("align_left", "Align left", align("left", "right", "low"), None, None, "Left ends in line"),
-        Command("align_centre", "Align middles", align("middles", "right", "middle"), None, None, "Side to side"),
-        Command("align_right", "Align right", align("right", "right", "high"), None, None, "Right ends in line"),
-        Command("align_back", "Align far", align("far ends", "away", "high"), None, None, "Far ends in line"),
-        Command("align_depth", "Align in depth", align("in depth", "away", "middle"), None, None, "Near to far"),
-        Command("align_front", "Align near", align("near ends", "away", "low"), None, None, "Near ends in line"),
-        Command("distribute", "Distribute evenly", distribute, None, None, "Equal gaps between three or more"),
-        Command("mirror", "Mirror", mirror, "M", "shift", "Swap left and right of the arrangement"),
+        Command("align_left", "Align left", align("left", "right", "low"), None, None, "Align left edges"),
+        Command("align_centre", "Align centres", align("centres", "right", "middle"), None, None, "Align centres"),
+        Command("align_right", "Align right", align("right", "right", "high"), None, None, "Align right edges"),
+        Command("align_back", "Align far", align("far edges", "away", "high"), None, None, "Align far edges"),
+        Command(
+            "align_depth", "Align in depth", align("in depth", "away", "middle"), None, None, "Align centres in depth"
+        ),
+        Command("align_front", "Align near", align("near edges", "away", "low"), None, None, "Align near edges"),
+        Command("distribute", "Distribute evenly", distribute, None, None, "Equal gaps between three or more objects"),
+        Command("mirror", "Mirror", mirror, "M", "shift", "Mirror the selection left to right"),
     )
 
 
 def _views(views: Views) -> tuple[Command, ...]:
     return (
-        Command("view_room", "Room view", views.room_view, "R", None, "See the whole room"),
-        Command("view_photo", "Photo view", views.photo, "P", None, "Look through the photo's camera"),
+        Command("view_room", "Room view", views.room_view, "R", None, "Show the whole room"),
+        Command("view_photo", "Photo view", views.photo, "P", None, "View from the photo's camera"),
         Command("view_top", "Top view", lambda g: views.along(g, (0.0, -1e-3, 1.0)), "T", None, "From above"),
         Command("view_front", "Front view", lambda g: views.along(g, (0.0, -1.0, 0.0)), "4", None, "From the front"),
         Command("view_left", "Left view", lambda g: views.along(g, (-1.0, 0.0, 0.0)), "5", None, "From the left"),
         Command("view_right", "Right view", lambda g: views.along(g, (1.0, 0.0, 0.0)), "6", None, "From the right"),
-        Command("focus", "Focus", views.focus, "F", None, "Look at the selection"),
+        Command("focus", "Focus", views.focus, "F", None, "Centre the view on the selection"),
     )
 
 
@@ -226,7 +230,7 @@ def _overlays(views: Views, outlines: PhotoOutlines) -> tuple[Command, ...]:
         client.change_preferences(planes=not client.preferences.planes)
 
     return (
-        Command("masks", "Outlines", masks, "O", None, "What was found in the photo, outlined over it"),
+        Command("masks", "Outlines", masks, "O", None, "Outline the detected objects over the photo"),
         Command("planes", "Planes", planes, "Y", None, "Edges and names of floor, walls and ceiling"),
     )
 
@@ -243,19 +247,19 @@ def _ways() -> tuple[Command, ...]:
         client.view.set_dark(client.preferences.dark)
 
     return (
-        Command("gizmo_floor", "Move", gizmo("floor"), "1", None, "Handles that move on the floor"),
-        Command("gizmo_free", "Free", gizmo("free"), "2", None, "Handles that move and turn any way"),
-        Command("gizmo_size", "Size", gizmo("size"), "3", None, "Handles that stretch; the corner keeps proportions"),
-        Command("snap", "Snap", switch("snap"), "N", None, "Keep to 5 cm, 15° and walls; Alt inverts it in a drag"),
-        Command("slide", "No bumps", switch("slide"), "C", None, "Drags do not go through things"),
-        Command("names", "Names", switch("names"), "B", None, "Names on everything"),
+        Command("gizmo_floor", "Move", gizmo("floor"), "1", None, "Handles to move on the floor"),
+        Command("gizmo_free", "Free", gizmo("free"), "2", None, "Handles to move and rotate freely"),
+        Command("gizmo_size", "Size", gizmo("size"), "3", None, "Handles to resize; the corner keeps proportions"),
+        Command("snap", "Snap", switch("snap"), "N", None, "Snap to 5 cm, 15° and walls; hold Alt to invert"),
+        Command("slide", "No overlaps", switch("slide"), "C", None, "Dragged objects stop at other objects"),
+        Command("names", "Names", switch("names"), "B", None, "Show the name of every object"),
         Command(
             "badges",
             "Warnings",
             switch("badges"),
             None,
             None,
-            "⚠ collides, floats or is outside; ? is unsure",
+            "⚠ collides, floats or is outside; ? is uncertain",
         ),
-        Command("theme", "Dark or light", theme, None, None, "Colours of the panels"),
+        Command("theme", "Dark or light", theme, None, None, "Switch between dark and light panels"),
     )

@@ -19,20 +19,20 @@ BESIDE_M = 0.08
 
 
 def names_of(scene: Scene, ids: Iterable[str]) -> str:
-    """What a label says of several objects: the name of one, or how many."""
+    """Label of one or several objects: the name of one, or the number of several."""
     chosen = tuple(ids)
     return scene.object(chosen[0]).label[:40] if len(chosen) == 1 else f"{len(chosen)} objects"
 
 
 def delete_selected(client: Client) -> None:
-    """Delete what is selected; what stood on it is handed to the next supporter."""
+    """Delete the selection; objects on it are reassigned to the next supporter."""
     chosen = client.need_selection()
     names = names_of(client.session.scene, chosen)
     client.session.edit(f"delete {names}", lambda scene: edits.remove(scene, chosen), by=client, selection=())
 
 
 def duplicate_selected(client: Client) -> None:
-    """Copy the selected objects beside themselves and select the copies."""
+    """Duplicate the selected objects next to themselves and select the copies."""
     scene, copies = client.session.scene, []
     chosen = client.need_selection()
     for object_id in chosen:
@@ -62,10 +62,10 @@ def show_all(client: Client) -> None:
 
 
 def set_colour(client: Client, ids: Iterable[str], colour: tuple[float, float, float] | None) -> None:
-    """Paint objects, or give back the shape's own colours with None."""
+    """Paint objects; None restores the shape's own colours."""
     chosen = tuple(ids)
     client.session.edit(
-        f"{'paint' if colour is not None else 'own colours of'} {names_of(client.session.scene, chosen)}",
+        f"{'paint' if colour is not None else 'reset the colour of'} {names_of(client.session.scene, chosen)}",
         lambda s: _fold(s, chosen, lambda scene, i: edits.recolour(scene, i, colour)),
         by=client,
         merge_key=f"{NUDGE_MERGE} colour {' '.join(chosen)}",
@@ -73,18 +73,18 @@ def set_colour(client: Client, ids: Iterable[str], colour: tuple[float, float, f
 
 
 def set_finish(client: Client, ids: Iterable[str], finish: Finish | None) -> None:
-    """Make objects matt, glossy..., or give back the shape's own finish with None."""
+    """Set the finish of objects; None restores the shape's own."""
     chosen = tuple(ids)
     names = names_of(client.session.scene, chosen)
     client.session.edit(
-        f"{finish} {names}" if finish is not None else f"own finish of {names}",
+        f"{finish} {names}" if finish is not None else f"reset the finish of {names}",
         lambda s: _fold(s, chosen, lambda scene, i: edits.refinish(scene, i, finish)),
         by=client,
     )
 
 
 def rename(client: Client, object_id: str, label: str) -> None:
-    """Call an object something else."""
+    """Rename an object."""
     if label.strip() and label != client.session.scene.object(object_id).label:
         client.session.edit(
             f"rename to {label.strip()[:40]}",
@@ -95,7 +95,7 @@ def rename(client: Client, object_id: str, label: str) -> None:
 
 
 def set_base_position(client: Client, object_id: str, base: Float[np.ndarray, "3"]) -> None:
-    """Put the middle of an object's underside at a place in the world."""
+    """Move the centre of an object's base to a point in the world."""
     item = client.session.scene.object(object_id)
     offset = np.asarray(base, dtype=np.float64) - base_position(item)
     if np.abs(offset).max() < 5e-4:
@@ -104,7 +104,7 @@ def set_base_position(client: Client, object_id: str, base: Float[np.ndarray, "3
 
 
 def set_yaw(client: Client, object_id: str, yaw_deg: float) -> None:
-    """Turn an object about world up until its front has this heading."""
+    """Rotate an object about world up to the given heading."""
     item = client.session.scene.object(object_id)
     turn = np.radians(yaw_deg) - item.pose.yaw_rad
     if abs(np.arctan2(np.sin(turn), np.cos(turn))) < 1e-4:
@@ -113,7 +113,7 @@ def set_yaw(client: Client, object_id: str, yaw_deg: float) -> None:
 
 
 def turn_selected(client: Client, by_deg: float) -> None:
-    """Turn what is selected about world up, each about itself, as one step."""
+    """Rotate every selected object about its own vertical axis, as one undo step."""
     _turn(client, client.need_selection(), float(np.radians(by_deg)))
 
 
@@ -131,14 +131,14 @@ def _turn(client: Client, ids: tuple[str, ...], turn_rad: float) -> None:
 
 
 def set_size(client: Client, object_id: str, size_m: Float[np.ndarray, "3"]) -> None:
-    """Give an object these extents along its own axes, standing where it stands."""
+    """Resize an object to these extents along its own axes, with its base fixed."""
     session, item = client.session, client.session.scene.object(object_id)
     size = np.asarray(size_m, dtype=np.float64)
     if np.abs(size - item.size_m).max() < 5e-4:
         return
     if (size <= 0).any():
         client.refresh()
-        raise EditRefused(f"{item.label} must be larger than nothing; give sizes above 0")
+        raise EditRefused(f"{item.label} needs sizes above 0")
     session.edit(
         f"resize {item.label}",
         lambda s: resized(s, object_id, size),
@@ -163,13 +163,13 @@ def base_position(item: SceneObject) -> Float[np.ndarray, "3"]:
 
 
 def attach(client: Client, object_id: str, parent_id: str) -> None:
-    """Say that an object stands on another, or on (or against) a plane; it goes there at once."""
+    """Support an object by another object or by a plane, and move it there."""
     from diorama_core.editing.placing import seated
 
     session = client.session
     scene = session.scene
     if not scene.has_object(object_id):
-        raise EditRefused("that object is gone")
+        raise EditRefused("that object no longer exists")
     wall = scene.has_plane(parent_id) and scene.plane(parent_id).role != "floor"
     support = scene.support_of(object_id)
     edge = Support(
@@ -187,29 +187,29 @@ def attach(client: Client, object_id: str, parent_id: str) -> None:
 
 
 def detach(client: Client, object_id: str) -> None:
-    """Say that nothing holds an object up."""
+    """Remove the support of an object."""
     label = client.session.scene.object(object_id).label
     client.session.edit(f"support of {label}", lambda s: edits.detach(s, object_id), by=client)
 
 
 def set_relation(client: Client, object_id: str, mounted: bool) -> None:
-    """Say whether an object lies on its supporter or is fastened to it."""
+    """Set whether an object is placed on its supporter or mounted on it."""
     edge = client.session.scene.support_of(object_id)
     if edge is None:
-        raise EditRefused("nothing holds it up; choose a supporter first")
+        raise EditRefused("it has no support; choose one first")
     changed = replace(edge, relation="mounted on" if mounted else "placed on", child_face=None, parent_surface=None)
     label = client.session.scene.object(object_id).label
     client.session.edit(f"support of {label}", lambda s: edits.attach(s, changed), by=client)
 
 
 def set_adherence(client: Client, object_id: str, wall_id: str | None) -> None:
-    """Say against which wall an object also stands (none: no wall); it goes there at once."""
+    """Set the wall an object also stands against (none: no wall), and move it there."""
     from diorama_core.editing.placing import against_wall
 
     scene = client.session.scene
     edge = scene.support_of(object_id)
     if edge is None:
-        raise EditRefused("nothing holds it up; choose a supporter first")
+        raise EditRefused("it has no support; choose one first")
     changed = replace(edge, adheres_to=() if wall_id is None else (wall_id,))
     label = scene.object(object_id).label
 
@@ -221,7 +221,7 @@ def set_adherence(client: Client, object_id: str, wall_id: str | None) -> None:
 
 
 def supporter_name(scene: Scene, any_id: str) -> str:
-    """What people call a supporter."""
+    """Display name of a supporter."""
     if scene.has_object(any_id):
         return scene.object(any_id).label
     plane = scene.plane(any_id)

@@ -1,4 +1,4 @@
-"""A model file that somebody uploads: checked, put the right way up, sized, kept in a library of one's own, placed."""
+"""Uploaded model files: checked, oriented, sized, added to the user's library and placed."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from diorama_core.scene.types import Scene
 
 
 def import_model(client: Client, name: str, content: bytes) -> None:
-    """Take a model file into the library of one's own models; the next click in the view puts it there."""
+    """Add a model file to the user's library; the next click in the view places it."""
     session = client.session
     user_library = session.library
     if not isinstance(user_library, UserLibrary):
-        raise EditRefused("this library cannot take models in")
+        raise EditRefused("models cannot be added to this library")
     file_name = Path(name).name or "model.glb"
 
     def work(progress: Progress) -> None:
@@ -49,7 +49,7 @@ def _taken_in(user_library: UserLibrary, name: str, content: bytes, progress: Pr
         paths, skipped = model_files(Path(folder))
         if not paths:
             reason = (
-                skipped[0].reason if skipped else "this is no model that can be read; upload a GLB, OBJ, PLY or STL"
+                skipped[0].reason if skipped else "this file is not a readable 3D model; upload a GLB, OBJ, PLY or STL"
             )
             raise InputError(f"{name}: {reason}")
         found = sources(Path(folder), paths, Given(), {})
@@ -62,38 +62,38 @@ def _taken_in(user_library: UserLibrary, name: str, content: bytes, progress: Pr
 
 @dataclass(frozen=True)
 class Fix:
-    """One way in which a model was taken wrongly, and the change that mends it."""
+    """One kind of wrong guess about a model, and the change that corrects it."""
 
     name: str
     hint: str
     up: str = "+z"
-    """Axis of the shape as it stands that ought to point up."""
+    """Current axis of the shape that becomes up."""
     front: str | None = None
-    """Axis of the shape as it stands that ought to be the front."""
+    """Current axis of the shape that becomes the front."""
     scale: float = 1.0
 
 
 FIXES: dict[str, Fix] = {
-    "left": Fix("Front is left", "Its left side is really its front", front="+y"),
-    "back": Fix("Front is back", "Its back is really its front", front="-x"),
-    "tip": Fix("Tip over", "What is its back now ought to be on top", up="-x", front="+z"),
-    "roll": Fix("Roll over", "What is its left side now ought to be on top", up="+y", front="+x"),
-    "flip": Fix("Upside down", "What is at the bottom now ought to be on top", up="-z", front="+x"),
-    "metres": Fix("x 100", "Its sizes were meant in metres, not centimetres", scale=100.0),
-    "centimetres": Fix("/ 100", "Its sizes were meant in centimetres, not metres", scale=0.01),
-    "inches": Fix("x 2.54", "Its sizes were meant in inches, not centimetres", scale=2.54),
+    "left": Fix("Front is left", "Make the left side the front", front="+y"),
+    "back": Fix("Front is back", "Make the back the front", front="-x"),
+    "tip": Fix("Tip over", "Turn the back to the top", up="-x", front="+z"),
+    "roll": Fix("Roll over", "Turn the left side to the top", up="+y", front="+x"),
+    "flip": Fix("Upside down", "Turn the bottom to the top", up="-z", front="+x"),
+    "metres": Fix("x 100", "The file is in metres, not centimetres", scale=100.0),
+    "centimetres": Fix("/ 100", "The file is in centimetres, not metres", scale=0.01),
+    "inches": Fix("x 2.54", "The file is in inches, not centimetres", scale=2.54),
 }
 """The corrections that a person can choose from."""
 
 
 def is_own_model(session: EditorSession, shape_id: str) -> bool:
-    """Whether a shape is one that somebody uploaded, so that it may be corrected."""
+    """Whether a shape was uploaded, so that it can be corrected."""
     user_library = session.library
     return isinstance(user_library, UserLibrary) and user_library.has_own(shape_id)
 
 
 def correct_model(client: Client, object_id: str, fix: Fix | None = None, *, category: str | None = None) -> None:
-    """Take a model of one's own as it was meant, and show the object in it, in the size it then has.
+    """Correct an uploaded model and swap the object to it, at the corrected size.
 
     The corrected model gets an id of its own: undo leads back to the one before.
 

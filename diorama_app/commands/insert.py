@@ -1,4 +1,4 @@
-"""Shapes of the library into the room: where the person looks, or where they click."""
+"""Insertion of library shapes: at the centre of the view, or where the user clicks."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from diorama_core.scene.types import Pose, SceneObject, Support
 
 
 def insert_shape(client: Client, shape_id: str) -> None:
-    """Put a shape on the selected object, or else on the floor where the person looks."""
+    """Insert a shape on the selected object, or else on the floor at the centre of the view."""
     session = client.session
     shape, scene, parent = session.library.shape(shape_id), session.scene, client.selected
     mount = resolve(shape.category).category.mount
@@ -53,7 +53,7 @@ def place_at(client: Client, shape_id: str, origin: Float[np.ndarray, "3"], dire
     # A plant clicked onto a wall is not meant to hang there, a picture clicked onto the floor may well stand.
     found = next((h for h in usable if h.place.upward or hung), None) or _on_ground(origin, direction)
     if found is None:
-        raise EditRefused("there is nothing to put it on there; click on the floor, a table or a wall")
+        raise EditRefused("nothing there can support it; click the floor, a table or a wall")
     client.doing = None
     new_id = edits.fresh_id(scene, shape.category)
     yaw = facing(scene, float(found.point[0]), float(found.point[1]))

@@ -39,7 +39,7 @@ def measure_at(client: Client, doing: Measuring, origin: np.ndarray, direction: 
     """Take the next end of the length."""
     point = point_under(client.session.scene, origin, direction)
     if point is None:
-        raise EditRefused("there is nothing there to measure; click on the room or on an object")
+        raise EditRefused("nothing to measure there; click the room or an object")
     points = (*doing.points, (float(point[0]), float(point[1]), float(point[2])))
     points = points[-1:] if len(points) > 2 else points
     client.doing = Measuring(points)
@@ -59,7 +59,7 @@ def rescale_measured(client: Client, length_true_m: float) -> None:
     """Scale everything so that what was measured has this length."""
     now = measured_m(client.doing)
     if now is None:
-        raise EditRefused("click two points in the view first, then say how far apart they are")
+        raise EditRefused("click two points in the view first, then type the distance between them")
     shown = format_length(length_true_m, client.preferences.unit)
     rescale_room(client, f"rescale: {format_length(now, client.preferences.unit)} is {shown}", now, length_true_m)
     stop_measuring(client)
@@ -68,7 +68,7 @@ def rescale_measured(client: Client, length_true_m: float) -> None:
 
 
 def stop_measuring(client: Client) -> None:
-    """Put the tape away."""
+    """End measuring."""
     if isinstance(client.doing, Measuring):
         client.doing = None
     client.view.show_measure((), "")

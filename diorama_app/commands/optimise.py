@@ -1,4 +1,4 @@
-"""Run a layout recipe beside the desk: live preview, pause, cancel, one undo step; before and after to compare."""
+"""Runs of a layout recipe in the background: live preview, pause, cancel, one undo step, comparison."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene
 
 PREVIEW_EVERY_S = 0.05
-"""Twenty pictures a second are what reaches a browser."""
+"""A browser receives at most twenty frames a second."""
 
 GLIDE_S = 0.9
-"""How long a layout that was found at once takes to settle before people's eyes."""
+"""Duration of the animation of a layout that was computed at once."""
 
 GLIDE_BELOW = 10
-"""A run with fewer pictures than this is too abrupt to be followed."""
+"""A run with fewer frames than this is animated afterwards."""
 
 PAUSE_POLL_S = 0.05
 
 
 def optimise(client: Client, recipe_name: str, only: tuple[str, ...] = (), weights: Weights = AS_IT_IS) -> LayoutRun:
-    """Optimise the layout of everything unlocked, or of `only` these and what they hold up; one undo step."""
+    """Optimise the layout of everything unlocked, or of `only` these and the objects on them; one undo step."""
     session = client.session
     start = session.scene
     if not start.objects:
@@ -72,7 +72,7 @@ def optimise(client: Client, recipe_name: str, only: tuple[str, ...] = (), weigh
 
 
 def pause(session: EditorSession, paused: bool) -> None:
-    """Let the running optimisation wait, or go on."""
+    """Pause or resume the running optimisation."""
     run = session.layout_run
     if run is not None:
         if paused:
@@ -83,10 +83,10 @@ def pause(session: EditorSession, paused: bool) -> None:
 
 
 def show_before(session: EditorSession, before: bool) -> None:
-    """Show where everything was before the last optimisation, or where it is now; the document stays."""
+    """Preview the layout before or after the last optimisation; the document does not change."""
     run = session.layout_run
     if run is None or run.final is None:
-        raise EditRefused("no layout was optimised yet")
+        raise EditRefused("there is no optimised layout yet; run the optimiser first")
     run.showing_before = before
     poses = {o.id: o.pose for o in session.scene.objects}
     if before:
@@ -96,22 +96,22 @@ def show_before(session: EditorSession, before: bool) -> None:
 
 
 def put_back(client: Client) -> None:
-    """Take the last optimisation back, with one more undo step when something else was done since."""
+    """Revert the last optimisation; a further undo step when other edits followed it."""
     session, run = client.session, client.session.layout_run
     if run is None or run.final is None:
-        raise EditRefused("no layout was optimised yet")
+        raise EditRefused("there is no optimised layout yet; run the optimiser first")
     run.showing_before = False
     if session.scene is run.final:
         session.undo(client)
     else:
         there = {o.id: o.pose for o in run.start.objects if session.scene.has_object(o.id)}
-        session.edit("put the layout back", lambda s: edits.place(s, there), by=client)
+        session.edit("revert the layout", lambda s: edits.place(s, there), by=client)
     session.layout_run = None
     session.refresh_panels()
 
 
 def _glide(session: EditorSession, start: Scene, final: Scene, progress: Progress) -> None:
-    """A recipe that finds its answer at once is still watched on its way there."""
+    """Animate a recipe that finds its solution at once."""
     frames = int(GLIDE_S / PREVIEW_EVERY_S)
     for frame in range(1, frames + 1):
         share = 0.5 - 0.5 * np.cos(np.pi * frame / frames)

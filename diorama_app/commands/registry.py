@@ -15,19 +15,19 @@ Run = Callable[[Client], None]
 
 @dataclass(frozen=True)
 class Command:
-    """Something a person can ask for."""
+    """An action that the user can invoke."""
 
     id: str
     label: str
     run: Run
-    """Called on the desk with whoever asked."""
+    """Called on the UI thread with the client that invoked it."""
     hotkey: str | None = None
     modifier: str | None = None
     hint: str = ""
 
     @property
     def keys(self) -> str:
-        """The hotkey as people write it."""
+        """The hotkey in readable form."""
         if self.hotkey is None:
             return ""
         if self.hotkey == "?":

@@ -1,4 +1,4 @@
-"""Another shape for an object, where it stands: what size and colour it takes is the person's choice."""
+"""Swaps of an object's shape in place; the user's preferences decide its size and colour."""
 
 from __future__ import annotations
 
@@ -39,13 +39,13 @@ def candidate_for(library: ShapeLibrary, item: SceneObject, shape_id: str, mode:
 
 
 def swapped(scene: Scene, item: SceneObject, candidate: Candidate, *, keep_colour: bool) -> Scene:
-    """The scene with an object in another shape, on the same spot."""
+    """The scene with an object's shape replaced, at the same position."""
     changed = edits.swap(scene, item.id, candidate, keep_pose=True)
     return changed if keep_colour else edits.refinish(edits.recolour(changed, item.id, None), item.id, None)
 
 
 def swap(client: Client, object_id: str, shape_id: str) -> None:
-    """Swap an object (or all of the same shape) as the person's settings say."""
+    """Swap an object (or all with the same shape) according to the client's preferences."""
     session, preferences = client.session, client.preferences
     item = session.scene.object(object_id)
     if shape_id == item.shape_id:
@@ -63,7 +63,7 @@ def swap(client: Client, object_id: str, shape_id: str) -> None:
 
 
 def preview_swap(client: Client, object_id: str, shape_id: str) -> None:
-    """Show an object in another shape without changing it."""
+    """Preview an object with another shape without changing the document."""
     session = client.session
     if not session.scene.has_object(object_id):
         return
@@ -82,11 +82,11 @@ def alike(scene: Scene, item: SceneObject) -> tuple[SceneObject, ...]:
 
 
 def next_alternative(client: Client, step: int) -> None:
-    """Swap to the next (or previous) of the object's own alternatives."""
+    """Swap to the next (or previous) of the object's ranked candidates."""
     item = client.session.scene.object(client.need_selected())
     shapes = list(dict.fromkeys(c.shape_id for c in item.candidates))
     if len(shapes) < 2:
-        raise EditRefused(f"{item.label} has no alternatives of its own; search the library for others")
+        raise EditRefused(f"{item.label} has no alternatives; search the library for others")
     at = shapes.index(item.shape_id) if item.shape_id in shapes else -1
     swap(client, item.id, shapes[(at + step) % len(shapes)])
 

@@ -1,6 +1,6 @@
-"""What a person does with the mouse in the 3D view: pick, frame, drag an object, drag the gizmo, click a place.
+"""Mouse gestures in the 3D view: pick, rectangle, drag an object, drag the gizmo, click a place.
 
-A drag shows a preview while it lasts and becomes one undo step when it ends; Esc puts everything back.
+A drag shows a preview while it lasts and becomes one undo step when it ends; Esc restores the scene.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ NODE = "/gizmo"
 
 @dataclass(frozen=True)
 class Turn:
-    """A gizmo drag under way: where everything was when it began."""
+    """A gizmo drag in progress, with the scene at its start."""
 
     object_id: str
     scene: Scene
@@ -39,14 +39,14 @@ class Turn:
 
 @dataclass
 class _Drag:
-    """An object dragged by itself, and where it has got to."""
+    """A drag of an object's body, with its current pose."""
 
     slide: Slide
     scene: Scene
 
 
 class Gestures:
-    """Turns one browser's pointer events into document edits. Used from the desk's thread, except where it says so."""
+    """Turns one browser's pointer events into document edits. Used from the UI thread, except where it says so."""
 
     def __init__(self, client: Client, collisions: Collisions) -> None:
         self._client = client
@@ -144,7 +144,7 @@ class Gestures:
         if phase == "update":
             eye = np.asarray(client.viser_client.camera.position, dtype=np.float64)
             snap = client.preferences.snap != inverted
-            # Until every shape is prepared, things go through each other (and are shown colliding).
+            # Until every shape is prepared, objects go through each other (and are shown colliding).
             prepared = session.preparer.ready(o.shape_id for o in drag.slide.scene.objects)
             drag.scene, poses = drag.slide.to(eye, hand - eye, snap=snap, slide=client.preferences.slide and prepared)
             self._show(drag.slide.scene, poses, drag.scene)
@@ -195,7 +195,7 @@ class Gestures:
     # -- the gizmo --------------------------------------------------------------------------------------------
 
     def refresh(self) -> None:
-        """Put the gizmo where the selected object is; take it away when there is none to move."""
+        """Attach the gizmo to the selected object; remove it when nothing movable is selected."""
         item = self._client.selected
         if (
             item is None
@@ -273,7 +273,7 @@ class Gestures:
         self._session.edit(f"move {start.label}", lambda s: edits.move(s, drag.object_id, pose), by=self._client)
 
     def cancel(self) -> bool:
-        """Put back what is being dragged, or stop waiting for a click; False when there is nothing to stop."""
+        """Cancel the current drag or pending click; False when there is nothing to cancel."""
         if not self._handles.cancel() and self._drag is None and self._client.doing is None:
             return False
         self._drag = None

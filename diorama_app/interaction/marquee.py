@@ -17,9 +17,9 @@ def objects_in(
     fov_rad: float,
     aspect: float,
 ) -> tuple[str, ...]:
-    """Ids of visible objects whose middle is seen inside the rectangle (0 to 1 from the top left).
+    """Ids of visible objects whose centre projects into the rectangle (0 to 1 from the top left).
 
-    The middle, so that a table is not taken for the chair drawn around it, and large things need not fit whole.
+    Centres are tested so that a rectangle around a chair does not select the table, and large objects need not fit.
     """
     half = np.tan(fov_rad / 2)
     found = []

@@ -24,24 +24,24 @@ MARGIN_M = 0.04
 
 @dataclass
 class Pull:
-    """A handle being pulled: the scene when it began and as it would be now."""
+    """A handle drag in progress: the scene at its start and the current preview."""
 
     object_id: str
     handle: Handle
     grabbed: Float[np.ndarray, "3"]
-    """Where the hand took hold of it, world."""
+    """The grabbed point, world."""
     start: Scene
     now: Scene
 
 
 class SizeHandles:
-    """One browser's handles. Used from the desk's thread only."""
+    """One browser's handles. Used from the UI thread only."""
 
     def __init__(self, client: Client, show: Callable[[Scene, Scene], None], done: Callable[[], None]) -> None:
         """Without handles at first.
 
         Args:
-            guest: whose they are.
+            client: the owner.
             show: shows the second scene as a preview of the first.
             done: told when a handle is let go of.
         """
@@ -55,7 +55,7 @@ class SizeHandles:
 
     @property
     def pulling(self) -> bool:
-        """Whether a hand is on one of them."""
+        """Whether a handle is being dragged."""
         return self._pull is not None
 
     def show(self, item: SceneObject | None) -> None:
@@ -72,7 +72,7 @@ class SizeHandles:
         self._put(item)
 
     def cancel(self) -> bool:
-        """Let go of a handle and put everything back; whether one was held."""
+        """Cancel the current handle drag and restore the scene; returns whether there was one."""
         modifier_key, self._pull = self._pull is not None, None
         return modifier_key
 

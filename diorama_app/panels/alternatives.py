@@ -1,4 +1,4 @@
-"""Other shapes for the selected object: its ranked alternatives, or the whole library by words; point to preview."""
+"""Shapes to swap to: the object's ranked candidates, or a search of the library; hover to preview."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ SIZE_NAMES: dict[SizeMode, str] = {
     "as found": "As in photo",
     "same box": "Same box",
     "in proportion": "In proportion",
-    "catalogue": "Its own",
+    "catalogue": "Original",
 }
 SIZE_HINTS: dict[SizeMode, str] = {
-    "as found": "The size the photo says; evenly scaled where it says nothing",
-    "same box": "Stretched to the size of what it replaces",
-    "in proportion": "Scaled evenly to about the size of what it replaces",
-    "catalogue": "The size it has in the library",
+    "as found": "The size measured in the photo; scaled evenly where unknown",
+    "same box": "Stretched to the size of the replaced object",
+    "in proportion": "Scaled evenly to about the size of the replaced object",
+    "catalogue": "The original size in the library",
 }
 
 
@@ -38,7 +38,9 @@ class Alternatives:
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
         self._options = LiveHtml(gui, self._act)
-        self._words = gui.add_text("Swap for", "", visible=False, hint="Any words; empty shows its own alternatives")
+        self._words = gui.add_text(
+            "Swap for", "", visible=False, hint="Words to search for; empty shows the ranked alternatives"
+        )
         on_change(self._words, lambda v: client.post(self.refresh, key="swap search"))
         self._html = LiveHtml(gui, self._act)
         self._of: str | None = None
@@ -64,8 +66,8 @@ class Alternatives:
             button(SIZE_NAMES[m], "size", m, title=SIZE_HINTS[m], on=preferences.size_mode == m) for m in SIZE_MODES
         )
         count = len(alike(self._client.session.scene, item))
-        same = button(f"All {count} alike", "alike", title="Swap every one of this shape", on=preferences.all_alike)
-        keep = button("Keep colour", "keep", title="In the colour of what it replaces", on=preferences.keep_colour)
+        same = button(f"All {count} alike", "alike", title="Swap all objects with this shape", on=preferences.all_alike)
+        keep = button("Keep colour", "keep", title="Keep the colour of the replaced object", on=preferences.keep_colour)
         return (
             f'<h4>Swap</h4><div class="bar tight">{sizes}</div>'
             f'<div class="bar tight">{keep}{same if count > 1 else ""}</div>'
@@ -73,7 +75,7 @@ class Alternatives:
 
     def _own(self, item: SceneObject) -> str:
         if not item.candidates:
-            return "<p class='dim'>It has no alternatives of its own. Search for others above.</p>"
+            return "<p class='dim'>No alternatives were retrieved for it. Search the library above.</p>"
         tiles = "".join(self._candidate(item, c) for c in item.candidates[:SHOWN])
         unit = "" if self._client.preferences.unit == "ft-in" else f" ({self._client.preferences.unit})"
         return f'<h4>Alternatives — click to swap <span class="dim">{unit}</span></h4><div class="grid">{tiles}</div>'
@@ -81,7 +83,7 @@ class Alternatives:
     def _found(self, item: SceneObject, words: str) -> str:
         found = search(self._client.session.library, words, k=SHOWN)
         if not found:
-            return f"<p class='dim'>Nothing in the library is like “{text(words)}”. Try a plainer word.</p>"
+            return f"<p class='dim'>Nothing in the library matches “{text(words)}”. Try another word.</p>"
         return f'<div class="grid">{"".join(self._shape(item, s) for s in found)}</div>'
 
     def _candidate(self, item: SceneObject, candidate: Candidate) -> str:
@@ -130,7 +132,7 @@ class Alternatives:
 
 
 def shape_caption(session: EditorSession, shape_id: str) -> str:
-    """What people call a shape; its category at the least."""
+    """Display name of a shape; at least its category."""
     try:
         shape = session.records.shape(shape_id)
     except LibraryError:

@@ -1,4 +1,4 @@
-"""How much of the photo lies over the model: 0 shows the model, 100 the photo."""
+"""Opacity of the photo over the model: 0 shows the model, 100 the photo."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ def take_dropped_files(gui: viser.GuiApi, client: Client, photo: Take, model: Ta
 
     Args:
         gui: the page.
-        guest: whose it is.
+        client: the owner.
         photo: takes name and content of a picture, and of what is of no known kind, to say what is wrong.
         model: takes those of a model.
         scene: takes those of a scene.

@@ -6,11 +6,11 @@ from collections.abc import Callable
 from typing import Any
 
 QUIET_COLOUR = (84, 96, 114)
-"""Of buttons that are not the main one of their panel; viser's grey looks as if they could not be pressed."""
+"""Colour of secondary buttons; viser's grey looks disabled."""
 
 
 def on_change(handle: Any, act: Callable[[Any], None]) -> None:
-    """Call `act(value)` from the event loop when the person changes a field; not when the program does."""
+    """Call `act(value)` from the event loop when the user changes a field; not when the program does."""
 
     async def changed(event: Any) -> None:
         if event.client_id is not None:
@@ -42,7 +42,7 @@ def show_label(handle: Any, label: str) -> None:
 
 
 def enable(handle: Any, possible: bool) -> None:
-    """Grey out what cannot be used now."""
+    """Enable or disable fields."""
     if handle.disabled == possible:
         handle.disabled = not possible
 

@@ -1,4 +1,4 @@
-"""The list of everything that can be done, with its keys: made from the one table of commands."""
+"""The help dialog: mouse actions and all commands with their keys, from the table of commands."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from diorama_app.web.html import STYLE, text
 MOUSE = (
     ("Select", "Click"),
     ("Select more", "Shift-click"),
-    ("Select in a frame", "Shift-drag"),
-    ("Move a thing", "Drag it"),
-    ("Move, snap inverted", "Alt-drag"),
-    ("Turn the view", "Drag beside"),
-    ("Shift the view", "Right-drag"),
+    ("Select in a rectangle", "Shift-drag"),
+    ("Move an object", "Drag the object"),
+    ("Move, snapping inverted", "Alt-drag"),
+    ("Rotate the view", "Drag the background"),
+    ("Pan the view", "Right-drag"),
     ("All commands", "Ctrl+K"),
 )
 
@@ -31,7 +31,7 @@ def show_help(client: Client, commands: CommandTable) -> None:
         client.dialog = None
         modal.close()
 
-    with gui.add_modal("What you can do") as modal:
+    with gui.add_modal("Mouse and keyboard") as modal:
         client.dialog = close
         mouse = "".join(f"<tr><td>{text(a)}</td><td><kbd>{text(b)}</kbd></td></tr>" for a, b in MOUSE)
         keys = "".join(_row(c) for c in commands.all if c.keys)
@@ -40,7 +40,7 @@ def show_help(client: Client, commands: CommandTable) -> None:
         gui.add_html(
             f'{STYLE}<div class="dio" style="columns:2;column-gap:24px"><h4>Mouse</h4><table>{mouse}</table>'
             f"<h4>Keys</h4><table>{keys}</table></div>"
-            f'<div class="dio dim">Without a key, in the Ctrl+K palette: {rest}.</div>'
+            f'<div class="dio dim">Without a key, in the command palette (Ctrl+K): {rest}.</div>'
         )
 
 

@@ -1,4 +1,4 @@
-"""The strip below the toolbar while something long is running: what, how far, and buttons to pause and stop it."""
+"""The status of the running job below the toolbar: title, progress, pause and cancel."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ class JobStrip:
             self._head.show("")
             self._meter.show("")
             return
-        buttons = button("Cancel", "cancel", disabled=status.cancelling, title="Stop and change nothing")
+        buttons = button("Cancel", "cancel", disabled=status.cancelling, title="Stop without changing anything")
         run = session.layout_run
         if status.kind == "optimise" and run is not None and not status.cancelling:
-            buttons = button("Go on" if run.paused else "Pause", "pause") + buttons
+            buttons = button("Resume" if run.paused else "Pause", "pause") + buttons
         self._head.show(f'<div class="job"><b class="words">{text(status.title)}</b>{buttons}</div>')
         self._meter.show(
             f'<div class="meter"><i style="width:{round(100 * status.fraction)}%"></i></div>'

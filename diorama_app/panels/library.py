@@ -1,4 +1,4 @@
-"""The whole library: search by words, insert where one looks, or place by a click in the view."""
+"""The library panel: search by words, insert at the centre of the view, or place by a click."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class LibraryPanel:
         self._words = gui.add_text("Search", "", hint="For example: armchair, round table, blue")
         on_change(self._words, lambda v: client.post(self.refresh, key="search"))
         upload = gui.add_upload_button(
-            "Add a model file", hint="GLB, OBJ, PLY, STL or FBX; then click where it should stand"
+            "Add a model file", hint="GLB, OBJ, PLY, STL or FBX; then click where to place it"
         )
 
         async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
@@ -39,7 +39,7 @@ class LibraryPanel:
     def refresh(self) -> None:
         """Draw what was found."""
         selected = self._client.selected
-        where = "on the floor you look at" + (f", or on the selected {text(selected.label)}" if selected else "")
+        where = "on the floor in view" + (f", or on the selected {text(selected.label)}" if selected else "")
         self._where.show(
             f'<p class="dim"><b>Insert</b> puts it {where}; <b>Place</b> waits for your click in the view.</p>'
         )
@@ -49,7 +49,7 @@ class LibraryPanel:
             return  # a hundred tiles, the same as before
         self._drawn = drawn
         tiles = "".join(self._tile(shape) for shape in self._found(words))
-        nothing = f"<p class='dim'>Nothing in the library is like “{text(words)}”. Try a plainer word.</p>"
+        nothing = f"<p class='dim'>Nothing in the library matches “{text(words)}”. Try another word.</p>"
         self._html.show(f'<div class="grid">{tiles}</div>' if tiles else nothing)
 
     def _found(self, words: str) -> list[Shape]:
@@ -70,7 +70,7 @@ class LibraryPanel:
             f"{self._client.session.thumbnails.html(shape.id)}<b>{name}</b><small>{about}</small>"
             '<div class="bar" style="margin:4px 0 0 0">'
             + button("Insert", "insert", shape.id, title=f"Insert: {shape.caption}")
-            + button("Place", "place", shape.id, title="Then click where it should stand")
+            + button("Place", "place", shape.id, title="Then click where to place it")
             + "</div></div>"
         )
 

@@ -1,4 +1,4 @@
-"""What each stage uses now, and a way to get the networks that do it better."""
+"""The implementation each stage uses, and the download of better networks."""
 
 from __future__ import annotations
 
@@ -25,16 +25,18 @@ POLL_EVERY_S = 3.0
 
 
 class Networks:
-    """The list of stages, the choice of a set with its licences, and "Get networks"."""
+    """The list of stages, the choice of a set with its licences, and "Download networks"."""
 
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
         with gui.add_folder("Networks", expand_by_default=False):
             self._stages = LiveHtml(gui)
-            self._choice = gui.add_dropdown("Set", tuple(SETS), hint="Which networks to get; all are optional")
+            self._choice = gui.add_dropdown("Set", tuple(SETS), hint="Networks to download; all are optional")
             self._offer = LiveHtml(gui)
             self._accept = gui.add_checkbox("I accept these licences", False)
-            self._get = gui.add_button("Get networks", color="blue", hint="Fetches what is missing; can be stopped")
+            self._get = gui.add_button(
+                "Download networks", color="blue", hint="Downloads missing networks; can be cancelled"
+            )
         self._state: tuple[object, ...] = ()
         self._polled_at = 0.0
         on_change(self._choice, lambda _: client.post(self._chosen))
@@ -42,7 +44,7 @@ class Networks:
         on_press(self._get, lambda: client.post(self._start))
 
     def refresh(self) -> None:
-        """Draw what is here and what the chosen set would add; looks at the disk now and then, not at every edit."""
+        """Draw the installed networks and those the chosen set adds; reads the disk now and then, not at every edit."""
         state = (self._choice.value, self._accept.value, self._client.session.jobs.status is None)
         if state == self._state and time.monotonic() - self._polled_at < POLL_EVERY_S:
             return
@@ -62,7 +64,7 @@ class Networks:
         return missing_networks(store, self._networks())
 
     def _unknown(self, store: ModelStore) -> frozenset[str]:
-        """Ids of what would be fetched under licences that nobody accepted on this machine yet."""
+        """Ids of missing networks whose licences were not accepted on this machine yet."""
         return frozenset(n.id for n in self._missing(store)) - store.accepted_licences()
 
     def _chosen(self) -> None:
@@ -99,7 +101,7 @@ def _stage_html(stage: StageStatus) -> str:
 
 def _offer_html(missing: tuple[Network, ...], store: ModelStore) -> str:
     if not missing:
-        return '<p class="dim">All of this set is on this machine.</p>'
+        return '<p class="dim">All networks of this set are installed.</p>'
     total = sum(n.size_bytes for n in missing) / 1e6
     rows = "".join(
         f"<tr><td>{text(n.title)}</td><td style='white-space:nowrap'>{_size(n.size_bytes / 1e6)}<br>"
@@ -108,7 +110,7 @@ def _offer_html(missing: tuple[Network, ...], store: ModelStore) -> str:
     )
     known = all(n.id in store.accepted_licences() for n in missing)
     words = "Their licences were accepted on this machine." if known else "Their licences are accepted once."
-    return f'<div class="card"><b>{_size(total)} to fetch.</b> {words}<table>{rows}</table></div>'
+    return f'<div class="card"><b>{_size(total)} to download.</b> {words}<table>{rows}</table></div>'
 
 
 def _size(megabytes: float) -> str:

@@ -21,30 +21,30 @@ RECIPES: dict[str, RecipeName] = {
 }
 COLOURS = ("#2f6fd6", "#d6542f", "#269660", "#a050c8", "#c89614", "#149696", "#7a5a3a", "#808080")
 CURVE_POINTS = 240
-ORDINALS = ("best", "second best", "third best", "fourth best", "fifth best")
+ORDINALS = ("best", "second-best", "third-best", "fourth-best", "fifth-best")
 SHORT_ORDINALS = ("1st", "2nd", "3rd", "4th", "5th")
 SHARES = frozenset({"orientation", "placement", "structure", "in_support"})
 FIGURES = {
     "orientation": "Upright on their support",
     "placement": "Touching their support",
-    "structure": "Both",
+    "structure": "Upright and touching",
     "in_support": "Inside their support",
     "part_overlap_m": "Deepest overlap",
     "part_overlap_mean_m": "Mean overlap",
     "overlapping_pairs": "Overlapping pairs",
     "moved_m": "Moved, mean",
-    "moved_most_m": "Moved, most",
+    "moved_most_m": "Moved, maximum",
     "box_overlap_m": "Overlap of boxes, mean",
 }
 WEIGHTS = {
-    "outline": ("As in the photo", "Things stay where they are seen in the photo"),
-    "distance": ("As far away", "Things stay as far from the camera as they were found"),
-    "align": ("Upright", "Things stand straight on what holds them"),
-    "heading": ("Facing", "Fronts keep the direction seen in the photo"),
-    "place": ("Touching", "Things touch what holds them"),
-    "neighbours": ("Neighbours", "Things near each other keep their arrangement"),
-    "volume": ("Within support", "Things stay over, and below, what bounds their support"),
-    "collision": ("Apart", "Things do not overlap"),
+    "outline": ("As in the photo", "Objects stay where the photo shows them"),
+    "distance": ("Distance", "Objects keep their distance from the camera"),
+    "align": ("Upright", "Objects stand upright on their support"),
+    "heading": ("Facing", "Objects keep the direction they face in the photo"),
+    "place": ("Touching", "Objects touch their support"),
+    "neighbours": ("Neighbours", "Objects near each other keep their arrangement"),
+    "volume": ("Within support", "Objects stay within the bounds of their support"),
+    "collision": ("Separation", "Objects do not overlap"),
 }
 """Label and hint of the weight of each cost."""
 COSTS = {
@@ -56,9 +56,9 @@ COSTS = {
     "e_place": "Touching",
     "e_rel": "Neighbours",
     "e_vol": "Within support",
-    "e_col": "Apart",
+    "e_col": "Separation",
 }
-"""What the curves and the table of costs call them."""
+"""Labels of the costs in curves and tables."""
 MIN_COST = 1e-6
 
 
@@ -68,23 +68,21 @@ class Optimiser:
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
         self._gui = gui
-        gui.add_markdown("Objects settle on their supports, out of each other and into the room. Locked ones stay.")
-        self._recipe = gui.add_dropdown("Recipe", list(RECIPES), hint="How the layout is found")
+        gui.add_markdown("Moves objects onto their supports, apart from each other, into the room. Locked ones stay.")
+        self._recipe = gui.add_dropdown("Recipe", list(RECIPES), hint="How the layout is optimised")
         on_change(
             self._recipe, lambda v: client.post(lambda: client.change_preferences(recipe=RECIPES[v]), key="recipe")
         )
         self._weights: dict[str, viser.GuiSliderHandle[float]] = {}
         with gui.add_folder("Weights", expand_by_default=False):
             for name, (label, hint) in WEIGHTS.items():
-                self._weights[name] = gui.add_slider(
-                    label, 0.0, 3.0, 0.1, 1.0, hint=f"{hint}; 1 is the recipe as it is"
-                )
+                self._weights[name] = gui.add_slider(label, 0.0, 3.0, 0.1, 1.0, hint=f"{hint}; 1 is the default")
                 on_change(self._weights[name], lambda _: client.post(self.refresh, key="weights"))
-            self._even = gui.add_button("All back to 1", color=QUIET_COLOUR, hint="The recipe as it is")
+            self._even = gui.add_button("Reset weights", color=QUIET_COLOUR, hint="Set all weights to 1")
         on_press(self._even, lambda: client.post(self._evened))
-        self._start = gui.add_button("Optimise layout", hint="One undo step; Cancel puts everything back")
+        self._start = gui.add_button("Optimise layout", hint="One undo step; Cancel restores the layout")
         self._start_some = gui.add_button(
-            "Optimise selection", color=QUIET_COLOUR, hint="Only what is selected (and what stands on it) moves"
+            "Optimise selection", color=QUIET_COLOUR, hint="Moves only the selection and what stands on it"
         )
         on_press(self._start, lambda: self._started(some=False))
         on_press(self._start_some, lambda: self._started(some=True))
@@ -128,17 +126,17 @@ class Optimiser:
         if count < 2:
             return ""
         whole = "".join(
-            button(str(k + 1), "arrangement", k, title=f"Every unlocked object in its {ORDINALS[k]} shape", on=on)
+            button(str(k + 1), "arrangement", k, title=f"Give every unlocked object its {ORDINALS[k]} shape", on=on)
             for k, on in enumerate(arrangements.is_taken(k) for k in range(count))
         )
         some = "".join(
-            button(SHORT_ORDINALS[k], "mix", k, title=f"Only what is selected in its {ORDINALS[k]} shape", on=on)
+            button(SHORT_ORDINALS[k], "mix", k, title=f"Give selected objects their {ORDINALS[k]} shape", on=on)
             for k, on in enumerate(arrangements.is_taken(k, chosen) for k in range(count))
         )
-        mixed = f'<p class="dim">Only what is selected:</p><div class="bar tight">{some}</div>' if chosen else ""
+        mixed = f'<p class="dim">Selection only:</p><div class="bar tight">{some}</div>' if chosen else ""
         return (
-            '<h4>Arrangements</h4><p class="dim">The whole room in its best, second best… shapes; what is locked '
-            f'stays. To mix, select some objects.</p><div class="bar tight">{whole}</div>{mixed}'
+            '<h4>Arrangements</h4><p class="dim">1 gives every object its best shape, 2 the second-best, and so on. '
+            f'Locked objects stay. Select objects to change only those.</p><div class="bar tight">{whole}</div>{mixed}'
         )
 
     def _evened(self) -> None:
@@ -202,10 +200,10 @@ class Optimiser:
 def _choice(run: LayoutRun) -> str:
     return (
         '<div class="bar tight">'
-        + button("Before", "before", on=run.showing_before, title="Show where everything was")
-        + button("After", "after", on=not run.showing_before, title="Show where it is now")
-        + button("Keep", "keep", title="Put this comparison away")
-        + button("Put back", "back", title="Take the optimisation back")
+        + button("Before", "before", on=run.showing_before, title="Show the layout before the run")
+        + button("After", "after", on=not run.showing_before, title="Show the layout after the run")
+        + button("Keep", "keep", title="Keep the result and close the comparison")
+        + button("Revert", "back", title="Undo the optimisation")
         + "</div>"
     )
 

@@ -1,4 +1,4 @@
-"""The tree of what stands on what: click selects, drag puts a thing on another, buttons lock and hide."""
+"""The support tree: a click selects, a drag changes the support, buttons lock and hide."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Outliner:
         self._paused_until = 0.0
 
     def refresh(self) -> None:
-        """Draw the tree of the current scene; not while a row is being dragged, which would let go of it."""
+        """Draw the tree of the current scene, except while a row is dragged, since a redraw ends the drag."""
         if time.monotonic() < self._paused_until:
             return
         client, session = self._client, self._client.session
@@ -101,7 +101,7 @@ class Outliner:
 
 
 def plane_name(scene: Scene, plane: Plane) -> str:
-    """What people call a plane: walls are numbered."""
+    """Display name of a plane; walls are numbered."""
     return editing.supporter_name(scene, plane.id).capitalize()
 
 
@@ -123,7 +123,7 @@ def tree_html(
             parts.append(_plane_row(scene, plane) + _children(tree, children))
     loose = [o.id for o in scene.objects if scene.support_of(o.id) is None]
     if loose:
-        parts.append('<div class="row" style="cursor:default"><span class="dim name">Held up by nothing</span></div>')
+        parts.append('<div class="row" style="cursor:default"><span class="dim name">Without support</span></div>')
         parts.append(_children(tree, tuple(loose)))
     if not scene.objects:
         parts.append('<p class="dim">No furniture yet. Insert some from the <b>Library</b>.</p>')
@@ -134,8 +134,8 @@ def _problems(tree: _Tree) -> str:
     count = len(tree.badges)
     if not count:
         return ""
-    words = "1 object needs a look" if count == 1 else f"{count} objects need a look"
-    show = button("Select", "wrong", title="Select what collides, floats or is outside the room")
+    words = "1 object has a problem" if count == 1 else f"{count} objects have problems"
+    show = button("Select", "wrong", title="Select objects that collide, float or are outside the room")
     style = "padding:5px 9px;margin-bottom:6px"
     return f'<div class="job card warn" style="{style}"><span class="words">⚠ {words}</span>{show}</div>'
 
@@ -176,7 +176,7 @@ def _row(tree: _Tree, item: SceneObject) -> str:
 def _chips(tree: _Tree, item: SceneObject) -> str:
     chips = "".join(f'<span class="chip bad">{text(word)}</span>' for word in tree.badges.get(item.id, ()))
     if is_unsure(item):
-        sure = f"{100 * item.confidence:.0f}% sure of its place; compare it with the photo"
+        sure = f"{100 * item.confidence:.0f}% confidence in its pose; compare it with the photo"
         chips += f'<span class="chip" title="{sure}">unsure</span>'
     return chips
 

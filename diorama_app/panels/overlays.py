@@ -1,4 +1,4 @@
-"""Keeps what was read from the photo drawn over it, and the room's edges in the room, while the person wants them."""
+"""Overlays of detected objects on the photo and of plane edges in the room, while switched on."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Overlays:
         self._planes_of: Architecture | None = None
 
     def refresh(self) -> None:
-        """Bring both in line with the document and the settings."""
+        """Update both to the document and the preferences."""
         self._refresh_planes()
         self._refresh_picture()
 

@@ -1,4 +1,4 @@
-"""Putting right what was guessed of a model of one's own: how it stands, how large it is, what it is."""
+"""Corrections of what was guessed about an uploaded model: orientation, unit, category."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from diorama_core.library.record import Shape
 
 
 class OwnModel:
-    """Shown for objects whose shape somebody brought along."""
+    """Shown for objects with an uploaded shape."""
 
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
@@ -30,7 +30,7 @@ class OwnModel:
             f'<div class="bar tight">{fixes}</div>'
             '<div style="display:flex;gap:4px;margin-bottom:4px">'
             f'<input data-change="is" aria-label="What the model is" value="{text(shape.category)}" '
-            'title="Say what the model is and press Enter"></div>'
+            'title="Type what the model is and press Enter"></div>'
         )
 
     def _act(self, action: Action) -> None:
@@ -42,9 +42,9 @@ class OwnModel:
 
 
 def _guessed(shape: Shape) -> str:
-    """What was taken for granted, in words."""
+    """The guesses as a sentence."""
     if shape.guess is None:
-        return f"Taken for: {shape.category}."
+        return f"Guessed: {shape.category}."
     sure = round(100 * min(shape.guess.up.confidence, shape.guess.front.confidence))
     unit = shape.guess.unit.value
-    return f"Taken for: {shape.category}; one unit is {unit} m; {sure} % sure how it stands. Correct it here."
+    return f"Guessed: {shape.category}; one unit is {unit} m; {sure} % sure which side is up. Correct it here."

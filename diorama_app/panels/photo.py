@@ -1,4 +1,4 @@
-"""The photo: upload it with what goes with it, mark the furniture, build the scene."""
+"""The photo panel: upload the photo and its inputs, draw boxes, build the scene."""
 
 from __future__ import annotations
 
@@ -46,7 +46,9 @@ class PhotoPanel:
         self._invitation = LiveHtml(gui, self._act)
         self._photo_button = self._upload(gui, "photo", "Upload a photo", "image/*")
         self._words = gui.add_text("Describe a room", "", hint="For example: a bedroom with a double bed and two lamps")
-        self._describe = gui.add_button("Make this room", color="green", hint="A project of its own, made from words")
+        self._describe = gui.add_button(
+            "Create room", color="green", hint="Creates a new project from this description"
+        )
         on_change(self._words, lambda _: client.post(self.refresh, key="words"))
         on_press(self._describe, lambda: client.post(lambda: describe_room(client, self._words.value)))
         self._drawn_by = LiveHtml(gui)
@@ -57,23 +59,25 @@ class PhotoPanel:
             self._upload(gui, "masks", "Add masks (PNG)", "image/png")
             self._camera = gui.add_text("Camera", "", hint="fx,fy,cx,cy in pixels of the photo; empty: estimated")
             on_change(self._camera, self._camera_given)
-        self._draw = gui.add_button("Draw boxes", color="blue", hint="Mark every piece of furniture with a rectangle")
+        self._draw = gui.add_button("Draw boxes", color="blue", hint="Draw a box around each piece of furniture")
         on_press(self._draw, lambda: client.post(self._toggle_board))
-        self._find = gui.add_button("Find furniture", hint=commands["find_furniture"].tooltip)
+        self._find = gui.add_button("Detect furniture", hint=commands["find_furniture"].tooltip)
         on_press(self._find, lambda: client.post(lambda: commands["find_furniture"].run(client)))
         self._no_detector = LiveHtml(gui)
         client.open_board = self._open_board
         names = [*COMMON, *sorted({c.name for c in CATEGORIES} - {*COMMON, "object"})]
-        self._label = gui.add_dropdown("This is a", names, hint="What the next box (or the marked one) is")
-        self._other = gui.add_text("or type", "", hint="Any other word; used instead of the list")
+        self._label = gui.add_dropdown("Category", names, hint="Category of the selected or the next box")
+        self._other = gui.add_text("or type", "", hint="Any other category, instead of one in the list")
         on_change(self._label, lambda value: client.post(lambda: self._labelled(value, listed=True)))
         on_change(self._other, lambda value: client.post(lambda: self._labelled(value, listed=False), key="word"))
         self._list = LiveHtml(gui, self._act)
         self._add = gui.add_button(
-            "Add marked one to the scene", color="blue", hint="Only the marked box is looked at; everything else stays"
+            "Add selected box to the scene",
+            color="blue",
+            hint="Reconstructs only the selected box; everything else stays",
         )
         on_press(self._add, lambda: client.post(self._add_marked))
-        self._build = gui.add_button("Build scene", color="green", hint="Makes a scene of the photo and its boxes")
+        self._build = gui.add_button("Build scene", color="green", hint="Builds a scene from the photo and its boxes")
         on_press(self._build, lambda: client.post(lambda: work.build(client)))
 
     def take(self, name: str, content: bytes) -> None:
@@ -119,7 +123,7 @@ class PhotoPanel:
         if kind == "photo":
             files: dict[str, bytes] = {"photo": content}
         elif draft.photo is None:
-            raise InputError("upload the photo first, then what goes with it")
+            raise InputError("upload the photo first, then its boxes, depth or masks")
         else:
             files = {**draft.files, kind: content}
 
@@ -141,11 +145,11 @@ class PhotoPanel:
             self._open_board()
         else:
             self._redraw_boards()
-            self._client.notice(f"{UPLOADS[kind]}: {name} is read.", "good")
+            self._client.notice(f"{UPLOADS[kind]}: {name} is loaded.", "good")
         self._session.refresh_panels(self._client)
 
     def _read(self, files: dict[str, bytes], draft: Draft, take: Callable[[Draft], None]) -> None:
-        """Read the files together, beside the desk; then `take` the draft they make."""
+        """Read the files together, in the background; then `take` the draft they make."""
         files = dict(files)
         if "photo" not in files:
             files["photo"] = _png(draft)
@@ -155,7 +159,7 @@ class PhotoPanel:
 
         def done(read: ReadInputs) -> None:
             if self._session.draft.inputs is not before:
-                raise InputError("the photo or what goes with it was changed meanwhile; upload the file again")
+                raise InputError("the photo or its inputs changed meanwhile; upload the file again")
             take(replace(draft, inputs=read.inputs, warnings=read.warnings, files=files, from_project=False))
 
         upload = Upload(
@@ -214,7 +218,7 @@ class PhotoPanel:
     def _add_marked(self) -> None:
         draft = self._session.draft
         if draft.highlighted is None or draft.highlighted >= len(draft.boxes):
-            raise InputError("mark a box in the list first, or draw one around what was missed")
+            raise InputError("select a box in the list first, or draw one around the missing object")
         box = draft.boxes[draft.highlighted]
         add_from_photo(self._client, box.box, box.label)
 
@@ -251,7 +255,7 @@ class PhotoPanel:
             ("1 box" if len(draft.boxes) == 1 else f"{len(draft.boxes)} boxes")
             if draft.boxes
             else (
-                "<b>Build the scene: the furniture is found by itself. Or draw boxes.</b>"
+                "<b>Build the scene: furniture is detected automatically. Or draw boxes.</b>"
                 if can_find_furniture()
                 else "<b>Draw a box around each piece of furniture.</b>"
             )
@@ -260,7 +264,7 @@ class PhotoPanel:
         extra = f" · with {', '.join(extras)}" if extras else ""
         return (
             f'<img class="photo" alt="the photo" src="{self._picture}" data-file="{self._photo_button}" '
-            'title="Drop another photo here to start anew">'
+            'title="Drop another photo here to start over">'
             f'<p style="margin-top:6px">{text(draft.photo.name)}<br><span class="dim">{state}{extra}</span></p>'
         )
 
@@ -276,9 +280,7 @@ def _extras(draft: Draft) -> dict[str, bool]:
 
 def _box_list(draft: Draft) -> str:
     if not draft.boxes:
-        return (
-            "<p class='dim'>Press <b>Draw boxes</b>, say what it is, and drag a rectangle around it in the photo.</p>"
-        )
+        return "<p class='dim'>Press <b>Draw boxes</b>, choose a category, and drag a rectangle in the photo.</p>"
     rows = []
     for index, box in enumerate(draft.boxes):
         on = "on" if index == draft.highlighted else ""

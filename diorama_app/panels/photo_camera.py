@@ -1,4 +1,4 @@
-"""What is known of the photo's camera, to be put right: field of view, tilt against the floor, height above it."""
+"""Corrections of the photo's camera: field of view, tilt, roll, height above the floor."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ from diorama_core.scene.types import Camera
 
 FIELDS = {
     "fov": ("Field of view (°)", "From the left to the right edge of the photo"),
-    "tilt": ("Tilt down (°)", "How far below the horizon the camera looks: says where the floor is"),
-    "roll": ("Roll (°)", "How far the camera leans to the right"),
+    "tilt": ("Tilt down (°)", "Angle of the camera below the horizon; sets where the floor is"),
+    "roll": ("Roll (°)", "Angle by which the camera leans to the right"),
 }
 
 
@@ -54,20 +54,20 @@ class PhotoCamera:
         shown_as = {name: f"{round(value, 1) + 0.0:.1f}" for name, value in values.items()}  # no minus before a zero
         rows = "".join(_row(label, name, shown_as[name], hint) for name, (label, hint) in FIELDS.items())
         shown = format_length(camera_height_m(session.scene) or 0.0, self._client.preferences.unit)
-        rows += _row("Above the floor", "height", shown, "Rescales everything at once")
+        rows += _row("Camera height", "height", shown, "Rescales the whole scene")
         again = button(
-            "Build again with this camera",
+            "Rebuild with this camera",
             "build",
-            title="Outlines stay; place, shape and layout are found anew. One undo step",
+            title="Keeps outlines; recomputes poses, shapes and layout. One undo step",
             disabled=not self._typed or session.jobs.status is not None,
         )
-        back = button("Never mind", "back", title="As it was") if self._typed else ""
+        back = button("Cancel", "back", title="Reset") if self._typed else ""
         inputs = session.document.inputs
         if inputs is not None and inputs.camera_attitude is not None and not self._typed:
             back = button(
-                "Tilt from the photo",
+                "Estimate tilt",
                 "find",
-                title="Forget the tilt and roll that were set by hand, and build again",
+                title="Discards the tilt and roll set by hand, and rebuilds",
                 disabled=session.jobs.status is not None,
             )
         explained = '<p class="dim">The grid should lie on the floor of the photo.</p>' if self._typed else ""

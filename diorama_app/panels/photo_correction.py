@@ -1,4 +1,4 @@
-"""What the photo says of the selected object, and ways to put it right: its name, its box, its outline."""
+"""Corrections of the selected object in the photo: category, box, outline."""
 
 from __future__ import annotations
 
@@ -36,23 +36,23 @@ class PhotoCorrection:
             self._of = self._outline = None
         if self._outline is not None:
             self._html.show(
-                '<h4>From the photo</h4><div class="card">Click what belongs to it; Shift-click what does not.'
+                '<h4>From the photo</h4><div class="card">Click the object; Shift-click what does not belong to it.'
                 f'<div class="bar tight" style="margin:6px 0 0 0">{button("Use this outline", "use")}'
-                f"{button('Never mind', 'stop')}</div></div>"
+                f"{button('Cancel', 'stop')}</div></div>"
             )
         elif self._of is not None:
             self._html.show(
                 '<h4>From the photo</h4><div class="card">Draw a box around it in the photo.'
-                f'<div class="bar tight" style="margin:6px 0 0 0">{button("Never mind", "stop")}</div></div>'
+                f'<div class="bar tight" style="margin:6px 0 0 0">{button("Cancel", "stop")}</div></div>'
             )
         else:
             self._html.show(
                 '<h4>From the photo</h4><div style="display:flex;gap:4px;margin-bottom:4px">'
-                f'<input data-change="is" aria-label="What it is" value="{text(item.category)}" '
-                'title="Say what it is and press Enter: shapes of that kind are looked for"></div>'
+                f'<input data-change="is" aria-label="Object category" value="{text(item.category)}" '
+                'title="Type a category and press Enter to retrieve matching shapes"></div>'
                 '<div class="bar tight">'
-                + button("Redraw box", "box", title="Show where it is in the photo")
-                + button("Fix outline", "outline", title="Click what belongs to it and what does not")
+                + button("Redraw box", "box", title="Draw a new box around it in the photo")
+                + button("Fix outline", "outline", title="Correct the outline by clicks in the photo")
                 + "</div>"
             )
 

@@ -44,7 +44,10 @@ class Projects:
         save = gui.add_button("Save now", color=QUIET_COLOUR, hint=commands["save"].tooltip)
         on_press(save, lambda: client.post(lambda: commands["save"].run(client)))
         new = gui.add_upload_button(
-            "New from a photo", color="green", mime_type="image/*", hint="A project of its own; this one stays as it is"
+            "New from a photo",
+            color="green",
+            mime_type="image/*",
+            hint="Starts another project; this one is not changed",
         )
 
         async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
@@ -77,7 +80,7 @@ class Projects:
             name = text(session.project.name)
             earlier = "".join(
                 f'<div class="row"><span class="name">{text(when)}</span>'
-                + button("Go back to it", "version", file)
+                + button("Restore this version", "version", file)
                 + "</div>"
                 for file, when in project_care.earlier_versions(session.project)
             )
@@ -94,7 +97,7 @@ class Projects:
         if session.binned in binned:
             gone = text(project_care.name_of(session.binned))
             undelete = f'<div class="job card warn"><span class="words">{gone} is in the bin.</span>'
-            undelete += button("Bring back", "unbin", session.binned.name) + "</div>"
+            undelete += button("Restore", "unbin", session.binned.name) + "</div>"
         bin_of = "".join(_binned_row(place) for place in binned[:RECENT] if place != session.binned)
         if bin_of:
             bin_of = f"<details><summary class='dim'>Bin</summary>{bin_of}</details>"
@@ -135,7 +138,7 @@ class Projects:
         elif action.do == "version" and session.project is not None:
             scene = project_care.earlier_scene(session.project, action.arg)
             session.textures = {**session.textures, **session.project.textures(scene)}
-            session.commit("go back to an earlier version", scene, by=client, selection=())
+            session.commit("restore an earlier version", scene, by=client, selection=())
         elif action.do == "unbin":
             self._bring_back(action.arg)
         elif action.do in ("open", "copy", "bin"):
@@ -146,7 +149,7 @@ class Projects:
         session = self._client.session
         place = next((p for p in project_care.in_bin(session.projects_dir) if p.name == name), None)
         if place is None:
-            raise EditRefused("that project is gone")
+            raise EditRefused("that project no longer exists")
         folder = project_care.out_of_bin(place, session.projects_dir)
         session.binned = None
         self._client.toast(f"{project_care.name_of(folder)} is back", False)
@@ -156,7 +159,7 @@ class Projects:
         # Only a name that is listed: the page must not reach outside the projects' folder.
         folder = next((f for f in project_care.recent_projects(session.projects_dir) if f.name == name), None)
         if folder is None:
-            raise EditRefused("that project is gone")
+            raise EditRefused("that project no longer exists")
         if do == "copy":
             session.autosave.flush()
             made = project_care.duplicate_project(folder, session.projects_dir)
@@ -175,13 +178,17 @@ class Projects:
 
 def _what_becomes_of_changes(session: EditorSession) -> str:
     if session.read_only:
-        return "This project can only be looked at here."
-    return "Changes cannot be saved just now." if session.autosave.trouble else "Every change is saved as you make it."
+        return "This project is read-only here."
+    return (
+        "Changes cannot be saved at the moment."
+        if session.autosave.trouble
+        else "Every change is saved as you make it."
+    )
 
 
 def _binned_row(place: Path) -> str:
     name = text(project_care.name_of(place))
-    return f'<div class="row"><span class="name">{name}</span>' + button("Bring back", "unbin", place.name) + "</div>"
+    return f'<div class="row"><span class="name">{name}</span>' + button("Restore", "unbin", place.name) + "</div>"
 
 
 def _is_open(session: EditorSession, folder: Path) -> bool:

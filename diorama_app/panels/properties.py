@@ -1,4 +1,4 @@
-"""The selected objects: name, place, turn, size, colour; several at once: align and distribute."""
+"""Properties of the selection: name, position, rotation, size, colour; align and distribute several."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from diorama_core.errors import InputError
 from diorama_core.scene.types import Finish, SceneObject
 
 SIZE_ORDER = [1, 0, 2]
-"""People say width, depth, height; the object's axes are depth, width, height."""
+"""Fields show width, depth, height; the object's axes are depth, width, height."""
 
 FINISHES: dict[Finish | None, tuple[str, str]] = {
-    None: ("Own", "The finish the shape came with"),
+    None: ("Original", "The original finish of the shape"),
     "matt": ("Matt", "No highlights: chalk, felt"),
     "satin": ("Satin", "Soft highlights: lacquered wood, leather"),
     "gloss": ("Gloss", "Sharp highlights: porcelain, varnish"),
@@ -46,15 +46,15 @@ class Properties:
         self._client, self._commands = client, commands
         self._header = LiveHtml(gui, self._act)
         self._name = gui.add_text("Name", "", visible=False)
-        where, size = "Middle of its underside: x, y, height", "Width, depth, height"
-        self._place = gui.add_vector3("Place (m)", (0.0, 0.0, 0.0), step=0.01, visible=False, hint=where)
-        self._place_words = gui.add_text("Place (ft)", "", visible=False, hint=where)
+        where, size = "Centre of its base: x, y, height", "Width, depth, height"
+        self._place = gui.add_vector3("Position (m)", (0.0, 0.0, 0.0), step=0.01, visible=False, hint=where)
+        self._place_words = gui.add_text("Position (ft)", "", visible=False, hint=where)
         self._yaw = gui.add_number(
-            "Turn (°)", 0.0, step=1.0, visible=False, hint="Heading of its front about the vertical"
+            "Rotation (°)", 0.0, step=1.0, visible=False, hint="Direction of its front, around the vertical axis"
         )
         self._size = gui.add_vector3("Size (m)", (1.0, 1.0, 1.0), step=0.01, visible=False, hint=size)
         self._size_words = gui.add_text("Size (ft)", "", visible=False, hint=size)
-        self._unit = gui.add_dropdown("Unit", list(UNITS), visible=False, hint="Of every length shown")
+        self._unit = gui.add_dropdown("Unit", list(UNITS), visible=False, hint="Unit of all lengths")
         self._colour = gui.add_rgb("Colour", (200, 200, 200), visible=False, hint="Paints its main material")
         self._own = LiveHtml(gui, self._act)
         on_change(self._name, lambda v: self._with(lambda i: editing.rename(client, i, v), "name"))
@@ -95,7 +95,7 @@ class Properties:
             self._show_words(self._place_words, base)
             self._show_words(self._size_words, size)
         else:
-            show_label(self._place, f"Place ({unit})")
+            show_label(self._place, f"Position ({unit})")
             show_label(self._size, f"Size ({unit})")
             show_value(self._place, tuple(in_unit(float(v), unit) for v in base))
             show_value(self._size, tuple(in_unit(float(v), unit) for v in size))
@@ -139,13 +139,14 @@ class Properties:
             return '<div class="card">The room is empty. Insert furniture from the <b>Library</b> tab.</div>'
         return (
             '<div class="card"><b>Click an object</b> in the view or in the list, or <b>drag it</b> to where it should '
-            "be.<br><span class='dim'>Shift-click selects several, Shift-drag frames them, Esc clears.</span></div>"
+            "be.<br><span class='dim'>Shift-click selects several, Shift-drag selects by rectangle, Esc clears.</span>"
+            "</div>"
         )
 
     def _card(self, item: SceneObject) -> str:
         several = len(self._client.selection)
         more = f' <span class="dim">and {several - 1} more</span>' if several > 1 else ""
-        photo_layer = f" · {100 * item.confidence:.0f}% sure" if item.box_px is not None else ""
+        photo_layer = f" · {100 * item.confidence:.0f}% confidence" if item.box_px is not None else ""
         problems = "".join(
             f' <span class="chip bad">{text(w)}</span>' for w in self._client.session.badges.get(item.id, ())
         )
@@ -189,6 +190,6 @@ def _surface(item: SceneObject) -> str:
         button(label, "finish", finish or "", title=hint, on=item.finish == finish)
         for finish, (label, hint) in FINISHES.items()
     )
-    own = button("Back to its own colours", "own", title="Takes the paint off") if item.colour is not None else ""
+    own = button("Original colours", "own", title="Removes the paint") if item.colour is not None else ""
     paint = f'<div class="bar tight">{own}</div>' if own else ""
     return f'{paint}<div class="bar tight"><span class="dim lead">Finish</span>{finishes}</div>'

@@ -1,4 +1,4 @@
-"""The room itself: how high it is, and its walls moved in or out; what is fastened to them follows."""
+"""The size of the room: its height and the offsets of its walls; mounted objects follow."""
 
 from __future__ import annotations
 
@@ -28,9 +28,15 @@ class RoomSize:
         self._folder.visible = height is not None
         if height is None:
             return
-        rows = _row("Height", "height", "", format_length(height, unit), "How high the room is")
+        rows = _row("Height", "height", "", format_length(height, unit), "Height of the room")
         rows += "".join(
-            _row(supporter_name(scene, w.id).capitalize(), "wall", w.id, "", "Move it outward by this; minus is inward")
+            _row(
+                supporter_name(scene, w.id).capitalize(),
+                "wall",
+                w.id,
+                "",
+                "Distance to move it outward; negative moves it inward",
+            )
             for w in walls
         )
         self._html.show(f"<table>{rows}</table>")

@@ -1,4 +1,4 @@
-"""What holds the selected object up: shown and chosen; an impossible choice is refused with the reason."""
+"""The support of the selected object; an impossible choice is refused with the reason."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ class Supports:
         self._ids: dict[str, str] = {}
         self._walls: dict[str, str] = {}
         self._parent = gui.add_dropdown(
-            "Stands on", [NOTHING], visible=False, hint="What holds it up: it moves along with that"
+            "Stands on", [NOTHING], visible=False, hint="The object or surface that supports it; it moves along"
         )
-        self._relation = gui.add_dropdown("and", [LIES, HANGS], visible=False, hint="How it is held")
-        self._wall = gui.add_dropdown("Against", [NO_WALL], visible=False, hint="A wall it also stands against")
+        self._relation = gui.add_dropdown("and", [LIES, HANGS], visible=False, hint="Kind of support")
+        self._wall = gui.add_dropdown("Against", [NO_WALL], visible=False, hint="The wall it stands against")
         on_change(self._parent, lambda name: client.post(lambda: self._chosen(name)))
         on_change(self._relation, lambda name: client.post(lambda: self._related(name)))
         on_change(self._wall, lambda name: client.post(lambda: self._adhered(name)))
@@ -59,7 +59,7 @@ class Supports:
             elif name in self._ids:
                 editing.attach(client, object_id, self._ids[name])
         finally:
-            self.refresh()  # a refused choice goes back to what holds
+            self.refresh()  # a refused choice reverts to the current support
 
     def _related(self, name: str) -> None:
         try:
@@ -75,7 +75,7 @@ class Supports:
 
 
 def supporters(scene: Scene, object_id: str) -> dict[str, str]:
-    """Names people read, to ids of the planes and objects that could be asked to hold an object up."""
+    """Display names mapped to ids of planes and objects that can support an object."""
     planes = [p for p in scene.architecture.planes if p.role != "ceiling" or scene.children_of(p.id)]
     others = [o for o in scene.objects if o.id != object_id]
     names = unique_names([plane_name(scene, p) for p in planes] + [o.label for o in others])

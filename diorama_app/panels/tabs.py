@@ -11,7 +11,7 @@ from diorama_app.web.html import run_once
 
 STORED_AS = "diorama-tabs"
 TRIES = 40
-"""While the page is being made, so many looks for its tabs, a twentieth of a second apart."""
+"""Number of attempts to find the tabs while the page loads, 50 ms apart."""
 
 _KEEPER = """
 const groups = %s, key = %s;

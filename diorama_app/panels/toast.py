@@ -1,4 +1,4 @@
-"""A line at the foot of the view that says what happened, with a button that takes it back; what a click means now."""
+"""Toast messages with an undo button, and the prompt for a pending click."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ class Toasts:
         doing = self._client.doing
         words = ""
         if isinstance(doing, Placing):
-            words = "Click where it should stand: the floor, a table, a wall"
+            words = "Click where to place it: the floor, a table or a wall"
         elif isinstance(doing, Measuring) and len(doing.points) < 2:
-            words = ("Click the first end", "Click the other end")[len(doing.points)]
+            words = ("Click the first point", "Click the second point")[len(doing.points)]
         stop = button("Esc", "stop", title="Stop")
         self._doing.show(
             f'<div class="dio-toast stay" style="bottom:64px"><span>{words}</span>{stop}</div>' if words else ""

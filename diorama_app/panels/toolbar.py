@@ -93,12 +93,12 @@ def run_command(client: Client, commands: CommandTable, action: Action) -> None:
 
 
 def title_bar(client: Client) -> str:
-    """Name of the project, how many things are in it, and who else is here."""
+    """Name of the project, number of objects, and the other connected clients."""
     session = client.session
     name = text(session.project.name) if session.project is not None else "No project"
     others = [g for g in session.clients.values() if g is not client]
     here = "".join(
-        f' <span class="chip" style="border-color:rgb{g.colour}" title="also here">{text(g.name)}</span>'
+        f' <span class="chip" style="border-color:rgb{g.colour}" title="also has this open">{text(g.name)}</span>'
         for g in others[:4]
     )
     return f"<b>{name}</b> <span class='dim'>{len(session.scene.objects)} objects</span>{here}"

@@ -1,4 +1,4 @@
-"""What stands between a change and the disk: another program, a full disk, changes that an earlier session lost."""
+"""Notices about unsaved changes: a locked project, a full disk, recovery of an earlier session."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ class UnsavedChanges:
         if session.read_only:
             return (
                 f'<div class="card warn">{text(session.read_only)}<div class="bar tight" style="margin:6px 0 0 0">'
-                + button("Work on a copy", "copy", title="A project of its own, as this one is now")
-                + button("Try again", "again", title="When it is closed there")
+                + button("Work on a copy", "copy", title="Creates a new project from the current state")
+                + button("Try again", "again", title="After closing it there")
                 + "</div></div>"
             )
         return f'<div class="card warn">{text(session.autosave.trouble)}</div>' if session.autosave.trouble else ""
@@ -47,7 +47,7 @@ class UnsavedChanges:
             f'<div class="card warn">Changes of {text(found.when)} were not saved when Diorama ended.'
             f'<div class="bar tight" style="margin:6px 0 0 0">'
             + button("Restore unsaved changes", "restore", title="One undo step")
-            + button("Discard", "discard", title="Forget them for good")
+            + button("Discard", "discard", title="Delete them permanently")
             + "</div></div>"
         )
 

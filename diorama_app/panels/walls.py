@@ -1,4 +1,4 @@
-"""Walls that stand between the eye and the room fade, and what hangs on them with them, in every frame the page draws.
+"""Walls between the camera and the room fade, with everything mounted on them, in every frame.
 
 The page is told where planes are and what hangs on them; it fades by itself (`static/walls.js`), so that turning the
 view needs no server.
@@ -58,7 +58,7 @@ def what_fades(
         scene: as it is shown.
         plane_name: node of a plane, by id.
         object_name: node of an object, by id.
-        selection: what stays solid because a person holds it.
+        selection: ids of objects that stay opaque because they are selected.
         fade_ms: how long a fade takes; 0: at once.
 
     Returns:
@@ -87,7 +87,7 @@ def _rounded(vector: Any) -> list[float]:
 
 
 def _supported_by(parents: Mapping[str, str], object_id: str) -> str:
-    """The plane at the root of what holds an object up; empty for what nothing holds."""
+    """Id of the plane at the root of an object's support chain; empty without support."""
     supported = parents.get(object_id, "")
     while supported in parents:
         supported = parents[supported]

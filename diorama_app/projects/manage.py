@@ -11,7 +11,7 @@ from diorama_core.project.storage import Project, read_scene
 from diorama_core.scene.types import Scene
 
 BIN = ".bin"
-"""Deleted projects wait here until somebody empties it by hand."""
+"""Deleted projects stay here until the folder is emptied by hand."""
 
 
 def recent_projects(projects_dir: Path) -> list[Path]:
@@ -36,7 +36,7 @@ def _written(path: Path) -> float:
 
 
 def name_of(folder: Path) -> str:
-    """What people call a project."""
+    """Display name of a project."""
     try:
         return Project.open(folder).name
     except DioramaError:
@@ -44,7 +44,7 @@ def name_of(folder: Path) -> str:
 
 
 def rename_project(project: Project, name: str) -> None:
-    """Call a project something else; its folder stays."""
+    """Rename a project; its folder does not change."""
     words = " ".join(name.split())[:80]
     if not words:
         raise ProjectError("a project needs a name; type at least one character")
@@ -66,7 +66,7 @@ def duplicate_project(folder: Path, projects_dir: Path) -> Project:
 
 
 def to_bin(folder: Path, projects_dir: Path) -> Path:
-    """Move a project's folder into the bin; returns where it lies now."""
+    """Move a project's folder into the bin; returns its new path."""
     place = projects_dir / BIN / f"{folder.name}-{time.time_ns() // 1_000_000}"
     try:
         place.parent.mkdir(parents=True, exist_ok=True)
@@ -92,13 +92,13 @@ def out_of_bin(place: Path, projects_dir: Path) -> Path:
 
 
 def earlier_versions(project: Project, most: int = 6) -> tuple[tuple[str, str], ...]:
-    """(file name, when, in words) of kept earlier scenes, newest first."""
+    """(file name, when, in words) of stored earlier scenes, newest first."""
     return tuple((p.name, time.strftime("%d %b %H:%M", time.localtime(_written(p)))) for p in project.backups()[:most])
 
 
 def earlier_scene(project: Project, name: str) -> Scene:
-    """One of the kept earlier scenes."""
+    """One of the stored earlier scenes."""
     for path in project.backups():
         if path.name == name:
             return read_scene(path)
-    raise ProjectError("that earlier version is gone; choose another")
+    raise ProjectError("that version no longer exists; choose another")

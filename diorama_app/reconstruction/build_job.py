@@ -58,7 +58,7 @@ def show_built(
     message: str = "",
     label: str = "build the scene",
 ) -> None:
-    """Show everyone what a build made.
+    """Show the built scene to all clients.
 
     Args:
         room: where.

@@ -1,4 +1,4 @@
-"""The photo's camera put right by hand: its field of view, how it is tilted against the floor, how high it stands."""
+"""Corrections of the photo's camera: field of view, tilt and roll, height above the floor."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ MAX_TILT_DEG, MAX_ROLL_DEG = 80.0, 45.0
 
 
 def rebuild_with_camera(client: Client, fov_deg: float | None, camera_attitude: CameraAttitude | None) -> None:
-    """Build the open project's scene anew with what a person says of its camera, as one undo step.
+    """Rebuild the open project's scene with a corrected camera, as one undo step.
 
-    Only what depends on the camera runs again: boxes and outlines stay. What was said holds for later builds, too.
+    Only what depends on the camera runs again: boxes and outlines stay. The correction also applies to later builds.
 
     Args:
-        guest: who asks.
+        client: the requesting client.
         fov_deg: horizontal field of view; as it was when None.
         held: against the floor; as it was when None.
     """
@@ -40,10 +40,10 @@ def rebuild_with_camera(client: Client, fov_deg: float | None, camera_attitude: 
 
 
 def rebuild_as_found(client: Client) -> None:
-    """Build the scene anew with the tilt that the photo tells, not what a person said."""
+    """Rebuild the scene with the tilt estimated from the photo instead of a correction."""
     inputs = client.session.document.inputs
     if inputs is None or inputs.camera_attitude is None:
-        raise EditRefused("nobody said how this camera was held")
+        raise EditRefused("no tilt was set by hand")
     _rebuild(client, replace(inputs, camera_attitude=None))
 
 
@@ -61,7 +61,7 @@ def _rebuild(client: Client, inputs: Inputs) -> None:
 
         session.autosave.flush()
         built = build_project(project, told, session.library, progress=progress)
-        message = "Built again with this camera. Undo brings back what was there."
+        message = "Rebuilt with this camera. Undo restores the previous scene."
         client.post(
             lambda: show_built(session, draft, project, built.scene, own=True, message=message, label="set the camera")
         )
@@ -70,14 +70,14 @@ def _rebuild(client: Client, inputs: Inputs) -> None:
 
 
 def trial_camera(camera: Camera, fov_deg: float, camera_attitude: CameraAttitude) -> Camera:
-    """A camera at the same place with another field of view, held otherwise."""
+    """A camera at the same position with another field of view and attitude."""
     k, T = camera.intrinsics, np.array(camera.T_world_camera)
     T[:3, :3] = camera_attitude.rotation(T[:3, 2])
     return Camera(Intrinsics.from_fov(k.width, k.height, float(np.radians(fov_deg))), T)
 
 
 def set_camera_height(client: Client, height_m: float) -> None:
-    """Say how high above the floor the photo was taken: everything takes that scale, at once."""
+    """Set the camera's height above the floor; rescales the whole scene."""
     now = camera_height_m(client.session.scene)
     if now is None:
         raise EditRefused("this scene has no photo camera; build it from a photo first")
@@ -85,7 +85,7 @@ def set_camera_height(client: Client, height_m: float) -> None:
 
 
 def rescale_room(client: Client, label: str, now_m: float, true_m: float) -> None:
-    """Say how long something of the room is: everything takes that scale, and so does every later build."""
+    """Set a true length; rescales the scene and every later build."""
     session = client.session
     height, inputs = camera_height_m(session.scene), session.document.inputs
     said = None if height is None or inputs is None else replace(inputs, camera_height_m=height * true_m / now_m)
@@ -93,18 +93,18 @@ def rescale_room(client: Client, label: str, now_m: float, true_m: float) -> Non
 
 
 def camera_height_m(scene: Scene) -> float | None:
-    """How high the photo's camera is above the floor; None without one."""
+    """Height of the photo's camera above the floor; None without a camera."""
     return None if scene.camera is None else float(scene.camera.position[2]) - floor_height(scene)
 
 
 def check_fov(fov_deg: float) -> None:
-    """Raises `InputError` when no camera sees so much or so little."""
+    """Raises `InputError` when the field of view is not plausible."""
     if not MIN_FOV_DEG <= fov_deg <= MAX_FOV_DEG:
-        raise InputError(f"a field of view of {fov_deg:g}° is no camera's; give {MIN_FOV_DEG:g} to {MAX_FOV_DEG:g}°")
+        raise InputError(f"a field of view of {fov_deg:g}° is not possible; give {MIN_FOV_DEG:g} to {MAX_FOV_DEG:g}°")
 
 
 def checked_angles(tilt_deg: float, roll_deg: float) -> CameraAttitude:
-    """How a camera is held; raises `InputError` when nobody holds one so."""
+    """Camera attitude; raises `InputError` when it is not plausible."""
     if abs(tilt_deg) > MAX_TILT_DEG or abs(roll_deg) > MAX_ROLL_DEG:
         raise InputError(
             f"tilted by {tilt_deg:g}° and rolled by {roll_deg:g}° is no photo of a room; "

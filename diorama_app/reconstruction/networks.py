@@ -13,13 +13,13 @@ from diorama_core.models.pull import pull
 from diorama_core.models.store import ModelStore
 from diorama_core.progress import Progress
 
-NO_DETECTOR = "Finding furniture needs a network: get “lite” under Project, Networks."
+NO_DETECTOR = "Detecting furniture needs a network: download “lite” under Project, Networks."
 SAME_IOU = 0.5
-"""A found box that overlaps one on the photo by so much is the same thing."""
+"""A detected box with at least this IoU with an existing box is a duplicate."""
 
 
 def missing_networks(store: ModelStore, networks: Sequence[Network]) -> tuple[Network, ...]:
-    """Those that are not wholly on this machine and can be fetched."""
+    """Networks that are not fully installed and can be downloaded."""
     return tuple(n for n in networks if n.pullable and not store.has(n))
 
 
@@ -27,24 +27,24 @@ def get_networks(client: Client, networks: Sequence[Network], accepted: frozense
     """Fetch what is missing, in the background.
 
     Args:
-        guest: who asks.
+        client: the requesting client.
         networks: what to fetch.
         accepted: ids of the networks whose licences this person was shown and accepts.
     """
     session, store = client.session, ModelStore.default()
     missing = missing_networks(store, networks)
     if not missing:
-        raise EditRefused("these networks are all on this machine already")
+        raise EditRefused("these networks are all installed already")
     unknown = {n.id for n in missing} - store.accepted_licences() - accepted
     if unknown:
-        raise InputError("tick that you accept the licences first; nothing was fetched")
+        raise InputError("accept the licences first; nothing was downloaded")
 
     def work(progress: Progress) -> None:
         fetched = pull(store, missing, accept=lambda asked: {n.id for n in asked} <= accepted, progress=progress)
         names = f"{len(fetched)} networks are" if len(fetched) != 1 else "The network is"
         client.post(lambda: session.notice_all(f"{names} ready and used from the next build on.", "good"))
 
-    session.jobs.start("pull", "Getting networks", work)
+    session.jobs.start("pull", "Downloading networks", work)
 
 
 def find_furniture(client: Client) -> None:
@@ -70,13 +70,15 @@ def find_furniture(client: Client) -> None:
             if more:
                 client.open_board()
             session.refresh_panels()
-            count = "1 box more" if len(more) == 1 else f"{len(more)} boxes more"
-            words = f"{count}: correct what is wrong, then build." if more else "Nothing else was found in this photo."
+            count = "1 more box" if len(more) == 1 else f"{len(more)} more boxes"
+            words = (
+                f"{count}: check the boxes, then build." if more else "No more furniture was detected in this photo."
+            )
             client.notice(words, "good")
 
         client.post(show)
 
-    session.jobs.start("find", "Finding furniture", work)
+    session.jobs.start("find", "Detecting furniture", work)
 
 
 def _iou(a: Box, b: Box) -> float:

@@ -1,4 +1,4 @@
-"""What the editor does with the photo's evidence: add what was missed, rename, redraw and re-outline what is there."""
+"""Corrections from the photo: add a missed object, or change the category, box or outline of one."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def add_from_photo(client: Client, box: Box, label: str) -> None:
-    """Outline, retrieve, pose and place what a box of the photo shows; nothing else changes."""
+    """Segment, retrieve, pose and place the object in a box of the photo; nothing else changes."""
     session = client.session
     new_id = edits.fresh_id(session.scene, resolve(label).category.name)
 
@@ -35,11 +35,11 @@ def add_from_photo(client: Client, box: Box, label: str) -> None:
 
 
 def rename_class(client: Client, object_id: str, label: str) -> None:
-    """Say what an object is: shapes of that kind are retrieved for its box, and the best one stands where it stood."""
+    """Change an object's category: retrieves matching shapes for its box and uses the best at the same place."""
     item = _seen(client, object_id)
     words = label.strip()
     if not words:
-        raise EditRefused("say what it is, for example armchair")
+        raise EditRefused("type what it is, for example armchair")
 
     def put(scene: Scene, found: Found) -> Scene:
         return renamed(scene, object_id, found)
@@ -49,17 +49,17 @@ def rename_class(client: Client, object_id: str, label: str) -> None:
 
 
 def redraw_box(client: Client, object_id: str, box: Box) -> None:
-    """Say where in the photo an object is: it is outlined, retrieved and posed again."""
+    """Change an object's box in the photo: segments, retrieves and poses it again."""
     item = client.session.scene.object(object_id)
-    now, label = _labelled(box, item.label), f"look again at {item.label}"
+    now, label = _labelled(box, item.label), f"reconstruct {item.label}"
     _reconstruct(client, item.box_px, now, object_id, label, _replaced(client, object_id))
 
 
 def use_outline(client: Client, object_id: str, outline: Outline) -> None:
-    """Say which pixels an object has: it is retrieved and posed again."""
+    """Change an object's mask: retrieves and poses it again."""
     item = client.session.scene.object(object_id)
     if not outline.mask.any():
-        raise EditRefused("the outline is empty; click on the thing first")
+        raise EditRefused("the outline is empty; click the object first")
     box = _labelled(outline.bounds, item.label)
     label = f"outline of {item.label}"
     _reconstruct(client, item.box_px, box, object_id, label, _replaced(client, object_id), drawn=outline.mask)
@@ -89,7 +89,7 @@ def _reconstruct(
     drawn: Bool[np.ndarray, "h w"] | None = None,
     select_new: bool = False,
 ) -> None:
-    """Look at a box of the photo anew, put what is found into the scene, and keep what was said for the next build."""
+    """Reconstruct one box of the photo, update the scene, and store the correction for the next build."""
     session = client.session
     inputs, scene, project = _inputs(client), session.scene, session.project
 
@@ -118,7 +118,7 @@ def _reconstruct(
 
         client.post(show)
 
-    session.jobs.start("look", f"Looking at the {box.label}", work)
+    session.jobs.start("look", f"Reconstructing the {box.label}", work)
 
 
 def _replaced(client: Client, object_id: str) -> Callable[[Scene, Found], Scene]:

@@ -1,4 +1,4 @@
-"""The outlines of what was found in the open project's photo, worked out once when somebody wants to see them."""
+"""Masks of the objects in the open project's photo, computed on first use."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from diorama_core.progress import Progress
 
 
 class PhotoOutlines:
-    """Used from the desk's thread only."""
+    """Used from the UI thread only."""
 
     def __init__(self, session: EditorSession) -> None:
         self._session = session
@@ -45,4 +45,4 @@ class PhotoOutlines:
 
             client.post(keep)
 
-        session.jobs.start("look", "Outlining what is in the photo", work)
+        session.jobs.start("look", "Segmenting the photo", work)

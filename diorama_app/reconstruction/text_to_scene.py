@@ -8,11 +8,11 @@ from diorama_core.errors import DioramaError, InputError
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
 
-COMPOSED = "No image endpoint is set up: the room is composed from the library, photographed and rebuilt."
+COMPOSED = "No image endpoint is set up: the room is composed from the library, rendered and reconstructed."
 
 
 def how_pictures_come() -> str:
-    """One sentence on who makes the picture of a described room."""
+    """One sentence on how the picture of a described room is made."""
     from diorama_core.text.pictures import ImageSettings  # the room grammar; opening a project does without it
 
     try:
@@ -23,13 +23,13 @@ def how_pictures_come() -> str:
 
 
 def describe_room(client: Client, words: str) -> None:
-    """Make a project of a description, in the background, and open it."""
+    """Create a project from a description, in the background, and open it."""
     from diorama_core.text.pictures import ImageSettings, picture_of
 
     session, draft = client.session, client.session.draft
     said = " ".join(words.split())
     if not said:
-        raise InputError("say what the room is, such as: a reading corner with two armchairs")
+        raise InputError("describe the room, for example: a reading corner with two armchairs")
     endpoint = ImageSettings.from_environment()
 
     def work(progress: Progress) -> None:
@@ -49,4 +49,4 @@ def describe_room(client: Client, words: str) -> None:
         what = f"The scene has {count} objects" if count else "No furniture was found; draw boxes"
         client.post(lambda: show_built(session, draft, project, built.scene, own=False, message=f"{what}; {how}."))
 
-    session.jobs.start("text", "Making the room you described", work)
+    session.jobs.start("text", "Creating the room you described", work)

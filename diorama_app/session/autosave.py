@@ -15,9 +15,9 @@ from diorama_core.scene.types import Scene
 log = logging.getLogger(__name__)
 
 SETTLE_S = 0.4
-"""Quick edits in a row are written once."""
+"""Quick successive edits are written once."""
 RETRY_S = 5.0
-"""What could not be saved is tried again so often."""
+"""Interval between retries of a failed save."""
 
 Told = Callable[[str], None]
 
@@ -44,10 +44,10 @@ class Autosave:
         self._on_error, self._on_saved, self._retry_s = on_error, on_saved, retry_s
         self.recovery = recovery or Recovery()
         self.trouble = ""
-        """Why changes are not saved just now; empty when all is well."""
+        """Why saving fails at the moment; empty when it succeeds."""
         self._condition = threading.Condition()
         self._writing = threading.RLock()
-        """Held from taking what waits until it is written, so that an older scene never follows a newer one."""
+        """Locked from dequeuing until written, so that an older scene never overwrites a newer one."""
         self._waiting: dict[Project, Scene] = {}
         self._new = self._stopping = False
         self.saved_at: float | None = None
@@ -62,7 +62,7 @@ class Autosave:
             self._condition.notify_all()
 
     def flush(self) -> None:
-        """Write what waits, now."""
+        """Write pending scenes now."""
         with self._writing:
             with self._condition:
                 waiting, self._waiting = self._waiting, {}
@@ -73,7 +73,7 @@ class Autosave:
                         self._waiting.setdefault(project, scene)
 
     def stop(self) -> None:
-        """Write what waits and end the thread."""
+        """Write pending scenes and end the thread."""
         self.flush()
         with self._condition:
             self._stopping = True

@@ -1,7 +1,7 @@
-"""One browser and the person at it: what is selected there, how they like to work, and their panels.
+"""One connected browser: its selection, preferences and panels.
 
-The document is shared; a selection is a person's own and is shown to the others as a cursor in that person's colour.
-Holds nothing that a reload must not lose.
+The document is shared; the selection belongs to one client and is shown to the others in that client's colour.
+Has no state that must survive a reload.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from diorama_core.scene.types import Camera, Scene, SceneObject
 log = logging.getLogger(__name__)
 
 COLOURS = ((38, 150, 96), (160, 80, 200), (20, 130, 190), (200, 60, 110), (150, 120, 20), (90, 100, 120))
-"""Of the others' cursors; one's own selection is orange."""
+"""Colours of other clients' selections; one's own is orange."""
 
 
 @dataclass(frozen=True)
@@ -46,13 +46,13 @@ Doing = Placing | Measuring | None
 
 
 class Client:
-    """Implements `ConnectedClient`. Used from the desk's thread only, except where a method says otherwise."""
+    """Implements `ConnectedClient`. Used from the UI thread only, except where a method says otherwise."""
 
     def __init__(self, session: EditorSession, viser_client: viser.ClientHandle, number: int) -> None:
         self.session = session
         self.viser_client = viser_client
         self.id: int = viser_client.client_id
-        self.name: str = f"Guest {number}"
+        self.name: str = f"User {number}"
         self.colour: tuple[int, int, int] = COLOURS[(number - 1) % len(COLOURS)]
         self.view: ClientView = ClientView(viser_client)
         self.marks = Decorations(viser_client)
@@ -109,25 +109,25 @@ class Client:
         self.select(rest if object_id in self.selection else (*rest, object_id))
 
     def drop_missing(self) -> None:
-        """Forget what is no longer there."""
+        """Deselect objects that no longer exist."""
         self.selection = tuple(i for i in self.selection if self.session.scene.has_object(i))
 
     # -- page -------------------------------------------------------------------------------------------------
 
     def change_preferences(self, **changes: Any) -> None:
-        """Work differently from now on."""
+        """Change the preferences."""
         self.preferences = replace(self.preferences, **changes)
         remember(self.viser_client, self.preferences)
         self.refresh()
 
     def take_preferences(self, preferences: Preferences) -> None:
-        """Work as this browser did the last time."""
+        """Restore the preferences stored in this browser."""
         self.preferences = preferences
         self.view.set_dark(preferences.dark)
         self.refresh()
 
     def refresh(self) -> None:
-        """Bring this browser's own marks and panels in line with the document."""
+        """Update this browser's marks and panels to the document."""
         with self.viser_client.atomic():  # one parcel: every one of them would wake the thread that sends
             self._draw("marks", self.show_marks)
             if self.to_say is not None:
@@ -166,12 +166,12 @@ class Client:
         )
 
     def notice(self, message: str, kind: NoticeKind = "info") -> None:
-        """Tell the person something."""
+        """Show a message to the user."""
         if kind == "bad":
             self.view.notice(message, kind)
         else:
             self.toast(message, False)
 
     def post(self, task: Callable[[], None], *, key: str | None = None) -> None:
-        """Do `task` on the desk; the person is told when it fails. May be called from any thread."""
+        """Do `task` on the UI thread; the user is notified when it fails. May be called from any thread."""
         self.session.post(self.id, task, key=None if key is None else f"{self.id} {key}")

@@ -35,17 +35,17 @@ class ConnectedClient(Protocol):
     toast: Callable[[str, bool], None]
 
     def drop_missing(self) -> None:
-        """Forget selected objects that are gone."""
+        """Deselect objects that no longer exist."""
         ...
 
     def refresh(self) -> None:
-        """Bring this browser's marks and panels in line with the document."""
+        """Update this browser's marks and panels to the document."""
         ...
 
     def notice(self, message: str, kind: NoticeKind = "info") -> None:
-        """Tell the person something."""
+        """Show a message to the user."""
         ...
 
     def post(self, task: Callable[[], None], *, key: str | None = None) -> None:
-        """Do `task` on the UI thread; the person is told when it fails. May be called from any thread."""
+        """Do `task` on the UI thread; the user is notified when it fails. May be called from any thread."""
         ...

@@ -1,4 +1,4 @@
-"""What is being edited: a history of scenes, each with what was said of its photo. The single source of truth."""
+"""The edited document: a history of scenes with their photo inputs. The single source of truth."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from diorama_core.scene.types import Scene
 
 
 class Document:
-    """The open scene. Used from the desk's thread only; `history` is a value and may be read from anywhere."""
+    """The open scene. Used from the UI thread only; `history` is a value and may be read from anywhere."""
 
     def __init__(self, scene: Scene | None = None) -> None:
         self.history = History.start(scene or Scene())
@@ -25,12 +25,12 @@ class Document:
 
     @property
     def inputs(self) -> Inputs | None:
-        """The photo and all that people have said of it, as it is now."""
+        """The current photo inputs with all corrections."""
         beside = self.history.current.beside
         return beside if isinstance(beside, Inputs) else None
 
     def open(self, scene: Scene, inputs: Inputs | None = None) -> None:
-        """Start over with another scene; the history begins anew."""
+        """Replace the scene and clear the history."""
         self.history = History(entries=(Entry("open", scene, beside=inputs),))
 
     def commit(

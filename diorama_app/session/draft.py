@@ -1,4 +1,4 @@
-"""What a person has handed in for the next scene: the photo and what goes with it, until "Build scene"."""
+"""The inputs for the next build: the photo with its boxes, depth and masks, until "Build scene"."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Long work: one job at a time, in a thread of its own, with progress and cancel."""
+"""Background jobs: one at a time, in a thread of its own, with progress and cancel."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PERCEIVING: frozenset[JobKind] = frozenset({"build", "look", "text"})
 
 @dataclass(frozen=True)
 class JobStatus:
-    """What a job says of itself, as shown to people."""
+    """The displayed status of a job."""
 
     kind: JobKind
     title: str

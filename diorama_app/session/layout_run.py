@@ -16,7 +16,7 @@ Samples = list[tuple[float, tuple[tuple[str, float], ...]]]
 
 @dataclass
 class LayoutRun:
-    """One run, while it lasts and after. Used from the desk, except for `going`."""
+    """One run, while it lasts and after. Used from the UI thread, except for `going`."""
 
     recipe: str
     started_at: float
@@ -37,7 +37,7 @@ class LayoutRun:
 
     @property
     def paused(self) -> bool:
-        """Whether it waits to go on."""
+        """Whether the run is paused."""
         return not self.going.is_set()
 
     def read(self, samples: Samples) -> None:

@@ -1,6 +1,6 @@
-"""How one person likes to work, kept in their browser: a reload and another start of the server find it again.
+"""Preferences of one client, stored in its browser and restored after a reload or a server restart.
 
-Browsers keep it per address, so every person who opens a shared server has settings of their own.
+Browsers store them per address, so every user of a shared server has their own.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ ANSWER_WITHIN_S = 20.0
 
 @dataclass(frozen=True)
 class Preferences:
-    """How one person likes to work."""
+    """Preferences of one client."""
 
     unit: Unit = "m"
     snap: bool = False
@@ -58,13 +58,13 @@ _JSON = TypeAdapter(Preferences)
 
 
 def preferences_text(preferences: Preferences) -> str:
-    """As a browser keeps it."""
-    # Outlines are looked for anew in every photo, and only when somebody asks.
+    """The form stored in the browser."""
+    # Masks are computed for each photo, and only on request.
     return _JSON.dump_json(replace(preferences, masks=False)).decode()
 
 
 def read_preferences(retained: str | None) -> Preferences:
-    """What a browser kept; as for somebody new when it kept nothing, or nothing that this program understands."""
+    """Stored preferences; defaults when nothing valid is stored."""
     if retained is None:
         return Preferences()
     try:
@@ -75,12 +75,12 @@ def read_preferences(retained: str | None) -> Preferences:
 
 
 def remember(viser_client: viser.ClientHandle, preferences: Preferences) -> None:
-    """Have the browser keep the settings."""
+    """Store the preferences in the browser."""
     viser_client.local_storage.set_item(KEY, preferences_text(preferences))
 
 
 def remembered(viser_client: viser.ClientHandle) -> Preferences:
-    """What the browser kept. Waits for its answer: neither for viser's event loop nor for the desk."""
+    """The preferences stored in the browser. Waits for the answer: not for viser's event loop or the UI thread."""
     try:
         return read_preferences(viser_client.local_storage.get_item(KEY, timeout=ANSWER_WITHIN_S))
     except (RuntimeError, TimeoutError) as error:  # it left, or keeps nothing for any page

@@ -1,4 +1,4 @@
-"""What the first build or optimisation needs, loaded beside everything else once the page has come up."""
+"""Preloads in the background, once the page is shown, what the first build or optimisation needs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is wrong with objects just now: collisions, floating, out of the room. Looked for beside the desk."""
+"""Detects problems of objects in the background: collisions, floating, outside the room."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ log = logging.getLogger(__name__)
 FLOATING_M = 0.03
 OUTSIDE_M = 0.06
 SETTLE_S = 0.15
-"""An edit reaches the screens first, and of quick edits in a row only the last one is looked at."""
+"""Delay so that edits are displayed first and only the last of several quick edits is checked."""
 COLLIDES, FLOATS, OUTSIDE = "collides", "floats", "outside"
 
 Problems = Mapping[str, tuple[str, ...]]
@@ -45,7 +45,7 @@ def problems(scene: Scene, library: ShapeLibrary, collisions: Collisions) -> Pro
 
 
 def floats(scene: Scene, library: ShapeLibrary, item: SceneObject) -> bool:
-    """Whether a gap is seen between an object and what holds it up."""
+    """Whether there is a visible gap between an object and its support."""
     edge = scene.support_of(item.id)
     if taxonomy.resolve(item.category).category.soft:
         return False
@@ -96,7 +96,7 @@ class Checker:
         self._thread: threading.Thread | None = None
 
     def look_at(self, scene: Scene) -> None:
-        """Look at this scene soon; an older one that waits is passed over."""
+        """Check this scene soon; replaces an older pending one."""
         with self._condition:
             self._scene = scene
             if self._thread is None:
@@ -105,7 +105,7 @@ class Checker:
             self._condition.notify_all()
 
     def wait(self, timeout_s: float = 10.0) -> bool:
-        """Block until the newest scene was looked at."""
+        """Block until the newest scene is checked."""
         with self._condition:
             return self._condition.wait_for(lambda: self._scene is None and not self._busy, timeout_s)
 

@@ -1,4 +1,4 @@
-"""Uploads are decoded in a process of its own, while everybody else goes on working."""
+"""Decodes uploads in a separate process, so that the editor stays responsive."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Changes that are not in their project's folder yet lie here, so that neither a crash nor a full disk loses them.
+"""Stores changes that are not saved to their project yet, so that a crash or a full disk does not lose them.
 
 Every change is noted at once and forgotten when the project's own file has it, less than a second later. What a later
 session finds is what an earlier one could not save.
@@ -65,7 +65,7 @@ class Recovery:
         try:
             write_atomically(self._path(project, self._session), scene_to_json(scene).encode())
         except (OSError, ValueError, DioramaError) as error:
-            log.warning("unsaved changes cannot be kept in %s (%s)", self._folder, error)
+            log.warning("unsaved changes cannot be stored in %s (%s)", self._folder, error)
             return False
         return True
 

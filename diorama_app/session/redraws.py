@@ -1,4 +1,4 @@
-"""When browsers' panels are redrawn: at most ten times a second each, whoever acts first.
+"""Schedules redraws of panels: at most ten a second per browser, the acting client first.
 
 Drawing the panels of one browser takes milliseconds; of twenty, at every edit of twenty people, more than there is. An
 edit therefore marks the panels of all as out of date, and each browser's are drawn as a task of its own, between which
@@ -23,7 +23,7 @@ SHARE = 0.4
 
 
 class Redraws:
-    """Used from the desk's thread only."""
+    """Used from the UI thread only."""
 
     def __init__(self, ui_thread: UiThread, is_connected: Callable[[int], bool]) -> None:
         self._ui_thread = ui_thread

@@ -1,6 +1,6 @@
 """One open project: the document, its jobs, and the people who look at it.
 
-Everything here runs on the desk's thread, except where a method says otherwise. A change goes through `edit`; then
+Everything here runs on the UI thread's thread, except where a method says otherwise. A change goes through `edit`; then
 `refresh` brings the page in line with the document, and the project's folder follows within a second.
 """
 
@@ -76,23 +76,23 @@ class EditorSession:
         self.draft = Draft()
         self.project: Project | None = None
         self._inputs_saved: Inputs | None = None
-        """What is said of the photo, as it is in the project's folder."""
+        """Corrections of the photo as saved in the project's folder."""
         self.photo: Photo | None = None
         self.notes: tuple[str, ...] = ()
-        """What the pipeline had to say of how the scene was made."""
+        """Notes of the pipeline about how the scene was made."""
         self.textures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]] = {}
         self.clients: dict[int, ConnectedClient] = {}
         self.badges: Problems = {}
-        """What is wrong with objects just now, in a word or two each."""
+        """Current problems of objects, in a word or two each."""
         self.on_client: Callable[[Any], None] | None = None
-        """Lays out the page of somebody who came."""
+        """Creates the page of a newly connected client."""
         self._clients_so_far = 0
         self.clip: Clip | None = None
-        """What was copied last, in whichever project."""
+        """The clipboard, shared by all projects."""
         self.binned: Path | None = None
-        """The project deleted last, until it is brought back."""
+        """The project deleted last, until it is restored."""
         self.layout_run: LayoutRun | None = None
-        """The last optimisation, as the panels show it."""
+        """The last optimisation run."""
         self._job_told_at = 0.0
         self.ui_thread = UiThread(lambda message: self.notice_all(message, "bad"))
         self.redraws = Redraws(self.ui_thread, lambda client_id: client_id in self.clients)
@@ -100,7 +100,7 @@ class EditorSession:
         self.autosave = Autosave(on_error=lambda line: self._saver_says(line, "bad"), on_saved=self._saver_says)
         self._lock: ProjectLock | None = None
         self.read_only = ""
-        """Why the open project cannot be changed here; empty when it can."""
+        """Why the open project is read-only; empty when it is writable."""
         self.shapes = ShapeBytes(library, light=low_graphics)
         self.preparer = Preparer(library)
         self.reader = Reader()
@@ -149,7 +149,7 @@ class EditorSession:
             raise
         except ValueError as error:  # the scene's own values refuse what is no number
             self.refresh(by)
-            raise EditRefused(f"this cannot be: {shortened(str(error))}; give another value") from error
+            raise EditRefused(f"this is not possible: {shortened(str(error))}; give another value") from error
         if scene == self.scene and inputs is None:
             self.refresh(by)
             return
@@ -206,7 +206,7 @@ class EditorSession:
         """Do again what was undone."""
         self.need_writable()
         done = self.document.redo()
-        self._time_travelled(by, f"Done again: {done.label}", done.selection)
+        self._time_travelled(by, f"Redone: {done.label}", done.selection)
 
     def _time_travelled(self, by: ConnectedClient, message: str, selection: tuple[str, ...]) -> None:
         by.selection = selection or by.selection
@@ -231,7 +231,7 @@ class EditorSession:
             if self.project is not None:
                 self.project.save_inputs(inputs, self.project.info().get("warnings", ()))
         except DioramaError as error:
-            self.notice_all(f"what you said of the photo is not saved: {error}", "bad")
+            self.notice_all(f"corrections of the photo are not saved: {error}", "bad")
         if self.draft.from_project:
             self.draft = self.draft.following(inputs)
         self._inputs_saved, self.photo = inputs, inputs.photo
@@ -376,13 +376,13 @@ class EditorSession:
         self.notice(None, message, kind)
 
     def post(self, client_id: int | None, task: Callable[[], None], *, key: str | None = None) -> None:
-        """Do `task` on the desk for one browser, which is told when it fails. May be called from any thread."""
+        """Do `task` on the UI thread for one browser, which is told when it fails. May be called from any thread."""
         self.ui_thread.post(
             task, key=key, client_id=client_id, on_error=lambda message: self.notice(client_id, message, "bad")
         )
 
     def close(self) -> None:
-        """Stop jobs, write what is unsaved, end the threads. Called from outside the desk."""
+        """Stop jobs, write what is unsaved, end the threads. Called from outside the UI thread."""
         self.jobs.cancel()
         self.jobs.wait(5.0)
         self.ui_thread.stop()
@@ -433,7 +433,7 @@ class EditorSession:
         def tell() -> None:
             self.refresh()
             if outcome.cancelled:
-                self.notice_all("Stopped; nothing was changed.")
+                self.notice_all("Cancelled; nothing was changed.")
             elif outcome.error is not None:
                 self.notice_all(outcome.error, "bad")
 

@@ -1,4 +1,4 @@
-"""Convex parts of the room's shapes, worked out beside the desk, so that the first drag does not wait for them."""
+"""Convex parts of the room's shapes, worked out in the background, so that the first drag does not wait for them."""
 
 from __future__ import annotations
 

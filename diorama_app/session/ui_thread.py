@@ -20,7 +20,7 @@ from diorama_core.errors import DioramaError
 log = logging.getLogger(__name__)
 
 MAX_WAITING = 64
-"""Tasks of one browser that may wait; what comes on top is left out, and the person is told."""
+"""Maximum pending tasks of one browser; further ones are dropped and the user is notified."""
 
 Task = Callable[[], None]
 OnError = Callable[[str], None]
@@ -130,13 +130,13 @@ class UiThread:
         key, told = (None, f"refused {posted.client_id!r}"), posted.on_error
         if key in self._keyed:
             return
-        message = f"the server is busy with your last {MAX_WAITING} actions; what came after them was left out"
+        message = f"the server is busy with your last {MAX_WAITING} actions; later ones were ignored"
         self._keyed[key] = refusal = _Posted(lambda: told(message), told, None, key[1])
         self._enqueue(refusal)
         self._changed.notify_all()
 
     def _next(self) -> _Posted | None:
-        """The next task, waiting for it; None when the desk is stopped and everything is done."""
+        """The next task, waiting for it; None when the UI thread is stopped and everything is done."""
         with self._changed:
             self._busy = False
             while True:
@@ -166,4 +166,4 @@ class UiThread:
                 posted.on_error(str(error))
             except Exception:
                 log.exception("an unexpected error in the editor")
-                posted.on_error("Something went wrong; what was changed before is kept. See the server's log.")
+                posted.on_error("Something went wrong; earlier changes are safe. See the server's log.")

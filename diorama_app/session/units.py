@@ -88,7 +88,7 @@ def _number(words: str) -> float:
     for part in words.replace(",", ".").split():
         top, _, below = part.partition("/")
         if below and float(below) == 0:
-            raise InputError(f"'{words}' divides by nothing; write a length")
+            raise InputError(f"'{words}' divides by zero; write a length")
         total += float(top) / float(below) if below else float(top)
     return total
 

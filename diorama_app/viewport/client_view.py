@@ -1,4 +1,4 @@
-"""One browser: its camera, its drawing board, its notices. Holds nothing that a reload must not lose."""
+"""One browser's view: camera, drawing board, notices. Has no state that must survive a reload."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from diorama_core.geometry.rotations import quaternion_wxyz, rotation_from_quate
 from diorama_core.scene.types import Camera, Intrinsics, Plane
 
 BOARD_CENTRE = np.array([0.0, 0.0, 400.0])
-"""The photo stands here, far above the room, while boxes are drawn on it."""
+"""Position of the photo, far above the room, while boxes are drawn on it."""
 BOARD_HEIGHT_M = 1.0
 BOARD_DISTANCE_M = 1.25
 PYRAMID_SCALE = 0.22
@@ -81,7 +81,7 @@ def fitting_fov(width: float, height: float, fx: float, fy: float, cx: float, cy
 
 
 class ClientView:
-    """What differs between browsers. Used from the desk's thread only."""
+    """What differs between browsers. Used from the UI thread only."""
 
     def __init__(self, viser_client: viser.ClientHandle) -> None:
         self._viser_client = viser_client
@@ -129,7 +129,7 @@ class ClientView:
     def notice(self, message: str, kind: NoticeKind = "info", seconds: float | None = None) -> None:
         """A short notice at the edge of the view; what went wrong stays longer."""
         seconds = seconds or (9.0 if kind == "bad" else 4.0)
-        title = {"info": "Diorama", "good": "Done", "bad": "That did not work"}[kind]
+        title = {"info": "Diorama", "good": "Done", "bad": "Could not do that"}[kind]
         colour = {"info": (47, 111, 214), "good": (38, 150, 96), "bad": (210, 62, 50)}[kind]
         self._viser_client.add_notification(title, message, color=colour, auto_close_seconds=seconds)
 

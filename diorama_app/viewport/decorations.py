@@ -1,4 +1,4 @@
-"""What one browser sees around objects: outlines of the selection, name tags, the others' cursors, collisions."""
+"""Decorations of one browser: selection outlines, name tags, other clients' selections, collisions."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LOCKED_COLOUR = (120, 130, 150)
 COLLIDING_COLOUR = (224, 44, 44)
 OUTLINE_MARGIN_M = 0.012
 UNSURE = 0.35
-"""Below this confidence a place is worth comparing with the photo."""
+"""Poses below this confidence are marked as uncertain."""
 SECOND_LINE_M = 0.006
 """A dark line just inside the bright one keeps the outline visible on any colour."""
 BOX_EDGES = [(a, a | bit) for bit in (1, 2, 4) for a in range(8) if not a & bit]
@@ -38,7 +38,7 @@ class _Mark:
 
 
 class Decorations:
-    """Nodes of one browser below the shared frames of the objects. Used from the desk's thread only."""
+    """Nodes of one browser below the shared frames of the objects. Used from the UI thread only."""
 
     def __init__(self, viser_client: viser.ClientHandle) -> None:
         self._viser_client = viser_client
@@ -85,7 +85,7 @@ class Decorations:
                     self._shown[object_id] = (mark, self._draw(mark))
 
     def collide(self, ids: Iterable[str]) -> bool:
-        """What is in something else's way just now; whether that changed (then `show` again)."""
+        """Set the colliding objects; returns whether they changed (then `show` again)."""
         changed = self._colliding != (colliding := frozenset(ids))
         self._colliding = colliding
         return changed
@@ -146,7 +146,7 @@ class Decorations:
 
 
 def is_unsure(item: SceneObject) -> bool:
-    """Whether the photo hardly supports where an object is."""
+    """Whether the photo hardly supports an object's pose."""
     return item.box_px is not None and item.confidence < UNSURE
 
 

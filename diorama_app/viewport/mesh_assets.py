@@ -1,4 +1,4 @@
-"""What the browser is sent to draw: shapes and planes as GLB bytes, made once and kept."""
+"""Meshes for the browser: shapes and planes as GLB bytes, cached."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was read from the photo, drawn over it: outlines of the things found, edges of the room's planes."""
+"""Overlays on the photo: masks of detected objects, edges of the room's planes."""
 
 from __future__ import annotations
 
@@ -63,11 +63,11 @@ def hue(number: int) -> Colour:
 def mask_picture(
     size_px: tuple[int, int], items: Iterable[Seen], selection: Sequence[str]
 ) -> UInt8[np.ndarray, "h w 4"]:
-    """A transparent picture with every thing tinted and outlined; the selected ones in orange, on top.
+    """A transparent image with every object tinted and outlined; selected ones in orange, on top.
 
     Args:
         size_px: width and height of the photo.
-        things: what to draw; those without a mask as their box.
+        things: objects to draw; those without a mask as their box.
         selection: ids of what is selected.
     """
     scale = min(1.0, LONGEST_PX / max(size_px))

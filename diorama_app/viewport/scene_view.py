@@ -1,4 +1,4 @@
-"""The scene on the page: differences between what is shown and what should be become viser nodes.
+"""The scene on the page: updates viser nodes where the displayed scene differs.
 
 Every object is a frame `/objects/<n>` in its pose, with the mesh as a child (`marks` adds what each browser sees).
 Nodes belong to the server, so that all browsers see the same and a reload shows it again.
@@ -44,7 +44,7 @@ class _Shown:
 
 
 class Viewport:
-    """What all browsers see. Used from the desk's thread only."""
+    """What all browsers see. Used from the UI thread only."""
 
     def __init__(self, server: viser.ViserServer, shapes: ShapeBytes, *, pick: Pick, drag: Pick, later: Later) -> None:
         """Set up an empty view.
@@ -54,7 +54,7 @@ class Viewport:
             shapes: where GLB bytes come from.
             pick: told (object id, click event) from viser's event loop when an object is clicked.
             drag: told (object id, drag event) likewise while an object is dragged.
-            later: runs a task on the desk a moment later (an old mesh goes when the new one is loaded).
+            later: runs a task on the UI thread a moment later (an old mesh goes when the new one is loaded).
         """
         self._server = server
         self._shapes = shapes

@@ -1,4 +1,4 @@
-"""Small pictures of shapes: the panels name them, the browser fetches those that it shows."""
+"""Thumbnails of shapes: panels reference them, the browser fetches those that it shows."""
 
 from __future__ import annotations
 

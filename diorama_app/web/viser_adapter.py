@@ -46,7 +46,7 @@ MAX_UPLOADS_PER_CLIENT = 3
 MAX_BYTES_IN_FLIGHT = 2 * MAX_UPLOAD_BYTES
 """Announced by all uploads that are under way: viser holds them in memory."""
 UPLOAD_STALLED_S = 60.0
-"""An upload of which nothing came for so long is given up when its place is needed."""
+"""An upload idle for this long is dropped when its slot is needed."""
 MIN_PART_BYTES = 4096
 """The page sends parts of half a megabyte; very many small ones are only memory."""
 MESSAGES_PER_S, MESSAGES_AT_ONCE = 300, 600
@@ -103,7 +103,7 @@ Pictures = Callable[[str], "Future[bytes | None]"]
 
 @dataclass(frozen=True)
 class Visitors:
-    """Who may talk to the server."""
+    """Access rules of the server."""
 
     host: str
     """The address it listens on."""
@@ -115,7 +115,7 @@ class Visitors:
         try:
             return self._refusal(request)
         except (ValueError, LookupError, CookieError):  # headers given twice, half an IPv6 address, a broken cookie
-            return "the request's headers make no sense"
+            return "the request headers are invalid"
 
     def _refusal(self, request: Request) -> str | None:
         host_header = request.headers.get("Host", "")
@@ -148,13 +148,13 @@ class Visitors:
 
 
 def with_token(host: str, token: str | None) -> str | None:
-    """The token that visitors must bring: the one given; where others can reach the server, one is made otherwise."""
+    """The token that clients must present: the given one, or a generated one when others can reach the server."""
     return token or (None if host in LOOPBACK_NAMES else secrets.token_urlsafe(18))
 
 
 @functools.cache
 def own_names() -> frozenset[str]:
-    """Names by which this machine is known, in small letters."""
+    """Host names of this machine, in lower case."""
     name = socket.gethostname().lower()
     return frozenset({name, f"{name}.local", socket.getfqdn().lower()})
 
@@ -288,7 +288,7 @@ def _checked(handler: HttpHandler | None, visitors: Visitors, pictures: Pictures
         try:
             return served(connection, request)
         except (ValueError, LookupError, OSError):  # an address that names no file: a null character, half a name
-            return connection.respond(http.HTTPStatus.BAD_REQUEST, "This request makes no sense.\n")
+            return connection.respond(http.HTTPStatus.BAD_REQUEST, "This request is invalid.\n")
 
     def served(connection: ServerConnection, request: Request) -> Response | Awaitable[Response] | None:
         name = urlsplit(request.path).path.removeprefix(f"/{PICTURES}")
@@ -368,7 +368,7 @@ class _Uploads:
                 self._moved_at[message.transfer_uuid] = time.monotonic()
                 start(client_id, message)
             else:
-                self._refuse(gui, client_id, message, f"{message.filename[:100]} is not taken: {reason}")
+                self._refuse(gui, client_id, message, f"{message.filename[:100]} was refused: {reason}")
 
         def capped_part(client_id: Any, message: _messages.FileTransferPart) -> None:
             state = gui._current_file_upload_states.get(message.transfer_uuid)
@@ -377,7 +377,9 @@ class _Uploads:
             if state["transferred_bytes"] + len(message.content) > state["total_bytes"]:
                 gui._current_file_upload_states.pop(message.transfer_uuid, None)
                 name = state["filename"][:100]
-                self._refuse(gui, client_id, message, f"{name} is not taken: more came than was announced; try again")
+                self._refuse(
+                    gui, client_id, message, f"{name} was refused: more data arrived than announced; try again"
+                )
                 return
             self._moved_at[message.transfer_uuid] = time.monotonic()
             part(client_id, message)
@@ -389,17 +391,17 @@ class _Uploads:
             handlers[kind] = [new if known == old else known for known in handlers[kind]]
 
     def _against(self, client_id: Any, message: _messages.FileTransferStartUpload) -> str | None:
-        """Why an upload may not begin, or None."""
+        """Why an upload is refused, or None."""
         size, parts = message.size_bytes, message.part_count
         if not (isinstance(size, int) and isinstance(parts, int) and isinstance(message.filename, str)):
-            return "the page sent nonsense; reload it"
+            return "the page sent an invalid request; reload it"
         if size > MAX_UPLOAD_BYTES:
             return (
                 f"it has {size / 1e6:.0f} MB, and files up to {MAX_UPLOAD_BYTES / 1e6:.0f} MB can be uploaded; "
                 "make it smaller"
             )
         if size < 0 or not 0 <= parts <= size // MIN_PART_BYTES + 2:
-            return "the page sent nonsense; reload it"
+            return "the page sent an invalid request; reload it"
         running = self._running()
         if message.transfer_uuid in {uuid for uuid, _ in running}:
             return "it is being uploaded already"

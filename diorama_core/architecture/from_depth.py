@@ -1,4 +1,4 @@
-"""The room from measured depth: floor, walls and ceiling as planes of the points, closed at their corners."""
+"""The room from measured depth: floor, walls and ceiling fitted to the points and closed at their corners."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from diorama_core.scene.types import Architecture, Camera
 
 USUAL_CEILING_M = 2.6
 MIN_FLAT_SHARE = 0.004
-"""The floor counts as seen when this share of the measured points lies on it."""
+"""Minimum share of the measured points on the floor for it to count as visible."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class PlanarRoom:
     """PlainRecon (Diorama, section 3.1) on measured points, with walls checked by visibility.
 
     Directions that much vertical surface shares give parallel wall candidates; a candidate through which farther
-    things are measured is furniture and dropped. The walls that lead in each heading form a chain whose neighbours
+    objects are measured is furniture and dropped. The walls that lead in each heading form a chain whose neighbours
     meet in corners or are joined by hidden pieces.
     """
 
@@ -83,7 +83,7 @@ class PlanarRoom:
 
 
 def _top(surface: MeasuredSurface, ceilings: tuple[CeilingPiece, ...]) -> float:
-    """Where walls end: at the flat ceiling, else at the usual height or above everything measured."""
+    """Top of the walls: the flat ceiling, else the usual height or above all measured points."""
     flat = [-c.offset for c in ceilings if c.is_flat]
     seen = float(np.quantile(surface.points[:, 2], 0.99)) + 0.05 if len(surface.points) else 0.0
     return flat[0] if flat else max(USUAL_CEILING_M, seen)
@@ -111,7 +111,7 @@ def view_headings(camera: Camera) -> tuple[float, float]:
 
 
 def _guessed_wall(surface: MeasuredSurface, camera: Camera) -> WallPiece:
-    """A wall behind everything measured, square to the room axis that the camera faces."""
+    """A wall behind all measured points, perpendicular to the room axis that the camera faces."""
     origin = camera.position[:2]
     reach = surface.points[:, 1] - origin[1]
     y = origin[1] + (max(float(np.quantile(reach, 0.98)) + 0.05, 1.0) if len(reach) else 3.5)

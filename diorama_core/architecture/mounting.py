@@ -1,4 +1,4 @@
-"""Things that hang on a wall or from the ceiling, brought to it along their lines of sight once it is known."""
+"""Moves mounted objects to their wall or ceiling along their lines of sight."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from diorama_core.artefacts import ArchitectureEstimate, Cuboid, ObjectGeometry
 from diorama_core.scene.types import Camera, Plane
 
 MIN_SCALE, MAX_SCALE = 0.7, 1.4
-"""An object is not made smaller or larger than this to reach its wall; the rest of the way is left to layout."""
+"""Limit of rescaling an object to reach its wall; layout covers the rest."""
 LONGEST_CORD = 1.8
-"""A lamp whose ceiling is still out of reach is drawn out upwards to at most this many times its height."""
+"""A lamp that does not reach the ceiling is stretched upwards to at most this multiple of its height."""
 CLEAR_OF_WALL_M = 0.05
 
 

@@ -1,7 +1,7 @@
-"""A room that contains what was observed in it: the floor reaches under everything that stands on it.
+"""Extends unseen floor and walls to contain the observed objects.
 
-How far a floor or an unseen wall reaches is a guess; where an object stands was observed. So guesses give way to
-objects before any object gives way to them. Walls that were seen stay where they are.
+The extent of a floor or an unseen wall is assumed; the place of an object is observed. So assumptions yield to
+objects, not objects to assumptions. Observed walls do not move.
 """
 
 from __future__ import annotations

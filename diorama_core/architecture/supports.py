@@ -1,4 +1,4 @@
-"""Which plane of the room holds each object up, and which walls it stands against."""
+"""Resolves the supporting plane of each object, and the walls it stands against."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ class Clip:
 
 
 def copied(scene: Scene, ids: Iterable[str]) -> Clip:
-    """Objects and everything they hold up, in scene order."""
+    """Objects and everything they support, in scene order."""
     chosen = {i for one in ids for i in (one, *descendants(scene, one))}
     return Clip(
         tuple(o for o in scene.objects if o.id in chosen), tuple(s for s in scene.supports if s.child in chosen)

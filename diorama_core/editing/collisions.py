@@ -18,13 +18,13 @@ TOUCHING_M = 0.006
 """Objects shrunk by this much still overlap where they collide, not where they merely touch."""
 CACHE_SIZE = 400
 WALKED_ON_M = 0.035
-"""Flatter things (rugs, mats) lie under others by right."""
+"""Flatter objects (rugs, mats) may lie under other objects."""
 
 Pair = tuple[str, str]
 
 
 class Collisions:
-    """Bounding trees of shapes, kept by shape and size. Used from one thread."""
+    """Bounding volume hierarchies of shapes, cached by shape and size. Used from one thread."""
 
     def __init__(self, library: ShapeLibrary) -> None:
         self._library = library
@@ -36,7 +36,7 @@ class Collisions:
         Args:
             scene: everything.
             ids: whose collisions are asked for.
-            poses: where objects are just now, when not where the scene says.
+            poses: current poses of objects that differ from the scene.
         """
         chosen = set(ids)
         items = [o for o in scene.objects if not o.hidden and not _soft(o)]

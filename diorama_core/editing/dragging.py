@@ -76,13 +76,13 @@ class Slide:
 
     @cached_property
     def solver(self) -> DragSolver:
-        """Keeps it out of walls and other things."""
+        """Prevents collisions with walls and other objects."""
         return DragSolver.prepare(self.scene, self.library, self.item.id)
 
     def to(
         self, eye: Float[np.ndarray, "3"], direction: Float[np.ndarray, "3"], *, snap: bool, slide: bool
     ) -> tuple[Scene, Mapping[str, Pose]]:
-        """Where everything is with the hand on this ray.
+        """The scene with the drag at this pointer ray.
 
         Args:
             eye: where the person looks from, world.
@@ -205,6 +205,6 @@ def _turn(before: np.ndarray, after: np.ndarray) -> np.ndarray:
 
 
 def _clamped_to(surface: Surface, position: np.ndarray, item: SceneObject) -> np.ndarray:
-    """The centre moved so that the thing's middle stays over the surface."""
+    """The centre moved so that the object's middle stays over the surface."""
     foot = position - (float(surface.normal @ position) - surface.level) * surface.normal
     return position + inside(surface, foot) - foot

@@ -17,11 +17,11 @@ SAME_BOX_IOU = 0.98
 def with_correction(
     inputs: Inputs, before: Box | None, now: LabelledBox, mask: Bool[np.ndarray, "h w"] | None = None
 ) -> Inputs:
-    """The inputs with one thing in the photo put right.
+    """The inputs with one object in the photo corrected.
 
     Args:
         inputs: as they are.
-        before: the box that the thing had; None for something that was missed until now.
+        before: the box that the object had; None for an object that was missing.
         now: its box and what it is.
         mask: its outline, where a person drew it. A given outline stays with an unchanged box and goes with a new one.
     """

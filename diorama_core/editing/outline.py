@@ -1,4 +1,4 @@
-"""An outline put right by clicks: what is part of the thing, what is not (GrabCut with certain seeds)."""
+"""Mask correction by clicks on object and background (GrabCut with fixed seeds)."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Outline:
     box: Box
     mask: Bool[np.ndarray, "h w"]
     clicks: tuple[tuple[float, float, bool], ...] = ()
-    """x, y in photo pixels, and whether it is part of the thing."""
+    """x, y in photo pixels, and whether it is part of the object."""
 
     def clicked(self, x: float, y: float, *, part: bool) -> Outline:
         """The outline after one more click."""

@@ -1,4 +1,4 @@
-"""Where things go: the surface under a ray, sitting down on a support, against a wall, a free spot.
+"""Placement of objects: the surface under a ray, resting on a support, against a wall, a free spot.
 
 Pure geometry over the scene; what is dragged, clicked in or dropped asks here.
 """
@@ -20,7 +20,7 @@ from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, Support, y
 UPWARD = 0.7
 """A surface is a place to stand on when its normal's z is at least this."""
 FITS_SHARE = 0.5
-"""At least this share of a footprint's corners must be over a surface for a thing to be put there."""
+"""At least this share of a footprint's corners must be over a surface for an object to be put there."""
 TALLER_M = 0.01
 WALL_MAGNET_M = 0.09
 WALL_MAGNET_RAD = float(np.radians(12.0))
@@ -38,7 +38,7 @@ class Place:
 
     @property
     def upward(self) -> bool:
-        """Whether things stand on it."""
+        """Whether objects stand on it."""
         return float(self.surface.normal[2]) >= UPWARD
 
     def edge(self, child: str) -> Support:
@@ -80,7 +80,7 @@ def hits_along(
 ) -> list[Hit]:
     """Places that a ray meets from their visible side, nearest first.
 
-    `lift_m` raises every surface along its normal: the plane in which the grabbed point of a thing that stands on it
+    `lift_m` raises every surface along its normal: the plane in which the grabbed point of an object that stands on it
     would move.
     """
     found = []
@@ -99,7 +99,7 @@ def hits_along(
 
 
 def fits(place: Place, size_m: Float[np.ndarray, "3"], base: Float[np.ndarray, "3"], R: np.ndarray) -> bool:
-    """Whether a thing of this size with its base here may stand on an object's surface."""
+    """Whether an object of this size with its base here may stand on an object's surface."""
     if not place.of_object:
         return True
     if not place.upward or size_m[2] > place.surface.clearance_m + TALLER_M:

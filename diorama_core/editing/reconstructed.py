@@ -24,7 +24,7 @@ def inserted(scene: Scene, found: Found, library: ShapeLibrary) -> Scene:
 
 
 def replaced(scene: Scene, object_id: str, found: Found, library: ShapeLibrary) -> Scene:
-    """The scene with an object as it was found; the same scene where nothing was said that the build did not know."""
+    """The scene with a reconstructed object; unchanged where the correction changes nothing."""
     if found.as_built:
         return scene
     changed = edits.swap(scene, object_id, found.item.candidates[0])

@@ -1,4 +1,4 @@
-"""Rigid bodies as values: what simulators are told of objects and of the room."""
+"""Rigid bodies of objects and the room for simulators."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""What a simulator needs of a scene: rigid bodies of convex parts that start without touching each other's inside.
+"""Colliders for simulators: rigid bodies of convex parts that do not interpenetrate at the start.
 
-The parts are those that the layout keeps apart, so shelves stay open inside. What soft things, sunk feet and rounded
+The parts are those that the layout keeps apart, so shelves stay open inside. What soft objects, sunk feet and rounded
 hulls still overlap by is cut off (`overlaps`).
 """
 
@@ -27,7 +27,7 @@ from diorama_core.library.record import Shape, record_of
 from diorama_core.scene.types import Plane, box_corners
 
 NEAR_FLOOR_M = 0.03
-"""An object that nothing is said to carry stands on the floor when its bottom is this near to it."""
+"""An object without support stands on the floor when its bottom is this near to it."""
 MIN_SLAB_M = 0.05
 FOOT_M = 0.006
 """What lies this near to the lowest point of an object is its foot."""
@@ -38,7 +38,7 @@ BALANCE_SHARE = 0.7
 def physical_scene(gathered: ExportScene) -> PhysicalScene:
     """Reduce a gathered scene to rigid bodies.
 
-    Mounted, locked and unsupported objects are welded to what holds them; everything else is free, or with the option
+    Mounted, locked and unsupported objects are welded to their supporter; everything else is free, or with the option
     `bodies="welded"` nothing is.
     """
     slabs = tuple(StaticSlab(p.slug, p.plane, slab_pieces(p.plane)) for p in gathered.planes)
@@ -127,7 +127,7 @@ def _body(gathered: ExportScene, node: ExportObject) -> RigidBody:
     if node.limbs:
         parts = tuple(_boxed(p, half) for p in _scaled(limb_parts(shape.id, None), node))
     elif is_soft(node):
-        parts = (box_corners(item.size_m),)  # soft things lie on a face, not on their rim
+        parts = (box_corners(item.size_m),)  # soft objects lie on a face, not on their rim
     else:
         parts = tuple(_boxed(p, half) for p in _scaled(parts_of_shape(library, shape), node))
     body = RigidBody(node, parts, weights[None], friction_of(surfaces), True, moving=moving)

@@ -1,4 +1,4 @@
-"""Writing files whole or not at all: everything is written beside its place and renamed when it is complete."""
+"""Writing files whole or not at all: each file is written under a temporary name and renamed when complete."""
 
 from __future__ import annotations
 

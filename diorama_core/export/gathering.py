@@ -114,7 +114,7 @@ class ExportPlane:
 
 @dataclass(frozen=True, eq=False)
 class ExportScene:
-    """Everything a writer needs. Objects are listed supporters first."""
+    """The gathered scene for writers. Objects are listed supporters first."""
 
     name: str
     objects: tuple[ExportObject, ...]

@@ -76,7 +76,7 @@ def lights_of(
 
 
 def _lamp(item: SceneObject, surfaces: tuple[Surface, ...]) -> ExportLight:
-    """A point in the middle of what glows, or of the object where nothing is known to."""
+    """Centre of the emissive parts, or of the object without any."""
     glowing = [s for s in surfaces if any(s.material.emissive)]
     points = np.concatenate([s.vertices for s in glowing]) if glowing else item.corners_world
     world = item.pose.apply(points) if glowing else points

@@ -41,7 +41,7 @@ class ExportLimb:
 
 
 def articulation_of(library: ShapeLibrary, shape_id: str) -> Articulation | None:
-    """The moving parts of a shape; None for shapes that are not built in: nobody knows their joints."""
+    """The moving parts of a shape; None for shapes that are not built in, whose joints are unknown."""
     return articulation(shape_id) if record_of(library, shape_id).source == BUILT_IN else None
 
 

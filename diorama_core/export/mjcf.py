@@ -246,7 +246,7 @@ def _camera(world: Element, camera: Camera) -> None:
     T = camera.T_world_camera.copy()
     T[:3, :3] = T[:3, :3] @ _CAMERA_AXES
     k = camera.intrinsics
-    fovy = 2 * float(np.degrees(np.arctan(0.5 * k.height / k.fy)))  # degrees, whatever the compiler is told
+    fovy = 2 * float(np.degrees(np.arctan(0.5 * k.height / k.fy)))  # always in degrees, whatever the setting
     SubElement(world, "camera", {"name": "photo", "fovy": f"{fovy:.9g}", **_placement(T)})
 
 

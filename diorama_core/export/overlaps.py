@@ -18,7 +18,7 @@ from diorama_core.scene.frames import UP_WORLD
 MAX_CUT = 0.4
 """A part is cut by at most this share of its extent; what overlaps more is left to interpenetrate without contact."""
 MAX_RIGID_CUT_M = 0.02
-"""Parts of things that do not give way are cut by at most this."""
+"""Parts of objects that do not give way are cut by at most this."""
 SKIN_M = 1e-4
 """Bodies start this far apart where they were cut."""
 

@@ -1,6 +1,6 @@
-"""What things weigh and how they slide: one table of materials, applied to the closed volumes of a shape.
+"""Masses and friction: one table of materials, applied to the closed volumes of a shape.
 
-Shapes model most things as solids that are hollow in truth: drawers, tubes, vases, housings. Each material therefore
+Shapes model most objects as solids that are hollow in truth: drawers, tubes, vases, housings. Each material therefore
 has the thickness of its usual walls, and weighs no more than its surface at that thickness.
 """
 
@@ -20,10 +20,10 @@ MIN_SHEET_M, MAX_SHEET_M = 0.0005, 0.003
 MAX_PRIOR_RATIO = 3.0
 """A mass may differ from the usual one of its category and size by this factor at most."""
 UNKNOWN_MASS_KG = 1.0
-"""The mass of a library record that nobody estimated."""
+"""Default mass of a library record without an estimate."""
 MIN_MASS_KG = 0.01
 MIN_RADIUS_M = 0.005
-"""Radius of gyration that is added to all, so that thin things do not spin without end."""
+"""Radius of gyration that is added to all, so that thin objects do not spin without end."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Substance:
     density: float
     """Kilograms per cubic metre."""
     wall_m: float
-    """Thickness of the walls of hollow things made of it; infinite for what is solid throughout."""
+    """Thickness of the walls of hollow objects made of it; infinite for what is solid throughout."""
     friction: float
     """Coefficient of sliding friction against wood."""
     words: tuple[str, ...]

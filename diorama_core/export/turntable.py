@@ -38,7 +38,7 @@ def write_turntable(
     textures: Mapping[str, UInt8[np.ndarray, "h w c"]] | None = None,
     progress: Progress | None = None,
 ) -> None:
-    """Write a film that goes once around the scene and can be repeated without a jump.
+    """Write a turntable video that loops seamlessly.
 
     Args:
         scene: What to show; hidden objects are left out.

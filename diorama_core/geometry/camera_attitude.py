@@ -1,4 +1,4 @@
-"""How a camera is held against the floor: tilted down, rolled to the side."""
+"""Camera attitude relative to the floor: pitch and roll."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ UP = np.array([0.0, 0.0, 1.0])
 
 @dataclass(frozen=True)
 class CameraAttitude:
-    """How a camera is held against the floor."""
+    """Attitude of a camera relative to the floor."""
 
     pitch_rad: float
     """Downward, of the viewing direction."""
@@ -21,13 +21,13 @@ class CameraAttitude:
 
     @classmethod
     def of(cls, R_world_camera: Float[np.ndarray, "3 3"]) -> CameraAttitude:
-        """How this camera is held."""
+        """Attitude of this camera."""
         right, forward = R_world_camera[:, 0], R_world_camera[:, 2]
         level, below = _level_axes(forward)
         return cls(float(-np.arcsin(np.clip(forward[2], -1, 1))), float(np.arctan2(right @ below, right @ level)))
 
     def rotation(self, heading: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
-        """R_world_camera of a camera held so that looks along `heading`, whose height is not used."""
+        """R_world_camera of a camera with this attitude that looks along `heading`, whose height is not used."""
         flat = np.asarray(heading) * (1.0, 1.0, 0.0)
         flat = flat / np.linalg.norm(flat)
         forward = np.cos(self.pitch_rad) * flat - np.sin(self.pitch_rad) * UP

@@ -1,4 +1,4 @@
-"""Rays against the simple things of a room: bounded planes and oriented boxes. Vectorised over rays."""
+"""Intersections of rays with bounded planes and oriented boxes. Vectorised over rays."""
 
 from __future__ import annotations
 

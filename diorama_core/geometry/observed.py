@@ -42,7 +42,7 @@ _FULLY_TRUSTED_AREA_PX = 600.0
 
 @dataclass(frozen=True, eq=False)
 class Observed:
-    """One object's mask and box in a window of the photo, and how far each may be believed."""
+    """One object's mask and box in a window of the photo, with the reliability of each."""
 
     window: Window
     box: Box
@@ -78,7 +78,7 @@ def observe(
     cells: int,
     margin: float = 0.2,
 ) -> Observed:
-    """Look at one object.
+    """Observe one object.
 
     Args:
         camera: The photo's camera.
@@ -120,7 +120,7 @@ def observe_among(
     index: int,
     cells: int,
 ) -> Observed:
-    """Look at thing `index`, given which of the others may hide it.
+    """Observe object `index`, given which of the others may occlude it.
 
     Args:
         camera: The photo's camera.

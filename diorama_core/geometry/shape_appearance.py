@@ -32,7 +32,7 @@ _MAIN_SHARES = (0.9, 0.8)
 """Of the surface that belongs to the body, without handles and spouts."""
 _KEEPS_MIDDLE = 0.95
 _OPAQUE = 200
-"""Opacity from which on nothing behind a face is seen."""
+"""Opacity above which a face hides everything behind it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -225,7 +225,7 @@ class AppearanceStore:
     def get(self, key: str, folder: Path, parts: Callable[[], trimesh.Scene]) -> ShapeAppearance:
         """The appearance under `key`: from memory, from a file in `folder`, or made from `parts()` and written there.
 
-        A folder that cannot be written costs time, nothing else. Without a key nothing is remembered.
+        A folder that cannot be written costs time, nothing else. Without a key nothing is cached.
         """
         if not key:
             return appearance_of(parts())
@@ -233,7 +233,7 @@ class AppearanceStore:
         return self._cached.get(key, lambda: _read(path) or _made(path, parts()))
 
     def has(self, key: str, folder: Path) -> bool:
-        """Whether the look kept under `key` is in a file of `folder`."""
+        """Whether the appearance of `key` is cached in `folder`."""
         return bool(key) and (folder / f"{key}.{_FORMAT}.npz").is_file()
 
 

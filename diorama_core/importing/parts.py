@@ -40,7 +40,7 @@ class Part:
     M_world: Float[np.ndarray, "4 4"]
     """The node's frame to the world."""
     key: str | None = None
-    """Equal for copies of one geometry; None where nobody knows."""
+    """Equal for copies of one geometry; None where unknown."""
     yaw_rad: float = 0.0
     """How far its own axes are turned about up: shapes are taken in along their own axes."""
     front: str | None = None

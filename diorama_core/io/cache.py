@@ -73,7 +73,7 @@ class LruCache(Generic[Key, Value]):
 
     @contextmanager
     def _turn(self, key: Key) -> Iterator[None]:
-        """Alone with a key. Its lock lives as long as somebody has or awaits it."""
+        """Exclusive access to a key. Its lock exists while it is held or awaited."""
         with self._lock:
             turn = self._making.setdefault(key, _Turn())
             turn.threads += 1

@@ -1,4 +1,4 @@
-"""Decoding what others made in a process of its own, with a limit of memory and of time.
+"""Decoding of untrusted files in a separate process, with limits of memory and time.
 
 Decoders of pictures and depth maps are native code that reads untrusted bytes. There a bomb ends in one clear
 line, a crash takes nothing along, and the thread that serves everybody does not wait for a large picture.

@@ -87,7 +87,7 @@ class BoxPairs:
         """Axes of the given pairs (first index smaller).
 
         Boxes from index `walls_from` on are walls with their normal as first axis: only the overlap along it counts,
-        or a wall would also push things along itself.
+        or a wall would also push objects along itself.
         """
         i, j = pairs[:, 0], pairs[:, 1]
         a, b = R[i].transpose(0, 2, 1), R[j].transpose(0, 2, 1)

@@ -1,4 +1,4 @@
-"""How good a layout is: costs, structure, overlap and how far things moved."""
+"""Quality of a layout: costs, structure, overlap and displacements."""
 
 from __future__ import annotations
 

@@ -32,9 +32,9 @@ from diorama_core.scene.types import Scene, SceneObject, Support
 CLEARLY = 0.5
 """Another supporter is taken only where its gap is at most this share of the contradicted one."""
 WALL_FACTOR = 2.0
-"""Things that belong on walls stay on theirs up to so many times the tolerance: the wall may be wrong as well."""
+"""Objects that belong on walls stay on theirs up to so many times the tolerance: the wall may be wrong as well."""
 UNUSUAL_M = 0.3
-"""Things that people put on surfaces hang on a wall only where nothing is below them: this is added to their gap."""
+"""Objects that people put on surfaces hang on a wall only where nothing is below them: this is added to their gap."""
 
 
 def checked_supports(scene: Scene, library: ShapeLibrary, noise: ObservationNoise) -> tuple[Scene, tuple[str, ...]]:
@@ -88,7 +88,7 @@ def _is_thin(scene: Scene, object_id: str, limit_m: float) -> bool:
 
 
 def _candidates(scene: Scene, library: ShapeLibrary, item: SceneObject) -> list[Support]:
-    """What holds things of this kind: walls what hangs, the floor furniture, surfaces the rest."""
+    """Usual supporter of a category: walls for mounted objects, the floor for furniture, surfaces otherwise."""
     mount = taxonomy.resolve(item.category).category.mount
     roles = {"wall": ("wall", "floor") if item.category == "door" else ("wall",), "ceiling": ("ceiling",)}
     usual = roles.get(mount, ("floor",))

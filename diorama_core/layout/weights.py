@@ -28,15 +28,15 @@ class Weights:
     place: float = 1.0
     """Contact faces touch what they rest on (published recipes)."""
     neighbours: float = 1.0
-    """Things near each other keep their arrangement (published recipes)."""
+    """Objects near each other keep their arrangement (published recipes)."""
     volume: float = 1.0
-    """Things stay over and below what bounds their support (published recipes)."""
+    """Objects stay over and below what bounds their support (published recipes)."""
     collision: float = 1.0
     """Boxes apart (published recipes)."""
     outline: float = 1.0
-    """Things stay where they are seen in the photo (default recipe)."""
+    """Objects stay where they are seen in the photo (default recipe)."""
     distance: float = 1.0
-    """Things stay as far from the camera as observed (default recipe)."""
+    """Objects stay as far from the camera as observed (default recipe)."""
 
     def __post_init__(self) -> None:
         for field in fields(self):

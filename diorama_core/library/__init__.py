@@ -1,1 +1,1 @@
-"""CAD shapes: what exists, what it is called, how big it is, where things can stand on it."""
+"""Shape libraries: records, names, sizes and support surfaces of CAD shapes."""

@@ -1,4 +1,4 @@
-"""The built-in library: known at once, built when first asked for, kept in memory and on disk."""
+"""The built-in library: records load at once, meshes are built on first use and cached in memory and on disk."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ class BuiltInLibrary:
         return self._folder / f"{record.content_hash}.{SURFACES_VERSION}.surfaces.json"
 
     def _built(self, shape_id: str) -> list[tuple[Material, Solid]]:
-        """The solids, kept for the moment: who asks for the mesh mostly asks for the materials next."""
+        """The latest solids, cached because a request for the mesh is usually followed by one for the materials."""
         return self._solids.get(shape_id, lambda: built(self._designs[shape_id]))
 
     def _known(self, shape_id: str) -> Shape:

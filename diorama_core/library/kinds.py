@@ -1,6 +1,6 @@
-"""What the shapes of a kind look like from outside: usual sizes, and how much of its cuboid a thing's outline fills.
+"""Statistics of a category's shapes: usual sizes, and the share of its cuboid that an object's outline fills.
 
-A thing does not reach into the corners of its cuboid: a round table's outline in a picture is smaller than its
+An object does not reach into the corners of its cuboid: a round table's outline in a picture is smaller than its
 cuboid's, so that taking one for the other puts everything too far away. The outline of a kind is the mean support
 function of its shapes, sampled in some directions. Both are measured on the built-in library's training shapes
 (`scripts/measure_kinds.py`).
@@ -59,7 +59,7 @@ def modes_of_kind(name: str) -> tuple[KindMode, ...]:
 
 @cache
 def outline_of(name: str) -> Float[np.ndarray, "40 3"]:
-    """The mean outline of a category's things; of a thing of no known kind the mean over all kinds."""
+    """The mean outline of a category's objects; of an object of no known kind the mean over all kinds."""
     modes = modes_of_kind(name) or tuple(m for kind in _table().values() for m in kind)
     return np.asarray(np.average([m.outline for m in modes], axis=0, weights=[m.share for m in modes]))
 

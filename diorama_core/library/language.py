@@ -1,4 +1,4 @@
-"""How people write about things in rooms: one spelling, one number, and words that stand for others."""
+"""Normalisation of words for objects: spelling, plurals and synonyms."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ IGNORED = frozenset({
     "i", "we", "want", "need", "looking", "look", "like", "something", "please", "find", "show", "me", "very",
     "really", "quite", "nice", "good", "is", "are", "be", "it", "its"
 })  # fmt: skip
-"""Words that say nothing of a thing."""
+"""Words without information about an object."""
 JOINTS = frozenset({
     "with", "without", "for", "of", "in", "on", "from", "by", "to", "at", "near", "under", "over", "beside",
     "behind", "against", "into"
 })  # fmt: skip
-"""Words after which something else is named than the thing itself."""
+"""Words after which something else is named than the object itself."""
 
 _AMERICAN = {
     "grey": "gray", "centre": "center", "metre": "meter", "litre": "liter", "fibre": "fiber", "theatre": "theater",

@@ -17,7 +17,7 @@ from diorama_core.library.near_names import near_names
 _SLIP = 0.8
 """Least similarity of spelling (Ratcliff and Obershelp) that is taken for a slip of the pen."""
 _RESEMBLANCE = 0.55
-"""Least similarity of spelling that still says something when the size is known too."""
+"""Minimum similarity of spelling when the size is known too."""
 _SIZE_SPREAD = 3.0
 """Squared distance from a category's usual sizes, in standard deviations, at which the size stops speaking for it."""
 _LONGEST_NAME = 5
@@ -41,18 +41,18 @@ class TextQuery:
     size_m: Size | None
     """Extents along x (depth), y (width), z (height), where the text or the caller gives them."""
     note: str = ""
-    """What to tell the user when something was not known."""
+    """Message to the user about unknown words; empty when all are known."""
 
 
 def understand(text: str, size_m: Size | None = None) -> TextQuery:
-    """Understand what a person or a detector calls a thing.
+    """Map the words of a user or a detector to categories.
 
     "a wooden armchair with cushions" is an armchair; "chests of drawers" a dresser; "desk lamp" a lamp; "sofas and
     rugs" two kinds. British and American spelling, plurals and slips are understood.
 
     Args:
         text: A noun, a phrase or a few of them; a size in it such as "60 x 50 x 110 cm" counts as one.
-        size_m: Size of the thing, where it is known otherwise.
+        size_m: Size of the object, where it is known otherwise.
     """
     rest, written = size_in(text)
     size = written or size_m

@@ -1,6 +1,6 @@
-"""Names of things that are no category of their own, each with the category most like it in form and use.
+"""Names of objects that are no category of their own, each with the category most like it in form and use.
 
-Understood as near, never as exact: whoever uses one is told what was taken for it. Names that the class lists of indoor
+They count as near, never as exact: the user is told which category was used. Names that the class lists of indoor
 data sets and the shelves of furniture shops use.
 """
 

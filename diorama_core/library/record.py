@@ -21,7 +21,7 @@ ROUND: SymmetryFold = 36
 
 @dataclass(frozen=True, eq=False)
 class SupportSurface(ArrayValue):
-    """A flat upward face of a shape on which things can stand, in the canonical frame at scale 1."""
+    """A flat upward face of a shape on which objects can stand, in the canonical frame at scale 1."""
 
     polygon: Float[np.ndarray, "n 3"]
     """Convex outline, counter-clockwise seen from above, metres."""

@@ -1,4 +1,4 @@
-"""Where things can stand on a shape: its flat upward faces, with the free height above them.
+"""Where objects can stand on a shape: its flat upward faces, with the free height above them.
 
 Planar regions are grown over a lattice of vertical rays instead of over triangles, so that a top made of planks or of
 solids that run into each other is still one surface, and a face buried inside another solid is none. Clearance and the
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 SURFACES_VERSION = 1
 """Raise it when other surfaces are found on the same shape, so that those on disk are measured again."""
 MINIMUM_UP = 0.9
-"""Cosine of the steepest slope that still carries things."""
+"""Cosine of the steepest slope that still carries objects."""
 STEP_M = 0.008
 """Neighbouring samples of one surface differ in height by no more than this (a seam, a plank's edge)."""
 REACH_M = 0.03
@@ -172,7 +172,7 @@ def _walled_off(
 ) -> Bool[np.ndarray, "p"]:
     """Whether something stands between two spots under a roof: the upright between two compartments of a shelf.
 
-    Only neighbours under one roof are asked: things in the open may reach over what parts them.
+    Only neighbours under one roof are asked: objects in the open may reach over what parts them.
     """
     import open3d as o3d
 
@@ -254,7 +254,7 @@ def _surface(spots: _Spots, region: Int[np.ndarray, "k"], outline: Float[np.ndar
     """Outline, level and free height of one region."""
     clearance = spots.clearance[region]
     polygon = np.column_stack([outline, np.full(len(outline), float(np.median(spots.z[region])))])
-    # Under the open sky things fit beside what overhangs a part of the surface (a throw, a headboard's edge).
+    # Under the open sky objects fit beside what overhangs a part of the surface (a throw, a headboard's edge).
     interior = bool(np.isfinite(clearance).mean() > 0.5)
     lowest = float(np.percentile(clearance, 10, method="lower")) if interior else float("inf")
     return SupportSurface(polygon, lowest, interior)

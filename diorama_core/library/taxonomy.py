@@ -1,4 +1,4 @@
-"""What things in rooms are called, how big they usually are, and where they are usually found.
+"""What objects in rooms are called, how big they usually are, and where they are usually found.
 
 One table serves naming (synonyms, plurals, British and American), metrology (size priors), retrieval (category
 groups) and support reasoning (what stands on the floor, hangs on a wall or lies on something else).
@@ -16,7 +16,7 @@ import numpy as np
 from jaxtyping import Float
 
 Mount = Literal["floor", "surface", "wall", "ceiling"]
-"""Where a thing of a category is usually found: standing on the floor, on another object, or hung."""
+"""Where an object of a category is usually found: standing on the floor, on another object, or hung."""
 
 
 @dataclass(frozen=True)
@@ -53,13 +53,13 @@ class Category:
     mount: Mount = "floor"
     synonyms: tuple[str, ...] = ()
     seat_height_m: float | None = None
-    """Height of the surface that things lie on, where it is below the top (seats, mattresses)."""
+    """Height of the surface that objects lie on, where it is below the top (seats, mattresses)."""
     supports_objects: bool = False
-    """Whether people put things on it, so that its shapes must come empty."""
+    """Whether people put objects on it, so that its shapes must come empty."""
     quarter_turns_free: bool = False
     """Whether it often stands at odd angles to the room (chairs, plants)."""
     soft: bool = False
-    """Whether it gives way: soft things lie against and partly in one another."""
+    """Whether it gives way: soft objects lie against and partly in one another."""
     kin: str = ""
     """The broader category whose rules it shares (where it stands, what goes with it), for a special kind of one."""
 

@@ -19,7 +19,7 @@ DepthEncoding = Literal["linear", "sunrgbd"]
 
 ASPECT_TOLERANCE = 0.02
 FARTHEST_M = 80.0
-"""Beyond this a value is a sensor's way of saying "nothing seen"."""
+"""Larger values mean that the sensor measured nothing."""
 SKY_M = 1e4
 """What renderers write where there is nothing (Blender 1e10, half floats 65504) is beyond this."""
 ROOM_MEDIAN_M = (0.15, 20.0)

@@ -1,6 +1,6 @@
-"""Everything a person hands in, checked once: photo, depth, intrinsics, boxes, masks.
+"""Validation of all user inputs: photo, depth, intrinsics, boxes, masks.
 
-Files and uploads meet here and nowhere else. Whatever cannot be used ends in one `InputError` line that says what was
+Files and uploads are read only here. Whatever cannot be used ends in one `InputError` line that says what was
 wrong, where, and what to do; what can be used with a remark comes back with a warning to show.
 """
 

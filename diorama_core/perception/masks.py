@@ -1,4 +1,4 @@
-"""Masks of the things that were pointed at, with nothing learned: GrabCut inside boxes.
+"""Masks of objects in boxes without networks: GrabCut inside each box.
 
 Several starts (margins around the box, and an oval inside it) vote; how far they agree is the confidence. Masks that
 the user gave are taken as they are.
@@ -60,7 +60,7 @@ class EmbeddedMasks:
         return results
 
     def inside_box(self, rgb: UInt8[np.ndarray, "h w 3"], box: Box) -> tuple[Bool[np.ndarray, "h w"], float]:
-        """The thing inside a box, and how far the starts agree about it (0 to 1).
+        """The object inside a box, and how far the starts agree about it (0 to 1).
 
         Where nothing can be told apart, the mask is the box and the confidence low.
         """

@@ -1,6 +1,6 @@
-"""Other readings of one picture: every thing in another of its ranked shapes (the paper's Arrangement 1, 2, 3).
+"""Alternative arrangements: every object with another of its ranked shapes (the paper's Arrangement 1, 2, 3).
 
-In one arrangement things of a set stay a set: what has one shape in the best reading has one shape in every other.
+In one arrangement objects of a set stay a set: what has one shape in the best reading has one shape in every other.
 Arrangements are to look different: of shapes of one form, which the photo's colours would make the same, one is taken.
 """
 
@@ -17,7 +17,7 @@ from diorama_core.scene.types import Candidate, Pose, Scene, SceneObject
 MIN_PLAUSIBLE = 0.3
 """A shape is offered in another arrangement when it scores at least this share of its set's best."""
 SAME_FORM = 0.89
-"""Shapes as alike as this in form (`EmbeddedSimilarity.form_agreement`) are told apart by their colours only."""
+"""Shapes with a higher agreement of form (`EmbeddedSimilarity.form_agreement`) differ in colour only."""
 
 Alike = Callable[[str, str], float]
 """How alike two shapes are in form, 0 to 1, by their ids."""
@@ -53,10 +53,10 @@ def plausible_shapes(
 ) -> tuple[str, ...]:
     """The shape that a set has, then those that its members together find likely, best first, each of another form.
 
-    Things that are not painted in a colour of the photo keep their shapes' own, which differ.
+    Objects that are not painted in a colour of the photo keep their shapes' own, which differ.
 
     Args:
-        members: The things of the set.
+        members: The objects of the set.
         alike: Tells shapes of one form; None takes all shapes for different.
         own: What comes first; the first member's shape by default.
     """
@@ -79,7 +79,7 @@ def plausible_shapes(
 
 
 def _sets(scene: Scene) -> list[list[SceneObject]]:
-    """Unlocked things by kind and shape."""
+    """Unlocked objects grouped by category and shape."""
     found: dict[tuple[str, str], list[SceneObject]] = {}
     for item in scene.objects:
         if not item.locked and item.candidates:
@@ -88,7 +88,7 @@ def _sets(scene: Scene) -> list[list[SceneObject]]:
 
 
 def _swapped(scene: Scene, item: SceneObject, shape_id: str, members: Sequence[SceneObject]) -> Scene:
-    """The thing in another shape: in its own fitted pose, or where the shape was not tried on it, on its own spot."""
+    """The object with another shape: in that candidate's fitted pose, or at its own place without one."""
     own = _candidate(item, shape_id)
     if own is not None:
         return edits.swap(scene, item.id, own)
@@ -101,7 +101,7 @@ def _candidate(item: SceneObject, shape_id: str) -> Candidate | None:
 
 
 def _equally_large(scene: Scene) -> Scene:
-    """One scale for the things of a set where their sizes agree; each keeps its base, what is mounted its middle."""
+    """One scale for the objects of a set where their sizes agree; each keeps its base, what is mounted its middle."""
     from diorama_core.pose.sets import shared_scales  # Open3D and OpenCV; the editor opens without them
 
     free = [o for o in scene.objects if not o.locked]

@@ -23,7 +23,7 @@ def assemble(
 ) -> Scene:
     """The scene before layout optimisation: every object in its best candidate's pose, in its colour of the photo.
 
-    Objects for which nothing could be retrieved are left out, and what they would hold up stands on their supporter.
+    Objects without candidates are left out, and objects on them are reassigned to their supporter.
     """
     candidates: Mapping[str, PosedCandidates] = {p.object_id: p for p in posed if p.candidates}
     items = tuple(_scene_object(o, candidates[o.id], library, colours.get(o.id)) for o in objects if o.id in candidates)

@@ -1,4 +1,4 @@
-"""What networks add to the inputs: boxes where nobody drew any, depth where nobody measured.
+"""Network predictions added to the inputs: boxes and depth, where none were given.
 
 Everything the user gave stays as it is; later stages cannot tell a network's contribution from a user's, except that
 the inputs say whose depth it is.

@@ -74,7 +74,7 @@ class Derivation:
 
 
 def lacks_boxes(given: Inputs) -> bool:
-    """Whether the user marked nothing."""
+    """Whether the user gave neither boxes nor masks."""
     return not given.boxes and given.instances is None
 
 

@@ -1,4 +1,4 @@
-"""Everything derived from a library's shapes, made once, so that the first photo or search does not wait for it."""
+"""Precomputation of everything derived from a library's shapes, so that the first photo or search is fast."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Prepared:
     count: int
     """Shapes in the library."""
     made: int = 0
-    """Shapes of which anything was missing and has been made now."""
+    """Shapes with missing data that was computed now."""
     failures: tuple[tuple[str, str], ...] = ()
     """Ids of shapes that could not be prepared, and why."""
 
@@ -43,7 +43,7 @@ def prepare_library(
     pool: Workers | None = None,
     progress: Progress | None = None,
 ) -> Prepared:
-    """Make and keep models, support surfaces and outlines of every shape of a library.
+    """Compute and cache models, support surfaces and outlines of every shape of a library.
 
     Only what is missing is made: after a change to one design, that shape's. So this can be run at any time, resumed
     after an interruption, and costs next to nothing when all is there. A shape that fails never stops the others.

@@ -1,4 +1,4 @@
-"""Which implementation takes which stage: the best network that is on this machine, or the embedded way.
+"""Chooses an implementation for each stage: the best installed network, or the embedded method.
 
 `auto` mixes stage by stage and needs nothing; `embedded` uses no network; `foundation` insists on the paper's networks
 and takes the paper's way to poses, by correspondences of patch features.

@@ -1,4 +1,4 @@
-"""One object reconstructed anew from the photo: segmented, measured, retrieved and posed in the scene as it is now.
+"""Reconstruction of a single object from the photo: segmented, measured, retrieved and posed in the scene as it is now.
 
 Camera, room and everything else stay. The photo's own artefacts come from the plan, with the project's cached results;
 only what is downstream of the one box is evaluated again. Where nothing differs from what was built, nothing changes.
@@ -35,7 +35,7 @@ class Found:
     support: Support | None
     detected: DetectedObject
     as_built: bool
-    """Whether nothing was said that the build did not know: the scene's object is this one already."""
+    """Whether the correction changes nothing: the scene has this object already."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +57,7 @@ class _Similarity:
         return cls(R, scene.position - scale * R @ measured.position, scale)
 
     def pose(self, pose: Pose) -> Pose:
-        """The pose in the scene; where the scene's camera was tilted since, things stay upright all the same."""
+        """The pose in the scene; where the scene's camera was tilted since, objects stay upright all the same."""
         level = yaw_rotation(float(np.arctan2(self.R[1, 0], self.R[0, 0])))
         position = self.scale * self.R @ pose.position + self.t
         return Pose(level @ pose.R_world_object, position, pose.scale * self.scale)
@@ -74,7 +74,7 @@ def reconstruct_object(
     cache: Path | None = None,
     progress: Progress | None = None,
 ) -> Found:
-    """Find out what is in a box of the photo.
+    """Reconstruct the object in a box of the photo.
 
     Args:
         scene: as it is now; gives the camera and the room.

@@ -52,7 +52,7 @@ class Built:
     observed: Scene
     """The scene before the layout optimiser."""
     layout: LayoutReport | None
-    """None when there was nothing to arrange."""
+    """None when the scene has no objects."""
     textures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]]
     """The planes' pictures by name."""
     inputs: Inputs

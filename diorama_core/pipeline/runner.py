@@ -27,7 +27,7 @@ log = logging.getLogger(__name__)
 CODE_VERSION = "4"
 """Raised when a change of code must invalidate every saved result."""
 CACHED_PER_STAGE = 4
-"""Results kept per stage on disk, so that going back to an earlier correction is instant."""
+"""Number of cached results per stage on disk, so that undoing a correction is instant."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Runner:
     """Runs one photo's stages in order, remembering what each took."""
 
     folder: Path | None = None
-    """Where results are kept; None keeps nothing."""
+    """Cache folder; None disables caching."""
     runs: list[StageRun] = field(default_factory=list)
     _fingerprints: dict[int, tuple[Any, str]] = field(default_factory=dict)
 
@@ -107,7 +107,7 @@ def _read(path: Path | None, expected: Any) -> Any:
 
 
 def _write(path: Path | None, result: Any) -> None:
-    """Save a result; raises `ProjectError` when the disk is full, with the finished stages kept."""
+    """Save a result; raises `ProjectError` when the disk is full, with finished stages still cached."""
     if path is None:
         return
     write_atomically(path, codec.dump(result), error=ProjectError)

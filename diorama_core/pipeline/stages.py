@@ -1,4 +1,4 @@
-"""The implementations that one run of the pipeline uses, and what they are where nothing is downloaded."""
+"""The implementations that one run of the pipeline uses, and the embedded defaults."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Stages:
 
 @dataclass(frozen=True)
 class ProposalStages:
-    """The stages that propose boxes for a photo in which nothing is marked yet."""
+    """The stages that propose boxes for a photo without boxes."""
 
     detection: DetectionStage
     recognition: RecognitionStage | None = None

@@ -1,4 +1,4 @@
-"""Things of a kind in one picture agree on their shape: four dining chairs are four of the same."""
+"""Objects of a kind in one picture agree on their shape: four dining chairs are four of the same."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _OVERLAP = 0.5
 _TIE = 0.15
 """Two shapes whose log ranks differ by less are as good for one thing of a set: then it takes what the set likes."""
 MAX_LOSS_WITH_DEPTH = 1.0
-"""What agreeing may cost where depth was measured: it shows when things of a kind are not the same."""
+"""Maximum cost of agreement where depth was measured, since depth shows when objects differ."""
 SETS = with_kin("chair", "office chair", "stool", "armchair", "night stand", "ottoman", "lamp")
 """What comes in sets; books and pictures of one room are different ones."""
 
@@ -23,14 +23,14 @@ def agreed_ranks(
     trust: Sequence[float],
     max_loss: Sequence[float],
 ) -> list[dict[str, float]]:
-    """Each object's log ranks of shapes, mixed with those of objects of its kind.
+    """Each object's log ranks of shapes, mixed with those of objects of its category.
 
     Args:
-        categories: Category of every object; unnamed things stand alone.
+        categories: Category of every object; unnamed objects stand alone.
         ranks: For every object its shapes' log ranks, higher is better.
         trust: How well every object is seen: how much it has to say for its group.
         most_loss: By how much the shape agreed on may be ranked below an object's own best before the object goes its
-            own way; where this is finite, only things that come in sets agree at all.
+            own way; where this is finite, only objects that come in sets agree at all.
 
     Returns:
         For every object the same shapes with ranks relative to its best.

@@ -1,4 +1,4 @@
-"""One object looked at closely, to tell turns of one shape apart that look alike from afar.
+"""Appearance likelihood of one object at high resolution, to distinguish similar rotations of one shape.
 
 Mugs, jars and stacks of books look much the same whichever way they are turned. What tells their turns apart is a small
 part of their pixels: a handle, a label, the spines of books. Here the disagreements of single cells are summed, not
@@ -46,7 +46,7 @@ _FITTING_ROUNDS = 3
 _DARKEST = 0.03
 """Linear light below which a camera tells little."""
 _ONE_COLOUR = 0.1
-"""Shapes whose colours vary less have nothing to say by them."""
+"""Shapes whose colours vary less are not compared by colour."""
 _WHOLE_CELL = 0.9
 _FAMILIAR_CELLS = 20.0
 _FAMILIAR_SHARE = 0.1

@@ -22,7 +22,7 @@ from diorama_core.scene.types import Camera, yaw_rotation
 
 PARAMETERS = 7
 FEWEST_RAYS = 6
-"""With fewer measured points a fit means nothing."""
+"""Minimum number of measured points for a fit."""
 _MAX_RAYS = 260
 _DIRECTIONS = 16
 _WHOLE_CELL = 0.9

@@ -1,4 +1,4 @@
-"""Which way things face, where the picture leaves it open: costs of a heading, 0 for the expected one.
+"""Priors on headings where the photo is ambiguous: costs of a heading, 0 for the expected one.
 
 Sofas, beds and cabinets turn their backs to a wall and their fronts to the room; chairs face the table they are
 drawn up to; screens face whoever looks at them.
@@ -39,7 +39,7 @@ _TOWARD_CAMERA = {
     "object": 0.6,
     "toy": 0.8,
 }
-"""How much more likely a thing shows its front than its back; cupboards and the like are hardly seen from behind."""
+"""Log odds of an object showing its front rather than its back; cupboards are hardly seen from behind."""
 _DRAWN_UP_M = 0.9
 _DRAWN_UP_COFFEE_M = 1.6
 _LEANING = 1.5
@@ -108,7 +108,7 @@ def facing_of(
         categories: Category of every object id.
         camera: The photo's camera.
         walls: Where walls are seen.
-        out_of_wall: Into the room, for things that hang on a wall.
+        out_of_wall: Into the room, for objects that hang on a wall.
         pillows: What lies on it at its back or head.
         carrier: What it lies on, if that is an object.
     """

@@ -25,7 +25,7 @@ class Anchor:
     """What stays where it is when a shape's size changes."""
 
     axis_world: Float[np.ndarray, "3"]
-    """Unit direction from the anchored face into the object: up for things that stand, into the room on walls."""
+    """Unit direction from the anchored face into the object: up for standing objects, into the room on walls."""
     point_world: Float[np.ndarray, "3"]
     """A point of the anchored face."""
 
@@ -37,7 +37,7 @@ class Anchor:
 
 
 def anchor_of(cuboid: Cuboid, on_wall: bool, toward_camera_xy: Float[np.ndarray, "2"]) -> Anchor:
-    """The face of the cuboid that touches what holds it: the bottom, or its back for things on a wall."""
+    """The face of the cuboid in contact with its supporter: the bottom, or its back for objects on a wall."""
     axis = np.array([0.0, 0.0, 1.0])
     if on_wall:
         sides = [sign * cuboid.R_world_object[:, k] for k in (0, 1) for sign in (1.0, -1.0)]

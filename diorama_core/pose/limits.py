@@ -37,7 +37,7 @@ _HARD_LIMITS_M: dict[str, tuple[int, float, float]] = {
     "desk": (2, 0.6, 1.1),
     "sofa": (1, 1.2, 3.0),
 }
-"""(axis, least, most) beyond which nobody builds a thing of this kind, in metres."""
+"""(axis, least, most) of plausible sizes of a category, in metres."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +53,7 @@ class SizeLimits:
 
     @classmethod
     def of(cls, shape_size_m: tuple[float, float, float], category_name: str, observed_m: np.ndarray) -> SizeLimits:
-        """Limits for a shape standing for a thing of a category, by the size prior nearest to what was observed."""
+        """Limits for a shape standing for an object of a category, by the size prior nearest to what was observed."""
         own = np.asarray(shape_size_m, dtype=np.float64)
         least, most = _category_range(category_name, observed_m, own)
         stretch = _STRETCH_BOXY if category_name in BOXY else _STRETCH_SHAPED
@@ -61,7 +61,7 @@ class SizeLimits:
 
     @property
     def thin(self) -> Bool[np.ndarray, "3"]:
-        """Axes along which things of this shape come in any thickness."""
+        """Axes along which objects of this shape come in any thickness."""
         return self.shape_size_m <= max(_THIN_M, _THIN_SHARE * float(self.shape_size_m.max()))
 
     def scale_for(self, wanted_m: Float[np.ndarray, "*p 3"]) -> Float[np.ndarray, "*p 3"]:

@@ -21,9 +21,9 @@ _BOX_WEIGHT = 0.5
 _SILHOUETTE_WEIGHT_WITH_DEPTH = 0.7
 _DEPTH_WEIGHT = 0.7
 _STRENGTH_WITH_DEPTH = 2.0
-"""How much more than an outline alone measured depth says against what things usually do."""
+"""Weight of measured depth, relative to an outline alone, against the pose priors."""
 _NOISE_FLOOR = 0.03
-"""Error below which two poses are not told apart: the resolution of the silhouettes."""
+"""Error below which two poses count as equal: the resolution of the silhouettes."""
 _FACING_STRENGTH = 0.7
 _STRETCH_SIGMA = 0.3
 _ENLARGED_SIGMA = 0.2
@@ -35,7 +35,7 @@ _OFF_AXIS_SIGMA_RAD = float(np.deg2rad(35.0))
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """Everything that speaks for or against a pose of one object."""
+    """All observations that score a pose of one object."""
 
     camera: Camera
     seen: Observed
@@ -72,9 +72,9 @@ class Evidence:
         misfit: Float[np.ndarray, "p"],
         limits: SizeLimits,
     ) -> Float[np.ndarray, "p"]:
-        """Scores by which poses of this object are compared; higher is better.
+        """Scores of poses of this object; higher is better.
 
-        The logarithm lets a nearly perfect silhouette overrule what things usually do, and lets habit decide
+        The logarithm lets a nearly perfect silhouette overrule what objects usually do, and lets habit decide
         between silhouettes that fit equally badly.
         """
         cost = self.habit_cost(poses, limits)

@@ -132,7 +132,7 @@ def _damped_step(jacobian: np.ndarray, residual: np.ndarray, damping: np.ndarray
 
 
 def _hidden_sides(seen: Observed) -> Bool[np.ndarray, "4"]:
-    """Sides of the box beside which nearer things may hide more of the object."""
+    """Sides of the box beside which nearer objects may hide more of the object."""
     x, y = seen.window.centres_px.T
     x1, y1, x2, y2 = seen.box
     dx, dy = 0.12 * (x2 - x1), 0.12 * (y2 - y1)

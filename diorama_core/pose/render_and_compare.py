@@ -47,12 +47,12 @@ _RETRIEVAL_WITH_DEPTH = 0.7
 _MAX_THREADS = 4
 """Objects posed side by side: casting and array work let go of the interpreter, the rest of it does not."""
 _LOSS_FOR_A_SET = 0.02
-"""By how much more a thing may disagree with the picture to be as large as the others of its set."""
+"""Additional image error allowed for an object to take the size of its set."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Task:
-    """One object with everything its shapes are posed against."""
+    """One object with the observations for posing its shapes."""
 
     item: DetectedObject
     cuboid: Cuboid
@@ -98,8 +98,8 @@ class RenderAndCompare:
 
     Hypotheses are gravity-aligned turns in the object's cuboid and, where depth was measured, turns all around set
     against the measured points. They are scored by silhouette and box, or by silhouette, depth and normals where
-    nothing was measured in front; and by where such things usually face. Unlike ones are refined; the posed fit and
-    how little a shape had to be enlarged or stretched choose among shapes; things of a set share shape and size.
+    nothing was measured in front; and by where such objects usually face. Unlike ones are refined; the posed fit and
+    how little a shape had to be enlarged or stretched choose among shapes; objects of a set share shape and size.
     """
 
     library: ShapeLibrary

@@ -1,4 +1,4 @@
-"""Things of one set are equally large: four dining chairs of one shape share its scale where the picture allows it."""
+"""Objects of one set are equally large: four dining chairs of one shape share its scale where the picture allows it."""
 
 from __future__ import annotations
 

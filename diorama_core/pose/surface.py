@@ -69,7 +69,7 @@ class MeasuredSurface:
         return (score @ self.weight) / max(float(self.weight.sum()), 1e-9)
 
     def hides(self, hits: Hits) -> Bool[np.ndarray, "p n"]:
-        """Where something was measured in front of the shape, so that the cell says nothing about it."""
+        """Where something was measured in front of the shape, so that the cell is no observation of it."""
         return self.known & (self.weight == 0) & hits.covered & (hits.depth_m > self.depth_m + 2 * self.tolerance_m)
 
 

@@ -23,7 +23,7 @@ _REFINED = 3
 _RIVAL_RAD = float(np.deg2rad(45.0))
 """A pose turned farther than this is another reading of the picture, not a correction."""
 _HABIT_STRENGTH = 1.0
-"""What things usually do says this much more beside evidence that is summed: hardly a cupboard shows its back."""
+"""What objects usually do says this much more beside evidence that is summed: hardly a cupboard shows its back."""
 _NEARBY_RAD = np.deg2rad(np.arange(-60.0, 61.0, 12.0))
 _RIGHT_RAD = float(np.deg2rad(20.0))
 """Headings this near are as good as right."""
@@ -116,7 +116,7 @@ class TurnSearch:
         )
 
     def _scores(self, poses: PoseBatch) -> Float[np.ndarray, "p"]:
-        """By everything that is known."""
+        """Ranked by all observations."""
         errors, nothing = self.observations.errors(self.appearance.caster, poses), np.zeros(len(poses))
         usual = self.observations.log_scores(errors, poses, nothing, nothing, self.limits)
         more_habit = _HABIT_STRENGTH * self.observations.facing.cost(poses.R)

@@ -51,7 +51,7 @@ class Project:
         """Make the folder a project; one that already is stays as it is.
 
         Raises:
-            ProjectError: the folder cannot be written, or holds other things.
+            ProjectError: the folder cannot be written, or holds other objects.
         """
         project = cls(Path(folder))
         if project._info_path.exists():

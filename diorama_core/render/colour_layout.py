@@ -1,4 +1,4 @@
-"""Where on a thing its colours are: a coarse grid over one picture of it, compared whatever the light.
+"""Where on an object its colours are: a coarse grid over one picture of it, compared whatever the light.
 
 Main colours alone cannot tell a dark screen in a white frame from a white screen in a dark one. The light of a photo is
 not known, so how bright the whole is says nothing, and how bright its parts are says half as much as their hue.
@@ -16,7 +16,7 @@ from diorama_core.render.view_features import squared_around
 
 CELLS = 6
 LAYOUT_WIDTH = CELLS**2 * 4
-"""Numbers in a layout: CIE Lab of every cell, and how much of it the thing covers."""
+"""Numbers in a layout: CIE Lab of every cell, and how much of it the object covers."""
 _LIGHTNESS_WEIGHT = 0.5
 _TOLERANCE = 18.0
 _MIN_SHARED = 0.5

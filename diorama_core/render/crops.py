@@ -1,4 +1,4 @@
-"""Pictures of single things that people bring to a search: what of the picture is the thing."""
+"""Pictures of single objects that people bring to a search: what of the picture is the object."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ CROP_FORMATS = ("JPEG", "PNG", "WEBP", "GIF", "BMP", "TIFF", "AVIF")
 _WORKING_SIDE = 320
 _RIM = 0.02
 _PLAUSIBLE_SHARE = (0.08, 0.97)
-"""Of the picture that a thing fills, when the background was told from it."""
+"""Of the picture that an object fills, when the background was told from it."""
 _WHOLE = "{name}: the thing could not be told from its background; a cut-out on a transparent one finds better"
 
 
@@ -29,9 +29,9 @@ class Crop(ArrayValue):
 
     rgb: UInt8[np.ndarray, "h w 3"]
     mask: Bool[np.ndarray, "h w"]
-    """Where the thing is."""
+    """Where the object is."""
     note: str = ""
-    """For the user, when the thing could not be told from its background."""
+    """For the user, when the object could not be told from its background."""
 
     @property
     def gray(self) -> UInt8[np.ndarray, "h w"]:
@@ -43,7 +43,7 @@ def read_crop(path: Path) -> Crop:
     """A picture file of one thing, at a working size.
 
     A transparent background is taken as it is; else what looks like the rim of the picture is taken for background
-    (GrabCut: Rother et al., 2004), and the whole picture for the thing where that finds nothing plausible.
+    (GrabCut: Rother et al., 2004), and the whole picture for the object where that finds nothing plausible.
 
     Raises:
         InputError: when the file is no picture, is too large, or shows nothing.
@@ -73,7 +73,7 @@ def read_crop(path: Path) -> Crop:
 
 
 def foreground(rgb: UInt8[np.ndarray, "h w 3"]) -> Bool[np.ndarray, "h w"]:
-    """Where the thing is in a picture that frames it; everywhere when that cannot be told."""
+    """Where the object is in a picture that frames it; everywhere when that cannot be told."""
     height, width = rgb.shape[:2]
     everywhere = np.ones((height, width), bool)
     rim = max(1, round(_RIM * max(height, width)))

@@ -1,7 +1,7 @@
-"""What one picture of a thing looks like, as a few hundred numbers: outline, inner edges and colours.
+"""What one picture of an object looks like, as a few hundred numbers: outline, inner edges and colours.
 
 The same numbers are made of a crop of a photo and of the views of a shape, so that their dot product says how alike
-the two are; no networks are needed. Outline: share of a coarse grid's cells that the thing covers, in a square around
+the two are; no networks are needed. Outline: share of a coarse grid's cells that the object covers, in a square around
 it. Inner edges: histograms of gradient directions (Dalal and Triggs, 2005) in coarse cells, without the outline itself;
 they tell a chest of drawers from a wardrobe. Colours: main colours, softly assigned to reference colours.
 """
@@ -30,7 +30,7 @@ _GRADIENT_FLOOR = 3.0
 
 @dataclass(frozen=True)
 class Weights:
-    """How much each part counts; they add up to 1, so that a thing agrees with itself by 1."""
+    """How much each part counts; they add up to 1, so that an object agrees with itself by 1."""
 
     outline: float = 0.55
     edges: float = 0.25
@@ -49,7 +49,7 @@ def view_feature(
     colour: Float[np.ndarray, "c"],
     weights: Weights = WEIGHTS,
 ) -> Float32[np.ndarray, "width"] | None:
-    """The feature of one picture of a thing.
+    """The feature of one picture of an object.
 
     Args:
         gray: Its brightness.
@@ -70,7 +70,7 @@ def view_feature(
 def outline_and_edges(
     gray: UInt8[np.ndarray, "h w"], mask: Bool[np.ndarray, "h w"]
 ) -> tuple[Float[np.ndarray, "outline"], Float[np.ndarray, "edges"]] | None:
-    """The outline and the inner edges of one picture of a thing, each of unit length; None for an empty mask."""
+    """The outline and the inner edges of one picture of an object, each of unit length; None for an empty mask."""
     box = _box(mask)
     if box is None:
         return None

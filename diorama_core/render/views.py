@@ -38,7 +38,7 @@ FROM_ABOVE = StudioView(np.radians(30.0), np.radians(48.0))
 
 
 def usual_view(shape: Shape) -> StudioView:
-    """The view in which a shape is best recognised: flat things from above, hung things from the front."""
+    """The view in which a shape is best recognised: flat objects from above, hung objects from the front."""
     depth, width, height = shape.size_m
     if height < 0.12 * max(depth, width):
         return FROM_ABOVE

@@ -1,7 +1,7 @@
-"""How like shapes are to a thing in the photo, whatever their size and pose.
+"""Appearance similarity of shapes and an object in the photo, independent of size and pose.
 
 The paper's second query (section 3.2 and supplement, "Multimodal 3D shape retrieval"): the masked crop orders what the
-words found. Which features compare is the provider's affair: the embedded one is here, the learned one in `joint`.
+words found. The provider decides on the features: affair: the embedded one is here, the learned one in `joint`.
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ _MARGIN = 0.06
 _GRID = TemplateGrid(elevations_deg=(8.0, 28.0), azimuths=12, size_px=72, longest_side=0.85, distance=2.2, fov_deg=32.0)
 """Views as photos of rooms have them, with little perspective."""
 EMBEDDED_FEATURES = f"views-3-{_GRID.key}"
-"""Names what is kept of shapes; changes with what features are."""
+"""Cache key of the shapes' features; changes with the kind of features."""
 _FORM_WIDTH = 2 * (OUTLINE_WIDTH + EDGES_WIDTH)
 _EDGES_SHARE, _EDGES_OF_DOUBTFUL = 0.5, 0.45
-"""What inner edges say of a thing's form beside its outline, and how much more where the outline is doubtful."""
+"""Weight of inner edges relative to the outline, and its increase where the outline is uncertain."""
 _LAYOUT_WEIGHT = 0.5
 """What the places of colours say beside the form."""
 _COLOUR_WEIGHTS = (0.1, 0.4)
-"""Of main colours, beside the views of a thing that is seen whole, and of one of which little is seen."""
+"""Of main colours, beside the views of an object that is seen whole, and of one of which little is seen."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,17 +52,17 @@ class ObjectCrop(ArrayValue):
     rgb: UInt8[np.ndarray, "h w 3"]
     """The photo."""
     mask: Bool[np.ndarray, "h w"]
-    """The thing's visible pixels; may be empty."""
+    """The object's visible pixels; may be empty."""
     label: str
     """What it is called."""
     visible: float = 1.0
     """How much of it the mask shows, 0 to 1: less where it is cut, hidden or badly outlined."""
     mask_trust: float = 1.0
-    """0 to 1: whether the mask's inner gaps can be believed."""
+    """0 to 1: reliability of the gaps in the mask."""
 
     @property
     def crop(self) -> UInt8[np.ndarray, "s s 3"]:
-        """The thing alone on a neutral ground, square; all ground for an empty mask."""
+        """The masked object on a neutral background, square; only background for an empty mask."""
         rows, columns = np.flatnonzero(self.mask.any(axis=1)), np.flatnonzero(self.mask.any(axis=0))
         if not len(rows):
             return np.full((SIDE_PX, SIDE_PX, 3), NEUTRAL, np.uint8)
@@ -78,7 +78,7 @@ class ObjectCrop(ArrayValue):
 
 @runtime_checkable
 class AppearanceSimilarity(Protocol):
-    """Compares things with shapes."""
+    """Compares objects with shapes."""
 
     def of(self, item: ObjectCrop, shapes: Sequence[Shape]) -> Float[np.ndarray, " n"]:
         """0 (unlike) to 1, comparable among these shapes."""
@@ -91,10 +91,10 @@ class EmbeddedSimilarity:
 
     library: ShapeLibrary = field(repr=False)
     folder: Path | None = field(default=None, repr=False)
-    """Where features of views are kept; `features` in the cache folder by default."""
+    """Cache folder of view features; `features` in Diorama's cache folder by default."""
 
     def of(self, item: ObjectCrop, shapes: Sequence[Shape]) -> Float[np.ndarray, " n"]:
-        """The better seen the thing, the more the views say beside the main colours."""
+        """The weight of the views relative to the main colours grows with visibility."""
         appearances = [self._appearance(s) for s in shapes]
         seen = palette_of_crop(item.rgb, item.mask)
         colours = np.array([palette_agreement(seen, palette_of_appearance(appearance)) for appearance in appearances])

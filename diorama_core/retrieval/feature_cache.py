@@ -1,4 +1,4 @@
-"""Features of shapes, made once: kept in memory and, under the shapes' content hashes, on disk."""
+"""A cache of shape features in memory and, under the shapes' content hashes, on disk."""
 
 from __future__ import annotations
 

@@ -36,11 +36,11 @@ _SIMILAR_LOG_SIZE_OF_SEATS = 0.8
 """Seats in one room are usually of a set, so that different sizes are rather errors of measurement."""
 _SEATS = with_kin("chair", "office chair", "stool", "armchair")
 _UNNAMED_OUTLINE, _UNNAMED_SIZE = 3.0, 0.5
-"""How much more the outline, and how much less the guessed size, of a thing without a name counts."""
+"""Increased weight of the outline, and reduced weight of the guessed size, of an object without a name."""
 _OWN_EVIDENCE = 0.4
 _MIN_SIMILARITY = 0.25
 _GUESSED_SIZE = 0.5
-"""How much less the size of a thing counts of which nothing is seen: it is what such things usually have."""
+"""Reduced weight of a size that was not observed but taken from the category's prior."""
 _MIN_VOICE = 0.1
 _MOUNTS = {"wall": ("wall",), "ceiling": ("ceiling",)}
 _OTHER_MOUNT = 0.1
@@ -48,7 +48,7 @@ _OTHER_MOUNT = 0.1
 _KINDS, _KINDS_OF_UNNAMED = 3, 7
 """How many kinds are among the candidates of a thing with and without a name, where it may be of so many."""
 _OF_WORDS = 0.12
-"""How much less a shape scores to which none of the words fit that describe the thing beside its kind."""
+"""Penalty of a shape that matches none of the label's describing words."""
 
 
 @dataclass(frozen=True)
@@ -63,14 +63,14 @@ class HierarchicalRetrieval:
 
     library: ShapeLibrary
     keep: int = 8
-    """How many shapes are kept for an object."""
+    """Number of candidates per object."""
     cells: int = 36
     """Resolution of the silhouettes, both ways."""
     size_weight: float = 0.3
     silhouette_weight: float = 0.4
     """Of a mask that can be trusted; less for doubtful ones."""
     similarity_weight: float = 1.3
-    """Of a thing that is seen whole; less, down to a quarter, for cut, hidden and badly outlined ones."""
+    """Of an object that is seen whole; less, down to a quarter, for cut, hidden and badly outlined ones."""
     similarity: AppearanceSimilarity | None = None
     """Compares looks; by colours, outline and edges where None."""
 
@@ -161,7 +161,7 @@ class HierarchicalRetrieval:
         return float((fit.max() + of_appearances * like) / (of_size + of_outline + of_appearances))
 
     def _weights(self, seen: Observed, visible: float, named: bool) -> tuple[float, float, float]:
-        """How much size, outline and looks say about a thing of which so much is seen."""
+        """Weights of size, outline and appearance for an object with this visibility."""
         return (
             self.size_weight * (1 - _GUESSED_SIZE * (1 - visible)) * (1.0 if named else _UNNAMED_SIZE),
             self.silhouette_weight * (0.25 + 0.75 * seen.mask_trust) * (1.0 if named else _UNNAMED_OUTLINE),

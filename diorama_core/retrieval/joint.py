@@ -42,7 +42,7 @@ class JointEmbedding(Protocol):
         ...
 
     def shape(self, views: Sequence[UInt8[np.ndarray, "_ _ 3"]]) -> Float32[np.ndarray, " d"]:
-        """The thing that several pictures show."""
+        """The common object of several pictures."""
         ...
 
 
@@ -78,13 +78,13 @@ class ClipEmbedding:
 class JointSimilarity:
     """By words and picture, counting the same, in a joint embedding.
 
-    A shape is looked at once; what was seen is kept by its content and the weights.
+    A shape is rendered and embedded once; embeddings are cached by its content and the weights.
     """
 
     library: ShapeLibrary = field(repr=False)
     embedding: JointEmbedding
     folder: Path | None = field(default=None, repr=False)
-    """Where embeddings are kept; `features` in the cache folder by default."""
+    """Cache folder of embeddings; `features` in Diorama's cache folder by default."""
 
     def of(self, item: ObjectCrop, shapes: Sequence[Shape]) -> Float[np.ndarray, " n"]:
         """Near 1 for what is most alike; falls with the cosine."""

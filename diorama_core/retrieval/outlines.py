@@ -10,10 +10,10 @@ from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.window import soft_iou
 
 _GAP_SHARE = 0.12
-"""Of a thing's longer side: wider gaps stay open."""
+"""Of an object's longer side: wider gaps stay open."""
 _MAX_OPEN = 0.5
 _DOUBTFUL = 0.5
-"""Trust in a mask below which its gaps say nothing."""
+"""Mask confidence below which its gaps are ignored."""
 
 
 def filled(mask: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:

@@ -1,6 +1,6 @@
 """Edits of the room itself, and of the scale of everything: pure functions Scene -> Scene.
 
-What is fastened to a plane follows it: things mounted on it, things that stand on it, things that stand against it,
+What is fastened to a plane follows it: objects mounted on it, objects that stand on it, objects that stand against it,
 and whatever those hold up. Locked objects stay where they are. Planes that share corners with a moved one are
 stretched or cut so that the room stays closed.
 """

@@ -16,7 +16,7 @@ from diorama_core.scene.types import Pose
 from diorama_core.scene.values import Vector3
 
 LIFT_M = 1e-3
-"""Resting things are tested this much above their place, so that contact is not collision."""
+"""Resting objects are tested this much above their place, so that contact is not collision."""
 
 
 @dataclass(frozen=True)

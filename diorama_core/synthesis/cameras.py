@@ -21,7 +21,7 @@ MIN_SHOWN = 6
 MIN_FLOOR = 0.04
 LARGEST_SHARE = 0.45
 NEAR_SHARE = 0.1
-"""A view with fewer things, less floor, a larger thing or more right before the lens is a last resort."""
+"""A view with fewer objects, less floor, a larger object or more right before the lens is a last resort."""
 UNDER_CEILING_M = 0.2
 """Nobody holds a camera nearer to a sloping ceiling."""
 
@@ -67,7 +67,7 @@ def hold_cameras(
     rng = np.random.default_rng((seed, 4711))
     caster = MeshCaster([*_meshes(scene, library), *((_plane_mesh(p), np.eye(4)) for p in scene.architecture.planes)])
     how, viewpoints = holding or Holding(), list[tuple[Camera, _Viewpoint]]()
-    for closer in (1.0, 0.6, 0.3, 0.1):  # a full or narrow room lets nobody stand well clear of things
+    for closer in (1.0, 0.6, 0.3, 0.1):  # a full or narrow room lets nobody stand well clear of objects
         nearer = replace(how, clearance_m=closer * how.clearance_m)
         tried = [_candidate(scene, rng, size, nearer) for _ in range(CANDIDATES * max(1, count))]
         viewpoints += [(camera, _compare(scene, caster, camera)) for camera in tried if camera is not None]
@@ -143,7 +143,7 @@ class _Viewpoint:
     score: float
     """Higher is better."""
     worth_it: bool
-    """Whether it shows a room: several things, some floor, nothing that fills the view."""
+    """Whether it shows a room: several objects, some floor, nothing that fills the view."""
 
 
 def _compare(scene: Scene, caster: MeshCaster, camera: Camera) -> _Viewpoint:

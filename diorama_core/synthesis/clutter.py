@@ -1,4 +1,4 @@
-"""Small things where people leave them: books in shelves, cups on trays on tables, lamps on night stands."""
+"""Small objects where people leave them: books in shelves, cups on trays on tables, lamps on night stands."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from diorama_core.synthesis.groups import on_top
 
 @dataclass(frozen=True)
 class Habit:
-    """What people put on things of a category."""
+    """What people put on objects of a category."""
 
     items: tuple[str, ...]
     """Categories, likelier ones repeated."""
@@ -62,12 +62,12 @@ ALONG_THE_BACK = (
     "lamp", "vase", "plant", "basket", "box", "microwave", "clock", "photo frame", "vanity mirror", "speaker",
     "coffee machine", "printer", "record player", "sculpture", "router",
 )  # fmt: skip
-"""Things that stand at the back of a surface; the rest lies anywhere."""
+"""Objects that stand at the back of a surface; the rest lies anywhere."""
 NEVER_AT_ANGLES = ("microwave", "computer", "box", "clock", "coffee machine", "printer", "record player")
 
 
 def scatter(f: Furnisher, parents: Sequence[str], budget: int) -> int:
-    """Put up to `budget` things on and in what can carry them, carriers in random order; returns how many.
+    """Put up to `budget` objects on and in what can carry them, carriers in random order; returns how many.
 
     New carriers (a tray, a box) are offered too, so that hierarchies grow deep.
     """

@@ -1,4 +1,4 @@
-"""Puts things into a room one at a time, each only where it is free, reachable and held up."""
+"""Puts objects into a room one at a time, each only where it is free, reachable and held up."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ class Furnisher:
         self._zones.append(Zone(quad, above_m))
 
     def forget_last_zone(self) -> None:
-        """Let the floor kept free for the last thing be used by what belongs to it."""
+        """Let the floor kept free for the last object be used by what belongs to it."""
         self._zones.pop()
 
     def is_free(self, item: Item, xy: Float[np.ndarray, "2"], yaw_rad: float) -> bool:
@@ -225,7 +225,7 @@ class Furnisher:
             return None
         return self._put(item, pose, Support("", "ceiling", "mounted on", None, "top"))
 
-    # on other things
+    # on other objects
 
     def rest(
         self, item: Item, parent_id: str, surface: int, xy_local: Float[np.ndarray, "2"], turn_rad: float = 0.0

@@ -1,7 +1,7 @@
 """The room grammar: kinds of rooms and how each is furnished.
 
 `furnished_room` is the one way in. A room is built in the order in which people move in: doors and windows, the
-main group of furniture, what stands along the walls, what hangs on them, and at last the small things. Every step
+main group of furniture, what stands along the walls, what hangs on them, and at last the small objects. Every step
 places only what is free of all meshes placed before, so a room is valid by construction.
 """
 
@@ -62,7 +62,7 @@ def furnished_room(
         kind: What the room is for.
         library: Where shapes come from; the built-in one by default.
         outline: The floor's outline; None leaves it to chance.
-        clutter: How many small things to try to place; None leaves it to chance.
+        clutter: How many small objects to try to place; None leaves it to chance.
         split: Whose finishes and room styles are used (shapes are the given library's); all by default.
     """
     library = library or built_in_library()

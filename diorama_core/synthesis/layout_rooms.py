@@ -1,5 +1,5 @@
 """Generated rooms with a known truth: furniture on the floor, chairs tucked under tables, shelves with books, things on
-tables, things on walls. Shapes are compounds of boxes, so convex parts are exact.
+tables, objects on walls. Shapes are compounds of boxes, so convex parts are exact.
 """
 
 from __future__ import annotations
@@ -249,7 +249,7 @@ def perturb_graph(scene: Scene, share: float, seed: int) -> Scene:
 
 
 class _Builder:
-    """Places things one by one where they fit."""
+    """Places objects one by one where they fit."""
 
     def __init__(self, rng: np.random.Generator, count: int) -> None:
         self.rng, self.count = rng, count

@@ -13,9 +13,9 @@ from diorama_core.synthesis.bodies import LIFT_M, Bodies, Item
 from diorama_core.synthesis.truth import TruthView
 
 MIN_FLOOR = 0.02
-"""A picture with less floor than this says little about where things stand."""
+"""A picture with less floor than this says little about where objects stand."""
 LARGEST_SHARE = 0.6
-"""A thing that fills more of the picture than this hides the room."""
+"""An object that fills more of the picture than this hides the room."""
 NEAR_M = 0.6
 NEAR_SHARE = 0.15
 """A picture with more than this nearer than `NEAR_M` was taken with the nose against something."""
@@ -30,11 +30,11 @@ class RoomSurvey:
     """"4 walls", "6 walls", "5 walls" or "attic"."""
     objects: int
     depth: int
-    """Longest chain of things that stand on one another, the room itself not counted."""
+    """Longest chain of objects that stand on one another, the room itself not counted."""
     collisions: tuple[tuple[str, str], ...]
     """Pairs whose meshes cut each other."""
     outside: tuple[str, ...]
-    """Things that reach through floor, walls or ceiling."""
+    """Objects that reach through floor, walls or ceiling."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class ViewSurvey:
     floor: float
     """Share of the picture that shows bare floor (or a rug)."""
     largest: float
-    """Share of the thing that fills most of it."""
+    """Share of the object that fills most of it."""
     near: float
     """Share that is nearer than `NEAR_M`."""
     walls: int

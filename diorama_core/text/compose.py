@@ -71,7 +71,7 @@ def composed_room(prompt: str, library: ShapeLibrary, seed: int = 0) -> Composed
 
 
 def _weight(label: str) -> int:
-    """How much it matters that a thing found no place: a larger room does not help what lies on others."""
+    """How much it matters that an object found no place: a larger room does not help what lies on others."""
     return 1 if resolve(label).category.mount == "surface" else 10
 
 
@@ -103,7 +103,7 @@ def _attempt(request: RoomRequest, library: ShapeLibrary, digest: int, attempt: 
 
 
 def _rank(requested: RequestedObject) -> tuple[int, int]:
-    """Large things of the floor first, then what stands by them, on them, at last what hangs."""
+    """Large objects of the floor first, then what stands by them, on them, at last what hangs."""
     mount = {"floor": 0, "wall": 2, "surface": 3, "ceiling": 1}[category(requested.category).mount]
     place = 1 if requested.place in ("beside", "before", "around", "under") else 0
     order = _ORDER.index(requested.category) if requested.category in _ORDER else len(_ORDER)
@@ -111,7 +111,7 @@ def _rank(requested: RequestedObject) -> tuple[int, int]:
 
 
 def _place(f: Furnisher, requested: RequestedObject, placed: dict[str, list[str]]) -> str | None:
-    """One thing: where the prompt says, else where people put such things."""
+    """One thing: where the prompt says, else where people put such objects."""
     item = _chosen(f, requested)
     if item is None:
         return None
@@ -137,7 +137,7 @@ def _place(f: Furnisher, requested: RequestedObject, placed: dict[str, list[str]
 
 
 def _least_used(f: Furnisher, hosts: list[str]) -> list[str]:
-    """Hosts that hold or have beside them the fewest things come first: a lamp on each night stand."""
+    """Hosts that hold or have beside them the fewest objects come first: a lamp on each night stand."""
     load = {h: sum(s.parent == h for s in f.supports) for h in hosts}
     return sorted(hosts, key=lambda h: load[h])
 

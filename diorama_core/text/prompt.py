@@ -1,4 +1,4 @@
-"""What a prompt asks for: a kind of room, things with counts and looks, and where they go."""
+"""What a prompt asks for: a kind of room, objects with counts and looks, and where they go."""
 
 from __future__ import annotations
 
@@ -40,12 +40,12 @@ _APPEARANCES = (
     "narrow,short,old,new,comfortable,cosy,cozy,elegant,beautiful,nice,simple,high,empty,open,matching"
 )
 APPEARANCES = frozenset(_APPEARANCES.split(","))
-"""Words that say how a thing looks, not what it is."""
+"""Words that say how an object looks, not what it is."""
 
 
 @dataclass(frozen=True)
 class RequestedObject:
-    """One kind of thing that is asked for."""
+    """One kind of object that is asked for."""
 
     category: str
     label: str
@@ -111,7 +111,7 @@ def _guessed_room(text: str) -> RoomKind:
 
 
 def _clause(clause: str, before: list[RequestedObject]) -> tuple[list[RequestedObject], list[str]]:
-    """The things of one clause: "two red chairs beside the table" names chairs, and a table unless it is known."""
+    """The objects of one clause: "two red chairs beside the table" names chairs, and a table unless it is known."""
     for words, place in _PLACES:
         parts = re.split(rf"\b{words}\b", clause, maxsplit=1)
         if len(parts) < 2:

@@ -26,7 +26,7 @@ LOWEST_PITCH_RAD, HIGHEST_PITCH_RAD = 0.1, 0.42
 SEEN_PX = 5
 """Fewer pixels of the probe show nothing that could be found again."""
 CUT_WORTH = 0.45
-"""Of a thing that the picture's rim cuts off, beside one that is seen whole."""
+"""Of an object that the picture's rim cuts off, beside one that is seen whole."""
 NEAR_M = 0.9
 
 

@@ -30,7 +30,7 @@ def test_a_box_is_drawn_anew_and_an_outline_is_clicked_and_left(editor: EditorPa
     editor.at_board()
     editor.drag(editor.place_of(on_board(editor, 230, 190)), editor.place_of(on_board(editor, 450, 430)))
     editor.until(
-        lambda: session.document.history.current.label == "look again at dining table", "looked at again", seconds=120
+        lambda: session.document.history.current.label == "reconstruct dining table", "looked at again", seconds=120
     )
     table = session.scene.object("table_1")
     assert table.box_px == pytest.approx((230.0, 190.0, 450.0, 430.0), abs=4.0)
@@ -55,7 +55,7 @@ def test_a_box_is_drawn_anew_and_an_outline_is_clicked_and_left(editor: EditorPa
     assert [part for _, _, part in outline.clicks] == [True, False]
     assert outline.mask[300, 340]
     assert not outline.mask[200, 450]
-    editor.button("Never mind").click()
+    editor.button("Cancel").click()
     editor.until(lambda: not editor.client.view.drawing)
     assert session.scene is before
     editor.page.keyboard.press("Control+z")

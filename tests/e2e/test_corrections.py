@@ -45,7 +45,7 @@ def test_a_box_is_redrawn_on_the_photo_and_its_object_is_looked_at_again(editor:
     session = editor.running.session
     editor.tab("Photo")
     editor.page.locator(".dio .row[data-do=mark]", has_text="dining table").click()
-    editor.button("Add marked one to the scene").click()
+    editor.button("Add selected box to the scene").click()
     editor.until(lambda: session.jobs.status is None and len(editor.selection) == 1, "added", seconds=90)
     added = session.scene.object(editor.selection[0])
     others = [o for o in session.scene.objects if o.id != added.id]
@@ -56,7 +56,7 @@ def test_a_box_is_redrawn_on_the_photo_and_its_object_is_looked_at_again(editor:
     corners = np.array([[250.0, 210.0], [400.0, 410.0]])
     start, end = (editor.place_of(p) for p in board.to_world(corners))
     editor.drag(start, end)
-    label = f"look again at {added.label}"
+    label = f"reconstruct {added.label}"
     editor.until(lambda: session.document.history.current.label == label, "looked at again", seconds=90)
     again = session.scene.object(added.id)
     np.testing.assert_allclose(np.array(again.box_px).reshape(2, 2), corners, atol=4.0)
@@ -71,7 +71,7 @@ def test_an_uploaded_model_is_clicked_into_the_room(editor: EditorPage, tmp_path
     trimesh.creation.box((1.8, 0.6, 0.3)).export(tmp_path / "bookcase.glb")
     editor.tab("Library")
     editor.upload("Add a model file", tmp_path / "bookcase.glb")
-    expect(editor.page.get_by_text("Click where it should stand")).to_be_visible(timeout=LEARN_MS)
+    expect(editor.page.get_by_text("Click where to place it")).to_be_visible(timeout=LEARN_MS)
     editor.click_world(np.array([1.1, 0.3, 0.0]))
     editor.until(lambda: len(scene(editor).objects) == 6, "placed")
     placed = scene(editor).object(editor.selection[0])
@@ -93,7 +93,7 @@ def test_an_earlier_version_comes_back_as_one_undo_step(editor: EditorPage) -> N
     session.ui_thread.post(session.refresh)
     editor.tab("Project")
     editor.page.get_by_text("Earlier versions").click()
-    editor.button("Go back to it").first.click()
+    editor.button("Restore this version").first.click()
     editor.until(lambda: scene(editor) == before, "everything is there again")
     editor.tab("Scene")
     expect(editor.row("lamp")).to_be_visible()

@@ -137,16 +137,16 @@ def test_a_shape_is_clicked_onto_the_table_and_lengths_are_measured_and_rescaled
     editor.tab("Library")
     tile = editor.page.locator(".dio .tile:visible", has_text="lamp a")
     tile.get_by_role("button", name="Place").click()
-    expect(editor.page.get_by_text("Click where it should stand")).to_be_visible()
+    expect(editor.page.get_by_text("Click where to place it")).to_be_visible()
     table = scene(editor).object("table_1")
     editor.click_world(table.pose.apply(np.array([0.2, 0.4, 0.37])))
     editor.until(lambda: len(scene(editor).objects) == 6, "placed")
     new = scene(editor).object(editor.selection[0])
     assert scene(editor).support_of(new.id).parent == "table_1"
     np.testing.assert_allclose(new.pose.position[:2], table.pose.apply(np.array([0.2, 0.4, 0.0]))[:2], atol=0.03)
-    expect(editor.page.get_by_text("Click where it should stand")).to_have_count(0)
+    expect(editor.page.get_by_text("Click where to place it")).to_have_count(0)
     editor.page.keyboard.press("m")
-    expect(editor.page.get_by_text("Click the first end")).to_be_visible()
+    expect(editor.page.get_by_text("Click the first point")).to_be_visible()
     floor = scene(editor).architecture.floor
     assert floor is not None
     for x in (-1.0, 0.9):
@@ -188,7 +188,7 @@ def test_only_the_selection_is_optimised_compared_and_put_back(editor: EditorPag
 
     session.ui_thread.post(lift)
     editor.until(lambda: len(session.badges) == 2, "both float, and it is said")
-    expect(editor.page.get_by_text("2 objects need a look")).to_be_visible()
+    expect(editor.page.get_by_text("2 objects have problems")).to_be_visible()
     editor.row("chair", exact=True).click()
     editor.tab("Arrange")
     before = session.scene
@@ -202,7 +202,7 @@ def test_only_the_selection_is_optimised_compared_and_put_back(editor: EditorPag
     editor.settle()
     editor.button("After").click()
     editor.page.wait_for_function(f"window.__viserMutable.nodeRefFromName['{node}'].position.z < 0.6")
-    editor.button("Put back").click()
+    editor.button("Revert").click()
     editor.until(lambda: session.scene is before, "put back")
     expect(editor.page.get_by_role("button", name="2", exact=True)).to_be_visible()
     editor.page.get_by_role("button", name="2", exact=True).click()
@@ -223,7 +223,7 @@ def test_projects_are_renamed_copied_binned_and_brought_back(editor: EditorPage,
     assert Project.open(tmp_path / "projects" / "demo-2").load_scene() == session.scene
     copy.get_by_title("Move to the bin").click()
     expect(copy).to_have_count(0)
-    editor.button("Bring back").click()
+    editor.button("Restore").click()
     expect(copy).to_be_visible()
     copy.get_by_title("Move to the bin").click()
     expect(copy.get_by_title("Duplicate")).to_have_count(0)
@@ -234,7 +234,7 @@ def test_projects_are_renamed_copied_binned_and_brought_back(editor: EditorPage,
 
     session.ui_thread.post(another_session)
     editor.page.get_by_text("Bin", exact=True).click()
-    copy.get_by_role("button", name="Bring back").click()
+    copy.get_by_role("button", name="Restore").click()
     expect(copy.get_by_title("Duplicate")).to_be_visible()
 
 
@@ -291,13 +291,13 @@ def test_what_was_missed_is_added_from_the_photo_and_renamed(editor: EditorPage)
     session = editor.running.session
     editor.tab("Photo")
     editor.page.locator(".dio .row[data-do=mark]", has_text="dining table").click()
-    editor.button("Add marked one to the scene").click()
+    editor.button("Add selected box to the scene").click()
     editor.until(lambda: session.jobs.status is None and len(editor.selection) == 1, "added", seconds=90)
     new = session.scene.object(editor.selection[0])
     assert new.category == "table"
     assert new.box_px == pytest.approx((240.0, 200.0, 440.0, 420.0))
     assert new.corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-6)
-    field = editor.page.get_by_label("What it is")
+    field = editor.page.get_by_label("Object category")
     field.fill("chair")
     field.press("Enter")
     editor.until(

@@ -46,7 +46,7 @@ def test_the_example_is_there_and_is_swapped_moved_undone_optimised_and_download
     editor.settle()
     swapped = session.scene.object(chair.id)
     goal = round(float(swapped.pose.position[0]) - 0.2, 2)
-    editor.page.get_by_label("Place (m)").fill(f"{goal:.2f}")
+    editor.page.get_by_label("Position (m)").fill(f"{goal:.2f}")
     editor.until(lambda: abs(session.scene.object(chair.id).pose.position[0] - goal) < 1e-3, "moved")
     editor.button("↶ Undo").click()
     editor.until(lambda: session.scene.object(chair.id).pose == swapped.pose, "undone")

@@ -33,10 +33,10 @@ def test_a_cost_left_out_is_not_followed_and_every_cost_has_a_curve(editor: Edit
     editor.page.get_by_text("Weights", exact=True).click()
     touching = editor.page.locator(".mantine-Flex-root", has_text="Touching").locator("input[type=text]")
     expect(touching).to_be_visible()
-    expect(editor.page.get_by_text("As far away", exact=True)).not_to_be_visible()
+    expect(editor.page.get_by_text("Distance", exact=True)).not_to_be_visible()
     touching.fill("0")
     touching.press("Tab")
-    expect(editor.button("All back to 1")).to_be_enabled()
+    expect(editor.button("Reset weights")).to_be_enabled()
     editor.button("Optimise layout").click()
     editor.until(lambda: session.jobs.status is None and session.scene is not before, "arranged", seconds=90)
     assert session.scene.object("chair_1").corners_world[:, 2].min() > 0.2, "nothing asked it to touch the floor"
@@ -45,19 +45,19 @@ def test_a_cost_left_out_is_not_followed_and_every_cost_has_a_curve(editor: Edit
     assert {"align", "heading", "place", "neighbours", "volume", "collision"} == set(run.costs)
     editor.page.wait_for_function("!!document.querySelector('.u-legend')")
     legend = editor.page.locator(".u-legend").first
-    for name in ("Upright", "Facing", "Neighbours", "Apart"):
+    for name in ("Upright", "Facing", "Neighbours", "Separation"):
         expect(legend).to_contain_text(name)
     expect(editor.page.get_by_text("Moved, mean")).to_be_visible()
     expect(editor.page.get_by_text("Overlapping pairs")).to_be_visible()
-    editor.button("Put back").click()
+    editor.button("Revert").click()
     editor.until(lambda: session.scene == before, "put back")
-    editor.button("All back to 1").click()
+    editor.button("Reset weights").click()
     expect(touching).to_have_value("1")
     editor.button("Optimise layout").click()
     editor.until(lambda: session.jobs.status is None and session.scene != before, "arranged", seconds=90)
     assert session.scene.object("chair_1").corners_world[:, 2].min() == pytest.approx(0.0, abs=0.02)
     editor.button("Keep").click()
-    expect(editor.button("Put back")).to_have_count(0)
+    expect(editor.button("Revert")).to_have_count(0)
 
 
 def test_an_optimisation_is_paused_gone_on_with_and_cancelled(editor: EditorPage) -> None:
@@ -67,7 +67,7 @@ def test_an_optimisation_is_paused_gone_on_with_and_cancelled(editor: EditorPage
     choose_recipe(editor, "All in one")
     editor.button("Optimise layout").click()
     editor.button("Pause").click()
-    expect(editor.button("Go on")).to_be_visible()
+    expect(editor.button("Resume")).to_be_visible()
     run = session.layout_run
     assert run is not None
     assert run.paused
@@ -75,7 +75,7 @@ def test_an_optimisation_is_paused_gone_on_with_and_cancelled(editor: EditorPage
     seen = len(run.times_s)
     editor.page.wait_for_timeout(500)
     assert len(run.times_s) == seen, "it waits"
-    editor.button("Go on").click()
+    editor.button("Resume").click()
     editor.until(lambda: len(run.times_s) > seen, "it goes on")
     editor.button("Cancel").click()
     editor.until(lambda: session.jobs.status is None, "stopped")

@@ -35,7 +35,7 @@ def test_height_rescales_at_once_and_field_of_view_and_tilt_build_again(editor: 
     before = session.scene
     editor.tab("Photo")
     editor.page.get_by_text("Camera and floor").click()
-    height = editor.page.get_by_label("Above the floor")
+    height = editor.page.get_by_label("Camera height")
     expect(height).to_have_value("1.5 m")
     height.fill("3 m")
     height.press("Tab")
@@ -50,7 +50,7 @@ def test_height_rescales_at_once_and_field_of_view_and_tilt_build_again(editor: 
         field.press("Tab")
         expect(field).to_have_value(f"{value}.0")
     editor.page.wait_for_function("!!window.__viserMutable.nodeRefFromName['/photo_evidence']")
-    editor.button("Build again with this camera").click()
+    editor.button("Rebuild with this camera").click()
     editor.until(lambda: session.jobs.status is None and session.scene != before, "built again", seconds=120)
     camera = session.scene.camera
     assert np.degrees(camera.intrinsics.horizontal_fov_rad) == pytest.approx(60.0, abs=1e-6)
@@ -65,7 +65,7 @@ def test_height_rescales_at_once_and_field_of_view_and_tilt_build_again(editor: 
     editor.page.get_by_label("Field of view (°)").fill("70")
     editor.page.get_by_label("Field of view (°)").press("Tab")
     now = session.scene
-    editor.button("Build again with this camera").click()
+    editor.button("Rebuild with this camera").click()
     editor.until(lambda: session.jobs.status is None and session.scene != now, "and again", seconds=120)
     again = list(session.project.stages_folder.glob("objects-*.zip"))
     assert [p.stat().st_ino for p in again] == [first], "what is not downstream did not run again"
@@ -98,7 +98,7 @@ def test_files_dropped_on_the_view_go_where_they_belong(editor: EditorPage, tmp_
     trimesh.creation.box((0.4, 0.5, 0.9)).export(tmp_path / "cupboard.glb")
     drop(editor, tmp_path / "cupboard.glb", "model/gltf-binary")
     editor.until(lambda: isinstance(editor.client.doing, Placing), "it is read", seconds=90)
-    expect(editor.page.get_by_text("Click where it should stand")).to_be_visible(timeout=LEARN_MS)
+    expect(editor.page.get_by_text("Click where to place it")).to_be_visible(timeout=LEARN_MS)
     editor.click_world(np.array([0.9, 0.4, 0.0]))
     editor.until(lambda: len(session.scene.objects) == 6, "placed")
     photo = session.project.folder / "photo.jpg"

@@ -31,17 +31,17 @@ def test_a_described_room_is_furnished_and_networks_are_offered(
     running = serve(make_project(tmp_path / "projects" / "empty", Scene()).folder)
     editor, session = visit(running), running.session
     editor.tab("Photo")
-    expect(editor.button("Make this room")).to_be_disabled()
+    expect(editor.button("Create room")).to_be_disabled()
     words = editor.page.locator(".mantine-Flex-root", has_text="Describe a room").locator("input, textarea").first
     words.fill("a sofa and an armchair")
     expect(editor.page.get_by_text("No image endpoint is set up")).to_be_visible()
-    editor.button("Make this room").click()
-    expect(editor.page.get_by_text("Making the room you described")).to_be_visible()
+    editor.button("Create room").click()
+    expect(editor.page.get_by_text("Creating the room you described")).to_be_visible()
     editor.until(lambda: session.jobs.status is None and bool(session.scene.objects), "made", seconds=BUILD_S)
     assert {"sofa", "armchair"} <= {o.category for o in session.scene.objects}
     editor.notice("composed from the library")
-    expect(editor.page.get_by_text("Finding furniture needs a network")).to_be_visible()
-    expect(editor.button("Find furniture")).to_be_disabled()
+    expect(editor.page.get_by_text("Detecting furniture needs a network")).to_be_visible()
+    expect(editor.button("Detect furniture")).to_be_disabled()
 
     editor.tab("Project")
     expect(editor.page.get_by_text("the room was composed from the library by rules")).to_be_visible()
@@ -49,6 +49,6 @@ def test_a_described_room_is_furnished_and_networks_are_offered(
     expect(editor.page.get_by_text("What each stage uses now")).to_be_visible()
     expect(editor.page.get_by_text("outlines by colour (GrabCut)")).to_be_visible()
     expect(editor.page.get_by_text("1.1 GB to fetch.")).to_be_visible()
-    expect(editor.button("Get networks")).to_be_disabled()
+    expect(editor.button("Download networks")).to_be_disabled()
     editor.page.get_by_role("checkbox").last.click()
-    expect(editor.button("Get networks")).to_be_enabled()
+    expect(editor.button("Download networks")).to_be_enabled()

@@ -1,4 +1,4 @@
-"""The search for the room box that the evidence supports best: coordinate ascent from a few starts."""
+"""Search for the room box with the highest score: coordinate ascent from a few starts."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from diorama_core.architecture.single_view.room_cues import MAX_CEILING_M, PRIOR
 REFINEMENTS = (0.08, 0.03, 0.012)
 SWEEPS = 3
 FINALISTS = 4
-"""Starts that are followed to the end after their first round."""
+"""Number of starts that are continued after their first round."""
 MAX_LINES = 40
 """Segments, longest first, that suggest candidates."""
 MARGIN_M = 0.05

@@ -1,7 +1,7 @@
-"""The photo looked at level: columns are headings, rows are slopes of the line of sight, as a room's walls want it.
+"""A rectified level view of the photo: columns are headings, rows are slopes of the line of sight.
 
 In such a view every upright line is a column, and a wall at a distance d shows between the slopes of its foot and of
-its top there. What speaks for floor, wall or ceiling is summed along the columns once; a wall is then scored in a
+its top there. Evidence for floor, wall and ceiling is accumulated along the columns once; a wall is then scored in a
 heading by two lookups (Flint et al. 2010, "A dynamic programming approach to reconstructing building interiors").
 """
 
@@ -25,20 +25,20 @@ HEADINGS, SLOPES = 144, 160
 STEEPEST = 6.0
 COLOUR_SIDE_PX = 400
 HORIZON_M = 8.0
-"""Floor farther away than this is not told from the walls behind it."""
+"""Floor farther away than this cannot be distinguished from the walls behind it."""
 OVERHEAD_SLOPE = 0.18
-"""Up to this slope above the eye nobody sees a ceiling."""
+"""Ceilings are not visible below this slope above the horizon."""
 LAB_BINS = np.array([16.0, 5.0, 5.0])
 """Widths of the histograms' cells, levels of 255."""
 UNSEEN_COLOUR = 3e-4
 CLEAREST_RATIO = 3.0
-"""Ratios of likelihood beyond the exponential of this say no more."""
+"""Log-likelihood ratios are clipped to this."""
 ENOUGH_SEEDS = 120
 
 
 @dataclass(frozen=True, eq=False)
 class LevelView:
-    """Evidence along headings and slopes; slopes grow upward."""
+    """Image evidence by heading and slope; slopes grow upward."""
 
     camera: Camera
     edges_rad: Float[np.ndarray, "m1"]
@@ -47,7 +47,7 @@ class LevelView:
     share: Float[np.ndarray, "m k"]
     """Of the picture, that each cell covers; 0 outside it."""
     floor_ratio: Float[np.ndarray, "m k"]
-    """-1 to 1: whether the colour is the floor's or the walls'; 0 where that is unknown or a thing hides it."""
+    """-1 to 1: whether the colour is the floor's or the walls'; 0 where that is unknown or an object hides it."""
     lines: Float[np.ndarray, "m k 3"]
     """Share of all line evidence that runs along each room axis in a cell."""
     upright: Float[np.ndarray, "m1 k"]
@@ -64,7 +64,7 @@ class LevelView:
 
 
 def level_view(rgb: UInt8[np.ndarray, "h w 3"], cues: RoomCues, objects: tuple[DetectedObject, ...]) -> LevelView:
-    """Everything that scoring walls by headings needs."""
+    """The precomputed evidence for scoring walls by headings."""
     camera = cues.camera
     low, high = view_headings(camera)
     edges = np.linspace(low, high, HEADINGS + 1)
@@ -141,7 +141,7 @@ def _floor_ratio(
     slopes: Float[np.ndarray, "k"],
     cues: RoomCues,
 ) -> Float[np.ndarray, "m k"]:
-    """Whether colours are rather those between the things on the floor, or those about the height of the eye."""
+    """Log-likelihood ratio of floor colours (between objects on the floor) and wall colours (at eye height)."""
     shape = np.array(lab.shape[1::-1])
     columns, rows = np.moveaxis(np.where(free[..., None], place, 0) * shape, -1, 0).astype(int)
     cells = (lab[rows.clip(0, lab.shape[0] - 1), columns.clip(0, lab.shape[1] - 1)] / LAB_BINS).astype(int)
@@ -166,7 +166,7 @@ def _frequency(cells: Int[np.ndarray, "m k 3"], chosen: Bool[np.ndarray, "m k"])
 def _on_sure_floor(
     headings: Float[np.ndarray, "m"], slopes: Float[np.ndarray, "k"], cues: RoomCues
 ) -> Bool[np.ndarray, "m k"]:
-    """Lines of sight that would meet the floor between the camera and the things that stand in the room."""
+    """Lines of sight that would meet the floor between the camera and the objects that stand in the room."""
     eye = cues.camera.position
     reach = np.where(slopes < -1e-3, eye[2] / np.maximum(-slopes, 1e-3), np.inf)
     on_floor = np.broadcast_to(np.isfinite(reach)[None], (len(headings), len(slopes)))

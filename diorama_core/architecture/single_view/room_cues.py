@@ -1,4 +1,4 @@
-"""What the picture says about a room: line orientations, edges, objects and usual room sizes.
+"""Image cues of a room: line orientations, edges, objects and usual room sizes.
 
 A box is a row (x0, x1, y1, ceiling): left, right and far wall and ceiling height in the world frame, whose floor is
 z = 0 and whose axes are the room's. Boxes are scored many at a time.
@@ -24,15 +24,15 @@ MAP_SIDE_PX = 400
 EDGE_SIGMA = 0.006
 """Width of the edges' response, as a share of the picture's diagonal."""
 EDGE_THRESHOLD = 0.3
-"""Response at which a boundary neither gains nor loses."""
+"""Edge response at which a boundary scores zero."""
 EDGE_SAMPLES = 40
 SLANT_SHARE, SLANT_DIAGONALS = 0.025, 0.12
-"""A slanted direction is believed when its segments make up this share of all, and so many picture diagonals."""
+"""Minimum share of all segments, and length in image diagonals, of an accepted slanted direction."""
 SLANT_FROM_AXIS_RAD = np.deg2rad(12.0)
 MIN_LEVEL = 0.25
-"""Segments about at the height of the eye tell no direction."""
+"""Segments near the horizon do not determine a direction."""
 CROWD_SHARE, CROWD_FREE, CROWD_LOSS, CROWD_MIN = 0.12, 0.12, 3.0, 0.25
-"""Edges among many like ones, as bricks' and boards', say little: beyond a share of a window they count ever less."""
+"""Dense parallel edges (bricks, boards) are down-weighted beyond this share of a window."""
 SURE_MASK = 0.95
 NEAR_M = 0.05
 MAX_CEILING_M = 5.0
@@ -51,7 +51,7 @@ _WALL_CATEGORIES = frozenset(c.name for c in CATEGORIES if c.mount in ("wall", "
 
 @dataclass(frozen=True, eq=False)
 class RoomCues:
-    """Everything that scoring a box needs, computed once per photo."""
+    """The cues for scoring boxes, computed once per photo."""
 
     camera: Camera
     directions: Float[np.ndarray, "s 3"]
@@ -72,7 +72,7 @@ class RoomCues:
     object_high: Float[np.ndarray, "k 3"]
     object_weights: Float[np.ndarray, "k"]
     hung_top_m: float
-    """Top of the highest thing that hangs from the ceiling; 0 when nothing does."""
+    """Top of the highest object that hangs from the ceiling; 0 when nothing does."""
     slants_rad: tuple[float, ...] = ()
     """Headings, counter-clockwise from +X and below a half turn, of level lines that run along none of the axes."""
     slant_maps: tuple[Float32[np.ndarray, "hm wm"], ...] = ()
@@ -135,7 +135,7 @@ class RoomCues:
         return clipped, inside & ~((za < NEAR_M) & (zb < NEAR_M))
 
     def objects(self, boxes: Float[np.ndarray, "b 4"]) -> Float[np.ndarray, "b"]:
-        """Minus how far things stick out of the box: standing ones 0 to 2, and half as much for hanging ones."""
+        """Negative protrusion of objects from the box: standing ones 0 to 2, hanging ones half."""
         hung = -0.5 * np.clip((self.hung_top_m - boxes[:, 3]) / (2.0 * PROTRUSION_SCALE_M), 0.0, 1.0)
         if len(self.object_low) == 0:
             return hung
@@ -159,7 +159,7 @@ class RoomCues:
         return -(0.5 * np.minimum(np.abs(deviation), 2.0) ** 2 + far).sum(axis=1)
 
     def score(self, boxes: Float[np.ndarray, "b 4"]) -> Float[np.ndarray, "b"]:
-        """The sum that the search maximises; impossible boxes get minus infinity."""
+        """The objective of the search; impossible boxes get minus infinity."""
         ox, oy, oz = self.camera.position
         possible = (boxes[:, 0] < ox - 0.2) & (boxes[:, 1] > ox + 0.2) & (boxes[:, 2] > oy + 0.5)
         possible &= boxes[:, 3] > oz + 0.1
@@ -218,7 +218,7 @@ def segment_axes(segments: Float[np.ndarray, "n 4"], camera: Camera) -> Int[np.n
 def gather_room_cues(
     rgb: np.ndarray, camera: Camera, objects: tuple[DetectedObject, ...], cuboids: tuple[Cuboid, ...]
 ) -> RoomCues:
-    """Everything that the photo, the camera and the objects say about the room."""
+    """Compute the room cues of a photo from its camera and objects."""
     segments = line_segments_px(rgb, min_length=0.015)
     axes = segment_axes(segments, camera)
     oblique, segments, axes = segments[axes < 0], segments[axes >= 0], axes[axes >= 0]
@@ -349,7 +349,7 @@ def _edge_map(
 
 
 def _neutral(found: DetectedObject, shape: tuple[int, int], scale: float) -> Bool[np.ndarray, "hm wm"]:
-    """Where an object's own edges would mislead: its mask with a margin when that is sure, else its box."""
+    """Region in which an object's own edges are ignored: its dilated mask when reliable, else its box."""
     covered = np.zeros(shape, np.uint8)
     if found.mask_confidence >= SURE_MASK:
         covered = cv2.resize(found.mask.astype(np.uint8), shape[::-1], interpolation=cv2.INTER_AREA)

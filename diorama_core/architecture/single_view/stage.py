@@ -1,4 +1,4 @@
-"""The room from one photo without depth: a chain of walls from lines, edges, colours and the things inside it."""
+"""The room from one photo without depth: a chain of walls from lines, edges, colours and the objects inside it."""
 
 from __future__ import annotations
 
@@ -38,17 +38,17 @@ from diorama_core.scene.types import Architecture, Plane
 CEILINGS_M = np.geomspace(2.1, MAX_CEILING_M, 28)
 FLOOR_CONFIDENCE = 0.6
 LINES = 14
-"""So many of the longest lines along an axis are tried as feet of walls."""
+"""Number of longest lines per axis that are tried as feet of walls."""
 SURE = 0.4
 MAX_PUSH_M, MAX_SURE_PUSH_M = 2.0, 1.0
-"""Walls give way to things by at most this, those that are clearly seen by less; what is farther out is a mistake."""
+"""Walls give way to objects by at most this, those that are clearly seen by less; what is farther out is a mistake."""
 CLEARANCE_M = 0.02
 MEASURED = 0.95
 """A wall candidate's confidence is this less what is seen through it."""
 MIN_VISIBLE_SHARE = 0.004
 """A ceiling seen in less of the picture than this is left out."""
 CEILING_STEP = 8
-"""Every so many pixels it is looked whether a ceiling shows."""
+"""Pixel stride of the ceiling visibility test."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class PhotoRoom:
     """Walls by dynamic programming over headings (Flint et al. 2010), started from a room box (Hedau et al. 2009).
 
     The floor is z = 0 of the metric camera. Boxes, L-shapes and rooms with a slanted wall are one kind of thing: a
-    chain of upright planes that lines, edges, colours and the things in the room support best.
+    chain of upright planes that lines, edges, colours and the objects in the room support best.
     """
 
     def reconstruct(
@@ -118,7 +118,7 @@ def candidate_walls(cues: RoomCues, box: Float[np.ndarray, "4"]) -> PhotoWalls:
 
 
 def _distances_of_lines(cues: RoomCues, normal: Float[np.ndarray, "2"], axis: int) -> Float[np.ndarray, "n"]:
-    """How far away a wall is whose foot is one of the longest lines along an axis."""
+    """Distances of walls whose foot is one of the longest lines along an axis."""
     rays = cues.segment_rays[cues.segment_axes == axis]
     rays = rays[rays[:, 2] < -1e-3][:LINES]
     reach = cues.camera.position[2] / -rays[:, 2]
@@ -127,7 +127,7 @@ def _distances_of_lines(cues: RoomCues, normal: Float[np.ndarray, "2"], axis: in
 
 
 def _pieces(chain: Chain, scorer: ChainScorer, sure: Float[np.ndarray, "r"]) -> tuple[WallPiece, ...]:
-    """The chain's walls as pieces that meet, with room for the things that stand before them."""
+    """The chain's walls as pieces that meet, with room for the objects that stand before them."""
     view = scorer.view
     eye = scorer.cues.camera.position[:2]
     ends = view.edges_rad[chain.borders]
@@ -151,7 +151,7 @@ def _as_candidate(walls: PhotoWalls, k: int, sure: float = 0.0) -> WallCandidate
 
 
 def _pushed(wall: WallCandidate, first: float, last: float, cues: RoomCues, *, sure: bool) -> WallCandidate:
-    """The wall moved outward until no believable thing within its headings sticks through it."""
+    """The wall moved outward until no reliable object within its headings protrudes through it."""
     eye = cues.camera.position[:2]
     out = 0.0
     for low, high in zip(cues.object_low, cues.object_high, strict=True):
@@ -165,7 +165,7 @@ def _pushed(wall: WallCandidate, first: float, last: float, cues: RoomCues, *, s
 
 
 def _highest(cues: RoomCues) -> float:
-    """Top of the highest thing, which is below the ceiling."""
+    """Top of the highest object, which is below the ceiling."""
     tops = cues.object_high[:, 2]
     return float(tops.max()) + CLEARANCE_M if len(tops) else 0.0
 

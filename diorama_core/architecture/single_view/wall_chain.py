@@ -1,8 +1,8 @@
-"""The chain of walls that a photo supports best, boxes or not: dynamic programming over the level view's headings.
+"""The best chain of walls for a photo, by dynamic programming over the headings of the level view.
 
 Candidates are upright planes of a few directions at many distances. In a heading each costs what it makes of the
-column: floor-coloured wall, lines that stand out of their surface, missing edges at its foot and top, things that
-would stick through it. Going over from one wall to another costs a corner, less where an upright edge is seen.
+column: floor-coloured wall, lines that stand out of their surface, missing edges at its foot and top, objects that
+would stick through it. A transition between walls costs a corner, less at a visible vertical edge.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ OBJECT_WEIGHT = 0.5
 PRIOR_WEIGHT = 0.1
 PROTRUSION_M = 0.25
 UNSURE_SHARE = 0.2
-"""Of its distance, by which a thing may be nearer than its cuboid."""
+"""Of its distance, by which an object may be nearer than its cuboid."""
 CORNER_COST, PROTRUDING_COST, JUMP_COST = 0.05, 0.2, 0.3
 """Of a corner that the room folds in at, of one that stands into the room, and of a wall that ends in the open."""
 MIN_SHARE = 0.3
-"""However clear the upright edge, going over costs at least this share: pictures are full of upright edges."""
+"""Minimum share of the corner cost at a clear vertical edge, since photos have many vertical edges."""
 NEAREST_M, FARTHEST_M = 0.5, 12.0
 DISTANCES = 32
 FINE = np.linspace(-0.08, 0.08, 9)
@@ -42,7 +42,7 @@ CORNER_BINS = 1.5
 ENOUGH_EDGE, EDGE_TRUST = 0.25, 0.7
 """Edges free to be seen over so many picture diagonals can be relied on; and how much they count for confidence."""
 ENOUGH_COLOUR, COLOUR_TRUST = 0.004, 0.45
-"""Floor and wall that show on so much of the picture can be told apart; and how much that counts."""
+"""Visible share of floor and wall at which their colours are distinguishable, and its weight."""
 GRAZING = 0.06
 """Walls are not looked for where they are seen more aslant than this, nor beyond"""
 REACH_M = 15.0
@@ -176,7 +176,7 @@ class ChainScorer:
         return np.where(free, found * step, 0.0), np.where(free, step, 0.0)
 
     def _objects(self, near: Float[np.ndarray, "w m"]) -> Float[np.ndarray, "w m"]:
-        """Things that would stick through a wall, in the headings of their corners."""
+        """Objects that would stick through a wall, in the headings of their corners."""
         e = self.cues
         total = np.zeros(near.shape)
         if len(e.object_low) == 0:
@@ -203,7 +203,7 @@ class ChainScorer:
         return np.broadcast_to((PRIOR_WEIGHT * odd / near.shape[1])[:, None], near.shape)
 
     def ceiling_prior(self, ceiling_m: float) -> float:
-        """Cost of a height, and of things that hang from above it."""
+        """Cost of a height, and of objects that hang from above it."""
         odd = float(0.5 * min((np.log(ceiling_m / PRIOR_MEDIAN_M[2]) / PRIOR_LOG_SIGMA[2]) ** 2, 9.0))
         e = self.cues
         highest = max(float(e.object_high[:, 2].max()) if len(e.object_high) else 0.0, e.hung_top_m)

@@ -1,1 +1,1 @@
-"""The planes' own pictures."""
+"""Textures of the planes."""

@@ -56,7 +56,7 @@ def coloured(
 
 
 def _typical_colour(pixels: UInt8[np.ndarray, "n 3"]) -> tuple[float, float, float] | None:
-    """Median colour of the half of the pixels nearest to the overall median: robust to things left in view."""
+    """Median colour of the half of the pixels nearest to the overall median: robust to objects left in view."""
     if len(pixels) < MIN_PIXELS:
         return None
     values = pixels.astype(np.float64)

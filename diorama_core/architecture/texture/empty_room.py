@@ -1,4 +1,4 @@
-"""The room without what stands in it: who paints furniture out of a photo, and the picture of the empty room."""
+"""The empty room: the interface of inpainting networks, and the photo with furniture removed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from diorama_core.scene.types import Camera, Plane
 
 @runtime_checkable
 class EmptyRoomFiller(Protocol):
-    """Paints a part of a photo out, as LaMa and MI-GAN do (PlainRecon's first step)."""
+    """Inpaints a region of a photo, as LaMa and MI-GAN do (PlainRecon's first step)."""
 
     def fill(self, rgb: UInt8[np.ndarray, "h w 3"], hole: Bool[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h w 3"]:
         """The photo with the room's surfaces where `hole` is true, and unchanged elsewhere.

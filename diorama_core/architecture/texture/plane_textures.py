@@ -1,4 +1,4 @@
-"""Each plane's own picture: the photo rectified onto it, completed where something hides it or it is out of view."""
+"""Plane textures: the photo rectified onto each plane, completed where occluded or out of view."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from diorama_core.scene.types import Architecture, Camera, Plane
 MAX_SIDE_PX = 512
 PIXELS_PER_M = 150.0
 MIN_SEEN_SHARE = 0.06
-"""A plane seen in less of its area keeps its plain colour."""
+"""Minimum visible share of a plane's area for a texture; below it the plane keeps its plain colour."""
 MIN_SEEN_PX = 400
 MIN_FLOOR_M2 = 0.15
 """Except a floor, of which so much is enough to continue its material from."""
@@ -92,7 +92,7 @@ def plane_textures(
     found: dict[str, np.ndarray] = {}
     for plane in architecture.planes:
         points, pixel_m = _texel_points(plane)
-        # Boxes of things hide nearly all of a floor; there, what an unsure mask left over is told by its colour.
+        # Boxes of objects hide nearly all of a floor; there, what an unsure mask left over is told by its colour.
         behind = masked if plane.role == "floor" else hidden
         colours, seen = _seen_colours(rgb, behind, camera, architecture.planes, plane, points)
         weight = _photo_share(points, plane, camera)
@@ -110,7 +110,7 @@ def plane_textures(
 
 
 def _without_islands(seen: Bool[np.ndarray, "h w"], width_px: float) -> Bool[np.ndarray, "h w"]:
-    """What is left when narrow pieces between things that hide the plane, and small separate ones, are given up."""
+    """What is left when narrow pieces between objects that hide the plane, and small separate ones, are given up."""
     side = max(3, round(width_px) | 1)
     opened = cv2.morphologyEx(seen.astype(np.uint8), cv2.MORPH_OPEN, np.ones((side, side), np.uint8))
     count, labels, stats, _ = cv2.connectedComponentsWithStats(opened)
@@ -144,7 +144,7 @@ def _foreign(
     weight: Float[np.ndarray, "h w"],
     expected: tuple[float, float, float] | None = None,
 ) -> Bool[np.ndarray, "h w"]:
-    """Texels unlike the plane's own colour: things nobody pointed at, rugs, posters.
+    """Texels unlike the plane's own colour: objects nobody pointed at, rugs, posters.
 
     Its own colour is the one that covers much of the photo and is about what was expected; without an expectation,
     that covers much and lies far apart: a floor shows on all sides of a rug.
@@ -245,7 +245,7 @@ def _own(
 def strays(
     seen: Bool[np.ndarray, "h w"], own: Bool[np.ndarray, "h w"], pixel_m: float, *, wall: bool
 ) -> Bool[np.ndarray, "h w"]:
-    """Foreign pieces that are cut off by what was not seen: things before the plane, their rims, shadows and glow.
+    """Foreign pieces that are cut off by what was not seen: objects before the plane, their rims, shadows and glow.
 
     A poster or a socket has the plane's own material all around; a plant nobody pointed at goes on below the rim of a
     mask or stands on the floor, the glow around a lamp and the shadow at a table's foot go on behind the mask.

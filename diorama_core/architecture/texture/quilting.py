@@ -23,7 +23,7 @@ SEARCH_STEP = 2
 TOLERANCE = 0.1
 """Of the places whose match is worse than the best by at most this share, one is drawn."""
 ODD_SHARE = 0.3
-"""Where more than this share of the texels around deviate too much, there is a thing."""
+"""Where more than this share of the texels around deviate too much, there is an object."""
 REUSE_COST = 0.1
 """A place costs so much more for every time it was copied from."""
 
@@ -39,7 +39,7 @@ def detail_continued(
     Args:
         detail: What is left of the colours without their broad shading, in levels of 255.
         seen: Where it is known and the surface's own.
-        strongest: Detail beyond this many levels is a thing and not the surface.
+        strongest: Detail beyond this many levels is an object and not the surface.
         seed: Of the draw among equally good places.
     """
     source = seen & ~_odd(detail, seen, strongest)

@@ -45,7 +45,7 @@ class Opening:
 
 
 def find_openings(surface: MeasuredSurface, piece: WallPiece, top_m: float) -> tuple[Opening, ...]:
-    """Rectangles of a wall through which farther things are measured, from left to right.
+    """Rectangles of a wall through which farther objects are measured, from left to right.
 
     Args:
         surface: The measured points.

@@ -1,6 +1,6 @@
-"""Open doorways that a person or a detector pointed at: holes in the wall they lie in, and no things of their own.
+"""Open doorways that a person or a detector pointed at: holes in the wall they lie in, and no objects of their own.
 
-Doors and windows themselves are things that hang on their wall, which a photo alone leaves whole. Their panes and
+Doors and windows themselves are objects that hang on their wall, which a photo alone leaves whole. Their panes and
 leaves are opaque (a pane shows a painted sky), so a hole behind one would not be seen, and it would stay where it is
 when its door or window is moved, deleted or exchanged for one of another outline.
 """
@@ -26,7 +26,7 @@ MAX_MISFIT_PX = 0.03
 
 
 def is_passage(found: DetectedObject) -> bool:
-    """Whether a thing was called by a name of something that one walks through."""
+    """Whether an object was called by a name of something that one walks through."""
     words = re.findall(r"[a-z]+", found.label.lower().removesuffix("s"))
     return bool(NAMES & {words[-1] if words else "", " ".join(words[-2:])})
 

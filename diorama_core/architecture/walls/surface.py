@@ -41,7 +41,7 @@ class MeasuredSurface:
     area_m2: Float[np.ndarray, "n"]
     """Surface that each pixel sees."""
     is_object: Bool[np.ndarray, "n"]
-    """Pixels of things that were pointed at."""
+    """Pixels of objects that were pointed at."""
     noise: float = 0.0
     """Typical relative error of the depths as they were measured."""
     grid_rows: int = 240
@@ -71,7 +71,7 @@ def measured_surface(
     Args:
         depth_m: z in the camera, 0 where unknown.
         camera: Its intrinsics are those of the depth map.
-        is_object: Pixels of things that were pointed at.
+        is_object: Pixels of objects that were pointed at.
     """
     depth, k = averaged(depth_m, camera.intrinsics, GRID_PX)
     calm, normals_camera, noise = calm_planes(depth, k)

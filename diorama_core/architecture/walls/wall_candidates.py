@@ -154,7 +154,7 @@ def _judged(
     inliers: Bool[np.ndarray, "n"],
     top_m: float,
 ) -> WallCandidate | None:
-    """A wall, unless it is small, low, or farther things are seen through it."""
+    """A wall, unless it is small, low, or farther objects are seen through it."""
     if inliers.sum() < MIN_POINTS or _spread(surface.points[inliers, 2]) < MIN_RISE_M:
         return None
     area = float(surface.area_m2[inliers].sum())
@@ -242,7 +242,7 @@ def _seen_through(
     inliers: Bool[np.ndarray, "n"],
     top_m: float,
 ) -> float:
-    """Share of the would-be wall, floor to ceiling over its points' width, that has farther things behind it.
+    """Share of the would-be wall, floor to ceiling over its points' width, that has farther objects behind it.
 
     One when what is in view above its own top is mostly farther: a screen, a wardrobe, a half-height partition.
     """

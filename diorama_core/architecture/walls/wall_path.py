@@ -1,7 +1,7 @@
 """Which wall leads in each heading: the cheapest path of walls across the view, by dynamic programming.
 
 In plan, seen from the camera, headings run from left to right. A wall costs little in a heading where its points are
-seen and much where farther things are seen through it; going over to another wall costs little where the two meet and
+seen and much where farther objects are seen through it; going over to another wall costs little where the two meet and
 more where one ends in the open. A doorway, below the part of its wall that is seen above it, does not count as seen
 through.
 """

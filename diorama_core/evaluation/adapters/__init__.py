@@ -1,4 +1,4 @@
-"""Other people's datasets, read from a local folder into this project's types; nothing is downloaded."""
+"""Adapters of public datasets, read from a local folder into this project's types; nothing is downloaded."""
 
 from diorama_core.evaluation.adapters.front3d import read_front3d
 from diorama_core.evaluation.adapters.scan2cad import read_scan2cad

@@ -1,4 +1,4 @@
-"""The benchmark's recipe: which rooms, photographed from where. Seeded, so nothing but this needs to be shipped."""
+"""The benchmark's cases: rooms and cameras, generated from seeds."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def recipe(scenes: int = STANDARD_SCENES, views: int = VIEWS, seed: int = 0) -> 
 
 
 def furnished(case: Case, library: ShapeLibrary) -> Scene:
-    """The room of a case, in the finishes and styles that are kept for tests."""
+    """The room of a case, in the finishes and styles reserved for tests."""
     return furnished_room(case.seed, case.kind, library, split="test")
 
 

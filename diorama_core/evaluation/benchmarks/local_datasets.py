@@ -54,9 +54,9 @@ class LocalCase:
     name: str
     inputs: Inputs
     parents: tuple[tuple[int, int | None], ...] | None = None
-    """(mask id, mask id of what carries it or None for the room); None where nobody noted it."""
+    """(mask id, mask id of what carries it or None for the room); None where not annotated."""
     frame: ScanFrame | None = None
-    """Where furniture stands, and the camera; None where nobody noted it."""
+    """Where furniture stands, and the camera; None where not annotated."""
 
 
 @dataclass(frozen=True)
@@ -69,9 +69,9 @@ class LocalResult:
     found: int
     image_iou: float
     relation: float | None
-    """Share of annotated supporters that were found; None where nobody noted them."""
+    """Share of annotated supporters that were found; None where not annotated."""
     aligned: tuple[tuple[str, bool], ...]
-    """For every aligned model its category and whether a thing of it stands there (20 cm, 20 degrees, 20 %)."""
+    """For every aligned model its category and whether an object of it stands there (20 cm, 20 degrees, 20 %)."""
     structure: float
     supported: float
     out_of_bounds: float

@@ -77,7 +77,7 @@ class PoseScores:
 
     @classmethod
     def failed(cls, asked: int) -> PoseScores:
-        """Nothing came out."""
+        """The prediction failed."""
         pairs, every, own = (
             Alignment(reading, asked, 0.0, 0.0, 0.0, 0.0)
             for reading in ("mean over pairs", "against every other object", "object-focus")

@@ -30,7 +30,7 @@ class RoomsBench:
 
     @property
     def faulty_views(self) -> tuple[tuple[str, tuple[str, ...]], ...]:
-        """Pictures that nobody would take, with what is wrong with them."""
+        """Rejected photos with the reason."""
         named = ((v.name, v.faults(MIN_ASKED)) for v in self.views)
         return tuple((name, faults) for name, faults in named if faults)
 

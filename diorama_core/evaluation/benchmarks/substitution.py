@@ -1,4 +1,4 @@
-"""The truth in place of one input of a stage at a time: which input costs how much fidelity.
+"""Ground truth substituted for one input of a stage at a time, to measure the cost of each input's error.
 
 A substitution replaces one quantity of an estimate by the true one and leaves everything else as the stages found it.
 Worlds differ by the estimated camera: true quantities are carried over by heading alone, with either camera above the

@@ -59,7 +59,7 @@ def masks_only(view: TruthView) -> Inputs:
 
 
 def unnamed(view: TruthView) -> Inputs:
-    """The picture with boxes of things that nobody named."""
+    """The photo with boxes without category names."""
     given = photo_only(view)
     return replace(given, boxes=tuple(replace(b, category=UNKNOWN.name, label=UNKNOWN.name) for b in given.boxes))
 

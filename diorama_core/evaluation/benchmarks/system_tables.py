@@ -24,7 +24,7 @@ class CaseResult:
     """Processor time of the build."""
     wall_s: float
     failure: str = ""
-    """Why nothing came out."""
+    """Why the prediction failed."""
     before: SceneScores | None = None
     """The same build before the layout optimiser; None where it failed."""
     seed: int = 0

@@ -21,7 +21,7 @@ from diorama_core.scene.types import Camera, Plane
 VIEW_STEP = 2
 """Every second pixel both ways is compared."""
 VISIBLE_SHARE = 0.01
-"""A plane that covers less of the picture than this is neither asked for nor held against a result."""
+"""Planes that cover less of the picture than this are ignored in scores."""
 SAMPLE_M = 0.05
 """Spacing of the points that stand for a plane in space."""
 SAME_DEPTH = 0.02

@@ -1,4 +1,4 @@
-"""How well objects are placed: the paper's scene-aware alignment in both readings, and object-focus alignment.
+"""Alignment of object poses: the paper's scene-aware alignment in both readings, and object-focus alignment.
 
 Scene-aware alignment (paper, section 4) compares objects with one another, so that one wrong global scale or depth does
 not count against everything: relative rotation and the direction of relative translation within 20 degrees, relative

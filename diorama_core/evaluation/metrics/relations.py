@@ -30,7 +30,7 @@ class RelationCount:
 
     @property
     def accuracy(self) -> float:
-        """Share that is right; 1 where nothing was asked."""
+        """Share of correct relations; 1 where there are none."""
         return self.right / self.total if self.total else 1.0
 
 

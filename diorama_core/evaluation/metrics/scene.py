@@ -1,4 +1,4 @@
-"""What a predicted scene is worth against the true one: placement, structure, relations, room for all, the picture.
+"""Scores of a predicted scene against the true one: placement, structure, relations, overlap, the picture.
 
 Everything of a prediction is compared in the true camera's world: the two cameras are laid on each other, so an error
 of the estimated camera counts. Objects that are asked for and absent are wrong in every share.
@@ -93,7 +93,7 @@ class SceneScores:
 
     @classmethod
     def failed(cls, asked: int) -> SceneScores:
-        """Nothing came out."""
+        """The prediction failed."""
         pairs, every, own = (
             Alignment(reading, asked, 0.0, 0.0, 0.0, 0.0)
             for reading in ("mean over pairs", "against every other object", "object-focus")

@@ -41,5 +41,5 @@ def shape_distance(library: ShapeLibrary, a: str, b: str) -> float:
 
 
 def is_household(name: str) -> bool:
-    """Whether a category is a household thing rather than furniture: what lies on or hangs from something else."""
+    """Whether a category is a small or mounted object rather than furniture."""
     return category(name).mount != "floor" or name in ("box", "basket", "trash can", "plant", "rug")

@@ -43,7 +43,7 @@ __all__ = [
 ]
 
 MIN_RECORDED_S = 0.004
-"""Shorter times are mostly the clock's noise and are not kept."""
+"""Shorter times are mostly noise and are not recorded."""
 
 
 @dataclass(frozen=True)
@@ -171,7 +171,7 @@ def speed_table(series: Sequence[Series], against: str) -> Table:
 
 
 def memory_table(series: Sequence[Series], against: str) -> Table:
-    """Megabytes at every quantity: the highest resident memory above what was held before."""
+    """Megabytes at every quantity: the highest resident memory above the memory in use before."""
     return _table(f"Memory in MB against {against}", series, against, ".0f", lambda s: s.peaks_mb, exponent=False)
 
 

@@ -1,4 +1,4 @@
-"""A hall of any number of objects, none hidden: what a build costs as objects grow in number and nothing else does."""
+"""A large scene with any number of visible objects: build cost as a function of the number of objects."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ PICTURE = (960, 720)
 
 
 def large_scene(library: ShapeLibrary, count: int, seed: int) -> tuple[Scene, Camera]:
-    """Things in rows on the floor of a hall as large as they need, and a camera high on a wall that sees them all."""
+    """Objects in rows on the floor of a hall as large as they need, and a camera high on a wall that sees them all."""
     rng = np.random.default_rng((seed, count))
     across = int(np.ceil(np.sqrt(count)))
     side = CELL_M * across + 1.5

@@ -102,7 +102,7 @@ def growth_exponent(points: list[tuple[float, float]]) -> float:
 
 
 def process_peak_mb() -> float:
-    """The most memory this process ever held."""
+    """Peak memory of this process."""
     scale = 1024.0 if sys.platform != "darwin" else 1024.0**2
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / scale
 

@@ -46,7 +46,7 @@ class Series:
     points: tuple[tuple[float, float], ...]
     """(quantity, processor seconds)."""
     peaks_mb: tuple[float | None, ...] = ()
-    """Memory at each point, above what was held before; empty where it was not measured."""
+    """Memory at each point, above the memory in use before; empty where it was not measured."""
     missing: str = ""
     """Why there are no points."""
 

@@ -16,12 +16,12 @@ from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene, Support
 
 _LEAVES_M = 0.02
-"""A thing dragged this far past the edge of its supporter looks for another."""
+"""An object dragged this far past the edge of its supporter is assigned to another."""
 
 
 @dataclass(frozen=True, eq=False)
 class DragSolver:
-    """What dragging one object needs, prepared once; `solve` is fast and leaves everything else where it is."""
+    """The precomputed problem of dragging one object; `solve` is fast and moves nothing else."""
 
     scene: Scene
     problem: Problem

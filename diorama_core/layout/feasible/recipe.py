@@ -38,9 +38,9 @@ RIDING = 0.05
 
 @dataclass(frozen=True)
 class FeasibleRecipe:
-    """Support is exact by construction; what remains moves as little as possible until nothing overlaps.
+    """Support is exact by construction; the remaining freedom is used for minimal moves until nothing overlaps.
 
-    With a camera, moves that would be seen in the photo cost more than moves along the viewing ray.
+    With a camera, moves visible in the photo cost more than moves along the viewing ray.
     """
 
     library: ShapeLibrary
@@ -57,7 +57,7 @@ class FeasibleRecipe:
     support or wall moved, when the scene has a camera."""
     adherence_m: float = 0.0
     """Faces parallel to a wall and nearer than this are set against it, besides those whose support edge says so. Above
-    0 a second run may change a layout: the first can bring things near walls."""
+    0 a second run may change a layout: the first can bring objects near walls."""
     weights: Weights = AS_IT_IS
     """Of the costs in `weights.DEFAULT_COSTS`."""
 

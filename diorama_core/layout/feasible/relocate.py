@@ -1,4 +1,4 @@
-"""One after another: each object that overlaps goes to the cheapest place where it touches nothing at all."""
+"""Sequential relocation: each overlapping object moves to the cheapest collision-free place."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _REACHES_M = (0.15, 0.6, 2.0)
 
 
 def relocate(program: Program, y: Float[np.ndarray, " v"]) -> Separation:
-    """Take overlaps away by moving one object of each pair, the one for which that costs least.
+    """Remove overlaps by moving the cheaper object of each pair.
 
     What an object supports goes with it, and so may its own supporters instead of it. Pairs for which nothing within
     reach is free stay as they are.

@@ -1,4 +1,4 @@
-"""Taking collisions away: a sequence of least-distance programs over convex parts.
+"""Collision removal by a sequence of least-distance programs over convex parts.
 
 Rotations are fixed by then, so "apart along this axis" is an exact linear inequality in the free coordinates. Which of
 the many axes is chosen decides everything; so for two compounds that touch the cheapest way out is computed exactly
@@ -56,7 +56,7 @@ class Program:
     """Part pairs whose axes are known: (a, b) -> running number."""
     blocks: list[PairAxes] = field(default_factory=list)
     chosen: dict[tuple[int, int], tuple[np.ndarray, float]] = field(default_factory=dict)
-    """Part pairs that are kept apart: axis and gap at the base positions."""
+    """Part pairs with a separation constraint: axis and gap at the base positions."""
     tried: dict[tuple[int, int], list[np.ndarray]] = field(default_factory=dict)
     """Ways out, by pair of objects, that turned out to be blocked."""
 
@@ -148,7 +148,7 @@ def _wall_rows(problem: Problem, structure: Structure, bodies: Bodies, J: np.nda
 
 
 def separate(program: Program, *, rounds: int, check: Callable[[Float[np.ndarray, " v"], float], None]) -> Separation:
-    """Rounds of choosing ways out and solving, until nothing overlaps or the rounds are spent.
+    """Alternate between choosing separating axes and solving, until nothing overlaps or the rounds are used up.
 
     Args:
         program: what may move and how.

@@ -24,7 +24,7 @@ from diorama_core.scene.types import box_corners
 SMALLEST_SHRINK = 0.8
 """An object that does not fit is made smaller by at most this factor; beyond, it stays large and is named."""
 UPRIGHT_WITHIN = float(np.cos(np.deg2rad(35.0)))
-"""Things hung within this angle of upright hang upright; others keep their roll."""
+"""Objects hung within this angle of upright hang upright; others keep their roll."""
 _FEW_SIDES = 10
 """Of a surface; with more, a linear program is quicker than all corners."""
 INSET_M = 2e-4

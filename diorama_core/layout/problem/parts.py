@@ -1,4 +1,4 @@
-"""Convex parts of library shapes: computed once per shape, kept in memory and on disk."""
+"""Convex parts of library shapes, computed once per shape and cached in memory and on disk."""
 
 from __future__ import annotations
 

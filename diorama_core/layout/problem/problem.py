@@ -30,7 +30,7 @@ from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, Support
 
 FIRM_SHARE = 0.55
-"""Share of a soft thing's extent that does not give way: pillows lean on and sink into one another."""
+"""Rigid share of a soft object's extent: pillows sink into one another."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +48,7 @@ class Problem:
     shape_size: Float[np.ndarray, "n 3"]
     """Extents at scale 1, metres."""
     firm: Float[np.ndarray, " n"]
-    """Share of the extents that does not give way: 1, less for soft things."""
+    """Rigid share of the extents: 1, less for soft objects."""
     certainty: Float[np.ndarray, " n"]
     """How far the evidence supports each observed pose, 0 to 1."""
     parent: Int[np.ndarray, " n"]
@@ -56,7 +56,7 @@ class Problem:
     on_plane: tuple[str | None, ...]
     """Id of the supporting plane, where one supports."""
     surface: tuple[Surface | None, ...]
-    """Where each object rests; None when nothing holds it."""
+    """Support of each object; None without one."""
     levels: tuple[tuple[Surface, ...], ...]
     """Where each object may rest on its supporter; which of these it is depends on where the supporter ends."""
     contact: Float[np.ndarray, "n 3"]
@@ -77,7 +77,7 @@ class Problem:
     kin: Bool[np.ndarray, "n n"]
     """Pairs that never collide: an object and its direct or indirect supporters, and `yielding` ones."""
     yielding: Bool[np.ndarray, "n n"]
-    """Pairs of which one is a rug: things stand over its edge."""
+    """Pairs of which one is a rug: objects stand over its edge."""
     parts: tuple[tuple[ConvexPart, ...], ...]
     packed: PackedParts
     """The same parts, ready to be posed."""
@@ -110,7 +110,7 @@ class Problem:
         return tuple(tuple(r) for r in riders)
 
     def rides(self, index: int) -> list[int]:
-        """The object and everything it holds up, directly or not."""
+        """The object and all objects it supports, directly or indirectly."""
         return list(self._riders[index])
 
     def poses(

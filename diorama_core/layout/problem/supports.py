@@ -1,4 +1,4 @@
-"""Where things rest: surfaces of supporters, touching faces, and edges that the graph leaves out."""
+"""Supports for the layout: surfaces of supporters, contact faces, and edges missing in the graph."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ BOTTOM_FAVOURED = float(np.cos(np.deg2rad(55.0)))
 SMALLEST_SHARE = 0.35
 """A supporter narrower than this share of what it should hold cannot be meant."""
 SMALLEST_CLEARANCE = 0.75
-"""A place with less than this share of a thing's height above it is chosen only where there is no other."""
+"""A place with less than this share of an object's height above it is chosen only where there is no other."""
 NEAR_SURFACE_M = 0.1
 """What misses a surface by more does not rest on it."""
 FLAT = 0.7
@@ -81,12 +81,12 @@ class Surface:
 
 
 def is_soft(item: SceneObject) -> bool:
-    """Whether a thing gives way: it sinks into its neighbours and leans over edges."""
+    """Whether an object is soft: it sinks into its neighbours and leans over edges."""
     return taxonomy.resolve(item.category).category.soft
 
 
 def is_wall_like(surface: Surface | None) -> bool:
-    """Whether things are mounted on a surface rather than placed on it."""
+    """Whether objects are mounted on a surface rather than placed on it."""
     return surface is not None and surface.of_plane and abs(float(surface.normal[2])) < FLAT
 
 
@@ -245,7 +245,7 @@ def wall_faces(
 
 
 def holds(item: SceneObject, edge: Support, supporter: SceneObject, shape: Shape) -> bool:
-    """Whether some surface of a supporter is at least `SMALLEST_SHARE` as wide as the thing on it."""
+    """Whether some surface of a supporter is at least `SMALLEST_SHARE` as wide as the object on it."""
     if edge.relation == "mounted on":
         return True
     widths = sorted(np.sort(item.size_m)[1:] if edge.child_face else item.size_m[:2])
@@ -261,7 +261,7 @@ def complete_edges(
 ) -> tuple[list[Support | None], tuple[str, ...]]:
     """One support edge per object where there is anything to rest on: the graph's own, or the most plausible one.
 
-    Edges that close a cycle or lead nowhere are replaced. The reasons say what was assumed.
+    Edges that close a cycle or lead nowhere are replaced. The reasons list the assumptions.
     """
     reasons: list[str] = []
     edges: dict[str, Support | None] = {}
@@ -313,7 +313,7 @@ def _most_plausible(
     shapes: Sequence[Shape],
     edges: dict[str, Support | None],
 ) -> Support | None:
-    """The supporter whose surface the observed pose agrees with best; None when there is nothing to rest on."""
+    """The supporter whose surface agrees best with the observed pose; None when there is none."""
     mount = taxonomy.resolve(item.category).category.mount
     options: list[tuple[float, str, Support]] = []
     for plane in scene.architecture.planes:

@@ -1,4 +1,4 @@
-"""Supporting volumes of all objects at once: where contact faces may be, and how high things may reach."""
+"""Supporting volumes of all objects at once: where contact faces may be, and how high objects may reach."""
 
 from __future__ import annotations
 

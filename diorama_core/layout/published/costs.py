@@ -79,7 +79,7 @@ def e_col(
 
     Separating axis theorem over the fifteen axes of two oriented boxes; the two boxes' sums are averaged, so that the
     order of a pair does not matter. Boxes from index `walls_from` on are walls, normal first: against them only the
-    overlap along the normal counts, or a wall would push things along itself.
+    overlap along the normal counts, or a wall would push objects along itself.
     """
     i, j = pairs[:, 0], pairs[:, 1]
     axes = box_axes(R[i], R[j])

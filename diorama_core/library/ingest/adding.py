@@ -1,4 +1,4 @@
-"""A folder of models becomes a library: found, shared out to workers, kept one by one, resumed where it stopped."""
+"""Ingestion of a folder of models: found, distributed to workers, stored one by one, resumable."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ UNITS = {1.0: "metres", 0.01: "centimetres", 0.001: "millimetres", 0.0254: "inch
 SIMILARITY = 60.0
 """Log-probability lost per unit of mean relief difference to the likest known shapes."""
 MIRRORED = 6.0
-"""Lost per unit of difference between left and right: most things are the same on both sides."""
+"""Lost per unit of difference between left and right: most objects are the same on both sides."""
 PROPORTION = 1.5
 """Lost per unit of difference in the logarithms of proportions to the known shapes."""
 NOTHING_ALIKE = 0.16

@@ -1,4 +1,4 @@
-"""Reliefs of shapes whose orientation is known: the built-in ones, taken once and kept."""
+"""Depth reliefs of the built-in shapes, whose orientation is known, computed once and cached."""
 
 from __future__ import annotations
 

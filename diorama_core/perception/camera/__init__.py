@@ -1,1 +1,1 @@
-"""How the camera is held: intrinsics, gravity and the room's axes."""
+"""Camera estimation: intrinsics, gravity and the room's axes."""

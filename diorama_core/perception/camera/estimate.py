@@ -1,4 +1,4 @@
-"""The embedded camera stage: nothing learned, nothing to download."""
+"""The embedded camera stage, without networks."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from diorama_core.provenance import AttitudeSource, CameraSource, FocalSource, H
 from diorama_core.scene.types import Intrinsics
 
 MIN_SEGMENTS = 6
-"""Fewer say nothing about a room."""
+"""Fewer segments do not determine the room's axes."""
 DISTINCT_RAD = float(np.deg2rad(3.0))
 """Readings nearer than this are the same reading."""
 FRAME_MARGIN = 0.025
@@ -43,7 +43,7 @@ class EmbeddedCamera:
     """
 
     hypotheses: int = 3
-    """How many readings are kept at most."""
+    """Maximum number of camera hypotheses."""
 
     def estimate(self, inputs: Inputs, progress: Progress) -> CameraEstimate:
         """The readings of one photo, best first; never fails on a picture without lines, but says so."""

@@ -12,7 +12,7 @@ from diorama_core.protocols import CameraStage
 
 @dataclass(frozen=True)
 class GivenAttitudeCamera:
-    """A camera stage: what another one finds, but held against the floor as a person said."""
+    """A camera stage that replaces the attitude of another stage's cameras by a given one."""
 
     stage: CameraStage
     camera_attitude: CameraAttitude
@@ -28,7 +28,7 @@ class GivenAttitudeCamera:
 
 
 def with_given_attitude(stage: CameraStage, camera_attitude: CameraAttitude | None) -> CameraStage:
-    """The stage, told how the camera was held where somebody said it."""
+    """The stage with the given attitude, where there is one."""
     if camera_attitude is None or isinstance(stage, GivenAttitudeCamera):
         return stage
     return GivenAttitudeCamera(stage, camera_attitude)

@@ -37,7 +37,7 @@ _BIN_M = 0.02
 
 @dataclass(frozen=True)
 class DepthFrame:
-    """What measured depth says about how the camera is held."""
+    """Camera attitude estimated from measured depth."""
 
     R_world_camera: Float[np.ndarray, "3 3"]
     height_m: float | None

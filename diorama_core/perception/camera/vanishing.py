@@ -180,7 +180,7 @@ def _moved(
 
 
 def _own_sigma(lines: Lines, R: Float[np.ndarray, "3 3"], focal: float) -> float:
-    """The spread of this picture's agreeing segments: sharp pictures of straight things deserve a finer tolerance."""
+    """Spread of the inlier segments: sharp photos of straight edges allow a finer tolerance."""
     sines = np.abs(signed_sines(lines, R, focal)).min(axis=0)
     agreeing = sines[sines < 2.0 * SIGMA_RAD]
     spread = 1.48 * float(np.median(agreeing)) if len(agreeing) else SIGMA_RAD

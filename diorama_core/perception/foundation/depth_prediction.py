@@ -29,14 +29,14 @@ class NetworkDepthPrediction:
     network: GeometryNetwork
 
     def predict(self, photo: Photo, intrinsics: Intrinsics | None, progress: Progress) -> DepthPrediction:
-        """Depth, normals and intrinsics; given intrinsics are kept."""
+        """Depth, normals and intrinsics; given intrinsics are not replaced."""
         progress.report(0.0, "Reading depth from the photo")
         seen = self.network.predict(photo.rgb, intrinsics)
         return DepthPrediction(seen.depth_m, seen.normals_camera, seen.intrinsics)
 
 
 def with_depth(inputs: Inputs, seen: DepthPrediction) -> Inputs:
-    """The inputs as if somebody had measured what the network saw, but saying who did."""
+    """The inputs with the predicted depth as measured depth, marked with its source."""
     return replace(
         inputs,
         depth_m=seen.depth_m,

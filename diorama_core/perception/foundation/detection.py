@@ -25,7 +25,7 @@ _WORDS = {
     "book": "books",
     "wine glass": "cup",
 }
-"""What YOLOX calls things, in words that a person would choose for what is meant in a room."""
+"""What YOLOX calls objects, in words that a person would choose for what is meant in a room."""
 _IN_ROOM_NAMES = (
     "bench,chair,couch,potted plant,bed,dining table,toilet,tv,laptop,keyboard,microwave,oven,toaster,sink,"
     "refrigerator,book,clock,vase,teddy bear,bottle,wine glass,cup,bowl,suitcase"
@@ -45,9 +45,9 @@ class OpenVocabularyDetection:
     """A box that lies within another of its class by more than this share of itself goes."""
 
     def detect(self, photo: Photo, words: tuple[str, ...], progress: Progress) -> tuple[LabelledBox, ...]:
-        """Boxes of everything that the words name (a built-in indoor vocabulary without words), best first.
+        """Boxes of all objects that match the words (a built-in indoor vocabulary without words), best first.
 
-        Walls, floor and ceiling are the room's and never come back as objects.
+        Walls, floor and ceiling are never returned as objects.
         """
         asked = tuple(dict.fromkeys(w for w in words or INDOOR_WORDS if w.lower() not in ARCHITECTURE_WORDS))
         progress.report(0.0, f"Looking for {len(asked)} kinds of things")
@@ -66,7 +66,7 @@ class EverydayDetection:
     part_share: float = 0.8
 
     def detect(self, photo: Photo, words: tuple[str, ...], progress: Progress) -> tuple[LabelledBox, ...]:
-        """Boxes of the everyday things in the photo, best first; `words` restrict nothing."""
+        """Boxes of everyday objects in the photo, best first; `words` is ignored."""
         progress.report(0.0, "Looking for furniture")
         found = self.detector.detect(photo.rgb, self.threshold)
         inside = np.array([COCO_CLASSES[k] in _IN_ROOMS for k in found.labels], dtype=bool)
@@ -75,7 +75,7 @@ class EverydayDetection:
 
 
 def _labelled(found: Detections, names: tuple[str, ...], part_share: float) -> tuple[LabelledBox, ...]:
-    """One box per thing, in the project's categories."""
+    """One box per object, in the project's categories."""
     categories = [resolve(name) for name in names]
     order = {name: i for i, name in enumerate(dict.fromkeys(r.category.name for r in categories))}
     kinds = np.array([order[categories[k].category.name] for k in found.labels], dtype=int)

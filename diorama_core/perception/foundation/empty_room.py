@@ -23,7 +23,7 @@ DILATION_PX = 10
 """Margin of what is painted out, at a picture of `USUAL_SIDE_PX`: shadows and rims go too."""
 USUAL_SIDE_PX = 1008
 MAX_FOREGROUND = 0.9
-"""A foreground that covers more of the picture than this has taken the room itself for a thing."""
+"""A foreground larger than this share of the photo is rejected as a false detection of the room."""
 MIN_SHARED_PX = 200
 """Pixels of the room that both depths must have before one is scaled to the other."""
 
@@ -41,7 +41,7 @@ class EmptyRoomArchitecture:
     def reconstruct(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
     ) -> ArchitectureEstimate:
-        """The room from what is seen of it and, behind things, from the depth of the emptied picture.
+        """The room from what is seen of it and, behind objects, from the depth of the emptied picture.
 
         Raises:
             ValueError: when the inputs hold no depth.
@@ -70,7 +70,7 @@ class EmptyRoomArchitecture:
         return replace(found, source=replace(found.source, furniture_inpainted=True))
 
     def hole(self, rgb: UInt8[np.ndarray, "h w 3"], objects: tuple[DetectedObject, ...]) -> Bool[np.ndarray, "h w"]:
-        """Pixels of things and their margin: masks, and what the foreground networks see beyond them."""
+        """Pixels of objects and their margin: masks, and what the foreground networks see beyond them."""
         items = np.zeros(rgb.shape[:2], dtype=bool)
         for found in objects:
             items |= found.mask

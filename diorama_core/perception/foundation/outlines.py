@@ -13,7 +13,7 @@ from diorama_core.perception.masks import LOST_CONFIDENCE, Outlined, filled_box,
 from diorama_core.progress import Progress
 
 _MARGIN = 0.05
-"""Share of a box's size by which its thing may reach beyond it."""
+"""Share of a box's size by which its object may extend beyond it."""
 _MIN_SHARE = 0.02
 """A mask that covers less of its box has lost the object."""
 

@@ -1,4 +1,4 @@
-"""Words for what stands, hangs and lies in rooms, for looking without anyone having named anything."""
+"""The default vocabulary of indoor object names for open-vocabulary detection."""
 
 from __future__ import annotations
 

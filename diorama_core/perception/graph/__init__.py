@@ -1,1 +1,1 @@
-"""What holds up what, from where things are: without asking anybody."""
+"""Support graphs from geometry, without a language model."""

@@ -1,4 +1,4 @@
-"""The scene graph without a language model: every way to hold an object up competes by cost.
+"""The support graph without a language model: every possible support of an object competes by cost.
 
 Costs are negative logarithms of likelihoods. They weigh where the object ends and what is seen just below it in the
 photo, the gap between its underside and what could carry it, whether it is above that, how near a wall it is, what
@@ -20,7 +20,7 @@ from diorama_core.scene.types import Relation, Support
 
 ROOM_PARTS = ("floor", "wall", "ceiling")
 _PRIOR: dict[str, tuple[float, float, float, float]] = {
-    #          on a thing, floor, wall, ceiling
+    #          on an object, floor, wall, ceiling
     "floor": (3.0, 0.0, 5.0, 12.0),
     "surface": (0.0, 2.5, 4.0, 9.0),
     "wall": (2.5, 2.5, 0.0, 6.0),
@@ -43,7 +43,7 @@ _BELIEF_COST = 1.5
 """Of contradicting the geometry stage."""
 _RUGS = frozenset({"rug"})
 _OPEN = frozenset({"bookshelf", "shelves", "cabinet", "tv stand", "desk", "wardrobe", "night stand", "sideboard"})
-"""Things are found inside these."""
+"""Objects are found inside these."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""A graph that somebody proposed, made whole: one supporter for each object, no cycles."""
+"""Repairs a proposed graph: one supporter for each object, no cycles."""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ class LmmSettings:
     price_per_million: tuple[float, float] | None = field(default=None, repr=False)
     """Currency units a million input and output tokens cost, for reports."""
     cache: Path | None = field(default=None, repr=False)
-    """Where replies are kept, so that the same question is paid once."""
+    """Folder of cached replies, so that the same question is paid once."""
 
     @classmethod
     def from_environment(cls) -> LmmSettings | None:
@@ -86,7 +86,7 @@ class LmmSettings:
 
 
 def reply_cache() -> Path:
-    """The folder of kept replies."""
+    """The folder of cached replies."""
     from diorama_core.library.catalogue import default_cache_dir
 
     return default_cache_dir() / "lmm"
@@ -153,14 +153,14 @@ class Reply(Generic[T]):
 
 
 class UnusableReplyError(UnavailableError):
-    """The model answered, but never with anything that could be used."""
+    """The model gave no usable answer."""
 
     usage: Usage = Usage()
     """What the tries took."""
 
 
 class EndpointDownError(UnavailableError):
-    """The endpoint is slow, unreachable or in trouble just now: nothing is wrong with how it was asked."""
+    """The endpoint is slow, unreachable or failing; the request itself is valid."""
 
 
 @dataclass

@@ -48,7 +48,7 @@ def _numbered(
     draw = ImageDraw.Draw(picture)
     font = ImageFont.load_default(max(_SMALLEST_FONT_PX, round(_FONT_SHARE * max(picture.size))))
     free = np.ones(canvas.shape[:2], dtype=bool)
-    # Small things choose first: a large one has room elsewhere.
+    # Small objects choose first: a large one has room elsewhere.
     for index in sorted(range(len(masks)), key=lambda i: int(masks[i].sum())):
         text = str(numbers[index])
         left, top, right, bottom = (int(v) for v in draw.textbbox((0, 0), text, font=font))

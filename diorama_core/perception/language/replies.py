@@ -63,7 +63,7 @@ Label = Annotated[str, BeforeValidator(tidy_label)]
 
 
 class ClassesReply(BaseModel):
-    """The kinds of things in a photo."""
+    """The categories of objects in a photo."""
 
     model_config = ConfigDict(extra="ignore")
 

@@ -18,7 +18,7 @@ from diorama_core.provenance import GraphMethod, GraphSource, LanguageModelUse
 
 @dataclass(frozen=True)
 class LanguageRecognition:
-    """Asks for the kinds of things in the photo."""
+    """Asks the model for the categories of objects in the photo."""
 
     settings: LmmSettings
 

@@ -15,7 +15,7 @@ from diorama_core.scene.types import yaw_rotation
 MANHATTAN_GAIN = 0.85
 """A box turned away from the room's axes must have less than this share of the straight box's area."""
 FREE_GAIN = 0.93
-"""The same for things that often stand askew."""
+"""The same for objects that often stand askew."""
 SHORT_OF_USUAL = 0.6
 """A depth below this share of the usual one means that only the front was seen."""
 TOP_LAYER_M = 0.03

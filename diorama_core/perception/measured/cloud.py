@@ -18,7 +18,7 @@ LAYER_GAP_M = 0.12
 
 
 def eroded(mask: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
-    """The mask less its rim, where depth mixes with the background; as it was when nothing would remain."""
+    """The eroded mask, without the rim where depth mixes with the background; unchanged when nothing would remain."""
     inner = cv2.erode(mask.astype(np.uint8), np.ones((3, 3), np.uint8), borderValue=1).astype(bool)
     return inner if inner.sum() >= MIN_POINTS else mask
 

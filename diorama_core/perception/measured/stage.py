@@ -19,7 +19,7 @@ from diorama_core.provenance import ScaleSource
 from diorama_core.scene.types import Camera
 
 ASSUMED_HEIGHT_M = 1.4
-"""How high a camera is held when no floor is seen."""
+"""Assumed camera height when no floor is visible."""
 GUESS_CONFIDENCE = 0.2
 RING_PX = 0.02
 """Width of the ring of background around a mask, as a share of the picture."""

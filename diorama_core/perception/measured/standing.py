@@ -64,7 +64,7 @@ def _over(child: Extent, parent: Extent) -> bool:
 
 
 def resting_heights(extent: Extent, category: Category) -> list[float]:
-    """Heights at which things lie on an object: its top, and its seat."""
+    """Heights of an object's support surfaces: its top, and its seat."""
     heights = [float(extent.high[2])]
     if category.seat_height_m is not None and category.seat_height_m < extent.high[2]:
         heights.append(category.seat_height_m)

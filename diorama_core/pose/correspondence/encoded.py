@@ -1,4 +1,4 @@
-"""Patch features of all views of a shape; those that a network makes are kept on disk by the shape's content."""
+"""Patch features of all views of a shape; network features are cached on disk by the shape's content."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from diorama_core.pose.correspondence.features import PatchFeatures
 from diorama_core.render.templates import Templates
 
 _LIMIT_BYTES = 8 * 2**30
-"""Of all kept features together: a large network's take some forty megabytes a shape."""
+"""Limit of all cached features; those of a large network take about 40 MB a shape."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +32,7 @@ class EncodedViews:
     def of(
         cls, templates: Templates, view: View, features: PatchFeatures, content_hash: str, folder: Path | None = None
     ) -> EncodedViews:
-        """Encode all views, or read what an earlier run kept.
+        """Encode all views, or read them from the cache.
 
         Args:
             templates: The views.

@@ -1,4 +1,4 @@
-"""Patch features of views: what makes two patches look like the same place of a thing."""
+"""Patch features of views, for matching patches of one object."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class PatchFeatures(Protocol):
 
 @dataclass(frozen=True)
 class GeometricFeatures:
-    """Features that need no network: the normals in and around a patch, and where on the outline it lies.
+    """Features without a network: the normals in and around a patch, and where on the outline it lies.
 
     A patch is told by the mean normals of itself and of its neighbours, by how much of each the object covers, and by
     its place between the object's edges, left to right and top to bottom.

@@ -14,7 +14,7 @@ from jaxtyping import Bool, Float, Float32, Int
 from diorama_core.pose.correspondence.crops import PATCHES
 
 MAX_CYCLE = 2.0
-"""Patches between start and end of a believed cycle."""
+"""Maximum distance in patches between start and end of an accepted cycle."""
 MIN_SIMILARITY = 0.5
 MAX_MATCHES = 50
 
@@ -60,7 +60,7 @@ def similarities(
 def cyclic_matches(
     similarity: Float32[np.ndarray, "v q p"], query_patches: Int[np.ndarray, " q"], *, keep: int = MAX_MATCHES
 ) -> Matches:
-    """The believed matches of every view.
+    """The accepted matches of every view.
 
     Args:
         similarity: From `similarities`.

@@ -61,7 +61,7 @@ _MAX_NUMBERS = 2**25
 class CorrespondencePose:
     """Poses every ranked shape by patches that it shares with the picture.
 
-    Needs the views of the shapes (rendered when first needed, then kept) and depth, measured or rendered.
+    Needs the views of the shapes (rendered on first use, then cached) and depth, measured or rendered.
     """
 
     library: ShapeLibrary

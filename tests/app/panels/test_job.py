@@ -54,6 +54,6 @@ def test_an_optimisation_can_be_paused(session, page: Page, client, running) -> 
     page.act("pause")
     assert session.layout_run.paused
     strip.refresh()
-    assert "Go on" in page.html
+    assert "Resume" in page.html
     page.act("pause")
     assert not session.layout_run.paused

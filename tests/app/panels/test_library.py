@@ -26,7 +26,7 @@ def test_words_find_shapes_and_nonsense_says_so(page, panel) -> None:
     assert page.shows("insert", "chair_b")
     assert not page.shows("insert", "lamp_a")
     page.write("Search", "xyzzy <q>")
-    assert "like “xyzzy &lt;q&gt;”" in page.html
+    assert "matches “xyzzy &lt;q&gt;”" in page.html
 
 
 def test_insert_puts_it_in_the_room_and_place_waits_for_a_click(session, client, page, panel) -> None:

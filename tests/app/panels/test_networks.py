@@ -7,7 +7,7 @@ from diorama_app.panels.networks import Networks
 from diorama_core.models.manifest import networks_of
 from tests.app.page import Page
 
-GET, ACCEPT = "Get networks", "I accept these licences"
+GET, ACCEPT = "Download networks", "I accept these licences"
 
 
 @pytest.fixture
@@ -28,7 +28,7 @@ def panel(page: Page, client, asked) -> Networks:
 
 
 def test_licences_are_accepted_before_anything_is_fetched(page, panel, asked) -> None:
-    assert "to fetch" in page.html
+    assert "to download" in page.html
     for network in networks_of("lite"):
         assert network.title in page.html
     assert page.field(GET).disabled

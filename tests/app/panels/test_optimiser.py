@@ -38,10 +38,10 @@ def test_weights_are_those_of_the_recipe(client, page, panel) -> None:
 
 
 def test_changed_weights_go_back_to_one(client, page, panel) -> None:
-    assert page.field("All back to 1").disabled
+    assert page.field("Reset weights").disabled
     shown = next(title for cost, (title, _) in WEIGHTS.items() if cost in weighted_costs(client.preferences.recipe))
     page.write(shown, 2.0)
-    page.press("All back to 1")
+    page.press("Reset weights")
     assert page.field(shown).value == 1.0
 
 

@@ -41,7 +41,7 @@ def selected(client) -> SceneObject:
 
 
 def test_only_own_models_are_offered_for_correction(client, page: Page, model) -> None:
-    assert "Taken for: box; one unit is 0.01 m; 60 % sure how it stands" in page.html
+    assert "Guessed: box; one unit is 0.01 m; 60 % sure which side is up" in page.html
     client.select(["chair_1"])
     assert "Your model" not in page.html
 

@@ -40,7 +40,7 @@ def test_the_page_asks_for_a_photo_first(client, page, empty) -> None:
     assert "Start with a photo of a room" in page.html
     assert not page.field("Build scene").visible
     page.upload("Add boxes (JSON)", "boxes.json", b"[]")
-    assert client.viser_client.told == ["upload the photo first, then what goes with it"]
+    assert client.viser_client.told == ["upload the photo first, then its boxes, depth or masks"]
 
 
 def test_an_uploaded_photo_opens_the_drawing_board(session, client, page, empty) -> None:
@@ -61,13 +61,13 @@ def test_what_is_no_picture_is_refused_and_loses_nothing(session, client, page, 
 
 def test_boxes_are_drawn_named_marked_and_deleted(session, client, page, panel) -> None:
     page.upload("Upload a photo", "room.png", picture())
-    page.write("This is a", "sofa")
+    page.write("Category", "sofa")
     panel._drawn((5.0, 5.0, 30.0, 30.0))
     page.write("or type", "beanbag")
     page.settle()
     assert session.draft.boxes[-1].label == "beanbag", "the newest box is the marked one"
     page.write("or type", "")
-    page.write("This is a", "chair")
+    page.write("Category", "chair")
     panel._drawn((20.0, 10.0, 60.0, 40.0))
     assert [b.label for b in session.draft.boxes][-1] == "chair"
     assert "2 boxes" in page.html
@@ -109,7 +109,7 @@ def test_the_board_is_closed_by_its_button(client, page, panel) -> None:
 def test_the_marked_box_is_added_to_the_scene(session, client, page, panel, monkeypatch) -> None:
     asked = []
     monkeypatch.setattr(photo_panel, "add_from_photo", lambda client, box, label: asked.append((box, label)))
-    add = "Add marked one to the scene"
+    add = "Add selected box to the scene"
     assert page.field(add).visible
     assert page.field(add).disabled
     page.act("mark", 0)
@@ -120,7 +120,7 @@ def test_the_marked_box_is_added_to_the_scene(session, client, page, panel, monk
 def test_a_room_is_described_in_words(page, panel, monkeypatch) -> None:
     asked = []
     monkeypatch.setattr(photo_panel, "describe_room", lambda client, words: asked.append(words))
-    assert page.field("Make this room").disabled
+    assert page.field("Create room").disabled
     page.write("Describe a room", "a bedroom with a lamp")
-    page.press("Make this room")
+    page.press("Create room")
     assert asked == ["a bedroom with a lamp"]

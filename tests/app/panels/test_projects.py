@@ -54,7 +54,7 @@ def test_only_listed_names_reach_the_disk(session, client, page, panel, name) ->
     for do in ("open", "bin", "copy", "unbin"):
         page.send(hidden, do, name)
     assert session.project.name == "demo"
-    assert client.viser_client.told == ["that project is gone"] * 4
+    assert client.viser_client.told == ["that project no longer exists"] * 4
 
 
 def test_notes_of_the_build_are_told(session, page, panel) -> None:

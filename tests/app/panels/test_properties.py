@@ -34,17 +34,17 @@ def test_fields_show_the_selected_thing(session, client, page, panel) -> None:
     item = session.scene.object("chair_2")
     assert page.field("Name").value == item.label
     assert page.field("Size (m)").value == pytest.approx((0.52, 0.55, 0.8))
-    assert page.field("Place (m)").value == pytest.approx((1.2, 1.4, 0.0))
-    assert page.field("Turn (°)").value == pytest.approx(np.degrees(2.6), abs=0.05)
+    assert page.field("Position (m)").value == pytest.approx((1.2, 1.4, 0.0))
+    assert page.field("Rotation (°)").value == pytest.approx(np.degrees(2.6), abs=0.05)
     assert "chair &lt;b&gt;by the window&lt;/b&gt;" in page.html
 
 
 def test_what_is_written_becomes_an_edit(session, client, page, panel) -> None:
     client.select(["chair_1"])
     page.write("Name", "throne")
-    page.write("Turn (°)", 90.0)
+    page.write("Rotation (°)", 90.0)
     page.write("Size (m)", (0.6, 0.7, 1.0))
-    page.write("Place (m)", (-1.0, 1.0, 0.0))
+    page.write("Position (m)", (-1.0, 1.0, 0.0))
     page.write("Colour", (255, 0, 51))
     item = chair(session)
     assert item.label == "throne"
@@ -95,8 +95,8 @@ def test_a_refused_value_is_said_and_the_field_goes_back(session, client, page, 
     client.select(["chair_1"])
     editing.set_locked(client, ["chair_1"], True)
     before = session.scene
-    page.write("Turn (°)", 10.0)
+    page.write("Rotation (°)", 10.0)
     assert session.scene is before
     assert any("locked" in told for told in client.viser_client.told)
-    assert page.field("Turn (°)").value == pytest.approx(np.degrees(0.4), abs=0.05)
+    assert page.field("Rotation (°)").value == pytest.approx(np.degrees(0.4), abs=0.05)
     assert " · locked" in page.html

@@ -28,9 +28,9 @@ def test_an_edit_is_said_with_a_button_that_takes_it_back(session, client, page,
 
 def test_what_a_click_does_is_said_until_it_is_stopped(session, client, page, toasts) -> None:
     for doing, words in (
-        (Placing("chair_a"), "Click where it should stand"),
-        (Measuring(), "Click the first end"),
-        (Measuring(((0.0, 0.0, 0.0),)), "Click the other end"),
+        (Placing("chair_a"), "Click where to place it"),
+        (Measuring(), "Click the first point"),
+        (Measuring(((0.0, 0.0, 0.0),)), "Click the second point"),
     ):
         client.doing = doing
         toasts.refresh()

@@ -142,7 +142,7 @@ def test_found_furniture_joins_the_boxes_drawn_by_hand(store: ModelStore, client
 def test_a_room_needs_words_and_a_whole_setting(
     store: ModelStore, client: Client, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    with pytest.raises(InputError, match="say what the room is"):
+    with pytest.raises(InputError, match="describe the room"):
         describe_room(client, "  ")
     assert how_pictures_come() == COMPOSED
     monkeypatch.setenv("DIORAMA_IMAGE_BASE_URL", "http://127.0.0.1:9/v1")

@@ -46,7 +46,7 @@ def settled(running: Running) -> dict[str, dict]:
 def test_every_button_refuses_what_is_too_large_and_says_so(running: Running, label: str) -> None:
     page = WirePage(running.port)
     page.begin_upload(page.element(label, "UploadButton"), "huge.png", MAX_UPLOAD_BYTES + 1, 300)
-    page.wait_for(lambda: any("huge.png is not taken" in n for n in page.notices))
+    page.wait_for(lambda: any("huge.png was refused" in n for n in page.notices))
     assert not in_flight(running)
     page.close()
 
@@ -57,7 +57,7 @@ def test_more_than_was_announced_ends_the_upload(running: Running) -> None:
     transfer = page.begin_upload(button, "small.png", 10, 2)
     for i in range(20):
         page.send_part(button, transfer, i, bytes(4_000_000))
-    page.wait_for(lambda: any("more came than was announced" in n for n in page.notices))
+    page.wait_for(lambda: any("more data arrived than announced" in n for n in page.notices))
     assert not settled(running)
     page.close()
 
