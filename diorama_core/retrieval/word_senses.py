@@ -99,7 +99,7 @@ def sense_probabilities(
     for of_word, of_view in zip(senses, likely, strict=True):
         log_height = log_height + np.log(sum(share * of_view[kind] for kind, share in of_word.items()))
     height = np.exp(log_height - log_height.max())
-    found = []
+    found: list[Mapping[str, float]] = []
     for of_word, of_view in zip(senses, likely, strict=True):
         mixed = sum(share * of_view[kind] for kind, share in of_word.items())  # the others' say on the height
         posterior = {kind: share * float((height * of_view[kind] / mixed).sum()) for kind, share in of_word.items()}
