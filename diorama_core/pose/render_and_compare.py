@@ -207,7 +207,8 @@ class RenderAndCompare:
             lying = [cuboids[j] for j, parent in enumerate(parents) if parent == i and items[j].category == "pillow"]
             anchor = anchor_of(cuboids[i], on_wall, geometry.camera.position[:2] - cuboids[i].centre[:2])
             out_of_wall = anchor.axis_world[:2] if on_wall else None
-            carrier = None if parents[i] is None else cuboids[parents[i]]
+            parent = parents[i]
+            carrier = None if parent is None else cuboids[parent]
             facing = facing_of(
                 item, cuboids[i], cuboids, categories, geometry.camera, walls, out_of_wall, lying, carrier
             )

@@ -176,7 +176,7 @@ def _senses(
     camera = geometry.camera
     by_box = sense_probabilities(objects, camera.intrinsics, camera.T_world_camera[:3, :3], float(camera.position[2]))
     parent_of = {s.child: s.parent for s in geometry.supports}
-    found = []
+    found: list[Mapping[str, float]] = []
     for index, senses in enumerate(by_box):
         factors = neighbour_factors(index, tuple(senses), objects, cuboids, geometry.supports)
         mounts = _MOUNTS.get(parent_of.get(objects[index].id, "floor"), ("floor", "surface"))

@@ -38,7 +38,9 @@ _UNSUPPORTED = 0.15
 """How likely a thing lies on another one where no box is below it."""
 _BORDER_PX = 3.0
 _SWITCH = 1.5
-"""How many times likelier than the word's own kind another one must be before geometry takes it for that."""
+"""How many times likelier it must be that a thing is held otherwise than its word says before geometry takes it so."""
+_MAJORITY = 0.5
+"""How likely another kind that is held alike must be: a wrong one's narrow size would spoil the whole room's scale."""
 _SURE = 0.4
 """How likely a kind must be before geometry takes a thing without a name for it."""
 _CERTAIN = 0.02
@@ -64,8 +66,8 @@ class _View:
 def with_word_senses(objects: tuple[DetectedObject, ...], camera: CameraEstimate) -> tuple[DetectedObject, ...]:
     """The objects, those whose word is used loosely with the category that it most probably means here.
 
-    Where a thing is held decides first, over all kinds that are held there; then which kind it is. A word's own
-    category stays unless another one is `_SWITCH` times likelier.
+    Where a thing is held decides first, over all kinds that are held there. Among kinds that are held as the word says
+    its own category stays unless another one is likelier than all others together: retrieval compares them later.
     """
     best = camera.best
     senses = sense_probabilities(objects, best.intrinsics, best.R_world_camera, camera.height_m)
@@ -97,7 +99,7 @@ def sense_probabilities(
     for of_word, of_view in zip(senses, likely, strict=True):
         log_height = log_height + np.log(sum(share * of_view[kind] for kind, share in of_word.items()))
     height = np.exp(log_height - log_height.max())
-    found = []
+    found: list[Mapping[str, float]] = []
     for of_word, of_view in zip(senses, likely, strict=True):
         mixed = sum(share * of_view[kind] for kind, share in of_word.items())  # the others' say on the height
         posterior = {kind: share * float((height * of_view[kind] / mixed).sum()) for kind, share in of_word.items()}
@@ -118,7 +120,7 @@ def _chosen(own: str, senses: Mapping[str, float]) -> str:
     if mounts[held] <= _SWITCH * mounts.get(category(own).mount, 0.0):
         held = category(own).mount
     best = max((kind for kind in senses if category(kind).mount == held), key=lambda kind: senses[kind])
-    return best if senses[best] > _SWITCH * senses.get(own, 0.0) or held != category(own).mount else own
+    return best if held != category(own).mount or senses[best] > _MAJORITY else own
 
 
 def _view(

@@ -22,9 +22,9 @@ def placed(shape_id: str, yaw_deg: float, colour=None, name="it", others=()) -> 
     shape = LIBRARY.shape(shape_id)
     pose = Pose(yaw_rotation(np.radians(yaw_deg)), np.array([0.0, 0.0, shape.size_m[2] / 2]), np.ones(3))
     candidates = tuple(Candidate(i, LIBRARY.shape(i).size_m, 0.5, pose) for i in (shape_id, *others))
-    return SceneObject(
-        name, "chair", "chair", shape_id, shape.size_m, pose, candidates, 1, (270.0, 200.0, 370.0, 380.0), colour=colour
-    )
+    pixels = CAMERA.project(pose.apply(LIBRARY.mesh(shape_id).vertices))
+    box = tuple(float(v) for v in (*pixels.min(axis=0), *pixels.max(axis=0)))
+    return SceneObject(name, "chair", "chair", shape_id, shape.size_m, pose, candidates, 1, box, colour=colour)
 
 
 def thing(**more) -> AnnotatedThing:
@@ -49,7 +49,7 @@ def test_what_is_compared() -> None:
     assert found.front_error_deg == pytest.approx(30.0)
     assert found.front
     assert found.holder is False
-    assert found.iou > 0.5
+    assert found.iou == pytest.approx(1.0, abs=0.01)
 
 
 def test_turns_that_look_the_same_are_the_same_front() -> None:
