@@ -51,7 +51,7 @@ def test_earlier_versions_come_back_by_name_only(tmp_path: Path) -> None:
     project.save_scene(edits.rename(first, "chair_1", "throne"))
     ((name, _),) = project_care.earlier_versions(project)
     assert project_care.earlier_scene(project, name) == first
-    with pytest.raises(ProjectError, match="gone"):
+    with pytest.raises(ProjectError, match="no longer exists"):
         project_care.earlier_scene(project, "../scene.json")
 
 
