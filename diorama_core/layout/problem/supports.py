@@ -100,7 +100,9 @@ def convex_outline(polygon: Float[np.ndarray, "n 3"], normal: Float[np.ndarray, 
     """The convex hull of a planar polygon, counter-clockwise about its normal."""
     u, v = plane_axes(normal)
     flat = np.column_stack([polygon @ u, polygon @ v])
-    ordered = flat[np.lexsort((flat[:, 1], flat[:, 0]))]
+    # Corners of one upright side differ by rounding; ordered by that, the chain would leave out the side's end.
+    keys = flat.round(9)
+    ordered = flat[np.lexsort((keys[:, 1], keys[:, 0]))]
     chains = []
     for run in (ordered, ordered[::-1]):
         chain: list[np.ndarray] = []

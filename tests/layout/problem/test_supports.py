@@ -75,6 +75,12 @@ def test_convex_outlines_are_hulls_about_their_normal(points, normal) -> None:
     np.testing.assert_allclose(found @ normal, 0.7, atol=1e-9)
 
 
+def test_rounding_along_a_side_takes_no_corner_away() -> None:
+    left = np.array([[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [3.0, 2.0, 0.0], [-1e-16, 2.0, 0.0], [0.0, 1.0, 0.0]])
+    found = convex_outline(left, UP)
+    assert {tuple(np.abs(p).round(9)) for p in found} == {(0, 0, 0), (3, 0, 0), (3, 2, 0), (0, 2, 0)}
+
+
 @settings(max_examples=40, deadline=None)
 @given(point=vector)
 def test_outside_is_zero_within_and_grows_outward(point) -> None:
