@@ -24,7 +24,7 @@ from diorama_core.progress import Progress
 T = TypeVar("T")
 log = logging.getLogger(__name__)
 
-CODE_VERSION = "3"
+CODE_VERSION = "4"
 """Raised when a change of code must invalidate every saved result."""
 CACHED_PER_STAGE = 4
 """Results kept per stage on disk, so that going back to an earlier correction is instant."""
