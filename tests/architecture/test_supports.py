@@ -5,6 +5,7 @@ import pytest
 
 from diorama_core.architecture.supports import ADHERENCE_M, adhering_walls, nearest_wall, resolve_supports
 from diorama_core.artefacts import Cuboid, ObjectGeometry
+from diorama_core.provenance import ScaleSource
 from diorama_core.scene.types import Architecture, Support, yaw_rotation
 from tests.synthetic_rooms import box_room, look
 
@@ -21,7 +22,7 @@ def box(
 
 def resolved(cuboid: Cuboid, parent: str | None, planes=PLANES) -> Support:
     edges = () if parent is None else (Support(cuboid.object_id, parent),)
-    geometry = ObjectGeometry(look(), (cuboid,), edges, "known")
+    geometry = ObjectGeometry(look(), (cuboid,), edges, ScaleSource.GIVEN)
     (edge,) = resolve_supports(geometry, Architecture(tuple(planes)))
     return edge
 

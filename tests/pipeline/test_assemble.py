@@ -6,6 +6,7 @@ import numpy as np
 
 from diorama_core.artefacts import ArchitectureEstimate, PosedCandidates
 from diorama_core.pipeline.assemble import assemble
+from diorama_core.provenance import RoomMethod, RoomSource
 from diorama_core.scene.types import Architecture, Candidate, Pose, Support
 from tests.primitives import PrimitiveLibrary
 from tests.synthetic_rooms import box_room, cuboid, look, shoot
@@ -29,7 +30,7 @@ def posed(object_id: str, *shapes: str) -> PosedCandidates:
 
 
 def scene_of(*found: PosedCandidates, edges=EDGES, colours=None):
-    estimate = ArchitectureEstimate(Architecture(SHOT.planes), edges, 1.0, "known")
+    estimate = ArchitectureEstimate(Architecture(SHOT.planes), edges, 1.0, RoomSource(RoomMethod.GIVEN))
     return assemble(SHOT.objects, SHOT.geometry, estimate, found, LIBRARY, colours or {})
 
 

@@ -8,6 +8,7 @@ import pytest
 from diorama_core.artefacts import CameraEstimate, CameraHypothesis, DetectedObject
 from diorama_core.library.hyponyms import meanings
 from diorama_core.library.taxonomy import category, resolve
+from diorama_core.provenance import AttitudeSource, CameraSource, FocalSource, HeadingSource
 from diorama_core.retrieval.word_senses import sense_probabilities, with_word_senses
 from diorama_core.scene.types import Intrinsics, box_corners
 
@@ -30,7 +31,11 @@ def seen(word: str, kind: str, bottom_m: float, place=(0.0, 4.0), height_m: floa
 
 
 def kind_of(*objects) -> list[str]:
-    estimate = CameraEstimate((CameraHypothesis(K, LEVEL, 1.0),), 1.0, "known")
+    estimate = CameraEstimate(
+        (CameraHypothesis(K, LEVEL, 1.0),),
+        1.0,
+        CameraSource(FocalSource.GIVEN, AttitudeSource.GIVEN, HeadingSource.GIVEN),
+    )
     return [o.category for o in with_word_senses(objects, estimate)]
 
 

@@ -11,11 +11,12 @@ from diorama_core.perception.foundation.depth_prediction import (
     NetworkCamera,
     NetworkDepth,
     NetworkDepthPrediction,
-    NetworkGeometry,
     with_depth,
-    with_network_wording,
 )
+from diorama_core.perception.measured import MeasuredGeometry
+from diorama_core.pipeline.provenance_text import camera_sentence, geometry_sentence
 from diorama_core.progress import Progress
+from diorama_core.provenance import DepthSource, RoomMethod, RoomSource
 from diorama_core.scene.types import Architecture
 from tests.synthetic_rooms import Shot, box_room, cuboid, look, shoot
 
@@ -55,10 +56,10 @@ def test_the_inputs_say_whose_depth_it_is_and_keep_what_was_given() -> None:
 def test_nothing_claims_to_be_measured() -> None:
     inputs = seen_inputs()
     camera = NetworkCamera().estimate(inputs, Progress())
-    geometry = NetworkGeometry().measure(inputs, SHOT.estimate, SHOT.objects, Progress())
-    for source in (camera.source, geometry.source):
-        assert source
-        assert "measured" not in source
+    geometry = MeasuredGeometry().measure(inputs, SHOT.estimate, SHOT.objects, Progress())
+    for sentence in (camera_sentence(camera, DepthSource.NETWORK), geometry_sentence(geometry, DepthSource.NETWORK)):
+        assert sentence
+        assert "measured" not in sentence
     assert camera.height_m == pytest.approx(1.5, abs=0.1)
     (table,) = geometry.cuboids
     np.testing.assert_allclose(table.centre[:2], [0.3, 2.6], atol=0.15)
@@ -68,16 +69,10 @@ def test_holes_are_filled_from_the_room() -> None:
     inputs = seen_inputs()
     holes = inputs.depth_m.copy()
     holes[:20] = 0.0
-    estimate = ArchitectureEstimate(Architecture(SHOT.planes), (), 1.0, "known")
+    estimate = ArchitectureEstimate(Architecture(SHOT.planes), (), 1.0, RoomSource(RoomMethod.GIVEN))
     found = NetworkDepth().depth(replace(inputs, depth_m=holes), SHOT.objects, SHOT.geometry, estimate, Progress())
     assert found.source == "network"
     np.testing.assert_allclose(found.depth_m[:20], SHOT.inputs.depth_m[:20], rtol=0.05)
     np.testing.assert_array_equal(found.depth_m[60:], SHOT.inputs.depth_m[60:])
     with pytest.raises(ValueError, match="needs depth and normals"):
         NetworkDepth().depth(replace(inputs, normals_camera=None), SHOT.objects, SHOT.geometry, estimate, Progress())
-
-
-def test_words_are_put_so_that_nobody_measured() -> None:
-    assert with_network_wording("gravity from measured depth; height measured") == (
-        "gravity from depth read from the photo; height seen"
-    )
