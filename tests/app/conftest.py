@@ -60,4 +60,5 @@ def views(session: EditorSession) -> Views:
 
 @pytest.fixture
 def commands(session: EditorSession, views: Views) -> CommandTable:
-    return build_commands(session, views, PhotoOutlines(session), lambda client: False, lambda client: None)
+    nothing = [lambda client: None] * 2
+    return build_commands(session, views, PhotoOutlines(session), lambda client: False, *nothing)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from dataclasses import replace
 
 import numpy as np
@@ -63,7 +64,7 @@ def test_a_film_of_a_project(tmp_path, furnished: Scene, monkeypatch) -> None:
         "--size",
         "64x48",
     ]
-    monkeypatch.setitem(write_turntable.__kwdefaults__, "frames", 2)
+    monkeypatch.setitem(inspect.unwrap(write_turntable).__kwdefaults__, "frames", 2)
     assert main(arguments) == 0
     with Image.open(tmp_path / "f.gif") as film:
         assert film.n_frames == 2

@@ -157,7 +157,7 @@ def test_another_aspect_is_never_stretched() -> None:
 
 
 def test_an_object_darkens_the_floor_beneath_it() -> None:
-    floor = Plane("floor", "floor", np.array([[-3, 0, 0], [3, 0, 0], [3, 6, 0], [-3, 6, 0]]))
+    floor = Plane("floor", "floor", np.array([[-3.0, 0, 0], [3, 0, 0], [3, 6, 0], [-3, 6, 0]]))
     scene = Scene(eye_camera(), Architecture((floor,)), (place(LIBRARY, "t", "table", (0, 3, 0.36)),))
     lit = picture(replace(scene, objects=()), LIBRARY, size=SMALL).astype(int)
     shaded = picture(scene, LIBRARY, size=SMALL).astype(int)

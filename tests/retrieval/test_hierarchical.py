@@ -93,7 +93,7 @@ def test_its_name_is_short_and_changes_with_the_library() -> None:
 def test_objects_of_a_kind_choose_among_mostly_the_same_shapes() -> None:
     own = [{f"s{k}": 1.0 - abs(k - best) / 20 for k in range(20)} for best in (2, 17)]
     mean = {key: (own[0][key] + own[1][key]) / 2 for key in own[0]}
-    first, second = (_best(scores, mean, 8) for scores in own)
+    first, second = (_best(scores, mean, 8, dict.fromkeys(scores, "chair"), 1) for scores in own)
     assert len(first) == len(second) == 8
     shared = {s for s, _ in first} & {s for s, _ in second}
     assert len(shared) >= 6

@@ -46,6 +46,7 @@ def test_gaps_count_as_far_as_the_mask_is_trusted(trust: float, share: float) ->
     assert open_share(trust) == pytest.approx(share)
 
 
+@pytest.mark.unchecked
 def test_the_right_outline_agrees_best_with_and_without_its_gaps() -> None:
     true, solid, other = slats(2), filled(slats(2)), np.roll(slats(2), 12, axis=1)
 

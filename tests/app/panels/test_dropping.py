@@ -11,13 +11,12 @@ from tests.app.page import Page
 
 def test_files_go_where_their_kind_belongs(page: Page, client) -> None:
     taken: list[tuple[str, str, bytes]] = []
-    take_dropped_files(
-        page, client, lambda n, c: taken.append(("photo", n, c)), lambda n, c: taken.append(("model", n, c))
-    )
+    takes = {kind: lambda n, c, kind=kind: taken.append((kind, n, c)) for kind in ("photo", "model", "scene")}
+    take_dropped_files(page, client, takes["photo"], takes["model"], takes["scene"])
     uploads = [h for kind, _, h in page.made if kind == "upload_button"]
     script = html.unescape(page.html)
     to = json.loads(re.search(r"to=(\{.*?\})", script).group(1))
-    assert {k for k in to if k} == set(MODELS)
+    assert {k for k in to if k} >= set(MODELS)
     kinds = {component_uuid(h): h for h in uploads}
     for uuid, name, expected in ((to[""], "room.jpg", "photo"), (to["glb"], "lamp.glb", "model")):
         page.made.append(("upload_button", "this one", kinds[uuid]))

@@ -59,7 +59,7 @@ def test_an_outline_is_clicked_and_used(client, page, panel, asked, monkeypatch)
     masks = []
     monkeypatch.setattr(client.view, "show_mask", masks.append)
     page.act("outline")
-    assert "Click what belongs to it" in page.html
+    assert "Click the object" in page.html
     panel._clicked(340.0, 320.0, True)
     assert len(masks) == 2
     page.act("use")

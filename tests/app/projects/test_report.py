@@ -9,9 +9,10 @@ import pytest
 
 from diorama_app.projects.report import build_report, write_arrangements
 from diorama_core.api import Reconstruction
-from diorama_core.artefacts import LayoutReport
+from diorama_core.artefacts import CameraEstimate, LayoutReport
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
+from diorama_core.provenance import AttitudeSource, CameraSource, DepthSource, FocalSource, HeadingSource
 from diorama_core.retrieval import appearance_similarity
 from diorama_core.scene.schema import scene_from_json
 from diorama_core.scene.types import Scene
@@ -49,7 +50,8 @@ def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
             observed=furnished_scene(),
             runs=runs,
             notes=("a note",),
-            camera=SimpleNamespace(confidence=0.5, source="given"),
+            camera=CameraEstimate((), 0.5, CameraSource(FocalSource.GIVEN, AttitudeSource.GIVEN, HeadingSource.GIVEN)),
+            inputs=SimpleNamespace(depth_source=DepthSource.MEASURED),
         )
         return SimpleNamespace(
             project=project,

@@ -118,7 +118,7 @@ def test_a_drawn_outline_is_what_is_looked_at(session, client, asked) -> None:
 def test_what_cannot_be_corrected_says_why(session, client, asked) -> None:
     with pytest.raises(EditRefused, match="was not found in the photo"):
         rename_class(client, "chair_1", "sofa")
-    with pytest.raises(EditRefused, match="say what it is"):
+    with pytest.raises(EditRefused, match="type what it is"):
         rename_class(client, "table_1", "  ")
     editing.set_locked(client, ["table_1"], True)
     with pytest.raises(EditRefused, match="is locked"):

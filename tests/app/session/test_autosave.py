@@ -158,5 +158,6 @@ def test_another_projects_photo_that_cannot_be_shown_is_left_out(session: Editor
 
 
 def projects_panel(session: EditorSession, client: Client) -> Projects:
-    commands = build_commands(session, Views(session), PhotoOutlines(session), lambda g: False, lambda g: None)
+    nothing = [lambda client: None] * 2
+    commands = build_commands(session, Views(session), PhotoOutlines(session), lambda g: False, *nothing)
     return Projects(session.server.gui, client, commands, lambda name, content: None)

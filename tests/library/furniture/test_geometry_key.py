@@ -158,7 +158,9 @@ def is_own(namespace: dict[str, Any], name: str) -> bool:
 def test_designs_use_nothing_of_the_library_outside_the_package() -> None:
     """Keys do not follow other packages, so designs may not depend on their code."""
     harmless = {"diorama_core.library.record", "diorama_core.errors"}  # names of types; errors of `geometry_key`
-    for path in FOLDER.rglob("*.py"):
+    for path in sorted(FOLDER.rglob("*.py")):
+        if path.name == "articulation.py":  # takes finished designs apart; no design uses it
+            continue
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.ImportFrom) and str(node.module).startswith("diorama"):
                 assert str(node.module).startswith(PACKAGE) or node.module in harmless, f"{path}: {node.module}"
