@@ -150,7 +150,7 @@ def test_a_bad_file_is_one_clear_line_and_nothing_is_lost(
     path.write_bytes(content)
     editor.tab("Project")
     editor.upload("Open a file", path)
-    refusal = editor.page.locator(".mantine-Notification-root", has_text="That did not work")
+    refusal = editor.page.locator(".mantine-Notification-root", has_text="Could not do that")
     refusal.wait_for(timeout=JOB_MS)
     shown = refusal.inner_text()
     assert words in shown
