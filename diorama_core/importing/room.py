@@ -6,7 +6,6 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 from jaxtyping import Float
 
@@ -75,6 +74,8 @@ def _is_flat(part: Part, role: str) -> bool:
 
 def _rectangle(part: Part) -> tuple[Float[np.ndarray, "2"], tuple[float, float], float]:
     """The smallest upright rectangle around a part: middle, sides, and the first side's angle."""
+    import cv2  # only when a file is opened; the editor starts without it
+
     (x, y), (a, b), angle = cv2.minAreaRect(part.whole.vertices[:, :2].astype(np.float32))
     return np.array([x, y]), (float(a), float(b)), float(np.radians(angle))
 
