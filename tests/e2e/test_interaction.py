@@ -83,7 +83,7 @@ def test_a_frame_selects_and_several_are_aligned_copied_hidden_and_named(editor:
     editor.row("chair <b>by the window</b>").click(modifiers=["Shift"])
     editor.until(lambda: editor.selection == ("chair_1", "chair_2"))
     editor.page.get_by_role("button", name="Near", exact=True).click()
-    editor.until(lambda: editor.running.session.document.history.current.label == "align near ends", "aligned")
+    editor.until(lambda: editor.running.session.document.history.current.label == "align near edges", "aligned")
     ends = [scene(editor).object(i).corners_world[:, 1].min() for i in ("chair_1", "chair_2")]
     assert ends[0] == pytest.approx(ends[1], abs=1e-6)
     editor.page.keyboard.press("Control+c")

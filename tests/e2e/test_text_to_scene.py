@@ -48,7 +48,7 @@ def test_a_described_room_is_furnished_and_networks_are_offered(
     editor.page.get_by_text("Networks", exact=True).click()
     expect(editor.page.get_by_text("What each stage uses now")).to_be_visible()
     expect(editor.page.get_by_text("outlines by colour (GrabCut)")).to_be_visible()
-    expect(editor.page.get_by_text("1.1 GB to fetch.")).to_be_visible()
+    expect(editor.page.get_by_text("1.1 GB to download.")).to_be_visible()
     expect(editor.button("Download networks")).to_be_disabled()
     editor.page.get_by_role("checkbox").last.click()
     expect(editor.button("Download networks")).to_be_enabled()

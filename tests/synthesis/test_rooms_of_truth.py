@@ -162,19 +162,19 @@ def test_outlines_hold_what_is_inside_only(rng):
     assert plan.area_m2 < 16
     missing = next(
         corner for corner in np.array([[-1.9, -1.9], [1.9, -1.9], [1.9, 1.9], [-1.9, 1.9]])
-        if not plan.holds(footprint(np.array([0.1, 0.1]), corner, 0.0))
+        if not plan.holds(footprint(np.array([0.1, 0.1, 1.0]), corner, 0.0))
     )  # fmt: skip
-    assert plan.holds(footprint(np.array([0.1, 0.1]), -missing, 0.3))
-    assert not plan.holds(footprint(np.array([3.9, 3.9]), np.zeros(2), 0.0))
+    assert plan.holds(footprint(np.array([0.1, 0.1, 1.0]), -missing, 0.3))
+    assert not plan.holds(footprint(np.array([3.9, 3.9, 1.0]), np.zeros(2), 0.0))
     for wall, plane in zip(plan.walls, plan.architecture().by_role("wall")):
         assert np.allclose(plane.normal[:2], wall.inward)
 
 
 def test_quads_overlap_only_when_they_share_ground():
-    a = footprint(np.array([1.0, 1.0]), np.zeros(2), 0.4)
-    assert quads_overlap(a, footprint(np.array([1.0, 1.0]), np.array([0.9, 0.0]), -0.2))
-    assert not quads_overlap(a, footprint(np.array([1.0, 1.0]), np.array([1.5, 0.0]), 0.0))
-    assert not quads_overlap(footprint(np.ones(2), np.zeros(2), 0.0), footprint(np.ones(2), np.array([1.0, 0.0]), 0.0))
+    a = footprint(np.ones(3), np.zeros(2), 0.4)
+    assert quads_overlap(a, footprint(np.ones(3), np.array([0.9, 0.0]), -0.2))
+    assert not quads_overlap(a, footprint(np.ones(3), np.array([1.5, 0.0]), 0.0))
+    assert not quads_overlap(footprint(np.ones(3), np.zeros(2), 0.0), footprint(np.ones(3), np.array([1.0, 0.0]), 0.0))
 
 
 @pytest.mark.parametrize("style", [*(f"floor:{s}" for s in FLOORS), *(f"wall:{s}" for s in WALLS)])
