@@ -50,6 +50,7 @@ def furnished_room(
     outline: Outline | None = None,
     clutter: int | None = None,
     split: Split | None = None,
+    extra: Callable[[Furnisher], None] | None = None,
 ) -> Scene:
     """A furnished room with its architecture and support graph: the truth that pictures are made of.
 
@@ -64,6 +65,7 @@ def furnished_room(
         outline: The floor's outline; None leaves it to chance.
         clutter: How many small objects to try to place; None leaves it to chance.
         split: Whose finishes and room styles are used (shapes are the given library's); all by default.
+        extra: Adds further objects after the furniture and before the clutter.
     """
     library = library or built_in_library()
     rng = np.random.default_rng((seed, zlib.crc32(kind.encode())))
@@ -74,6 +76,8 @@ def furnished_room(
     add_door(f)
     _windows(f, int(rng.integers(recipe.windows[0], recipe.windows[1] + 1)))
     recipe.furnish(f)
+    if extra is not None:
+        extra(f)
     budget = int(rng.integers(*recipe.clutter)) if clutter is None else clutter
     carriers = [o.id for o in f.objects if o.category not in ("sofa", "armchair", "chair", "bed", "rug", "stool")]
     scatter(f, carriers, budget)

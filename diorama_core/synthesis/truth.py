@@ -128,7 +128,7 @@ class Studio:
     ) -> TruthView:
         """One picture and its truth; the arguments are those of `render_truth`."""
         camera = Camera(camera.intrinsics.scaled(*size), camera.T_world_camera)
-        shot = shoot(self._world, self._blockers, PinholeView(camera), self._light, FAST)
+        shot = self._shot(camera)
         room = self._room.buffers(camera)
         scene = in_photo_world(replace(self.scene, camera=camera))
         placed = scene.camera or camera
@@ -156,6 +156,17 @@ class Studio:
             amodal_boxes=amodal,
             visible_fraction=visible,
         )
+
+    def photograph(
+        self, camera: Camera, size: tuple[int, int]
+    ) -> tuple[UInt8[np.ndarray, "h w 3"], Int32[np.ndarray, "h w"]]:
+        """One picture, and for every pixel the index of the object it shows (-1 for the room itself)."""
+        shot = self._shot(Camera(camera.intrinsics.scaled(*size), camera.T_world_camera))
+        instance = shot.grid.instance
+        return _developed(shot), np.where(instance < len(self.scene.objects), instance, -1).astype(np.int32)
+
+    def _shot(self, camera: Camera) -> Shot:
+        return shoot(self._world, self._blockers, PinholeView(camera), self._light, FAST)
 
     def _empty_room(self, camera: Camera) -> UInt8[np.ndarray, "h w 3"]:
         """The picture with the room's light and without its objects: nothing stands in the way of the light."""

@@ -1,0 +1,197 @@
+"""What each route finds in photos alone, and how it names what a person marked."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.artefacts import Inputs, LabelledBox, Photo
+from diorama_core.errors import InputError
+from diorama_core.evaluation.adapters.photo_annotations import AnnotatedPhoto, picture_of, read_annotations
+from diorama_core.evaluation.reports.tables import Column, Row, Table
+from diorama_core.library.taxonomy import broad
+from diorama_core.models.boxes import areas, intersections
+from diorama_core.perception.inputs import read_inputs
+from diorama_core.progress import Progress
+from diorama_core.protocols import DetectionStage
+
+BEST = 20
+"""Boxes of a photo that are looked at, best first."""
+LEVELS = (0.5, 0.3)
+"""Intersection over union from which a box has found an object."""
+
+Namer = Callable[[Photo, Float[np.ndarray, "n 4"]], Sequence[Sequence[str]]]
+"""Names of what boxes hold, best first."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """What one route found in one photo."""
+
+    objects: int
+    """Annotated."""
+    hits: tuple[int, ...]
+    """Of these, found at each of `LEVELS`."""
+    boxes: int
+    """Among the `BEST`."""
+    right: int
+    """Boxes that found an object at the first level; each object counts once."""
+    named: int
+    """Of these, with the object's kind, or the broader category that it belongs to."""
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Named:
+    """How annotated boxes of one photo were named."""
+
+    objects: int
+    first: int
+    among_five: int
+    seconds: float
+
+
+@dataclass(frozen=True)
+class RecognitionBench:
+    """Results of all routes, by photo."""
+
+    found: Mapping[str, Mapping[str, Found]]
+    named: Mapping[str, Mapping[str, Named]]
+
+    def tables(self) -> tuple[Table, ...]:
+        """Routes to boxes, and ways to name given boxes."""
+        columns = (
+            Column("objects", "d"),
+            *(Column(f"found at IoU {level}", ".3f", "↑") for level in LEVELS),
+            Column("boxes a photo", ".1f"),
+            Column("precision", ".3f", "↑"),
+            Column("kind right", ".3f", "↑"),
+            Column("seconds a photo", ".2f", "↓"),
+        )
+        rows = [Row(name, _found_values(tuple(photos.values()))) for name, photos in self.found.items()]
+        names = (Column("objects", "d"), Column("first", ".3f", "↑"), Column("among five", ".3f", "↑"))
+        named = [
+            Row(name, (sum(p.objects for p in ps.values()), *_shares(tuple(ps.values()))))
+            for name, ps in self.named.items()
+        ]
+        return (
+            Table(f"Objects found in photos alone, {BEST} best boxes", columns, tuple(rows)),
+            Table("Names of boxes that a person drew", names, tuple(named)),
+        )
+
+    def to_json(self) -> dict[str, object]:
+        """Tables and every photo."""
+        return {
+            "bench": "recognition",
+            "tables": [t.to_json() for t in self.tables()],
+            "photos": {route: {name: p.__dict__ for name, p in ps.items()} for route, ps in self.found.items()},
+        }
+
+
+def run(
+    annotations: Path,
+    photos: Path,
+    routes: Mapping[str, DetectionStage],
+    namers: Mapping[str, Namer],
+    progress: Progress | None = None,
+) -> RecognitionBench:
+    """Let every route look at every annotated photo that the folder has.
+
+    Args:
+        annotations: file as `adapters.photo_annotations` describes it.
+        photos: folder of pictures named by id.
+        routes: detectors by name.
+        namers: ways to name given boxes, by name.
+        progress: reports and cancellation.
+
+    Raises:
+        InputError: when the annotations cannot be read, or the folder has none of the photos.
+    """
+    progress = progress or Progress()
+    known = read_annotations(annotations)
+    present = {name: path for name in known if (path := picture_of(photos, name)) is not None}
+    if not present:
+        raise InputError(f"{photos}: none of the {len(known)} annotated photos is there; name pictures by their ids")
+    found: dict[str, dict[str, Found]] = {name: {} for name in routes}
+    named: dict[str, dict[str, Named]] = {name: {} for name in namers}
+    for k, (name, path) in enumerate(present.items()):
+        progress.report(k / len(present), name)
+        inputs, boxes = _read(path, known[name])
+        for route, stage in routes.items():
+            found[route][name] = _look(stage, inputs.photo, boxes, known[name])
+        for way, namer in namers.items():
+            named[way][name] = _name(namer, inputs.photo, boxes, known[name])
+    return RecognitionBench(found, named)
+
+
+def _read(path: Path, photo: AnnotatedPhoto) -> tuple[Inputs, Float[np.ndarray, "n 4"]]:
+    inputs = read_inputs(path)
+    height, width = inputs.photo.rgb.shape[:2]
+    scale = np.array([width, height, width, height]) / np.array([*photo.size, *photo.size])
+    return inputs, np.array([t.bbox for t in photo.things], dtype=float).reshape(-1, 4) * scale
+
+
+def _look(stage: DetectionStage, photo: Photo, boxes: Float[np.ndarray, "n 4"], about: AnnotatedPhoto) -> Found:
+    begun = time.perf_counter()
+    proposed = stage.detect(photo, (), Progress())[:BEST]
+    seconds = time.perf_counter() - begun
+    overlap = overlaps(np.array([b.box for b in proposed], dtype=float).reshape(-1, 4), boxes)
+    hits = tuple(int((overlap.max(axis=0, initial=0.0) >= level).sum()) for level in LEVELS)
+    right, named = 0, 0
+    taken = np.zeros(len(boxes), dtype=bool)
+    for row, box in zip(overlap, proposed, strict=True):
+        free = np.where(taken, 0.0, row)
+        if len(free) and free.max() >= LEVELS[0]:
+            k = int(free.argmax())
+            taken[k] = True
+            right += 1
+            named += _same_kind(box, about.things[k].kind)
+    return Found(len(boxes), hits, len(proposed), right, named, seconds)
+
+
+def _same_kind(box: LabelledBox, kind: str) -> bool:
+    return box.category == kind or broad(kind) == box.category
+
+
+def _name(namer: Namer, photo: Photo, boxes: Float[np.ndarray, "n 4"], about: AnnotatedPhoto) -> Named:
+    asked = [k for k, t in enumerate(about.things) if t.nameable]
+    begun = time.perf_counter()
+    ranked = namer(photo, boxes[asked])
+    seconds = time.perf_counter() - begun
+    kinds = [about.things[k].kind for k in asked]
+    first = sum(r[0] == kind for r, kind in zip(ranked, kinds, strict=True))
+    five = sum(kind in r[:5] for r, kind in zip(ranked, kinds, strict=True))
+    return Named(len(asked), first, five, seconds)
+
+
+def overlaps(a: Float[np.ndarray, "n 4"], b: Float[np.ndarray, "k 4"]) -> Float[np.ndarray, "n k"]:
+    """Intersection over union of every pair."""
+    if not len(a) or not len(b):
+        return np.zeros((len(a), len(b)))
+    shared = np.stack([intersections(row, b) for row in a])
+    union = areas(a)[:, None] + areas(b) - shared
+    out: Float[np.ndarray, "n k"] = shared / np.maximum(union, 1e-9)
+    return out
+
+
+def _found_values(photos: Sequence[Found]) -> tuple[float | int, ...]:
+    objects, boxes = sum(p.objects for p in photos), sum(p.boxes for p in photos)
+    right = sum(p.right for p in photos)
+    return (
+        objects,
+        *(sum(p.hits[k] for p in photos) / max(objects, 1) for k in range(len(LEVELS))),
+        boxes / max(len(photos), 1),
+        right / max(boxes, 1),
+        sum(p.named for p in photos) / max(right, 1),
+        sum(p.seconds for p in photos) / max(len(photos), 1),
+    )
+
+
+def _shares(photos: Sequence[Named]) -> tuple[float, float]:
+    count = max(sum(p.objects for p in photos), 1)
+    return sum(p.first for p in photos) / count, sum(p.among_five for p in photos) / count

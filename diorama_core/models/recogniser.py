@@ -1,0 +1,167 @@
+"""The recogniser that comes with Diorama: proposes boxes and names what is in them, with nothing downloaded.
+
+Two small networks trained by `diorama_core.training` on rendered rooms; `assets/models` has their weights, how they
+were made and how good they are.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+
+import cv2
+import numpy as np
+from jaxtyping import Float, Float32, UInt8
+from scipy.special import expit, softmax
+
+from diorama_core.errors import UnavailableError
+from diorama_core.models.boxes import Detections, clipped, without_doubles
+from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
+from diorama_core.models.store import sha256_of
+
+FOLDER = Path(__file__).resolve().parents[2] / "assets" / "models"
+DETECTOR, NAMER, CARD = "room-detector.onnx", "room-namer.onnx", "recogniser.json"
+
+STRIDES = (8, 16, 32)
+CROP_SIDE = 80
+MARGIN = 0.12
+"""Of the box's size, on every side of a crop: what a thing stands on tells what it is."""
+FILL = 114
+AREAS_PX = (320 * 256, 512 * 384)
+"""The photo is looked at in each of these sizes: large things are found in the first, small ones in the second."""
+DOUBLE_IOU = 0.6
+
+
+@dataclass(frozen=True)
+class Recogniser:
+    """Input: an upright RGB picture, eight bits, any size. Output: boxes in its pixels; probabilities of categories.
+
+    Args:
+        detector: graph from pictures to rows of score, sides and kinds.
+        namer: graph from crops and box geometry to logits.
+        categories: what the outputs stand for.
+        weights: identity of both, for cache keys.
+    """
+
+    detector: Path = field(repr=False)
+    namer: Path = field(repr=False)
+    categories: tuple[str, ...] = field(repr=False)
+    weights: str = "recogniser"
+    areas_px: tuple[int, ...] = AREAS_PX
+    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
+
+    @classmethod
+    def of(cls, folder: Path) -> Recogniser:
+        """The recogniser of a folder with both graphs and their card.
+
+        Raises:
+            UnavailableError: when one is not there or damaged.
+        """
+        paths = [folder / name for name in (DETECTOR, NAMER, CARD)]
+        absent = [p.name for p in paths if not p.is_file()]
+        if absent:
+            raise UnavailableError(f"{folder}: {', '.join(absent)} is missing; restore it from the repository")
+        try:
+            categories = tuple(str(c) for c in json.loads(paths[2].read_text())["categories"])
+        except (ValueError, KeyError, TypeError) as error:
+            raise UnavailableError(f"{paths[2]}: cannot be read; restore it from the repository") from error
+        return cls(paths[0], paths[1], categories, "".join(sha256_of(p)[:8] for p in paths[:2]))
+
+    def propose(self, rgb: UInt8[np.ndarray, "h w 3"], threshold: float, most: int = 100) -> Detections:
+        """Boxes that may hold an object, best first, labels into `categories`; two alike never overlap much."""
+        parts = [self._proposed(rgb, area, threshold) for area in self.areas_px]
+        joined = Detections(
+            np.concatenate([p.boxes for p in parts]),
+            np.concatenate([p.scores for p in parts]),
+            np.concatenate([p.labels for p in parts]),
+        )
+        found = without_doubles(joined, DOUBLE_IOU, across_classes=True)
+        return found.rows(np.arange(min(most, len(found))))
+
+    def _proposed(self, rgb: UInt8[np.ndarray, "h w 3"], area_px: int, threshold: float) -> Detections:
+        pixels, scale = fitted(rgb, area_px)
+        rows = self.pool.get(self.detector).run({"pictures": pixels})["rows"][0].astype(np.float64)
+        height, width = pixels.shape[2:]
+        centres, strides = places(width, height)
+        scores = expit(rows[:, 0])
+        best = np.flatnonzero(scores >= threshold)
+        best = best[np.argsort(-scores[best], kind="stable")][:400]
+        reach = np.exp(np.minimum(rows[best, 1:5], 5.0)) * strides[best, None]
+        boxes = np.concatenate([centres[best] - reach[:, :2], centres[best] + reach[:, 2:]], axis=1) / scale
+        return Detections(clipped(boxes, rgb.shape[1], rgb.shape[0]), scores[best], rows[best, 5:].argmax(axis=1))
+
+    def name(self, rgb: UInt8[np.ndarray, "h w 3"], boxes: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n k"]:
+        """Probability of every category for every box; each crop is looked at as it is and mirrored."""
+        if not len(boxes):
+            return np.zeros((0, len(self.categories)))
+        height, width = rgb.shape[:2]
+        crops = np.stack([box_crop(rgb, box) for box in boxes]).transpose(0, 3, 1, 2).astype(np.float32) / 255.0
+        where = np.stack([box_geometry(box, width, height) for box in boxes])
+        turned = where * np.array([-1, 1, 1, 1, 1, 1], np.float32)
+        session = self.pool.get(self.namer)
+        both = [
+            softmax(session.run({"crops": np.ascontiguousarray(c), "geometry": g})["logits"].astype(np.float64), axis=1)
+            for c, g in ((crops, where), (crops[..., ::-1], turned))
+        ]
+        mean: Float[np.ndarray, "n k"] = (both[0] + both[1]) / 2
+        return mean
+
+
+@cache
+def own_recogniser() -> Recogniser:
+    """The recogniser whose weights come with Diorama.
+
+    Raises:
+        UnavailableError: when they are not there or damaged.
+    """
+    return Recogniser.of(FOLDER)
+
+
+def fitted(rgb: UInt8[np.ndarray, "h w 3"], area_px: int) -> tuple[Float32[np.ndarray, "1 3 h2 w2"], float]:
+    """The picture in about this many pixels, 0 to 1, grey at the right and bottom up to multiples of 32; its scale."""
+    height, width = rgb.shape[:2]
+    scale = float(np.sqrt(area_px / (width * height)))
+    w, h = max(1, round(width * scale)), max(1, round(height * scale))
+    square = np.full((-(-h // 32) * 32, -(-w // 32) * 32, 3), FILL, np.uint8)
+    square[:h, :w] = cv2.resize(rgb, (w, h), interpolation=cv2.INTER_AREA if scale < 1 else cv2.INTER_LINEAR)
+    return np.ascontiguousarray(square.transpose(2, 0, 1)[None]).astype(np.float32) / np.float32(255), scale
+
+
+def places(width: int, height: int) -> tuple[Float32[np.ndarray, "n 2"], Float32[np.ndarray, "n"]]:
+    """Centres of the detector's places in pixels and their strides, in the order of its rows."""
+    centres, strides = [], []
+    for stride in STRIDES:
+        x, y = np.meshgrid(np.arange(width // stride), np.arange(height // stride))
+        centres.append((np.stack([x, y], axis=-1).reshape(-1, 2) + 0.5) * stride)
+        strides.append(np.full(x.size, stride))
+    return np.concatenate(centres).astype(np.float32), np.concatenate(strides).astype(np.float32)
+
+
+def box_crop(rgb: UInt8[np.ndarray, "h w 3"], box: Float[np.ndarray, "4"]) -> UInt8[np.ndarray, "side side 3"]:
+    """The box with its margin as a square picture, its proportions kept, grey outside the photo."""
+    x1, y1, x2, y2 = (float(v) for v in box)
+    scale = CROP_SIDE / max(max(x2 - x1, y2 - y1) * (1 + 2 * MARGIN), 1e-3)
+    cx, cy = (x1 + x2) / 2, (y1 + y2) / 2
+    reach = 0.5 * CROP_SIDE / scale + 2
+    left, top = (max(0, int(v - reach)) for v in (cx, cy))
+    part = rgb[top : int(cy + reach) + 1, left : int(cx + reach) + 1]
+    if scale < 0.5:  # linear interpolation alone would skip pixels
+        part = cv2.GaussianBlur(part, (0, 0), 0.4 / scale)
+    M = np.array(
+        [[scale, 0, CROP_SIDE / 2 - scale * (cx - left)], [0, scale, CROP_SIDE / 2 - scale * (cy - top)]], np.float32
+    )
+    size = (CROP_SIDE, CROP_SIDE)
+    return cv2.warpAffine(part, M, size, flags=cv2.INTER_LINEAR, borderValue=(FILL, FILL, FILL))
+
+
+def box_geometry(box: Float[np.ndarray, "4"], width: int, height: int) -> Float32[np.ndarray, "6"]:
+    """Where a box is and how large: middle, lower edge, logarithms of size and proportions; the picture has width 1."""
+    x1, y1, x2, y2 = np.asarray(box, dtype=np.float64) / width
+    w, h = max(x2 - x1, 1e-3), max(y2 - y1, 1e-3)
+    tall = height / width
+    return np.array(
+        [(x1 + x2) / 2 - 0.5, (y1 + y2) / (2 * tall) - 0.5, y2 / tall - 0.5, np.log(w), np.log(h), np.log(w / h)],
+        np.float32,
+    )

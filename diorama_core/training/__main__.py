@@ -1,0 +1,117 @@
+"""`python -m diorama_core.training pictures | train | export | score`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+import torch
+
+from diorama_core.errors import DioramaError
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.models.recogniser import CARD, DETECTOR, NAMER, Recogniser
+from diorama_core.progress import Progress
+from diorama_core.training.export import export_detector, export_namer, write_card
+from diorama_core.training.pictures import category_names, make_pictures
+from diorama_core.training.score import score
+from diorama_core.training.train import (
+    PictureFiles,
+    Schedule,
+    Trainer,
+    category_counts,
+    detector_trainer,
+    namer_trainer,
+)
+
+NETWORKS = ("detector", "namer")
+DETECTOR_SCHEDULE = Schedule(steps=6000, batch=16)
+NAMER_SCHEDULE = Schedule(steps=8000, batch=64)
+
+
+def main() -> int:
+    """Parse and run; one line on failure."""
+    arguments = _parser().parse_args()
+    try:
+        arguments.run(arguments)
+    except DioramaError as error:
+        print(f"training: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    p = argparse.ArgumentParser(prog="python -m diorama_core.training", description=__doc__)
+    steps = p.add_subparsers(required=True)
+    pictures = steps.add_parser("pictures", help="render rooms; goes on where it stopped")
+    pictures.set_defaults(run=_pictures)
+    pictures.add_argument("folder", type=Path)
+    pictures.add_argument("--rooms", type=int, default=1000)
+    pictures.add_argument("--first", type=int, default=0, help="seed of the first room")
+    train = steps.add_parser("train", help="train one network; goes on from its checkpoint")
+    train.set_defaults(run=_train)
+    train.add_argument("network", choices=NETWORKS)
+    train.add_argument("--pictures", type=Path, required=True)
+    train.add_argument("--checkpoints", type=Path, required=True)
+    train.add_argument("--steps", type=int)
+    train.add_argument("--threads", type=int, default=2)
+    export = steps.add_parser("export", help="write the trained networks as ONNX graphs")
+    export.set_defaults(run=_export)
+    export.add_argument("--pictures", type=Path, required=True)
+    export.add_argument("--checkpoints", type=Path, required=True)
+    export.add_argument("-o", "--output", type=Path, required=True)
+    scores = steps.add_parser("score", help="measure exported networks on annotated photos")
+    scores.set_defaults(run=_score)
+    scores.add_argument("annotations", type=Path)
+    scores.add_argument("--photos", type=Path, required=True)
+    scores.add_argument("--networks", type=Path, required=True, help="folder written by export")
+    return p
+
+
+def _pictures(a: argparse.Namespace) -> None:
+    made = make_pictures(a.folder, built_in_library(), range(a.first, a.first + a.rooms), _told())
+    print(f"{made} rooms rendered, {a.rooms - made} were there: {a.folder}")
+
+
+def _train(a: argparse.Namespace) -> None:
+    torch.set_num_threads(a.threads)
+    trainer = _trainer(a.network, a.pictures, a.checkpoints, a.steps)
+    trainer.run(_told())
+    print(f"{a.network}: {trainer.step} steps: {trainer.checkpoint}")
+
+
+def _trainer(network: str, pictures: Path, checkpoints: Path, steps: int | None) -> Trainer:
+    files, kinds = PictureFiles.of(pictures), len(category_names(built_in_library()))
+    checkpoints.mkdir(parents=True, exist_ok=True)
+    path = checkpoints / f"{network}.pt"
+    if network == "detector":
+        return detector_trainer(files, kinds, DETECTOR_SCHEDULE.lasting(steps), path)
+    return namer_trainer(files, kinds, NAMER_SCHEDULE.lasting(steps), path, category_counts(files, kinds))
+
+
+def _export(a: argparse.Namespace) -> None:
+    detector, namer = (_trainer(n, a.pictures, a.checkpoints, None) for n in NETWORKS)
+    export_detector(detector.averaged, a.output / DETECTOR)
+    export_namer(namer.averaged, a.output / NAMER)
+    files = PictureFiles.of(a.pictures)
+    write_card(
+        a.output / CARD,
+        category_names(built_in_library()),
+        rooms=len(files.paths),
+        detector={"steps": detector.step, "batch": detector.schedule.batch, "seed": detector.schedule.seed},
+        namer={"steps": namer.step, "batch": namer.schedule.batch, "seed": namer.schedule.seed},
+    )
+    print(f"networks written: {a.output}")
+
+
+def _score(a: argparse.Namespace) -> None:
+    for table in score(a.annotations, a.photos, Recogniser.of(a.networks)).tables():
+        print(table.to_markdown())
+
+
+def _told() -> Progress:
+    return Progress(lambda event: print(f"{event.fraction:6.1%} {event.message}", file=sys.stderr, flush=True))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

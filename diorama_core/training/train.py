@@ -1,0 +1,274 @@
+"""Training loops: a batch for every step from the step's own seed, so that a run goes on where it stopped."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from jaxtyping import Float32
+from torch import Tensor, nn
+from torch.nn import functional
+
+from diorama_core.errors import InputError
+from diorama_core.models.recogniser import box_crop, box_geometry, places
+from diorama_core.progress import Progress
+from diorama_core.training.augment import MOSAIC_SHARE, photographed, training_picture
+from diorama_core.training.detector import Detector, assigned, detector_loss
+from diorama_core.training.naming import Namer
+from diorama_core.training.pictures import LabelledPicture, read_room
+
+SIZE = (320, 256)
+"""Width and height of the detector's training pictures; 32 divides both."""
+AHEAD = 3
+"""Batches prepared while one is learnt from."""
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """How long and how fast to learn."""
+
+    steps: int
+    batch: int
+    rate: float = 2e-3
+    decay_share: float = 0.5
+    """Share of the steps, at the end, over which the rate falls to zero."""
+    seed: int = 15
+    save_every: int = 200
+
+    def lasting(self, steps: int | None) -> Schedule:
+        """The same schedule over another number of steps; None leaves it."""
+        return self if steps is None else replace(self, steps=steps)
+
+    def rate_at(self, step: int) -> float:
+        """Learning rate: a short rise, a plateau, and a linear fall to zero."""
+        rise = min(1.0, (step + 1) / 200)
+        fall = min(1.0, (self.steps - step) / max(1.0, self.decay_share * self.steps))
+        return self.rate * rise * max(fall, 0.0)
+
+
+@dataclass(frozen=True)
+class PictureFiles:
+    """The files of a folder of rendered rooms."""
+
+    paths: tuple[Path, ...]
+
+    @classmethod
+    def of(cls, folder: Path) -> PictureFiles:
+        """All rooms of a folder that have pictures.
+
+        Raises:
+            InputError: where there is none.
+        """
+        paths = tuple(p for p in sorted(folder.glob("room_*.npz")) if p.stat().st_size > 2_000)
+        if not paths:
+            raise InputError(
+                f"{folder}: no pictures are there; make some: python -m diorama_core.training pictures {folder}"
+            )
+        return cls(paths)
+
+    def draw(self, rng: np.random.Generator) -> LabelledPicture:
+        """A picture of chance."""
+        while True:
+            pictures = _room(self.paths[int(rng.integers(len(self.paths)))])
+            if pictures:
+                return pictures[int(rng.integers(len(pictures)))]
+
+
+@lru_cache(maxsize=1500)
+def _room(path: Path) -> tuple[LabelledPicture, ...]:
+    return read_room(path)
+
+
+@dataclass
+class Trainer:
+    """One network, its optimiser and its averaged weights.
+
+    Args:
+        network: what learns.
+        loss: of a batch, and words about its terms.
+        batch_of: makes the batch of a step from that step's generator.
+        schedule: how long.
+        checkpoint: where the state is saved, and read from where it exists.
+    """
+
+    network: nn.Module
+    loss: Callable[[nn.Module, tuple[Tensor, ...]], tuple[Tensor, str]]
+    batch_of: Callable[[np.random.Generator], tuple[Tensor, ...]]
+    schedule: Schedule
+    checkpoint: Path
+    averaged: nn.Module = field(init=False)
+    step: int = field(init=False, default=0)
+
+    def __post_init__(self) -> None:
+        self.averaged = copy.deepcopy(self.network).eval()
+        self._optimiser = torch.optim.AdamW(self.network.parameters(), lr=self.schedule.rate, weight_decay=0.02)
+        if self.checkpoint.exists():
+            saved = torch.load(self.checkpoint, weights_only=True)
+            self.network.load_state_dict(saved["network"])
+            self.averaged.load_state_dict(saved["averaged"])
+            self._optimiser.load_state_dict(saved["optimiser"])
+            self.step = int(saved["step"])
+
+    def run(self, progress: Progress) -> nn.Module:
+        """Learn until the schedule's end; returns the averaged network.
+
+        Raises:
+            Cancelled: on request; the next run goes on from the last checkpoint.
+        """
+        with ThreadPoolExecutor(1) as pool:
+            waiting = [self._prepare(pool, self.step + k) for k in range(AHEAD)]
+            while self.step < self.schedule.steps:
+                batch = waiting.pop(0).result()
+                waiting.append(self._prepare(pool, self.step + AHEAD))
+                words = self._learn(batch)
+                self.step += 1
+                if self.step % 20 == 0:
+                    progress.report(self.step / self.schedule.steps, f"step {self.step}: {words}")
+                if self.step % self.schedule.save_every == 0 or self.step == self.schedule.steps:
+                    self._save()
+        return self.averaged
+
+    def _prepare(self, pool: ThreadPoolExecutor, step: int) -> Future[tuple[Tensor, ...]]:
+        return pool.submit(self.batch_of, np.random.default_rng((self.schedule.seed, step)))
+
+    def _learn(self, batch: tuple[Tensor, ...]) -> str:
+        self.network.train()
+        for group in self._optimiser.param_groups:
+            group["lr"] = self.schedule.rate_at(self.step)
+        total, words = self.loss(self.network, batch)
+        self._optimiser.zero_grad(set_to_none=True)
+        total.backward()
+        nn.utils.clip_grad_norm_(self.network.parameters(), 10.0)
+        self._optimiser.step()
+        self._average()
+        return words
+
+    @torch.no_grad()
+    def _average(self) -> None:
+        share = min(0.998, (self.step + 1) / (self.step + 10))
+        own = self.network.state_dict()
+        for name, value in self.averaged.state_dict().items():
+            if value.dtype.is_floating_point:
+                value.lerp_(own[name], 1 - share)
+            else:
+                value.copy_(own[name])
+
+    def _save(self) -> None:
+        part = self.checkpoint.with_suffix(".part")
+        state: dict[str, Any] = {
+            "network": self.network.state_dict(),
+            "averaged": self.averaged.state_dict(),
+            "optimiser": self._optimiser.state_dict(),
+            "step": self.step,
+        }
+        torch.save(state, part)
+        part.replace(self.checkpoint)
+
+
+def detector_trainer(files: PictureFiles, kinds: int, schedule: Schedule, checkpoint: Path) -> Trainer:
+    """Everything needed to train the detector."""
+    torch.manual_seed(schedule.seed)
+    centres, strides = (torch.from_numpy(a) for a in places(*SIZE))
+
+    def batch_of(rng: np.random.Generator) -> tuple[Tensor, ...]:
+        return detector_batch(files, schedule.batch, rng)
+
+    def loss(network: nn.Module, batch: tuple[Tensor, ...]) -> tuple[Tensor, str]:
+        found = detector_loss(network(batch[0]), batch[1], batch[2], centres, strides)
+        return found.total, f"score {found.score:.3f}, box {found.box:.3f}, kind {found.kind:.3f}"
+
+    return Trainer(Detector(kinds), loss, batch_of, schedule, checkpoint)
+
+
+def detector_batch(files: PictureFiles, count: int, rng: np.random.Generator) -> tuple[Tensor, Tensor, Tensor]:
+    """Pictures, and for every place its box and category (-1 for none)."""
+    pixels, boxes, kinds = [], [], []
+    for _ in range(count):
+        number = 4 if rng.random() < MOSAIC_SHARE else 1
+        picture = training_picture([files.draw(rng) for _ in range(number)], SIZE, rng)
+        owner = assigned(picture.boxes, *SIZE)
+        some = len(picture.boxes) > 0
+        pixels.append(picture.rgb)
+        boxes.append(picture.boxes[owner] if some else np.zeros((len(owner), 4), np.float32))
+        kinds.append(np.where(owner >= 0, picture.categories[owner] if some else 0, -1))
+    return _pictures_tensor(pixels), torch.from_numpy(np.stack(boxes)), torch.from_numpy(np.stack(kinds))
+
+
+def namer_trainer(
+    files: PictureFiles, kinds: int, schedule: Schedule, checkpoint: Path, frequencies: Float32[np.ndarray, "k"]
+) -> Trainer:
+    """Everything needed to train the namer.
+
+    Args:
+        files: the pictures.
+        kinds: number of categories.
+        schedule: how long.
+        checkpoint: where the state goes.
+        frequencies: how often each category appears; rare ones are drawn more often.
+    """
+    torch.manual_seed(schedule.seed + 1)
+
+    def batch_of(rng: np.random.Generator) -> tuple[Tensor, ...]:
+        return namer_batch(files, schedule.batch, rng, frequencies)
+
+    def loss(network: nn.Module, batch: tuple[Tensor, ...]) -> tuple[Tensor, str]:
+        logits = network(batch[0], batch[1])
+        right = (logits.argmax(dim=1) == batch[2]).float().mean()
+        value = functional.cross_entropy(logits, batch[2], label_smoothing=0.05)
+        return value, f"loss {value:.3f}, right {right:.2f}"
+
+    return Trainer(Namer(kinds), loss, batch_of, schedule, checkpoint)
+
+
+def namer_batch(
+    files: PictureFiles, count: int, rng: np.random.Generator, frequencies: Float32[np.ndarray, "k"]
+) -> tuple[Tensor, Tensor, Tensor]:
+    """Crops of boxes drawn a little wrong, their geometry, and what they show."""
+    crops, geometry, kinds = [], [], []
+    weight = 1.0 / np.sqrt(np.maximum(frequencies, frequencies[frequencies > 0].min()))
+    while len(crops) < count:
+        picture = files.draw(rng)
+        if not len(picture.boxes):
+            continue
+        p = weight[picture.categories]
+        for k in rng.choice(len(p), size=min(4, len(p), count - len(crops)), replace=False, p=p / p.sum()):
+            crop, where = _crop(picture, int(k), rng)
+            crops.append(crop)
+            geometry.append(where)
+            kinds.append(int(picture.categories[k]))
+    return _pictures_tensor(crops), torch.from_numpy(np.stack(geometry)), torch.tensor(kinds)
+
+
+def _crop(picture: LabelledPicture, k: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    h, w = picture.rgb.shape[:2]
+    box = picture.boxes[k].copy()
+    size = np.maximum(box[2:] - box[:2], 2.0)
+    box += np.tile(size, 2) * rng.normal(0.0, 0.05, 4).astype(np.float32)
+    box = np.array([*np.minimum(box[:2], box[2:] - 1), *np.maximum(box[2:], box[:2] + 1)], np.float32)
+    crop, where = box_crop(picture.rgb, box), box_geometry(box, w, h)
+    if rng.random() < 0.5:
+        crop, where[0] = np.ascontiguousarray(crop[:, ::-1]), -where[0]
+    # Photos are framed otherwise: the place in the picture and the size say a little, not all.
+    where += rng.normal(0.0, [0.05, 0.05, 0.05, 0.12, 0.12, 0.03]).astype(np.float32)
+    return photographed(crop, rng), where
+
+
+def _pictures_tensor(pictures: Sequence[np.ndarray]) -> Tensor:
+    stacked = np.stack(pictures).transpose(0, 3, 1, 2)
+    return torch.from_numpy(np.ascontiguousarray(stacked)).float() / 255.0
+
+
+def category_counts(files: PictureFiles, kinds: int) -> Float32[np.ndarray, "k"]:
+    """How often each category is seen."""
+    counts = np.zeros(kinds, np.float32)
+    for path in files.paths:
+        for picture in _room(path):
+            counts += np.bincount(picture.categories, minlength=kinds).astype(np.float32)
+    return counts
