@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from diorama_core.library.record import ShapeLibrary
     from diorama_core.perception.input_arrays import Boxes, Depth, Masks, Picture
     from diorama_core.perception.input_depth import DepthEncoding
+    from diorama_core.pipeline.choices import NetworkChoice
     from diorama_core.pipeline.presets import Profile
     from diorama_core.pipeline.run import Built
     from diorama_core.pipeline.stages import Stages
@@ -103,6 +104,7 @@ def build(
     intrinsics: tuple[float, float, float, float] | None = None,
     fov_deg: float | None = None,
     profile: Profile = "auto",
+    networks: NetworkChoice | None = None,
     recipe: Recipe = "feasible",
     library: str | ShapeLibrary = "built-in",
     stages: Callable[[Stages], Stages] | None = None,
@@ -124,6 +126,7 @@ def build(
         intrinsics: fx, fy, cx, cy in pixels of the upright original photo.
         fov_deg: horizontal field of view in degrees, instead of `intrinsics`.
         profile: "auto" uses the networks on this machine, "embedded" none, "foundation" insists on the paper's.
+        networks: detector and depth network by id, instead of the best ones on this machine.
         recipe: of the layout optimiser.
         library: where shapes come from: a library, or a name that `open_library` understands.
         stages: maps the profile's stages to those that run:
@@ -155,7 +158,7 @@ def build(
     for warning in read.warnings:
         warn(warning)
     opened, name = _opened(library)
-    chosen = _chosen_stages(read.inputs, opened, profile, recipe, stages)
+    chosen = _chosen_stages(read.inputs, opened, profile, recipe, stages, networks)
     return _built(read.inputs, read.warnings, opened, name, chosen, output, progress)
 
 
@@ -379,10 +382,11 @@ def _chosen_stages(
     profile: Profile,
     recipe: str,
     choose: Callable[[Stages], Stages] | None,
+    networks: NetworkChoice | None = None,
 ) -> Stages:
     from diorama_core.pipeline.presets import stages_for
 
-    stages = stages_for(profile, inputs, library, recipe=recipe)
+    stages = stages_for(profile, inputs, library, recipe=recipe, choice=networks)
     return stages if choose is None else choose(stages)
 
 

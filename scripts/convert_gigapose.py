@@ -41,7 +41,7 @@ class Weights(torch.nn.Module):
 
 
 class Backbone(Weights):
-    """Crops [b, 3, 224, 224], ImageNet statistics, to features [b, 256, 16, 16]."""
+    """Crops [b, 3, 224, 224], CLIP's statistics, to features [b, 256, 16, 16]."""
 
     def _normed(self, x: torch.Tensor, name: str) -> torch.Tensor:
         mean, variance = self._w(f"{name}.running_mean"), self._w(f"{name}.running_var")
@@ -91,11 +91,13 @@ def read_checkpoint(path: Path, trusted: bool) -> dict[str, Any]:
 
 
 def part(saved: Mapping[str, Any], name: str) -> dict[str, torch.Tensor]:
-    """The weights below `ist_net.<name>.`, wherever the checkpoint keeps them."""
-    state, mark = saved.get("state_dict", saved), f"ist_net.{name}."
-    found = {key.split(mark, 1)[1]: value for key, value in state.items() if mark in key}
+    """The weights below `ist_net.<name>.` or, as in the published checkpoint, below `<name>.`."""
+    state = saved.get("state_dict", saved)
+    marked = {key: key.split(f"ist_net.{name}.", 1)[1] for key in state if f"ist_net.{name}." in key}
+    plain = {key: key.removeprefix(f"{name}.") for key in state if key.startswith(f"{name}.")}
+    found = {short: state[key] for key, short in (marked or plain).items()}
     if not found:
-        sys.exit(f"this is no GigaPose checkpoint: it holds nothing below {mark}")
+        sys.exit(f"this is no GigaPose checkpoint: it holds nothing below ist_net.{name}. or {name}.")
     return {key: value for key, value in found.items() if not key.endswith("num_batches_tracked")}
 
 

@@ -93,11 +93,17 @@ def _cores() -> Finding:
 
 
 def _accelerator() -> Finding:
-    import torch
+    """What onnxruntime, which runs the networks, can use; torch only lays out scenes."""
+    import onnxruntime
 
-    if torch.cuda.is_available():
-        return Finding("accelerator", True, torch.cuda.get_device_name(0), needed=False)
-    return Finding("accelerator", False, "none found; optional", needed=False)
+    from diorama_core.models.runtime import ACCELERATORS
+
+    offered = [ACCELERATORS[p] for p in onnxruntime.get_available_providers() if p in ACCELERATORS]
+    if offered:
+        return Finding("accelerator", True, f"{', '.join(offered)} for networks", needed=False)
+    card = shutil.which("nvidia-smi")
+    hint = "; for NVIDIA cards: pip uninstall onnxruntime && pip install 'diorama[gpu]'" if card else "; optional"
+    return Finding("accelerator", False, f"networks run on the processor{hint}", needed=False)
 
 
 def _browser() -> Finding:

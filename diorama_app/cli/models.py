@@ -22,9 +22,13 @@ def add_models(commands: Any) -> None:
     actions = p.add_subparsers(dest="action", required=True, metavar="list|pull|verify|path")
     lists = command(actions, "list", _list, "List the networks and which are installed.", "diorama models list")
     lists.add_argument("--json", action="store_true")
-    pulls = command(actions, "pull", _pull, "Download networks.", "diorama models pull lite")
+    pulls = command(actions, "pull", _pull, "Download networks.", "diorama models pull tiny")
     pulls.add_argument(
-        "what", nargs="*", default=None, metavar="lite|default|paper|ID", help="sets or single networks (default: lite)"
+        "what",
+        nargs="*",
+        default=None,
+        metavar="tiny|lite|default|paper|ID",
+        help="sets or single networks (default: tiny)",
     )
     pulls.add_argument("--yes", action="store_true", help="accept the licences without asking")
     pulls.add_argument(
@@ -32,6 +36,14 @@ def add_models(commands: Any) -> None:
     )
     verify = command(actions, "verify", _verify, "Verify the checksums of installed networks.", "diorama models verify")
     verify.add_argument("--json", action="store_true")
+    checks = command(
+        actions,
+        "check",
+        _check,
+        "Let every installed network look at a photo it should do well.",
+        "diorama models check",
+    )
+    checks.add_argument("--json", action="store_true")
     command(actions, "path", _path, "Print the folder of the networks.", "diorama models path")
 
 
@@ -77,7 +89,7 @@ def _pull(a: argparse.Namespace) -> None:
             print(f"{name}: ready in {store.folder / name}")
         return
     chosen: dict[str, Network] = {}
-    for what in a.what or ["lite"]:
+    for what in a.what or ["tiny"]:
         chosen.update({n.id: n for n in (networks_of(what) if what in TIERS else (network(what),))})
     with progress_bar() as progress:
         fetched = pull(store, tuple(chosen.values()), accept=_asker(a.yes), progress=progress)
@@ -115,11 +127,36 @@ def _verify(a: argparse.Namespace) -> None:
             if c.state != "absent":
                 print(f"{c.network.id:<17} {c.state}")
         if all(c.state == "absent" for c in checks):
-            print("no networks are here; fetch some with: diorama models pull lite")
+            print("no networks are here; fetch some with: diorama models pull tiny")
     wrong = [c.network.id for c in checks if c.state not in ("ok", "absent")]
     if wrong:
         listed = ", ".join(wrong)
         raise UnavailableError(f"{store.folder}: {listed} cannot be used; run: diorama models pull {wrong[0]}")
+
+
+def _check(a: argparse.Namespace) -> None:
+    from diorama_app.projects.example import example_inputs
+    from diorama_core.models.store import ModelStore
+    from diorama_core.pipeline.network_check import check_networks
+
+    store = ModelStore.default()
+    with progress_bar() as progress:
+        checks = check_networks(store, example_inputs(), progress)
+    if a.json:
+        rows = [
+            {"id": c.network.id, "ok": c.ok, "found": c.words, "device": c.device, "seconds": round(c.seconds, 2)}
+            for c in checks
+        ]
+        print(json.dumps(rows))
+    else:
+        for c in checks:
+            mark = "ok" if c.ok else "FAIL"
+            print(f"{mark:<5} {c.network.id:<17} {c.seconds:6.1f} s {c.device or '-':<6} {c.words}")
+        if not checks:
+            print("no networks are here; fetch some with: diorama models pull tiny")
+    wrong = [c.network.id for c in checks if not c.ok]
+    if wrong:
+        raise UnavailableError(f"{store.folder}: {', '.join(wrong)} does not work here; run: diorama models verify")
 
 
 def _path(a: argparse.Namespace) -> None:

@@ -23,6 +23,7 @@ from diorama_app.cli.arguments import (
 )
 from diorama_app.formats import EXPORT_FORMATS
 from diorama_core.errors import InputError
+from diorama_core.pipeline.choices import NetworkChoice
 
 if TYPE_CHECKING:
     from diorama_core.library.record import ShapeLibrary
@@ -83,6 +84,8 @@ def add_build(commands: Any) -> None:
     )
     p.add_argument("--masks", type=Path, metavar="FILE", help="PNG with one colour or id per object, black is none")
     p.add_argument("--profile", choices=PROFILES, default="auto", help="which networks to use (default: %(default)s)")
+    p.add_argument("--detector", metavar="ID", help="network that finds objects (default: the best on this machine)")
+    p.add_argument("--depth-network", metavar="ID", help="network that reads depth (default: the best on this machine)")
     p.add_argument(
         "--arrangements",
         type=int,
@@ -129,6 +132,7 @@ def _build(a: argparse.Namespace) -> None:
             intrinsics=a.intrinsics,
             fov_deg=a.fov,
             profile=a.profile,
+            networks=_networks(a),
             recipe=a.recipe,
             library=a.library,
             stages=lambda stages: _with_options(stages, a),
@@ -144,6 +148,16 @@ def _build(a: argparse.Namespace) -> None:
         print(f"{a.output}: {report['summary']}")
         if not room.scene.objects:
             print(_invitation(a.output, detected=room.stages is not None and room.stages.detection is not None))
+
+
+def _networks(a: argparse.Namespace) -> NetworkChoice:
+    if a.profile == "embedded" and (a.detector or a.depth_network):
+        raise InputError("--profile embedded uses no network; leave out --detector and --depth-network")
+    if a.detector and (a.boxes or a.masks):
+        raise InputError("--detector finds what boxes or masks would say; give one of them")
+    if a.depth_network and a.depth:
+        raise InputError("--depth-network reads what --depth says; give one of them")
+    return NetworkChoice(a.detector, a.depth_network)
 
 
 def _with_options(stages: Stages, a: argparse.Namespace) -> Stages:

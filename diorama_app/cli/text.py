@@ -49,4 +49,4 @@ def _text(a: argparse.Namespace) -> None:
         return
     print(f"{a.output}: {report['summary']}")
     if not room.scene.objects:
-        print("No furniture was found in the picture: run 'diorama models pull lite', or draw boxes in the editor.")
+        print("No furniture was found in the picture: run 'diorama models pull tiny', or draw boxes in the editor.")

@@ -16,6 +16,7 @@ from diorama_core.models.store import ModelStore
 from diorama_core.pipeline.choices import StageStatus, profile_status
 
 SETS = {
+    "tiny: a photo alone": "tiny",
     "lite: fine on a laptop": "lite",
     "default: better": "default",
     "paper: as published": "paper",

@@ -13,7 +13,7 @@ from diorama_core.models.pull import pull
 from diorama_core.models.store import ModelStore
 from diorama_core.progress import Progress
 
-NO_DETECTOR = "Detecting furniture needs a network: download “lite” under Project, Networks."
+NO_DETECTOR = "Detecting furniture needs a network: download “tiny” under Project, Networks."
 SAME_IOU = 0.5
 """A detected box with at least this IoU with an existing box is a duplicate."""
 

@@ -10,7 +10,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from jaxtyping import Float, Float32, Int, UInt8
 
-from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, normalised, resized
+from diorama_core.models.images import CLIP_MEAN, CLIP_STD, normalised, resized
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
 
 SIDE = 224
@@ -58,10 +58,10 @@ class GigaPoseScale:
     pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
     def maps(self, crops: Sequence[UInt8[np.ndarray, "_ _ 3"]]) -> Float32[np.ndarray, "b c n n"]:
-        """Feature maps of crops, each stretched to 224 x 224."""
+        """Feature maps of crops, each stretched to 224 x 224; normalised as in its training (CLIP's statistics)."""
         session = self.pool.get(self.features)
         name = next(iter(session.inputs))
-        pixels = [normalised(resized(c, (SIDE, SIDE)), IMAGENET_MEAN, IMAGENET_STD) for c in crops]
+        pixels = [normalised(resized(c, (SIDE, SIDE)), CLIP_MEAN, CLIP_STD) for c in crops]
         return np.concatenate([next(iter(session.run({name: p}).values())) for p in pixels])
 
     def turns(

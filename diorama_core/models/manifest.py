@@ -14,8 +14,9 @@ from diorama_core.errors import InputError
 Role = Literal[
     "detection", "segmentation", "geometry", "foreground", "inpainting", "features", "text and image", "pose scale"
 ]
-Tier = Literal["lite", "default", "paper"]
-TIERS: tuple[Tier, ...] = ("lite", "default", "paper")
+Tier = Literal["tiny", "lite", "default", "paper"]
+TIERS: tuple[Tier, ...] = ("tiny", "lite", "default", "paper")
+"""Sets of networks, smallest first."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,8 @@ class Network:
     conversion: str = ""
     """Script that makes the files from the user's own checkpoint."""
     tiers: tuple[Tier, ...] = ()
+    side: int | None = None
+    """Of the square picture it takes, where its graph leaves that open."""
 
     @property
     def size_bytes(self) -> int:
@@ -138,14 +141,14 @@ NETWORKS: tuple[Network, ...] = (
                 ("e8af074932d4ed7e232278e3055cefcdea3edf178874a3694ae292649fb464dd",),
             ),
         ),
-        tiers=("lite", "default", "paper"),
+        tiers=("tiny", "lite", "default", "paper"),
     ),
     _owl(
         "owlv2-base-int8",
         "onnx/model_int8.onnx",
         163173570,
         "e9cc288738a96a5a9b730801f622b2e1a531ed2a93d02dd1227a4d35fd9690c6",
-        ("lite",),
+        ("tiny", "lite"),
     ),
     _owl(
         "owlv2-base",
@@ -163,6 +166,7 @@ NETWORKS: tuple[Network, ...] = (
         files=(ModelFile("onnx/model.onnx"), ModelFile("tokenizer.json")),
         about_mb=1744,
         tiers=("paper",),
+        side=1008,
     ),
     Network(
         id="slimsam",
@@ -173,7 +177,7 @@ NETWORKS: tuple[Network, ...] = (
         revision="points-and-boxes",
         files=(ModelFile("onnx/vision_encoder.onnx"), ModelFile("onnx/prompt_encoder_mask_decoder.onnx")),
         about_mb=40,
-        tiers=("lite",),
+        tiers=("tiny", "lite"),
     ),
     _sam2(
         "sam2.1-tiny",
@@ -249,7 +253,7 @@ NETWORKS: tuple[Network, ...] = (
         "MoGe-2 small",
         140852051,
         "24eacb5dc7a2c54c7bc98f7de085ffbed79ad006ea5b664c2c2cdc02ff3a52f0",
-        ("lite",),
+        ("tiny", "lite"),
         "e50ffda41565591092adea54c6ac83d6212e1e23",
     ),
     _moge(
@@ -350,7 +354,6 @@ NETWORKS: tuple[Network, ...] = (
         revision="08c606e3123472a388efa59181b677d428f69bbd",
         files=(ModelFile("onnx/model.onnx"),),
         about_mb=88,
-        tiers=("lite",),
     ),
     Network(
         id="dinov2-base",

@@ -15,19 +15,26 @@ from diorama_core.models.boxes import Detections, clipped
 from diorama_core.models.images import CLIP_MEAN, CLIP_STD, antialiased, normalised, padded_square
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
 from diorama_core.models.tokens import clip_tokens, load_tokenizer
+from diorama_core.progress import Progress
 
 TOKENS = 16
-DEFAULT_SIDE = 960
-MAX_PHRASES = 64
-"""Phrases in one run; more are asked in turns."""
+SIDE = 960
+MAX_PHRASES = 256
+"""Phrases in one run; more are asked in turns, and each turn looks at the picture again."""
 
 
 @runtime_checkable
 class BoxDetector(Protocol):
     """Input: an upright RGB picture, eight bits, and phrases. Output: boxes, each with the phrase that fits best."""
 
-    def detect(self, rgb: UInt8[np.ndarray, "h w 3"], phrases: Sequence[str], threshold: float) -> Detections:
-        """Boxes above the threshold, best first."""
+    def detect(
+        self,
+        rgb: UInt8[np.ndarray, "h w 3"],
+        phrases: Sequence[str],
+        threshold: float,
+        progress: Progress | None = None,
+    ) -> Detections:
+        """Boxes above the threshold, best first; stops when the progress is cancelled."""
         ...
 
 
@@ -41,21 +48,32 @@ class Owlv2:
     graph: Path = field(repr=False)
     tokenizer: Path = field(repr=False)
     weights: str = "owlv2"
+    side: int = SIDE
+    """Of the square that the graph takes, where the graph itself does not say: a multiple of its patch."""
     pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
     @cached_property
     def _tokenizer(self) -> Any:
         return load_tokenizer(self.tokenizer)
 
-    def detect(self, rgb: UInt8[np.ndarray, "h w 3"], phrases: Sequence[str], threshold: float) -> Detections:
+    def detect(
+        self,
+        rgb: UInt8[np.ndarray, "h w 3"],
+        phrases: Sequence[str],
+        threshold: float,
+        progress: Progress | None = None,
+    ) -> Detections:
         """Boxes above the threshold, best first; empty without phrases."""
         height, width = rgb.shape[:2]
+        progress = progress or Progress()
         pixels = self.pixels(rgb)
         logits, boxes = [], np.zeros((0, 4))
         for start in range(0, len(phrases), MAX_PHRASES):
             some = phrases[start : start + MAX_PHRASES]
+            progress.report(start / len(phrases), f"Looking for {len(phrases)} kinds of objects")
             ids, mask = self.tokens(some)
-            out = self.pool.get(self.graph).run({"input_ids": ids, "attention_mask": mask, "pixel_values": pixels})
+            feeds = {"input_ids": ids, "attention_mask": mask, "pixel_values": pixels}
+            out = self.pool.get(self.graph).run(feeds, progress)
             logits.append(out["logits"][0, :, : len(some)])
             boxes = out["pred_boxes"][0].astype(np.float64)
         if not logits:
@@ -72,7 +90,7 @@ class Owlv2:
     def pixels(self, rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "1 3 side side"]:
         """Padded to a square at the right and bottom, reduced with anti-aliasing, CLIP statistics."""
         shape = self.pool.get(self.graph).inputs["pixel_values"].shape
-        side = shape[-1] if isinstance(shape[-1], int) else DEFAULT_SIDE
+        side = shape[-1] if isinstance(shape[-1], int) else self.side
         return normalised(antialiased(padded_square(rgb), side), CLIP_MEAN, CLIP_STD)
 
     def tokens(self, phrases: Sequence[str]) -> tuple[Int64[np.ndarray, "q 16"], Int64[np.ndarray, "q 16"]]:

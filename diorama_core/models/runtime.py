@@ -1,6 +1,7 @@
-"""Running networks with onnxruntime: loaded when first used, shared, freed on demand or when others need the room.
+"""Running networks with onnxruntime: loaded when first used, shared, freed on demand or when others need the memory.
 
-CUDA is used where onnxruntime offers it, else the processor. DIORAMA_DEVICE=cpu and DIORAMA_THREADS=N override.
+A graphics card is used where onnxruntime offers it (CUDA, DirectML, CoreML), else the processor. DIORAMA_DEVICE=cpu and
+DIORAMA_THREADS=N override.
 """
 
 from __future__ import annotations
@@ -9,18 +10,29 @@ import logging
 import os
 import threading
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from diorama_core.errors import UnavailableError
+from diorama_core.errors import Cancelled, UnavailableError
+from diorama_core.progress import Progress
 
 _LOG = logging.getLogger(__name__)
 
 MAX_THREADS = 16
 """More threads than this slow these networks down."""
+POLL_S = 0.1
+"""Between two looks at the cancel token while a network computes."""
+ACCELERATORS = {
+    "CUDAExecutionProvider": "cuda",
+    "DmlExecutionProvider": "directml",
+    "CoreMLExecutionProvider": "coreml",
+}
+"""Execution providers of graphics cards, best first, and what people call them."""
 
 
 @dataclass(frozen=True)
@@ -29,8 +41,11 @@ class LoadedNetwork:
 
     path: Path
     device: str
+    """cpu, cuda, directml or coreml."""
     memory_bytes: int
     """How much the process grew by loading it; the graph's files where that cannot be told."""
+    note: str = ""
+    """What was unusual about loading it, for people."""
 
 
 class Session:
@@ -41,11 +56,16 @@ class Session:
         self.inputs: dict[str, Any] = {i.name: i for i in raw.get_inputs()}
         self.outputs: tuple[str, ...] = tuple(o.name for o in raw.get_outputs())
 
-    def run(self, feeds: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    def run(self, feeds: Mapping[str, np.ndarray], progress: Progress | None = None) -> dict[str, np.ndarray]:
         """All outputs by name; inputs are converted to the graph's number types.
+
+        Args:
+            feeds: inputs by name.
+            progress: asked now and then while the network computes; a long run stops when it is cancelled.
 
         Raises:
             UnavailableError: when the graph does not have the expected inputs, or fails.
+            Cancelled: on request.
         """
         unknown = sorted(set(feeds) - set(self.inputs))
         lacking = sorted(set(self.inputs) - set(feeds))
@@ -58,15 +78,33 @@ class Session:
             name: value.astype(_TYPES[self.inputs[name].type], copy=False) for name, value in feeds.items()
         }
         try:
-            values = self._raw.run(None, converted)
+            values = self._raw.run(None, converted) if progress is None else self._watched(converted, progress)
+        except Cancelled:
+            raise
         except Exception as error:
             reason = " ".join(str(error).split())[:200]
-            advice = "try DIORAMA_DEVICE=cpu" if self.info.device == "cuda" else "see `diorama doctor`"
+            advice = "see `diorama doctor`" if self.info.device == "cpu" else "try DIORAMA_DEVICE=cpu"
             raise UnavailableError(f"{self.info.path}: the network failed ({reason}); {advice}") from error
         return {
             name: v.astype(np.float32) if v.dtype == np.float16 else v
             for name, v in zip(self.outputs, values, strict=True)
         }
+
+    def _watched(self, feeds: Mapping[str, np.ndarray], progress: Progress) -> list[Any]:
+        """Compute in a thread; tell the graph to stop when the work was cancelled."""
+        import onnxruntime
+
+        options = onnxruntime.RunOptions()
+        with ThreadPoolExecutor(1, thread_name_prefix="network") as pool:
+            future = pool.submit(self._raw.run, None, dict(feeds), options)
+            while not future.done():
+                wait((future,), timeout=POLL_S)
+                try:
+                    progress.check()
+                except Cancelled:
+                    options.terminate = True
+                    raise
+            return list(future.result())
 
 
 _TYPES = {
@@ -135,7 +173,7 @@ SHARED_SESSIONS = SessionPool()
 
 
 def thread_count() -> int:
-    """Threads of one network: the cores this process may use, at most `MOST_THREADS`.
+    """Threads of one network: the cores this process may use, at most `MAX_THREADS`.
 
     Raises:
         UnavailableError: when DIORAMA_THREADS is no number.
@@ -150,50 +188,77 @@ def thread_count() -> int:
 
 
 def providers() -> list[str]:
-    """Execution providers in the order of preference."""
+    """Execution providers in the order of preference; the processor comes last and alone with DIORAMA_DEVICE=cpu."""
     import onnxruntime
 
     cpu = ["CPUExecutionProvider"]
     if os.environ.get("DIORAMA_DEVICE", "").lower() == "cpu":
         return cpu
-    cuda = "CUDAExecutionProvider"
-    return [cuda, *cpu] if cuda in onnxruntime.get_available_providers() else cpu
+    offered = onnxruntime.get_available_providers()
+    cards = [name for name in ACCELERATORS if name in offered]
+    if "CUDAExecutionProvider" in cards:
+        _preload_cuda()
+    return [*cards[:1], *cpu]
+
+
+@cache
+def _preload_cuda() -> None:
+    """Let onnxruntime find the CUDA and cuDNN libraries that pip installed, where its version can."""
+    import onnxruntime
+
+    preload = getattr(onnxruntime, "preload_dlls", None)
+    if preload is not None:
+        preload()
 
 
 def _load(path: Path) -> Session:
-    import onnxruntime
-
     if not path.is_file():
-        raise UnavailableError(f"{path}: this network is not on this machine; run: diorama models pull lite")
-    options = onnxruntime.SessionOptions()
-    options.intra_op_num_threads = thread_count()
-    options.inter_op_num_threads = 1
-    options.log_severity_level = 3
+        raise UnavailableError(f"{path}: this network is not on this machine; run: diorama models pull tiny")
     before = _resident_bytes()
     try:
-        raw = _session(path, options)
+        raw, note = _session(path)
     except Exception as error:
         reason = " ".join(str(error).split())[:160]
         raise UnavailableError(f"{path}: cannot be loaded ({reason}); run: diorama models verify") from error
     grown = _resident_bytes() - before
-    device = "cuda" if raw.get_providers()[0].startswith("CUDA") else "cpu"
-    return Session(raw, LoadedNetwork(path, device, grown if grown > 0 else _file_bytes(path)))
+    device = ACCELERATORS.get(raw.get_providers()[0], "cpu")
+    return Session(raw, LoadedNetwork(path, device, grown if grown > 0 else _file_bytes(path), note))
 
 
-def _session(path: Path, options: Any) -> Any:
-    """On a graphics card where there is one; on the processor where the card cannot be used after all."""
+def _session(path: Path) -> tuple[Any, str]:
+    """The graph and what was unusual: on a graphics card where there is one and it serves; else on the processor; and
+    with fewer graph optimisations where the full ones fail, as they do for some half-precision graphs.
+    """
     import onnxruntime
 
+    fewer = onnxruntime.GraphOptimizationLevel.ORT_ENABLE_BASIC
     wanted = providers()
-    try:
-        return onnxruntime.InferenceSession(str(path), options, providers=wanted)
-    except Exception as error:
-        if len(wanted) == 1:
-            raise
-        raw = onnxruntime.InferenceSession(str(path), options, providers=wanted[-1:])
-        reason = " ".join(str(error).split())[:120]
-        _LOG.warning("%s: the graphics card cannot be used (%s); DIORAMA_DEVICE=cpu avoids the try", path.name, reason)
-        return raw
+    tries = [(wanted, None, ""), (wanted[-1:], fewer, "loaded with fewer graph optimisations")]
+    if len(wanted) > 1:
+        tries.insert(1, (wanted[-1:], None, "the graphics card cannot be used; DIORAMA_DEVICE=cpu avoids the try"))
+    first: Exception | None = None
+    for names, level, note in tries:
+        try:
+            raw = onnxruntime.InferenceSession(str(path), _options(level), providers=names)
+        except Exception as error:
+            first = first or error
+            continue
+        if note and first is not None:
+            _LOG.warning("%s: %s (%s)", path.name, note, " ".join(str(first).split())[:120])
+        return raw, note
+    raise first or UnavailableError(f"{path}: cannot be loaded")
+
+
+def _options(level: Any) -> Any:
+    import onnxruntime
+
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = thread_count()
+    options.inter_op_num_threads = 1
+    options.log_severity_level = 3
+    if level is not None:
+        options.graph_optimization_level = level
+    return options
 
 
 def _file_bytes(path: Path) -> int:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from diorama_core.errors import InputError
 from diorama_core.models.manifest import network
 from diorama_core.models.store import ModelStore
 from diorama_core.perception.language.client import LmmSettings
@@ -23,6 +24,38 @@ PATCH_FEATURES = ("dinov2-large", "dinov2-base", "dinov2-small")
 
 JOINT_EMBEDDINGS = ("openclip-b32",)
 """Words, pictures and shapes in one space, to find shapes by."""
+
+
+@dataclass(frozen=True)
+class NetworkChoice:
+    """Networks that the user names instead of the best one on the machine; None leaves a stage to rank."""
+
+    detector: str | None = None
+    depth: str | None = None
+
+    def detectors(self) -> tuple[str, ...]:
+        """Ids to look for, best first.
+
+        Raises:
+            InputError: when the named one finds no boxes.
+        """
+        return _chosen(self.detector, DETECTORS, "detector")
+
+    def depth_networks(self) -> tuple[str, ...]:
+        """Ids to look for, best first.
+
+        Raises:
+            InputError: when the named one reads no depth.
+        """
+        return _chosen(self.depth, DEPTH_NETWORKS, "depth network")
+
+
+def _chosen(named: str | None, known: tuple[str, ...], what: str) -> tuple[str, ...]:
+    if named is None:
+        return known
+    if named not in known:
+        raise InputError(f"{named!r} is no {what}; choose {', '.join(known)}")
+    return (named,)
 
 
 @dataclass(frozen=True)

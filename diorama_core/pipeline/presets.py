@@ -11,33 +11,26 @@ from dataclasses import replace
 from typing import Literal, TypeVar
 
 from diorama_core.architecture.from_depth import PlanarRoom
-from diorama_core.architecture.texture.empty_room import EmptyRoomFiller
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.errors import UnavailableError
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.models.depth import GeometryNetwork, Metric3d, Moge2
-from diorama_core.models.features import Dinov2
 from diorama_core.models.foreground import Foreground
-from diorama_core.models.gigapose import GigaPoseScale
-from diorama_core.models.inpainting import Lama, Migan
 from diorama_core.models.manifest import Network, network
-from diorama_core.models.owlv2 import Owlv2
-from diorama_core.models.segment_anything import BoxSegmenter, Sam2, SlimSam
 from diorama_core.models.store import ModelStore, how_to_get
-from diorama_core.models.yolox import Yolox
 from diorama_core.perception.camera.given_attitude import with_given_attitude
 from diorama_core.perception.foundation.depth_prediction import (
     NetworkCamera,
     NetworkDepth,
     NetworkDepthPrediction,
 )
-from diorama_core.perception.foundation.detection import EverydayDetection, OpenVocabularyDetection
+from diorama_core.perception.foundation.detection import OpenVocabularyDetection
 from diorama_core.perception.foundation.empty_room import EmptyRoomArchitecture
 from diorama_core.perception.foundation.outlines import PromptedMasks
 from diorama_core.perception.graph.geometric import GeometricGraph
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.perception.language.stages import LanguageGraph, LanguageRecognition
 from diorama_core.perception.measured import MeasuredGeometry
+from diorama_core.pipeline import network_stages
 from diorama_core.pipeline.choices import (
     DEPTH_NETWORKS,
     DETECTORS,
@@ -45,6 +38,7 @@ from diorama_core.pipeline.choices import (
     INPAINTERS,
     PATCH_FEATURES,
     SEGMENTERS,
+    NetworkChoice,
 )
 from diorama_core.pipeline.learned_retrieval import with_joint_retrieval
 from diorama_core.pipeline.plan import evaluate
@@ -56,9 +50,6 @@ from diorama_core.progress import Progress
 from diorama_core.protocols import DetectionStage
 
 Profile = Literal["auto", "embedded", "foundation"]
-PUBLISHED_BLOCK = 17
-"""Of DINOv2 large, whose features the publication matches; a smaller network's last block is read."""
-
 T = TypeVar("T")
 
 
@@ -70,6 +61,7 @@ def stages_for(
     recipe: str = DEFAULT_RECIPE,
     store: ModelStore | None = None,
     lmm: LmmSettings | None = None,
+    choice: NetworkChoice | None = None,
 ) -> Stages:
     """The stages of a profile for what the user gave.
 
@@ -80,34 +72,42 @@ def stages_for(
         recipe: of the layout optimiser.
         store: where networks lie; this machine's by default.
         lmm: a language model to ask; by default the one that the environment names, if any.
+        choice: networks that the user names; the best ones on this machine by default.
 
     Raises:
-        UnavailableError: the foundation profile, where a network it needs is not on this machine.
+        UnavailableError: a network that the user names or the foundation profile needs is not on this machine.
+        InputError: a network that the user names cannot take the stage.
     """
+    choice = choice or NetworkChoice()
     base = embedded_stages(inputs, library, recipe=recipe)
     if profile == "embedded":
         return base
     store = store or ModelStore.default()
+    _insist_on(store, choice)
     base = with_joint_retrieval(base, library, store)
     if profile == "foundation":
         _insist(inputs, store)
         base = _posed_as_published(base, library, store)
-    return foundation_stages(base, inputs, store, lmm or LmmSettings.from_environment())
+    return foundation_stages(base, inputs, store, lmm or LmmSettings.from_environment(), choice)
 
 
-def foundation_stages(base: Stages, inputs: Inputs, store: ModelStore, lmm: LmmSettings | None) -> Stages:
+def foundation_stages(
+    base: Stages, inputs: Inputs, store: ModelStore, lmm: LmmSettings | None, choice: NetworkChoice
+) -> Stages:
     """`base` with every stage replaced for which a network is on this machine."""
     stages = base
     if not inputs.boxes and inputs.instances is None:
-        stages = replace(stages, detection=detection_stage(store))
+        stages = replace(stages, detection=detection_stage(store, choice))
         if lmm is not None and isinstance(stages.detection, OpenVocabularyDetection):
             stages = replace(stages, recognition=LanguageRecognition(lmm))
-    segmenter = _best(store, SEGMENTERS, _segmenter)
+    segmenter = _best(store, SEGMENTERS, network_stages.segmenter)
     if segmenter is not None:
         stages = replace(stages, objects=PromptedMasks(segmenter))
-    filler = _best(store, INPAINTERS, _inpainter)
+    filler = _best(store, INPAINTERS, network_stages.inpainter)
     stages = replace(stages, filler=filler)
-    depth_prediction = _best(store, DEPTH_NETWORKS, _depth_network) if inputs.depth_m is None else None
+    depth_prediction = (
+        _best(store, choice.depth_networks(), network_stages.depth_network) if inputs.depth_m is None else None
+    )
     if depth_prediction is not None:
         stages = replace(
             stages,
@@ -123,9 +123,9 @@ def foundation_stages(base: Stages, inputs: Inputs, store: ModelStore, lmm: LmmS
     return stages if lmm is None else replace(stages, graph=LanguageGraph(lmm))
 
 
-def detection_stage(store: ModelStore) -> DetectionStage | None:
-    """The best detector on this machine, as a stage."""
-    return _best(store, DETECTORS, _detector)
+def detection_stage(store: ModelStore, choice: NetworkChoice | None = None) -> DetectionStage | None:
+    """The named detector or the best one on this machine, as a stage."""
+    return _best(store, (choice or NetworkChoice()).detectors(), network_stages.detector)
 
 
 def propose_boxes(
@@ -149,6 +149,14 @@ def propose_boxes(
     return boxes
 
 
+def _insist_on(store: ModelStore, choice: NetworkChoice) -> None:
+    """Refuse a network that the user names and that is not here, instead of doing without."""
+    named_ones = (choice.detector and choice.detectors()[0], choice.depth and choice.depth_networks()[0])
+    for named in filter(None, named_ones):
+        if not store.has(network(named)):
+            raise UnavailableError(f"{named} is not on this machine; run: diorama models pull {named}")
+
+
 def _insist(inputs: Inputs, store: ModelStore) -> None:
     needed: list[tuple[str, ...]] = [SEGMENTERS]
     if not inputs.boxes and inputs.instances is None:
@@ -157,68 +165,27 @@ def _insist(inputs: Inputs, store: ModelStore) -> None:
         needed.append(DEPTH_NETWORKS)
     for choices in needed:
         if not any(store.has(network(i)) for i in choices):
-            lite = next(network(i) for i in reversed(choices) if "lite" in network(i).tiers)
+            smallest = next(network(i) for i in reversed(choices) if "lite" in network(i).tiers)
             raise UnavailableError(
-                f"the foundation profile needs {lite.title} or better, which is not on this machine; "
-                f"{how_to_get(lite)} (or use --profile auto)"
+                f"the foundation profile needs {smallest.title} or better, which is not on this machine; "
+                f"{how_to_get(smallest)} (or use --profile auto)"
             )
 
 
 def _posed_as_published(base: Stages, library: ShapeLibrary, store: ModelStore) -> Stages:
     """Poses by DINOv2's patches, and the scale network's where the user has converted one."""
-    features = _best(store, PATCH_FEATURES, _patch_features)
+    features = _best(store, PATCH_FEATURES, network_stages.patch_features)
     if features is None:
         return base
-    scale = _best(store, ("gigapose-scale",), _scale_network)
+    scale = _best(store, ("gigapose-scale",), network_stages.scale_network)
     return replace(base, pose=CorrespondencePose(library, features=NetworkFeatures(features), scale_network=scale))
 
 
 def _foregrounds(store: ModelStore) -> tuple[Foreground, ...]:
-    found = (_best(store, kinds, _foreground) for kinds in FOREGROUNDS)
+    found = (_best(store, kinds, network_stages.foreground) for kinds in FOREGROUNDS)
     return tuple(f for f in found if f is not None)
 
 
 def _best(store: ModelStore, choices: tuple[str, ...], make: Callable[[ModelStore, Network], T]) -> T | None:
     here = next((network(i) for i in choices if store.has(network(i))), None)
     return None if here is None else make(store, here)
-
-
-def _detector(store: ModelStore, chosen: Network) -> DetectionStage:
-    weights = store.identity(chosen)
-    graph = store.path(chosen, chosen.files[0].path)
-    if chosen.id.startswith("yolox"):
-        return EverydayDetection(Yolox(graph, weights))
-    return OpenVocabularyDetection(Owlv2(graph, store.path(chosen, "tokenizer.json"), weights))
-
-
-def _segmenter(store: ModelStore, chosen: Network) -> BoxSegmenter:
-    weights = store.identity(chosen)
-    encoder, decoder = (
-        store.path(chosen, next(f.path for f in chosen.files if part in f.path and f.path.endswith(".onnx")))
-        for part in ("vision_encoder", "mask_decoder")
-    )
-    return SlimSam(encoder, decoder, weights) if chosen.id == "slimsam" else Sam2(encoder, decoder, weights)
-
-
-def _inpainter(store: ModelStore, chosen: Network) -> EmptyRoomFiller:
-    graph, weights = store.path(chosen, chosen.files[0].path), store.identity(chosen)
-    return Lama(graph, weights) if chosen.id == "lama" else Migan(graph, weights)
-
-
-def _depth_network(store: ModelStore, chosen: Network) -> GeometryNetwork:
-    graph, weights = store.path(chosen, chosen.files[0].path), store.identity(chosen)
-    return Metric3d(graph, weights) if chosen.id.startswith("metric3d") else Moge2(graph, weights)
-
-
-def _foreground(store: ModelStore, chosen: Network) -> Foreground:
-    return Foreground(store.path(chosen, chosen.files[0].path), store.identity(chosen))
-
-
-def _patch_features(store: ModelStore, chosen: Network) -> Dinov2:
-    block = PUBLISHED_BLOCK if chosen.id == "dinov2-large" else None
-    return Dinov2(store.path(chosen, chosen.files[0].path), store.identity(chosen), block)
-
-
-def _scale_network(store: ModelStore, chosen: Network) -> GigaPoseScale:
-    features, regressor = (store.path(chosen, f.path) for f in chosen.files)
-    return GigaPoseScale(features, regressor, store.identity(chosen))

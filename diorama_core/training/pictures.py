@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 from jaxtyping import Float32, Int, Int32, UInt8
 
-from diorama_core.errors import LibraryError, SceneError
+from diorama_core.errors import InputError, LibraryError, SceneError
 from diorama_core.io.atomic import write_atomically
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
@@ -83,13 +83,20 @@ def read_room(path: Path) -> tuple[LabelledPicture, ...]:
     with np.load(path, allow_pickle=False) as saved:
         return tuple(
             LabelledPicture(
-                cv2.imdecode(saved[f"jpeg_{k}"], cv2.IMREAD_COLOR)[..., ::-1],
+                _decoded(saved[f"jpeg_{k}"], path),
                 saved[f"boxes_{k}"],
                 saved[f"categories_{k}"],
                 saved[f"pixels_{k}"],
             )
             for k in range(int(saved["count"]))
         )
+
+
+def _decoded(data: UInt8[np.ndarray, "n"], path: Path) -> UInt8[np.ndarray, "h w 3"]:
+    bgr = cv2.imdecode(data, cv2.IMREAD_COLOR)
+    if bgr is None:
+        raise InputError(f"{path}: a picture in it cannot be decoded; delete the file and render the room again")
+    return np.ascontiguousarray(bgr[..., ::-1])
 
 
 def _photographed(seed: int, library: ShapeLibrary, names: tuple[str, ...]) -> tuple[LabelledPicture, ...]:
@@ -142,5 +149,5 @@ def _packed(pictures: tuple[LabelledPicture, ...]) -> bytes:
             f"pixels_{k}": picture.pixels,
         }
     buffer = io.BytesIO()
-    np.savez(buffer, **arrays)
+    np.savez(buffer, **arrays)  # type: ignore[arg-type]  # the keywords are names of arrays
     return buffer.getvalue()

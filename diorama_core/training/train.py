@@ -144,7 +144,7 @@ class Trainer:
             group["lr"] = self.schedule.rate_at(self.step)
         total, words = self.loss(self.network, batch)
         self._optimiser.zero_grad(set_to_none=True)
-        total.backward()
+        total.backward()  # type: ignore[no-untyped-call]
         nn.utils.clip_grad_norm_(self.network.parameters(), 10.0)
         self._optimiser.step()
         self._average()
@@ -231,7 +231,9 @@ def namer_batch(
     files: PictureFiles, count: int, rng: np.random.Generator, frequencies: Float32[np.ndarray, "k"]
 ) -> tuple[Tensor, Tensor, Tensor]:
     """Crops of boxes drawn a little wrong, their geometry, and what they show."""
-    crops, geometry, kinds = [], [], []
+    crops: list[np.ndarray] = []
+    geometry: list[np.ndarray] = []
+    kinds: list[int] = []
     weight = 1.0 / np.sqrt(np.maximum(frequencies, frequencies[frequencies > 0].min()))
     while len(crops) < count:
         picture = files.draw(rng)

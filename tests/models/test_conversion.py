@@ -150,10 +150,13 @@ class _Regressor(nn.Module):
         self.scale_predictor, self.inplane_predictor = nn.Sequential(*layers(1)), nn.Sequential(*layers(2), nn.Tanh())
 
 
-def test_gigaposes_scale_network_is_rebuilt_from_a_checkpoint(tmp_path: Path, rng: np.random.Generator) -> None:
+@pytest.mark.parametrize("prefix", ["ist_net.", ""], ids=["inside both networks", "as published"])
+def test_gigaposes_scale_network_is_rebuilt_from_a_checkpoint(
+    tmp_path: Path, rng: np.random.Generator, prefix: str
+) -> None:
     backbone, regressor = _shaken(_Backbone()), _shaken(_Regressor())
-    state = {f"ist_net.backbone.{k}": v for k, v in backbone.state_dict().items()}
-    state |= {f"ist_net.regressor.{k}": v for k, v in regressor.state_dict().items()}
+    state = {f"{prefix}backbone.{k}": v for k, v in backbone.state_dict().items()}
+    state |= {f"{prefix}regressor.{k}": v for k, v in regressor.state_dict().items()}
     state["ae_net.dinov2.cls_token"] = torch.zeros(1)  # the first network's, which is not taken
     torch.save({"state_dict": state}, tmp_path / "own.ckpt")
     _script("convert_gigapose").main([str(tmp_path / "own.ckpt"), "-o", str(tmp_path / "made")])
@@ -162,7 +165,7 @@ def test_gigaposes_scale_network_is_rebuilt_from_a_checkpoint(tmp_path: Path, rn
     graphs = (store.path(network("gigapose-scale"), name) for name in ("features.onnx", "regressor.onnx"))
     facade = GigaPoseScale(*graphs, pool=SessionPool())
     crops = [rng.integers(0, 255, (224, 224, 3)).astype(np.uint8) for _ in range(2)]
-    mean, std = np.array([0.485, 0.456, 0.406]), np.array([0.229, 0.224, 0.225])
+    mean, std = np.array([0.48145466, 0.4578275, 0.40821073]), np.array([0.26862954, 0.26130258, 0.27577711])
     pixels = torch.from_numpy(np.stack([((c / 255 - mean) / std).transpose(2, 0, 1) for c in crops])).float()
     template, photo = facade.maps(crops)
     with torch.no_grad():

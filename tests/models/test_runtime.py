@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import os
+import threading
+import time
 from pathlib import Path
 
+import numpy as np
+import onnx
 import onnxruntime
 import pytest
 
-from diorama_core.errors import UnavailableError
+from diorama_core.errors import Cancelled, UnavailableError
 from diorama_core.models import runtime
 from diorama_core.models.runtime import SessionPool, providers, thread_count
+from diorama_core.progress import Progress
 from tests.models import tiny_networks
 
 CUDA, CPU = "CUDAExecutionProvider", "CPUExecutionProvider"
@@ -30,8 +35,10 @@ def _no_wishes(monkeypatch: pytest.MonkeyPatch) -> None:
         (["TensorrtExecutionProvider", CUDA, CPU], "", [CUDA, CPU]),
         (["AzureExecutionProvider", CPU], "", [CPU]),
         ([CPU], "cuda", [CPU]),
+        (["DmlExecutionProvider", CPU], "", ["DmlExecutionProvider", CPU]),
+        (["CoreMLExecutionProvider", CPU], "", ["CoreMLExecutionProvider", CPU]),
     ],
-    ids=["cuda", "cuda not wanted", "cuda among others", "no cuda", "cuda wanted in vain"],
+    ids=["cuda", "cuda not wanted", "cuda among others", "no cuda", "cuda wanted in vain", "DirectML", "CoreML"],
 )
 def test_cuda_is_used_where_it_is_offered_and_wanted(
     monkeypatch: pytest.MonkeyPatch, offered: list[str], wish: str, chosen: list[str]
@@ -108,3 +115,64 @@ def test_a_wrong_number_of_threads_is_one_clear_line(monkeypatch: pytest.MonkeyP
     monkeypatch.setenv("DIORAMA_THREADS", "many")
     with pytest.raises(UnavailableError, match="DIORAMA_THREADS"):
         runtime.thread_count()
+
+
+def test_a_graph_that_fails_with_all_optimisations_is_loaded_with_fewer(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    load, all_of_them = onnxruntime.InferenceSession, onnxruntime.GraphOptimizationLevel.ORT_ENABLE_ALL
+
+    def session(path: str, options: onnxruntime.SessionOptions, providers: list[str]) -> object:
+        if options.graph_optimization_level == all_of_them:
+            raise RuntimeError("SimplifiedLayerNormFusion: type mismatch")
+        return load(path, options, providers=providers)
+
+    monkeypatch.setattr(onnxruntime, "InferenceSession", session)
+    monkeypatch.setenv("DIORAMA_DEVICE", "cpu")
+    pool = SessionPool()
+    pool.get(tiny_networks.migan(tmp_path / "model.onnx"))
+    assert "fewer graph optimisations" in caplog.text
+    assert [n.note for n in pool.report()] == ["loaded with fewer graph optimisations"]
+
+
+def test_a_long_run_stops_when_it_is_cancelled(tmp_path: Path) -> None:
+    session = SessionPool().get(_endless(tmp_path / "endless.onnx"))
+    progress = Progress()
+    threading.Timer(0.3, progress.token.cancel).start()
+    begun = time.perf_counter()
+    with pytest.raises(Cancelled):
+        session.run({"x": np.eye(64, dtype=np.float32)}, progress)
+    assert time.perf_counter() - begun < 20
+
+
+def _endless(path: Path) -> Path:
+    """A graph that multiplies matrices for minutes."""
+    body = onnx.helper.make_graph(
+        [
+            onnx.helper.make_node("MatMul", ["value_in", "value_in"], ["value_out"]),
+            onnx.helper.make_node("Identity", ["go_in"], ["go_out"]),
+        ],
+        "body",
+        [
+            onnx.helper.make_tensor_value_info("turn", onnx.TensorProto.INT64, []),
+            onnx.helper.make_tensor_value_info("go_in", onnx.TensorProto.BOOL, []),
+            onnx.helper.make_tensor_value_info("value_in", onnx.TensorProto.FLOAT, [64, 64]),
+        ],
+        [
+            onnx.helper.make_tensor_value_info("go_out", onnx.TensorProto.BOOL, []),
+            onnx.helper.make_tensor_value_info("value_out", onnx.TensorProto.FLOAT, [64, 64]),
+        ],
+    )
+    graph = onnx.helper.make_graph(
+        [onnx.helper.make_node("Loop", ["turns", "go", "x"], ["y"], body=body)],
+        "endless",
+        [onnx.helper.make_tensor_value_info("x", onnx.TensorProto.FLOAT, [64, 64])],
+        [onnx.helper.make_tensor_value_info("y", onnx.TensorProto.FLOAT, [64, 64])],
+        [
+            onnx.numpy_helper.from_array(np.array(10**8, np.int64), "turns"),
+            onnx.numpy_helper.from_array(np.array(True), "go"),
+        ],
+    )
+    model = onnx.helper.make_model(graph, opset_imports=[onnx.helper.make_opsetid("", 17)], ir_version=9)
+    onnx.save(model, path)
+    return path

@@ -21,6 +21,9 @@ from transformers import (
     SamModel,
 )
 
+from diorama_core.models.manifest import network
+from diorama_core.models.store import FileRecord, Installed, ModelStore, sha256_of, write_json
+
 START, END = "<|startoftext|>", "<|endoftext|>"
 
 
@@ -374,3 +377,15 @@ def migan(path: Path) -> Path:
     arguments = (torch.zeros(1, 3, 40, 50, dtype=torch.uint8), torch.zeros(1, 1, 40, 50, dtype=torch.uint8))
     dynamic = {"image": {2: "h", 3: "w"}, "mask": {2: "h", 3: "w"}, "result": {2: "h", 3: "w"}}
     return export(_Painter(), arguments, path, ["image", "mask"], ["result"], dynamic)
+
+
+def install(store: ModelStore, network_id: str, files: Sequence[Path]) -> None:
+    """Put graphs in a network's place, as if they had been pulled."""
+    chosen = network(network_id)
+    records = {}
+    for file, source in zip(chosen.files, files, strict=True):
+        target = store.folder_of(chosen) / file.path
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes(source.read_bytes())
+        records[file.path] = FileRecord(bytes=target.stat().st_size, sha256=sha256_of(target))
+    write_json(store.folder_of(chosen) / "installed.json", Installed(files=records).model_dump())

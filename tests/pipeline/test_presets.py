@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -14,7 +13,7 @@ from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.errors import UnavailableError
 from diorama_core.models.manifest import network
-from diorama_core.models.store import FileRecord, Installed, ModelStore, sha256_of, write_json
+from diorama_core.models.store import ModelStore
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.pipeline.choices import profile_status
 from diorama_core.pipeline.presets import propose_boxes, stages_for
@@ -27,6 +26,7 @@ from diorama_core.provenance import DepthSource, FocalSource, GraphMethod
 from diorama_core.synthesis.layout_rooms import box_library
 from tests.models import tiny_networks
 from tests.models.test_depth import HEIGHT, WIDTH, _Moge
+from tests.models.tiny_networks import install
 from tests.perception.language.stub_lmm import StubLmm, answering
 
 BOX = (40.0, 45.0, 90.0, 85.0)
@@ -60,17 +60,6 @@ class _Nothing:
 
     def pose(self, *artefacts: object) -> tuple[()]:
         return ()
-
-
-def _install(store: ModelStore, network_id: str, files: Sequence[Path]) -> None:
-    chosen = network(network_id)
-    records = {}
-    for file, source in zip(chosen.files, files, strict=True):
-        target = store.folder_of(chosen) / file.path
-        target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_bytes(source.read_bytes())
-        records[file.path] = FileRecord(bytes=target.stat().st_size, sha256=sha256_of(target))
-    write_json(store.folder_of(chosen) / "installed.json", Installed(files=records).model_dump())
 
 
 @pytest.fixture(scope="module")
@@ -116,7 +105,7 @@ def test_both_profiles_make_the_same_kinds_of_artefacts(
     drawn = Inputs(photo, (LabelledBox(BOX, "chair", "chair"),))
     embedded = _build(stages_for("embedded", drawn, box_library(), store=store), drawn)
     for network_id, files in graphs.items():
-        _install(store, network_id, files)
+        install(store, network_id, files)
     alone = Inputs(photo)
     foundation = _build(stages_for("foundation", alone, box_library(), store=store), alone)
     assert _types(embedded) == _types(foundation)
@@ -142,14 +131,14 @@ def test_stages_mix_one_by_one_and_a_pull_reruns_only_what_it_touches(
 
     assert ran() >= {"camera", "objects", "geometry", "depth"}
     assert ran() == set()
-    _install(store, "slimsam", graphs["slimsam"])
+    install(store, "slimsam", graphs["slimsam"])
     again = ran()
     assert "objects" in again
     assert "camera" not in again
     assert ran() == set()
-    _install(store, "moge-2-vits", graphs["moge-2-vits"])
+    install(store, "moge-2-vits", graphs["moge-2-vits"])
     assert ran() >= {"depth_prediction", "camera", "geometry", "depth"}
-    _install(store, "migan", graphs["migan"])
+    install(store, "migan", graphs["migan"])
     emptied = ran()
     assert "architecture" in emptied
     assert not emptied & {"depth_prediction", "camera", "objects", "geometry", "graph"}
@@ -168,7 +157,7 @@ def test_every_network_of_the_paper_takes_its_stage(photo: Photo, store: ModelSt
 
     def install(*ids: str) -> None:
         for network_id in ids:
-            _install(store, network_id, [file] * len(network(network_id).files))
+            install(store, network_id, [file] * len(network(network_id).files))
 
     inputs = Inputs(photo)
     install("owlv2-large", "sam2.1-large", "metric3d-large")
@@ -194,7 +183,7 @@ def test_every_network_of_the_paper_takes_its_stage(photo: Photo, store: ModelSt
 
 def test_what_the_user_gave_is_never_replaced(photo: Photo, store: ModelStore, graphs: dict[str, list[Path]]) -> None:
     for network_id, files in graphs.items():
-        _install(store, network_id, files)
+        install(store, network_id, files)
     depth = np.full((HEIGHT, WIDTH), 2.0, np.float32)
     given = Inputs(photo, (LabelledBox(BOX, "sofa", "sofa"),), depth_m=depth)
     stages = stages_for("auto", given, box_library(), store=store)
@@ -220,7 +209,7 @@ def test_the_foundation_profile_says_what_is_missing(photo: Photo, store: ModelS
 def test_a_damaged_network_is_one_clear_line(photo: Photo, store: ModelStore, tmp_path: Path) -> None:
     broken = tmp_path / "broken.onnx"
     broken.write_bytes(b"half a file")
-    _install(store, "yolox-nano", [broken])
+    install(store, "yolox-nano", [broken])
     with pytest.raises(UnavailableError, match="diorama models verify"):
         propose_boxes(photo, store=store)
 
@@ -247,7 +236,7 @@ def test_a_language_model_takes_the_graph_and_is_asked_again_after_a_failure(
 
 
 def test_progress_reaches_the_proposals(photo: Photo, store: ModelStore, graphs: dict[str, list[Path]]) -> None:
-    _install(store, "yolox-nano", graphs["yolox-nano"])
+    install(store, "yolox-nano", graphs["yolox-nano"])
     heard: list[float] = []
     boxes = propose_boxes(photo, store=store, progress=Progress(lambda e: heard.append(e.fraction)))
     assert boxes is not None

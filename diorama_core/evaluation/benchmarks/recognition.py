@@ -130,7 +130,7 @@ def run(
 
 
 def _read(path: Path, photo: AnnotatedPhoto) -> tuple[Inputs, Float[np.ndarray, "n 4"]]:
-    inputs = read_inputs(path)
+    inputs = read_inputs(path).inputs
     height, width = inputs.photo.rgb.shape[:2]
     scale = np.array([width, height, width, height]) / np.array([*photo.size, *photo.size])
     return inputs, np.array([t.bbox for t in photo.things], dtype=float).reshape(-1, 4) * scale

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from diorama_core.artefacts import LabelledBox, Photo
-from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN, resolve
+from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN, broad, resolve
 from diorama_core.models.boxes import Detections, without_doubles, without_parts_of_same
 from diorama_core.models.owlv2 import BoxDetector
 from diorama_core.models.yolox import COCO_CLASSES, Yolox
@@ -15,7 +15,8 @@ from diorama_core.perception.foundation.vocabulary import INDOOR_WORDS
 from diorama_core.progress import Progress
 
 TEMPLATE = "a photo of {}"
-MAX_OBJECTS = 80
+MAX_OBJECTS = 40
+"""No photo of a room has more that matter; what is beyond is noise of the least sure."""
 MIN_SIDE_PX = 8.0
 _WORDS = {
     "couch": "sofa",
@@ -50,8 +51,8 @@ class OpenVocabularyDetection:
         Walls, floor and ceiling are never returned as objects.
         """
         asked = tuple(dict.fromkeys(w for w in words or INDOOR_WORDS if w.lower() not in ARCHITECTURE_WORDS))
-        progress.report(0.0, f"Looking for {len(asked)} kinds of things")
-        found = self.detector.detect(photo.rgb, [TEMPLATE.format(w) for w in asked], self.threshold)
+        phrases = [TEMPLATE.format(w) for w in asked]
+        found = self.detector.detect(photo.rgb, phrases, self.threshold, progress.part(0.0, 0.9))
         progress.report(0.9, "Sorting out double boxes")
         found = without_doubles(found, self.double_iou, across_classes=True)
         return _labelled(found, asked, self.part_share)
@@ -77,8 +78,10 @@ class EverydayDetection:
 def _labelled(found: Detections, names: tuple[str, ...], part_share: float) -> tuple[LabelledBox, ...]:
     """One box per object, in the project's categories."""
     categories = [resolve(name) for name in names]
-    order = {name: i for i, name in enumerate(dict.fromkeys(r.category.name for r in categories))}
-    kinds = np.array([order[categories[k].category.name] for k in found.labels], dtype=int)
+    # A chair found within an armchair is the armchair again: special kinds count as their broader one.
+    families = [broad(r.category.name) for r in categories]
+    order = {name: i for i, name in enumerate(dict.fromkeys(families))}
+    kinds = np.array([order[families[k]] for k in found.labels], dtype=int)
     alike = Detections(found.boxes, found.scores, kinds)
     whole = without_parts_of_same(alike, part_share)
     retained = [i for i in range(len(found)) if any((whole.boxes == found.boxes[i]).all(axis=1))]

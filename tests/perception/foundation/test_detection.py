@@ -10,7 +10,8 @@ import numpy as np
 from diorama_core.artefacts import LabelledBox, Photo
 from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, CATEGORIES, UNKNOWN
 from diorama_core.models.boxes import Detections
-from diorama_core.perception.foundation.detection import OpenVocabularyDetection
+from diorama_core.models.owlv2 import MAX_PHRASES
+from diorama_core.perception.foundation.detection import MAX_OBJECTS, OpenVocabularyDetection
 from diorama_core.perception.foundation.vocabulary import INDOOR_WORDS
 from diorama_core.progress import Progress
 
@@ -25,7 +26,9 @@ class _Detector:
     rows: Sequence[Row] = ()
     asked: list[str] = field(default_factory=list)
 
-    def detect(self, rgb: np.ndarray, phrases: Sequence[str], threshold: float) -> Detections:
+    def detect(
+        self, rgb: np.ndarray, phrases: Sequence[str], threshold: float, progress: Progress | None = None
+    ) -> Detections:
         self.asked = list(phrases)
         retained = [r for r in self.rows if r[4] >= threshold and f"a photo of {r[5]}" in phrases]
         labels = [phrases.index(f"a photo of {r[5]}") for r in retained]
@@ -42,8 +45,8 @@ def test_without_words_a_vocabulary_of_rooms_is_asked_for_in_the_papers_phrase()
     detector = _Detector()
     OpenVocabularyDetection(detector).detect(PHOTO, (), Progress())
     assert detector.asked == [f"a photo of {word}" for word in INDOOR_WORDS]
-    assert 300 < len(INDOOR_WORDS) == len(set(INDOOR_WORDS))
-    assert {c.name for c in CATEGORIES if c is not UNKNOWN} - ARCHITECTURE_WORDS <= set(INDOOR_WORDS)
+    assert {c.name for c in CATEGORIES if c is not UNKNOWN} - ARCHITECTURE_WORDS == set(INDOOR_WORDS)
+    assert len(INDOOR_WORDS) == len(set(INDOOR_WORDS)) <= MAX_PHRASES, "one run looks at the picture once"
 
 
 def test_parts_of_the_room_are_never_objects() -> None:
@@ -73,3 +76,19 @@ def test_words_that_the_library_does_not_know_keep_their_name() -> None:
         ("couch", "gramophone horn"), (0, 0, 90, 90, 0.9, "couch"), (100, 0, 150, 50, 0.5, "gramophone horn")
     )
     assert [(b.category, b.label) for b in found] == [("sofa", "couch"), (UNKNOWN.name, "gramophone horn")]
+
+
+def test_a_special_kind_within_its_broader_kind_is_the_same_object() -> None:
+    found = _found(
+        ("chair", "office chair", "table"),
+        (10, 10, 90, 90, 0.9, "office chair"),
+        (15, 15, 60, 80, 0.6, "chair"),  # the seat, found as a chair
+        (100, 10, 150, 90, 0.4, "chair"),
+    )
+    assert [(b.category, b.score) for b in found] == [("office chair", 0.9), ("chair", 0.4)]
+
+
+def test_a_photo_has_at_most_forty_objects() -> None:
+    rows = [(5.0 * k, 10.0, 5.0 * k + 9, 30.0, 0.9 - k / 100, "book") for k in range(38)]
+    more = [(5.0 * k, 50.0, 5.0 * k + 9, 70.0, 0.5, "cup") for k in range(38)]
+    assert len(_found(("book", "cup"), *rows, *more)) == MAX_OBJECTS

@@ -1,0 +1,79 @@
+"""Each network of the manifest as what a stage uses: files and identity from the store, settings by its id."""
+
+from __future__ import annotations
+
+from diorama_core.models.clip import DuoduoClip, OpenClip
+from diorama_core.models.depth import GeometryNetwork, Metric3d, Moge2
+from diorama_core.models.features import Dinov2
+from diorama_core.models.foreground import Foreground
+from diorama_core.models.gigapose import GigaPoseScale
+from diorama_core.models.inpainting import Filler, Lama, Migan
+from diorama_core.models.manifest import Network
+from diorama_core.models.owlv2 import SIDE, Owlv2
+from diorama_core.models.segment_anything import BoxSegmenter, Sam2, SlimSam
+from diorama_core.models.store import ModelStore
+from diorama_core.models.yolox import Yolox
+from diorama_core.perception.foundation.detection import EverydayDetection, OpenVocabularyDetection
+from diorama_core.protocols import DetectionStage
+
+PUBLISHED_BLOCK = 17
+"""Of DINOv2 large, whose features the publication matches; a smaller network's last block is read."""
+
+
+def detector(store: ModelStore, chosen: Network) -> DetectionStage:
+    """OWLv2 for any words, YOLOX for everyday classes."""
+    weights = store.identity(chosen)
+    graph = store.path(chosen, chosen.files[0].path)
+    if chosen.id.startswith("yolox"):
+        return EverydayDetection(Yolox(graph, weights))
+    return OpenVocabularyDetection(Owlv2(graph, store.path(chosen, "tokenizer.json"), weights, chosen.side or SIDE))
+
+
+def segmenter(store: ModelStore, chosen: Network) -> BoxSegmenter:
+    """SAM 2.1 or SlimSAM."""
+    weights = store.identity(chosen)
+    encoder, decoder = (
+        store.path(chosen, next(f.path for f in chosen.files if part in f.path and f.path.endswith(".onnx")))
+        for part in ("vision_encoder", "mask_decoder")
+    )
+    return SlimSam(encoder, decoder, weights) if chosen.id == "slimsam" else Sam2(encoder, decoder, weights)
+
+
+def inpainter(store: ModelStore, chosen: Network) -> Filler:
+    """LaMa or MI-GAN."""
+    graph, weights = store.path(chosen, chosen.files[0].path), store.identity(chosen)
+    return Lama(graph, weights) if chosen.id == "lama" else Migan(graph, weights)
+
+
+def depth_network(store: ModelStore, chosen: Network) -> GeometryNetwork:
+    """Metric3D v2 or MoGe-2."""
+    graph, weights = store.path(chosen, chosen.files[0].path), store.identity(chosen)
+    return Metric3d(graph, weights) if chosen.id.startswith("metric3d") else Moge2(graph, weights)
+
+
+def foreground(store: ModelStore, chosen: Network) -> Foreground:
+    """BiRefNet or MVANet."""
+    return Foreground(store.path(chosen, chosen.files[0].path), store.identity(chosen))
+
+
+def patch_features(store: ModelStore, chosen: Network) -> Dinov2:
+    """DINOv2; of the large one the inner block that the publication reads."""
+    block = PUBLISHED_BLOCK if chosen.id == "dinov2-large" else None
+    return Dinov2(store.path(chosen, chosen.files[0].path), store.identity(chosen), block)
+
+
+def open_clip(store: ModelStore, chosen: Network) -> OpenClip:
+    """Words and pictures in one space."""
+    text, tokenizer, image = (store.path(chosen, f.path) for f in chosen.files)
+    return OpenClip(text, image, tokenizer, store.identity(chosen))
+
+
+def shape_tower(store: ModelStore, chosen: Network) -> DuoduoClip:
+    """Shapes in OpenCLIP's space."""
+    return DuoduoClip(store.path(chosen, chosen.files[0].path), store.identity(chosen))
+
+
+def scale_network(store: ModelStore, chosen: Network) -> GigaPoseScale:
+    """GigaPose's second network."""
+    features, regressor = (store.path(chosen, f.path) for f in chosen.files)
+    return GigaPoseScale(features, regressor, store.identity(chosen))
