@@ -153,7 +153,7 @@ class Client:
         session = self.session
         others = [(g.name, g.colour, g.selection) for g in session.clients.values() if g is not self]
         # Over the photo, marks would seem to be the photo's.
-        warned = self.preferences.badges and self.view.overlay_opacity < 0.5
+        warned = self.preferences.badges and self.view.photo.opacity < 0.5
         badges = session.badges if warned else {}
         self.marks.show(
             scene or session.scene,

@@ -342,10 +342,10 @@ class EditorSession:
         for client in self.clients.values():
             client.selection = ()
             client.doing = None
-            client.view.show_backdrop(None, None, 1.0)
-            client.view.show_overlay(None, None, 0.0)
-            if not client.view.drawing:
-                client.view.move_camera(*room_view(self.scene, client.view.aspect))
+            client.view.photo.show_backdrop(None, None, 1.0)
+            client.view.photo.show_overlay(None, None, 0.0)
+            if not client.view.canvas.is_open:
+                client.view.camera.move(*room_view(self.scene, client.view.camera.aspect))
 
     # -- people -----------------------------------------------------------------------------------------------
 
@@ -402,7 +402,7 @@ class EditorSession:
                 ask = self.on_photo_camera
                 client.post(lambda: ask(client))
 
-        client.view.show_photo_camera(self.scene.camera, photo, through_it)
+        client.view.photo.show_camera(self.scene.camera, photo, through_it)
 
     def _picked(self, object_id: str, event: viser.SceneNodePointerEvent) -> None:
         if self.on_pick is not None:
