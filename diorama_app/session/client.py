@@ -101,7 +101,7 @@ class Client:
         self.selection = tuple(i for i in dict.fromkeys(ids) if self.session.scene.has_object(i))
         if len(self.session.clients) == 1:  # where several work, undo must not select what another one had selected
             self.session.document.note_selection(self.selection)
-        self.session.refresh_cursors(self)
+        self.session.refresh_panels(self)
 
     def toggle(self, object_id: str) -> None:
         """Add an object to the selection, or take it out."""
