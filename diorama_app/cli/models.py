@@ -141,7 +141,7 @@ def _check(a: argparse.Namespace) -> None:
 
     store = ModelStore.default()
     with progress_bar() as progress:
-        checks = check_networks(store, example_inputs(), progress)
+        checks = check_networks(store, example_inputs().inputs, progress)
     if a.json:
         rows = [
             {"id": c.network.id, "ok": c.ok, "found": c.words, "device": c.device, "seconds": round(c.seconds, 2)}

@@ -82,7 +82,11 @@ class Recogniser:
 
     def _proposed(self, rgb: UInt8[np.ndarray, "h w 3"], area_px: int, threshold: float) -> Detections:
         pixels, scale = fitted(rgb, area_px)
-        rows = self.pool.get(self.detector).run({"pictures": pixels})["rows"][0].astype(np.float64)
+        rows = (
+            self.pool.get(self.detector)
+            .run({"pictures": pixels}, {"rows": (1, None, None)})["rows"][0]
+            .astype(np.float64)
+        )
         height, width = pixels.shape[2:]
         centres, strides = places(width, height)
         scores = expit(rows[:, 0])
@@ -102,7 +106,12 @@ class Recogniser:
         turned = where * np.array([-1, 1, 1, 1, 1, 1], np.float32)
         session = self.pool.get(self.namer)
         both = [
-            softmax(session.run({"crops": np.ascontiguousarray(c), "geometry": g})["logits"].astype(np.float64), axis=1)
+            softmax(
+                session.run({"crops": np.ascontiguousarray(c), "geometry": g}, {"logits": (len(g), None)})[
+                    "logits"
+                ].astype(np.float64),
+                axis=1,
+            )
             for c, g in ((crops, where), (crops[..., ::-1], turned))
         ]
         mean: Float[np.ndarray, "n k"] = (both[0] + both[1]) / 2

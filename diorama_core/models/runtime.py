@@ -8,17 +8,20 @@ from __future__ import annotations
 
 import logging
 import os
+import re
 import threading
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
+from types import EllipsisType
 from typing import Any
 
 import numpy as np
 
 from diorama_core.errors import Cancelled, UnavailableError
+from diorama_core.io.bounded import shortened
 from diorama_core.progress import Progress
 
 _LOG = logging.getLogger(__name__)
@@ -33,6 +36,26 @@ ACCELERATORS = {
     "CoreMLExecutionProvider": "coreml",
 }
 """Execution providers of graphics cards, best first, and what people call them."""
+_CODES = re.compile(r"\[ONNXRuntimeError\] : \d+ : \w+ : ")
+MAX_SIDE_PX = 4096
+"""Of the pictures that networks ask for; a graph that states more is another network."""
+
+Dims = tuple[int | EllipsisType | None, ...]
+"""A shape: None for any size, an ellipsis in front for any number of leading dimensions of size one."""
+SINGLE: Dims = (...,)
+"""One number, of whatever shape."""
+
+
+class NetworkError(UnavailableError):
+    """A network that is installed cannot be loaded, fails, or answers as another network would."""
+
+    def __init__(self, graph: Path, reason: str) -> None:
+        super().__init__(f"{graph}: {reason}")
+        self.graph, self._reason = graph, reason
+
+    def __reduce__(self) -> tuple[type[NetworkError], tuple[Path, str]]:
+        """Errors cross processes."""
+        return NetworkError, (self.graph, self._reason)
 
 
 @dataclass(frozen=True)
@@ -56,39 +79,72 @@ class Session:
         self.inputs: dict[str, Any] = {i.name: i for i in raw.get_inputs()}
         self.outputs: tuple[str, ...] = tuple(o.name for o in raw.get_outputs())
 
-    def run(self, feeds: Mapping[str, np.ndarray], progress: Progress | None = None) -> dict[str, np.ndarray]:
+    @property
+    def first_input(self) -> str:
+        """Its name; raises `NetworkError` when there is none."""
+        if not self.inputs:
+            raise self._other("it has no inputs")
+        return next(iter(self.inputs))
+
+    @property
+    def picture_input(self) -> str:
+        """Name of the first input; raises `NetworkError` when it takes no pictures."""
+        name = self.first_input
+        if len(self.inputs[name].shape) < 3:
+            raise self._other(f"input {name} takes no picture")
+        return name
+
+    def side_px(self, name: str, default: int) -> int:
+        """Width of the pictures that an input takes; `default` where any will do.
+
+        Raises:
+            NetworkError: when it is no width of a picture.
+        """
+        shape = self.inputs[name].shape if name in self.inputs else []
+        side = shape[-1] if len(shape) == 4 else 0
+        if not isinstance(side, int):
+            return default
+        if not 0 < side <= MAX_SIDE_PX:
+            raise self._other(f"input {name}: {shape}")
+        return side
+
+    def run(
+        self,
+        feeds: Mapping[str, np.ndarray],
+        expected: Mapping[str, Dims],
+        *,
+        gaps: bool = False,
+        progress: Progress | None = None,
+    ) -> dict[str, np.ndarray]:
         """All outputs by name; inputs are converted to the graph's number types.
 
         Args:
-            feeds: inputs by name.
-            progress: asked now and then while the network computes; a long run stops when it is cancelled.
+            feeds: A value for every input.
+            expected: Shapes of the outputs that are used.
+            gaps: Whether these may hold infinities and NaN beside numbers.
+            progress: Asked now and then while the network computes; a long run stops when it is cancelled.
 
         Raises:
-            UnavailableError: when the graph does not have the expected inputs, or fails.
-            Cancelled: on request.
+            NetworkError: when the graph does not have these inputs and outputs, or fails.
+            Cancelled: On request.
         """
-        unknown = sorted(set(feeds) - set(self.inputs))
-        lacking = sorted(set(self.inputs) - set(feeds))
-        if unknown or lacking:
-            raise UnavailableError(
-                f"{self.info.path}: this graph is not the expected network (inputs {', '.join(self.inputs)}); "
-                "run: diorama models verify"
-            )
-        converted: dict[str, np.ndarray] = {
-            name: value.astype(_TYPES[self.inputs[name].type], copy=False) for name, value in feeds.items()
-        }
+        if set(feeds) != set(self.inputs):
+            raise self._other(f"inputs {', '.join(self.inputs)}")
         try:
+            converted: dict[str, np.ndarray] = {
+                n: v.astype(_TYPES[self.inputs[n].type], copy=False) for n, v in feeds.items()
+            }
             values = self._raw.run(None, converted) if progress is None else self._watched(converted, progress)
         except Cancelled:
             raise
         except Exception as error:
-            reason = " ".join(str(error).split())[:200]
+            reason = _reason(error, self.info.path)
             advice = "see `diorama doctor`" if self.info.device == "cpu" else "try DIORAMA_DEVICE=cpu"
-            raise UnavailableError(f"{self.info.path}: the network failed ({reason}); {advice}") from error
-        return {
-            name: v.astype(np.float32) if v.dtype == np.float16 else v
-            for name, v in zip(self.outputs, values, strict=True)
-        }
+            raise NetworkError(self.info.path, f"the network failed ({reason}); {advice}") from error
+        answers = dict(zip(self.outputs, values, strict=True))
+        for name, dims in expected.items():
+            self.check(name, answers.get(name), dims, gaps=gaps)
+        return {n: v.astype(np.float32) if v.dtype == np.float16 else v for n, v in answers.items()}
 
     def _watched(self, feeds: Mapping[str, np.ndarray], progress: Progress) -> list[Any]:
         """Compute in a thread; tell the graph to stop when the work was cancelled."""
@@ -105,6 +161,30 @@ class Session:
                     options.terminate = True
                     raise
             return list(future.result())
+
+    def check(self, name: str, value: object, dims: Dims, *, gaps: bool = False) -> None:
+        """Raise `NetworkError` unless an output has a shape and consists of numbers; see `run`."""
+        if not isinstance(value, np.ndarray) or value.dtype.kind not in "fiub":
+            raise self._other(f"outputs {', '.join(self.outputs)}; no numbers in {name}")
+        if not value.size or not _fits(value.shape, dims):
+            raise self._other(f"output {name} of shape {value.shape}")
+        numbers = np.isfinite(value)
+        if not (numbers.any() if gaps else numbers.all()):
+            raise NetworkError(
+                self.info.path, f"the network's answer ({name}) is not made of numbers; run: diorama models verify"
+            )
+
+    def _other(self, seen: str) -> NetworkError:
+        return NetworkError(
+            self.info.path, f"this graph is not the expected network ({shortened(seen)}); run: diorama models verify"
+        )
+
+
+def _fits(shape: tuple[int, ...], dims: Dims) -> bool:
+    if dims[:1] == (...,):
+        leading = len(shape) - len(dims) + 1
+        return leading >= 0 and set(shape[:leading]) <= {1} and _fits(shape[leading:], dims[1:])
+    return len(shape) == len(dims) and all(d in (None, s) for s, d in zip(shape, dims, strict=True))
 
 
 _TYPES = {
@@ -134,7 +214,7 @@ class SessionPool:
         """The loaded graph.
 
         Raises:
-            UnavailableError: when the file is absent or damaged.
+            NetworkError: when the file is absent or damaged.
         """
         path = path.resolve()
         with self._lock:
@@ -213,16 +293,22 @@ def _preload_cuda() -> None:
 
 def _load(path: Path) -> Session:
     if not path.is_file():
-        raise UnavailableError(f"{path}: this network is not on this machine; run: diorama models pull tiny")
+        raise NetworkError(path, "this network is not on this machine; run: diorama models pull tiny")
     before = _resident_bytes()
     try:
         raw, note = _session(path)
     except Exception as error:
-        reason = " ".join(str(error).split())[:160]
-        raise UnavailableError(f"{path}: cannot be loaded ({reason}); run: diorama models verify") from error
+        reason = _reason(error, path)
+        raise NetworkError(path, f"cannot be loaded ({reason}); run: diorama models verify") from error
     grown = _resident_bytes() - before
     device = ACCELERATORS.get(raw.get_providers()[0], "cpu")
     return Session(raw, LoadedNetwork(path, device, grown if grown > 0 else _file_bytes(path), note))
+
+
+def _reason(error: Exception, path: Path) -> str:
+    """What onnxruntime says, without its codes and the path, which every message begins with."""
+    said = _CODES.sub("", str(error)).replace(str(path), path.name)
+    return shortened(said) or type(error).__name__
 
 
 def _session(path: Path) -> tuple[Any, str]:
@@ -246,7 +332,7 @@ def _session(path: Path) -> tuple[Any, str]:
         if note and first is not None:
             _LOG.warning("%s: %s (%s)", path.name, note, " ".join(str(first).split())[:120])
         return raw, note
-    raise first or UnavailableError(f"{path}: cannot be loaded")
+    raise first or NetworkError(path, "cannot be loaded")
 
 
 def _options(level: Any) -> Any:
