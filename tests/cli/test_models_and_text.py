@@ -51,7 +51,7 @@ def test_files_fetched_elsewhere_and_damage_found(
     [
         ["models", "pull", "everything"],
         ["models", "pull", "duoduoclip", "--yes"],
-        ["models", "pull", "lite"],
+        ["models", "pull", "tiny"],
         ["models", "pull", "--from", "nowhere"],
         ["text", "", "-o", "p"],
     ],
@@ -87,7 +87,7 @@ def test_failing_networks_and_language_models_leave_the_project_as_it_was(
     notes = Project.open(tmp_path / "room").info()["notes"]
     assert any("geometry (" in note and "cannot be reached" in note for note in notes), notes
     monkeypatch.delenv("DIORAMA_LMM_BASE_URL")
-    assert "diorama models pull lite" in fails("--profile", "foundation")
+    assert "diorama models pull tiny" in fails("--profile", "foundation")
     damaged, store = network("slimsam"), ModelStore.default()
     for file in damaged.files:
         arrived = tmp_path / "arrived"

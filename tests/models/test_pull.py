@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from diorama_core.errors import Cancelled, DioramaError, InputError, UnavailableError
-from diorama_core.models.manifest import NETWORKS, ModelFile, Network, network, networks_of
+from diorama_core.models.manifest import NETWORKS, TIERS, ModelFile, Network, network, networks_of
 from diorama_core.models.pull import pull
 from diorama_core.models.store import ModelStore, default_folder
 from diorama_core.progress import CancelToken, Progress, ProgressEvent
@@ -254,8 +254,13 @@ def test_the_manifest_is_consistent() -> None:
         assert known.size_bytes > 0
         assert not (known.tiers and not known.pullable)
         assert all(f.sha256 is None or len(f.sha256) == 64 for f in known.files)
-    for tier in ("lite", "default", "paper"):
-        roles = {n.role for n in networks_of(tier)}
-        assert {"detection", "segmentation", "geometry", "inpainting", "features", "text and image"} <= roles
+    needed = {"detection", "segmentation", "geometry"}
+    more = {"inpainting", "text and image"}
+    for tier, roles in {"tiny": needed, "lite": needed | more, "default": needed | more, "paper": needed | more}.items():
+        assert roles <= {n.role for n in networks_of(tier)}
+    assert sum(n.size_bytes for n in networks_of("tiny")) < 400e6
+    assert [sum(n.size_bytes for n in networks_of(t)) for t in TIERS] == sorted(
+        sum(n.size_bytes for n in networks_of(t)) for t in TIERS
+    )
     with pytest.raises(InputError, match="models list"):
         network("nothing")

@@ -141,7 +141,7 @@ def test_a_long_run_stops_when_it_is_cancelled(tmp_path: Path) -> None:
     threading.Timer(0.3, progress.token.cancel).start()
     begun = time.perf_counter()
     with pytest.raises(Cancelled):
-        session.run({"x": np.eye(64, dtype=np.float32)}, progress)
+        session.run({"x": np.eye(64, dtype=np.float32)}, {}, progress=progress)
     assert time.perf_counter() - begun < 20
 
 

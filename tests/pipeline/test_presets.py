@@ -196,7 +196,7 @@ def test_what_the_user_gave_is_never_replaced(photo: Photo, store: ModelStore, g
 
 
 def test_the_foundation_profile_says_what_is_missing(photo: Photo, store: ModelStore) -> None:
-    with pytest.raises(UnavailableError, match="diorama models pull lite"):
+    with pytest.raises(UnavailableError, match="diorama models pull tiny"):
         stages_for("foundation", Inputs(photo), box_library(), store=store)
     assert propose_boxes(photo, store=store) is None
     for status in profile_status(store=store)[:3]:

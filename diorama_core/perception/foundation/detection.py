@@ -78,7 +78,7 @@ class EverydayDetection:
 def _labelled(found: Detections, names: tuple[str, ...], part_share: float) -> tuple[LabelledBox, ...]:
     """One box per object, in the project's categories."""
     categories = [resolve(name) for name in names]
-    # A chair found within an armchair is the armchair again: special kinds count as their broader one.
+    # A sofa found within a sectional sofa is its half: special kinds count as their broader one.
     families = [broad(r.category.name) for r in categories]
     order = {name: i for i, name in enumerate(dict.fromkeys(families))}
     kinds = np.array([order[families[k]] for k in found.labels], dtype=int)

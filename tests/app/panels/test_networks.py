@@ -29,14 +29,14 @@ def panel(page: Page, client, asked) -> Networks:
 
 def test_licences_are_accepted_before_anything_is_fetched(page, panel, asked) -> None:
     assert "to download" in page.html
-    for network in networks_of("lite"):
+    for network in networks_of("tiny"):
         assert network.title in page.html
     assert page.field(GET).disabled
     page.write(ACCEPT, True)
     page.press(GET)
     ((chosen, accepted),) = asked
-    assert chosen == networks_of("lite")
-    assert accepted == frozenset(n.id for n in networks_of("lite"))
+    assert chosen == networks_of("tiny")
+    assert accepted == frozenset(n.id for n in networks_of("tiny"))
 
 
 def test_another_set_has_other_licences(page, panel) -> None:
