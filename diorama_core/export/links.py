@@ -164,7 +164,7 @@ def hull_faces(points: Points) -> tuple[Points, np.ndarray]:
         return points, np.array([[0, 1, 2]])
     faces = np.array(hull.simplices)
     a, b, c = (points[faces[:, k]] for k in range(3))
-    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), hull.equations[:, :3]) < 0
+    inward = np.linalg.det(np.stack([b - a, c - a, hull.equations[:, :3]], axis=1)) < 0
     faces[inward] = faces[inward][:, ::-1]
     used = np.unique(faces)
     return points[used], np.searchsorted(used, faces)
