@@ -59,7 +59,10 @@ class UnsavedChanges:
         if what in ("copy", "again") and session.project is not None:
             copied = what == "copy"
             folder = session.project.folder
-            session.open_project(duplicate_project(folder, session.projects_dir) if copied else Project.open(folder))
+            if copied:
+                session.visit(self._client, duplicate_project(folder, session.projects_dir), "")
+            else:
+                session.open_project(Project.open(folder))
             return
         if found is None or not found.path.exists():
             return

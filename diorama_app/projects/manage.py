@@ -23,6 +23,11 @@ def recent_projects(projects_dir: Path) -> list[Path]:
     return sorted(folders, key=touched, reverse=True)
 
 
+def find_project(projects_dir: Path, name: str) -> Path | None:
+    """The folder of a listed project by its name; None for any other, as the name comes from an address."""
+    return next((folder for folder in recent_projects(projects_dir) if folder.name == name), None)
+
+
 def touched(folder: Path) -> float:
     """When the project's scene was last written."""
     return _written(folder / "scene.json")

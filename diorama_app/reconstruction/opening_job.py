@@ -46,7 +46,7 @@ def open_file(client: Client, name: str, content: bytes) -> None:
         opened = _read(session, file_name, content, progress.part(0.0, 0.9))
         progress.report(0.9, "saving the project")
         project = _saved(session, Path(file_name).stem, file_name, opened)
-        client.post(lambda: _show(session, project, file_name))
+        client.post(lambda: _show(client, project, file_name))
 
     session.jobs.start("import", f"Opening {file_name}", work)
 
@@ -93,7 +93,7 @@ def _library_name(session: EditorSession, opened: Opened) -> str:
     return f"{named}+{OWN}" if own and OWN not in named.split("+") else named
 
 
-def _show(session: EditorSession, project: Project, file_name: str) -> None:
-    session.open_project(project)
-    count = len(session.scene.objects)
-    session.notice_all(f"{file_name} is open as a project of its own, with {count} objects.", "good")
+def _show(client: Client, project: Project, file_name: str) -> None:
+    count = len(project.load_scene().objects)
+    message = f"{file_name} is open as a project of its own, with {count} objects."
+    client.session.visit(client, project, message)

@@ -75,6 +75,7 @@ class Client:
         """What is shown there with the next redraw."""
         self.open_tab: Callable[[str], None] = lambda name: None
         """Brings a tab of the panels to the front."""
+        self.go_to: Callable[[str], None] = lambda name: None
         self.open_board: Callable[[], None] = lambda: None
         """Shows the photo with its boxes, to draw on."""
 

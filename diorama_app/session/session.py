@@ -10,6 +10,7 @@ import logging
 import threading
 import time
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -52,6 +53,14 @@ MESH_OVERLAP_S = 0.45
 """How long an old mesh stays while the browser parses its successor."""
 
 
+@dataclass
+class Shared:
+    """What all open projects have in common."""
+
+    clip: Clip | None = None
+    """The clipboard."""
+
+
 MakeClient = Callable[["EditorSession", viser.ClientHandle, int], ConnectedClient]
 
 
@@ -87,8 +96,13 @@ class EditorSession:
         self.on_client: Callable[[Any], None] | None = None
         """Creates the page of a newly connected client."""
         self._clients_so_far = 0
-        self.clip: Clip | None = None
-        """The clipboard, shared by all projects."""
+        self.shared = Shared()
+        self.visit: Callable[[ConnectedClient, Project, str], None] = self._open_here
+        """Takes a client to a project and says something there; raises when it cannot be opened."""
+        self.on_left: Callable[[], None] = lambda: None
+        """Told when a client went away."""
+        self.greeting: tuple[str, NoticeKind] | None = None
+        """What the next client is told that comes."""
         self.binned: Path | None = None
         """The project deleted last, until it is restored."""
         self.layout_run: LayoutRun | None = None
@@ -111,6 +125,15 @@ class EditorSession:
         self.on_photo_camera: Callable[[Any], None] | None = None
         self.on_pick: Callable[[str, viser.SceneNodePointerEvent], None] | None = None
         self.on_drag: Callable[[str, viser.SceneNodeDragEvent], None] | None = None
+
+    @property
+    def clip(self) -> Clip | None:
+        """The clipboard, shared by all projects."""
+        return self.shared.clip
+
+    @clip.setter
+    def clip(self, clip: Clip | None) -> None:
+        self.shared.clip = clip
 
     # -- the document -----------------------------------------------------------------------------------------
 
@@ -305,6 +328,11 @@ class EditorSession:
             if line:
                 self.notice_all(line, "bad")
 
+    def _open_here(self, client: ConnectedClient, project: Project, message: str = "") -> None:
+        self.open_project(project)
+        if message:
+            self.notice_all(message, "good")
+
     def _take_lock(self, project: Project) -> None:
         """Let go of the project that was open, and have this one to oneself if possible."""
         if self._lock is not None:
@@ -358,12 +386,17 @@ class EditorSession:
                 self.on_client(client)
             self._show_photo_camera(client)
             client.refresh()
+        client.view.move_camera(*room_view(self.scene, client.view.aspect))
+        if self.greeting is not None:
+            (message, kind), self.greeting = self.greeting, None
+            client.notice(message, kind)
 
     def left(self, viser_client: viser.ClientHandle) -> None:
         """A browser went away."""
         self.clients.pop(viser_client.client_id, None)
         self.ui_thread.forget(viser_client.client_id)
         self.refresh_cursors()
+        self.on_left()
 
     def notice(self, client_id: int | None, message: str, kind: NoticeKind = "info") -> None:
         """Tell one person, or all when it is not known which."""
