@@ -171,7 +171,7 @@ class Editor:
         with scene:
             panels += [Outliner(gui, client), RoomSize(gui, client)]
         with from_photo:
-            photo = PhotoPanel(gui, client, self.views, self.commands)
+            photo = PhotoPanel(gui, client, self.commands)
             panels += [photo, PhotoCamera(gui, client, self.views)]
         with arrange:
             client.curves = optimiser = Optimiser(gui, client)

@@ -111,12 +111,12 @@ class Workspace:
         for editor in editors[1:]:
             stop_server(editor.server)
 
-    def close_unused(self) -> None:
-        """Close projects that nobody looks at and that have nothing to do."""
+    def close_unused(self, *, at_once: bool = False) -> None:
+        """Close projects that nobody looks at and that have nothing to do, some time after they were asked for."""
         with self._lock:
-            for editor in self._editors[1:]:
+            for editor in self.editors[1:]:
                 session = editor.session
-                left_alone = time.monotonic() - self._asked_for.get(editor, 0.0) > CLOSED_AFTER_S
+                left_alone = at_once or time.monotonic() - self._asked_for.get(editor, 0.0) > CLOSED_AFTER_S
                 if left_alone and not session.clients and session.jobs.status is None:
                     self._editors.remove(editor)
                     self._asked_for.pop(editor, None)

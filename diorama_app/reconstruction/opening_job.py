@@ -6,7 +6,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from diorama_app.reconstruction.build_job import fresh_folder
+from diorama_app.projects.begin import fresh_folder
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_core.errors import InputError
@@ -70,7 +70,7 @@ def _read(session: EditorSession, name: str, content: bytes, progress: Progress)
 
 def _saved(session: EditorSession, stem: str, file_name: str, opened: Opened) -> Project:
     """A new project with the scene; none is left behind when it cannot be saved."""
-    folder = fresh_folder(session.projects_dir, stem, resume=False)
+    folder = fresh_folder(session.projects_dir, stem)
     try:
         project = Project.create(folder, name=stem)
         with ProjectLock(folder, "the editor"):

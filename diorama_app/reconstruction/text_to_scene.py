@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_app.reconstruction.build_job import fresh_folder, show_built
+from diorama_app.projects.begin import fresh_folder
 from diorama_app.session.client import Client
 from diorama_core.errors import DioramaError, InputError
 from diorama_core.progress import Progress
@@ -26,7 +26,7 @@ def describe_room(client: Client, words: str) -> None:
     """Create a project from a description, in the background, and open it."""
     from diorama_core.text.pictures import ImageSettings, picture_of
 
-    session, draft = client.session, client.session.draft
+    session = client.session
     said = " ".join(words.split())
     if not said:
         raise InputError("describe the room, for example: a reading corner with two armchairs")
@@ -47,6 +47,6 @@ def describe_room(client: Client, words: str) -> None:
         )
         count = len(built.scene.objects)
         what = f"The scene has {count} objects" if count else "No furniture was found; draw boxes"
-        client.post(lambda: show_built(session, draft, project, built.scene, own=False, message=f"{what}; {how}."))
+        client.post(lambda: session.visit(client, project, f"{what}; {how}."))
 
     session.jobs.start("text", "Creating the room you described", work)

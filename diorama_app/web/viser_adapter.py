@@ -23,8 +23,7 @@ from collections.abc import Awaitable, Callable, Iterator
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from http.cookies import CookieError, SimpleCookie
-from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 from urllib.parse import parse_qs, parse_qsl, urlencode, urlsplit
 
 import viser
@@ -36,6 +35,7 @@ from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
 from diorama_app.web.bridge import Bridge, ConnectionHandler
+from diorama_app.web.head import with_head
 from diorama_core.errors import InputError
 
 TOKEN_COOKIE = "diorama_token"
@@ -54,8 +54,6 @@ MESSAGES_PER_S, MESSAGES_AT_ONCE = 300, 600
 """Of one connection: a drag and a turning camera together send about a hundred a second."""
 MAX_MESSAGE_BYTES = 16 * 1024 * 1024
 
-HEAD_SCRIPTS = sorted((Path(__file__).parents[1] / "static").glob("*.js"))
-"""Run in the page before viser does."""
 SECURITY_HEADERS = {
     # viser's page is one file of inline scripts, starts workers from blobs and compiles WebAssembly and templates.
     "Content-Security-Policy": "default-src 'none'; script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:; "
@@ -105,6 +103,7 @@ PROJECT = "project"
 """The parameter of an address that names a project."""
 
 
+@runtime_checkable
 class Projects(Protocol):
     """Which project an address leads to."""
 
@@ -422,8 +421,7 @@ def _prepend_script(response: Response) -> None:
 @functools.lru_cache(maxsize=2)
 def _page(body: bytes, zipped: bool) -> bytes:
     page = gzip.decompress(body) if zipped else body
-    scripts = b"".join(b"\n<script>" + script.read_bytes() + b"</script>" for script in HEAD_SCRIPTS)
-    page = page.replace(b"<head>", b"<head>" + scripts, 1)
+    page = with_head(page)
     return gzip.compress(page, mtime=0) if zipped else page
 
 

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from diorama_app import workspace as workspaces
 from diorama_app.workspace import Workspace
 from diorama_core.errors import DioramaError
 from tests.app.people import LocalClient
@@ -74,11 +73,10 @@ def test_a_damaged_project_leaves_everybody_where_they_are(workspace: Workspace,
     assert len(workspace.editors) == 1
 
 
-def test_what_nobody_looks_at_is_closed_after_a_while(workspace: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_nobody_looks_at_is_closed_after_a_while(workspace: Workspace) -> None:
     workspace.server("second")
     workspace.close_unused()
     assert len(workspace.editors) == 2, "a reload takes a moment"
-    monkeypatch.setattr(workspaces, "CLOSED_AFTER_S", -1.0)
-    workspace.close_unused()
+    workspace.close_unused(at_once=True)
     assert [e.session.project.name for e in workspace.editors] == ["first"]
     assert workspace.server("second") is not None, "and opened again when somebody comes"

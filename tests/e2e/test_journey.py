@@ -74,18 +74,18 @@ def test_a_photo_with_boxes_becomes_a_scene(with_example: Running, visit: Callab
 
     editor.tab("Photo")
     editor.upload("Upload a photo", photo)
-    editor.until(
-        lambda: session.draft.photo is not None and session.draft.photo.name == photo.name, "the photo is read"
-    )
+    editor.until(lambda: editor.session.photo is not None and editor.session.photo.name == photo.name, "read")
+    assert session.scene is example, "the example stays as it is"
+    session = editor.session
+    before = session.scene
     editor.page.get_by_text("More about this photo").click()
     editor.upload("Add boxes (JSON)", boxes)
-    editor.until(lambda: len(session.draft.boxes) > 2, "the boxes are read")
-    marked = len(session.draft.boxes)
-    assert session.scene is example, "the open scene stays until the new one is there"
+    editor.until(lambda: len(session.inputs.boxes) > 2, "the boxes are read")
+    marked = len(session.inputs.boxes)
     editor.dismiss_notices()
     editor.button("Build scene").click()
     expect(editor.page.get_by_text("Building the scene")).to_be_visible()
-    editor.until(lambda: session.jobs.status is None and session.scene is not example, "built", seconds=BUILD_S)
+    editor.until(lambda: session.jobs.status is None and session.scene is not before, "built", seconds=BUILD_S)
     assert len(session.scene.objects) >= 0.9 * marked
     assert session.scene.architecture.floor is not None
     assert session.scene.architecture.by_role("wall")
