@@ -34,6 +34,7 @@ def describe_room(client: Client, words: str) -> None:
 
     def work(progress: Progress) -> None:
         from diorama_core.project.build import build_project
+        from diorama_core.text.unmet import unmet
 
         made = picture_of(said, session.library, endpoint=endpoint, progress=progress.part(0.0, 0.2))
         name = said[:1].upper() + said[1:60]
@@ -47,6 +48,11 @@ def describe_room(client: Client, words: str) -> None:
         )
         count = len(built.scene.objects)
         what = f"The scene has {count} objects" if count else "No furniture was found; draw boxes"
+        lacking = unmet(said, built.scene)
+        if lacking:
+            missing = f"of the description is missing: {', '.join(lacking)}"
+            project.update_info(notes=[missing, *project.info().get("notes", ())])
+            what += f"; {missing}"
         client.post(lambda: session.visit(client, project, f"{what}; {how}."))
 
     session.jobs.start("text", "Creating the room you described", work)

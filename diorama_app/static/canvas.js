@@ -6,7 +6,7 @@
   const NEAR_PX = 4; // a press that moves less is a click
   const HANDLES = ["nw", "n", "ne", "e", "se", "s", "sw", "w"];
   const state = { photo: null, boxes: [], selected: null, mask: null, next: "" };
-  let root, figure, layer, drag, following;
+  let root, figure, layer, drag;
 
   const send = (what, arg) => {
     const button = document.getElementById("dio-canvas-send");
@@ -34,13 +34,12 @@
     layer.addEventListener("pointercancel", () => { drag = null; draw(); });
     layer.addEventListener("dblclick", () => layer.querySelector("input")?.select());
     document.body.append(root);
-    following = new ResizeObserver(place);
-    following.observe(window.__viserMutable.canvas);
+    addEventListener("dio-measured", place);
     addEventListener("resize", place);
     place();
   };
   const close = () => {
-    following?.disconnect();
+    removeEventListener("dio-measured", place);
     removeEventListener("resize", place);
     root?.remove();
     root = drag = null;
@@ -48,7 +47,7 @@
   // Over what is seen of the 3D view: panels may lie over it.
   const place = () => {
     if (!root) return;
-    const seen = window.__dioVisible ? window.__dioVisible() : window.__viserMutable.canvas.getBoundingClientRect();
+    const seen = window.__dioVisible();
     Object.assign(root.style, {
       left: `${seen.left}px`, top: `${seen.top}px`, width: `${seen.width}px`, height: `${seen.height}px`,
     });

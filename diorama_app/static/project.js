@@ -9,6 +9,9 @@
   Worker.prototype.postMessage = function (data, ...rest) {
     if (data?.type !== "set_server") return post.call(this, data, ...rest);
     [worker, server] = [this, data.server.replace(/\/$/, "")];
+    this.addEventListener("message", ({ data: { type } }) => {
+      if (type === "connected" || type === "closed") window.__dioConnection(type === "connected");
+    });
     return post.call(this, { ...data, server: address() }, ...rest);
   };
   const connect = () => worker && post.call(worker, { type: "set_server", server: address() });
