@@ -43,6 +43,9 @@ STYLE = """
   outline: 2px solid var(--accent); outline-offset: 1px; }
 .dio button:disabled { opacity: .4; cursor: default; }
 .dio button.on { background: var(--accent); border-color: var(--accent); color: #fff; }
+.dio .fields { display: grid; grid-template-columns: repeat(3, 1fr); gap: 4px 6px; margin-bottom: 4px; }
+.dio .fields label { font-size: 11px; color: var(--dim); min-width: 0; }
+.dio .fields input, .dio .fields select { display: block; width: 100%; font-size: 13px; padding: 4px 6px; }
 .dio .bar { display: flex; gap: 4px; flex-wrap: wrap; margin-bottom: 6px; }
 .dio .bar button { flex: 1 1 auto; white-space: nowrap; padding: 5px 8px; }
 .dio .bar button:only-child { flex: 0 1 auto; }

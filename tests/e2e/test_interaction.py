@@ -265,11 +265,16 @@ def test_dark_keys_palette_and_units(editor: EditorPage) -> None:
     editor.page.keyboard.press("Enter")
     editor.until(lambda: editor.client.view.camera.fov_rad < 0.2, "from above")
     editor.row("dining table").click()
-    editor.page.get_by_label("Unit").click()
-    editor.page.get_by_role("option", name="ft-in").click()
-    size = editor.page.locator(".mantine-Flex-root", has_text="Size (ft)").locator("input")
-    expect(size).to_have_value("4' 7 1/8\", 2' 7 1/2\", 2' 5 1/8\"")
-    size.fill("5', 3', 2' 6\"")
+    editor.page.get_by_label("Unit").select_option("ft-in")
+    for axis, before, after in (
+        ("Width", "4' 7 1/8\"", "5'"),
+        ("Depth", "2' 7 1/2\"", "3'"),
+        ("Height", "2' 5 1/8\"", "2' 6\""),
+    ):
+        field = editor.page.get_by_label(f"Size: {axis}")
+        expect(field).to_have_value(before)
+        field.fill(after)
+        field.press("Enter")
     editor.until(lambda: np.allclose(scene(editor).object("table_1").size_m, (0.9144, 1.524, 0.762), atol=1e-3))
 
 

@@ -11,7 +11,7 @@ import trimesh
 from playwright.sync_api import expect
 
 from diorama_app.serve import Running
-from diorama_app.web import viser_adapter
+from diorama_app.web import upload_limits
 from diorama_core.project.storage import Project
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene
@@ -49,7 +49,7 @@ def test_what_cannot_be_used_is_one_clear_notice_and_nothing_is_lost(
         assert session.scene is scene
         assert session.inputs is inputs
         editor.dismiss_notices()
-    monkeypatch.setattr(viser_adapter, "MAX_UPLOAD_BYTES", 1000)
+    monkeypatch.setattr(upload_limits, "MAX_UPLOAD_BYTES", 1000)
     large = tmp_path / "large.jpg"
     large.write_bytes(b"\xff" * 5000)
     editor.upload("Upload a photo", large)
