@@ -15,6 +15,7 @@ from diorama_app.commands.definitions import build_commands
 from diorama_app.commands.import_model import import_model
 from diorama_app.commands.registry import Command
 from diorama_app.interaction.gestures import Gestures
+from diorama_app.panels.address import Address
 from diorama_app.panels.alternatives import Alternatives
 from diorama_app.panels.compare import Compare
 from diorama_app.panels.dropping import take_dropped_files
@@ -57,8 +58,8 @@ from diorama_core.project.storage import Project
 
 log = logging.getLogger(__name__)
 
-LEFT_WIDTH_PX = 292
-RIGHT_WIDTH_PX = 312
+LEFT_WIDTH_PX, RIGHT_WIDTH_PX = 252, 260
+"""Together at most 40 % of a screen of 1280 pixels."""
 LEFT_TABS = ("Scene", "Photo", "Arrange", "Project")
 RIGHT_TABS = ("Object", "Library", "Export")
 
@@ -70,7 +71,7 @@ class Editor:
         self, server: viser.ViserServer, library: ShapeLibrary, projects_dir: Path, *, low_graphics: bool
     ) -> None:
         self.server = server
-        library = UserLibrary(library)
+        library = library if isinstance(library, UserLibrary) else UserLibrary(library)
         self.session = EditorSession(server, library, projects_dir, Client, low_graphics=low_graphics)
         self.session.viewport.light(low_graphics=low_graphics)
         self.views = Views(self.session)
@@ -164,12 +165,13 @@ class Editor:
             Walls(gui, client),
         ]
         client.open_tab = Tabs(gui, (LEFT_TABS, RIGHT_TABS)).open
+        client.go_to = Address(gui).go_to
         left = gui.add_tab_group()
         scene, from_photo, arrange, projects = (left.add_tab(name) for name in LEFT_TABS)
         with scene:
             panels += [Outliner(gui, client), RoomSize(gui, client)]
         with from_photo:
-            photo = PhotoPanel(gui, client, self.views, self.commands)
+            photo = PhotoPanel(gui, client, self.commands)
             panels += [photo, PhotoCamera(gui, client, self.views)]
         with arrange:
             client.curves = optimiser = Optimiser(gui, client)
