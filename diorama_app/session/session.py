@@ -287,7 +287,7 @@ class EditorSession:
         inputs, lost = _photo_of(project)
         textures = project.textures(scene)
         self.autosave.flush()
-        self._take_lock(project)
+        unwritable = self._take_lock(project)
         self.project, self.textures = project, textures
         self.read_notes()
         self.photo = None if inputs is None else inputs.photo
@@ -301,15 +301,19 @@ class EditorSession:
         self.show_whole_room()
         self.refresh()
         self.checker.look_at(scene)
-        for line in (self.read_only, damage, lost):
+        for line in (self.read_only, unwritable, damage, lost):
             if line:
                 self.notice_all(line, "bad")
 
-    def _take_lock(self, project: Project) -> None:
-        """Let go of the project that was open, and have this one to oneself if possible."""
+    def _take_lock(self, project: Project) -> str:
+        """Let go of the project that was open, and have this one to oneself if possible.
+
+        Returns:
+            A line where the folder cannot be written: the scene may be edited and exported, but not saved.
+        """
         if self._lock is not None:
             if self._lock.folder == project.folder:
-                return
+                return ""
             self._lock.release()
         self._lock, self.read_only = None, ""
         try:
@@ -318,7 +322,8 @@ class EditorSession:
         except ProjectLockedError as error:
             self.read_only = f"nothing can be changed here: {error}"
         except (ProjectError, OSError) as error:
-            log.warning("%s is opened without a lock: %s", project.folder, error)  # saving will say what is wrong
+            return f"changes will not be saved: {error}"
+        return ""
 
     def _saver_says(self, message: str, kind: NoticeKind = "good") -> None:
         def tell() -> None:
