@@ -91,7 +91,9 @@ def build_scene(
     runner = Runner(cache)
     found = evaluate(stages, {"given": inputs}, ("graph", "posed"), runner, progress.part(0.0, 0.85))
     inputs, geometry, room = found["inputs"], found["geometry"], found["architecture"]
-    textures = plane_textures(inputs, found["objects"], geometry.camera, room.architecture, stages.filler)
+    floors = {p.id for p in room.architecture.by_role("floor")}
+    standing = {edge.child for edge in room.supports if edge.parent in floors}
+    textures = plane_textures(inputs, found["objects"], geometry.camera, room.architecture, stages.filler, standing)
     noise = REASONED if inputs.depth_m is None else MEASURED
     checked, changed = checked_supports(_observed(found, library), library, noise)
     observed = _textured(containing_room(checked), textures)
