@@ -31,6 +31,7 @@ from diorama_core.evaluation.adapters.photo_annotations import (
 )
 from diorama_core.evaluation.metrics.annotated import ThingResult, measured, not_built
 from diorama_core.evaluation.metrics.colour import delta_e_2000, lab_of
+from diorama_core.evaluation.metrics.visible_colours import visible_colours
 from diorama_core.evaluation.reports.tables import Column, Row, Table, Value
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.inputs import read_inputs
@@ -173,8 +174,10 @@ def _things(name: str, photo: AnnotatedPhoto, built: Built, library: ShapeLibrar
     by_index = {o.mask_id - 1: o for o in built.scene.objects if o.mask_id is not None}
     index_of = {item.id: index for index, item in by_index.items()}
     furniture = {o.mask_id - 1 for o in built.objects}
+    shown = visible_colours(built.scene, library, built.textures)
+    in_light = {key: built.illuminant.lit(colour) for key, colour in shown.items()}
     return tuple(
-        measured(name, i, thing, by_index[i], built.scene, library, index_of)
+        measured(name, i, thing, by_index[i], built.scene, library, index_of, in_light.get(by_index[i].id))
         if i in by_index
         else not_built(name, i, thing, opening=i not in furniture)
         for i, thing in enumerate(photo.things)
@@ -208,7 +211,9 @@ def ghosts_unmarked(built: Built) -> float | None:
 def _floor_picture(
     built: Built, objects: tuple[DetectedObject, ...], standing: frozenset[str]
 ) -> UInt8[np.ndarray, "_ _ 3"]:
-    room, camera, inputs = built.architecture.architecture, built.geometry.camera, built.inputs
+    room, camera = built.architecture.architecture, built.geometry.camera
+    photo = replace(built.inputs.photo, rgb=built.illuminant.balanced(built.inputs.photo.rgb))
+    inputs = replace(built.inputs, photo=photo)
     room = replace(room, planes=coloured(room.planes, inputs.photo.rgb, camera, objects))
     assert room.floor is not None
     plain = np.rint(255 * np.array(room.floor.colour)).astype(np.uint8)[None, None]
