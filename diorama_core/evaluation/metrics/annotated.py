@@ -10,8 +10,8 @@ from jaxtyping import Float
 
 from diorama_core.evaluation.adapters.photo_annotations import AnnotatedThing
 from diorama_core.evaluation.metrics.colour import perceived_difference
-from diorama_core.evaluation.metrics.form import compared, form_of
 from diorama_core.evaluation.metrics.photo_agreement import shape_iou
+from diorama_core.library.form import compared, form_of
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.scene.types import Camera, Scene, SceneObject
 
