@@ -89,6 +89,7 @@ class Optimiser:
         self._result = LiveHtml(gui, self._act)
         self._folder = gui.add_folder(None)
         self._plot: viser.GuiUplotHandle | None = None
+        self._plots: dict[tuple[str, ...], viser.GuiUplotHandle] = {}
         self._names: tuple[str, ...] = ()
         self._report = LiveHtml(gui)
         self._arrangements = LiveHtml(gui, self._act)
@@ -186,7 +187,12 @@ class Optimiser:
 
     def _add_plot(self, names: tuple[str, ...], data: tuple[np.ndarray, ...]) -> None:
         if self._plot is not None:
-            self._plot.remove()
+            show_if(False, self._plot)
+        self._names = names
+        if names in self._plots:  # a removed one would still be sent what came before its end
+            self._plot = self._plots[names]
+            self._plot.data = data
+            return
         series = [viser.uplot.Series(label="Seconds")]
         for name, colour in zip(names, COLOURS, strict=False):
             series.append(viser.uplot.Series(label=COSTS.get(name, name), stroke=colour, width=2))
@@ -194,7 +200,7 @@ class Optimiser:
             self._plot = self._gui.add_uplot(
                 data, tuple(series), title="Costs", height=170, scales={"x": viser.uplot.Scale(time=False, auto=True)}
             )
-        self._names = names
+        self._plots[names] = self._plot
 
 
 def _choice(run: LayoutRun) -> str:
