@@ -140,6 +140,7 @@ class Trainer:
 
     def _learn(self, batch: tuple[Tensor, ...]) -> str:
         self.network.train()
+        torch.manual_seed(self.schedule.seed + self.step)  # dropout goes on as if the run had not stopped
         for group in self._optimiser.param_groups:
             group["lr"] = self.schedule.rate_at(self.step)
         total, words = self.loss(self.network, batch)
