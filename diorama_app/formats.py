@@ -40,6 +40,7 @@ _FURNITURE = frozenset[Choice]({"selection"})
 
 GUIDES: Mapping[str, Guide] = {
     "glb": Guide(MODELS, "Blender, Unity, Unreal, Godot, three.js", _TEXTURED | frozenset[Choice]({"compressed"})),
+    "blend": Guide(MODELS, "Blender, with the photo behind the camera", _TEXTURED),
     "usdz": Guide(MODELS, "iPhone and iPad (AR Quick Look)", _BODIES),
     "usdc": Guide(MODELS, "Isaac Sim, Blender, Unreal, Maya", _BODIES),
     "usda": Guide(MODELS, "the same programs, as readable text", _BODIES),

@@ -25,6 +25,8 @@ from diorama_app.formats import EXPORT_FORMATS
 from diorama_core.errors import InputError
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from diorama_core.library.record import ShapeLibrary
     from diorama_core.pipeline.stages import Stages
     from diorama_core.protocols import PoseStage
@@ -291,6 +293,8 @@ def add_picture(commands: Any) -> None:
         help="planes: floor, walls and ceiling drawn over the photo; turntable: a film, .mp4 or .gif (default: photo)",
     )
     p.add_argument("--size", type=size, metavar="WxH", help="in pixels (default: the photo's, at most 1024 wide)")
+    p.add_argument("--cycles", action="store_true", help="path-traced by Blender's Cycles, where it is installed")
+    p.add_argument("--samples", type=int, default=64, metavar="N", help="paths a pixel of --cycles (default: 64)")
 
 
 def _picture(a: argparse.Namespace) -> None:
@@ -307,11 +311,33 @@ def _picture(a: argparse.Namespace) -> None:
     kind = {".png": "PNG", ".jpg": "JPEG", ".jpeg": "JPEG"}.get(a.output.suffix.lower())
     if kind is None:
         raise InputError(f"{a.output}: pictures are written as .png or .jpg; choose such a name")
-    image = diorama.render(room, view=a.view, size=a.size)
+    image = _path_traced(room, a) if a.cycles else diorama.render(room, view=a.view, size=a.size)
     buffer = io.BytesIO()
     Image.fromarray(image).save(buffer, kind)
     write_atomically(a.output, buffer.getvalue(), error=InputError)
     print(f"{a.output}: {image.shape[1]}x{image.shape[0]}")
+
+
+def _path_traced(room: diorama.Reconstruction, a: argparse.Namespace) -> np.ndarray:
+    """Render one picture with Cycles."""
+    from diorama_core.export.cycles import cycles_picture
+    from diorama_core.render.picture import scene_view
+    from diorama_core.render.raycast import PinholeView
+
+    view = None if a.view == "planes" else scene_view(room.scene, a.view, a.size)
+    if not isinstance(view, PinholeView):
+        raise InputError(f"--cycles draws perspective views; choose photo or orbit:DEG instead of {a.view}")
+    if a.samples < 1:
+        raise InputError(f"--samples {a.samples}: ask for at least one")
+    with progress_bar() as progress:
+        return cycles_picture(
+            room.scene,
+            room.library,
+            camera=view.camera,
+            textures=room.textures,
+            samples=a.samples,
+            progress=progress,
+        )
 
 
 def _turntable(room: diorama.Reconstruction, a: argparse.Namespace) -> None:
