@@ -25,6 +25,7 @@ from pathlib import Path
 import numpy as np
 
 from diorama_app.formats import EXPORT_FORMATS
+from diorama_core.editing.placing import free_spot, hits_along, insertion, places_of
 from diorama_core.export import export_scene
 from diorama_core.export.blender import blender_python, missing_blender
 from diorama_core.export.gathering import ExportOptions, ExportScene, gather
@@ -33,10 +34,10 @@ from diorama_core.export.stability import stability
 from diorama_core.importing.opening import marked_file, open_marked
 from diorama_core.importing.sweethome import parts_of_sweet_home
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.project.storage import Project
 from diorama_core.scene import edits
-from diorama_core.scene.types import Pose, Scene, Support
+from diorama_core.scene.types import Pose, Scene
 from diorama_core.synthesis import furnished_room, hold_cameras
 from diorama_core.synthesis.finishes import finish_textures
 from tests.export.validators import gltf_findings, usd_findings
@@ -78,34 +79,29 @@ def sources(a: argparse.Namespace, library: ShapeLibrary) -> Iterator[Source]:
 
 
 def edited(scene: Scene, library: ShapeLibrary, seed: int) -> Scene:
-    """A scene after what a person does to one: moved, turned, swapped, copied, recoloured, put on a table, removed."""
+    """A scene after what a person does to one: turned, recoloured, inserted, put on another, copied, removed."""
     rng = np.random.default_rng(seed)
-    standing = [o for o in scene.objects if (s := scene.support_of(o.id)) and s.parent == "floor" and not o.locked]
-    first, last = standing[0], standing[-1]
-    turned = Pose.upright(
-        tuple(first.pose.position + np.array([0.15, -0.1, 0.0])), first.pose.yaw_rad + 0.4, tuple(first.pose.scale)
+    standing = [o.id for o in scene.objects if (s := scene.support_of(o.id)) and s.parent == "floor" and not o.locked]
+    first = scene.object(standing[0])
+    scene = edits.move(
+        scene, first.id, Pose.upright(first.pose.position, first.pose.yaw_rad + 0.3, tuple(first.pose.scale))
     )
-    scene = edits.move(scene, first.id, turned)
     scene = edits.recolour(scene, first.id, tuple(rng.uniform(0.2, 0.8, 3)))
-    scene, copy = edits.duplicate(scene, last.id, offset_world=(0.0, 1.2, 0.0))
-    shape = library.in_category("vase")[seed]
-    carrier = max(standing, key=lambda o: o.size_m[0] * o.size_m[1])
-    top = float(carrier.corners_world[:, 2].max()) + shape.size_m[2] / 2
-    place = Pose.upright((*carrier.pose.position[:2], top), 0.0)
-    vase = replace(
-        first,
-        id="vase_new",
-        label="vase",
-        category="vase",
-        shape_id=shape.id,
-        size_m=shape.size_m,
-        pose=place,
-        candidates=(),
-        colour=None,
-    )
-    scene = edits.insert(scene, vase, Support("vase_new", carrier.id))
-    loose = [o.id for o in scene.objects if o.id not in {first.id, last.id, copy, carrier.id, "vase_new"}]
-    return edits.remove(scene, loose[:1])
+    loads = {s.parent for s in scene.supports}
+    scene = edits.remove(scene, [o.id for o in scene.objects if o.id not in loads and o.id != first.id][:1])
+    table = library.in_category("side table")[seed]
+    scene = _inserted(scene, library, table, *free_spot(scene, table, None))
+    x, y, _ = scene.objects[-1].pose.position
+    scene = _inserted(scene, library, library.in_category("vase")[seed], float(x), float(y))
+    stool = library.in_category("stool")[seed]
+    return _inserted(scene, library, stool, *free_spot(scene, stool, None))
+
+
+def _inserted(scene: Scene, library: ShapeLibrary, shape: Shape, x: float, y: float) -> Scene:
+    """A shape put down at the uppermost place there, as by a click into the view from above."""
+    places = [p for p in places_of(scene, library) if p.upward]
+    hit = hits_along(np.array([x, y, 10.0]), np.array([0.0, 0.0, -1.0]), places)[0]
+    return edits.insert(scene, *insertion(scene, shape, edits.fresh_id(scene, shape.category), hit, 0.0))
 
 
 def boxes(scene: Scene, gathered: ExportScene) -> dict[str, np.ndarray]:

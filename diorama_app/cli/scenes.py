@@ -230,7 +230,15 @@ def add_export(commands: Any) -> None:
     p.add_argument("--no-ceiling", action="store_true", help="leave ceilings out, to look into the room from above")
     p.add_argument("--only", metavar="ID,ID", help="write these objects only, without the room")
     p.add_argument("--texture-size", type=int, metavar="PX", help="longest side of pictures; larger ones are reduced")
-    p.add_argument("--compress", action="store_true", help="compress geometry (glb: EXT_meshopt_compression)")
+    p.add_argument(
+        "--compress",
+        nargs="?",
+        const="meshopt",
+        default="none",
+        choices=("meshopt", "draco"),
+        help="compress geometry of a GLB (default: meshopt)",
+    )
+    p.add_argument("--photo", action="store_true", help="put the photo into the file, to come back with it (glb, usd)")
     p.add_argument("--welded", action="store_true", help="simulators: nothing moves, objects are welded in place")
     p.add_argument("--simulate", action="store_true", help="report what two seconds of gravity do to the scene")
     p.add_argument("--json", action="store_true", help="print the result as JSON")
@@ -252,7 +260,8 @@ def _export(a: argparse.Namespace) -> None:
         ceiling=not a.no_ceiling,
         only=only,
         max_texture_px=a.texture_size,
-        compression="meshopt" if a.compress else "none",
+        compression=a.compress,
+        photo=a.photo,
         bodies="welded" if a.welded else "free",
     )
     assert room.project is not None

@@ -47,11 +47,11 @@ def _collections(bpy: Any) -> None:
         made[name] = bpy.data.collections.new(name)
         scene.collection.children.link(made[name])
     for item in list(bpy.data.objects):
-        kind = {"LIGHT": "Lights", "CAMERA": "Camera"}.get(item.type)
-        name = kind or _branch(item)
+        kinds: dict[str, str] = {"LIGHT": "Lights", "CAMERA": "Camera"}
+        collection = kinds.get(item.type) or _branch(item)
         for old in list(item.users_collection):
             old.objects.unlink(item)
-        (made[name] if name else scene.collection).objects.link(item)
+        (scene.collection if collection is None else made[collection]).objects.link(item)
 
 
 def _branch(item: Any) -> str | None:
