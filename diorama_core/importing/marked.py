@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -43,6 +44,8 @@ class MarkedFile:
     pictures: Mapping[str, UInt8[np.ndarray, "h w 3"]] = field(default_factory=dict)
     """Pictures on planes, by plane id."""
     provenance: Mapping[str, Any] = field(default_factory=dict)
+    photo: bytes | None = None
+    """File of the photo; None when it was not put in."""
 
 
 def as_mapping(value: object) -> Mapping[str, Any] | None:
@@ -53,6 +56,14 @@ def as_mapping(value: object) -> Mapping[str, Any] | None:
         except ValueError:
             return None
     return value if isinstance(value, Mapping) else None
+
+
+def as_bytes(value: object) -> bytes | None:
+    """Bytes written in base 64; None when it is something else."""
+    try:
+        return base64.b64decode(value, validate=True) if isinstance(value, str) and value else None
+    except ValueError:
+        return None
 
 
 def as_ids(value: object) -> frozenset[str] | None:
