@@ -37,7 +37,7 @@ STYLE = """
 .dio button, .dio select, .dio input { font: inherit; border: 1px solid var(--line); background: var(--face);
   color: var(--ink); border-radius: 6px; padding: 4px 9px; }
 .dio button { cursor: pointer; }
-.dio input { width: 100%; min-width: 0; }
+.dio input, .dio select { width: 100%; min-width: 0; }
 .dio button:hover:not(:disabled):not(.on) { background: var(--hover); border-color: #9db7e0; }
 .dio button:focus-visible, .dio input:focus-visible, .dio [tabindex]:focus-visible {
   outline: 2px solid var(--accent); outline-offset: 1px; }
@@ -140,7 +140,7 @@ _REFOCUS = html.escape(
     "performance.now()-f[2]<20000){const t=[...b.querySelectorAll(f[0]?'[data-change]':'.row')].find(t=>"
     "(t.dataset.change||'')===f[0]&&(t.dataset.arg||'')===f[1]);if(t)t.focus()}"
 )
-"""A field that was drawn anew while somebody was in it has the focus again."""
+"""A field that was drawn anew while somebody was in it has the focus again (`rows.js`: not after a press elsewhere)."""
 _GRAB = html.escape(
     "const t=event.target.closest('[data-grab]');"
     "if(t){event.dataTransfer.setData('text',t.dataset.grab);S('grab',t.dataset.grab,event)}"
@@ -216,7 +216,6 @@ class LiveHtml:
             handlers = {
                 "click": _CLICK,
                 "focusin": _FOCUS,
-                "focusout": "window.__dioField=null",
                 "change": _CHANGE,
                 "mouseover": _HOVER,
                 "mouseleave": _LEAVE,
