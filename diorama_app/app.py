@@ -61,7 +61,7 @@ log = logging.getLogger(__name__)
 
 P = TypeVar("P", bound=Panel)
 
-LEFT_WIDTH_PX, RIGHT_WIDTH_PX = 252, 260
+LEFT_WIDTH_PX, RIGHT_WIDTH_PX = 246, 254
 """Together at most 40 % of a screen of 1280 pixels."""
 LEFT_TABS = ("Scene", "Photo", "Arrange", "Project")
 RIGHT_TABS = ("Object", "Library", "Export")

@@ -175,7 +175,8 @@ def attach(client: Client, object_id: str, parent_id: str, *, anyway: bool = Fal
     scene = session.scene
     if not scene.has_object(object_id):
         raise EditRefused("that object no longer exists")
-    why_not = "" if anyway else why_not_on(scene, object_id, parent_id)
+    in_a_circle = parent_id in descendants(scene, object_id)  # refused below, with a better reason
+    why_not = "" if anyway or in_a_circle else why_not_on(scene, object_id, parent_id)
     if why_not:
         client.offer(
             f"{why_not[:1].upper()}{why_not[1:]}",

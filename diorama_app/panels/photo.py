@@ -320,13 +320,13 @@ def _box_list(inputs: Inputs, selected: int | None) -> str:
     for index, box in enumerate(inputs.boxes):
         unknown = ' <span class="dim">as an object</span>' if box.category == "object" else ""
         rows.append(
-            f'<div class="row {"on" if index == selected else ""}" data-do="mark" data-arg="{index}" role="option" '
+            f'<div class="row {"on" if index == selected else ""}" data-do="mark" data-arg="{index}" role="treeitem" '
             f'tabindex="0" aria-selected="{"true" if index == selected else "false"}">'
             f'<span class="name">{text(box.label)}{unknown}</span>'
             + button("✕", "drop", index, title=f"Delete the box of {box.label}")
             + "</div>"
         )
-    return f'<h4>Boxes</h4><div role="listbox" aria-label="Boxes">{"".join(rows)}</div>'
+    return f'<h4>Boxes</h4><div role="tree" aria-label="Boxes">{"".join(rows)}</div>'
 
 
 def _intrinsics(given: str) -> tuple[float, float, float, float] | None:

@@ -77,6 +77,8 @@ def _saved(session: EditorSession, stem: str, file_name: str, opened: Opened) ->
             notes = [f"opened from {file_name}", *opened.changes[:MAX_NOTES]]
             project.update_info(library=_library_name(session, opened), notes=notes)
             project.save_textures(opened.textures)
+            if opened.inputs is not None:
+                project.save_inputs(opened.inputs)
             project.save_scene(opened.scene)
         project.load_scene()  # what cannot be read back is refused now, while the open project is still open
     except BaseException:

@@ -39,7 +39,29 @@
       measure();
     }
   };
-  setInterval(watch, 200);
+  // viser's labels name an id that no field has: the fields get the names themselves.
+  const name = () => {
+    for (const label of document.querySelectorAll(".mantine-Flex-root label[for]")) {
+      const words = label.textContent.trim(), row = label.closest(".mantine-Flex-root");
+      for (const field of row?.querySelectorAll("input:not([type=hidden]), textarea, [role=slider]") ?? []) {
+        if (field.getAttribute("aria-label") !== words) field.setAttribute("aria-label", words);
+      }
+    }
+  };
+  const BUTTONS = {
+    ".mantine-ColorInput-eyeDropperButton": "Pick a colour from the screen",
+    '[data-testid="floating-panel-handle"] button': "Find a command (Ctrl+K)",
+    "html.dio-phone #root button.mantine-ActionIcon-root": "Find a command",
+  };
+  const nameButtons = () => {
+    for (const [which, words] of Object.entries(BUTTONS)) {
+      for (const button of document.querySelectorAll(`${which}:not([aria-label])`)) {
+        button.setAttribute("aria-label", words);
+        button.title = words;
+      }
+    }
+  };
+  setInterval(() => { watch(); name(); nameButtons(); }, 200);
 
   let lost;
   window.__dioConnection = (there) => {

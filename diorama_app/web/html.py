@@ -20,12 +20,12 @@ OnAction = Callable[["Action"], None]
 
 STYLE = """
 <style>
-.dio, .dio-toast { --ink: #2b2f36; --dim: #626b79; --line: #d5dbe3; --soft: #f4f6f8; --card-line: #e3e7ec; --face: #fff;
+.dio, .dio-toast { --ink: #2b2f36; --dim: #59626f; --line: #d5dbe3; --soft: #f4f6f8; --card-line: #e3e7ec; --face: #fff;
   --hover: #eef3fb; --on: #fdeadb; --accent: #2f6fd6; --tile: #eef1f4; --warn: #fff6e6; --warn-line: #f0d9a8;
   --bad: #c62828; }
 :root[data-mantine-color-scheme="dark"] .dio, :root[data-mantine-color-scheme="dark"] .dio-toast { --ink: #dfe3ea;
-  --dim: #9aa4b2; --line: #454c58; --soft: #2a2e35; --card-line: #3a404a; --face: #30353d; --hover: #363d49;
-  --on: #57402c; --accent: #3f80e8; --tile: #e4e8ed; --warn: #443a20; --warn-line: #6b5a2c; --bad: #ff7d72; }
+  --dim: #b3bcc9; --line: #454c58; --soft: #2a2e35; --card-line: #3a404a; --face: #30353d; --hover: #363d49;
+  --on: #57402c; --accent: #2f6fd6; --tile: #e4e8ed; --warn: #443a20; --warn-line: #6b5a2c; --bad: #ff8f85; }
 .dio { font-size: 13px; line-height: 1.4; color: var(--ink); padding: 0 10px 8px 10px; }
 .dio * { box-sizing: border-box; }
 .dio h4 { margin: 8px 0 6px 0; font-size: 12px; font-weight: 600; color: var(--dim); letter-spacing: .01em; }
@@ -37,7 +37,7 @@ STYLE = """
 .dio button, .dio select, .dio input { font: inherit; border: 1px solid var(--line); background: var(--face);
   color: var(--ink); border-radius: 6px; padding: 4px 9px; }
 .dio button { cursor: pointer; }
-.dio input { width: 100%; min-width: 0; }
+.dio input, .dio select { width: 100%; min-width: 0; }
 .dio button:hover:not(:disabled):not(.on) { background: var(--hover); border-color: #9db7e0; }
 .dio button:focus-visible, .dio input:focus-visible, .dio [tabindex]:focus-visible {
   outline: 2px solid var(--accent); outline-offset: 1px; }
@@ -131,16 +131,16 @@ _HOVER = html.escape(
 )
 _LEAVE = html.escape("if(window.__dioPeek){window.__dioPeek='';clearTimeout(window.__dioWait);S('peek','',event)}")
 _FOCUS = html.escape(
-    "const t=event.target;if(t.matches('input[data-change]')){window.__dioField=[t.dataset.change,t.dataset.arg||'',"
-    "performance.now()];setTimeout(()=>document.activeElement===t&&t.select())}"
+    "const t=event.target;if(t.matches('[data-change],.row')){window.__dioField=[t.dataset.change||'',"
+    "t.dataset.arg||'',performance.now()];if(t.matches('input'))setTimeout(()=>document.activeElement===t&&t.select())}"
 )
 """What is clicked to be changed is selected whole: typing replaces it."""
 _REFOCUS = html.escape(
     "const f=window.__dioField,b=this.parentElement;this.remove();if(f&&document.activeElement===document.body&&"
-    "performance.now()-f[2]<3000){const t=[...b.querySelectorAll('[data-change]')].find(t=>t.dataset.change===f[0]&&"
-    "(t.dataset.arg||'')===f[1]);if(t)t.focus()}"
+    "performance.now()-f[2]<20000){const t=[...b.querySelectorAll(f[0]?'[data-change]':'.row')].find(t=>"
+    "(t.dataset.change||'')===f[0]&&(t.dataset.arg||'')===f[1]);if(t)t.focus()}"
 )
-"""A field that was drawn anew while somebody was in it has the focus again."""
+"""A field that was drawn anew while somebody was in it has the focus again (`rows.js`: not after a press elsewhere)."""
 _GRAB = html.escape(
     "const t=event.target.closest('[data-grab]');"
     "if(t){event.dataTransfer.setData('text',t.dataset.grab);S('grab',t.dataset.grab,event)}"
@@ -251,7 +251,11 @@ class LiveHtml:
             self._handle.visible = True
             self._count += 1
             return
-        back = f'<img alt="" src="data:," style="display:none" onerror="{_REFOCUS}">' if "data-change" in body else ""
+        back = (
+            f'<img alt="" src="data:," style="display:none" onerror="{_REFOCUS}">'
+            if "data-change" in body or "treeitem" in body
+            else ""
+        )
         self._handle.content = self._frame.replace("%s", body + back, 1) if body else ""
         self._handle.visible = bool(body)
 

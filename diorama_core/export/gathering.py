@@ -18,7 +18,7 @@ from jaxtyping import Float
 from diorama_core.export.lights import ExportLight, lights_of
 from diorama_core.export.limbs import ExportLimb, articulation_of, limb_of, surfaces_of
 from diorama_core.export.names import Labels
-from diorama_core.export.pictures import Picture
+from diorama_core.export.pictures import Picture, photo_text
 from diorama_core.export.sharing import SharedAppearance
 from diorama_core.library.paint import Colour
 from diorama_core.library.record import ShapeLibrary
@@ -28,7 +28,7 @@ from diorama_core.render.slabs import plane_surfaces
 from diorama_core.scene.support import ancestors, top_down
 from diorama_core.scene.types import Camera, Finish, Plane, Scene, SceneObject, Support
 
-Compression = Literal["none", "meshopt"]
+Compression = Literal["none", "meshopt", "draco"]
 Bodies = Literal["free", "welded"]
 
 
@@ -48,6 +48,8 @@ class ExportOptions:
     """Whether simulators may move objects that stand on something; mounted and locked ones never move."""
     joints: bool = False
     """Whether shapes that know their joints are written in parts that move."""
+    photo: bool = False
+    """Whether files that can be opened again hold the photo, too (GLB, USD)."""
 
 
 EVERYTHING = ExportOptions()
@@ -139,6 +141,11 @@ class ExportScene:
         for item in self.objects:
             below[item.parent] = (*below.get(item.parent, ()), item)
         return below
+
+    @property
+    def carried_photo(self) -> str | None:
+        """The photo as text for files that hold it; None where it is not asked for, or there is none."""
+        return None if self.photo is None or not self.options.photo else photo_text(self.photo)
 
     def object(self, object_id: str) -> ExportObject:
         """The exported object with this id; raises `KeyError` when it is not exported."""

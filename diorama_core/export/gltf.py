@@ -85,7 +85,7 @@ def write_gathered(gathered: ExportScene, path: Path, progress: Progress | None 
 
 
 def _document(gathered: ExportScene, progress: Progress) -> GltfDocument:
-    document = GltfDocument(generator="Diorama", compressed=gathered.options.compression == "meshopt")
+    document = GltfDocument(generator="Diorama", compression=gathered.options.compression)
     return _Builder(gathered, document, progress).built()
 
 
@@ -123,6 +123,8 @@ class _Builder:
                 "provenance": dict(self._gathered.provenance),
             },
         }
+        if self._gathered.carried_photo is not None:
+            root["extras"]["diorama_photo"] = self._gathered.carried_photo
         if children:
             root["children"] = children
         node = self._document.add("nodes", root)

@@ -14,6 +14,8 @@ from typing import IO, Any
 import numpy as np
 
 from diorama_core.export import meshopt
+from diorama_core.export.draco import EXTENSION, draco_mesh
+from diorama_core.export.gathering import Compression
 from diorama_core.export.pictures import Picture, encoded_picture, picture_suffix, power_of_two
 from diorama_core.export.tangents import tangents
 from diorama_core.render.appearance import Material, Surface
@@ -28,9 +30,10 @@ _MAGIC, _JSON_CHUNK, _BINARY_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
 class GltfDocument:
     """A document under construction. Every `add_` method returns the index of what it added."""
 
-    def __init__(self, generator: str, *, compressed: bool = False) -> None:
+    def __init__(self, generator: str, *, compression: Compression = "none") -> None:
         self._data = bytearray()
-        self._compressed = compressed
+        self._compressed = compression == "meshopt"
+        self._draco = compression == "draco"
         self._decoded_bytes = 0
         self._json: dict[str, Any] = {"asset": {"version": "2.0", "generator": generator}}
         self._materials: dict[tuple[int, bool], int] = {}
@@ -103,12 +106,35 @@ class GltfDocument:
             arrays["COLOR_0"] = surface.colours
         arrays = {name: np.ascontiguousarray(values, dtype="<f4") for name, values in arrays.items()}
         faces = surface.faces
+        if self._draco:
+            return self._draco_primitive(arrays, faces, self._material(material, textured=textured))
         if self._compressed:
             arrays, faces = meshopt.prepared(arrays, faces)
         return {
             "attributes": {name: self._attribute(name, values) for name, values in arrays.items()},
             "indices": self._indices(faces.reshape(-1), len(surface.vertices)),
             "material": self._material(material, textured=textured),
+        }
+
+    def _draco_primitive(self, arrays: dict[str, np.ndarray], faces: np.ndarray, material: int) -> dict[str, Any]:
+        """A primitive whose accessors say what Draco's data decode to."""
+        packed = draco_mesh(arrays, faces)
+        self._use(EXTENSION, required=True)
+        accessors = {}
+        for name in arrays:
+            kind = _WIDTHS[arrays[name].shape[1]]
+            entry: dict[str, Any] = {"componentType": 5126, "count": packed.vertices, "type": kind}
+            if name == "POSITION":
+                entry |= {"min": packed.lower.tolist(), "max": packed.upper.tolist()}
+            accessors[name] = self.add("accessors", entry)
+        wide = 5123 if packed.vertices < 65536 else 5125
+        indices = {"componentType": wide, "count": 3 * packed.triangles, "type": "SCALAR"}
+        stored = {"bufferView": self._view(packed.data), "attributes": dict(packed.attributes)}
+        return {
+            "attributes": accessors,
+            "indices": self.add("accessors", indices),
+            "material": material,
+            "extensions": {EXTENSION: stored},
         }
 
     def _attribute(self, name: str, values: np.ndarray) -> int:

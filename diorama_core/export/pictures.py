@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import io
 
 import cv2
@@ -36,6 +37,13 @@ def png_bytes(picture: Picture) -> bytes:
     buffer = io.BytesIO()
     Image.fromarray(np.ascontiguousarray(picture)).save(buffer, "PNG")
     return buffer.getvalue()
+
+
+def photo_text(photo: Picture) -> str:
+    """A photo as JPEG in base 64, for files that hold text only."""
+    buffer = io.BytesIO()
+    Image.fromarray(np.ascontiguousarray(photo)).save(buffer, "JPEG", quality=JPEG_QUALITY)
+    return base64.b64encode(buffer.getvalue()).decode("ascii")
 
 
 def limited(picture: Picture, max_px: int | None) -> Picture:

@@ -115,6 +115,8 @@ def _describe(prim: Usd.Prim, gathered: ExportScene) -> None:
     prim.SetDisplayName(gathered.name)
     prim.SetCustomDataByKey("diorama", scene_to_json(gathered.scene))
     prim.SetCustomDataByKey("diorama_objects", json.dumps([o.id for o in gathered.objects]))
+    if gathered.carried_photo is not None:
+        prim.SetCustomDataByKey("diorama_photo", gathered.carried_photo)
     if gathered.provenance:
         prim.SetCustomDataByKey("provenance", json.dumps(dict(gathered.provenance), ensure_ascii=False))
 

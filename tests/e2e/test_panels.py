@@ -80,7 +80,7 @@ def test_a_shape_found_by_words_is_inserted_on_the_selected_table(editor: Editor
     assert any(n.startswith(str(session.viewport.node_name(new.id))) for n in shown)
 
 
-@pytest.mark.parametrize("recipe", ["Tidy up (feasible)", "As in the paper"])
+@pytest.mark.parametrize("recipe", ["Tidy up", "As in the paper"])
 def test_the_layout_is_optimised_before_your_eyes_and_undone(editor: EditorPage, recipe: str) -> None:
     session = editor.running.session
     lifted = session.scene.object("chair_1").pose.moved((0.0, 0.0, 0.3))
