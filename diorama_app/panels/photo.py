@@ -16,8 +16,9 @@ from diorama_app.commands.registry import CommandTable
 from diorama_app.panels.fields import enable, on_change, on_press, show_if, show_label
 from diorama_app.projects.begin import begin_project
 from diorama_app.reconstruction import build_job as work
-from diorama_app.reconstruction.networks import NO_DETECTOR, can_find_furniture
+from diorama_app.reconstruction.networks import NO_DETECTOR, PROPOSALS_ONLY, can_find_furniture, can_propose_boxes
 from diorama_app.reconstruction.object_correction import add_from_photo
+from diorama_app.reconstruction.suggestions import Suggestions
 from diorama_app.reconstruction.text_to_scene import describe_room, how_pictures_come
 from diorama_app.session.client import Client
 from diorama_app.session.reading import Upload
@@ -47,6 +48,7 @@ class PhotoPanel:
         self._client, self._session = client, client.session
         self._next = COMMON[0]
         """What the next box is called."""
+        self._suggestions = Suggestions(lambda: client.post(self.refresh, key="suggestions"))
         self._picture_of: object = None
         self._picture = ""
         self._invitation = LiveHtml(gui, self._act)
@@ -95,9 +97,8 @@ class PhotoPanel:
         show_if(inputs is not None, self._more, self._draw, self._find, self._build)
         self._drawn_by.show(f'<p class="dim">{text(how_pictures_come())}</p>' if self._words.value.strip() else "")
         enable(self._describe, idle and bool(self._words.value.strip()))
-        finds = can_find_furniture()
-        enable(self._find, idle and finds)
-        self._no_detector.show(f'<p class="dim">{text(NO_DETECTOR)}</p>' if inputs is not None and not finds else "")
+        enable(self._find, idle and can_propose_boxes())
+        self._no_detector.show(_about_detection() if inputs is not None and not can_find_furniture() else "")
         self._naming.show("" if inputs is None else self._name_field(inputs))
         self._list.show("" if inputs is None else _box_list(inputs, client.selected_box))
         show_if(inputs is not None and bool(self._session.scene.objects), self._add)
@@ -270,7 +271,9 @@ class PhotoPanel:
         index = self._client.selected_box
         value = self._next if index is None else inputs.boxes[index].label
         title = "Name of the next box" if index is None else "Name of the selected box"
-        chips = "".join(button(text(name), "name", name, on=name == value) for name in COMMON)
+        likely = () if index is None else self._suggestions.of(inputs.photo, inputs.boxes[index].box)
+        names = (*likely, *(name for name in COMMON if name not in likely))[: len(COMMON)]
+        chips = "".join(button(text(name), "name", name, on=name == value) for name in names)
         options = "".join(f'<option value="{text(name)}">' for name in NAMES)
         return (
             f'<h4><label for="dio-box-name">{title}</label></h4><input id="dio-box-name" list="dio-box-names" '
@@ -303,6 +306,10 @@ def _state(inputs: Inputs) -> str:
     if can_find_furniture():
         return "<b>Build the scene: furniture is detected automatically. Or draw boxes.</b>"
     return "<b>Draw a box around each piece of furniture.</b>"
+
+
+def _about_detection() -> str:
+    return f'<p class="dim">{text(PROPOSALS_ONLY if can_propose_boxes() else NO_DETECTOR)}</p>'
 
 
 def _extras(inputs: Inputs) -> dict[str, bool]:

@@ -10,16 +10,26 @@ from diorama_core.editing.input_corrections import with_boxes_added
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.models.manifest import NETWORKS, Network
 from diorama_core.models.pull import pull
+from diorama_core.models.recogniser import has_own_recogniser
 from diorama_core.models.store import ModelStore
 from diorama_core.progress import Progress
 
 NO_DETECTOR = "Detecting furniture needs a network: download “tiny” under Project, Networks."
+PROPOSALS_ONLY = (
+    "No detector is installed: proposals come from a small one of our own, and some will be wrong. "
+    "“tiny” under Project, Networks, finds far more."
+)
 
 
 def can_find_furniture() -> bool:
     """Whether a network that finds furniture is on this machine, so that nobody needs to draw boxes."""
     store = ModelStore.default()
     return any(store.has(n) for n in NETWORKS if n.role == "detection")
+
+
+def can_propose_boxes() -> bool:
+    """Whether anything finds furniture, to be corrected by a person."""
+    return can_find_furniture() or has_own_recogniser()
 
 
 def missing_networks(store: ModelStore, networks: Sequence[Network]) -> tuple[Network, ...]:

@@ -118,6 +118,11 @@ class Recogniser:
         return mean
 
 
+def has_own_recogniser() -> bool:
+    """Whether its weights are there: an installation may leave them out."""
+    return all((FOLDER / name).is_file() for name in (DETECTOR, NAMER, CARD))
+
+
 @cache
 def own_recogniser() -> Recogniser:
     """The recogniser whose weights come with Diorama.

@@ -13,6 +13,8 @@ from diorama_core.models.store import ModelStore
 from diorama_core.perception.language.client import LmmSettings
 
 DETECTORS = ("owlv2-large", "owlv2-base", "owlv2-base-int8", "yolox-nano")
+OWN_DETECTOR = "own"
+"""The detector that comes with Diorama."""
 SEGMENTERS = ("sam2.1-large", "sam2.1-base-plus", "sam2.1-tiny", "slimsam")
 DEPTH_NETWORKS = ("moge-2-vitl", "moge-2-vitb", "moge-2-vits", "metric3d-large", "metric3d-small")
 INPAINTERS = ("lama", "migan")
@@ -39,7 +41,7 @@ class NetworkChoice:
         Raises:
             InputError: when the named one finds no boxes.
         """
-        return _chosen(self.detector, DETECTORS, "detector")
+        return _chosen(self.detector, (*DETECTORS, OWN_DETECTOR), "detector")
 
     def depth_networks(self) -> tuple[str, ...]:
         """Ids to look for, best first.
@@ -80,7 +82,7 @@ def profile_status(*, store: ModelStore | None = None, lmm: LmmSettings | None =
     store = store or ModelStore.default()
     lmm = lmm or LmmSettings.from_environment()
     return (
-        _status(store, "detection", DETECTORS, "boxes drawn by you"),
+        _status(store, "detection", DETECTORS, "boxes drawn by you, proposals to correct"),
         _status(store, "outlines", SEGMENTERS, "outlines by colour (GrabCut)"),
         _status(store, "depth and camera", DEPTH_NETWORKS, "lines, known sizes and the floor"),
         StageStatus(

@@ -16,6 +16,7 @@ from diorama_core.errors import UnavailableError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.models.foreground import Foreground
 from diorama_core.models.manifest import Network, network
+from diorama_core.models.recogniser import has_own_recogniser, own_recogniser
 from diorama_core.models.store import ModelStore, how_to_get
 from diorama_core.perception.camera.given_attitude import with_given_attitude
 from diorama_core.perception.foundation.depth_prediction import (
@@ -26,6 +27,7 @@ from diorama_core.perception.foundation.depth_prediction import (
 from diorama_core.perception.foundation.detection import OpenVocabularyDetection
 from diorama_core.perception.foundation.empty_room import EmptyRoomArchitecture
 from diorama_core.perception.foundation.outlines import PromptedMasks
+from diorama_core.perception.foundation.proposals import CONFIDENT, LIKELY, OwnDetection
 from diorama_core.perception.graph.geometric import GeometricGraph
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.perception.language.stages import LanguageGraph, LanguageRecognition
@@ -36,6 +38,7 @@ from diorama_core.pipeline.choices import (
     DETECTORS,
     FOREGROUNDS,
     INPAINTERS,
+    OWN_DETECTOR,
     PATCH_FEATURES,
     SEGMENTERS,
     NetworkChoice,
@@ -80,6 +83,8 @@ def stages_for(
     """
     choice = choice or NetworkChoice()
     base = embedded_stages(inputs, library, recipe=recipe)
+    if not inputs.boxes and inputs.instances is None:
+        base = replace(base, detection=own_detection())
     if profile == "embedded":
         return base
     store = store or ModelStore.default()
@@ -124,14 +129,23 @@ def foundation_stages(
 
 
 def detection_stage(store: ModelStore, choice: NetworkChoice | None = None) -> DetectionStage | None:
-    """The named detector or the best one on this machine, as a stage."""
-    return _best(store, (choice or NetworkChoice()).detectors(), network_stages.detector)
+    """The named detector or the best one on this machine, as a stage; the one that comes with Diorama without any."""
+    detectors = (choice or NetworkChoice()).detectors()
+    found = None if detectors == (OWN_DETECTOR,) else _best(store, detectors, network_stages.detector)
+    return found or own_detection()
+
+
+def own_detection(threshold: float = CONFIDENT) -> OwnDetection | None:
+    """The detector that comes with Diorama; None where its weights were left out."""
+    return OwnDetection(own_recogniser(), threshold) if has_own_recogniser() else None
 
 
 def propose_boxes(
     photo: Photo, *, store: ModelStore | None = None, progress: Progress | None = None
 ) -> tuple[LabelledBox, ...] | None:
-    """Boxes for a photo, to be corrected by a person; None where no detector is on this machine.
+    """Boxes for a photo, to be corrected by a person; None where there is no detector at all.
+
+    The detector that comes with Diorama proposes more than a build would use unseen.
 
     Raises:
         UnavailableError: when a network is damaged.
@@ -141,6 +155,8 @@ def propose_boxes(
     stage = detection_stage(store)
     if stage is None:
         return None
+    if isinstance(stage, OwnDetection):
+        stage = own_detection(LIKELY) or stage
     lmm = LmmSettings.from_environment()
     recognition = LanguageRecognition(lmm) if lmm is not None and isinstance(stage, OpenVocabularyDetection) else None
     stages = ProposalStages(stage, recognition)
@@ -153,7 +169,7 @@ def _insist_on(store: ModelStore, choice: NetworkChoice) -> None:
     """Refuse a network that the user names and that is not here, instead of doing without."""
     named_ones = (choice.detector and choice.detectors()[0], choice.depth and choice.depth_networks()[0])
     for named in filter(None, named_ones):
-        if not store.has(network(named)):
+        if named != OWN_DETECTOR and not store.has(network(named)):
             raise UnavailableError(f"{named} is not on this machine; run: diorama models pull {named}")
 
 

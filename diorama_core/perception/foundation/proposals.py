@@ -13,7 +13,9 @@ from diorama_core.library.taxonomy import ARCHITECTURE_WORDS
 from diorama_core.models.recogniser import Recogniser
 from diorama_core.progress import Progress
 
-MOST = 40
+CONFIDENT, LIKELY = 0.5, 0.25
+"""Scores from which a build uses a box unseen, and from which a person is shown one."""
+MOST = 12
 MIN_SIDE_PX = 8.0
 SUGGESTIONS = 5
 
@@ -23,12 +25,13 @@ class OwnDetection:
     """Proposes boxes with the shipped detector and names them with the shipped namer."""
 
     recogniser: Recogniser
-    threshold: float = 0.3
+    threshold: float = CONFIDENT
+    most: int = MOST
 
     def detect(self, photo: Photo, words: tuple[str, ...], progress: Progress) -> tuple[LabelledBox, ...]:
         """Boxes of likely objects, best first; `words` is ignored."""
         progress.report(0.0, "Looking for furniture")
-        found = self.recogniser.propose(photo.rgb, self.threshold, MOST)
+        found = self.recogniser.propose(photo.rgb, self.threshold, self.most)
         large = np.flatnonzero((found.boxes[:, 2:] - found.boxes[:, :2]).min(axis=1, initial=np.inf) >= MIN_SIDE_PX)
         found = found.rows(large)
         progress.report(0.6, f"Naming {len(found)} boxes")
