@@ -37,7 +37,7 @@ def add_bench(commands: Any) -> None:
     """Declare `diorama bench`."""
     p: argparse.ArgumentParser = commands.add_parser("bench", help="Measure the stages on rooms of known truth.")
     tables = p.add_subparsers(
-        dest="table", required=True, metavar="|".join([*(name for name, _, _ in TABLES), "photos"])
+        dest="table", required=True, metavar="|".join([*(name for name, _, _ in TABLES), "photos", "recognition"])
     )
     runs = {"layout": _bench_layout, "speed": _bench_speed, "rooms": _bench_survey, "system": _bench_system}
     for name, scenes, summary in TABLES:
@@ -78,6 +78,7 @@ def add_bench(commands: Any) -> None:
             )
             one.add_argument("--quick", action="store_true", help="small quantities only, about a minute")
     _add_photos(tables)
+    _add_recognition(tables)
 
 
 def _add_photos(tables: Any) -> None:
@@ -90,6 +91,26 @@ def _add_photos(tables: Any) -> None:
     one.add_argument("--stages", type=Path, metavar="DIR", help="keep stage results, so that a later run resumes")
     one.add_argument("--json", type=Path, metavar="FILE", help="write the tables and every thing as JSON too")
     one.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables as Markdown, or into their place")
+
+
+def _add_recognition(tables: Any) -> None:
+    example = "diorama bench recognition annotations.json --photos pictures"
+    one = command(tables, "recognition", _bench_recognition, "What detectors find in annotated photos.", example)
+    one.add_argument("annotations", type=Path, metavar="ANNOTATIONS", help="boxes and kinds (JSON)")
+    one.add_argument("--photos", type=Path, required=True, metavar="DIR", help="pictures named by the annotations' ids")
+    one.add_argument("--json", type=Path, metavar="FILE", help="write the tables and every photo as JSON too")
+    one.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables as Markdown, or into their place")
+
+
+def _bench_recognition(a: argparse.Namespace) -> None:
+    from diorama_core.evaluation.benchmarks import recognition
+    from diorama_core.pipeline.presets import detection_routes, namers
+
+    if not a.photos.is_dir():
+        raise InputError(f"{a.photos}: there is no such folder; give the folder of the annotated pictures")
+    with progress_bar() as progress:
+        bench = recognition.run(a.annotations, a.photos, detection_routes(), namers(), progress)
+    _show(bench, a)
 
 
 def _bench_layout(a: argparse.Namespace) -> None:

@@ -148,6 +148,8 @@ def _build(a: argparse.Namespace) -> None:
         print(json.dumps(report))
     else:
         print(f"{a.output}: {report['summary']}")
+        if "left_out" in report:
+            print(_about_proposals(a.output, len(room.scene.objects), report["left_out"]))
         if not room.scene.objects:
             print(_invitation(a.output, detected=room.stages is not None and room.stages.detection is not None))
 
@@ -173,6 +175,14 @@ def _with_options(stages: Stages, a: argparse.Namespace) -> Stages:
     if a.pose is not None:
         stages = replace(stages, pose=pose_solver(a.pose, diorama.open_library(a.library)))
     return stages
+
+
+def _about_proposals(project: Path, used: int, left_out: int) -> str:
+    """What to expect of a scene of the recogniser that comes with Diorama."""
+    return (
+        f"No boxes were given: {used} of {used + left_out} likely objects of the built-in recogniser were used. "
+        f"Open it with 'diorama serve {project}' and correct the boxes, or find more with 'diorama models pull tiny'."
+    )
 
 
 def _invitation(project: Path, *, detected: bool) -> str:

@@ -9,6 +9,7 @@ from diorama_core.api import Reconstruction
 from diorama_core.artefacts import LayoutReport
 from diorama_core.errors import ProjectError
 from diorama_core.io.atomic import write_atomically
+from diorama_core.perception.foundation.proposals import OwnDetection, left_out
 from diorama_core.pipeline.arrangements import arrangement, arrangement_count
 from diorama_core.pipeline.provenance_text import camera_sentence
 from diorama_core.progress import Progress
@@ -56,6 +57,8 @@ def build_report(room: Reconstruction, scenes: tuple[str, ...]) -> dict[str, Any
     planes = scene.architecture.planes
     walls = len(scene.architecture.by_role("wall"))
     seconds = sum(run.seconds for run in built.runs)
+    detection = None if room.stages is None else room.stages.detection
+    unsure = {"left_out": left_out(detection, built.inputs.photo)} if isinstance(detection, OwnDetection) else {}
     camera = camera_sentence(built.camera, built.inputs.depth_source)
     return {
         "project": str(room.project.folder),
@@ -76,5 +79,6 @@ def build_report(room: Reconstruction, scenes: tuple[str, ...]) -> dict[str, Any
         "camera": {"confidence": built.camera.confidence, "source": camera},
         "stages": [{"stage": r.stage, "seconds": round(r.seconds, 3), "cached": r.cached} for r in built.runs],
         "notes": list(built.notes),
+        **unsure,
         "metrics": dict(scene.metrics),
     }

@@ -42,6 +42,16 @@ def intersections(a: Float[np.ndarray, "4"], boxes: Float[np.ndarray, "n 4"]) ->
     return np.prod(np.maximum(high - low, 0), axis=1)
 
 
+def overlaps(a: Float[np.ndarray, "n 4"], b: Float[np.ndarray, "k 4"]) -> Float[np.ndarray, "n k"]:
+    """Intersection over union of every pair."""
+    if not len(a) or not len(b):
+        return np.zeros((len(a), len(b)))
+    shared = np.stack([intersections(row, b) for row in a])
+    union = areas(a)[:, None] + areas(b) - shared
+    out: Float[np.ndarray, "n k"] = shared / np.maximum(union, 1e-9)
+    return out
+
+
 def without_doubles(found: Detections, iou: float, *, across_classes: bool) -> Detections:
     """Non-maximum suppression: of boxes that overlap more than `iou`, the best stays.
 

@@ -6,9 +6,13 @@ and takes the paper's way to poses, by correspondences of patch features.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Literal, TypeVar
+
+import numpy as np
+from jaxtyping import Float
 
 from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
@@ -24,10 +28,10 @@ from diorama_core.perception.foundation.depth_prediction import (
     NetworkDepth,
     NetworkDepthPrediction,
 )
-from diorama_core.perception.foundation.detection import OpenVocabularyDetection
+from diorama_core.perception.foundation.detection import EverydayDetection, OpenVocabularyDetection
 from diorama_core.perception.foundation.empty_room import EmptyRoomArchitecture
 from diorama_core.perception.foundation.outlines import PromptedMasks
-from diorama_core.perception.foundation.proposals import CONFIDENT, LIKELY, OwnDetection
+from diorama_core.perception.foundation.proposals import CONFIDENT, LIKELY, JoinedDetection, OwnDetection, names_of
 from diorama_core.perception.graph.geometric import GeometricGraph
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.perception.language.stages import LanguageGraph, LanguageRecognition
@@ -132,12 +136,33 @@ def detection_stage(store: ModelStore, choice: NetworkChoice | None = None) -> D
     """The named detector or the best one on this machine, as a stage; the one that comes with Diorama without any."""
     detectors = (choice or NetworkChoice()).detectors()
     found = None if detectors == (OWN_DETECTOR,) else _best(store, detectors, network_stages.detector)
-    return found or own_detection()
+    own = own_detection()
+    if isinstance(found, EverydayDetection) and own is not None and (choice is None or choice.detector is None):
+        return JoinedDetection(found, own)
+    return found or own
 
 
 def own_detection(threshold: float = CONFIDENT) -> OwnDetection | None:
     """The detector that comes with Diorama; None where its weights were left out."""
     return OwnDetection(own_recogniser(), threshold) if has_own_recogniser() else None
+
+
+def detection_routes(store: ModelStore | None = None) -> Mapping[str, DetectionStage]:
+    """Every way to boxes on this machine, by name, to be compared: each detector, and the one that is used."""
+    store = store or ModelStore.default()
+    routes = {i: network_stages.detector(store, network(i)) for i in DETECTORS if store.has(network(i))}
+    own = own_detection(LIKELY)
+    if own is not None:
+        routes["own, likely"], routes["own, confident"] = own, replace(own, threshold=CONFIDENT)
+    used = detection_stage(store)
+    return routes if used is None else {**routes, "used": used}
+
+
+def namers() -> Mapping[str, Callable[[Photo, Float[np.ndarray, "n 4"]], Sequence[Sequence[str]]]]:
+    """Every way to name given boxes, by name."""
+    if not has_own_recogniser():
+        return {}
+    return {"own": partial(names_of, own_recogniser())}
 
 
 def propose_boxes(
@@ -155,8 +180,11 @@ def propose_boxes(
     stage = detection_stage(store)
     if stage is None:
         return None
-    if isinstance(stage, OwnDetection):
-        stage = own_detection(LIKELY) or stage
+    likely = own_detection(LIKELY)
+    if isinstance(stage, OwnDetection) and likely is not None:
+        stage = likely
+    elif isinstance(stage, JoinedDetection) and likely is not None:
+        stage = replace(stage, own=likely)
     lmm = LmmSettings.from_environment()
     recognition = LanguageRecognition(lmm) if lmm is not None and isinstance(stage, OpenVocabularyDetection) else None
     stages = ProposalStages(stage, recognition)

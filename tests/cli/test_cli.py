@@ -13,6 +13,7 @@ from PIL import Image
 from diorama_app.cli import main
 from diorama_app.cli.scenes import POSES, pose_solver
 from diorama_core.library.catalogue import built_in_library
+from diorama_core.models import recogniser
 from diorama_core.pose.correspondence.solvers import CorrespondencePose
 from tests.cli.room_photo import write_room
 
@@ -46,7 +47,10 @@ def test_building_again_reads_finished_stages(project: Path, capsys: pytest.Capt
     assert (project / "scene.json").read_text() == before
 
 
-def test_a_photo_alone_gives_a_room_and_an_invitation(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_photo_alone_gives_a_room_and_an_invitation(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(recogniser, "FOLDER", tmp_path / "left out")
     photo, _ = write_room(tmp_path)
     assert main(["build", str(photo), "-o", str(tmp_path / "empty")]) == 0
     assert "draw boxes" in capsys.readouterr().out

@@ -50,7 +50,7 @@ def test_missing_weights_are_one_clear_line(tmp_path: Path) -> None:
 @pytest.mark.skipif(not (FOLDER / "recogniser.json").exists(), reason="no weights are shipped")
 def test_the_shipped_weights_find_the_examples_furniture() -> None:
     from diorama_app.projects.example import example_inputs
-    from diorama_core.evaluation.benchmarks.recognition import overlaps
+    from diorama_core.models.boxes import overlaps
 
     inputs = example_inputs().inputs
     recogniser = own_recogniser()

@@ -11,11 +11,13 @@ import torch
 
 from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
-from diorama_core.errors import UnavailableError
+from diorama_core.errors import InputError, UnavailableError
+from diorama_core.models import recogniser
 from diorama_core.models.manifest import network
 from diorama_core.models.store import ModelStore
+from diorama_core.perception.foundation.proposals import OwnDetection
 from diorama_core.perception.language.client import LmmSettings
-from diorama_core.pipeline.choices import profile_status
+from diorama_core.pipeline.choices import NetworkChoice, profile_status
 from diorama_core.pipeline.presets import propose_boxes, stages_for
 from diorama_core.pipeline.provenance_text import camera_sentence
 from diorama_core.pipeline.run import Built, build_scene
@@ -155,16 +157,16 @@ def test_every_network_of_the_paper_takes_its_stage(photo: Photo, store: ModelSt
     file = tmp_path / "some.onnx"
     file.write_bytes(b"not looked at")
 
-    def install(*ids: str) -> None:
+    def put(*ids: str) -> None:
         for network_id in ids:
             install(store, network_id, [file] * len(network(network_id).files))
 
     inputs = Inputs(photo)
-    install("owlv2-large", "sam2.1-large", "metric3d-large")
+    put("owlv2-large", "sam2.1-large", "metric3d-large")
     bare = stages_for("foundation", inputs, box_library(), store=store)
     assert isinstance(bare.architecture, PlanarRoom)
     assert isinstance(bare.pose, RenderAndCompare)
-    install("lama", "birefnet", "birefnet-lite", "mvanet", "dinov2-large", "gigapose-scale")
+    put("lama", "birefnet", "birefnet-lite", "mvanet", "dinov2-large", "gigapose-scale")
     stages = stages_for("foundation", inputs, box_library(), store=store)
     used = {
         "detection": "owlv2-large",
@@ -198,12 +200,42 @@ def test_what_the_user_gave_is_never_replaced(photo: Photo, store: ModelStore, g
 def test_the_foundation_profile_says_what_is_missing(photo: Photo, store: ModelStore) -> None:
     with pytest.raises(UnavailableError, match="diorama models pull tiny"):
         stages_for("foundation", Inputs(photo), box_library(), store=store)
-    assert propose_boxes(photo, store=store) is None
     for status in profile_status(store=store)[:3]:
         assert not status.present
         assert status.size_mb > 0
         assert status.licence
         assert "pull default" in status.advice
+
+
+def test_without_networks_the_recogniser_of_our_own_proposes_and_builds_use_what_is_sure(
+    photo: Photo, store: ModelStore, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    own = stages_for("embedded", Inputs(photo), box_library(), store=store).detection
+    assert isinstance(own, OwnDetection)
+    assert own == stages_for("auto", Inputs(photo), box_library(), store=store).detection
+    sure, likely = own.detect(photo, (), Progress()), propose_boxes(photo, store=store)
+    assert likely is not None
+    assert {b.box for b in sure} <= {b.box for b in likely}
+    marked = Inputs(photo, (LabelledBox(BOX, "sofa", "sofa"),))
+    assert stages_for("embedded", marked, box_library(), store=store).detection is None
+    monkeypatch.setattr(recogniser, "FOLDER", tmp_path)
+    assert stages_for("embedded", Inputs(photo), box_library(), store=store).detection is None
+    assert propose_boxes(photo, store=store) is None
+
+
+def test_a_network_can_be_named_instead_of_the_best(
+    photo: Photo, store: ModelStore, graphs: dict[str, list[Path]]
+) -> None:
+    install(store, "yolox-nano", graphs["yolox-nano"])
+    named = [
+        stages_for("auto", Inputs(photo), box_library(), store=store, choice=NetworkChoice(detector)).detection
+        for detector in (None, "yolox-nano", "own")
+    ]
+    assert [type(stage).__name__ for stage in named] == ["EverydayDetection", "EverydayDetection", "OwnDetection"]
+    with pytest.raises(UnavailableError, match="models pull owlv2-base"):
+        stages_for("auto", Inputs(photo), box_library(), store=store, choice=NetworkChoice("owlv2-base"))
+    with pytest.raises(InputError, match="no depth network"):
+        stages_for("auto", Inputs(photo), box_library(), store=store, choice=NetworkChoice(depth="lama"))
 
 
 def test_a_damaged_network_is_one_clear_line(photo: Photo, store: ModelStore, tmp_path: Path) -> None:

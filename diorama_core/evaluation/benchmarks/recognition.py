@@ -15,7 +15,7 @@ from diorama_core.errors import InputError
 from diorama_core.evaluation.adapters.photo_annotations import AnnotatedPhoto, picture_of, read_annotations
 from diorama_core.evaluation.reports.tables import Column, Row, Table
 from diorama_core.library.taxonomy import broad
-from diorama_core.models.boxes import areas, intersections
+from diorama_core.models.boxes import overlaps
 from diorama_core.perception.inputs import read_inputs
 from diorama_core.progress import Progress
 from diorama_core.protocols import DetectionStage
@@ -167,16 +167,6 @@ def _name(namer: Namer, photo: Photo, boxes: Float[np.ndarray, "n 4"], about: An
     first = sum(r[0] == kind for r, kind in zip(ranked, kinds, strict=True))
     five = sum(kind in r[:5] for r, kind in zip(ranked, kinds, strict=True))
     return Named(len(asked), first, five, seconds)
-
-
-def overlaps(a: Float[np.ndarray, "n 4"], b: Float[np.ndarray, "k 4"]) -> Float[np.ndarray, "n k"]:
-    """Intersection over union of every pair."""
-    if not len(a) or not len(b):
-        return np.zeros((len(a), len(b)))
-    shared = np.stack([intersections(row, b) for row in a])
-    union = areas(a)[:, None] + areas(b) - shared
-    out: Float[np.ndarray, "n k"] = shared / np.maximum(union, 1e-9)
-    return out
 
 
 def _found_values(photos: Sequence[Found]) -> tuple[float | int, ...]:

@@ -10,13 +10,17 @@ from jaxtyping import Float
 
 from diorama_core.artefacts import LabelledBox, Photo
 from diorama_core.library.taxonomy import ARCHITECTURE_WORDS
+from diorama_core.models.boxes import overlaps
 from diorama_core.models.recogniser import Recogniser
 from diorama_core.progress import Progress
+from diorama_core.protocols import DetectionStage
 
 CONFIDENT, LIKELY = 0.5, 0.25
 """Scores from which a build uses a box unseen, and from which a person is shown one."""
 MOST = 12
 MIN_SIDE_PX = 8.0
+SAME_IOU = 0.5
+"""Two boxes that overlap at least so much are one object's."""
 SUGGESTIONS = 5
 
 
@@ -42,6 +46,30 @@ class OwnDetection:
             x1, y1, x2, y2 = (float(v) for v in box)
             boxes.append(LabelledBox((x1, y1, x2, y2), name, name, float(score)))
         return tuple(boxes)
+
+
+@dataclass(frozen=True)
+class JoinedDetection:
+    """Everyday objects from one detector, and what it does not know or see from the one that comes with Diorama."""
+
+    everyday: DetectionStage
+    own: OwnDetection
+
+    def detect(self, photo: Photo, words: tuple[str, ...], progress: Progress) -> tuple[LabelledBox, ...]:
+        """Boxes of both, best first; of two that overlap the everyday detector's stays, since it learnt from photos."""
+        everyday = self.everyday.detect(photo, words, progress.part(0.0, 0.5))
+        own = self.own.detect(photo, words, progress.part(0.5, 1.0))
+        known = np.array([b.box for b in everyday], dtype=float).reshape(-1, 4)
+        boxes = np.array([b.box for b in own], dtype=float).reshape(-1, 4)
+        overlap = overlaps(boxes, known).max(axis=1, initial=0.0)
+        new = [box for box, shared in zip(own, overlap, strict=True) if shared < SAME_IOU]
+        return tuple(sorted((*everyday, *new), key=lambda b: -b.score))
+
+
+def left_out(stage: OwnDetection, photo: Photo) -> int:
+    """How many likely objects a build did not use, because it takes only those of which the detector is sure."""
+    likely = OwnDetection(stage.recogniser, LIKELY, stage.most).detect(photo, (), Progress())
+    return sum(box.score < stage.threshold for box in likely)
 
 
 def names_of(recogniser: Recogniser, photo: Photo, boxes: Float[np.ndarray, "n 4"]) -> Sequence[tuple[str, ...]]:
