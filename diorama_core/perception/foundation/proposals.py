@@ -9,15 +9,16 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import LabelledBox, Photo
-from diorama_core.library.taxonomy import ARCHITECTURE_WORDS
+from diorama_core.library.hyponyms import meanings
+from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN
 from diorama_core.models.boxes import overlaps
 from diorama_core.models.recogniser import Recogniser
 from diorama_core.progress import Progress
 from diorama_core.protocols import DetectionStage
 
-CONFIDENT, LIKELY = 0.5, 0.25
+CONFIDENT, LIKELY = 0.62, 0.45
 """Scores from which a build uses a box unseen, and from which a person is shown one."""
-MOST = 12
+MOST = 10
 MIN_SIDE_PX = 8.0
 SAME_IOU = 0.5
 """Two boxes that overlap at least so much are one object's."""
@@ -74,6 +75,9 @@ def left_out(stage: OwnDetection, photo: Photo) -> int:
 
 def names_of(recogniser: Recogniser, photo: Photo, boxes: Float[np.ndarray, "n 4"]) -> Sequence[tuple[str, ...]]:
     """For every box the likeliest categories, best first."""
-    probabilities = recogniser.name(photo.rgb, boxes)
+    frequent = meanings(UNKNOWN.name, UNKNOWN.name)
+    # The namer learnt from rooms in which every category is about equally often.
+    usual = np.array([frequent.get(name, min(frequent.values())) for name in recogniser.categories])
+    probabilities = recogniser.name(photo.rgb, boxes) * usual
     order = np.argsort(-probabilities, axis=1, kind="stable")[:, :SUGGESTIONS]
     return [tuple(recogniser.categories[k] for k in row) for row in order]
