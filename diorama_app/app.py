@@ -6,7 +6,7 @@ import logging
 import threading
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import viser
 
@@ -21,6 +21,7 @@ from diorama_app.panels.compare import Compare
 from diorama_app.panels.dropping import take_dropped_files
 from diorama_app.panels.export import ExportPanel
 from diorama_app.panels.help import show_help
+from diorama_app.panels.in_place import InPlace
 from diorama_app.panels.job import JobStrip
 from diorama_app.panels.library import LibraryPanel
 from diorama_app.panels.measure import Tape
@@ -57,6 +58,8 @@ from diorama_core.library.user_library import UserLibrary
 from diorama_core.project.storage import Project
 
 log = logging.getLogger(__name__)
+
+P = TypeVar("P", bound=Panel)
 
 LEFT_WIDTH_PX, RIGHT_WIDTH_PX = 246, 254
 """Together at most 40 % of a screen of 1280 pixels."""
@@ -168,30 +171,35 @@ class Editor:
         client.go_to = Address(gui).go_to
         left = gui.add_tab_group()
         scene, from_photo, arrange, projects = (left.add_tab(name) for name in LEFT_TABS)
+
+        def place(title: str, make: Callable[[], P]) -> P:
+            placed = InPlace(gui, title, make)
+            panels.append(placed)
+            return placed.panel
+
         with scene:
-            panels += [Outliner(gui, client), RoomSize(gui, client)]
+            place("The list of objects", lambda: Outliner(gui, client))
+            place("The size of the room", lambda: RoomSize(gui, client))
         with from_photo:
-            photo = PhotoPanel(gui, client, self.commands)
-            panels += [photo, PhotoCamera(gui, client, self.views)]
+            photo = place("The photo", lambda: PhotoPanel(gui, client, self.commands))
+            place("The photo's camera", lambda: PhotoCamera(gui, client, self.views))
         with arrange:
-            client.curves = optimiser = Optimiser(gui, client)
-            panels.append(optimiser)
+            client.curves = place("The layout", lambda: Optimiser(gui, client))
         with projects:
-            panels += [Projects(gui, client, self.commands, photo.take), Networks(gui, client)]
+            place("The list of projects", lambda: Projects(gui, client, self.commands, photo.take))
+            place("The list of networks", lambda: Networks(gui, client))
         right = gui.add_panel()
         about, library, exporting = (right.add_tab(name) for name in RIGHT_TABS)
         with about:
-            panels += [
-                Properties(gui, client, self.commands),
-                OwnModel(gui, client),
-                Alternatives(gui, client),
-                Supports(gui, client),
-                PhotoCorrection(gui, client),
-            ]
+            place("The object", lambda: Properties(gui, client, self.commands))
+            place("Your own model", lambda: OwnModel(gui, client))
+            place("The alternatives", lambda: Alternatives(gui, client))
+            place("What supports it", lambda: Supports(gui, client))
+            place("The correction by the photo", lambda: PhotoCorrection(gui, client))
         with library:
-            panels.append(LibraryPanel(gui, client))
+            place("The library", lambda: LibraryPanel(gui, client))
         with exporting:
-            panels.append(ExportPanel(gui, client))
+            place("The export", lambda: ExportPanel(gui, client))
         take_dropped_files(
             gui,
             client,

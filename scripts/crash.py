@@ -253,7 +253,7 @@ def optimiser(kills: int, chance: np.random.Generator) -> Figures:
 
         def work(say: Say) -> None:
             with ProjectLock(project.folder, "crash"):
-                layout = recipe("feasible", PlainLibrary(), depth_measured=False)
+                layout = recipe("all-in-one", PlainLibrary(), depth_measured=False)
                 project.save_scene(layout.optimise(project.load_scene(), Progress())[0])
 
         whole_s = _duration(work)

@@ -324,7 +324,7 @@ class EditorSession:
         for client in self.clients.values():
             self._show_where_left(client)
         self.checker.look_at(scene)
-        for line in (self.read_only, *read.damage):
+        for line in (self.read_only, self._access.unwritable, *read.damage):
             if line:
                 self.notice_all(line, "bad")
 

@@ -17,7 +17,8 @@ from diorama_core.errors import ExportError, UnavailableError
 from diorama_core.progress import Progress
 
 if TYPE_CHECKING:
-    from diorama_core.export.gathering import ExportOptions, ExportScene, Picture
+    from diorama_core.export.gathering import ExportOptions, ExportScene
+    from diorama_core.export.pictures import Picture
     from diorama_core.library.record import ShapeLibrary
     from diorama_core.scene.types import Scene
 

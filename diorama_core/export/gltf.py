@@ -26,10 +26,10 @@ from diorama_core.export.gathering import (
     ExportScene,
     gather,
     rigid_inverse,
-    unique_name,
 )
 from diorama_core.export.gltf_document import GltfDocument
 from diorama_core.export.lights import ExportLight
+from diorama_core.export.names import unique_name
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.scene.schema import scene_to_json

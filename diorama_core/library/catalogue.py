@@ -16,8 +16,9 @@ from diorama_core.io.cache import LruCache
 from diorama_core.io.derived import derived
 from diorama_core.library import furniture, taxonomy
 from diorama_core.library.furniture.geometry_key import geometry_key
+from diorama_core.library.furniture.latest import built_once
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, built, mesh_of, scene_of
+from diorama_core.library.furniture.model import Design, mesh_of, scene_of
 from diorama_core.library.furniture.solids import Solid
 from diorama_core.library.record import Shape, SupportSurface, usual_contact_faces
 from diorama_core.library.surfaces import SURFACES_VERSION, support_surfaces
@@ -56,6 +57,8 @@ BULK_DENSITY: dict[str, float] = {
     "dishwasher": 150, "kitchen island": 110, "wall cabinet": 110, "bar cart": 45,
 }  # fmt: skip
 """Kilograms per cubic metre of bounding box: a rough guess for physics, from weighing catalogues' furniture."""
+SCENE_BYTES = 256e6
+"""Of the arrays of models that stay in memory."""
 
 
 def default_cache_dir() -> Path:
@@ -81,7 +84,7 @@ class BuiltInLibrary:
         self._records = {d.id: _record(d) for d in designs}
         self._folder = cache_dir
         self._solids: LruCache[str, list[tuple[Material, Solid]]] = LruCache(8)
-        self._scenes: LruCache[str, trimesh.Scene] = LruCache(64)
+        self._scenes: LruCache[str, trimesh.Scene] = LruCache(SCENE_BYTES, _bytes_of)
         self._meshes: LruCache[str, trimesh.Trimesh] = LruCache(256)
         self._glbs: LruCache[str, bytes] = LruCache(256)
         self._surfaces: LruCache[str, tuple[SupportSurface, ...]] = LruCache(4096)
@@ -130,7 +133,7 @@ class BuiltInLibrary:
 
     def _built(self, shape_id: str) -> list[tuple[Material, Solid]]:
         """The latest solids, cached because a request for the mesh is usually followed by one for the materials."""
-        return self._solids.get(shape_id, lambda: built(self._designs[shape_id]))
+        return self._solids.get(shape_id, lambda: built_once(self._designs[shape_id]))
 
     def _known(self, shape_id: str) -> Shape:
         record = self._records.get(shape_id)
@@ -143,6 +146,10 @@ class BuiltInLibrary:
             return _surfaces_to_json(support_surfaces(self.mesh(record.id)))
 
         return _surfaces_from_json(derived(self._surfaces_path(record), measure))
+
+
+def _bytes_of(scene: trimesh.Scene) -> float:
+    return float(sum(g.vertices.nbytes * 3 + g.faces.nbytes for g in scene.geometry.values()))
 
 
 def _record(design: Design) -> Shape:

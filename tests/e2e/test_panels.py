@@ -10,6 +10,9 @@ import pytest
 import trimesh
 from playwright.sync_api import expect
 
+from diorama_app.commands.edit import rename
+from diorama_app.panels.in_place import InPlace
+from diorama_app.panels.outliner import Outliner
 from diorama_app.serve import Running
 from diorama_app.web import upload_limits
 from diorama_core.project.storage import Project
@@ -17,6 +20,7 @@ from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene
 from tests.app.small_room import PlainLibrary, furnished_scene, make_project
 from tests.e2e.browser import EditorPage
+from tests.e2e.conftest import ARTEFACTS
 
 pytestmark = pytest.mark.browser
 
@@ -181,3 +185,34 @@ def test_an_empty_room_says_what_to_do(
 
 def _with_pose(scene: Scene, object_id: str, pose: Pose) -> Scene:
     return edits.move(scene, object_id, pose)
+
+
+def test_a_panel_that_fails_is_one_line_in_its_place_until_it_works_again(
+    editor: EditorPage, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    session, page = editor.running.session, editor.page
+    editor.tab("Scene")
+    outliner = next(p.panel for p in editor.client.panels if isinstance(p, InPlace) and isinstance(p.panel, Outliner))
+    line = page.get_by_text("The list of objects cannot be shown (RuntimeError). Your work is saved.")
+
+    def fails() -> None:
+        raise RuntimeError("a fault of the program")
+
+    def named(label: str) -> None:
+        session.ui_thread.post(lambda: rename(editor.client, "chair_1", label))
+        editor.until(lambda: session.scene.object("chair_1").label == label, "renamed")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(outliner, "refresh", fails)
+        named("throne")
+        expect(line).to_be_visible()
+        expect(editor.row("dining table")).to_be_hidden()
+        expect(page.get_by_role("tab", name="Photo", exact=True)).to_be_visible()
+        editor.picture(ARTEFACTS / "a panel that fails.png")
+        assert page.locator(".mantine-Notification-root").count() == 0, "no notice beside the line"
+        session.autosave.flush()
+        assert session.project is not None
+        assert session.project.load_scene().object("chair_1").label == "throne"
+    named("armchair")
+    expect(line).to_be_hidden()
+    expect(editor.row("armchair")).to_be_visible()
