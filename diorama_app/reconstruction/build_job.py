@@ -75,7 +75,7 @@ def show_built(
             client.view.close_board()
     if own and project == session.project:
         inputs = project.load_inputs()
-        session.textures = project.textures(scene)
+        session.textures = {**session.textures, **project.textures(scene)}  # undo shows what earlier ones name
         session.read_notes()
         session.draft = Draft(inputs, inputs.boxes if inputs else (), from_project=True, name=project.name)
         session.commit(label, scene, inputs=inputs)

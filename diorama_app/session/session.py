@@ -164,11 +164,16 @@ class EditorSession:
         )
 
         scene, made = refitted_textures(self.scene, scene, self.textures)
-        if made:
-            self.textures = {**self.textures, **made}
-            if self.project is not None:
-                self.project.save_textures(made)
+        self.add_textures(made)
         return scene
+
+    def add_textures(self, made: Mapping[str, UInt8[np.ndarray, "_ _ 3"]]) -> None:
+        """Have pictures for scenes to name, and save them."""
+        if not made:
+            return
+        self.textures = {**self.textures, **made}
+        if self.project is not None:
+            self.project.save_textures(made)
 
     def commit(
         self,

@@ -11,7 +11,7 @@ import viser
 from jaxtyping import Bool, Float, UInt8
 
 from diorama_app.viewport.framing import DEFAULT_FOV_RAD
-from diorama_app.viewport.scene_view import reduced
+from diorama_app.viewport.mesh_assets import reduced
 from diorama_core.artefacts import Box, LabelledBox
 from diorama_core.geometry.rotations import quaternion_wxyz, rotation_from_quaternion
 from diorama_core.scene.types import Camera, Intrinsics, Plane

@@ -19,14 +19,15 @@ import numpy as np
 from jaxtyping import Float, UInt8
 
 from diorama_core.export.lights import ExportLight, lights_of
-from diorama_core.export.limbs import ExportLimb, articulation_of, limb_of, surfaces_of
+from diorama_core.export.limbs import ExportLimb, OneShape, articulation_of, by_joint, limb_of
+from diorama_core.export.photo_textures import MAX_PHOTO_TEXTURES_PX, bounded_pictures
 from diorama_core.library.paint import Colour
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
-from diorama_core.render.appearance import Material, Surface, shape_surfaces
+from diorama_core.render.appearance import Material, PartsSource, Surface, shape_surfaces
 from diorama_core.render.slabs import plane_surfaces
 from diorama_core.scene.support import ancestors, top_down
-from diorama_core.scene.types import Camera, Finish, Plane, Scene, SceneObject, Support
+from diorama_core.scene.types import Camera, Finish, PhotoMaterial, Plane, Scene, SceneObject, Support
 
 Picture = UInt8[np.ndarray, "h w c"]
 Compression = Literal["none", "meshopt"]
@@ -45,6 +46,8 @@ class ExportOptions:
     """Ids of the objects to write, without the room around them; None writes everything."""
     max_texture_px: int | None = None
     """Longest side of a picture; larger ones are reduced."""
+    max_photo_textures_px: int = MAX_PHOTO_TEXTURES_PX
+    """Side of a square that all pictures from the photo on objects would fill together; more are reduced alike."""
     compression: Compression = "none"
     """Of geometry, where the format has one (GLB)."""
     bodies: Bodies = "free"
@@ -175,7 +178,7 @@ def gather(
         scene: What to write; hidden objects are left out, what they carry moves up to their supporter.
         library: Where its shapes are.
         options: What of it is written.
-        textures: Pictures of the planes by `Plane.texture`.
+        textures: Pictures of the planes by `Plane.texture`, and of the objects' materials from the photo.
         photo: The photo that the scene was made from.
         name: What the file calls the scene.
         provenance: Where the scene comes from, as JSON values.
@@ -186,17 +189,18 @@ def gather(
         Cancelled: when asked to stop.
     """
     shared, labels = _Shared(options.max_texture_px), _Labels()
-    planes, meshes = _planes(scene, options, textures or {}, shared, labels)
+    textures = bounded_pictures(scene, textures or {}, options.max_photo_textures_px)
+    planes, meshes = _planes(scene, options, textures, shared, labels)
     shown = {o.id for o in scene.objects if not o.hidden and (options.only is None or o.id in options.only)}
     order = [scene.object(i) for i in top_down(scene) if i in shown]
-    painted: dict[tuple[str, Colour | None, Finish | None], dict[int | None, str]] = {}
+    painted: dict[tuple[str, Colour | None, Finish | None, tuple[PhotoMaterial, ...]], dict[int | None, str]] = {}
     objects = []
     for number, item in enumerate(order):
         if progress is not None:
             progress.report(number / len(order), f"reading {item.label}")
-        paint = (item.shape_id, item.colour, item.finish)
+        paint = (item.shape_id, item.colour, item.finish, item.shown_photo_materials)
         if paint not in painted:
-            made = _shape_meshes(library, item, options, shared, labels)
+            made = _shape_meshes(library, item, options, textures, shared, labels)
             painted[paint] = {number: mesh.key for number, mesh in made.items()}
             meshes |= {mesh.key: mesh for mesh in made.values()}
         objects.append(_node(scene, library, item, painted[paint], shown, labels))
@@ -247,16 +251,19 @@ def _planes(
 
 
 def _shape_meshes(
-    library: ShapeLibrary, item: SceneObject, options: ExportOptions, shared: _Shared, labels: _Labels
+    library: ShapeLibrary,
+    item: SceneObject,
+    options: ExportOptions,
+    textures: Mapping[str, Picture],
+    shared: _Shared,
+    labels: _Labels,
 ) -> dict[int | None, ExportMesh]:
     """The shape's mesh under None; with joints, what each of them moves under its number."""
     pieces = articulation_of(library, item.shape_id) if options.joints else None
-    if pieces is None:
-        grouped: dict[int | None, tuple[Surface, ...]] = {
-            None: shape_surfaces(library, item.shape_id, item.colour, item.finish)
-        }
-    else:
-        grouped = surfaces_of(pieces, item.colour, item.finish)
+    shown: PartsSource = library if pieces is None else OneShape(pieces)
+    paint = (item.colour, item.finish, item.shown_photo_materials)
+    surfaces = shape_surfaces(shown, item.shape_id, *paint, textures)
+    grouped = {None: surfaces} if pieces is None else by_joint(surfaces)
     made = {}
     for number, surfaces in grouped.items():
         name = item.shape_id if number is None or pieces is None else f"{item.shape_id} {pieces.joints[number].name}"

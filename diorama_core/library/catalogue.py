@@ -18,6 +18,7 @@ from diorama_core.library import furniture, taxonomy
 from diorama_core.library.furniture.geometry_key import geometry_key
 from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.model import Design, built, mesh_of, scene_of
+from diorama_core.library.furniture.roles import with_roles
 from diorama_core.library.furniture.solids import Solid
 from diorama_core.library.record import Shape, SupportSurface, usual_contact_faces
 from diorama_core.library.surfaces import SURFACES_VERSION, support_surfaces
@@ -110,7 +111,7 @@ class BuiltInLibrary:
     def parts(self, shape_id: str) -> trimesh.Scene:
         """Geometry with materials, in the canonical frame. Shared: do not change it."""
         self._known(shape_id)
-        return self._scenes.get(shape_id, lambda: scene_of(self._built(shape_id)))
+        return self._scenes.get(shape_id, lambda: _scene(self._built(shape_id)))
 
     def glb(self, shape_id: str) -> bytes:
         """`parts` as GLB, +Z up, metres; the same bytes every time."""
@@ -143,6 +144,10 @@ class BuiltInLibrary:
             return _surfaces_to_json(support_surfaces(self.mesh(record.id)))
 
         return _surfaces_from_json(derived(self._surfaces_path(record), measure))
+
+
+def _scene(solids: list[tuple[Material, Solid]]) -> trimesh.Scene:
+    return with_roles(scene_of(solids), [material for material, _ in solids])
 
 
 def _record(design: Design) -> Shape:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import UInt8
 
+from diorama_core.appearance.photo_look import photo_look
 from diorama_core.architecture.room_extent import containing_room
 from diorama_core.architecture.texture.plane_textures import plane_textures
 from diorama_core.artefacts import (
@@ -54,7 +55,7 @@ class Built:
     layout: LayoutReport | None
     """None when the scene has no objects."""
     textures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]]
-    """The planes' pictures by name."""
+    """The pictures of planes and of objects' materials, by name."""
     inputs: Inputs
     """What the user gave, with the boxes and the depth that networks added."""
     runs: tuple[StageRun, ...]
@@ -95,6 +96,8 @@ def build_scene(
     noise = REASONED if inputs.depth_m is None else MEASURED
     checked, changed = checked_supports(_observed(found, library), library, noise)
     observed = _textured(containing_room(checked), textures)
+    look = photo_look(inputs.photo.rgb, found["furniture_objects"], observed, library)
+    observed, textures = look.applied(observed), {**textures, **look.pictures}
 
     scene, report = observed, None
     if observed.objects:

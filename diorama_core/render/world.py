@@ -135,14 +135,15 @@ def scene_world(
     Args:
         scene: What to show; hidden objects are left out.
         library: Where its shapes are.
-        textures: Pictures of the planes by `Plane.texture`.
-        photographed: Whether those pictures hold the light of the room, as rectified photos do.
+        textures: Pictures of the planes by `Plane.texture`, and of the objects' materials from the photo.
+        photographed: Whether the planes' pictures hold the light of the room, as rectified photos do.
         without: Ids of objects and planes to leave out.
     """
     placed: list[Placed] = []
     for index, item in enumerate(scene.objects):
         if not item.hidden and item.id not in without:
-            surfaces = shape_surfaces(library, item.shape_id, item.colour, item.finish)
+            paint = (item.colour, item.finish, item.shown_photo_materials)
+            surfaces = shape_surfaces(library, item.shape_id, *paint, textures or {})
             placed.append(Placed(surfaces, item.pose.matrix, index))
     for index, plane in enumerate(scene.architecture.planes, start=len(scene.objects)):
         if plane.id not in without:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
+from dataclasses import asdict
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -24,6 +25,8 @@ from diorama_core.scene.types import (
     FaceName,
     Finish,
     Intrinsics,
+    MaterialSource,
+    PhotoMaterial,
     Plane,
     PlaneRole,
     Pose,
@@ -31,6 +34,7 @@ from diorama_core.scene.types import (
     Scene,
     SceneObject,
     Support,
+    TextureLayout,
 )
 
 FORMAT = "diorama-scene"
@@ -111,6 +115,17 @@ class _SupportFile(_Model):
     adheres_to: Annotated[list[Id], Field(max_length=MAX_ITEMS)]
 
 
+class _PhotoMaterialFile(_Model):
+    slot: Id
+    colour: Colour
+    texture: Id | None
+    layout: TextureLayout
+    tile_m: Size
+    roughness: Unit
+    metallic: Unit
+    main: bool
+
+
 class _ObjectFile(_Model):
     id: Id
     label: Words
@@ -129,6 +144,8 @@ class _ObjectFile(_Model):
     hidden: bool
     colour: Colour | None
     finish: Finish | None = None
+    photo_materials: Annotated[list[_PhotoMaterialFile], Field(max_length=100)] = []
+    material_source: MaterialSource = "photo"
 
 
 class _SceneFile(_Model):
@@ -274,6 +291,8 @@ def _object_to_file(item: SceneObject, support: Support | None) -> dict[str, Any
         "hidden": item.hidden,
         "colour": None if item.colour is None else _numbers(item.colour),
         "finish": item.finish,
+        "photo_materials": [asdict(m) for m in item.photo_materials],
+        "material_source": item.material_source,
     }
 
 
@@ -353,6 +372,8 @@ def _object_from_file(file: _ObjectFile) -> SceneObject:
         hidden=file.hidden,
         colour=file.colour,
         finish=file.finish,
+        photo_materials=tuple(PhotoMaterial(**m.model_dump()) for m in file.photo_materials),
+        material_source=file.material_source,
     )
 
 
