@@ -15,11 +15,12 @@ from diorama_core.library.paint import painted
 from diorama_core.library.photo_materials import Pictures, with_photo_materials
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.simplify import simplified_glb
+from diorama_core.library.stretch import EVEN, Scale, stretched_parts
 from diorama_core.scene.types import Finish, PhotoMaterial, Plane
 
 Colour = tuple[float, float, float]
 NO_PICTURES: Pictures = {}
-_Key = tuple[str, Colour | None, Finish | None, tuple[PhotoMaterial, ...], frozenset[str], int | None]
+_Key = tuple[str, Colour | None, Finish | None, tuple[PhotoMaterial, ...], Scale, frozenset[str], int | None]
 MAX_PICTURE_PX = 1024
 """Of one picture from the photo on the page; exports have the whole one."""
 CACHE_BYTES = 512 * 2**20
@@ -51,6 +52,7 @@ class ShapeBytes:
         colour: Colour | None = None,
         finish: Finish | None = None,
         materials: tuple[PhotoMaterial, ...] = (),
+        scale: Scale = EVEN,
         pictures: Pictures = NO_PICTURES,
     ) -> bytes:
         """The shape's GLB; with `colour` (sRGB 0 to 1) and `finish` on its main material, and the photo's on others.
@@ -60,20 +62,22 @@ class ShapeBytes:
             colour: of its main material.
             finish: of its main material.
             materials: from the photo, over both where they match a slot.
+            scale: by which it will be scaled, relative to an even scale: thin parts are made to keep their thickness.
             pictures: their textures by name.
         """
         most = self._max_triangles
         shown = {m.texture: pictures[m.texture] for m in materials if m.texture is not None and m.texture in pictures}
 
         def made() -> bytes:
-            own = colour is None and finish is None and not materials
+            own = colour is None and finish is None and not materials and scale == EVEN
             if own:
                 data = self._library.glb(shape_id)
             else:
-                data = _painted_glb(self._library.parts(shape_id), colour, finish, materials, shown)
+                parts = stretched_parts(self._library.parts(shape_id), scale)
+                data = _painted_glb(parts, colour, finish, materials, shown)
             return data if most is None else simplified_glb(data, most)
 
-        return self._cached.get((shape_id, colour, finish, materials, frozenset(shown), most), made)
+        return self._cached.get((shape_id, colour, finish, materials, scale, frozenset(shown), most), made)
 
 
 def _painted_glb(

@@ -18,6 +18,7 @@ from diorama_app.viewport.decorations import remove_quietly
 from diorama_app.viewport.mesh_assets import NO_PICTURES, ShapeBytes, plane_glb, plane_triangles, reduced
 from diorama_core.geometry.rotations import quaternion_wxyz
 from diorama_core.library.photo_materials import Pictures
+from diorama_core.library.stretch import Scale, relative_scale
 from diorama_core.scene.types import Finish, PhotoMaterial, Plane, Pose, Scene, SceneObject
 
 MESH_NAMES = 8
@@ -26,7 +27,7 @@ MESH_NAMES = 8
 SHADOW_ON_PLANES = 0.25
 """How dark."""
 
-Appearance = tuple[str, tuple[float, float, float] | None, Finish | None, tuple[PhotoMaterial, ...]]
+Appearance = tuple[str, tuple[float, float, float] | None, Finish | None, tuple[PhotoMaterial, ...], Scale]
 Pick = Callable[[str, Any], None]
 Later = Callable[[Callable[[], None]], None]
 
@@ -212,4 +213,5 @@ class Viewport:
 
 
 def _appearance(item: SceneObject) -> Appearance:
-    return (item.shape_id, item.colour, item.finish, item.shown_photo_materials)
+    scale = relative_scale(item.pose.scale)
+    return (item.shape_id, item.colour, item.finish, item.shown_photo_materials, scale)

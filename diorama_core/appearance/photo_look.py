@@ -9,11 +9,17 @@ from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
+import trimesh
 from jaxtyping import Bool, UInt8
 
 from diorama_core.appearance.flat_faces import Face, faces_of
+from diorama_core.appearance.light import RoomLight, estimated_light
+from diorama_core.appearance.surface_materials import ROUGHNESS, SlotPixels, appearance_of, shade_of, slot_pixels
+from diorama_core.appearance.surface_view import SurfaceView, surface_view
 from diorama_core.artefacts import DetectedObject
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.slots import slots_of
+from diorama_core.library.stretch import relative_scale, stretched_parts
 from diorama_core.scene.types import Camera, PhotoMaterial, Scene, SceneObject
 
 MASK_MARGIN = 0.004
@@ -28,11 +34,24 @@ class PhotoLook:
 
     materials: Mapping[str, tuple[PhotoMaterial, ...]]
     pictures: Mapping[str, Picture]
+    light: RoomLight | None = None
+    """What the shades of the objects say of the room's light; None without a camera."""
 
     def applied(self, scene: Scene) -> Scene:
         """The scene with objects that show the photo's materials."""
         objects = tuple(replace(o, photo_materials=self.materials.get(o.id, o.photo_materials)) for o in scene.objects)
         return replace(scene, objects=objects)
+
+
+@dataclass(frozen=True, eq=False)
+class _Seen:
+    """One object with everything of the photo that its look is read from."""
+
+    item: SceneObject
+    faces: tuple[Face, ...]
+    view: SurfaceView | None
+    pixels: tuple[SlotPixels, ...]
+    visible: Bool[np.ndarray, "h w"]
 
 
 def photo_look(
@@ -46,28 +65,67 @@ def photo_look(
         scene: In the poses in which the photo shows it; without a camera nothing is taken.
         library: Where its shapes are.
     """
+    if scene.camera is None:
+        return PhotoLook({}, {})
+    found = {o.id: o for o in objects}
+    seen = [
+        _seen(item, _parts(library, item), rgb, found[item.id], objects, scene.camera)
+        for item in scene.objects
+        if item.id in found
+    ]
+    light = estimated_light([shade_of(s.view, p, rgb) for s in seen if s.view is not None for p in s.pixels])
     materials: dict[str, tuple[PhotoMaterial, ...]] = {}
     pictures: dict[str, Picture] = {}
-    found = {o.id: o for o in objects}
-    for item in scene.objects if scene.camera is not None else ():
-        if item.id in found and scene.camera is not None:
-            made = _of_object(item, rgb, found[item.id], objects, library, scene.camera)
-            materials[item.id] = tuple(material for material, _ in made)
-            pictures |= {m.texture: picture for m, picture in made if m.texture is not None}
-    return PhotoLook({key: value for key, value in materials.items() if value}, pictures)
+    for one in seen:
+        made = [(_face_material(one.item, face), face.picture) for face in one.faces] + _surfaces(one, rgb, light)
+        materials[one.item.id] = tuple(material for material, _ in made)
+        pictures |= {m.texture: picture for m, picture in made if m.texture is not None and picture is not None}
+    return PhotoLook({key: value for key, value in materials.items() if value}, pictures, light)
 
 
-def _of_object(
+def _parts(library: ShapeLibrary, item: SceneObject) -> trimesh.Scene:
+    return stretched_parts(library.parts(item.shape_id), relative_scale(item.pose.scale))
+
+
+def _seen(
     item: SceneObject,
+    parts: trimesh.Scene,
     rgb: UInt8[np.ndarray, "h w 3"],
     found: DetectedObject,
     objects: tuple[DetectedObject, ...],
-    library: ShapeLibrary,
     camera: Camera,
-) -> list[tuple[PhotoMaterial, Picture]]:
+) -> _Seen:
     hidden = hiding(found, objects)
-    faces = faces_of(item, library.parts(item.shape_id), rgb, hidden, found, camera)
-    return [(_face_material(item, face), face.picture) for face in faces]
+    faces = faces_of(item, parts, rgb, hidden, found, camera)
+    visible = cv2.erode(found.mask.astype(np.uint8), np.ones((5, 5), np.uint8)).astype(bool) & ~hidden
+    slots = slots_of(parts)
+    view = surface_view(parts, slots, item.pose, camera, visible)
+    taken = {face.slot.name for face in faces}
+    pixels = () if view is None else slot_pixels(view, slots, rgb, visible)
+    return _Seen(item, faces, view, tuple(p for p in pixels if p.slot.name not in taken), visible)
+
+
+def _surfaces(
+    seen: _Seen, rgb: UInt8[np.ndarray, "h w 3"], light: RoomLight
+) -> list[tuple[PhotoMaterial, Picture | None]]:
+    made: list[tuple[PhotoMaterial, Picture | None]] = []
+    if seen.view is None:
+        return made
+    for pixels in seen.pixels:
+        found = appearance_of(seen.view, pixels, rgb, seen.visible, light)
+        roughness, metallic = ROUGHNESS[found.slot.role]
+        name = None if found.texture is None else texture_name(seen.item.id, found.slot.name, found.texture)
+        material = PhotoMaterial(
+            slot=found.slot.name,
+            colour=found.colour,
+            texture=name,
+            tile_m=found.tile_m,
+            roughness=roughness,
+            metallic=metallic,
+            main=found.slot.main,
+        )
+        made.append((material, found.texture))
+    return made
 
 
 def hiding(found: DetectedObject, objects: tuple[DetectedObject, ...]) -> Bool[np.ndarray, "h w"]:

@@ -21,13 +21,13 @@ from jaxtyping import Float, UInt8
 from diorama_core.export.lights import ExportLight, lights_of
 from diorama_core.export.limbs import ExportLimb, OneShape, articulation_of, by_joint, limb_of
 from diorama_core.export.photo_textures import MAX_PHOTO_TEXTURES_PX, bounded_pictures
-from diorama_core.library.paint import Colour
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.stretch import relative_scale
 from diorama_core.progress import Progress
 from diorama_core.render.appearance import Material, PartsSource, Surface, shape_surfaces
 from diorama_core.render.slabs import plane_surfaces
 from diorama_core.scene.support import ancestors, top_down
-from diorama_core.scene.types import Camera, Finish, PhotoMaterial, Plane, Scene, SceneObject, Support
+from diorama_core.scene.types import Camera, Plane, Scene, SceneObject, Support
 
 Picture = UInt8[np.ndarray, "h w c"]
 Compression = Literal["none", "meshopt"]
@@ -193,12 +193,13 @@ def gather(
     planes, meshes = _planes(scene, options, textures, shared, labels)
     shown = {o.id for o in scene.objects if not o.hidden and (options.only is None or o.id in options.only)}
     order = [scene.object(i) for i in top_down(scene) if i in shown]
-    painted: dict[tuple[str, Colour | None, Finish | None, tuple[PhotoMaterial, ...]], dict[int | None, str]] = {}
+    painted: dict[tuple[object, ...], dict[int | None, str]] = {}
     objects = []
     for number, item in enumerate(order):
         if progress is not None:
             progress.report(number / len(order), f"reading {item.label}")
-        paint = (item.shape_id, item.colour, item.finish, item.shown_photo_materials)
+        scale = relative_scale(item.pose.scale)
+        paint = (item.shape_id, item.colour, item.finish, item.shown_photo_materials, scale)
         if paint not in painted:
             made = _shape_meshes(library, item, options, textures, shared, labels)
             painted[paint] = {number: mesh.key for number, mesh in made.items()}
@@ -262,7 +263,7 @@ def _shape_meshes(
     pieces = articulation_of(library, item.shape_id) if options.joints else None
     shown: PartsSource = library if pieces is None else OneShape(pieces)
     paint = (item.colour, item.finish, item.shown_photo_materials)
-    surfaces = shape_surfaces(shown, item.shape_id, *paint, textures)
+    surfaces = shape_surfaces(shown, item.shape_id, *paint, textures, relative_scale(item.pose.scale))
     grouped = {None: surfaces} if pieces is None else by_joint(surfaces)
     made = {}
     for number, surfaces in grouped.items():

@@ -37,10 +37,9 @@ def painted(parts: trimesh.Scene, colour: Colour | None, finish: Finish | None =
         if _material_key(mesh) != main or main is None:
             continue
         if main == _PLAIN:
-            plain = PBRMaterial(baseColorFactor=mesh.visual.main_color, metallicFactor=0.0, roughnessFactor=0.7)
-            mesh.visual = trimesh.visual.TextureVisuals(material=_overridden(plain, colour, finish))
+            mesh.visual = trimesh.visual.TextureVisuals(material=_overridden(physically_based(mesh), colour, finish))
             continue
-        new = new or _overridden(_pbr(mesh), colour, finish)
+        new = new or _overridden(physically_based(mesh), colour, finish)
         mesh.visual = trimesh.visual.TextureVisuals(uv=mesh.visual.uv, material=new)
     return scene
 
@@ -64,13 +63,16 @@ def _main_material(scene: trimesh.Scene) -> str | None:
     return max(areas, key=areas.__getitem__, default=None)
 
 
-def _pbr(mesh: trimesh.Trimesh) -> PBRMaterial:
-    material = mesh.visual.material
+def physically_based(mesh: trimesh.Trimesh) -> PBRMaterial:
+    """A mesh's material; a plain one for a mesh that only has colours."""
+    material = getattr(mesh.visual, "material", None)
+    if material is None:
+        return PBRMaterial(baseColorFactor=mesh.visual.main_color, metallicFactor=0.0, roughnessFactor=0.7)
     return material if isinstance(material, PBRMaterial) else material.to_pbr()
 
 
 def _overridden(source: PBRMaterial, colour: Colour | None, finish: Finish | None) -> PBRMaterial:
-    coloured = source.copy() if colour is None else _in_colour(source, colour)
+    coloured = source.copy() if colour is None else in_colour(source, colour)
     if finish is not None:
         coloured.name = f"{coloured.name or 'material'} {finish}"
         coloured.metallicFactor, coloured.roughnessFactor = _METALLIC_ROUGHNESS[finish]
@@ -78,7 +80,8 @@ def _overridden(source: PBRMaterial, colour: Colour | None, finish: Finish | Non
     return coloured
 
 
-def _in_colour(source: PBRMaterial, colour: Colour) -> PBRMaterial:
+def in_colour(source: PBRMaterial, colour: Colour) -> PBRMaterial:
+    """The material in a colour (sRGB 0 to 1); its texture stays as light and dark detail."""
     texture = source.baseColorTexture
     gain = 1.0 if texture is None else 1.0 / float(srgb_to_linear(np.array(_DETAIL_MEAN)))
     # glTF's base colour factor is linear.

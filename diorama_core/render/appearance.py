@@ -18,6 +18,7 @@ from trimesh.visual.material import PBRMaterial
 from diorama_core.io.cache import LruCache
 from diorama_core.library.paint import painted
 from diorama_core.library.photo_materials import PhotographedMaterial, Pictures, with_photo_materials
+from diorama_core.library.stretch import EVEN, Scale, stretched_parts
 from diorama_core.render.raycast import face_normals, unit
 from diorama_core.scene.types import Finish, PhotoMaterial
 
@@ -83,6 +84,7 @@ def shape_surfaces(
     finish: Finish | None = None,
     materials: tuple[PhotoMaterial, ...] = (),
     pictures: Pictures = NO_PICTURES,
+    scale: Scale = EVEN,
 ) -> tuple[Surface, ...]:
     """A shape's surfaces in its canonical frame, in a stable order.
 
@@ -93,30 +95,32 @@ def shape_surfaces(
         finish: Override of how it throws light back, likewise.
         materials: From the photo, over both where they match a slot.
         pictures: Their textures by name; a name always means the same picture.
+        scale: By which they will be scaled, relative to an even scale: thin parts are made to keep their thickness.
     """
     parts = library.parts(shape_id)
-    return _cached_surfaces(parts, (colour_srgb, finish), materials, pictures)
+    return _cached_surfaces(parts, (colour_srgb, finish), materials, pictures, scale)
 
 
 Paint = tuple[Colour | None, Finish | None]
-_Key = tuple[int, Paint, tuple[PhotoMaterial, ...], frozenset[str | None]]
+_Key = tuple[int, Paint, tuple[PhotoMaterial, ...], frozenset[str | None], Scale]
 
 _CACHE: LruCache[_Key, tuple[trimesh.Scene, tuple[Surface, ...]]] = LruCache(128)
 
 
 def _cached_surfaces(
-    parts: trimesh.Scene, paint: Paint, materials: tuple[PhotoMaterial, ...], pictures: Pictures
+    parts: trimesh.Scene, paint: Paint, materials: tuple[PhotoMaterial, ...], pictures: Pictures, scale: Scale
 ) -> tuple[Surface, ...]:
     """The surfaces of a scene of parts, read once while the same scene object keeps being asked for."""
 
     def read() -> tuple[trimesh.Scene, tuple[Surface, ...]]:
-        shown = parts if paint == (None, None) else painted(parts, *paint)
+        shown = stretched_parts(parts, scale)
+        shown = shown if paint == (None, None) else painted(shown, *paint)
         shown = with_photo_materials(shown, materials, pictures) if materials else shown
         # Caching the scene, too, keeps its id from being given to another.
         return parts, tuple(s for s in _read_parts(shown) if len(s.faces))
 
     there = frozenset(m.texture for m in materials if m.texture in pictures)
-    return _CACHE.get((id(parts), paint, materials, there), read)[1]
+    return _CACHE.get((id(parts), paint, materials, there, scale), read)[1]
 
 
 def _read_parts(parts: trimesh.Scene) -> list[Surface]:

@@ -10,6 +10,7 @@ from jaxtyping import Bool, Float, Float32, Int, Int32, UInt8
 
 from diorama_core.io.srgb import srgb_to_linear
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.stretch import relative_scale
 from diorama_core.render.appearance import Surface, shape_surfaces
 from diorama_core.render.raycast import Caster, Hits, RayArray, face_normals, facing, unit
 from diorama_core.render.slabs import plane_surfaces
@@ -143,7 +144,8 @@ def scene_world(
     for index, item in enumerate(scene.objects):
         if not item.hidden and item.id not in without:
             paint = (item.colour, item.finish, item.shown_photo_materials)
-            surfaces = shape_surfaces(library, item.shape_id, *paint, textures or {})
+            scale = relative_scale(item.pose.scale)
+            surfaces = shape_surfaces(library, item.shape_id, *paint, textures or {}, scale)
             placed.append(Placed(surfaces, item.pose.matrix, index))
     for index, plane in enumerate(scene.architecture.planes, start=len(scene.objects)):
         if plane.id not in without:
