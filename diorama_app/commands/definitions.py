@@ -49,7 +49,7 @@ def build_commands(
         stop_measuring(client)
         if cancel(client):
             return
-        if client.view.drawing:
+        if client.view.canvas.is_open:
             views.room_view(client)
         else:
             client.select(())
@@ -171,7 +171,7 @@ def _several(session: EditorSession) -> tuple[Command, ...]:
     def align(label: str, side: str, anchor: arranging.Anchor) -> Do:
         def run(client: Client) -> None:
             chosen = client.need_selection()
-            axis, flipped = client.view.screen_axis(side)
+            axis, flipped = client.view.camera.screen_axis(side)
             end = {"low": "high", "high": "low"}.get(anchor, anchor) if flipped else anchor
             session.edit(
                 f"align {label}",
@@ -188,7 +188,7 @@ def _several(session: EditorSession) -> tuple[Command, ...]:
 
     def mirror(client: Client) -> None:
         chosen = client.need_selection()
-        axis, _ = client.view.screen_axis("right")
+        axis, _ = client.view.camera.screen_axis("right")
         names = editing.names_of(session.scene, chosen)
         session.edit(f"mirror {names}", lambda s: arranging.mirror(s, chosen, axis), by=client)
 

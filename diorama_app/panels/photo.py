@@ -22,7 +22,7 @@ from diorama_app.reconstruction.text_to_scene import describe_room, how_pictures
 from diorama_app.session.client import Client
 from diorama_app.session.draft import Draft, boxes_json, can_find_furniture
 from diorama_app.session.reading import Upload
-from diorama_app.viewport.scene_view import reduced
+from diorama_app.viewport.mesh_assets import reduced
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_app.web.viser_adapter import component_uuid
 from diorama_core.artefacts import Box
@@ -104,7 +104,7 @@ class PhotoPanel:
         show_if(has_photo and draft.from_project and bool(self._session.scene.objects), self._add)
         enable(self._add, self._session.jobs.status is None and draft.highlighted is not None)
         enable(self._build, self._session.jobs.status is None and draft.ready)
-        show_label(self._draw, "Done drawing" if self._client.view.drawing else "Draw boxes")
+        show_label(self._draw, "Done drawing" if self._client.view.canvas.is_open else "Draw boxes")
 
     # -- uploads ----------------------------------------------------------------------------------------------
 
@@ -186,7 +186,7 @@ class PhotoPanel:
     # -- the drawing board ------------------------------------------------------------------------------------
 
     def _toggle_board(self) -> None:
-        if self._client.view.drawing:
+        if self._client.view.canvas.is_open:
             self._views.room_view(self._client)
         else:
             self._open_board()
@@ -196,7 +196,7 @@ class PhotoPanel:
         photo = self._session.draft.photo
         if photo is None:
             raise InputError("there is no photo yet; upload one first")
-        self._client.view.open_board(photo.rgb, lambda box: self._client.post(lambda: self._drawn(box)))
+        self._client.view.canvas.open(photo.rgb, lambda box: self._client.post(lambda: self._drawn(box)))
         self._redraw_boards()
 
     def _drawn(self, box: Box) -> None:
@@ -225,7 +225,7 @@ class PhotoPanel:
     def _redraw_boards(self) -> None:
         draft = self._session.draft
         for client in self._session.clients.values():
-            client.view.show_boxes(draft.boxes, draft.highlighted)
+            client.view.canvas.show_boxes(draft.boxes, draft.highlighted)
 
     def _act(self, action: Action) -> None:
         def do() -> None:

@@ -32,7 +32,7 @@ class PhotoCorrection:
         if item is None or item.box_px is None or session.photo is None:
             self._html.show("")
             return
-        if self._of is not None and not self._client.view.drawing:
+        if self._of is not None and not self._client.view.canvas.is_open:
             self._of = self._outline = None
         if self._outline is not None:
             self._html.show(
@@ -66,16 +66,16 @@ class PhotoCorrection:
             rename_class(client, object_id, action.pair[1])
         elif action.do == "box":
             self._of = object_id
-            client.view.open_board(self._photo(), lambda box: client.post(lambda: self._boxed(object_id, box)))
+            client.view.canvas.open(self._photo(), lambda box: client.post(lambda: self._boxed(object_id, box)))
             item = client.session.scene.object(object_id)
             if item.box_px is not None:
-                client.view.show_boxes([LabelledBox(item.box_px, item.category, item.label)], 0)
+                client.view.canvas.show_boxes([LabelledBox(item.box_px, item.category, item.label)], 0)
         elif action.do == "outline":
             self._outline, self._of = start_outline(client, object_id), object_id
-            client.view.open_board(
+            client.view.canvas.open(
                 self._photo(), None, lambda x, y, part: client.post(lambda: self._clicked(x, y, part))
             )
-            client.view.show_mask(self._outline.mask)
+            client.view.canvas.show_mask(self._outline.mask)
         elif action.do == "use" and self._outline is not None:
             use_outline(client, object_id, self._outline)
             self._close()
@@ -90,11 +90,11 @@ class PhotoCorrection:
     def _clicked(self, x: float, y: float, part: bool) -> None:
         if self._outline is not None:
             self._outline = self._outline.clicked(x, y, part=part)
-            self._client.view.show_mask(self._outline.mask)
+            self._client.view.canvas.show_mask(self._outline.mask)
 
     def _close(self) -> None:
         self._outline = self._of = None
-        self._client.view.leave_board()
+        self._client.view.canvas.leave()
         self._client.refresh()
 
     def _photo(self) -> np.ndarray:

@@ -72,7 +72,7 @@ def show_built(
     newer = session.draft if session.draft is not draft else None
     if newer is None:
         for client in session.clients.values():
-            client.view.close_board()
+            client.view.canvas.close()
     if own and project == session.project:
         inputs = project.load_inputs()
         session.textures = {**session.textures, **project.textures(scene)}  # undo shows what earlier ones name

@@ -114,7 +114,7 @@ def _reconstruct(
             session.edit(label, lambda s: put(s, found), by=client, inputs=said)
             new = [o.id for o in session.scene.objects if o.id not in there]
             if select_new and new:
-                client.view.close_board()
+                client.view.canvas.close()
                 client.select(new)
 
         client.post(show)

@@ -101,7 +101,7 @@ class Client:
         self.selection = tuple(i for i in dict.fromkeys(ids) if self.session.scene.has_object(i))
         if len(self.session.clients) == 1:  # where several work, undo must not select what another one had selected
             self.session.document.note_selection(self.selection)
-        self.session.refresh_cursors(self)
+        self.session.refresh_panels(self)
 
     def toggle(self, object_id: str) -> None:
         """Add an object to the selection, or take it out."""
@@ -153,7 +153,7 @@ class Client:
         session = self.session
         others = [(g.name, g.colour, g.selection) for g in session.clients.values() if g is not self]
         # Over the photo, marks would seem to be the photo's.
-        warned = self.preferences.badges and self.view.overlay_opacity < 0.5
+        warned = self.preferences.badges and self.view.photo.opacity < 0.5
         badges = session.badges if warned else {}
         self.marks.show(
             scene or session.scene,

@@ -9,7 +9,6 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import functools
-import gzip
 import hmac
 import http
 import io
@@ -23,7 +22,6 @@ from collections.abc import Awaitable, Callable, Iterator
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from http.cookies import CookieError, SimpleCookie
-from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
@@ -32,42 +30,20 @@ import websockets.asyncio.server
 from viser import _messages
 from viser.infra import _infra
 from websockets.asyncio.server import ServerConnection
-from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
+from diorama_app.web.responses import TOKEN_COOKIE, add_headers, picture, prepend_scripts
+from diorama_app.web.upload_limits import RunningUpload, why_refused
 from diorama_core.errors import InputError
 
-TOKEN_COOKIE = "diorama_token"
 LOOPBACK_NAMES = frozenset({"127.0.0.1", "localhost", "::1"})
 ANY_HOST = frozenset({"", "0.0.0.0", "::"})
-MAX_UPLOAD_BYTES = 128 * 1024 * 1024
-MAX_UPLOADS_IN_FLIGHT = 8
-MAX_UPLOADS_PER_CLIENT = 3
-MAX_BYTES_IN_FLIGHT = 2 * MAX_UPLOAD_BYTES
-"""Announced by all uploads that are under way: viser holds them in memory."""
 UPLOAD_STALLED_S = 60.0
 """An upload idle for this long is dropped when its slot is needed."""
-MIN_PART_BYTES = 4096
-"""The page sends parts of half a megabyte; very many small ones are only memory."""
 MESSAGES_PER_S, MESSAGES_AT_ONCE = 300, 600
 """Of one connection: a drag and a turning camera together send about a hundred a second."""
 MAX_MESSAGE_BYTES = 16 * 1024 * 1024
 
-HEAD_SCRIPTS = sorted((Path(__file__).parents[1] / "static").glob("*.js"))
-"""Run in the page before viser does."""
-SECURITY_HEADERS = {
-    # viser's page is one file of inline scripts, starts workers from blobs and compiles WebAssembly and templates.
-    "Content-Security-Policy": "default-src 'none'; script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:; "
-    "style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; font-src 'self' data:; "
-    "connect-src 'self' data: blob:; worker-src 'self' blob:; media-src 'self' data: blob:; manifest-src 'self'; "
-    "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'self'",
-    "Cross-Origin-Opener-Policy": "same-origin",
-    "Cross-Origin-Resource-Policy": "same-origin",
-    "Permissions-Policy": "camera=(), geolocation=(), microphone=(), payment=(), usb=()",
-    "Referrer-Policy": "no-referrer",
-    "X-Content-Type-Options": "nosniff",
-    "X-Frame-Options": "SAMEORIGIN",
-}
 PICTURES = "pictures/"
 """Addresses below this one are pictures."""
 
@@ -293,58 +269,14 @@ def _checked(handler: HttpHandler | None, visitors: Visitors, pictures: Pictures
     def served(connection: ServerConnection, request: Request) -> Response | Awaitable[Response] | None:
         name = urlsplit(request.path).path.removeprefix(f"/{PICTURES}")
         if pictures is not None and f"/{PICTURES}{name}" == urlsplit(request.path).path:
-            return _picture(connection, pictures(name))
+            return picture(connection, pictures(name))
         response = handler(connection, request) if handler is not None else None
         if response is not None:
-            _prepend_script(response)
-            _add_headers(response, remember=visitors.token if visitors.brings_token(request) else None)
+            prepend_scripts(response)
+            add_headers(response, remember=visitors.token if visitors.brings_token(request) else None)
         return response
 
     return process_request
-
-
-def _prepend_script(response: Response) -> None:
-    """Our scripts in front of viser's, in the page itself."""
-    if not response.headers.get("Content-Type", "").startswith("text/html"):
-        return
-    zipped = response.headers.get("Content-Encoding") == "gzip"
-    response.body = _page(bytes(response.body or b""), zipped)
-    del response.headers["Content-Length"]
-    response.headers["Content-Length"] = str(len(response.body))
-
-
-@functools.lru_cache(maxsize=2)
-def _page(body: bytes, zipped: bool) -> bytes:
-    page = gzip.decompress(body) if zipped else body
-    scripts = b"".join(b"\n<script>" + script.read_bytes() + b"</script>" for script in HEAD_SCRIPTS)
-    page = page.replace(b"<head>", b"<head>" + scripts, 1)
-    return gzip.compress(page, mtime=0) if zipped else page
-
-
-async def _picture(connection: ServerConnection, asked: Future[bytes | None]) -> Response:
-    png = await asyncio.wrap_future(asked)
-    if connection.protocol.eof_sent:
-        raise asyncio.CancelledError  # the page was closed meanwhile; websockets would trip over an answer to nobody
-    if png is None:
-        return Response(http.HTTPStatus.NOT_FOUND, "Not Found", Headers({"Content-Length": "0", "Connection": "close"}))
-    headers = {
-        "Content-Type": "image/png",
-        "Content-Length": str(len(png)),
-        "Cache-Control": "private, max-age=3600",
-        "Connection": "close",
-    }
-    response = Response(http.HTTPStatus.OK, "OK", Headers(headers), png)
-    _add_headers(response, remember=None)
-    return response
-
-
-def _add_headers(response: Response, *, remember: str | None) -> None:
-    for name, value in SECURITY_HEADERS.items():
-        response.headers[name] = value
-    if remember is not None:
-        cookie = SimpleCookie({TOKEN_COOKIE: remember})
-        cookie[TOKEN_COOKIE].update({"path": "/", "httponly": "1", "samesite": "Strict"})
-        response.headers["Set-Cookie"] = cookie[TOKEN_COOKIE].OutputString()
 
 
 class _Uploads:
@@ -363,7 +295,7 @@ class _Uploads:
         start, part = gui._handle_file_transfer_start, gui._handle_file_transfer_part
 
         def capped_start(client_id: Any, message: _messages.FileTransferStartUpload) -> None:
-            reason = self._against(client_id, message)
+            reason = why_refused(message, client_id, self._running())
             if reason is None:
                 self._moved_at[message.transfer_uuid] = time.monotonic()
                 start(client_id, message)
@@ -390,39 +322,16 @@ class _Uploads:
         ):
             handlers[kind] = [new if known == old else known for known in handlers[kind]]
 
-    def _against(self, client_id: Any, message: _messages.FileTransferStartUpload) -> str | None:
-        """Why an upload is refused, or None."""
-        size, parts = message.size_bytes, message.part_count
-        if not (isinstance(size, int) and isinstance(parts, int) and isinstance(message.filename, str)):
-            return "the page sent an invalid request; reload it"
-        if size > MAX_UPLOAD_BYTES:
-            return (
-                f"it has {size / 1e6:.0f} MB, and files up to {MAX_UPLOAD_BYTES / 1e6:.0f} MB can be uploaded; "
-                "make it smaller"
-            )
-        if size < 0 or not 0 <= parts <= size // MIN_PART_BYTES + 2:
-            return "the page sent an invalid request; reload it"
-        running = self._running()
-        if message.transfer_uuid in {uuid for uuid, _ in running}:
-            return "it is being uploaded already"
-        own = sum(state["client_id"] == client_id for _, state in running)
-        announced = sum(state["total_bytes"] for _, state in running)
-        if own >= MAX_UPLOADS_PER_CLIENT or len(running) >= MAX_UPLOADS_IN_FLIGHT:
-            return "other uploads are under way; try again when they are done"
-        if announced + size > MAX_BYTES_IN_FLIGHT:
-            return "other large uploads are under way; try again when they are done"
-        return None
-
-    def _running(self) -> list[tuple[str, Any]]:
+    def _running(self) -> list[RunningUpload]:
         """Uploads under way; those that stand still are given up."""
-        now, found = time.monotonic(), []
+        now, found = time.monotonic(), list[RunningUpload]()
         for gui in list(self._guis):
             for uuid, state in list(gui._current_file_upload_states.items()):
                 if now - self._moved_at.get(uuid, now) > UPLOAD_STALLED_S:
                     gui._current_file_upload_states.pop(uuid, None)
                 else:
-                    found.append((uuid, state))
-        alive = {uuid for uuid, _ in found}
+                    found.append(RunningUpload(uuid, state["client_id"], state["total_bytes"]))
+        alive = {upload.uuid for upload in found}
         self._moved_at = {uuid: at for uuid, at in self._moved_at.items() if uuid in alive}
         return found
 

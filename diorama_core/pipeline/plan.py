@@ -55,7 +55,8 @@ class StageStep:
         except UnavailableError as error:
             if not self.dispensable:
                 raise
-            log.warning("%s: the build goes on without: %s", self.name, error)
+            runner.lost.append(f"{self.name}: left out ({error})")
+            log.warning("%s", runner.lost[-1])
             return None
 
 

@@ -18,6 +18,7 @@ from diorama_core.artefacts import DetectedObject, Inputs, LabelledBox, ObjectGe
 from diorama_core.errors import InputError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.colours import photo_colours
+from diorama_core.pipeline.fallback import with_usable_networks
 from diorama_core.pipeline.plan import Artefacts, evaluate
 from diorama_core.pipeline.presets import stages_for
 from diorama_core.pipeline.runner import Runner
@@ -97,7 +98,24 @@ def reconstruct_object(
     if scene.camera is None:
         raise InputError("this scene has no photo camera; build it from the photo first")
     progress = progress or Progress()
-    stages, runner = stages_for("auto", inputs, library), Runner(cache)
+    found, _ = with_usable_networks(
+        lambda store: stages_for("auto", inputs, library, store=store),
+        lambda stages: _reconstructed(stages, scene, inputs, library, box, object_id, mask, Runner(cache), progress),
+    )
+    return found
+
+
+def _reconstructed(
+    stages: Stages,
+    scene: Scene,
+    inputs: Inputs,
+    library: ShapeLibrary,
+    box: LabelledBox,
+    object_id: str,
+    mask: Bool[np.ndarray, "h w"] | None,
+    runner: Runner,
+    progress: Progress,
+) -> Found:
     photo = evaluate(stages, {"given": inputs}, ("architecture",), runner, progress.part(0.0, 0.5))
     known = next((o for o in photo["objects"] if o.id == object_id), None)
     outlined = next((o for o in photo["outlined_objects"] if o.id == object_id), None)

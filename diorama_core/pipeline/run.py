@@ -62,6 +62,8 @@ class Built:
     """Which stage used what, and how long it took."""
     notes: tuple[str, ...] = ()
     """What the user should know, in plain words."""
+    stages: Stages | None = None
+    """The implementations that ran."""
 
 
 def build_scene(
@@ -121,7 +123,8 @@ def build_scene(
         textures=textures,
         inputs=inputs,
         runs=tuple(runner.runs),
-        notes=_notes(found, changed, report),
+        stages=stages,
+        notes=(*_notes(found, changed, report), *runner.lost),
     )
 
 

@@ -111,7 +111,7 @@ class EditorPage:
 
     def at_board(self) -> None:
         """Wait until the photo is there to draw on, and the eye in front of it."""
-        self.until(lambda: self.client.view.drawing, "the drawing board is open")
+        self.until(lambda: self.client.view.canvas.is_open, "the drawing board is open")
         self.page.wait_for_function(AT_BOARD)
         self.settle()
 

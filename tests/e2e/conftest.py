@@ -102,7 +102,7 @@ def editor(shared_page: EditorPage, tmp_path: Path, request: pytest.FixtureReque
         session.projects_dir = tmp_path / "projects"
         session.clip = session.binned = None
         client = shared_page.client
-        client.view.close_board()
+        client.view.canvas.close()
         client.preferences = Preferences()
         session.open_project(project)
 

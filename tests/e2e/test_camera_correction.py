@@ -14,7 +14,7 @@ pytestmark = pytest.mark.browser
 
 def on_board(editor: EditorPage, x: float, y: float) -> np.ndarray:
     """Where a pixel of the photo is on the drawing board."""
-    board = editor.client.view.board
+    board = editor.client.view.canvas.photo
     assert board is not None
     return board.to_world(np.array([x, y]))
 
@@ -41,7 +41,7 @@ def test_a_box_is_drawn_anew_and_an_outline_is_clicked_and_left(editor: EditorPa
     assert [session.scene.object(i) for i in apart] == others, (
         "nothing else changed; the lamp goes along with its table"
     )
-    assert not editor.client.view.drawing
+    assert not editor.client.view.canvas.is_open
     editor.button("Fix outline").click()
     editor.at_board()
     panel = next(p for p in editor.client.panels if isinstance(p, PhotoCorrection))
@@ -56,7 +56,7 @@ def test_a_box_is_drawn_anew_and_an_outline_is_clicked_and_left(editor: EditorPa
     assert outline.mask[300, 340]
     assert not outline.mask[200, 450]
     editor.button("Cancel").click()
-    editor.until(lambda: not editor.client.view.drawing)
+    editor.until(lambda: not editor.client.view.canvas.is_open)
     assert session.scene is before
     editor.page.keyboard.press("Control+z")
     editor.until(lambda: session.scene.object("table_1").box_px == (240.0, 200.0, 440.0, 420.0), "one undo step")

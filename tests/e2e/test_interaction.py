@@ -262,7 +262,7 @@ def test_dark_keys_palette_and_units(editor: EditorPage) -> None:
     expect(editor.page.locator("input.mantine-Spotlight-search")).to_be_focused()
     editor.page.keyboard.type("top view")
     editor.page.keyboard.press("Enter")
-    editor.until(lambda: editor.client.view.fov_rad < 0.2, "from above")
+    editor.until(lambda: editor.client.view.camera.fov_rad < 0.2, "from above")
     editor.row("dining table").click()
     editor.page.get_by_label("Unit").click()
     editor.page.get_by_role("option", name="ft-in").click()
@@ -307,13 +307,13 @@ def test_what_was_missed_is_added_from_the_photo_and_renamed(editor: EditorPage)
     np.testing.assert_allclose(session.scene.object(new.id).pose.position[:2], new.pose.position[:2])
     editor.button("Fix outline").click()
     editor.at_board()
-    board = editor.client.view.board
+    board = editor.client.view.canvas.photo
     assert board is not None
     editor.click_world(board.to_world(np.array([340.0, 300.0])))
     editor.button("Use this outline").click()
     label = f"outline of {session.scene.object(new.id).label}"
     editor.until(lambda: session.document.history.current.label == label, "looked at again", seconds=90)
-    assert not editor.client.view.drawing
+    assert not editor.client.view.canvas.is_open
     assert session.ui_thread.wait()
     retained = session.project.load_inputs()
     drawn = retained.instances == retained.instance_boxes[0][0]

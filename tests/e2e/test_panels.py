@@ -12,7 +12,7 @@ from PIL import Image
 from playwright.sync_api import expect
 
 from diorama_app.serve import Running
-from diorama_app.web import viser_adapter
+from diorama_app.web import upload_limits
 from diorama_core.project.storage import Project
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene
@@ -49,10 +49,10 @@ def test_boxes_drawn_on_the_photo_land_on_its_pixels(editor: EditorPage, tmp_pat
     editor.at_board()
     editor.dismiss_notices()
     view = editor.client.view
-    assert view.board is not None
+    assert view.canvas.photo is not None
     corners = np.array([[240.0, 200.0], [440.0, 420.0]])
     editor.settle()
-    start, end = (editor.place_of(p) for p in view.board.to_world(corners))
+    start, end = (editor.place_of(p) for p in view.canvas.photo.to_world(corners))
     editor.drag(start, end)
     editor.until(lambda: len(session.draft.boxes) == 1, "one box")
     np.testing.assert_allclose(np.array(session.draft.boxes[0].box).reshape(2, 2), corners, atol=4.0)
@@ -66,7 +66,7 @@ def test_boxes_drawn_on_the_photo_land_on_its_pixels(editor: EditorPage, tmp_pat
     editor.page.get_by_title("Delete this box").click()
     editor.until(lambda: session.draft.boxes == (), "deleted")
     editor.button("Done drawing").click()
-    editor.until(lambda: not editor.client.view.drawing, "back in the room")
+    editor.until(lambda: not editor.client.view.canvas.is_open, "back in the room")
 
 
 def test_what_cannot_be_used_is_one_clear_notice_and_nothing_is_lost(
@@ -85,7 +85,7 @@ def test_what_cannot_be_used_is_one_clear_notice_and_nothing_is_lost(
         assert session.scene is scene
         assert session.draft is draft
         editor.dismiss_notices()
-    monkeypatch.setattr(viser_adapter, "MAX_UPLOAD_BYTES", 1000)
+    monkeypatch.setattr(upload_limits, "MAX_UPLOAD_BYTES", 1000)
     large = tmp_path / "large.jpg"
     large.write_bytes(b"\xff" * 5000)
     editor.upload("Upload a photo", large)
@@ -182,24 +182,24 @@ def test_the_photo_view_stands_where_the_photo_was_taken(editor: EditorPage) -> 
     assert camera is not None
     editor.button("Photo view").click()
     view = editor.client.view
-    editor.until(lambda: view.through_photo)
+    editor.until(lambda: view.camera.through_photo)
     editor.settle()
     for point in (session.scene.object("table_1").pose.position, np.array([1.0, 2.0, 0.0])):
         u, v = camera.project(point) - (camera.intrinsics.cx, camera.intrinsics.cy)
         box = editor.canvas_box()
         x, y = editor.place_of(point)
-        scale = (box[3] / 2) / np.tan(view.fov_rad / 2) / camera.intrinsics.fy
+        scale = (box[3] / 2) / np.tan(view.camera.fov_rad / 2) / camera.intrinsics.fy
         assert x - (box[0] + box[2] / 2) == pytest.approx(u * scale, abs=2.5)
         assert y - (box[1] + box[3] / 2) == pytest.approx(v * scale, abs=2.5)
     slider = editor.page.locator(".mantine-Flex-root", has_text="Photo over model").locator("input[type=text]")
     slider.fill("100")
     slider.press("Tab")
-    editor.until(lambda: view.comparing, "the photo lies over the model")
+    editor.until(lambda: view.photo.comparing, "the photo lies over the model")
     brown = camera.position + camera.rays(np.array([340.0, 310.0]))
     editor.settle()
     np.testing.assert_allclose(editor.mean_colour(brown), (120, 80, 50), atol=25)
     editor.button("Room").click()
-    editor.until(lambda: not view.comparing and not view.through_photo, "the model alone again")
+    editor.until(lambda: not view.photo.comparing and not view.camera.through_photo, "the model alone again")
 
 
 def test_an_empty_room_says_what_to_do(

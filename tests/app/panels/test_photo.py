@@ -46,7 +46,7 @@ def test_the_page_asks_for_a_photo_first(client, page, empty) -> None:
 def test_an_uploaded_photo_opens_the_drawing_board(session, client, page, empty) -> None:
     page.upload("Upload a photo", "<room>.png", picture())
     assert session.draft.photo.width == 64
-    assert client.view.drawing
+    assert client.view.canvas.is_open
     assert "&lt;room&gt;.png" in page.html
     assert page.field("Draw boxes").label == "Done drawing"
     assert "Draw a box around each piece" in page.html
@@ -101,9 +101,9 @@ def test_depth_and_camera_go_with_the_photo(session, client, page, panel) -> Non
 
 def test_the_board_is_closed_by_its_button(client, page, panel) -> None:
     page.press("Draw boxes")
-    assert client.view.drawing
+    assert client.view.canvas.is_open
     page.press("Draw boxes")
-    assert not client.view.drawing
+    assert not client.view.canvas.is_open
 
 
 def test_the_marked_box_is_added_to_the_scene(session, client, page, panel, monkeypatch) -> None:

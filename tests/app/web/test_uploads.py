@@ -10,7 +10,12 @@ import pytest
 
 from diorama_app.serve import Running, start
 from diorama_app.web import viser_adapter
-from diorama_app.web.viser_adapter import MAX_UPLOAD_BYTES, MAX_UPLOADS_IN_FLIGHT, MAX_UPLOADS_PER_CLIENT
+from diorama_app.web.upload_limits import (
+    MAX_BYTES_IN_FLIGHT,
+    MAX_UPLOAD_BYTES,
+    MAX_UPLOADS_IN_FLIGHT,
+    MAX_UPLOADS_PER_CLIENT,
+)
 from tests.app.small_room import PlainLibrary, make_project
 from tests.app.wire import WirePage
 from tests.io.test_bombs import png
@@ -95,7 +100,7 @@ def test_what_a_page_announces_together_is_bounded(running: Running) -> None:
         button = page.element("Upload a photo", "UploadButton")
         page.begin_upload(button, "large.png", MAX_UPLOAD_BYTES, 256)
     states = settled(running)
-    assert sum(s["total_bytes"] for s in states.values()) <= viser_adapter.MAX_BYTES_IN_FLIGHT
+    assert sum(s["total_bytes"] for s in states.values()) <= MAX_BYTES_IN_FLIGHT
     for page in pages:
         page.close()
 
