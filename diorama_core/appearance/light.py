@@ -1,6 +1,6 @@
 """The main light of a room, from how brightly surfaces of one material are lit that are turned differently.
 
-Irradiance is modelled as `1 + b . n` relative to light from everywhere (the first two bands of spherical harmonics,
+Irradiance is modelled as `1 + b . n` relative to even light (the first two bands of spherical harmonics,
 Ramamoorthi and Hanrahan 2001): the direction of b is where most light comes from.
 """
 
@@ -13,6 +13,8 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import least_squares
 
+from diorama_core.scene.types import RoomLight
+
 USUAL = np.array([0.0, 0.0, 0.25])
 """Light in rooms comes more from above than from below."""
 PRIOR_WEIGHT = 0.6
@@ -20,23 +22,6 @@ MAX_LENGTH = 0.85
 ROBUST = 0.15
 """Differences of log luminance beyond about this are shadows and other materials."""
 MIN_SAMPLES = 3
-
-
-@dataclass(frozen=True)
-class RoomLight:
-    """Relative irradiance by normal."""
-
-    b: tuple[float, float, float] = (0.0, 0.0, 0.25)
-
-    def irradiance(self, normals_world: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n"]:
-        """Of surfaces with these unit normals; 1 on average over all directions."""
-        return np.asarray(np.maximum(1.0 + normals_world @ np.array(self.b), 1.0 - MAX_LENGTH))
-
-    @property
-    def direction(self) -> Float[np.ndarray, "3"]:
-        """Unit vector toward where most light comes from."""
-        b = np.array(self.b)
-        return b / max(float(np.linalg.norm(b)), 1e-9)
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,5 +51,5 @@ def estimated_light(shades: Sequence[Shade]) -> RoomLight:
 
     found = least_squares(residuals, USUAL, loss="soft_l1").x
     length = float(np.linalg.norm(found))
-    x, y, z = (float(v) for v in found * min(1.0, MAX_LENGTH / max(length, 1e-9)))
-    return RoomLight((x, y, z))
+    x, y, z = (float(v) for v in found / max(length, 1e-9))
+    return RoomLight((x, y, z), min(length, MAX_LENGTH)) if length > 1e-3 else RoomLight()

@@ -10,17 +10,18 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 import trimesh
-from jaxtyping import Bool, UInt8
+from jaxtyping import Bool, Float32, UInt8
 
 from diorama_core.appearance.flat_faces import Face, faces_of
-from diorama_core.appearance.light import RoomLight, estimated_light
+from diorama_core.appearance.irradiance import irradiance_map
+from diorama_core.appearance.light import estimated_light
 from diorama_core.appearance.surface_materials import ROUGHNESS, SlotPixels, appearance_of, shade_of, slot_pixels
 from diorama_core.appearance.surface_view import SurfaceView, surface_view
 from diorama_core.artefacts import DetectedObject
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.slots import slots_of
 from diorama_core.library.stretch import relative_scale, stretched_parts
-from diorama_core.scene.types import Camera, PhotoMaterial, Scene, SceneObject
+from diorama_core.scene.types import Camera, PhotoMaterial, RoomLight, Scene, SceneObject
 
 MASK_MARGIN = 0.004
 """Widening of what stands before an object, as a share of the photo's longer side."""
@@ -38,9 +39,9 @@ class PhotoLook:
     """What the shades of the objects say of the room's light; None without a camera."""
 
     def applied(self, scene: Scene) -> Scene:
-        """The scene with objects that show the photo's materials."""
+        """The scene with objects that show the photo's materials, in the photo's light."""
         objects = tuple(replace(o, photo_materials=self.materials.get(o.id, o.photo_materials)) for o in scene.objects)
-        return replace(scene, objects=objects)
+        return replace(scene, objects=objects, light=self.light or scene.light)
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,10 +75,11 @@ def photo_look(
         if item.id in found
     ]
     light = estimated_light([shade_of(s.view, p, rgb) for s in seen if s.view is not None for p in s.pixels])
+    falls = irradiance_map(replace(scene, light=light), scene.camera, library)
     materials: dict[str, tuple[PhotoMaterial, ...]] = {}
     pictures: dict[str, Picture] = {}
     for one in seen:
-        made = [(_face_material(one.item, face), face.picture) for face in one.faces] + _surfaces(one, rgb, light)
+        made = [(_face_material(one.item, face), face.picture) for face in one.faces] + _surfaces(one, rgb, falls)
         materials[one.item.id] = tuple(material for material, _ in made)
         pictures |= {m.texture: picture for m, picture in made if m.texture is not None and picture is not None}
     return PhotoLook({key: value for key, value in materials.items() if value}, pictures, light)
@@ -106,7 +108,7 @@ def _seen(
 
 
 def _surfaces(
-    seen: _Seen, rgb: UInt8[np.ndarray, "h w 3"], light: RoomLight
+    seen: _Seen, rgb: UInt8[np.ndarray, "h w 3"], light: Float32[np.ndarray, "h w"]
 ) -> list[tuple[PhotoMaterial, Picture | None]]:
     made: list[tuple[PhotoMaterial, Picture | None]] = []
     if seen.view is None:

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
-from diorama_core.appearance.light import RoomLight, Shade
+from diorama_core.appearance.light import Shade
 from diorama_core.appearance.surface_view import SurfaceView
 from diorama_core.appearance.texture_example import Example, best_example, tileable
 from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
@@ -111,7 +111,7 @@ def appearance_of(
     pixels: SlotPixels,
     rgb: UInt8[np.ndarray, "h w 3"],
     visible: Bool[np.ndarray, "h w"],
-    light: RoomLight,
+    light: Float32[np.ndarray, "h w"],
 ) -> SlotAppearance:
     """The slot's material under a light.
 
@@ -120,10 +120,10 @@ def appearance_of(
         pixels: Those of the slot.
         rgb: The photo.
         visible: The object's inner pixels, without what stands before it.
-        light: What lights the room.
+        light: How much falls on every pixel of the photo.
     """
     linear = srgb_to_linear(view.of(rgb)[pixels.near] / 255.0)
-    lit = light.irradiance(view.normals_world[pixels.near])[:, None]
+    lit = view.of(light)[pixels.near][:, None]
     albedo = np.clip(np.median(linear / lit, axis=0), 0.0, MAX_LINEAR)
     red, green, blue = (float(c) for c in linear_to_srgb(albedo))
     example = None

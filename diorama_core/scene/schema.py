@@ -31,6 +31,7 @@ from diorama_core.scene.types import (
     PlaneRole,
     Pose,
     Relation,
+    RoomLight,
     Scene,
     SceneObject,
     Support,
@@ -148,6 +149,12 @@ class _ObjectFile(_Model):
     material_source: MaterialSource = "photo"
 
 
+class _LightFile(_Model):
+    direction: tuple[Number, Number, Number]
+    strength: Unit
+    colour: Colour
+
+
 class _SceneFile(_Model):
     format: Literal["diorama-scene"]
     version: int
@@ -157,6 +164,7 @@ class _SceneFile(_Model):
     architecture: _ArchitectureFile
     objects: Annotated[list[_ObjectFile], Field(max_length=MAX_ITEMS)]
     metrics: Annotated[dict[Words, FiniteFloat], Field(max_length=200)]
+    light: _LightFile | None = None
 
 
 def scene_to_json(scene: Scene) -> str:
@@ -170,6 +178,7 @@ def scene_to_json(scene: Scene) -> str:
         "architecture": {"planes": [_plane_to_file(p) for p in scene.architecture.planes]},
         "objects": [_object_to_file(o, scene.support_of(o.id)) for o in scene.objects],
         "metrics": dict(scene.metrics),
+        "light": None if scene.light is None else asdict(scene.light),
     }
     return json.dumps(document, indent=1, allow_nan=False)
 
@@ -322,6 +331,7 @@ def _scene_from_file(file: _SceneFile) -> Scene:
         objects=tuple(_object_from_file(o) for o in file.objects),
         supports=tuple(_support_from_file(o.id, o.support) for o in file.objects if o.support is not None),
         metrics=tuple(file.metrics.items()),
+        light=None if file.light is None else RoomLight(**file.light.model_dump()),
     )
 
 

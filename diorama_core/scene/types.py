@@ -338,6 +338,18 @@ class Support:
 
 
 @dataclass(frozen=True)
+class RoomLight:
+    """The main light of a room: surfaces receive `1 + strength * (direction . normal)` relative to an even light."""
+
+    direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    """Unit vector in the world toward where most light comes from."""
+    strength: float = 0.25
+    """0 is light from everywhere, 1 about a single small source."""
+    colour: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    """Linear, its largest component 1; white where the photo's colours hold it."""
+
+
+@dataclass(frozen=True)
 class Scene:
     """Everything that is in the room, where it is and what holds it up."""
 
@@ -347,6 +359,8 @@ class Scene:
     supports: tuple[Support, ...] = ()
     metrics: tuple[tuple[str, float], ...] = ()
     """The optimiser's last report, as (name, value) pairs."""
+    light: RoomLight | None = None
+    """As the photo's shades tell it; None where nothing is known."""
 
     def __post_init__(self) -> None:
         # One order for equal graphs, so that equality and the file do not depend on the order of edits.

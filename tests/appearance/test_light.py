@@ -2,7 +2,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from diorama_core.appearance.light import RoomLight, Shade, estimated_light
+from diorama_core.appearance.light import Shade, estimated_light
+from diorama_core.scene.types import RoomLight
 
 NORMALS = np.array([[0.0, 0, 1], [1, 0, 0], [-1, 0, 0], [0, -1, 0], [0, 1, 0]])
 
@@ -15,19 +16,9 @@ def shade(albedo: float, b: tuple[float, float, float], normals: np.ndarray = NO
 def test_light_from_the_side_is_found() -> None:
     true = (0.4, -0.2, 0.4)
     found = estimated_light([shade(a, true) for a in (0.1, 0.2, 0.3, 0.5, 0.6, 0.7, 0.4, 0.8)])
-    np.testing.assert_allclose(found.b, true, atol=0.08)
-    assert found.direction @ (np.array(true) / np.linalg.norm(true)) > 0.98
+    np.testing.assert_allclose(np.array(found.direction) * found.strength, true, atol=0.08)
 
 
 def test_flat_things_say_nothing_of_light() -> None:
     one = shade(0.5, (0.4, 0, 0), NORMALS[:1])
     assert estimated_light([one] * 5) == RoomLight()
-
-
-def test_irradiance_stays_positive_and_is_one_on_average() -> None:
-    light = RoomLight((0.5, 0.3, 0.5))
-    directions = np.random.default_rng(0).normal(size=(4000, 3))
-    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    lit = light.irradiance(directions)
-    assert lit.min() > 0
-    assert abs(lit.mean() - 1.0) < 0.03

@@ -13,6 +13,7 @@ from diorama_core.scene.types import (
     PhotoMaterial,
     Plane,
     Pose,
+    RoomLight,
     Scene,
     SceneObject,
     Support,
@@ -112,4 +113,5 @@ def scenes(draw: st.DrawFn, max_objects: int = 5) -> Scene:
         objects=items,
         supports=tuple(supports),
         metrics=draw(st.sampled_from([(), (("penetration_m", 0.125),)])),
+        light=draw(st.sampled_from([None, RoomLight((0.0, 0.6, 0.8), 0.4, (1.0, 0.9, 0.8))])),
     )
