@@ -20,7 +20,7 @@ from diorama_core.scene.types import Camera, Scene
 
 LONGEST_PX = 320
 EFFORT = Effort(window_rays=2, sky_rays=3)
-DARKEST, BRIGHTEST = 0.3, 1.7
+DARKEST, BRIGHTEST = 0.45, 1.6
 """The scene is not exactly the room: deeper shade than this is not believed."""
 UNKNOWN = 0.9
 

@@ -124,7 +124,8 @@ def appearance_of(
     """
     linear = srgb_to_linear(view.of(rgb)[pixels.near] / 255.0)
     lit = view.of(light)[pixels.near][:, None]
-    albedo = np.clip(np.median(linear / lit, axis=0), 0.0, MAX_LINEAR)
+    albedo = np.median(linear / lit, axis=0)
+    albedo *= min(1.0, MAX_LINEAR / max(float(albedo.max()), 1e-6))  # not channel by channel: the hue stays
     red, green, blue = (float(c) for c in linear_to_srgb(albedo))
     example = None
     if pixels.slot.role in PATTERNED_ROLES:

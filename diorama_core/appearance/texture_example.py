@@ -32,7 +32,7 @@ MIN_FINE = 0.6
 CELLS = 4
 MIN_EVEN = 0.45
 """Deviation of the least patterned sixteenth of the piece over that of the most patterned one."""
-MAX_OFFSET = 0.6
+MAX_OFFSET = 1.0
 """Difference of a sixteenth's mean colour from the whole's, in deviations of the detail: beyond, it shows a mark."""
 SEAM_SHARE, MIN_SEAM_PX = 0.4, 24
 STRONGEST = 110.0

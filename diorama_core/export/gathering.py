@@ -18,7 +18,7 @@ import cv2
 import numpy as np
 from jaxtyping import Float, UInt8
 
-from diorama_core.export.lights import ExportLight, lights_of
+from diorama_core.export.lights import ExportLight, MainLight, lights_of, main_light_of
 from diorama_core.export.limbs import ExportLimb, OneShape, articulation_of, by_joint, limb_of
 from diorama_core.export.photo_textures import MAX_PHOTO_TEXTURES_PX, bounded_pictures
 from diorama_core.library.record import ShapeLibrary
@@ -127,6 +127,7 @@ class ExportScene:
     """Every material of the meshes once; names are unique."""
     camera: Camera | None
     lights: tuple[ExportLight, ...]
+    """Of lamps and windows."""
     scene: Scene
     """The whole scene as it was given, for formats that carry it to be read back."""
     library: ShapeLibrary
@@ -145,6 +146,11 @@ class ExportScene:
         for item in self.objects:
             below[item.parent] = (*below.get(item.parent, ()), item)
         return below
+
+    @cached_property
+    def main_light(self) -> MainLight | None:
+        """The photo's main light; None where it tells none, and where the room is not written."""
+        return main_light_of(self.scene) if self.options.only is None else None
 
     def object(self, object_id: str) -> ExportObject:
         """The exported object with this id; raises `KeyError` when it is not exported."""

@@ -17,9 +17,9 @@ from diorama_core.export.bodies import PhysicalScene
 from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import Entry, companion_folder, write_package
 from diorama_core.export.gathering import ExportMesh, ExportScene
-from diorama_core.export.lights import ExportLight
+from diorama_core.export.lights import ExportLight, MainLight
 from diorama_core.export.links import Link, collider_file, links_of, mesh_files, visual_file
-from diorama_core.export.mjcf import srgb_rgba
+from diorama_core.export.mjcf import FULL_LIGHT_LUX, srgb_rgba
 from diorama_core.export.physics import FLOOR_FRICTION
 from diorama_core.progress import Progress
 
@@ -54,6 +54,8 @@ def sdf_text(gathered: ExportScene, physical: PhysicalScene, links: tuple[Link, 
     SubElement(world, "gravity").text = "0 0 -9.81"
     for light in gathered.lights:
         _light(world, f"{gathered.object(light.owner).slug}_light", light)
+    if gathered.main_light is not None:
+        _main_light(world, gathered.main_light)
     _room(world, gathered, physical, folder)
     by_name = {link.name: link for link in links}
     tops = {link.name: _top(link, by_name) for link in links}
@@ -169,6 +171,14 @@ def _light(world: Element, name: str, light: ExportLight) -> None:
         spot = SubElement(element, "spot")
         for key, value in (("inner_angle", "0.5"), ("outer_angle", "1.5"), ("falloff", "1")):
             SubElement(spot, key).text = value
+
+
+def _main_light(world: Element, light: MainLight) -> None:
+    element = SubElement(world, "light", name="main_light", type="directional")
+    SubElement(element, "pose").text = _pose(light.T_world)
+    SubElement(element, "diffuse").text = f"{_numbers(np.asarray(light.colour))} 1"
+    SubElement(element, "intensity").text = f"{min(light.lux / FULL_LIGHT_LUX, 1.0):.3g}"
+    SubElement(element, "direction").text = "0 0 -1"
 
 
 def _pose(T: Float[np.ndarray, "4 4"]) -> str:

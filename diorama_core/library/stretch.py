@@ -22,7 +22,7 @@ from diorama_core.library.slots import placed_vertices, transform_of
 
 Scale = tuple[float, float, float]
 EVEN: Scale = (1.0, 1.0, 1.0)
-STEP, MIN_UNEVEN = 0.08, 0.1
+STEP, MIN_UNEVEN = 0.1, 0.22
 """Scales are told apart in such steps of their logarithm, from such a difference on: nearly equal ones share."""
 THIN = 0.14
 """An interval is thin below this share of the shape's extent."""

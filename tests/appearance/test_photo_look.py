@@ -64,7 +64,7 @@ def test_a_picture_wears_the_photo(photo) -> None:
     plain = picture(scene, LIBRARY, size=SIZE)
     mask = detected(scene)[0].mask
     off = [float(np.abs(p.astype(float) - photo)[mask].mean()) for p in (seen, plain)]
-    assert off[0] < 0.35 * off[1]
+    assert off[0] < 0.45 * off[1]
 
 
 def test_another_shape_takes_the_look(photo) -> None:
