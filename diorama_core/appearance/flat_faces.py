@@ -18,20 +18,22 @@ from diorama_core.appearance.completion import completed_picture
 from diorama_core.appearance.rectify import Rectified, corners_in_photo, rectified
 from diorama_core.artefacts import DetectedObject
 from diorama_core.geometry.projection import box_iou
-from diorama_core.library.slots import Role, Slot, rectangle_of, slots_of
+from diorama_core.library.slots import Slot, rectangle_of, slots_of
 from diorama_core.scene.types import Camera, SceneObject, TextureLayout
 
 MAIN = "main"
-FACES: Mapping[str, tuple[str, TextureLayout]] = {
-    **dict.fromkeys(("picture", "photo frame"), ("picture", "front")),
-    **dict.fromkeys(("television", "monitor", "laptop", "tablet"), ("screen", "front")),
-    **dict.fromkeys(("clock", "mantel clock", "grandfather clock"), ("dial", "front")),
-    **dict.fromkeys(("whiteboard", "bulletin board", "door", "curtain", "blinds"), (MAIN, "front")),
-    **dict.fromkeys(("rug", "bath mat", "yoga mat"), (MAIN, "top")),
-    "window": ("pane", "front"),
+FACES: Mapping[str, tuple[tuple[str, ...], TextureLayout]] = {
+    **dict.fromkeys(("picture", "photo frame"), (("picture",), "front")),
+    **dict.fromkeys(("television", "monitor", "laptop", "tablet"), (("screen",), "front")),
+    **dict.fromkeys(("clock", "mantel clock", "grandfather clock"), (("dial",), "front")),
+    **dict.fromkeys(("whiteboard", "bulletin board", "curtain", "blinds"), ((MAIN,), "front")),
+    **dict.fromkeys(("rug", "bath mat", "yoga mat"), ((MAIN,), "top")),
+    "door": ((MAIN, "pane"), "front"),
+    "window": (("pane",), "front"),
 }
-"""By category: role of the slot that has the face (or the main slot), and which way it faces."""
-FACE_ROLES: frozenset[Role] = frozenset({"picture", "screen", "pane", "dial"})
+"""By category: roles of the slots that have the face (or the main slot), and which way it faces."""
+SEEN_THROUGH = {"screen", "pane"}
+"""A shape without a slot of these roles has no such face; of other flat things the main slot has it."""
 ROUGHNESS: Mapping[str, float] = {"screen": 0.2, "pane": 0.1, "picture": 0.6, "dial": 0.5, "fabric": 0.95}
 OTHER_ROUGHNESS = 0.6
 MIN_SEEN = 0.2
@@ -73,9 +75,11 @@ def faces_of(
     """
     if item.category not in FACES:
         return ()
-    role, layout = FACES[item.category]
+    roles, layout = FACES[item.category]
     slots = slots_of(parts)
-    chosen = [s for s in slots if s.role == role] or [s for s in slots if s.main and role not in ("screen", "pane")]
+    chosen = [s for s in slots if s.role in roles or (s.main and MAIN in roles)]
+    if not chosen and not SEEN_THROUGH & set(roles):
+        chosen = [s for s in slots if s.main]
     if found.mask_confidence >= SURE_MASK:
         hidden = hidden | ~found.mask
     made = [_face(item, parts, slot, layout, rgb, hidden, found, camera) for slot in chosen]
