@@ -12,6 +12,7 @@ import pytest
 
 from diorama_core.errors import InputError, LibraryError
 from diorama_core.workers import LocalWorkers, RayWorkers, WorkerDied, Workers, workers
+from tests.processes import runs
 
 
 def power(number: int, exponent: int) -> int:
@@ -68,7 +69,6 @@ def own_id(wait_s: float) -> int:
     return os.getpid()
 
 
-@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs /proc")
 def test_processes_end_with_the_program_that_was_killed(tmp_path: Path) -> None:
     (tmp_path / "pool.py").write_text(POOL)
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[1])}
@@ -81,16 +81,9 @@ def test_processes_end_with_the_program_that_was_killed(tmp_path: Path) -> None:
     program.wait()
     program.stdout.close()
     until = time.monotonic() + 20.0
-    while _runs(worker) and time.monotonic() < until:
+    while runs(worker) and time.monotonic() < until:
         time.sleep(0.05)
-    assert not _runs(worker), "a process of the pool outlives the program"
-
-
-def _runs(process: int) -> bool:
-    try:
-        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
+    assert not runs(worker), "a process of the pool outlives the program"
 
 
 def test_the_same_on_ray(local_ray: Workers) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from jaxtyping import Float
@@ -175,14 +176,27 @@ def base_position(item: SceneObject) -> Float[np.ndarray, "3"]:
     return item.pose.position - item.pose.R_world_object[:, 2] * item.size_m[2] / 2
 
 
-def attach(client: Client, object_id: str, parent_id: str) -> None:
-    """Support an object by another object or by a plane, and move it there."""
+def attach(client: Client, object_id: str, parent_id: str, *, anyway: bool = False) -> None:
+    """Support an object by another object or by a plane, and move it there.
+
+    What is too large or too heavy for its supporter is refused with the reason, and offered `anyway`.
+    """
     from diorama_core.editing.placing import seated
+    from diorama_core.editing.sensible_support import why_not_on
 
     session = client.session
     scene = session.scene
     if not scene.has_object(object_id):
         raise EditRefused("that object no longer exists")
+    in_a_circle = parent_id in descendants(scene, object_id)  # refused below, with a better reason
+    why_not = "" if anyway or in_a_circle else why_not_on(scene, object_id, parent_id)
+    if why_not:
+        client.offer(
+            f"{why_not[:1].upper()}{why_not[1:]}",
+            "Put it there anyway",
+            partial(_attach_anyway, client, object_id, parent_id),
+        )
+        return
     wall = scene.has_plane(parent_id) and scene.plane(parent_id).role != "floor"
     support = scene.support_of(object_id)
     edge = Support(
@@ -197,6 +211,10 @@ def attach(client: Client, object_id: str, parent_id: str) -> None:
         lambda s: seated(edits.attach(s, edge), session.library, object_id),
         by=client,
     )
+
+
+def _attach_anyway(client: Client, object_id: str, parent_id: str) -> None:
+    attach(client, object_id, parent_id, anyway=True)
 
 
 def detach(client: Client, object_id: str) -> None:

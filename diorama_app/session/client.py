@@ -71,10 +71,15 @@ class Client:
         """Closes the dialog that is open over the page, if one is."""
         self.toast: Callable[[str, bool], None] = lambda message, undo: None
         """Shows a line at the foot of the view, with a button that undoes when asked."""
+        self.offer: Callable[[str, str, Callable[[], None]], None] = lambda message, label, do: None
+        """Shows a line that stays, with a button that does something."""
         self.to_say: tuple[str, bool] | None = None
         """What is shown there with the next redraw."""
         self.open_tab: Callable[[str], None] = lambda name: None
         """Brings a tab of the panels to the front."""
+        self.go_to: Callable[[str], None] = lambda name: None
+        self.selected_box: int | None = None
+        """The box that is selected on the photo."""
         self.open_board: Callable[[], None] = lambda: None
         """Shows the photo with its boxes, to draw on."""
 

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import logging
-
 from diorama_core.errors import EditRefused, ProjectError
 from diorama_core.project.lock import ProjectLock, ProjectLockedError
 from diorama_core.project.storage import Project
-
-log = logging.getLogger(__name__)
 
 
 class ProjectAccess:
@@ -18,6 +14,8 @@ class ProjectAccess:
         self._lock: ProjectLock | None = None
         self.read_only = ""
         """Why the open project is read-only; empty when it is writable."""
+        self.unwritable = ""
+        """Why changes cannot be saved although they may be made; empty when they can."""
 
     def take(self, project: Project) -> bool:
         """Let go of the project that was open, and have this one to oneself if possible.
@@ -29,13 +27,13 @@ class ProjectAccess:
             if self._lock.folder == project.folder:
                 return False
             self.release()
-        self.read_only = ""
+        self.read_only = self.unwritable = ""
         try:
             self._lock = ProjectLock(project.folder, "the editor")
         except ProjectLockedError as error:
             self.read_only = f"nothing can be changed here: {error}"
         except (ProjectError, OSError) as error:
-            log.warning("%s is opened without a lock: %s", project.folder, error)  # saving will say what is wrong
+            self.unwritable = f"changes will not be saved: {error}"
         return self._lock is not None
 
     def need_writable(self) -> None:

@@ -19,7 +19,7 @@ class ProjectContents:
     """A project as it is on disk."""
 
     scene: Scene
-    """The newest version that can be read."""
+    """The newest version that can be read; empty where nothing was built yet."""
     inputs: Inputs | None
     """What is known of the photo; None without one."""
     textures: Textures
@@ -35,8 +35,9 @@ def read_project(project: Project) -> ProjectContents:
     Raises:
         ProjectError, SceneError: no version of the scene can be read.
     """
-    scene, scene_damage = project.newest_scene()
     inputs, photo_damage = _inputs(project)
+    unfinished = inputs is not None and not project.has_scene
+    scene, scene_damage = (Scene(), "") if unfinished else project.newest_scene()
     damage = tuple(line for line in (scene_damage, photo_damage) if line)
     return ProjectContents(scene, inputs, project.textures(scene), build_notes(project), damage)
 

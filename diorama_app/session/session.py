@@ -10,6 +10,7 @@ import contextlib
 import logging
 import threading
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,6 @@ import viser
 from diorama_app.session.autosave import Autosave
 from diorama_app.session.connected_client import ConnectedClient
 from diorama_app.session.document import Document
-from diorama_app.session.draft import Draft
 from diorama_app.session.job_reports import JobReports
 from diorama_app.session.jobs import Jobs, Outcome
 from diorama_app.session.layout_run import LayoutRun
@@ -52,6 +52,17 @@ MESH_OVERLAP_S = 0.45
 """How long an old mesh stays while the browser parses its successor."""
 
 
+@dataclass
+class Shared:
+    """What all open projects have in common."""
+
+    clip: Clip | None = None
+    """The clipboard."""
+
+
+BUILDING = "building"
+"""Entry of a project's file while its scene is built: since when."""
+
 MakeClient = Callable[["EditorSession", viser.ClientHandle, int], ConnectedClient]
 
 
@@ -73,7 +84,6 @@ class EditorSession:
         self.projects_dir = projects_dir
         self.low_graphics = low_graphics
         self.document = Document()
-        self.draft = Draft()
         self.project: Project | None = None
         self._inputs_saved: Inputs | None = None
         """Corrections of the photo as saved in the project's folder."""
@@ -87,8 +97,13 @@ class EditorSession:
         self.on_client: Callable[[Any], None] | None = None
         """Creates the page of a newly connected client."""
         self._clients_so_far = 0
-        self.clip: Clip | None = None
-        """The clipboard, shared by all projects."""
+        self.shared = Shared()
+        self.visit: Callable[[ConnectedClient, Project, str], None] = self._open_here
+        """Takes a client to a project and says something there; raises when it cannot be opened."""
+        self.on_left: Callable[[], None] = lambda: None
+        """Told when a client went away."""
+        self.greeting: tuple[str, NoticeKind] | None = None
+        """What the next client is told that comes."""
         self.binned: Path | None = None
         """The project deleted last, until it is restored."""
         self.layout_run: LayoutRun | None = None
@@ -99,6 +114,8 @@ class EditorSession:
             self.ui_thread, on_start=self.refresh_panels, on_progress=self._refresh_job, on_end=self._job_ended
         )
         self.jobs = Jobs(reports.changed, reports.ended)
+        self.interrupted = False
+        """Whether a build of this project was under way when the program ended."""
         self.autosave = Autosave(on_error=lambda line: self._saver_says(line, "bad"), on_saved=self._saver_says)
         self._access = ProjectAccess()
         self.shapes = ShapeBytes(library, light=low_graphics)
@@ -112,12 +129,32 @@ class EditorSession:
         self.on_pick: Callable[[str, viser.SceneNodePointerEvent], None] | None = None
         self.on_drag: Callable[[str, viser.SceneNodeDragEvent], None] | None = None
 
+    @property
+    def clip(self) -> Clip | None:
+        """The clipboard, shared by all projects."""
+        return self.shared.clip
+
+    @clip.setter
+    def clip(self, clip: Clip | None) -> None:
+        self.shared.clip = clip
+
     # -- the document -----------------------------------------------------------------------------------------
 
     @property
     def scene(self) -> Scene:
         """The scene as it is now."""
         return self.document.scene
+
+    @property
+    def inputs(self) -> Inputs | None:
+        """The photo with everything that is said of it; None without one."""
+        return self.document.inputs
+
+    def annotate(
+        self, label: str, inputs: Inputs, *, by: ConnectedClient | None = None, merge_key: str | None = None
+    ) -> None:
+        """Change what is said of the photo, as one undo step; the scene stays as it is."""
+        self.commit(label, self.scene, by=by, inputs=inputs, merge_key=merge_key)
 
     def edit(
         self,
@@ -219,25 +256,15 @@ class EditorSession:
 
     def changed(self, by: ConnectedClient | None = None) -> None:
         """The document changed: save and show it. Nothing that is shown can keep it from being saved."""
+        inputs = self.document.inputs
         if self.project is not None:
-            self.autosave.save_soon(self.project, self.scene)
-        self._follow_inputs()
+            begun = bool(self.scene.objects or self.scene.architecture.planes) or self.project.has_scene
+            unsaved = None if inputs is self._inputs_saved else inputs
+            self.autosave.save_soon(self.project, self.scene if begun else None, unsaved)
+        self._inputs_saved = inputs
+        self.photo = None if inputs is None else inputs.photo
         self.refresh(by)
         self.checker.look_at(self.scene)
-
-    def _follow_inputs(self) -> None:
-        """What is said of the photo changed: the next build starts from that, in this session and in later ones."""
-        inputs = self.document.inputs
-        if inputs is None or inputs is self._inputs_saved:
-            return
-        try:
-            if self.project is not None:
-                self.project.save_inputs(inputs, self.project.info().get("warnings", ()))
-        except DioramaError as error:
-            self.notice_all(f"corrections of the photo are not saved: {error}", "bad")
-        if self.draft.from_project:
-            self.draft = self.draft.following(inputs)
-        self._inputs_saved, self.photo = inputs, inputs.photo
 
     def _badged(self, found: Problems) -> None:
         self.badges = found
@@ -290,19 +317,37 @@ class EditorSession:
                 self.autosave.recovery.clean_up(project)
         self.project, self.textures, self.notes = project, read.textures, read.notes
         self.photo = None if inputs is None else inputs.photo
-        self.draft = Draft()
+        self.interrupted = project.info().get(BUILDING) is not None
         self.shapes.expect(len(scene.objects))
-        if inputs is not None:
-            self.draft = Draft(inputs, inputs.boxes, from_project=True, name=project.name)
         self.document.open(scene, inputs)
         self._inputs_saved = inputs
         self.layout_run = None
+        for client in self.clients.values():
+            client.view.canvas.close()
         self.show_whole_room()
         self.refresh()
+        for client in self.clients.values():
+            self._show_where_left(client)
         self.checker.look_at(scene)
-        for line in (self.read_only, *read.damage):
+        for line in (self.read_only, self._access.unwritable, *read.damage):
             if line:
                 self.notice_all(line, "bad")
+
+    @property
+    def unfinished(self) -> bool:
+        """Whether the project has a photo and nothing was built of it yet."""
+        return self.inputs is not None and not self.scene.objects and not self.scene.architecture.planes
+
+    def _show_where_left(self, client: ConnectedClient) -> None:
+        """An unfinished project opens where its boxes are drawn."""
+        if self.unfinished:
+            client.open_tab("Photo")
+            client.open_board()
+
+    def _open_here(self, client: ConnectedClient, project: Project, message: str = "") -> None:
+        self.open_project(project)
+        if message:
+            self.notice_all(message, "good")
 
     def _saver_says(self, message: str, kind: NoticeKind = "good") -> None:
         def tell() -> None:
@@ -340,12 +385,18 @@ class EditorSession:
                 self.on_client(client)
             self._show_photo_camera(client)
             client.refresh()
+        client.view.camera.move(*room_view(self.scene, client.view.camera.aspect))
+        self._show_where_left(client)
+        if self.greeting is not None:
+            (message, kind), self.greeting = self.greeting, None
+            client.notice(message, kind)
 
     def left(self, viser_client: viser.ClientHandle) -> None:
         """A browser went away."""
         self.clients.pop(viser_client.client_id, None)
         self.ui_thread.forget(viser_client.client_id)
         self.refresh_panels()
+        self.on_left()
 
     def notice(self, client_id: int | None, message: str, kind: NoticeKind = "info") -> None:
         """Tell one person, or all when it is not known which."""

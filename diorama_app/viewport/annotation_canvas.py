@@ -1,215 +1,230 @@
-"""The photo shown flat in one browser, to draw boxes on, to click on, and to see outlines on."""
+"""The photo over the 3D view in one browser: boxes are drawn, selected, changed and deleted on it, points are clicked.
+
+The page draws it (`static/canvas.js`): a box follows the hand at once, and the server hears when it is let go of.
+"""
 
 from __future__ import annotations
 
+import base64
+import io
+import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import viser
-from jaxtyping import Bool, Float, UInt8
+from jaxtyping import Bool, UInt8
+from PIL import Image
 
-from diorama_app.viewport.camera import ViewCamera, screen_rays
 from diorama_app.viewport.mesh_assets import reduced
+from diorama_app.web.html import Action, LiveHtml, run_once
 from diorama_core.artefacts import Box, LabelledBox
-from diorama_core.geometry.rotations import quaternion_wxyz
 
-CENTRE = np.array([0.0, 0.0, 400.0])
-"""Position of the photo, far above the room, while it is annotated."""
-HEIGHT_M = 1.0
-DISTANCE_M = 1.25
-MARGIN = 1.04
-FACING_SOUTH = quaternion_wxyz(np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]]))
+MAX_SIDE_PX, MAX_MASK_PX = 1600, 800
+JPEG_QUALITY = 85
 MASK_COLOUR = (255, 90, 20, 110)
-BOX_COLOURS = ((47, 111, 214), (214, 84, 47), (38, 150, 96), (160, 80, 200), (200, 150, 20), (20, 150, 170))
-LIFT_M = 0.002
-"""Drawings lie this far in front of the photo."""
 MIN_BOX_PX = 3
+MAX_LABEL = 40
 
-OnBox = Callable[[Box], None]
-OnPoint = Callable[[float, float, bool], None]
+Mode = Literal["boxes", "one box", "points"]
+HINTS: dict[Mode, str] = {
+    "boxes": "Drag around each piece of furniture. Click a box to change it.",
+    "one box": "Drag a new box around the object.",
+    "points": "Click the object; Shift-click what does not belong to it.",
+}
 
 
 @dataclass(frozen=True)
-class FlatPhoto:
-    """The photo on the canvas: where its pixels are in the world."""
+class Drawn:
+    """A rectangle was drawn, in photo pixels."""
 
-    width_px: int
-    height_px: int
+    box: Box
 
-    @property
-    def width_m(self) -> float:
-        """Width of the picture on the canvas."""
-        return HEIGHT_M * self.width_px / self.height_px
 
-    def to_world(self, pixels: Float[np.ndarray, "*n 2"], lift_m: float = 0.0) -> Float[np.ndarray, "*n 3"]:
-        """Photo pixels on the canvas, `lift_m` in front of it."""
-        u = np.asarray(pixels, dtype=np.float64) / (self.width_px, self.height_px) - 0.5
-        y = np.full(u.shape[:-1], -lift_m)
-        return CENTRE + np.stack([u[..., 0] * self.width_m, y, -u[..., 1] * HEIGHT_M], axis=-1)
+@dataclass(frozen=True)
+class Reshaped:
+    """A box was moved or resized."""
 
-    def to_pixels(
-        self, origin: Float[np.ndarray, "3"], directions: Float[np.ndarray, "*n 3"]
-    ) -> Float[np.ndarray, "*n 2"]:
-        """Where rays from `origin` meet the canvas, in photo pixels (outside the photo too)."""
-        along = np.where(np.abs(directions[..., 1]) < 1e-9, 1e-9, directions[..., 1])
-        points = origin + directions * ((CENTRE[1] - origin[1]) / along)[..., None] - CENTRE
-        u = np.stack([points[..., 0] / self.width_m, -points[..., 2] / HEIGHT_M], axis=-1) + 0.5
-        return u * (self.width_px, self.height_px)
+    index: int
+    box: Box
 
-    def contains(self, x: float, y: float) -> bool:
-        """Whether a pixel lies in the photo."""
-        return 0 <= x < self.width_px and 0 <= y < self.height_px
 
-    def box_around(self, pixels: Float[np.ndarray, "n 2"]) -> Box | None:
-        """The box around points, cut at the photo's edges; None where less than `MIN_BOX_PX` is left."""
-        size = np.array([self.width_px, self.height_px])
-        (x1, y1), (x2, y2) = np.clip(pixels.min(axis=0), 0, size), np.clip(pixels.max(axis=0), 0, size)
-        if x2 - x1 < MIN_BOX_PX or y2 - y1 < MIN_BOX_PX:
-            return None
-        return float(x1), float(y1), float(x2), float(y2)
+@dataclass(frozen=True)
+class Selected:
+    """A box was clicked; None for a click beside all boxes."""
+
+    index: int | None
+
+
+@dataclass(frozen=True)
+class Named:
+    """A name was written on a box."""
+
+    index: int
+    label: str
+
+
+@dataclass(frozen=True)
+class Deleted:
+    """A box is to go."""
+
+    index: int
+
+
+@dataclass(frozen=True)
+class Pointed:
+    """A pixel was clicked."""
+
+    x: float
+    y: float
+    is_part: bool
+    """Without Shift: the pixel is part of the object."""
+
+
+@dataclass(frozen=True)
+class Finished:
+    """The person is done."""
+
+
+Event = Drawn | Reshaped | Selected | Named | Deleted | Pointed | Finished
+OnEvent = Callable[[Event], None]
 
 
 class AnnotationCanvas:
-    """Shows the photo flat and reports what is drawn and clicked on it. Used from the UI thread only."""
+    """Shows the photo and reports what is done on it. Used from the UI thread only."""
 
-    def __init__(self, viser_client: viser.ClientHandle, camera: ViewCamera) -> None:
-        self._viser_client = viser_client
-        self._camera = camera
-        self.photo: FlatPhoto | None = None
-        """The photo on the canvas; None while the canvas is closed."""
-        self._photo_nodes: list[viser.SceneNodeHandle] = []
-        self._box_nodes: list[viser.SceneNodeHandle] = []
-        self._rect: Any = None
-        self._points: list[Any] = []
-        self._before: tuple[np.ndarray, np.ndarray, float] | None = None
-        """Position, target and field of view to go back to."""
+    def __init__(self, gui: viser.GuiApi) -> None:
+        self._on_event: OnEvent | None = None
+        self._size = (1, 1)
+        self._names: tuple[str, ...] = ()
+        sender = LiveHtml(gui, self._received)
+        sender.show('<button type="button" id="dio-canvas-send" style="display:none" tabindex="-1"></button>')
+        self._photo, self._boxes, self._mask, self._next = (_Told(gui) for _ in range(4))
+        self._photo.tell({"photo": None})
 
     @property
     def is_open(self) -> bool:
         """Whether this browser shows the canvas."""
-        return self.photo is not None
+        return self._on_event is not None
 
-    def open(self, photo: UInt8[np.ndarray, "h w 3"], on_box: OnBox | None, on_point: OnPoint | None = None) -> None:
-        """Show the photo flat, to draw on or to click on.
+    def open(
+        self,
+        photo: UInt8[np.ndarray, "h w 3"],
+        on_event: OnEvent,
+        mode: Mode = "boxes",
+        *,
+        names: Sequence[str] = (),
+        next_label: str = "",
+    ) -> None:
+        """Show the photo to draw on or to click on.
 
         Args:
             photo: the picture.
-            on_box: told every rectangle drawn on it, in photo pixels.
-            on_point: told every click on it (x, y in photo pixels) and whether it was without Shift.
+            on_event: told what is done on it, from viser's event loop.
+            mode: what can be done.
+            names: suggested when a box is named.
+            next_label: what the next box is called.
         """
-        if not self.is_open:
-            camera = self._camera
-            self._before = (camera.position, camera.target_point, camera.fov_rad)
         self.close()
+        self._on_event = on_event
         height, width = photo.shape[:2]
-        flat = self.photo = FlatPhoto(width, height)
-        self._photo_nodes = [self._add_picture("/board/photo", reduced(photo, 1600), flat, lift_m=0.0)]
-        if on_box is not None:
-            self._listen_for_boxes(flat, on_box)
-        if on_point is not None:
-            self._listen_for_points(flat, on_point)
-        self._face(flat)
+        self._size = width, height
+        told = {
+            "url": _uri(Image.fromarray(reduced(photo, MAX_SIDE_PX)), "JPEG", quality=JPEG_QUALITY),
+            "size": [width, height],
+            "mode": mode,
+            "hint": HINTS[mode],
+            "names": list(names),
+        }
+        self._photo.tell({"photo": told})
+        self.next_label(next_label)
 
-    def _listen_for_boxes(self, flat: FlatPhoto, on_box: OnBox) -> None:
-        async def selected(event: viser.SceneRectSelectEvent) -> None:
-            (x1, y1), (x2, y2) = event.screen_min, event.screen_max
-            camera = self._camera
-            screen = np.array([[x1, y1], [x2, y1], [x2, y2], [x1, y2]])
-            rays = screen_rays(screen, camera.R_world_camera, camera.fov_rad, camera.aspect)
-            box = flat.box_around(flat.to_pixels(camera.position, rays))
-            if box is not None:
-                on_box(box)
+    def next_label(self, label: str) -> None:
+        """What the next box is called."""
+        self._next.tell({"next": label})
 
-        self._rect = self._viser_client.scene.on_rect_select()(selected)
-
-    def _listen_for_points(self, flat: FlatPhoto, on_point: OnPoint) -> None:
-        def listener(part: bool) -> Any:
-            async def clicked(event: viser.SceneClickEvent) -> None:
-                x, y = flat.to_pixels(np.array(event.ray_origin), np.array(event.ray_direction))
-                if flat.contains(x, y):
-                    on_point(float(x), float(y), part)
-
-            return clicked
-
-        scene = self._viser_client.scene
-        self._points = [scene.on_click()(listener(True)), scene.on_click(modifier="shift")(listener(False))]
+    def show_boxes(self, boxes: Sequence[LabelledBox], selected: int | None) -> None:
+        """Draw the boxes over the photo."""
+        if self.is_open:
+            rows = [{"box": list(b.box), "label": b.label[:MAX_LABEL]} for b in boxes]
+            self._boxes.tell({"boxes": rows, "selected": selected})
 
     def show_mask(self, mask: Bool[np.ndarray, "h w"]) -> None:
-        """Lay an outline over the photo on the canvas."""
-        if self.photo is None:
+        """Lay an outline over the photo."""
+        if not self.is_open:
             return
         tint = np.zeros((*mask.shape, 4), dtype=np.uint8)
         tint[mask] = MASK_COLOUR
-        step = max(1, max(mask.shape) // 800)
-        node = self._add_picture("/board/mask", np.ascontiguousarray(tint[::step, ::step]), self.photo, lift_m=LIFT_M)
-        self._photo_nodes = [n for n in self._photo_nodes if n.name != node.name] + [node]
-
-    def show_boxes(self, boxes: Sequence[LabelledBox], highlighted: int | None) -> None:
-        """Draw the boxes over the photo on the canvas."""
-        if self.photo is None:
-            return
-        for node in self._box_nodes:
-            node.remove()
-        self._box_nodes = []
-        with self._viser_client.atomic():
-            for index, box in enumerate(boxes):
-                self._draw_box(self.photo, index, box, bold=index == highlighted)
-
-    def _draw_box(self, flat: FlatPhoto, index: int, box: LabelledBox, *, bold: bool) -> None:
-        x1, y1, x2, y2 = box.box
-        corners = flat.to_world(np.array([[x1, y1], [x2, y1], [x2, y2], [x1, y2]]), lift_m=LIFT_M)
-        scene = self._viser_client.scene
-        self._box_nodes += [
-            scene.add_line_segments(
-                f"/board/box/{index}",
-                points=np.stack([corners, np.roll(corners, -1, axis=0)], axis=1),
-                colors=BOX_COLOURS[index % len(BOX_COLOURS)],
-                thickness=4.5 if bold else 2.5,
-                thickness_units="screen",
-            ),
-            scene.add_label(f"/board/name/{index}", box.label[:30], position=corners[0], anchor="bottom-left"),
-        ]
-
-    def leave(self) -> None:
-        """Put the photo away and look at the room as before."""
-        if not self.is_open:
-            return
-        self.close()
-        if self._before is not None:
-            self._camera.move(*self._before)
+        step = max(1, max(mask.shape) // MAX_MASK_PX)
+        self._mask.tell({"mask": _uri(Image.fromarray(np.ascontiguousarray(tint[::step, ::step])), "PNG")})
 
     def close(self) -> None:
         """Put the photo away."""
         if not self.is_open:
             return
-        self.photo = None
-        if self._rect is not None:
-            self._viser_client.scene.remove_rect_select_callback(self._rect)
-            self._rect = None
-        for listener in self._points:
-            self._viser_client.scene.remove_click_callback(listener)
-        self._points = []
-        for node in (*self._box_nodes, *self._photo_nodes):
-            node.remove()
-        self._photo_nodes, self._box_nodes = [], []
+        self._on_event = None
+        self._photo.tell({"photo": None})
+        self._boxes.tell({"boxes": [], "selected": None})
+        self._mask.tell({"mask": None})
 
-    def _add_picture(
-        self, name: str, picture: UInt8[np.ndarray, "h w c"], flat: FlatPhoto, *, lift_m: float
-    ) -> viser.ImageHandle:
-        return self._viser_client.scene.add_image(
-            name,
-            picture,
-            render_width=flat.width_m,
-            render_height=HEIGHT_M,
-            position=CENTRE - (0.0, lift_m, 0.0),
-            wxyz=FACING_SOUTH,
-            cast_shadow=False,
-            receive_shadow=False,
-        )
+    def _received(self, action: Action) -> None:
+        on_event = self._on_event
+        event = _event(action, self._size)
+        if on_event is not None and event is not None:
+            on_event(event)
 
-    def _face(self, flat: FlatPhoto) -> None:
-        half_up, half_across = MARGIN * HEIGHT_M / 2, MARGIN * flat.width_m / 2
-        fov = 2 * np.arctan(max(half_up, half_across / max(self._camera.aspect, 1e-6)) / DISTANCE_M)
-        self._camera.move(CENTRE - (0.0, DISTANCE_M, 0.0), CENTRE, float(fov))
+
+class _Told:
+    """One part of what the page knows; a newer message replaces an older one that was not sent yet."""
+
+    def __init__(self, gui: viser.GuiApi) -> None:
+        self._html = gui.add_html("")
+        self._last = ""
+
+    def tell(self, news: dict[str, Any]) -> None:
+        told = json.dumps(news, separators=(",", ":"))
+        if told != self._last:
+            self._last = told
+            self._html.content = run_once(f"window.__dioCanvas.told({told})")
+
+
+def _event(action: Action, size: tuple[int, int]) -> Event | None:
+    """What a page says was done; None for what is no event."""
+    try:
+        arg = json.loads(action.arg)
+        match action.do:
+            case "draw":
+                return Drawn(_box(arg, size))
+            case "change":
+                return Reshaped(int(arg[0]), _box(arg[1], size))
+            case "select":
+                return Selected(None if arg is None else int(arg))
+            case "name":
+                return Named(int(arg[0]), str(arg[1])[:MAX_LABEL])
+            case "delete":
+                return Deleted(int(arg))
+            case "point":
+                return Pointed(float(arg[0]), float(arg[1]), bool(arg[2]))
+            case "done":
+                return Finished()
+    except (ValueError, TypeError, LookupError):
+        return None  # from a page that is not ours, or less than `MIN_BOX_PX`
+    return None
+
+
+def _box(corners: Any, size: tuple[int, int]) -> Box:
+    """The box between two corners, cut at the photo's edges; raises `ValueError` where too little is left."""
+    x1, y1, x2, y2 = (float(v) for v in corners)
+    (x1, x2), (y1, y2) = sorted((x1, x2)), sorted((y1, y2))
+    x1, x2 = (min(max(x, 0.0), float(size[0])) for x in (x1, x2))
+    y1, y2 = (min(max(y, 0.0), float(size[1])) for y in (y1, y2))
+    if not (x2 - x1 >= MIN_BOX_PX and y2 - y1 >= MIN_BOX_PX):
+        raise ValueError("too small")
+    return x1, y1, x2, y2
+
+
+def _uri(picture: Image.Image, kind: str, **options: int) -> str:
+    buffer = io.BytesIO()
+    picture.save(buffer, kind, **options)
+    return f"data:image/{kind.lower()};base64," + base64.b64encode(buffer.getvalue()).decode()

@@ -70,6 +70,13 @@ class ViewCamera:
         """The point in the middle of the view."""
         return np.asarray(self._viser_client.camera.look_at, dtype=np.float64)
 
+    def point_on_level(self, height_m: float) -> Float[np.ndarray, "3"]:
+        """Where the middle of the view meets a level plane; the target's place where it does not."""
+        position, ahead = self.position, self.target_point - self.position
+        along = (height_m - position[2]) / ahead[2] if abs(ahead[2]) > 1e-6 else -1.0
+        point = position + along * ahead if along > 0 else self.target_point
+        return np.array([point[0], point[1], height_m])
+
     def for_picture(self, width: int, height: int) -> Camera:
         """This view as a camera for a picture of the given size (px), with the same vertical field of view."""
         focal = 0.5 * height / float(np.tan(0.5 * self.fov_rad))

@@ -28,7 +28,7 @@ class ClientView:
         self._viser_client = viser_client
         self.photo = PhotoOverlay(viser_client)
         self.camera = ViewCamera(viser_client, on_move=self.photo.camera_moved)
-        self.canvas = AnnotationCanvas(viser_client, self.camera)
+        self.canvas = AnnotationCanvas(viser_client.gui)
         self._planes: list[viser.SceneNodeHandle] = []
         self._tape: list[viser.SceneNodeHandle] = []
 

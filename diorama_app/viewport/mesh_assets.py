@@ -9,9 +9,10 @@ from jaxtyping import Int32, UInt8
 from PIL import Image
 from trimesh.visual.material import PBRMaterial
 
+from diorama_core.errors import LibraryError
 from diorama_core.geometry.planes import plane_axes, plane_uv
 from diorama_core.io.cache import LruCache
-from diorama_core.library.paint import painted
+from diorama_core.library.paint import main_rgb, painted
 from diorama_core.library.photo_materials import Pictures, with_photo_materials
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.simplify import simplified_glb
@@ -23,6 +24,7 @@ NO_PICTURES: Pictures = {}
 _Key = tuple[str, Colour | None, Finish | None, tuple[PhotoMaterial, ...], Scale, frozenset[str], int | None]
 MAX_PICTURE_PX = 1024
 """Of one picture from the photo on the page; exports have the whole one."""
+GREY = (200, 200, 200)
 CACHE_BYTES = 512 * 2**20
 """Of all shapes in memory: what the browser asks for again when somebody joins or an edit is undone."""
 LIGHT_SCENE_TRIANGLES = 24_000
@@ -40,6 +42,7 @@ class ShapeBytes:
         self._max_triangles = LIGHT_SHAPE_TRIANGLES[0] if light else None
         self._cached: LruCache[_Key, bytes]
         self._cached = LruCache(CACHE_BYTES, size_of=len)
+        self._main_colours: dict[str, tuple[int, int, int]] = {}
 
     def expect(self, count: int) -> None:
         """From now on shapes are made for a scene of about `count` objects."""
@@ -78,6 +81,16 @@ class ShapeBytes:
             return data if most is None else simplified_glb(data, most)
 
         return self._cached.get((shape_id, colour, finish, materials, scale, frozenset(shown), most), made)
+
+    def main_colour(self, shape_id: str) -> tuple[int, int, int]:
+        """The colour of the shape's main material (sRGB, 0 to 255); grey where the shape is missing."""
+        if shape_id not in self._main_colours:
+            try:
+                found = main_rgb(self._library.parts(shape_id))
+            except LibraryError:
+                found = GREY
+            self._main_colours[shape_id] = found
+        return self._main_colours[shape_id]
 
 
 def _painted_glb(

@@ -8,15 +8,14 @@ import gzip
 import http
 from concurrent.futures import Future
 from http.cookies import SimpleCookie
-from pathlib import Path
 
 from websockets.asyncio.server import ServerConnection
 from websockets.datastructures import Headers
 from websockets.http11 import Response
 
+from diorama_app.web.head import with_head
+
 TOKEN_COOKIE = "diorama_token"
-HEAD_SCRIPTS = sorted((Path(__file__).parents[1] / "static").glob("*.js"))
-"""Run in the page before viser does."""
 SECURITY_HEADERS = {
     # viser's page is one file of inline scripts, starts workers from blobs and compiles WebAssembly and templates.
     "Content-Security-Policy": "default-src 'none'; script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:; "
@@ -45,8 +44,7 @@ def prepend_scripts(response: Response) -> None:
 @functools.lru_cache(maxsize=2)
 def _page(body: bytes, zipped: bool) -> bytes:
     page = gzip.decompress(body) if zipped else body
-    scripts = b"".join(b"\n<script>" + script.read_bytes() + b"</script>" for script in HEAD_SCRIPTS)
-    page = page.replace(b"<head>", b"<head>" + scripts, 1)
+    page = with_head(page)
     return gzip.compress(page, mtime=0) if zipped else page
 
 

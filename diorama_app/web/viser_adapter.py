@@ -22,16 +22,18 @@ from collections.abc import Awaitable, Callable, Iterator
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from http.cookies import CookieError, SimpleCookie
-from typing import Any
-from urllib.parse import parse_qs, urlsplit
+from typing import Any, Protocol, runtime_checkable
+from urllib.parse import parse_qs, parse_qsl, urlencode, urlsplit
 
 import viser
 import websockets.asyncio.server
 from viser import _messages
 from viser.infra import _infra
 from websockets.asyncio.server import ServerConnection
+from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
+from diorama_app.web.bridge import Bridge, ConnectionHandler
 from diorama_app.web.responses import TOKEN_COOKIE, add_headers, picture, prepend_scripts
 from diorama_app.web.upload_limits import RunningUpload, why_refused
 from diorama_core.errors import InputError
@@ -75,6 +77,22 @@ HttpHandler = Callable[[ServerConnection, Request], Response | None]
 Answer = Callable[[ServerConnection, Request], Response | Awaitable[Response] | None]
 Refused = Callable[[int, str], None]
 Pictures = Callable[[str], "Future[bytes | None]"]
+
+PROJECT = "project"
+"""The parameter of an address that names a project."""
+
+
+@runtime_checkable
+class Projects(Protocol):
+    """Which project an address leads to."""
+
+    def first(self) -> str | None:
+        """The project of an address that names none; None for the page of the server itself."""
+        ...
+
+    def server(self, name: str) -> viser.ViserServer | None:
+        """The server of a project, opened if necessary; None where there is no such project. May take a while."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -151,6 +169,7 @@ def create_server(
     visitors: Visitors,
     refused: Refused | None = None,
     pictures: Pictures | None = None,
+    projects: Projects | None = None,
 ) -> viser.ViserServer:
     """A hardened viser server.
 
@@ -162,13 +181,35 @@ def create_server(
         refused: told (client id, one line) of every upload that was refused.
         pictures: asked for a PNG when a page wants `pictures/<name>`. The browser fetches what it shows and nothing
             else, beside the websocket on which the scene comes.
+        projects: where browsers go whose address names a project (`/?project=...`).
 
     Raises:
         InputError: the port is taken or the address is not this machine's.
     """
     _check_port(host, port)
-    with _guarded_serve(visitors, pictures), contextlib.redirect_stdout(io.StringIO()):
+    with _guarded_serve(visitors, pictures, projects), contextlib.redirect_stdout(io.StringIO()):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=False)
+    _secure(server, refused)
+    return server
+
+
+def create_server_without_port(label: str, refused: Refused | None = None) -> viser.ViserServer:
+    """A viser server whose connections come from the one that has the port (`projects` of `create_server`)."""
+    handlers: list[ConnectionHandler] = []
+
+    def serve(handler: ConnectionHandler, *args: Any, **kwargs: Any) -> _NoPort:
+        handlers.append(handler)
+        return _NoPort()
+
+    with _replaced_serve(serve), contextlib.redirect_stdout(io.StringIO()):
+        server = viser.ViserServer(host="127.0.0.1", port=0, label=label, verbose=False)
+    _HANDLERS[server] = handlers[0]
+    _secure(server, refused)
+    return server
+
+
+def _secure(server: viser.ViserServer, refused: Refused | None) -> None:
+    """No public tunnel, and caps on the uploads of every page."""
     server.request_share_url = _no_share_url
     uploads = _Uploads(refused)
     uploads.watch(server.gui)
@@ -177,7 +218,36 @@ def create_server(
         uploads.watch(viser_client.gui)
 
     server.on_client_connect(watch)  # the first to be told, before anything makes an upload button
-    return server
+
+
+_HANDLERS: weakref.WeakKeyDictionary[viser.ViserServer, ConnectionHandler] = weakref.WeakKeyDictionary()
+"""Of servers without a port: what talks to a browser, in the loop of that server."""
+_STARTING = threading.Lock()
+
+
+class _NoPort:
+    """Stands where viser expects the socket that it listens on."""
+
+    sockets = ()
+
+    async def __aenter__(self) -> _NoPort:
+        self.server = self
+        return self
+
+    async def __aexit__(self, *error: object) -> None:
+        return None
+
+
+@contextlib.contextmanager
+def _replaced_serve(serve: Callable[..., Any]) -> Iterator[None]:
+    """While it lasts, viser starts its websocket servers by `serve`."""
+    with _STARTING:
+        original = websockets.asyncio.server.serve
+        websockets.asyncio.server.serve = serve  # type: ignore[assignment, misc]
+        try:
+            yield
+        finally:
+            websockets.asyncio.server.serve = original  # type: ignore[misc]
 
 
 def stop_server(server: viser.ViserServer) -> None:
@@ -220,20 +290,50 @@ def _check_port(host: str, port: int) -> None:
 
 
 @contextlib.contextmanager
-def _guarded_serve(visitors: Visitors, pictures: Pictures | None) -> Iterator[None]:
+def _guarded_serve(visitors: Visitors, pictures: Pictures | None, projects: Projects | None) -> Iterator[None]:
     """While it lasts, websocket servers are started with the visitors' check in front."""
     original = websockets.asyncio.server.serve
 
     @functools.wraps(original)
     def serve(handler: Any, *args: Any, process_request: HttpHandler | None = None, **kwargs: Any) -> Any:
         kwargs["max_size"] = MAX_MESSAGE_BYTES
-        return original(_paced(handler), *args, process_request=_checked(process_request, visitors, pictures), **kwargs)
+        checked = _checked(process_request, visitors, pictures, projects)
+        routed = handler if projects is None else _routed(handler, projects)
+        return original(_paced(routed), *args, process_request=checked, **kwargs)
 
-    websockets.asyncio.server.serve = serve  # type: ignore[assignment, misc]
-    try:
+    with _replaced_serve(serve):
         yield
-    finally:
-        websockets.asyncio.server.serve = original  # type: ignore[misc]
+
+
+def _routed(handler: ConnectionHandler, projects: Projects) -> ConnectionHandler:
+    """A handler that gives a connection to the server of the project in its address, or else to `handler`."""
+
+    async def handle(connection: ServerConnection) -> None:
+        name = project_of("" if connection.request is None else connection.request.path)
+        server = None if name is None else await asyncio.to_thread(projects.server, name)
+        inner = None if server is None else _HANDLERS.get(server)
+        if server is None or inner is None:
+            await handler(connection)
+            return
+        loop = server._websock_server._background_event_loop
+        assert loop is not None
+        bridge = Bridge(connection, asyncio.get_running_loop())
+        await asyncio.wrap_future(asyncio.run_coroutine_threadsafe(inner(bridge), loop))
+
+    return handle
+
+
+def project_of(address: str) -> str | None:
+    """The project that an address names, or None."""
+    return parse_qs(urlsplit(address).query).get(PROJECT, [None])[0]
+
+
+def _redirected(request: Request, project: str) -> Response:
+    """Sends a page whose address names no project to the address that does."""
+    query = [*parse_qsl(urlsplit(request.path).query, keep_blank_values=True), (PROJECT, project)]
+    headers = Headers({"Location": f"/?{urlencode(query)}", "Content-Length": "0", "Cache-Control": "no-store"})
+    headers["Connection"] = "close"
+    return Response(http.HTTPStatus.FOUND, "Found", headers)
 
 
 def _paced(handler: Callable[[ServerConnection], Awaitable[None]]) -> Callable[[ServerConnection], Awaitable[None]]:
@@ -256,7 +356,9 @@ def _paced(handler: Callable[[ServerConnection], Awaitable[None]]) -> Callable[[
     return handle
 
 
-def _checked(handler: HttpHandler | None, visitors: Visitors, pictures: Pictures | None) -> Answer:
+def _checked(
+    handler: HttpHandler | None, visitors: Visitors, pictures: Pictures | None, projects: Projects | None
+) -> Answer:
     def process_request(connection: ServerConnection, request: Request) -> Response | Awaitable[Response] | None:
         refusal = visitors.refusal(request)
         if refusal is not None:
@@ -270,6 +372,12 @@ def _checked(handler: HttpHandler | None, visitors: Visitors, pictures: Pictures
         name = urlsplit(request.path).path.removeprefix(f"/{PICTURES}")
         if pictures is not None and f"/{PICTURES}{name}" == urlsplit(request.path).path:
             return picture(connection, pictures(name))
+        is_page = urlsplit(request.path).path in ("", "/") and request.headers.get("Upgrade") != "websocket"
+        first = projects.first() if projects is not None and is_page and project_of(request.path) is None else None
+        if first is not None:
+            redirect = _redirected(request, first)
+            add_headers(redirect, remember=visitors.token if visitors.brings_token(request) else None)
+            return redirect
         response = handler(connection, request) if handler is not None else None
         if response is not None:
             prepend_scripts(response)

@@ -56,15 +56,20 @@ class _Seen:
 
 
 def photo_look(
-    rgb: UInt8[np.ndarray, "h w 3"], objects: tuple[DetectedObject, ...], scene: Scene, library: ShapeLibrary
+    rgb: UInt8[np.ndarray, "h w 3"],
+    objects: tuple[DetectedObject, ...],
+    scene: Scene,
+    library: ShapeLibrary,
+    illuminant_rgb: tuple[float, float, float] = (1.0, 1.0, 1.0),
 ) -> PhotoLook:
     """What the photo shows of the scene's objects.
 
     Args:
-        rgb: The photo.
+        rgb: The photo, as white light would have it.
         objects: What was found in it; those of the scene have their ids.
         scene: In the poses in which the photo shows it; without a camera nothing is taken.
         library: Where its shapes are.
+        illuminant_rgb: Linear colour of the light that the photo was freed of; that of the scene's light.
     """
     if scene.camera is None:
         return PhotoLook({}, {})
@@ -75,6 +80,8 @@ def photo_look(
         if item.id in found
     ]
     light = estimated_light([shade_of(s.view, p, rgb) for s in seen if s.view is not None for p in s.pixels])
+    red, green, blue = (float(c) / max(illuminant_rgb) for c in illuminant_rgb)
+    light = replace(light, colour=(red, green, blue))
     falls = irradiance_map(replace(scene, light=light), scene.camera, library)
     materials: dict[str, tuple[PhotoMaterial, ...]] = {}
     pictures: dict[str, Picture] = {}

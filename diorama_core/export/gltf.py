@@ -26,10 +26,10 @@ from diorama_core.export.gathering import (
     ExportScene,
     gather,
     rigid_inverse,
-    unique_name,
 )
 from diorama_core.export.gltf_document import GltfDocument
 from diorama_core.export.lights import ExportLight, MainLight
+from diorama_core.export.names import unique_name
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.scene.schema import scene_to_json
@@ -85,7 +85,7 @@ def write_gathered(gathered: ExportScene, path: Path, progress: Progress | None 
 
 
 def _document(gathered: ExportScene, progress: Progress) -> GltfDocument:
-    document = GltfDocument(generator="Diorama", compressed=gathered.options.compression == "meshopt")
+    document = GltfDocument(generator="Diorama", compression=gathered.options.compression)
     return _Builder(gathered, document, progress).built()
 
 
@@ -125,6 +125,8 @@ class _Builder:
                 "provenance": dict(self._gathered.provenance),
             },
         }
+        if self._gathered.carried_photo is not None:
+            root["extras"]["diorama_photo"] = self._gathered.carried_photo
         if children:
             root["children"] = children
         node = self._document.add("nodes", root)

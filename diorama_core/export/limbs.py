@@ -10,9 +10,11 @@ import numpy as np
 import trimesh
 from jaxtyping import Float
 
-from diorama_core.geometry.convex import ConvexPart, convex_parts
+from diorama_core.geometry.convex import ConvexPart
+from diorama_core.layout.problem.parts import parts_of_solids
 from diorama_core.library.furniture.articulation import Articulation, articulation, joint_of
 from diorama_core.library.furniture.joints import Joint, JointKind
+from diorama_core.library.furniture.model import joined
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.render.appearance import Surface
 from diorama_core.scene.types import SceneObject
@@ -79,8 +81,8 @@ def limb_parts(shape_id: str, number: int | None) -> tuple[ConvexPart, ...]:
     solids = () if pieces is None else pieces.of_joint(number)
     if not solids:
         return ()
-    meshes = [trimesh.Trimesh(s.vertices, s.faces, process=False) for s in solids]
-    return convex_parts(trimesh.util.concatenate(meshes))
+    whole = joined(solids)
+    return parts_of_solids(whole.vertices, whole.faces)
 
 
 class OneShape:

@@ -43,14 +43,16 @@ class Cuts:
                 self._owners.append(None)
                 self._limbs.append(None)
                 self._world.append(piece)
+        self._rows: dict[tuple[str | None, int | None], list[int]] = {}
+        for row, owner in enumerate(zip(self._owners, self._limbs, strict=True)):
+            self._rows.setdefault(owner, []).append(row)
         self.ignored: set[tuple[str, str]] = set()
         self.sunk: dict[str, str | None] = {}
 
     def parts(self, object_id: str, limb: int | None = None) -> tuple[Points, ...]:
         """The parts of an object, or of one of its limbs, that are left, in the object's rigid frame."""
         T = self._bodies[object_id].node.T_world
-        rows = zip(self._owners, self._limbs, self._world, strict=True)
-        return tuple((w - T[:3, 3]) @ T[:3, :3] for o, k, w in rows if o == object_id and k == limb)
+        return tuple((self._world[row] - T[:3, 3]) @ T[:3, :3] for row in self._rows.get((object_id, limb), ()))
 
     def moving(self, body: RigidBody) -> tuple[MovingPart, ...]:
         """The limbs of an object with the parts that are left."""
@@ -74,17 +76,22 @@ class Cuts:
         """Parts of different owners whose boxes overlap and of which at least one can move against the other."""
         low = np.array([w.min(axis=0) for w in self._world]).reshape(-1, 3)
         high = np.array([w.max(axis=0) for w in self._world]).reshape(-1, 3)
+        numbers = {name: k for k, name in enumerate(dict.fromkeys(self._owners))}
+        owner = np.array([numbers[name] for name in self._owners])
+        moves = np.array([name is not None and self._bodies[name].free for name in self._owners])
         pairs = []
         for i in range(len(low)):
-            near = (low[i + 1 :] < high[i]).all(axis=1) & (high[i + 1 :] > low[i]).all(axis=1)
-            pairs += [(i, i + 1 + int(j)) for j in np.flatnonzero(near) if self._collide(i, i + 1 + int(j))]
+            later = slice(i + 1, None)
+            near = (low[later, 0] < high[i, 0]) & (high[later, 0] > low[i, 0]) & (owner[later] != owner[i])
+            rows = i + 1 + np.flatnonzero(near & (moves[later] | moves[i]))
+            rows = rows[((low[rows] < high[i]) & (high[rows] > low[i])).all(axis=1)]
+            pairs += [(i, int(j)) for j in rows if self._collide(i, int(j))]
         found = np.array(pairs, dtype=int).reshape(-1, 2)
         return found[:, 0], found[:, 1]
 
     def _collide(self, i: int, j: int) -> bool:
+        """Whether parts of two owners may not overlap."""
         a, b = self._owners[i], self._owners[j]
-        if a == b or not any(o is not None and self._bodies[o].free for o in (a, b)):
-            return False
         if a is None or b is None:
             return True
         if self._yields(a, b) or self._yields(b, a):

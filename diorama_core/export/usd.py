@@ -17,7 +17,7 @@ from pxr import Gf, Kind, Sdf, Usd, UsdGeom
 from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import Entry, companion_folder, whole_file, write_package
 from diorama_core.export.gathering import ExportObject, ExportScene, rigid_inverse
-from diorama_core.export.gltf_document import encoded_picture
+from diorama_core.export.pictures import encoded_picture
 from diorama_core.export.usd_look import Looks, add_camera, add_light, add_main_light, add_surfaces
 from diorama_core.export.usd_physics import add_physics, limb_path
 from diorama_core.export.usd_values import place
@@ -104,7 +104,7 @@ def build_stage(
     pictures = []
     for name, picture in looks.pictures():
         progress.check()
-        pictures.append((name, encoded_picture(picture)[0]))
+        pictures.append((name, encoded_picture(picture)))
     return stage, pictures
 
 
@@ -117,6 +117,8 @@ def _describe(prim: Usd.Prim, gathered: ExportScene) -> None:
     prim.SetDisplayName(gathered.name)
     prim.SetCustomDataByKey("diorama", scene_to_json(gathered.scene))
     prim.SetCustomDataByKey("diorama_objects", json.dumps([o.id for o in gathered.objects]))
+    if gathered.carried_photo is not None:
+        prim.SetCustomDataByKey("diorama_photo", gathered.carried_photo)
     if gathered.provenance:
         prim.SetCustomDataByKey("provenance", json.dumps(dict(gathered.provenance), ensure_ascii=False))
 

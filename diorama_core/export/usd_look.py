@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from jaxtyping import Float, UInt8
+from jaxtyping import Float
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux, UsdShade, Vt
 
-from diorama_core.export.gathering import slug_of, unique_name
 from diorama_core.export.lights import ExportLight, MainLight
+from diorama_core.export.names import slug_of, unique_name
+from diorama_core.export.pictures import Picture, picture_suffix
 from diorama_core.export.usd_values import extent, integers, place, vectors
 from diorama_core.render.appearance import Material, Surface
 from diorama_core.scene.types import Camera
 
-Picture = UInt8[np.ndarray, "h w c"]
 _CAMERA_AXES = np.diag([1.0, -1.0, -1.0])
 """USD's cameras look along their -z with y up; ours along +z with y down."""
 SOFT_DEG = 15.0
@@ -126,8 +126,7 @@ class Looks:
 
     def _file(self, picture: Picture) -> str:
         if id(picture) not in self._files:
-            large = picture.shape[2] == 3 and picture.shape[0] * picture.shape[1] > 512 * 512
-            name = f"{self._folder}/{len(self._files)}.{'jpg' if large else 'png'}"
+            name = f"{self._folder}/{len(self._files)}{picture_suffix(picture)}"
             self._files[id(picture)] = (name, picture)  # holding the picture keeps its id from being reused
         return self._files[id(picture)][0]
 

@@ -17,7 +17,7 @@ from PIL import Image
 from scipy.spatial.transform import Rotation
 
 from diorama_core.errors import InputError, LibraryError
-from diorama_core.importing.marked import MarkedFile, ObjectNode, as_ids, as_mapping
+from diorama_core.importing.marked import MarkedFile, ObjectNode, as_bytes, as_ids, as_mapping
 from diorama_core.library.ingest.gltf import container
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.references import References, read_bytes
@@ -71,6 +71,7 @@ def read_marked_gltf(path: Path) -> MarkedFile | None:
         pictures={i: p for i, n in planes.items() if (p := pictures.of_mesh(n.row.get("mesh"))) is not None},
         material_pictures=pictures.from_photo(),
         provenance=as_mapping(root.extras.get("provenance")) or {},
+        photo=as_bytes(root.extras.get("diorama_photo")),
     )
 
 

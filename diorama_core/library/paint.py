@@ -8,6 +8,7 @@ from jaxtyping import UInt8
 from PIL import Image
 from trimesh.visual.material import PBRMaterial
 
+from diorama_core.geometry.shape_appearance import material_rgb
 from diorama_core.io.srgb import srgb_to_linear
 from diorama_core.scene.types import Finish
 
@@ -42,6 +43,14 @@ def painted(parts: trimesh.Scene, colour: Colour | None, finish: Finish | None =
         new = new or _overridden(physically_based(mesh), colour, finish)
         mesh.visual = trimesh.visual.TextureVisuals(uv=mesh.visual.uv, material=new)
     return scene
+
+
+def main_rgb(parts: trimesh.Scene) -> tuple[int, int, int]:
+    """The sRGB colour (0 to 255) of a shape's main material; grey where it has none."""
+    main = _main_material(parts)
+    meshes = (m for m in parts.geometry.values() if isinstance(m, trimesh.Trimesh) and _material_key(m) == main)
+    found = next((rgb for m in meshes if (rgb := material_rgb(m.visual)) is not None), None)
+    return (200, 200, 200) if found is None else (int(found[0]), int(found[1]), int(found[2]))
 
 
 _PLAIN = "vertex or face colours"

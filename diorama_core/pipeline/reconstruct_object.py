@@ -17,7 +17,7 @@ from diorama_core.appearance.photo_look import photo_look
 from diorama_core.artefacts import DetectedObject, Inputs, LabelledBox, ObjectGeometry, PosedCandidates
 from diorama_core.errors import InputError
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.pipeline.colours import photo_colours
+from diorama_core.pipeline.colours import photo_colours, room_illuminant
 from diorama_core.pipeline.fallback import with_usable_networks
 from diorama_core.pipeline.plan import Artefacts, evaluate
 from diorama_core.pipeline.presets import stages_for
@@ -188,6 +188,9 @@ def _found(
     to_scene = _Similarity.between(geometry.camera, scene.camera, level)
     here: tuple[Candidate, ...] = tuple(replace(c, pose=to_scene.pose(c.pose)) for c in posed.candidates)
     best = here[0]
+    room = photo["architecture"].architecture
+    illuminant = room_illuminant(photo["inputs"], photo["objects"], room, geometry.camera)
+    balanced = illuminant.balanced(photo["inputs"].photo.rgb)
     category = detected.category if detected.category != "object" else library.shape(best.shape_id).category
     item = SceneObject(
         id=detected.id,
@@ -199,12 +202,12 @@ def _found(
         candidates=here,
         box_px=detected.box,
         confidence=posed.confidence,
-        colour=photo_colours(photo["inputs"].photo.rgb, (detected,)).get(detected.id),
+        colour=photo_colours(balanced, (detected,)).get(detected.id),
     )
     parent = next((s.parent for s in geometry.supports if s.child == detected.id), "floor")
     alone = Scene(camera=scene.camera, objects=(item,))
     objects = (detected, *(o for o in photo["objects"] if o.id != detected.id))
-    look = photo_look(photo["inputs"].photo.rgb, objects, alone, library)
+    look = photo_look(balanced, objects, alone, library, illuminant.rgb)
     item = look.applied(alone).objects[0]
     return Found(item, _edge(scene, item, parent), detected, look.pictures, as_built)
 

@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from jaxtyping import UInt8
@@ -34,8 +34,12 @@ MAX_BACKUPS = 20
 BACKUP_EVERY_S = 60.0
 MAX_INFO_BYTES = 4_000_000
 MAX_NAME = 120
+MAX_UPLOAD_BYTES = 256 * 1024 * 1024
 MAX_TEXTURE_PIXELS = 200_000_000
 """Of a whole scene together; the rest are shown in their plain colour."""
+
+Upload = Literal["photo", "depth", "masks"]
+UPLOADS: tuple[Upload, ...] = ("photo", "depth", "masks")
 
 log = logging.getLogger(__name__)
 
@@ -134,6 +138,25 @@ class Project:
         except ProjectError as error:
             raise ProjectError(f"{path}: the photo cannot be read back ({error}); build the project again") from error
         return inputs
+
+    @property
+    def has_scene(self) -> bool:
+        """Whether a scene was built or saved here; a project begins with a photo alone."""
+        return self.scene_path.exists()
+
+    @property
+    def has_photo(self) -> bool:
+        """Whether there is a photo to build from."""
+        return (self.stages_folder / "inputs.zip").exists()
+
+    def save_upload(self, kind: Upload, content: bytes) -> None:
+        """Keep a file as it was given, so that others can be read together with it later."""
+        write_atomically(self.folder / "uploads" / kind, content, error=ProjectError)
+
+    def uploads(self) -> dict[Upload, bytes]:
+        """The files that were given, as they came."""
+        paths: dict[Upload, Path] = {kind: self.folder / "uploads" / kind for kind in UPLOADS}
+        return {kind: read_bytes(path, MAX_UPLOAD_BYTES, ProjectError) for kind, path in paths.items() if path.exists()}
 
     def photo(self) -> Photo | None:
         """The photo the project was made from."""

@@ -15,6 +15,7 @@ from jaxtyping import Float, Float32, Int32, UInt8
 from trimesh.visual.color import ColorVisuals
 from trimesh.visual.material import PBRMaterial
 
+from diorama_core.geometry.rows import unique_rows
 from diorama_core.io.cache import LruCache
 from diorama_core.library.paint import painted
 from diorama_core.library.photo_materials import PhotographedMaterial, Pictures, with_photo_materials
@@ -104,7 +105,15 @@ def shape_surfaces(
 Paint = tuple[Colour | None, Finish | None]
 _Key = tuple[int, Paint, tuple[PhotoMaterial, ...], frozenset[str | None], Scale]
 
-_CACHE: LruCache[_Key, tuple[trimesh.Scene, tuple[Surface, ...]]] = LruCache(128)
+CACHE_BYTES = 256e6
+"""Of the arrays of surfaces that stay in memory: about a million triangles."""
+
+
+def _bytes_of(entry: tuple[trimesh.Scene, tuple[Surface, ...]]) -> float:
+    return float(sum(s.vertices.nbytes + s.normals.nbytes + s.faces.nbytes for s in entry[1]))
+
+
+_CACHE: LruCache[_Key, tuple[trimesh.Scene, tuple[Surface, ...]]] = LruCache(CACHE_BYTES, _bytes_of)
 
 
 def _cached_surfaces(
@@ -148,8 +157,9 @@ def _surface(
     columns = [points[corners], corner_normals]
     columns += [uv[corners]] if uv is not None else []
     columns += [colours[_colour_rows(mesh, colours, faces)]] if colours is not None else []
-    rows, index = np.unique(np.round(np.concatenate(columns, axis=1), 5) + 0.0, axis=0, return_inverse=True)
-    rows = rows.astype(np.float32)
+    rounded = np.round(np.concatenate(columns, axis=1), 5) + 0.0
+    first, index = unique_rows(rounded)
+    rows = rounded[first].astype(np.float32)
     return Surface(
         vertices=rows[:, :3],
         normals=unit(rows[:, 3:6]).astype(np.float32),
@@ -220,8 +230,7 @@ def smooth_corner_normals(
     a, b, c = (vertices[faces[:, k]].astype(np.float64) for k in range(3))
     weighted = np.cross(b - a, c - a)
     normals = face_normals(vertices, faces).astype(np.float64)
-    _, place = np.unique(np.round(vertices, 5), axis=0, return_inverse=True)
-    owner = place.reshape(-1)[faces.reshape(-1)]
+    owner = unique_rows(np.round(vertices, 5))[1][faces.reshape(-1)]
     first, second = _pairs_of_equal(owner)
     near = np.einsum("ij,ij->i", normals[first // 3], normals[second // 3]) > np.cos(crease_rad)
     first, second = first[near], second[near]

@@ -94,7 +94,9 @@ MIN_ELEVATION = 0.15
 
 
 def room_lighting(bounds: Float[np.ndarray, "2 3"], light: RoomLight) -> Lighting:
-    """A room's own light: a soft box where most of it comes from, and an even rest.
+    """A room's own light, in white: a soft box where most of it comes from, and an even rest.
+
+    The room's pictures are as white light would have them and not lit again, so that nothing else is tinted either.
 
     Args:
         bounds: Corners of what is lit, metres.
@@ -106,14 +108,13 @@ def room_lighting(bounds: Float[np.ndarray, "2 3"], light: RoomLight) -> Lightin
     direction = unit(np.array([x, y, max(z, MIN_ELEVATION)]))
     distance = 1.7 * radius
     across = unit(np.cross(direction, [0.0, 0.0, 1.0]) + np.array([1e-6, 0.0, 0.0]))
-    colour = np.array(light.colour)
     # A distant light of irradiance I has the mean I / 4 over all directions and the slope I / 2 (spherical harmonics).
     directed = 2.0 * light.strength * MEAN_IRRADIANCE
-    even = (MEAN_IRRADIANCE - directed / 4) * colour
+    even = (MEAN_IRRADIANCE - directed / 4) * np.ones(3)
     return Lighting(
         window_centre=centre + direction * distance,
         window_edges=np.stack([across, np.cross(across, direction)]) * 0.4 * radius,
-        window_irradiance=directed * colour,
+        window_irradiance=directed * np.ones(3),
         reference_m=distance,
         sky=1.05 * even,
         ground=0.95 * even,

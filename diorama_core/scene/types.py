@@ -346,7 +346,7 @@ class RoomLight:
     strength: float = 0.25
     """0 is light from everywhere, 1 about a single small source."""
     colour: tuple[float, float, float] = (1.0, 1.0, 1.0)
-    """Linear, its largest component 1; white where the photo's colours hold it."""
+    """Linear, its largest component 1; the scene's colours and pictures are free of it."""
 
 
 @dataclass(frozen=True)

@@ -51,11 +51,8 @@ def test_a_box_is_redrawn_on_the_photo_and_its_object_is_looked_at_again(editor:
     others = [o for o in session.scene.objects if o.id != added.id]
     editor.button("Redraw box").click()
     editor.at_board()
-    board = editor.client.view.canvas.photo
-    assert board is not None
     corners = np.array([[250.0, 210.0], [400.0, 410.0]])
-    start, end = (editor.place_of(p) for p in board.to_world(corners))
-    editor.drag(start, end)
+    editor.draw_box((250.0, 210.0, 400.0, 410.0))
     label = f"reconstruct {added.label}"
     editor.until(lambda: session.document.history.current.label == label, "looked at again", seconds=90)
     again = session.scene.object(added.id)

@@ -6,11 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
+from jaxtyping import Float
 
 from diorama_core.evaluation.adapters.photo_annotations import AnnotatedThing
 from diorama_core.evaluation.metrics.colour import perceived_difference
-from diorama_core.evaluation.metrics.form import compared, form_of
 from diorama_core.evaluation.metrics.photo_agreement import shape_iou
+from diorama_core.library.form import compared, form_of
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.scene.types import Camera, Scene, SceneObject
 
@@ -37,8 +38,9 @@ class ThingResult:
     form: Mapping[str, bool] = field(default_factory=dict)
     """For every attribute that both annotation and design state, whether they agree."""
     has_colour: bool | None = None
+    """Whether it is painted in a colour of the photo; else it keeps its shape's own."""
     colour_difference: float | None = None
-    """CIEDE2000 with lightness at half weight."""
+    """CIEDE2000, with lightness at half weight, of the material that most of it shows in the photo's view."""
     front_error_deg: float | None = None
     holder: bool | None = None
     """Whether it stands on what carries it."""
@@ -80,6 +82,7 @@ def measured(
     scene: Scene,
     library: ShapeLibrary,
     index_of: Mapping[str, int],
+    shown: Float[np.ndarray, "3"] | None = None,
 ) -> ThingResult:
     """Compare one thing with its object.
 
@@ -91,11 +94,11 @@ def measured(
         scene: the whole, for the camera and what carries what.
         library: where its shapes are from.
         index_of: places of the things by object id.
+        shown: sRGB 0 to 1 that the object's main visible material has in the photo's light; None where it is not seen.
     """
     shape = record_of(library, item.shape_id)
     among = {record_of(library, c.shape_id).category for c in item.candidates} | {shape.category}
     design = form_of(shape.id, shape.category, library.mesh(shape.id), item.size_m) if thing.attributes else {}
-    coloured = thing.colour is not None and item.colour is not None
     return ThingResult(
         photo,
         index,
@@ -108,7 +111,7 @@ def measured(
         kind_among=thing.kind in among if thing.nameable else None,
         form=compared(thing.attributes, design),
         has_colour=None if thing.colour is None else item.colour is not None,
-        colour_difference=_colour_difference(thing, item) if coloured else None,
+        colour_difference=_colour_difference(thing, shown),
         front_error_deg=_front_error_deg(thing, item, scene.camera, shape.symmetry),
         holder=None if thing.on is None else _carrier(scene, item.id, index_of) == thing.on,
         iou=None if item.box_px is None else shape_iou(scene, item.id, item.box_px, library),
@@ -122,9 +125,10 @@ def front_deg(item: SceneObject, camera: Camera) -> float:
     return float(np.degrees(np.arctan2(front @ right, -(front @ forward))) % 360.0)
 
 
-def _colour_difference(thing: AnnotatedThing, item: SceneObject) -> float:
-    stated, built = np.array(thing.colour) / 255.0, np.array(item.colour)
-    return float(perceived_difference(stated, built))
+def _colour_difference(thing: AnnotatedThing, shown: Float[np.ndarray, "3"] | None) -> float | None:
+    if thing.colour is None or shown is None:
+        return None
+    return float(perceived_difference(np.array(thing.colour) / 255.0, shown))
 
 
 def _front_error_deg(thing: AnnotatedThing, item: SceneObject, camera: Camera | None, fold: int) -> float | None:

@@ -11,6 +11,7 @@ import trimesh
 
 from diorama_core.library import furniture
 from diorama_core.library.furniture.joints import Joint, Vector
+from diorama_core.library.furniture.latest import latest_parts
 from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.model import Design, Part, joined, scene_of
 from diorama_core.library.furniture.roles import with_roles
@@ -56,7 +57,7 @@ def _designs() -> dict[str, Design]:
 
 
 def _articulated(design: Design) -> Articulation | None:
-    parts = design.build(design.size_m)
+    parts = latest_parts(design)
     if all(p.joint is None for p in parts):
         return None
     whole = np.concatenate([p.solid.vertices for p in parts if p.role != "inside"])

@@ -121,7 +121,7 @@ def test_escape_stops_one_thing_after_another(session, client, commands) -> None
     closed = []
     client.dialog = lambda: closed.append(1) or setattr(client, "dialog", None)
     client.select(["chair_1"])
-    client.view.canvas.open(session.photo.rgb, lambda box: None)
+    client.view.canvas.open(session.photo.rgb, lambda event: None)
     run(commands, client, "escape")
     assert closed == [1]
     assert client.view.canvas.is_open

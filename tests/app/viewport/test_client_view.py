@@ -5,7 +5,7 @@ import pytest
 
 from diorama_app.viewport.client_view import PLANE_LIFT_M, ClientView
 from tests.app.people import LocalClient
-from tests.app.small_room import furnished_scene, photo_camera, plain_photo
+from tests.app.small_room import furnished_scene
 
 SCENE = furnished_scene()
 
@@ -20,17 +20,6 @@ def view(server):
 
 def node(server, name: str):
     return server.scene._handle_from_node_name.get(name)
-
-
-def test_opening_the_canvas_leaves_the_view_through_the_photo(server, view) -> None:
-    view.photo.show_camera(photo_camera(), None, lambda: None)
-    view.camera.look_through(photo_camera(), 2.0)
-    view.photo.show_layer(photo_camera(), np.zeros((6, 8, 4), dtype=np.uint8))
-    assert not node(server, "/photo_camera").visible
-    view.canvas.open(plain_photo().rgb, None)
-    assert not view.camera.through_photo
-    assert node(server, "/photo_camera").visible
-    assert node(server, "/photo_evidence") is None
 
 
 def test_edges_of_planes_run_around_them_just_off_their_surface(server, view) -> None:

@@ -6,7 +6,8 @@ import http
 from websockets.datastructures import Headers
 from websockets.http11 import Response
 
-from diorama_app.web.responses import HEAD_SCRIPTS, SECURITY_HEADERS, TOKEN_COOKIE, add_headers, prepend_scripts
+from diorama_app.web.head import SCRIPTS
+from diorama_app.web.responses import SECURITY_HEADERS, TOKEN_COOKIE, add_headers, prepend_scripts
 
 PAGE = b"<html><head><title>Diorama</title></head></html>"
 
@@ -24,7 +25,7 @@ def test_scripts_come_first_in_a_page_zipped_or_not() -> None:
         assert answer.headers["Content-Length"] == str(len(answer.body))
     assert gzip.decompress(zipped.body) == plain.body
     scripts, title = plain.body.split(b"<title>")
-    assert scripts.count(b"<script>") == len(HEAD_SCRIPTS)
+    assert scripts.count(b"<script>") == len(SCRIPTS)
     assert title == PAGE.split(b"<title>")[1]
 
 

@@ -13,7 +13,7 @@ from PIL import Image
 from diorama_app.cli import main
 from diorama_core.errors import InputError
 from diorama_core.evaluation.adapters.photo_annotations import picture_of, read_annotations
-from diorama_core.evaluation.benchmarks.photos import ghost_share, run
+from diorama_core.evaluation.benchmarks.photos import ghost_share, run, usual_colour
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.synthesis import furnished_room, hold_cameras, render_truth
 
@@ -84,14 +84,16 @@ def test_broken_annotations_are_said_in_one_line(things, said, tmp_path):
         read_annotations(path)
 
 
-def test_ghosts_are_what_differs_from_most_of_the_floor():
+def test_ghosts_are_what_differs_from_the_floor():
     floor = np.full((100, 100, 3), (150, 120, 90), np.uint8)
-    assert ghost_share(floor) == 0.0
+    colour = usual_colour(floor)
+    assert ghost_share(floor, colour) == 0.0
     floor[:50, :40] = (40, 90, 60)
-    assert ghost_share(floor) == pytest.approx(0.2)
-    shaded = np.full((100, 100, 3), (150, 120, 90), np.uint8)
-    shaded[:30] = (125, 100, 75)
-    assert ghost_share(shaded) == 0.0
+    assert ghost_share(floor, colour) == pytest.approx(0.2)
+    floor[:50, :40] = (75, 60, 45)  # a dark smear of the floor's own hue
+    assert ghost_share(floor, colour) == pytest.approx(0.2)
+    floor[:50, :40] = (135, 108, 80)
+    assert ghost_share(floor, colour) == 0.0
 
 
 def test_the_projects_own_annotations_can_be_read_and_name_known_kinds():
