@@ -61,9 +61,9 @@ def show_built(
     """Show the built scene to all clients.
 
     Args:
-        room: where.
-        draft: what was handed in when the build began; a newer one is kept.
-        project: where the scene lies.
+        session: the session whose clients see it.
+        draft: what was handed in when the build began; a newer one stays.
+        project: the project that contains the scene.
         scene: what was built.
         own: whether it was built in the open project, as one undo step there.
         message: what to say instead of the number of objects.

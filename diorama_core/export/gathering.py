@@ -28,7 +28,7 @@ from diorama_core.render.slabs import plane_surfaces
 from diorama_core.scene.support import ancestors, top_down
 from diorama_core.scene.types import Camera, Finish, Plane, Scene, SceneObject, Support
 
-Picture = UInt8[np.ndarray, "h w c"]
+Picture = UInt8[np.ndarray, "_ _ _"]
 Compression = Literal["none", "meshopt"]
 Bodies = Literal["free", "welded"]
 MIN_AREA_M2 = 1e-12

@@ -9,7 +9,7 @@ from __future__ import annotations
 import io
 import json
 import struct
-from typing import IO, Any
+from typing import Any
 
 import cv2
 import numpy as np
@@ -18,6 +18,7 @@ from PIL import Image
 
 from diorama_core.export import meshopt
 from diorama_core.export.tangents import tangents
+from diorama_core.io.atomic import ByteSink
 from diorama_core.render.appearance import Material, Surface
 
 _ARRAY_BUFFER, _ELEMENT_ARRAY_BUFFER = 34962, 34963
@@ -63,7 +64,7 @@ class GltfDocument:
         """A mesh with one primitive per surface."""
         return self.add("meshes", {"name": name, "primitives": [self._primitive(s) for s in surfaces]})
 
-    def write(self, file: IO[bytes]) -> None:
+    def write(self, file: ByteSink) -> None:
         """Write the finished file."""
         if self._data:
             self._json["buffers"] = [{"byteLength": len(self._data)}]
@@ -213,7 +214,7 @@ class GltfDocument:
         return self._pictures[id(picture)]
 
 
-def power_of_two(picture: UInt8[np.ndarray, "h w c"]) -> UInt8[np.ndarray, "h w c"]:
+def power_of_two(picture: UInt8[np.ndarray, "_ _ c"]) -> UInt8[np.ndarray, "_ _ c"]:
     """The picture with sides that are powers of two, so that every device can repeat and minify it.
 
     A side goes up to the next power unless it lies less than a tenth above the one below.

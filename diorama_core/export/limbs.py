@@ -14,7 +14,7 @@ from diorama_core.library.furniture.articulation import Articulation, articulati
 from diorama_core.library.furniture.joints import Joint, JointKind
 from diorama_core.library.paint import Colour
 from diorama_core.library.record import ShapeLibrary, record_of
-from diorama_core.render.appearance import Surface, shape_surfaces
+from diorama_core.render.appearance import Surface, part_surfaces
 from diorama_core.scene.types import Finish, SceneObject
 
 BUILT_IN = "built in"
@@ -50,7 +50,7 @@ def surfaces_of(
 ) -> dict[int | None, tuple[Surface, ...]]:
     """Surfaces of what stays (None) and of what each joint moves, painted as one shape."""
     grouped: dict[int | None, tuple[Surface, ...]] = {}
-    for surface in shape_surfaces(_OneShape(pieces), "", colour, finish):  # type: ignore[arg-type]
+    for surface in part_surfaces(pieces.scene, colour, finish):
         number = joint_of(surface.name)
         grouped[number] = (*grouped.get(number, ()), surface)
     return grouped
@@ -83,13 +83,3 @@ def limb_parts(shape_id: str, number: int | None) -> tuple[ConvexPart, ...]:
         return ()
     meshes = [trimesh.Trimesh(s.vertices, s.faces, process=False) for s in solids]
     return convex_parts(trimesh.util.concatenate(meshes))
-
-
-class _OneShape:
-    """Lets a scene of moving parts be read like a shape of a library."""
-
-    def __init__(self, pieces: Articulation) -> None:
-        self._pieces = pieces
-
-    def parts(self, shape_id: str) -> trimesh.Scene:
-        return self._pieces.scene

@@ -222,7 +222,7 @@ def _materials(assets: Element, gathered: ExportScene, folder: str) -> None:
 
 def srgb_rgba(material: Material) -> Float[np.ndarray, "4"]:
     """A material's colour as programs without linear light expect it."""
-    return np.append(linear_to_srgb(np.asarray(material.colour)), material.alpha)
+    return np.append(linear_to_srgb(np.asarray(material.colour, dtype=np.float64)), material.alpha)
 
 
 def _assets(gathered: ExportScene, folder: str, progress: Progress) -> Iterator[Entry]:

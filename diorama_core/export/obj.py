@@ -12,7 +12,6 @@ import zipfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import BinaryIO
 
 import numpy as np
 from jaxtyping import UInt8
@@ -22,6 +21,7 @@ from diorama_core.export.files import companion_folder, whole_file, write_whole
 from diorama_core.export.gathering import ExportScene
 from diorama_core.export.text import index_rows, number_rows
 from diorama_core.export.world_meshes import Y_UP, WorldMesh, world_meshes
+from diorama_core.io.atomic import ByteSink
 from diorama_core.progress import Progress
 from diorama_core.render.appearance import Material, Surface
 
@@ -45,7 +45,7 @@ def write_obj(scene: ExportScene, path: Path, progress: Progress | None = None) 
         with whole_file(path) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
             archive.compresslevel = FAST_DEFLATE
             with archive.open(f"{path.stem}.obj", "w", force_zip64=True) as stream:
-                _write_geometry(scene, stream, f"{path.stem}.mtl", progress)  # type: ignore[arg-type]
+                _write_geometry(scene, stream, f"{path.stem}.mtl", progress)
             for name, content in _companions(scene, f"{path.stem}.mtl", pictures):
                 archive.writestr(name, content)
         return
@@ -70,7 +70,7 @@ def _created(folder: Path) -> Iterator[None]:
             folder.rmdir()
 
 
-def _write_geometry(scene: ExportScene, stream: BinaryIO, material_file: str, progress: Progress | None) -> None:
+def _write_geometry(scene: ExportScene, stream: ByteSink, material_file: str, progress: Progress | None) -> None:
     stream.write(f"# Diorama: metres, +Y up\nmtllib {material_file}\n".encode())
     names = material_names(scene)
     written = _Written()
@@ -85,7 +85,7 @@ class _Written:
         self._vertices = 1
         self._uvs = 1
 
-    def add(self, stream: BinaryIO, mesh: WorldMesh, names: Mapping[int, str]) -> None:
+    def add(self, stream: ByteSink, mesh: WorldMesh, names: Mapping[int, str]) -> None:
         stream.write(f"o {one_line(mesh.name)}\n".encode())
         for surface in mesh.surfaces:
             rows = surface.vertices if surface.colours is None else np.hstack([surface.vertices, surface.colours])

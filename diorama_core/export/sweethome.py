@@ -213,5 +213,5 @@ def _ending(material: Material) -> str:
 
 
 def _shown(material: Material) -> Material:
-    red, green, blue = (float(c) for c in linear_to_srgb(np.asarray(material.colour)))
+    red, green, blue = (float(c) for c in linear_to_srgb(np.asarray(material.colour, dtype=np.float64)))
     return replace(material, colour=(red, green, blue), maps={})

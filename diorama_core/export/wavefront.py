@@ -38,7 +38,7 @@ def hull_text(points: Float[np.ndarray, "n 3"], faces: Int[np.ndarray, "m 3"]) -
 
 def material_text(name: str, material: Material, picture: str | None) -> str:
     """A material as Wavefront has it; `picture` is the file of its texture beside it."""
-    red, green, blue = linear_to_srgb(np.asarray(material.colour))
+    red, green, blue = linear_to_srgb(np.asarray(material.colour, dtype=np.float64))
     lines = [f"newmtl {name}", f"Kd {red:.5f} {green:.5f} {blue:.5f}", f"d {material.alpha:.4f}", "Ks 0.1 0.1 0.1"]
     lines += [] if picture is None else [f"map_Kd {picture}"]
     return "\n".join(lines) + "\n"

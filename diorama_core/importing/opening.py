@@ -26,7 +26,7 @@ class Opened:
     """A scene from a file."""
 
     scene: Scene
-    textures: Mapping[str, UInt8[np.ndarray, "h w 3"]] = field(default_factory=dict)
+    textures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]] = field(default_factory=dict)
     """Pictures of the planes by `Plane.texture`."""
     changes: tuple[str, ...] = ()
     """What the file has otherwise than it was written, one line each."""

@@ -76,7 +76,14 @@ def shape_surfaces(
         colour_srgb: Override of the main material's colour; see `library.paint.painted`.
         finish: Override of how it throws light back, likewise.
     """
-    return _cached_surfaces(library.parts(shape_id), (colour_srgb, finish))
+    return part_surfaces(library.parts(shape_id), colour_srgb, finish)
+
+
+def part_surfaces(
+    parts: trimesh.Scene, colour_srgb: Colour | None = None, finish: Finish | None = None
+) -> tuple[Surface, ...]:
+    """Surfaces of a scene of parts that belong to one shape, painted like those of `shape_surfaces`."""
+    return _cached_surfaces(parts, (colour_srgb, finish))
 
 
 Paint = tuple[Colour | None, Finish | None]

@@ -151,7 +151,7 @@ class HierarchicalRetrieval:
     def _score(self, shape: Shape, cuboid: Cuboid, seen: Observed, visible: float, like: float, named: bool) -> float:
         """0 to 1: the best of the shape's quarter turns in the cuboid, and its likeness."""
         appearance = SHARED_APPEARANCES.get(
-            shape.content_hash, default_cache_dir() / "looks", lambda: self.library.parts(shape.id)
+            shape.content_hash, default_cache_dir() / "appearances", lambda: self.library.parts(shape.id)
         )
         targets, poses = quarter_turns(shape, cuboid)
         cost = np.array([size_cost(shape.size_m, t) for t in targets])

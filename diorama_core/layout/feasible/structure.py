@@ -84,7 +84,7 @@ def exact_structure(
         problem: the observed poses and the graph.
         ray: unit viewing directions per object; where given, an object that must rise or sink slides along its ray so
             that it stays where the photo shows it.
-        evidence: what the camera saw, for objects that their support moved.
+        observations: what the camera saw, for objects that their support moved.
         only: indices of the objects to settle; the others keep their poses and cannot move. All free ones when None.
     """
     n = problem.count

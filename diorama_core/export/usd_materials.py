@@ -14,14 +14,14 @@ from diorama_core.export.usd_values import extent, integers, place, vectors
 from diorama_core.render.appearance import Material, Surface
 from diorama_core.scene.types import Camera
 
-Picture = UInt8[np.ndarray, "h w c"]
+Picture = UInt8[np.ndarray, "_ _ _"]
 _CAMERA_AXES = np.diag([1.0, -1.0, -1.0])
 """USD's cameras look along their -z with y up; ours along +z with y down."""
 _APERTURE = 36.0
 _COLOUR, _NUMBER, _VECTOR = Sdf.ValueTypeNames.Color3f, Sdf.ValueTypeNames.Float, Sdf.ValueTypeNames.Float3
 
 
-class Looks:
+class StageMaterials:
     """Materials of a stage and the files of their pictures."""
 
     def __init__(self, stage: Usd.Stage, folder: str) -> None:
@@ -130,7 +130,7 @@ class Looks:
         return self._files[id(picture)][0]
 
 
-def add_surfaces(stage: Usd.Stage, path: str, surfaces: tuple[Surface, ...], looks: Looks) -> None:
+def add_surfaces(stage: Usd.Stage, path: str, surfaces: tuple[Surface, ...], materials: StageMaterials) -> None:
     """One mesh a surface below a prim, with its materials beside them."""
     UsdGeom.Scope.Define(stage, f"{path}/Materials")
     taken: set[str] = set()
@@ -140,7 +140,7 @@ def add_surfaces(stage: Usd.Stage, path: str, surfaces: tuple[Surface, ...], loo
         key = (id(surface.material), textured, coloured)
         if key not in made:
             name = unique_name(slug_of(surface.material.name), taken, "_")
-            material = looks.material(
+            material = materials.material(
                 f"{path}/Materials/{name}", surface.material, textured=textured, coloured=coloured
             )
             made[key] = material
