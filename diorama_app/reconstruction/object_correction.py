@@ -119,7 +119,7 @@ def _reconstruct(
 
         client.post(show)
 
-    session.jobs.start("look", f"Reconstructing the {box.label}", work)
+    session.jobs.start("outline", f"Reconstructing the {box.label}", work)
 
 
 def _replaced(client: Client, object_id: str) -> Callable[[Scene, Found], Scene]:

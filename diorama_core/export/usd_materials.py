@@ -23,7 +23,7 @@ _APERTURE = 36.0
 _COLOUR, _NUMBER, _VECTOR = Sdf.ValueTypeNames.Color3f, Sdf.ValueTypeNames.Float, Sdf.ValueTypeNames.Float3
 
 
-class Looks:
+class StageMaterials:
     """Materials of a stage and the files of their pictures."""
 
     def __init__(self, stage: Usd.Stage, folder: str) -> None:
@@ -131,7 +131,7 @@ class Looks:
         return self._files[id(picture)][0]
 
 
-def add_surfaces(stage: Usd.Stage, path: str, surfaces: tuple[Surface, ...], looks: Looks) -> None:
+def add_surfaces(stage: Usd.Stage, path: str, surfaces: tuple[Surface, ...], materials: StageMaterials) -> None:
     """One mesh a surface below a prim, with its materials beside them."""
     UsdGeom.Scope.Define(stage, f"{path}/Materials")
     taken: set[str] = set()
@@ -141,7 +141,7 @@ def add_surfaces(stage: Usd.Stage, path: str, surfaces: tuple[Surface, ...], loo
         key = (id(surface.material), textured, coloured)
         if key not in made:
             name = unique_name(slug_of(surface.material.name), taken, "_")
-            material = looks.material(
+            material = materials.material(
                 f"{path}/Materials/{name}", surface.material, textured=textured, coloured=coloured
             )
             made[key] = material
