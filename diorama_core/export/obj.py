@@ -10,6 +10,7 @@ import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import BinaryIO
 
 from diorama_core.export.files import FAST_DEFLATE, companion_folder, whole_file, write_whole
 from diorama_core.export.gathering import ExportScene

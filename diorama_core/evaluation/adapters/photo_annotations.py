@@ -1,6 +1,6 @@
 """Photos annotated by hand: boxes, kinds, form, colours, what carries what, and fronts.
 
-One JSON object: photo id -> `{"size": [w, h], "objects": [...]}`; each object has `bbox` (pixels of the original),
+One JSON object: photo id -> `{"size": [w, h], "things": [...]}`; each object has `bbox` (pixels of the original),
 `class` (the plain word), `kind`, `attributes`, `colour` (sRGB 0 to 255), `on` ("floor", "wall", "ceiling" or the index
 of another object), `front` (degrees: 0 toward the camera, 90 to the picture's right, 180 away, 270 left), `occluded`.
 """
@@ -55,11 +55,11 @@ class AnnotatedObject(BaseModel):
 class AnnotatedPhoto(BaseModel):
     """One photo's objects."""
 
-    model_config = ConfigDict(frozen=True, extra="ignore")
+    model_config = ConfigDict(frozen=True, populate_by_name=True, extra="ignore")
 
     size: tuple[int, int]
     """Width and height of the original file."""
-    objects: tuple[AnnotatedObject, ...]
+    objects: Annotated[tuple[AnnotatedObject, ...], Field(alias="things")]
 
 
 class PhotoRecord(BaseModel):
