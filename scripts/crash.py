@@ -1,6 +1,6 @@
 """Kills at random moments: is everything that was acknowledged there afterwards, and nothing half?
 
-    python scripts/crash.py [--kills 200] [--seed 0] [--only edits,builds,optimiser,exports,library,uploads]
+    python scripts/crash.py [--kills 200] [--minutes 60] [--only edits,builds,optimiser,exports,library,uploads]
 
 Each kind of work runs in a process that is forked from this one, which has loaded everything, and is killed (SIGKILL)
 at a random moment of the time that the work takes. Then its files are read as the next program would read them:
@@ -67,8 +67,10 @@ from tests.processes import runs
 
 Say = Callable[[str], None]
 Work = Callable[[Say], None]
-Figures = tuple[str, int]
-"""What to print, and how much of it is wrong."""
+Figures = tuple[int, str, int]
+"""How many kills, what to print of them, and how much of it is wrong."""
+Going = Callable[[int], bool]
+"""Whether to go on after so many kills."""
 FORMATS = {"glb": "room.glb", "obj": "room.zip", "stl": "room.stl", "svg": "room.svg"}
 GONE_S = 120.0
 """How long a process that should end is waited for."""
@@ -160,9 +162,9 @@ def _duration(work: Work) -> float:
     return time.monotonic() - began
 
 
-def edits(kills: int, chance: np.random.Generator) -> Figures:
+def edits(going: Going, chance: np.random.Generator) -> Figures:
     """See the module."""
-    acknowledged = wrong = 0
+    acknowledged = wrong = kills = 0
     lost_s = 0.0
     with tempfile.TemporaryDirectory() as name:
         project, unsaved, number = make_project(Path(name) / "demo"), Path(name) / "unsaved", 0
@@ -177,8 +179,8 @@ def edits(kills: int, chance: np.random.Generator) -> Figures:
                 say(f"{at} {time.time()}")
                 time.sleep(0.02)
 
-        for _ in range(kills):
-            ended = killed(work, float(chance.uniform(0.0, 1.0)), from_first=True)
+        while going(kills):
+            ended, kills = killed(work, float(chance.uniform(0.0, 1.0)), from_first=True), kills + 1
             times = {int(n): float(t) for n, t in (line.split() for line in ended.lines)}
             acknowledged, number = acknowledged + len(times), max(times)
             found = [0]
@@ -192,10 +194,10 @@ def edits(kills: int, chance: np.random.Generator) -> Figures:
             lost_s = max(lost_s, max(times.values()) - min(missing) if missing else 0.0)
             with ProjectLock(project.folder, "after"):
                 Recovery(unsaved).clean_up(project)
-    return f"{acknowledged} edits acknowledged, {wrong} wrong, at most {lost_s:.2f} s lost", wrong
+    return kills, f"{acknowledged} edits acknowledged, {wrong} wrong, at most {lost_s:.2f} s lost", wrong
 
 
-def builds(kills: int, chance: np.random.Generator) -> Figures:
+def builds(going: Going, chance: np.random.Generator) -> Figures:
     """See the module."""
     boxes = (LabelledBox((60.0, 50.0, 110.0, 105.0), "table", "dining table"),)
     inputs = Inputs(replace(plain_photo(160, 120), name="room.png"), boxes)
@@ -212,7 +214,7 @@ def builds(kills: int, chance: np.random.Generator) -> Figures:
 
         whole_s = _duration(build(root / "whole"))
         expected = (root / "whole" / "scene.json").read_bytes()
-        while killed_within < kills:
+        while going(killed_within):
             folder = root / f"room-{number}"
             ended = killed(build(folder), float(chance.uniform(0.0, 1.05 * whole_s)))
             killed_within += not ended.finished
@@ -222,7 +224,8 @@ def builds(kills: int, chance: np.random.Generator) -> Figures:
                 wrong += (folder / "scene.json").read_bytes() != expected
             if ended.finished:
                 finished, number = finished + 1, number + 1
-    return f"{finished} builds finished ({whole_s:.1f} s each), {wrong} wrong, {parts} parts of files removed", wrong
+    said = f"{finished} builds finished ({whole_s:.1f} s each), {wrong} wrong, {parts} parts of files removed"
+    return killed_within, said, wrong
 
 
 def _unreadable_stages(folder: Path) -> int:
@@ -235,36 +238,37 @@ def _unreadable_stages(folder: Path) -> int:
     return count
 
 
-def optimiser(kills: int, chance: np.random.Generator) -> Figures:
+def optimiser(going: Going, chance: np.random.Generator) -> Figures:
     """See the module."""
-    scene = furnished_scene()
+    scene = replace(furnished_scene(), objects=furnished_scene().objects[:3], supports=furnished_scene().supports[:3])
     offset = np.array((0.2, -0.3, 0.05))
     askew = tuple(replace(o, pose=Pose.upright(o.pose.T_world_object[:3, 3] + offset)) for o in scene.objects)
     before = replace(scene, objects=askew)
     with tempfile.TemporaryDirectory() as name:
         project = make_project(Path(name) / "demo", before)
         first = project.scene_path.read_bytes()
+        layout = recipe("all-in-one", PlainLibrary(), depth_measured=False)
+        layout.optimise(before, Progress())  # here: it loads what every fork would load
 
         def work(say: Say) -> None:
             with ProjectLock(project.folder, "crash"):
-                layout = recipe("all-in-one", PlainLibrary(), depth_measured=False)
                 project.save_scene(layout.optimise(project.load_scene(), Progress())[0])
 
         whole_s = _duration(work)
         second = project.scene_path.read_bytes()
         assert second != first, "the optimiser left the scene as it was"
         wrong = saved = killed_within = 0
-        while killed_within < kills:
+        while going(killed_within):
             project.save_scene(before)
             killed_within += not killed(work, float(chance.uniform(0.0, 1.05 * whole_s))).finished
             now = project.scene_path.read_bytes()
             wrong += now not in (first, second)
             saved += now == second
             remove_leftovers(project.folder, 0.0)
-    return f"{saved} saved ({whole_s:.2f} s each), {wrong} wrong", wrong
+    return killed_within, f"{saved} saved ({whole_s:.2f} s each), {wrong} wrong", wrong
 
 
-def exports(kills: int, chance: np.random.Generator) -> Figures:
+def exports(going: Going, chance: np.random.Generator) -> Figures:
     """See the module."""
     scene, library = furnished_scene(), PlainLibrary()
     other = rename(replace(scene, objects=scene.objects[:3], supports=scene.supports[:3]), "chair_1", "armchair")
@@ -285,7 +289,7 @@ def exports(kills: int, chance: np.random.Generator) -> Figures:
             versions.append({file: (folder / file).read_bytes() for file in FORMATS.values()})
         assert all(versions[0][file] != versions[1][file] for file in FORMATS.values())
         wrong = replaced = left = killed_within = number = 0
-        while killed_within < kills:
+        while going(killed_within):
             number += 1
             ended = killed(export((scene, other)[number % 2], folder), float(chance.uniform(0.0, 1.05 * whole_s)))
             killed_within += not ended.finished
@@ -296,7 +300,7 @@ def exports(kills: int, chance: np.random.Generator) -> Figures:
             replaced += len(done)
             left += _removed(p for p in folder.iterdir() if p.name not in FORMATS.values())
     said = f"{replaced} files replaced ({whole_s:.2f} s for four), {wrong} wrong, {left} parts of files removed"
-    return said, wrong
+    return killed_within, said, wrong
 
 
 def _removed(paths: Iterable[Path]) -> int:
@@ -317,7 +321,7 @@ class _Here:
             yield Done(item, function(item))
 
 
-def library(kills: int, chance: np.random.Generator) -> Figures:
+def library(going: Going, chance: np.random.Generator) -> Figures:
     """See the module."""
     known_shapes()  # learnt once a machine, before the first library
     with tempfile.TemporaryDirectory() as name:
@@ -336,7 +340,7 @@ def library(kills: int, chance: np.random.Generator) -> Figures:
         whole_s = _duration(add(root / "whole"))
         expected = {s.id: s for s in StoredLibrary(root / "whole").shapes()}
         number = finished = wrong = seen = killed_within = 0
-        while killed_within < kills:
+        while going(killed_within):
             folder = root / f"library-{number}"
             ended = killed(add(folder), float(chance.uniform(0.0, 1.05 * whole_s)))
             killed_within += not ended.finished
@@ -345,7 +349,8 @@ def library(kills: int, chance: np.random.Generator) -> Figures:
                 wrong, seen = wrong + faults + (ended.finished and shapes != expected), seen + len(shapes)
             if ended.finished:
                 finished, number = finished + 1, number + 1
-    return f"{finished} libraries finished ({whole_s:.1f} s each), {seen} shapes read back, {wrong} wrong", wrong
+    said = f"{finished} libraries finished ({whole_s:.1f} s each), {seen} shapes read back, {wrong} wrong"
+    return killed_within, said, wrong
 
 
 def _read_library(folder: Path) -> tuple[dict[str, Any], int]:
@@ -366,7 +371,7 @@ def _read_library(folder: Path) -> tuple[dict[str, Any], int]:
     return shapes, wrong
 
 
-def uploads(kills: int, chance: np.random.Generator) -> Figures:
+def uploads(going: Going, chance: np.random.Generator) -> Figures:
     """See the module."""
     data = png(3000, 2000, 8, 2, 3)
 
@@ -379,17 +384,17 @@ def uploads(kills: int, chance: np.random.Generator) -> Figures:
     began = time.monotonic()
     killed(work, 0.0, from_first=True)
     first_s = time.monotonic() - began
-    read = left = started = 0
+    read = left = started = kills = 0
     longest_s = 0.0
-    for _ in range(kills):
-        ended = killed(work, float(chance.uniform(0.0, 2.0 * first_s)))
+    while going(kills):
+        ended, kills = killed(work, float(chance.uniform(0.0, 2.0 * first_s))), kills + 1
         read, started, began = read + len(ended.lines), started + len(ended.children), time.monotonic()
         while any(map(runs, ended.children)) and time.monotonic() - began < GONE_S:
             time.sleep(0.01)
         longest_s = max(longest_s, time.monotonic() - began)
         left += sum(map(runs, ended.children))
     said = f"{read} read, {started} decoding processes, {left} left running; the last ended after {longest_s:.1f} s"
-    return said, left
+    return kills, said, left
 
 
 KINDS = {f.__name__: f for f in (edits, builds, optimiser, exports, library, uploads)}
@@ -398,15 +403,20 @@ KINDS = {f.__name__: f for f in (edits, builds, optimiser, exports, library, upl
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])  # type: ignore[union-attr]
     parser.add_argument("--kills", type=int, default=200)
+    parser.add_argument("--minutes", type=float, default=60.0, help="of each kind at most")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--only", default=",".join(KINDS))
     options = parser.parse_args()
     all_wrong = 0
     for name in options.only.split(","):
         began = time.monotonic()
-        said, wrong = KINDS[name](options.kills, np.random.default_rng(options.seed))
+        until = began + 60.0 * options.minutes
+        kills, said, wrong = KINDS[name](
+            lambda done, until=until: done < options.kills and time.monotonic() < until,  # type: ignore[misc]
+            np.random.default_rng(options.seed),
+        )
         all_wrong += wrong
-        print(f"{name}: {options.kills} kills in {time.monotonic() - began:.0f} s, {said}", flush=True)
+        print(f"{name}: {kills} kills in {time.monotonic() - began:.0f} s, {said}", flush=True)
     return 1 if all_wrong else 0
 
 

@@ -13,7 +13,7 @@ from diorama_app.session.client import Client
 from diorama_core.errors import EditRefused
 from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
-from diorama_core.scene.types import Finish, Pose, Scene, SceneObject, Support, yaw_rotation
+from diorama_core.scene.types import Finish, MaterialSource, Pose, Scene, SceneObject, Support, yaw_rotation
 
 NUDGE_MERGE = "fields"
 BESIDE_M = 0.08
@@ -80,6 +80,19 @@ def set_finish(client: Client, ids: Iterable[str], finish: Finish | None) -> Non
     client.session.edit(
         f"{finish} {names}" if finish is not None else f"reset the finish of {names}",
         lambda s: _fold(s, chosen, lambda scene, i: edits.refinish(scene, i, finish)),
+        by=client,
+    )
+
+
+def set_material_source(client: Client, ids: Iterable[str], source: MaterialSource) -> None:
+    """Show the materials that the photo gave objects, or those of their shapes."""
+    chosen = tuple(i for i in ids if client.session.scene.object(i).photo_materials)
+    names = names_of(client.session.scene, chosen or tuple(ids))
+    if not chosen:
+        raise EditRefused(f"the photo shows no material of {names}; build it from the photo first")
+    client.session.edit(
+        f"{names} as in the photo" if source == "photo" else f"library materials of {names}",
+        lambda s: _fold(s, chosen, lambda scene, i: edits.set_material_source(scene, i, source)),
         by=client,
     )
 

@@ -23,7 +23,7 @@ from diorama_app.reconstruction.text_to_scene import describe_room, how_pictures
 from diorama_app.session.client import Client
 from diorama_app.session.reading import Upload
 from diorama_app.viewport.annotation_canvas import Deleted, Drawn, Event, Finished, Named, Reshaped, Selected
-from diorama_app.viewport.scene_view import reduced
+from diorama_app.viewport.mesh_assets import reduced
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_app.web.viser_adapter import component_uuid
 from diorama_core.artefacts import Inputs

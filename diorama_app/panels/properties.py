@@ -15,7 +15,7 @@ from diorama_app.session.client import Client
 from diorama_app.session.units import UNITS, Unit, format_length, in_unit, parse_length
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.errors import InputError
-from diorama_core.scene.types import Finish, SceneObject
+from diorama_core.scene.types import Finish, MaterialSource, SceneObject
 
 SIZE_ORDER = [1, 0, 2]
 """Fields show width, depth, height; the object's axes are depth, width, height."""
@@ -28,6 +28,12 @@ FINISHES: dict[Finish | None, tuple[str, str]] = {
     "metal": ("Metal", "Brushed metal in its colour"),
 }
 """Label and hint of every finish."""
+
+MATERIAL_SOURCES: dict[MaterialSource, tuple[str, str]] = {
+    "photo": ("As in the photo", "Pictures and materials taken from the photo"),
+    "library": ("Library's", "The shape's own materials, in the colour chosen above"),
+}
+"""Label and hint of every source of materials."""
 
 FIELDS: dict[str, tuple[str, str, tuple[str, str, str]]] = {
     "Position": ("place", "Of the centre of its base", ("x", "y", "Height")),
@@ -183,19 +189,29 @@ class Properties:
         elif action.do == "finish":
             finish = next((f for f in FINISHES if f == action.arg), None)
             client.post(lambda: editing.set_finish(client, client.need_selection(), finish))
+        elif action.do == "materials":
+            source: MaterialSource = "photo" if action.arg == "photo" else "library"
+            client.post(lambda: editing.set_material_source(client, client.need_selection(), source))
         else:
             run_command(client, self._commands, action)
 
 
 def _surface(item: SceneObject) -> str:
-    """Buttons for the finish of its main material, and one that takes the paint off."""
+    """Buttons for the source of its materials, for the finish of the main one, and one that takes the paint off."""
     finishes = "".join(
         button(label, "finish", finish or "", title=hint, on=item.finish == finish)
         for finish, (label, hint) in FINISHES.items()
     )
     own = button("Original colours", "own", title="Removes the paint") if item.colour is not None else ""
     paint = f'<div class="bar tight">{own}</div>' if own else ""
-    return f'{paint}<div class="bar tight"><span class="dim lead">Finish</span>{finishes}</div>'
+    sources = "".join(
+        button(label, "materials", source, title=hint, on=item.material_source == source)
+        for source, (label, hint) in MATERIAL_SOURCES.items()
+    )
+    taken = f'<div class="bar tight"><span class="dim lead">Materials</span>{sources}</div>'
+    return f"{taken if item.photo_materials else ''}{paint}" + (
+        f'<div class="bar tight"><span class="dim lead">Finish</span>{finishes}</div>'
+    )
 
 
 def _grid(cells: str) -> str:

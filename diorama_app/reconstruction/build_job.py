@@ -93,7 +93,7 @@ def show_built(session: EditorSession, project: Project, scene: Scene, *, label:
         return  # it is on disk; somebody opened another project here meanwhile
     for client in session.clients.values():
         client.view.canvas.close()
-    session.textures = project.textures(scene)
+    session.textures = {**session.textures, **project.textures(scene)}  # undo shows what earlier ones name
     session.read_notes()
     session.commit(label, scene, inputs=project.load_inputs())
     session.show_whole_room()

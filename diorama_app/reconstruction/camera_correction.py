@@ -26,7 +26,7 @@ def rebuild_with_camera(client: Client, fov_deg: float | None, camera_attitude: 
     Args:
         client: the requesting client.
         fov_deg: horizontal field of view; as it was when None.
-        held: against the floor; as it was when None.
+        camera_attitude: pitch and roll against the floor; as it was when None.
     """
     inputs = client.session.document.inputs
     if inputs is None:

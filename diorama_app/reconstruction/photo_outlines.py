@@ -49,4 +49,4 @@ class PhotoOutlines:
 
             client.post(keep)
 
-        session.jobs.start("look", "Segmenting the photo", work)
+        session.jobs.start("outline", "Segmenting the photo", work)

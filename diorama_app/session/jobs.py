@@ -15,8 +15,8 @@ from diorama_core.progress import CancelToken, Progress, ProgressEvent
 
 log = logging.getLogger(__name__)
 
-JobKind = Literal["build", "optimise", "export", "look", "import", "text", "pull", "find", "picture"]
-PERCEIVING: frozenset[JobKind] = frozenset({"build", "look", "text"})
+JobKind = Literal["build", "optimise", "export", "outline", "import", "text", "pull", "find", "picture"]
+PERCEIVING: frozenset[JobKind] = frozenset({"build", "outline", "text"})
 """Kinds that run the pipeline, which needs Open3D."""
 
 

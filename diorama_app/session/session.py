@@ -195,11 +195,16 @@ class EditorSession:
     def _with_pictures_refitted(self, scene: Scene) -> Scene:
         """The edited scene with the pictures of resized planes cut and continued, not stretched."""
         scene, made = refitted(self.scene, scene, self.textures)
-        if made:
-            self.textures = {**self.textures, **made}
-            if self.project is not None:
-                self.project.save_textures(made)
+        self.add_textures(made)
         return scene
+
+    def add_textures(self, made: Textures) -> None:
+        """Have pictures for scenes to name, and save them."""
+        if not made:
+            return
+        self.textures = {**self.textures, **made}
+        if self.project is not None:
+            self.project.save_textures(made)
 
     def commit(
         self,

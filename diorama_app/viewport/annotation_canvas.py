@@ -17,7 +17,7 @@ import viser
 from jaxtyping import Bool, UInt8
 from PIL import Image
 
-from diorama_app.viewport.scene_view import reduced
+from diorama_app.viewport.mesh_assets import reduced
 from diorama_app.web.html import Action, LiveHtml, run_once
 from diorama_core.artefacts import Box, LabelledBox
 

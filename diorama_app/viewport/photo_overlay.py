@@ -9,7 +9,7 @@ import numpy as np
 import viser
 from jaxtyping import UInt8
 
-from diorama_app.viewport.scene_view import reduced
+from diorama_app.viewport.mesh_assets import reduced
 from diorama_core.geometry.rotations import quaternion_wxyz
 from diorama_core.scene.types import Camera
 

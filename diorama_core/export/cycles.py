@@ -64,7 +64,8 @@ def cycles_picture(
         write_glb(seen, library, folder / "room.glb", textures=textures)
         job = {
             "glb": str(folder / "room.glb"), "png": str(folder / "room.png"), "width": k.width, "height": k.height,
-            "fx": k.fx, "fy": k.fy, "cx": k.cx, "cy": k.cy, "samples": samples, "seed": seed, "lights": _lights(scene),
+            "fx": k.fx, "fy": k.fy, "cx": k.cx, "cy": k.cy, "samples": samples, "seed": seed,
+            "lights": room_lights(scene),
         }  # fmt: skip
         worker = Path(__file__).with_name("cycles_worker.py")
         run_in_blender(worker, job, name="Cycles", progress=progress, timeout_s=timeout_s)
@@ -77,8 +78,8 @@ def facing(scene: Scene, camera: Camera) -> Architecture:
     return Architecture(tuple(p for p in planes if float((camera.position - p.centre) @ p.normal) > 0))
 
 
-def _lights(scene: Scene) -> list[dict[str, object]]:
-    """A rectangle before every window, shining inward, and a broad one under the ceiling."""
+def room_lights(scene: Scene) -> list[dict[str, object]]:
+    """Area lights for Blender: a rectangle before every window, shining inward, and a broad one under the ceiling."""
     lights = []
     for item in scene.objects:
         if item.category == "window":

@@ -17,6 +17,8 @@ from diorama_core.scene.frames import UP_WORLD
 
 MAX_CUT = 0.4
 """A part is cut by at most this share of its extent; what overlaps more is left to interpenetrate without contact."""
+MAX_SOFT_DIP = 0.25
+"""Soft objects are cut level where they sink into their supporter by at most this share of their height."""
 MAX_RIGID_CUT_M = 0.02
 """Parts of objects that do not give way are cut by at most this."""
 SKIN_M = 1e-4
@@ -121,10 +123,18 @@ class Cuts:
         self._give_up(a, b)
 
     def _lifted(self, rider: int, carrier: int) -> bool:
-        """Cut a rider's part level above its carrier's, where it only dips into it."""
-        top = float(self._world[carrier][:, 2].max())
-        dips = top - float(self._world[rider][:, 2].min()) < MAX_RIGID_CUT_M
+        """Cut a rider's part level above its carrier's, where it only dips into it; soft ones sink in deeper."""
+        top, low = float(self._world[carrier][:, 2].max()), float(self._world[rider][:, 2].min())
+        owner = self._owners[rider]
+        sinks = owner is not None and is_soft(self._bodies[owner].node) and self._lies_on(rider, carrier)
+        dips = top - low < (MAX_SOFT_DIP * float(np.ptp(self._world[rider][:, 2])) if sinks else MAX_RIGID_CUT_M)
         return dips and self._rides(rider, carrier) and self._cut(rider, UP_WORLD, top + SKIN_M)
+
+    def _lies_on(self, rider: int, carrier: int) -> bool:
+        """Whether most of a part lies over another, seen from above."""
+        a, b = self._world[rider][:, :2], self._world[carrier][:, :2]
+        shared = np.minimum(a.max(axis=0), b.max(axis=0)) - np.maximum(a.min(axis=0), b.min(axis=0))
+        return float(np.prod(np.maximum(shared, 0.0))) > 0.5 * float(np.prod(np.ptp(a, axis=0)))
 
     def _rides(self, rider: int, carrier: int) -> bool:
         """Whether one part's object is carried by the other's, directly or not; all ride on the room."""

@@ -43,8 +43,10 @@ class MarkedFile:
     """How each plane was moved since it was written, in the world."""
     T_world_camera: Float[np.ndarray, "4 4"] | None = None
     """Where the photo's camera is, axes x right, y down, z forward; None when the file has none."""
-    pictures: Mapping[str, UInt8[np.ndarray, "h w 3"]] = field(default_factory=dict)
+    pictures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]] = field(default_factory=dict)
     """Pictures on planes, by plane id."""
+    material_pictures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]] = field(default_factory=dict)
+    """Pictures of the objects' materials from the photo, by texture name."""
     provenance: Mapping[str, Any] = field(default_factory=dict)
     photo: bytes | None = None
     """File of the photo; None when it was not put in."""

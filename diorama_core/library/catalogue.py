@@ -21,6 +21,7 @@ from diorama_core.library.furniture.geometry_key import geometry_key
 from diorama_core.library.furniture.latest import built_once
 from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.model import Design, mesh_of, scene_of
+from diorama_core.library.furniture.roles import with_roles
 from diorama_core.library.furniture.solids import Solid
 from diorama_core.library.record import Shape, SupportSurface, usual_contact_faces
 from diorama_core.library.surfaces import SURFACES_VERSION, support_surfaces
@@ -115,7 +116,7 @@ class BuiltInLibrary:
     def parts(self, shape_id: str) -> trimesh.Scene:
         """Geometry with materials, in the canonical frame. Shared: do not change it."""
         self._known(shape_id)
-        return self._scenes.get(shape_id, lambda: scene_of(self._built(shape_id)))
+        return self._scenes.get(shape_id, lambda: _scene(self._built(shape_id)))
 
     def glb(self, shape_id: str) -> bytes:
         """`parts` as GLB, +Z up, metres; the same bytes every time."""
@@ -155,6 +156,10 @@ class BuiltInLibrary:
 
 def _bytes_of(scene: trimesh.Scene) -> float:
     return float(sum(g.vertices.nbytes * 3 + g.faces.nbytes for g in scene.geometry.values()))
+
+
+def _scene(solids: list[tuple[Material, Solid]]) -> trimesh.Scene:
+    return with_roles(scene_of(solids), [material for material, _ in solids])
 
 
 def _record(design: Design) -> Shape:

@@ -107,7 +107,7 @@ class HierarchicalRetrieval:
             alike = similarity.of(object_crop, [m.shape for m in members])
             said = described_share(self.library, item.label, item.category, [m.shape for m in members])
             factors = [
-                m.kind_factor * (1 - _OF_WORDS * (1 - w)) * usual_form_factor(m.shape, self._appearance(m.shape))
+                m.kind_factor * (1 - _OF_WORDS * (1 - w)) * self._usual(m.shape, item)
                 for m, w in zip(members, said, strict=True)
             ]
             sight.append(visible)
@@ -165,6 +165,10 @@ class HierarchicalRetrieval:
     def _appearance(self, shape: Shape) -> ShapeAppearance:
         folder = default_cache_dir() / "looks"
         return SHARED_APPEARANCES.get(shape.content_hash, folder, lambda: self.library.parts(shape.id))
+
+    def _usual(self, shape: Shape, item: DetectedObject) -> float:
+        """How usual the shape's form is, where the mask was not drawn and can hardly tell."""
+        return 1.0 if item.mask_confidence >= 1.0 else usual_form_factor(shape, self._appearance(shape))
 
     def _weights(self, seen: Observed, visible: float, named: bool) -> tuple[float, float, float]:
         """Weights of size, outline and appearance for an object with this visibility."""

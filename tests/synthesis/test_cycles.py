@@ -11,7 +11,7 @@ import pytest
 from diorama_core.errors import SceneError, UnavailableError
 from diorama_core.export.blender import PYTHON_VARIABLE
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.synthesis import furnished_room, hold_cameras, in_photo_world
+from diorama_core.synthesis import furnished_room, in_photo_world
 from diorama_core.synthesis.cycles import truth_picture
 
 
@@ -19,7 +19,7 @@ from diorama_core.synthesis.cycles import truth_picture
 def scene():
     library = built_in_library()
     room = furnished_room(1, "corridor", library, clutter=0)
-    return in_photo_world(replace(room, camera=hold_cameras(room, library, 1, 1, (48, 36))[0]))
+    return in_photo_world(replace(room, camera=sample_cameras(room, library, 1, 1, (48, 36))[0]))
 
 
 @pytest.mark.skipif(find_spec("bpy") is not None, reason="Blender's module is installed")

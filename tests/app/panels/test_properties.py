@@ -1,11 +1,13 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from diorama_app.commands import edit as editing
 from diorama_app.panels.properties import Properties
-from diorama_core.scene.types import Scene
+from diorama_core.scene.types import PhotoMaterial, Scene
 from tests.app.page import Page
 
 
@@ -93,6 +95,23 @@ def test_finishes_are_put_on_and_taken_off(session, client, page, panel) -> None
     assert {o.finish for o in session.scene.objects if o.category == "chair"} == {"gloss"}
     page.act("finish", "")
     assert chair(session).finish is None
+
+
+def test_materials_of_the_photo_are_put_on_and_taken_off(session, client, page, panel) -> None:
+    client.select(["chair_1"])
+    assert not page.shows("materials", "photo"), "the photo gave it none"
+    cloth = PhotoMaterial("fabric", (0.5, 0.2, 0.1), main=True)
+    scene = session.scene
+    worn = tuple(replace(o, photo_materials=(cloth,)) if o.id == "chair_1" else o for o in scene.objects)
+    session.commit("build", replace(scene, objects=worn), by=client)
+    page.act("materials", "library")
+    assert chair(session).shown_photo_materials == ()
+    page.act("materials", "photo")
+    assert chair(session).shown_photo_materials == (cloth,)
+    page.write("Colour", (255, 0, 51))
+    assert chair(session).material_source == "library", "paint shows"
+    session.undo(client)
+    assert chair(session).shown_photo_materials == (cloth,)
 
 
 def test_several_things_are_aligned_and_three_distributed(session, client, page, panel) -> None:
