@@ -15,18 +15,19 @@ from typing import Any, Literal
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.export.lights import ExportLight, lights_of
-from diorama_core.export.limbs import ExportLimb, articulation_of, limb_of, surfaces_of
+from diorama_core.export.lights import ExportLight, MainLight, lights_of, main_light_of
+from diorama_core.export.limbs import ExportLimb, OneShape, articulation_of, by_joint, limb_of
 from diorama_core.export.names import Labels
+from diorama_core.export.photo_textures import MAX_PHOTO_TEXTURES_PX, bounded_pictures
 from diorama_core.export.pictures import Picture, photo_text
 from diorama_core.export.sharing import SharedAppearance
-from diorama_core.library.paint import Colour
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.stretch import relative_scale
 from diorama_core.progress import Progress
-from diorama_core.render.appearance import Material, Surface, shape_surfaces
+from diorama_core.render.appearance import Material, PartsSource, Surface, shape_surfaces
 from diorama_core.render.slabs import plane_surfaces
 from diorama_core.scene.support import ancestors, top_down
-from diorama_core.scene.types import Camera, Finish, Plane, Scene, SceneObject, Support
+from diorama_core.scene.types import Camera, Plane, Scene, SceneObject, Support
 
 Compression = Literal["none", "meshopt", "draco"]
 Bodies = Literal["free", "welded"]
@@ -42,6 +43,8 @@ class ExportOptions:
     """Ids of the objects to write, without the room around them; None writes everything."""
     max_texture_px: int | None = None
     """Longest side of a picture; larger ones are reduced."""
+    max_photo_textures_px: int = MAX_PHOTO_TEXTURES_PX
+    """Side of a square that all pictures from the photo on objects would fill together; more are reduced alike."""
     compression: Compression = "none"
     """Of geometry, where the format has one (GLB)."""
     bodies: Bodies = "free"
@@ -123,6 +126,7 @@ class ExportScene:
     """Every material of the meshes once; names are unique."""
     camera: Camera | None
     lights: tuple[ExportLight, ...]
+    """Of lamps and windows."""
     scene: Scene
     """The whole scene as it was given, for formats that carry it to be read back."""
     library: ShapeLibrary
@@ -141,6 +145,11 @@ class ExportScene:
         for item in self.objects:
             below[item.parent] = (*below.get(item.parent, ()), item)
         return below
+
+    @cached_property
+    def main_light(self) -> MainLight | None:
+        """The photo's main light; None where it tells none, and where the room is not written."""
+        return main_light_of(self.scene) if self.options.only is None else None
 
     @property
     def carried_photo(self) -> str | None:
@@ -179,7 +188,7 @@ def gather(
         scene: What to write; hidden objects are left out, what they carry moves up to their supporter.
         library: Where its shapes are.
         options: What of it is written.
-        textures: Pictures of the planes by `Plane.texture`.
+        textures: Pictures of the planes by `Plane.texture`, and of the objects' materials from the photo.
         photo: The photo that the scene was made from.
         name: What the file calls the scene.
         provenance: Where the scene comes from, as JSON values.
@@ -190,17 +199,19 @@ def gather(
         Cancelled: when asked to stop.
     """
     shared, labels = SharedAppearance(options.max_texture_px), Labels()
-    planes, meshes = _planes(scene, options, textures or {}, shared, labels)
+    textures = bounded_pictures(scene, textures or {}, options.max_photo_textures_px)
+    planes, meshes = _planes(scene, options, textures, shared, labels)
     shown = {o.id for o in scene.objects if not o.hidden and (options.only is None or o.id in options.only)}
     order = [scene.object(i) for i in top_down(scene) if i in shown]
-    painted: dict[tuple[str, Colour | None, Finish | None], dict[int | None, str]] = {}
+    painted: dict[tuple[object, ...], dict[int | None, str]] = {}
     objects = []
     for number, item in enumerate(order):
         if progress is not None:
             progress.report(number / len(order), f"reading {item.label}")
-        paint = (item.shape_id, item.colour, item.finish)
+        scale = relative_scale(item.pose.scale)
+        paint = (item.shape_id, item.colour, item.finish, item.shown_photo_materials, scale)
         if paint not in painted:
-            made = _shape_meshes(library, item, options, shared, labels)
+            made = _shape_meshes(library, item, options, textures, shared, labels)
             painted[paint] = {number: mesh.key for number, mesh in made.items()}
             meshes |= {mesh.key: mesh for mesh in made.values()}
         objects.append(_node(scene, library, item, painted[paint], shown, labels))
@@ -245,16 +256,19 @@ def _planes(
 
 
 def _shape_meshes(
-    library: ShapeLibrary, item: SceneObject, options: ExportOptions, shared: SharedAppearance, labels: Labels
+    library: ShapeLibrary,
+    item: SceneObject,
+    options: ExportOptions,
+    textures: Mapping[str, Picture],
+    shared: SharedAppearance,
+    labels: Labels,
 ) -> dict[int | None, ExportMesh]:
     """The shape's mesh under None; with joints, what each of them moves under its number."""
     pieces = articulation_of(library, item.shape_id) if options.joints else None
-    if pieces is None:
-        grouped: dict[int | None, tuple[Surface, ...]] = {
-            None: shape_surfaces(library, item.shape_id, item.colour, item.finish)
-        }
-    else:
-        grouped = surfaces_of(pieces, item.colour, item.finish)
+    shown: PartsSource = library if pieces is None else OneShape(pieces)
+    paint = (item.colour, item.finish, item.shown_photo_materials)
+    surfaces = shape_surfaces(shown, item.shape_id, *paint, textures, relative_scale(item.pose.scale))
+    grouped = {None: surfaces} if pieces is None else by_joint(surfaces)
     made = {}
     for number, surfaces in grouped.items():
         name = item.shape_id if number is None or pieces is None else f"{item.shape_id} {pieces.joints[number].name}"

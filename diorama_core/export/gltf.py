@@ -28,7 +28,7 @@ from diorama_core.export.gathering import (
     rigid_inverse,
 )
 from diorama_core.export.gltf_document import GltfDocument
-from diorama_core.export.lights import ExportLight
+from diorama_core.export.lights import ExportLight, MainLight
 from diorama_core.export.names import unique_name
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
@@ -112,6 +112,8 @@ class _Builder:
         ]
         if self._gathered.camera is not None:
             children.append(self._camera(self._gathered.camera))
+        if self._gathered.main_light is not None:
+            children.append(self._main_light(self._gathered.main_light))
         root: dict[str, Any] = {
             "name": self._unique("diorama"),
             "rotation": [-_HALF_TURN, 0.0, 0.0, _HALF_TURN],
@@ -208,6 +210,13 @@ class _Builder:
             "extensions": {"KHR_lights_punctual": {"light": index}},
             "extras": {"diorama_light": item.id},
         }
+        return self._document.add("nodes", node)
+
+    def _main_light(self, light: MainLight) -> int:
+        about = {"name": "main light", "type": "directional", "color": [float(c) for c in light.colour]}
+        index = self._document.add_light({**about, "intensity": float(light.lux)})
+        extension = {"KHR_lights_punctual": {"light": index}}
+        node = {"name": self._unique("main light"), **_placement(light.T_world), "extensions": extension}
         return self._document.add("nodes", node)
 
     def _camera(self, camera: Camera) -> int:

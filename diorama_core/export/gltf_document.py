@@ -9,7 +9,7 @@ from __future__ import annotations
 import io
 import json
 import struct
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from diorama_core.export.draco import EXTENSION, draco_mesh
 from diorama_core.export.gathering import Compression
 from diorama_core.export.pictures import Picture, encoded_picture, picture_suffix, power_of_two
 from diorama_core.export.tangents import tangents
+from diorama_core.io.atomic import ByteSink
 from diorama_core.render.appearance import Material, Surface
 
 _ARRAY_BUFFER, _ELEMENT_ARRAY_BUFFER = 34962, 34963
@@ -65,7 +66,7 @@ class GltfDocument:
         """A mesh with one primitive per surface."""
         return self.add("meshes", {"name": name, "primitives": [self._primitive(s) for s in surfaces]})
 
-    def write(self, file: IO[bytes]) -> None:
+    def write(self, file: ByteSink) -> None:
         """Write the finished file."""
         if self._data:
             self._json["buffers"] = [{"byteLength": len(self._data)}]

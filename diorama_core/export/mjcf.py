@@ -18,7 +18,7 @@ from diorama_core.export.bodies import MovingPart, PhysicalScene, Points, RigidB
 from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import Entry, companion_folder, write_package
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene, rigid_inverse
-from diorama_core.export.lights import ExportLight
+from diorama_core.export.lights import ExportLight, MainLight
 from diorama_core.export.physics import FLOOR_FRICTION, Inertia
 from diorama_core.export.pictures import png_bytes
 from diorama_core.export.wavefront import obj_file
@@ -30,6 +30,8 @@ _CAMERA_AXES = np.diag([1.0, -1.0, -1.0])
 """MuJoCo's cameras look along their -z with y up; ours along +z with y down."""
 FULL_LIGHT_CANDELA = 100.0
 """Luminous intensity that MuJoCo's unitless brightness of 1 stands for."""
+FULL_LIGHT_LUX = 1000.0
+"""Of a directional light that MuJoCo shows at full strength."""
 
 
 def write_mjcf(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
@@ -70,6 +72,8 @@ def mjcf_text(gathered: ExportScene, physical: PhysicalScene, folder: str | None
     _room(world, assets, gathered, physical.slabs, folder)
     if gathered.camera is not None:
         _camera(world, gathered.camera)
+    if gathered.main_light is not None:
+        _main_light(world, gathered.main_light)
     below: dict[str | None, list[RigidBody]] = {}
     for body in physical.bodies:
         below.setdefault(None if body.free else body.carrier, []).append(body)
@@ -235,6 +239,13 @@ def _light(element: Element, T: Float[np.ndarray, "4 4"], light: ExportLight) ->
     kind = {"type": "point"} if light.kind == "lamp" else {"type": "spot", "cutoff": "80", "exponent": "1"}
     place = {"pos": numbers(T[:3, 3]), "dir": numbers(-T[:3, 2])}
     SubElement(element, "light", {**kind, **place, "diffuse": numbers(strength), "castshadow": "false"})
+
+
+def _main_light(world: Element, light: MainLight) -> None:
+    diffuse = min(light.lux / FULL_LIGHT_LUX, 1.0) * np.asarray(light.colour)
+    place = {"pos": numbers(light.T_world[:3, 3]), "dir": numbers(-light.T_world[:3, 2])}
+    about = {"name": "main_light", "type": "directional", "diffuse": numbers(diffuse), "castshadow": "false"}
+    SubElement(world, "light", {**about, **place})
 
 
 def _camera(world: Element, camera: Camera) -> None:

@@ -10,7 +10,6 @@ import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import BinaryIO
 
 from diorama_core.export.files import FAST_DEFLATE, companion_folder, whole_file, write_whole
 from diorama_core.export.gathering import ExportScene
@@ -34,7 +33,7 @@ def write_obj(scene: ExportScene, path: Path, progress: Progress | None = None) 
             with archive.open(f"{path.stem}.obj", "w", force_zip64=True) as stream:
                 _write_geometry(scene, stream, f"{path.stem}.mtl", materials, progress)  # type: ignore[arg-type]
             for name, content in _companions(materials, f"{path.stem}.mtl"):
-                archive.writestr(name, content)
+                archive.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)
         return
     folder = companion_folder(path)
     with whole_file(path) as temporary, _created(path.parent / folder):

@@ -14,8 +14,9 @@ from scipy.spatial.transform import Rotation
 
 from diorama_core.export.bodies import PhysicalScene
 from diorama_core.export.gathering import ExportMesh, ExportScene
-from diorama_core.export.lights import ExportLight
+from diorama_core.export.lights import ExportLight, MainLight
 from diorama_core.export.links import Link, collider_file, visual_file, write_linked
+from diorama_core.export.mjcf import FULL_LIGHT_LUX
 from diorama_core.export.physics import FLOOR_FRICTION
 from diorama_core.export.xml_values import inertia_terms, numbers, srgb_rgba
 from diorama_core.progress import Progress
@@ -40,6 +41,8 @@ def sdf_text(gathered: ExportScene, physical: PhysicalScene, links: tuple[Link, 
     SubElement(world, "gravity").text = "0 0 -9.81"
     for light in gathered.lights:
         _light(world, f"{gathered.object(light.owner).slug}_light", light)
+    if gathered.main_light is not None:
+        _main_light(world, gathered.main_light)
     _room(world, gathered, physical, folder)
     by_name = {link.name: link for link in links}
     tops = {link.name: _top(link, by_name) for link in links}
@@ -154,6 +157,14 @@ def _light(world: Element, name: str, light: ExportLight) -> None:
         spot = SubElement(element, "spot")
         for key, value in (("inner_angle", "0.5"), ("outer_angle", "1.5"), ("falloff", "1")):
             SubElement(spot, key).text = value
+
+
+def _main_light(world: Element, light: MainLight) -> None:
+    element = SubElement(world, "light", name="main_light", type="directional")
+    SubElement(element, "pose").text = _pose(light.T_world)
+    SubElement(element, "diffuse").text = f"{numbers(np.asarray(light.colour))} 1"
+    SubElement(element, "intensity").text = f"{min(light.lux / FULL_LIGHT_LUX, 1.0):.3g}"
+    SubElement(element, "direction").text = "0 0 -1"
 
 
 def _pose(T: Float[np.ndarray, "4 4"]) -> str:

@@ -45,8 +45,8 @@ def write_sweet_home(scene: ExportScene, path: Path, progress: Progress | None =
         for number, (key, name, content) in enumerate(_model_files(scene)):
             progress.report(min(number / (3 * len(scene.objects) + 1), 1.0), "writing models")
             models.setdefault(key, name)
-            archive.writestr(name, content)
-        archive.writestr("Home.xml", home_xml(scene, models))
+            archive.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)
+        archive.writestr(zipfile.ZipInfo("Home.xml"), home_xml(scene, models), zipfile.ZIP_DEFLATED)
 
 
 def home_xml(scene: ExportScene, models: Mapping[str, str]) -> bytes:

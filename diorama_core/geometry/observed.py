@@ -38,6 +38,8 @@ class Outlined(Protocol):
 
 _BORDER_PX = 2.5
 _FULLY_TRUSTED_AREA_PX = 600.0
+_OF_OPENINGS = 0.25
+"""Weight of a mask that was not drawn where a shape is open below."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,8 +67,22 @@ class Observed:
         return caster.cast(self.origin_world, self.directions_world, poses).covered
 
     def agreement(self, silhouettes: Bool[np.ndarray, "p n"]) -> Float[np.ndarray, "p"]:
-        """Intersection over union with the mask where there is evidence, 0 to 1."""
-        return soft_iou(self.covered, silhouettes.astype(np.float64), self.weight)
+        """Intersection over union with the mask where there is evidence, 0 to 1.
+
+        A mask that nobody drew fills the space between legs: whether there is any, it can hardly tell.
+        """
+        weight = self.weight
+        if self.mask_trust < 1.0:
+            weight = np.where(open_below(silhouettes, self.window.cells), _OF_OPENINGS * weight, weight)
+        return soft_iou(self.covered, silhouettes.astype(np.float64), weight)
+
+
+def open_below(silhouettes: Bool[np.ndarray, "p n"], cells: int) -> Bool[np.ndarray, "p n"]:
+    """Cells below something that a shape covers that it leaves open: between legs, beside a pedestal, between slats."""
+    grid = silhouettes.reshape(-1, cells, cells)
+    below = np.maximum.accumulate(grid, axis=1)
+    above_foot = np.maximum.accumulate(np.asarray(grid.any(axis=2))[:, ::-1], axis=1)[:, ::-1]
+    return np.asarray((below & ~grid & above_foot[..., None]).reshape(silhouettes.shape))
 
 
 def observe(
@@ -124,10 +140,10 @@ def observe_among(
 
     Args:
         camera: The photo's camera.
-        things: Everything seen in the photo.
+        items: All objects in the photo.
         centres_world: Where each is.
         parents: For each, which of the others it lies on, if any.
-        index: The one to look at.
+        index: The object to observe.
         cells: Resolution of the window, both ways.
     """
     depths = camera.to_camera(centres_world)[:, 2]

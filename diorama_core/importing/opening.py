@@ -33,7 +33,7 @@ class Opened:
 
     scene: Scene
     textures: Mapping[str, UInt8[np.ndarray, "h w 3"]] = field(default_factory=dict)
-    """Pictures of the planes by `Plane.texture`."""
+    """Pictures of planes and of objects' materials, by name."""
     changes: tuple[str, ...] = ()
     """What the file has otherwise than it was written, one line each."""
     provenance: Mapping[str, Any] = field(default_factory=dict)
@@ -69,7 +69,7 @@ def marked_file(path: Path) -> MarkedFile | None:
 def open_marked(file: MarkedFile) -> Opened:
     """The scene that Diorama wrote, as the file has it now; see `restore`."""
     found = restored(file)
-    planes, textures = [], {}
+    planes, textures = [], dict(file.material_pictures)
     for plane in found.scene.architecture.planes:
         picture = file.pictures.get(plane.id)
         if picture is not None:

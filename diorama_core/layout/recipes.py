@@ -18,6 +18,7 @@ def recipe(
     only: frozenset[str] | None = None,
     *,
     depth_measured: bool = False,
+    sizes_reasoned: bool = False,
     weights: Weights = AS_IT_IS,
 ) -> LayoutStage:
     """The recipe of this name.
@@ -28,6 +29,7 @@ def recipe(
         library: where shapes come from.
         only: ids free to move; everything else is constant.
         depth_measured: the observed distances were measured, not reasoned: the default recipe then keeps to them.
+        sizes_reasoned: a photo alone gave distances and sizes: the default recipe then changes them together.
         weights: factors on what each cost counts; those a recipe does not know make no difference to it.
 
     Raises:
@@ -35,7 +37,7 @@ def recipe(
     """
     if name == "feasible":
         depth_weight = MEASURED_WEIGHT if depth_measured else REASONED_WEIGHT
-        return FeasibleRecipe(library, only, depth_weight=depth_weight, weights=weights)
+        return FeasibleRecipe(library, only, depth_weight=depth_weight, sizes_reasoned=sizes_reasoned, weights=weights)
     # torch takes two seconds to load, and the default recipe does without it.
     from diorama_core.layout.published.recipes import AllInOneRecipe, PaperRecipe
 

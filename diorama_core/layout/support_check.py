@@ -15,7 +15,7 @@ from diorama_core.layout.noise import ObservationNoise
 from diorama_core.layout.problem.supports import (
     choose_surface,
     closes_cycle,
-    holds,
+    is_wide_enough,
     label_of,
     misfit,
     outside_m,
@@ -33,6 +33,12 @@ CLEARLY = 0.5
 """Another supporter is taken only where its gap is at most this share of the contradicted one."""
 WALL_FACTOR = 2.0
 """Objects that belong on walls stay on theirs up to so many times the tolerance: the wall may be wrong as well."""
+_NEVER_HANGS = taxonomy.with_kin(
+    *("chair", "office chair", "armchair", "stool", "bench", "sofa", "ottoman", "bed", "dresser", "wardrobe"),
+    *("table", "coffee table", "side table", "desk", "floor lamp", "refrigerator", "washing machine", "stove"),
+)
+_SOMETIMES_HANGS = frozenset({"television", "monitor", "lamp", "clock", "speaker", "plant", "towel", "utensils"})
+"""Of the kinds that are set down on things."""
 UNUSUAL_M = 0.3
 """Objects that people put on surfaces hang on a wall only where nothing is below them: this is added to their gap."""
 
@@ -50,6 +56,12 @@ def checked_supports(scene: Scene, library: ShapeLibrary, noise: ObservationNois
         edge = scene.support_of(item.id)
         if edge is None:
             continue
+        hangs = edge.relation == "mounted on" and scene.has_plane(edge.parent)
+        floor = scene.architecture.floor
+        if hangs and item.category in _NEVER_HANGS and floor is not None:
+            reasons.append(f"support changed: {item.label} stands on the floor; nothing of its kind hangs")
+            scene = edits.attach(scene, Support(item.id, floor.id))
+            continue
         better = _better(scene, library, item, edge, noise)
         if better is not None:
             reasons.append(
@@ -57,9 +69,18 @@ def checked_supports(scene: Scene, library: ShapeLibrary, noise: ObservationNois
                 f"{label_of(scene, edge.parent)} and rests on {label_of(scene, better.parent)}"
             )
             scene = edits.attach(scene, better)
+        elif hangs and _is_set_down(item):
+            reasons.append(
+                f"please check: {item.label} hangs on {label_of(scene, edge.parent)}; nothing was seen below it"
+            )
         elif (walls := _touched(scene, item, edge, noise)) != edge.adheres_to:
             scene = edits.attach(scene, replace(edge, adheres_to=walls))
     return scene, tuple(reasons)
+
+
+def _is_set_down(item: SceneObject) -> bool:
+    mount = taxonomy.resolve(item.category).category.mount
+    return mount == "surface" and item.category not in _SOMETIMES_HANGS
 
 
 def _better(
@@ -100,7 +121,7 @@ def _candidates(scene: Scene, library: ShapeLibrary, item: SceneObject) -> list[
     if mount == "surface":
         for other in scene.objects:
             edge, shape = Support(item.id, other.id), library.shape(other.shape_id)
-            if surfaces_below(item, other, shape) and holds(item, edge, other, shape):
+            if surfaces_below(item, other, shape) and is_wide_enough(item, edge, other, shape):
                 found.append(edge)
     return found
 

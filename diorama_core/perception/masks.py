@@ -21,6 +21,8 @@ from diorama_core.progress import Progress
 _MIN_SHARE = 0.1
 """A vote that keeps less of the box than this has lost the object."""
 LOST_CONFIDENCE = 0.1
+_MAX_CONFIDENCE = 0.98
+"""Only masks that a person drew are sure."""
 _SEED = 7
 _CORE = 0.12
 """Reach of the middle of a box that is taken to be object, so that a thing of its surroundings' colour is not lost."""
@@ -76,7 +78,7 @@ class EmbeddedMasks:
         if mask.sum() < _MIN_SHARE * filled_box(rgb.shape[:2], box).sum():
             return filled_box(rgb.shape[:2], box), LOST_CONFIDENCE
         agreement = float(np.mean([_iou(vote, agreed) for vote in votes]))
-        return mask, max(LOST_CONFIDENCE, agreement)
+        return mask, float(np.clip(agreement, LOST_CONFIDENCE, _MAX_CONFIDENCE))
 
     def _grabcut(
         self, picture: UInt8[np.ndarray, "ch cw 3"], crop: _Crop, rectangle: tuple[int, int, int, int] | None

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import UInt8
 
+from diorama_core.appearance.photo_look import photo_look
 from diorama_core.architecture.room_extent import containing_room
 from diorama_core.architecture.texture.plane_textures import plane_textures
 from diorama_core.artefacts import (
@@ -24,8 +25,9 @@ from diorama_core.artefacts import (
 from diorama_core.layout.noise import MEASURED, REASONED
 from diorama_core.layout.support_check import checked_supports
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.perception.illuminant import Illuminant
 from diorama_core.pipeline.assemble import assemble
-from diorama_core.pipeline.colours import photo_colours, shared_by_sets
+from diorama_core.pipeline.colours import photo_colours, room_illuminant, shared_by_sets
 from diorama_core.pipeline.plan import Artefacts, evaluate
 from diorama_core.pipeline.provenance_text import camera_sentence, geometry_sentence, graph_sentence, room_sentence
 from diorama_core.pipeline.runner import Runner, StageRun
@@ -34,7 +36,7 @@ from diorama_core.progress import Progress
 from diorama_core.protocols import Preview
 from diorama_core.scene.edits import set_metrics
 from diorama_core.scene.room_edits import floor_height, rescale_to_length
-from diorama_core.scene.types import Scene
+from diorama_core.scene.types import Architecture, Scene
 
 
 @dataclass(frozen=True)
@@ -54,13 +56,17 @@ class Built:
     layout: LayoutReport | None
     """None when the scene has no objects."""
     textures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]]
-    """The planes' pictures by name."""
+    """The pictures of planes and of objects' materials, by name."""
+    illuminant: Illuminant
+    """The photo's light, of which colours and pictures of the scene are free."""
     inputs: Inputs
     """What the user gave, with the boxes and the depth that networks added."""
     runs: tuple[StageRun, ...]
     """Which stage used what, and how long it took."""
     notes: tuple[str, ...] = ()
     """What the user should know, in plain words."""
+    stages: Stages | None = None
+    """The implementations that ran."""
 
 
 def build_scene(
@@ -91,10 +97,17 @@ def build_scene(
     runner = Runner(cache)
     found = evaluate(stages, {"given": inputs}, ("graph", "posed"), runner, progress.part(0.0, 0.85))
     inputs, geometry, room = found["inputs"], found["geometry"], found["architecture"]
-    textures = plane_textures(inputs, found["objects"], geometry.camera, room.architecture, stages.filler)
+    illuminant = room_illuminant(inputs, found["objects"], room.architecture, geometry.camera)
+    balanced = replace(inputs, photo=replace(inputs.photo, rgb=illuminant.balanced(inputs.photo.rgb)))
+    room = replace(room, architecture=_in_white_light(room.architecture, illuminant))
+    floors = {p.id for p in room.architecture.by_role("floor")}
+    standing = {edge.child for edge in room.supports if edge.parent in floors}
+    textures = plane_textures(balanced, found["objects"], geometry.camera, room.architecture, stages.filler, standing)
     noise = REASONED if inputs.depth_m is None else MEASURED
-    checked, changed = checked_supports(_observed(found, library), library, noise)
+    checked, changed = checked_supports(_observed({**found, "architecture": room}, balanced, library), library, noise)
     observed = _textured(containing_room(checked), textures)
+    look = photo_look(balanced.photo.rgb, found["furniture_objects"], observed, library, illuminant.rgb)
+    observed, textures = look.applied(observed), {**textures, **look.pictures}
 
     scene, report = observed, None
     if observed.objects:
@@ -116,17 +129,25 @@ def build_scene(
         observed=observed,
         layout=report,
         textures=textures,
+        illuminant=illuminant,
         inputs=inputs,
         runs=tuple(runner.runs),
-        notes=_notes(found, changed, report),
+        stages=stages,
+        notes=(*_notes(found, changed, report), *runner.lost),
     )
 
 
-def _observed(found: Artefacts, library: ShapeLibrary) -> Scene:
-    """The scene as the picture shows it, in the photo's colours, before layout."""
+def _in_white_light(room: Architecture, illuminant: Illuminant) -> Architecture:
+    """The room in the colours that it would have in white light."""
+    coloured = [(plane, illuminant.albedo(np.array(plane.colour))) for plane in room.planes]
+    return Architecture(tuple(replace(p, colour=(float(c[0]), float(c[1]), float(c[2]))) for p, c in coloured))
+
+
+def _observed(found: Artefacts, balanced: Inputs, library: ShapeLibrary) -> Scene:
+    """The scene as the picture shows it, in the colours of the photo in white light, before layout."""
     objects, posed = found["furniture_objects"], found["posed"]
     shape_of = {p.object_id: p.candidates[0].shape_id for p in posed if p.candidates}
-    colours = shared_by_sets(photo_colours(found["inputs"].photo.rgb, objects), objects, shape_of)
+    colours = shared_by_sets(photo_colours(balanced.photo.rgb, objects), objects, shape_of)
     return assemble(objects, found["geometry"], found["architecture"], posed, library, colours)
 
 

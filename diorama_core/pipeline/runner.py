@@ -24,7 +24,7 @@ from diorama_core.progress import Progress
 T = TypeVar("T")
 log = logging.getLogger(__name__)
 
-CODE_VERSION = "4"
+CODE_VERSION = "5"
 """Raised when a change of code must invalidate every saved result."""
 CACHED_PER_STAGE = 4
 """Number of cached results per stage on disk, so that undoing a correction is instant."""
@@ -48,6 +48,8 @@ class Runner:
     folder: Path | None = None
     """Cache folder; None disables caching."""
     runs: list[StageRun] = field(default_factory=list)
+    lost: list[str] = field(default_factory=list)
+    """A line for each stage that the run went on without."""
     _fingerprints: dict[int, tuple[Any, str]] = field(default_factory=dict)
 
     def run(

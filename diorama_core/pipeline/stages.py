@@ -80,6 +80,6 @@ def embedded_stages(inputs: Inputs, library: ShapeLibrary, *, recipe: str = DEFA
         depth=MeasuredDepth() if measured else RenderedDepth(),
         retrieval=HierarchicalRetrieval(library),
         pose=RenderAndCompare(library),
-        layout=layout_recipe(recipe, library, depth_measured=measured),
+        layout=layout_recipe(recipe, library, depth_measured=measured, sizes_reasoned=not measured),
         graph=GeometricGraph() if measured else None,
     )

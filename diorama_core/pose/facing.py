@@ -18,7 +18,9 @@ from diorama_core.scene.types import Camera
 
 _TABLES = with_kin("table", "desk", "coffee table", "side table", "kitchen counter", "piano", "console table")
 _AT_TABLES = with_kin("chair", "office chair", "stool", "bench", "armchair", "sofa")
-_TOWARD_VIEWER = frozenset({"monitor", "television", "laptop", "picture", "mirror", "clock", "keyboard", "microwave"})
+_TOWARD_VIEWER = frozenset(
+    {"monitor", "television", "laptop", "picture", "photo frame", "mirror", "clock", "keyboard", "microwave"}
+)
 _NO_FRONT = with_kin(
     *("plant", "vase", "bowl", "cup", "bottle", "basket", "trash can", "rug", "box", "books", "pillow"),
     *("table", "coffee table", "side table", "ottoman", "lamp", "floor lamp", "ceiling lamp"),
@@ -40,6 +42,14 @@ _TOWARD_CAMERA = {
     "toy": 0.8,
 }
 """Log odds of an object showing its front rather than its back; cupboards are hardly seen from behind."""
+_FRONTAL = 0.25
+"""Share of that which is for facing the camera rather than only not turning the back to it."""
+_STORAGE = with_kin(
+    *("cabinet", "sideboard", "dresser", "wardrobe", "bookshelf", "shelves", "tv stand", "refrigerator"),
+    *("kitchen counter", "night stand", "console table", "filing cabinet"),
+)
+_AGAINST_WALLS = 2.0
+"""Storage has its back to a wall rather than other furniture."""
 _DRAWN_UP_M = 0.9
 _DRAWN_UP_COFFEE_M = 1.6
 _LEANING = 1.5
@@ -62,12 +72,15 @@ class Facing:
 
     preferences: tuple[tuple[float, Float[np.ndarray, "2"]], ...]
     """(weight, unit direction seen from above) of every reason to face somewhere."""
+    not_away: tuple[tuple[float, Float[np.ndarray, "2"]], ...] = ()
+    """(weight, unit direction) of every reason not to turn the back there; sideways is as good as facing it."""
 
     def cost(self, R_world_object: Float[np.ndarray, "p 3 3"]) -> Float[np.ndarray, "p"]:
-        """Sum of weight x (1 - cosine) / 2 over the wishes, for the front of every rotation."""
+        """Sum of weight x (1 - cosine) / 2 over the preferences, and of what turns away, for every rotation's front."""
         front = R_world_object[:, :2, 0]
         front = front / np.maximum(np.linalg.norm(front, axis=1, keepdims=True), 1e-9)
-        return sum((w * (1 - front @ d) / 2 for w, d in self.preferences), np.zeros(len(front)))
+        toward = sum((w * (1 - front @ d) / 2 for w, d in self.preferences), np.zeros(len(front)))
+        return sum((w * np.maximum(-front @ d, 0.0) for w, d in self.not_away), toward)
 
 
 def wall_samples(depth: DepthMap, camera: Camera, objects: Sequence[DetectedObject]) -> WallSamples:
@@ -102,7 +115,7 @@ def facing_of(
     """Reasons to face somewhere for one object.
 
     Args:
-        thing: The object.
+        item: The object.
         cuboid: Its box in the world.
         cuboids: All boxes, its own included.
         categories: Category of every object id.
@@ -126,13 +139,15 @@ def facing_of(
     table = _nearest_table(item.category, cuboid, cuboids, categories)
     if table is not None:
         return Facing(((1.2, _axis_toward(cuboid, table.centre[:2] - cuboid.centre[:2])), (0.1, toward_camera)))
-    preferences = [(_TOWARD_CAMERA.get(broad(item.category), 2.0), toward_camera)]
-    preferences += [(weight, direction) for weight, direction in _away_from_walls(cuboid, walls) if weight > 0.05]
+    shown = _TOWARD_CAMERA.get(broad(item.category), 2.0)
+    preferences = [(_FRONTAL * shown, toward_camera)]
+    against = _AGAINST_WALLS if broad(item.category) in _STORAGE else 1.0
+    preferences += [(against * weight, to) for weight, to in _away_from_walls(cuboid, walls) if weight > 0.05]
     preferences += _away_from_pillows(cuboid, pillows)
     middle = np.mean([c.centre[:2] for c in cuboids], axis=0) - cuboid.centre[:2]
     if len(cuboids) >= 3 and np.linalg.norm(middle) > 0.3:
         preferences.append((0.3, _unit(middle)))
-    return Facing(tuple(preferences))
+    return Facing(tuple(preferences), (((1.0 - _FRONTAL) * shown, toward_camera),))
 
 
 def _leaning(pillow: Cuboid, carrier: Cuboid, on_bed: bool, toward_camera: Float[np.ndarray, "2"]) -> Facing:
@@ -188,14 +203,14 @@ def _nearest_table(
     if category not in _AT_TABLES:
         return None
     lounge = broad(category) in ("sofa", "armchair")
-    wanted = frozenset({"coffee table"}) if lounge else _TABLES
-    reach = _DRAWN_UP_COFFEE_M if lounge else _DRAWN_UP_M
-    near = [
-        (_gap_m(cuboid, other), float(np.linalg.norm(other.centre - cuboid.centre)), other)
-        for other in cuboids
-        if other.object_id != cuboid.object_id and categories.get(other.object_id) in wanted
-    ]
-    near = [found for found in near if found[0] < reach]
+    low = frozenset({"coffee table"})
+    near = []
+    for other in cuboids:
+        kind = categories.get(other.object_id)
+        if other.object_id != cuboid.object_id and kind in (low if lounge else _TABLES):
+            gap = _gap_m(cuboid, other)
+            if gap < (_DRAWN_UP_COFFEE_M if kind in low else _DRAWN_UP_M):
+                near.append((gap, float(np.linalg.norm(other.centre - cuboid.centre)), other))
     return min(near, key=lambda found: (found[0], found[1]))[2] if near else None
 
 

@@ -22,6 +22,8 @@ _SILHOUETTE_WEIGHT_WITH_DEPTH = 0.7
 _DEPTH_WEIGHT = 0.7
 _STRENGTH_WITH_DEPTH = 2.0
 """Weight of measured depth, relative to an outline alone, against the pose priors."""
+_OF_SURE_MASK = 0.8
+"""How much more the outline of a sure mask counts against the pose priors than that of a doubtful one."""
 _NOISE_FLOOR = 0.03
 """Error below which two poses count as equal: the resolution of the silhouettes."""
 _FACING_STRENGTH = 0.7
@@ -80,7 +82,7 @@ class Evidence:
         cost = self.habit_cost(poses, limits)
         cost = cost + 0.5 * (misfit / _MISFIT_SIGMA) ** 2
         cost = cost + 0.5 * (off_axis_rad / _OFF_AXIS_SIGMA_RAD) ** 2
-        strength = 1.0 if self.surface is None else _STRENGTH_WITH_DEPTH
+        strength = 1.0 + _OF_SURE_MASK * self.seen.mask_trust**4 if self.surface is None else _STRENGTH_WITH_DEPTH
         return -strength * np.log(errors + _NOISE_FLOOR) - cost
 
     def habit_cost(self, poses: PoseBatch, limits: SizeLimits) -> Float[np.ndarray, "p"]:

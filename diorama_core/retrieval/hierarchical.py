@@ -12,7 +12,7 @@ from jaxtyping import Float
 
 from diorama_core.artefacts import Cuboid, DetectedObject, Inputs, ObjectGeometry, RankedShapes
 from diorama_core.geometry.observed import Observed, observe_among
-from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES
+from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES, ShapeAppearance
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
@@ -27,6 +27,7 @@ from diorama_core.retrieval.appearance_similarity import (
 from diorama_core.retrieval.neighbours import neighbour_factors
 from diorama_core.retrieval.outlines import outline_agreement
 from diorama_core.retrieval.pools import Pool, RetrievalQuery, pool_for, size_cost
+from diorama_core.retrieval.usual_forms import usual_form_factor
 from diorama_core.retrieval.word_senses import sense_probabilities
 from diorama_core.retrieval.words import described_share
 from diorama_core.scene.types import Support, yaw_rotation
@@ -105,7 +106,10 @@ class HierarchicalRetrieval:
             object_crop = ObjectCrop(inputs.photo.rgb, item.mask, item.label, visible, seen.mask_trust)
             alike = similarity.of(object_crop, [m.shape for m in members])
             said = described_share(self.library, item.label, item.category, [m.shape for m in members])
-            factors = [m.kind_factor * (1 - _OF_WORDS * (1 - w)) for m, w in zip(members, said, strict=True)]
+            factors = [
+                m.kind_factor * (1 - _OF_WORDS * (1 - w)) * self._usual(m.shape, item)
+                for m, w in zip(members, said, strict=True)
+            ]
             sight.append(visible)
             scores.append(
                 {
@@ -150,15 +154,21 @@ class HierarchicalRetrieval:
 
     def _score(self, shape: Shape, cuboid: Cuboid, seen: Observed, visible: float, like: float, named: bool) -> float:
         """0 to 1: the best of the shape's quarter turns in the cuboid, and its likeness."""
-        appearance = SHARED_APPEARANCES.get(
-            shape.content_hash, default_cache_dir() / "looks", lambda: self.library.parts(shape.id)
-        )
+        appearance = self._appearance(shape)
         targets, poses = quarter_turns(shape, cuboid)
         cost = np.array([size_cost(shape.size_m, t) for t in targets])
         outline = outline_agreement(seen, seen.silhouettes(appearance.caster, poses))
         of_size, of_outline, of_appearances = self._weights(seen, visible, named)
         fit = of_size * np.exp(-cost / 2) + of_outline * outline
         return float((fit.max() + of_appearances * like) / (of_size + of_outline + of_appearances))
+
+    def _appearance(self, shape: Shape) -> ShapeAppearance:
+        folder = default_cache_dir() / "looks"
+        return SHARED_APPEARANCES.get(shape.content_hash, folder, lambda: self.library.parts(shape.id))
+
+    def _usual(self, shape: Shape, item: DetectedObject) -> float:
+        """How usual the shape's form is, where the mask was not drawn and can hardly tell."""
+        return 1.0 if item.mask_confidence >= 1.0 else usual_form_factor(shape, self._appearance(shape))
 
     def _weights(self, seen: Observed, visible: float, named: bool) -> tuple[float, float, float]:
         """Weights of size, outline and appearance for an object with this visibility."""

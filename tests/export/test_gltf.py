@@ -107,7 +107,7 @@ def test_the_tree_follows_the_supports_beside_the_architecture() -> None:
 def test_children_do_not_inherit_scale() -> None:
     scene = furnished_room(LIBRARY)
     table = scene.object("t")
-    wide = replace(table, pose=replace(table.pose, scale=(1.0, 2.0, 1.0)))
+    wide = replace(table, pose=replace(table.pose, scale=np.array([1.0, 2.0, 1.0])))
     stretched = replace(scene, objects=tuple(wide if o.id == "t" else o for o in scene.objects))
     document = gltf_reader.check(glb_bytes(stretched, LIBRARY))
     assert "scale" not in node(document, "table (t)")
@@ -181,7 +181,7 @@ def _glb(scene: ExportScene) -> bytes:
 
 def test_identical_shapes_share_a_mesh_and_colours_do_not_leak() -> None:
     scene = furnished_room(LIBRARY)
-    third = replace(scene.object("c1"), id="c3", pose=scene.object("c1").pose.moved((0.0, 1.0, 0.0)))
+    third = replace(scene.object("c1"), id="c3", pose=scene.object("c1").pose.moved(np.array([0.0, 1.0, 0.0])))
     document = gltf_reader.check(glb_bytes(replace(scene, objects=(*scene.objects, third)), LIBRARY))
     plain, painted = node(document, "chair (c1)")["mesh"], node(document, "chair (c2)")["mesh"]
     assert node(document, "chair (c3)")["mesh"] == plain

@@ -49,3 +49,19 @@ def test_without_a_camera_and_without_edges_nothing_breaks(room: Room) -> None:
     room.put("cup_21", (0.0, 0.1, 0.82), on=None)
     scene = room.scene(architecture=room_box(6.0, 5.0))
     assert checked_supports(scene, LIBRARY, MEASURED) == (scene, ())
+
+
+def test_furniture_does_not_hang_in_the_air(room: Room) -> None:
+    chair = room.put("chair_4", (0.0, 1.0, 1.3), on="wall_2", relation="mounted on", yaw=-np.pi / 2)
+    checked, reasons = checked_supports(room.scene(camera=looking_north()), LIBRARY, REASONED)
+    assert checked.support_of(chair).parent == "floor"
+    assert len(reasons) == 1
+    settled = FeasibleRecipe(LIBRARY, sizes_reasoned=True).optimise(checked, Progress())[0]
+    assert abs(settled.object(chair).corners_world[:, 2].min()) < 1e-6
+
+
+def test_what_should_have_something_below_it_is_reported(room: Room) -> None:
+    oven = room.put("microwave_25", (0.0, 2.3, 1.6), on="wall_2", relation="mounted on", yaw=-np.pi / 2)
+    checked, reasons = checked_supports(room.scene(camera=looking_north()), LIBRARY, REASONED)
+    assert checked.support_of(oven).parent == "wall_2"
+    assert "please check: microwave" in reasons[0]

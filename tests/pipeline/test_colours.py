@@ -51,6 +51,20 @@ def test_chairs_of_one_shape_share_the_surest_colour() -> None:
     small = big.copy()
     small[:, 20:] = False
     objects = (_object("a", "chair", small), _object("b", "chair", big), _object("c", "chair", small))
-    colours = {"a": (0.1, 0.1, 0.1), "b": (0.9, 0.0, 0.0), "c": (0.2, 0.2, 0.2)}
+    colours = {"a": (0.8, 0.0, 0.0), "b": (0.9, 0.0, 0.0), "c": (0.2, 0.2, 0.2)}
     shared = shared_by_sets(colours, objects, {"a": "shell", "b": "shell", "c": "windsor"})
     assert shared == {"a": (0.9, 0.0, 0.0), "b": (0.9, 0.0, 0.0), "c": (0.2, 0.2, 0.2)}
+
+
+def test_chairs_that_differ_keep_their_colours_and_lend_them_to_their_like() -> None:
+    _, big, _ = _masks()
+    hidden = np.zeros_like(big)
+    hidden[20:24, 10:14] = True
+    objects = tuple(_object(name, "chair", hidden if name == "d" else big) for name in "abcde")
+    red, dark_red, blue = (0.8, 0.1, 0.1), (0.72, 0.08, 0.09), (0.1, 0.2, 0.7)
+    colours = {"a": red, "b": blue, "c": dark_red, "d": (0.4, 0.4, 0.4)}
+    shared = shared_by_sets(colours, objects, dict.fromkeys("abcde", "shell"))
+    assert shared["b"] == blue
+    assert shared["a"] == shared["c"]
+    assert shared["d"] in (blue, shared["a"])
+    assert shared["e"] in (blue, shared["a"])

@@ -19,7 +19,7 @@ from diorama_core.synthesis.cycles import truth_picture
 def scene():
     library = built_in_library()
     room = furnished_room(1, "corridor", library, clutter=0)
-    return in_photo_world(replace(room, camera=hold_cameras(room, library, 1, 1, (48, 36))[0]))
+    return in_photo_world(replace(room, camera=sample_cameras(room, library, 1, 1, (48, 36))[0]))
 
 
 @pytest.mark.skipif(find_spec("bpy") is not None, reason="Blender's module is installed")

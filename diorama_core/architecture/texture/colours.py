@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Int, UInt8
 
+from diorama_core.architecture.texture.floor_material import floor_colour, white_level
 from diorama_core.artefacts import DetectedObject
 from diorama_core.geometry.casting import camera_rays, cast_planes
 from diorama_core.scene.types import Camera, Plane, PlaneRole
@@ -48,17 +49,25 @@ def coloured(
     grid = (slice(step // 2, None, step), slice(step // 2, None, step))
     free = ~object_pixels((rgb.shape[0], rgb.shape[1]), objects)[grid]
     small = rgb[grid]
-    found = [_typical_colour(small[(seen == i) & free]) for i in range(len(planes))]
+    white = white_level(rgb)
+    found = [_colour_of(plane.role, small, (seen == i) & free, white) for i, plane in enumerate(planes)]
     by_role = {p.role: c for p, c in reversed(list(zip(planes, found, strict=True))) if c is not None}
     return tuple(
         replace(p, colour=c or by_role.get(p.role, _PLAIN[p.role])) for p, c in zip(planes, found, strict=True)
     )
 
 
-def _typical_colour(pixels: UInt8[np.ndarray, "n 3"]) -> tuple[float, float, float] | None:
-    """Median colour of the half of the pixels nearest to the overall median: robust to objects left in view."""
+def _colour_of(
+    role: PlaneRole, rgb: UInt8[np.ndarray, "h w 3"], where: Bool[np.ndarray, "h w"], white: float
+) -> tuple[float, float, float] | None:
+    pixels = rgb[where]
     if len(pixels) < MIN_PIXELS:
         return None
+    return floor_colour(pixels, np.argwhere(where).astype(np.float64), white) if role == "floor" else _typical(pixels)
+
+
+def _typical(pixels: UInt8[np.ndarray, "n 3"]) -> tuple[float, float, float]:
+    """Median colour of the half of the pixels nearest to the overall median: robust to objects left in view."""
     values = pixels.astype(np.float64)
     distance = np.abs(values - np.median(values, axis=0)).sum(axis=1)
     core = values[distance <= np.median(distance)]

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 import cv2
 import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.architecture.texture.colours import object_pixels
 from diorama_core.architecture.texture.empty_room import EmptyRoomFiller
+from diorama_core.architecture.texture.floor_material import contact_pixels, floor_texels, white_level
 from diorama_core.architecture.texture.quilting import broad_shading, detail_continued
 from diorama_core.artefacts import DetectedObject, Inputs
 from diorama_core.geometry.casting import cast_planes
@@ -19,7 +22,7 @@ PIXELS_PER_M = 150.0
 MIN_SEEN_SHARE = 0.06
 """Minimum visible share of a plane's area for a texture; below it the plane keeps its plain colour."""
 MIN_SEEN_PX = 400
-MIN_FLOOR_M2 = 0.15
+MIN_FLOOR_M2 = 0.08
 """Except a floor, of which so much is enough to continue its material from."""
 MAX_GRAZING_COSINE = 0.06
 """Where the plane is seen more edge-on than this the photo is smeared and not used."""
@@ -27,6 +30,8 @@ FRAME = 0.014
 """Rim of the picture that is not used, as a share of its longer side: undistorted photos have pale frames there."""
 ISLAND_M = 0.22
 """Pieces of a plane narrower than this are mostly rims, shadows and leaves of what stands before it."""
+FLOOR_ISLAND_M = 0.1
+"""Of a floor, whose colours were looked at already."""
 ISLAND_SHARE = 0.04
 """Pieces apart from the rest with a smaller share of all that is seen are given up too."""
 RIM = 0.008
@@ -57,6 +62,8 @@ SEAM_M = 0.25
 """Over about this length beside what is seen, what is made up has its light and shade."""
 SEAM_LEVELS = 40.0
 """Not that of what differs by more levels of 255 from the plane's own."""
+CALM_LEVELS = 20.0
+"""A floor's light and shade within so many levels of its main colour is carried on."""
 MIN_TYPICAL = 0.06
 """Where less than this share of what is seen has about one colour, all of it is continued."""
 FLOOR_DETAIL, WALL_DETAIL = 45.0, 14.0
@@ -69,6 +76,8 @@ def plane_textures(
     camera: Camera,
     architecture: Architecture,
     filler: EmptyRoomFiller | None = None,
+    standing: Collection[str] | None = None,
+    only: Collection[str] | None = None,
 ) -> dict[str, UInt8[np.ndarray, "_ _ 3"]]:
     """RGB pictures of the planes that are seen well enough, by plane id.
 
@@ -80,6 +89,8 @@ def plane_textures(
         camera: The photo's camera.
         architecture: The room, with its plain colours.
         filler: Paints what stands in the room out of the photo; without one every plane is continued by itself.
+        standing: Ids of the objects on the floor, at whose feet it is seen; all objects by default.
+        only: Ids of the planes to make pictures of; all by default.
     """
     shape = (inputs.photo.height, inputs.photo.width)
     unsure = [o for o in objects if o.mask_confidence < SURE_MASK]
@@ -89,23 +100,28 @@ def plane_textures(
     if filler is not None and hidden.any():
         rgb, unsure = filler.fill(rgb, hidden), []
         masked = hidden = np.zeros(shape, dtype=bool)
+    on_floor = [o for o in objects if standing is None or o.id in standing]
+    contact, white = contact_pixels(shape, on_floor) & ~masked, white_level(rgb)
     found: dict[str, np.ndarray] = {}
     for plane in architecture.planes:
+        if only is not None and plane.id not in only:
+            continue
+        ground = plane.role == "floor"
         points, pixel_m = _texel_points(plane)
         # Boxes of objects hide nearly all of a floor; there, what an unsure mask left over is told by its colour.
-        behind = masked if plane.role == "floor" else hidden
-        colours, seen = _seen_colours(rgb, behind, camera, architecture.planes, plane, points)
+        colours, seen = _seen_colours(rgb, masked if ground else hidden, camera, architecture.planes, plane, points)
         weight = _photo_share(points, plane, camera)
-        expected = None if plane.role == "floor" and not unsure else plane.colour
-        if unsure and plane.role == "floor":
-            seen &= ~_foreign(colours, seen, weight, expected)
-        seen = _without_islands(seen, ISLAND_M / pixel_m)
-        enough_m2 = MIN_FLOOR_M2 if plane.role == "floor" else np.inf
-        if seen.sum() >= MIN_SEEN_PX and (seen.mean() >= MIN_SEEN_SHARE or seen.sum() * pixel_m**2 >= enough_m2):
-            own = _own(colours, seen, weight, expected)
+        if ground:
+            seen = floor_texels(colours, seen, weight, _of_texels(contact, camera, points) & seen, pixel_m, white)
+        seen = _without_islands(seen, (FLOOR_ISLAND_M if ground else ISLAND_M) / pixel_m)
+        enough_m2 = MIN_FLOOR_M2 if ground else np.inf
+        if seen.sum() < MIN_SEEN_PX or (seen.mean() < MIN_SEEN_SHARE and seen.sum() * pixel_m**2 < enough_m2):
+            continue
+        own = seen
+        if not ground:
+            own = _own(colours, seen, weight, plane.colour)
             seen = _without_islands(seen & ~strays(seen, own, pixel_m, wall=plane.role == "wall"), ISLAND_M / pixel_m)
-            own &= seen
-            found[plane.id] = completed(colours, seen, plane.colour, pixel_m, own, ground=plane.role == "floor")
+        found[plane.id] = completed(colours, seen, plane.colour, pixel_m, own & seen, ground=ground)
     return found
 
 
@@ -142,12 +158,11 @@ def _foreign(
     colours: Float32[np.ndarray, "h w 3"],
     seen: Bool[np.ndarray, "h w"],
     weight: Float[np.ndarray, "h w"],
-    expected: tuple[float, float, float] | None = None,
+    expected: tuple[float, float, float],
 ) -> Bool[np.ndarray, "h w"]:
-    """Texels unlike the plane's own colour: objects nobody pointed at, rugs, posters.
+    """Texels unlike the wall's own colour: objects nobody pointed at, posters.
 
-    Its own colour is the one that covers much of the photo and is about what was expected; without an expectation,
-    that covers much and lies far apart: a floor shows on all sides of a rug.
+    Its own colour is the one that covers much of the photo and is about what was expected.
 
     Args:
         colours: 0 to 255.
@@ -161,19 +176,15 @@ def _foreign(
     lab = cv2.cvtColor(colours[rows, columns][:, None] / 255.0, cv2.COLOR_RGB2LAB)[:, 0]
     every = max(1, len(rows) // 4000)
     sample = lab[::every]
-    places = np.stack([rows[::every], columns[::every]], axis=1).astype(np.float64)
+    hoped = cv2.cvtColor(np.array([[expected]], np.float32), cv2.COLOR_RGB2LAB)[0, 0]
     share = weight[rows[::every], columns[::every]]
     cells, index = np.unique(np.round(sample / COLOUR_CELL_LAB), axis=0, return_inverse=True)
     covered = np.bincount(index.ravel(), weights=share)
     best, own = -1.0, np.median(sample, axis=0)
     for cell in cells[np.argsort(-covered, kind="stable")][:8]:
         alike = (np.abs(sample - cell * COLOUR_CELL_LAB) < COLOUR_CELL_LAB).all(axis=1)
-        score = float(share[alike].sum())
-        if expected is None:
-            score *= float(places[alike].var(axis=0).sum()) if alike.sum() > 1 else 0.0
-        else:
-            hoped = cv2.cvtColor(np.array([[expected]], np.float32), cv2.COLOR_RGB2LAB)[0, 0]
-            score *= float(np.exp(-np.linalg.norm(cell * COLOUR_CELL_LAB - hoped) / EXPECTED_LAB))
+        likely = float(np.exp(-np.linalg.norm(cell * COLOUR_CELL_LAB - hoped) / EXPECTED_LAB))
+        score = float(share[alike].sum()) * likely
         if score > best:
             best, own = score, np.median(sample[alike], axis=0)
     deviation = np.abs(lab - own)
@@ -190,6 +201,15 @@ def _photo_share(points: Float[np.ndarray, "h w 3"], plane: Plane, camera: Camer
     rays = points - camera.position
     distance = np.maximum(np.sqrt(np.einsum("hwk,hwk->hw", rays, rays)), 0.1)
     return np.asarray(np.maximum(-(rays @ plane.normal), 0.0) / distance**3)
+
+
+def _of_texels(
+    photo: Bool[np.ndarray, "hp wp"], camera: Camera, points: Float[np.ndarray, "h w 3"]
+) -> Bool[np.ndarray, "h w"]:
+    """What a map of the photo's pixels says at each texel; meaningless behind the camera."""
+    pixels = np.nan_to_num(camera.project(points))
+    rows = np.clip(pixels[..., 1], 0, photo.shape[0] - 1).astype(int)
+    return np.asarray(photo[rows, np.clip(pixels[..., 0], 0, photo.shape[1] - 1).astype(int)])
 
 
 def _texel_points(plane: Plane) -> tuple[Float[np.ndarray, "h w 3"], float]:
@@ -235,7 +255,7 @@ def _own(
     colours: Float32[np.ndarray, "h w 3"],
     seen: Bool[np.ndarray, "h w"],
     weight: Float[np.ndarray, "h w"],
-    expected: tuple[float, float, float] | None,
+    expected: tuple[float, float, float],
 ) -> Bool[np.ndarray, "h w"]:
     """What is seen of the plane's own material; all of it where hardly anything has one colour."""
     own = seen & ~_foreign(colours, seen, weight, expected)
@@ -298,13 +318,18 @@ def completed(
         red, green, blue = (float(c) / 255.0 for c in np.median(colours[own], axis=0))
         plain = (red, green, blue)
     shading = broad_shading(colours, own, breadth_m / pixel_m)
-    smooth = _pull_push(shading * own[..., None], own.astype(np.float32))
+    even = own
+    if ground:
+        # Shadows and glow at the feet of things are not carried on over the floor.
+        calm = own & (np.abs(shading - np.array(plain, np.float32) * 255.0).max(axis=-1) < CALM_LEVELS)
+        even = calm if calm.any() else own
+    smooth = _pull_push(shading * even[..., None], even.astype(np.float32))
     distance = cv2.distanceTransform((~seen).astype(np.uint8), cv2.DIST_L2, 5)
     keep = np.exp(-distance * pixel_m / FADE_M)[..., None]
     filled = keep * smooth + (1.0 - keep) * (np.array(plain, np.float32) * 255.0)
     near = np.exp(-distance * pixel_m / SEAM_M)[..., None]
     beside = broad_shading(colours, seen, breadth_m / pixel_m)
-    alike = seen & (np.abs(beside - smooth).max(axis=-1) < SEAM_LEVELS)
+    alike = seen & (np.abs(beside - smooth).max(axis=-1) < (CALM_LEVELS if ground else SEAM_LEVELS))
     filled = near * _pull_push(beside * alike[..., None], alike.astype(np.float32)) + (1.0 - near) * filled
     detail = detail_continued(colours - shading, own, strongest)
     if detail is not None:

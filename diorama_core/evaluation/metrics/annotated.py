@@ -1,4 +1,4 @@
-"""One annotated thing against the object that a build made of it."""
+"""One annotated object compared with the object that was built from it."""
 
 from __future__ import annotations
 
@@ -6,11 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
+from jaxtyping import Float
 
-from diorama_core.evaluation.adapters.photo_annotations import AnnotatedThing
+from diorama_core.evaluation.adapters.photo_annotations import AnnotatedObject
 from diorama_core.evaluation.metrics.colour import perceived_difference
-from diorama_core.evaluation.metrics.form import compared, form_of
 from diorama_core.evaluation.metrics.photo_agreement import shape_iou
+from diorama_core.library.form import compared, form_of
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.scene.types import Camera, Scene, SceneObject
 
@@ -18,12 +19,12 @@ FRONT_TOLERANCE_DEG = 45.0
 
 
 @dataclass(frozen=True)
-class ThingResult:
-    """What a build made of one annotated thing; None where the annotation states nothing to compare with."""
+class ObjectResult:
+    """What a build made of one annotated object; None where the annotation states nothing to compare with."""
 
     photo: str
     index: int
-    """In the photo's list of things."""
+    """In the photo's list of objects."""
     word: str
     kind: str
     loose: bool
@@ -37,10 +38,11 @@ class ThingResult:
     form: Mapping[str, bool] = field(default_factory=dict)
     """For every attribute that both annotation and design state, whether they agree."""
     has_colour: bool | None = None
+    """Whether it is painted in a colour of the photo; else it keeps its shape's own."""
     colour_difference: float | None = None
-    """CIEDE2000 with lightness at half weight."""
+    """CIEDE2000, with lightness at half weight, of the material that most of it shows in the photo's view."""
     front_error_deg: float | None = None
-    holder: bool | None = None
+    supporter: bool | None = None
     """Whether it stands on what carries it."""
     iou: float | None = None
     """The posed outline's box with the annotated one."""
@@ -53,20 +55,20 @@ class ThingResult:
         return None if self.front_error_deg is None else self.front_error_deg <= FRONT_TOLERANCE_DEG
 
 
-def not_built(photo: str, index: int, thing: AnnotatedThing, opening: bool = False) -> ThingResult:
+def not_built(photo: str, index: int, annotated: AnnotatedObject, opening: bool = False) -> ObjectResult:
     """Wrong in everything that is annotated; an opening is not judged."""
     wrong = None if opening else False
-    return ThingResult(
+    return ObjectResult(
         photo,
         index,
-        thing.word,
-        thing.kind,
-        thing.loose,
-        kind_first=wrong if thing.nameable else None,
-        kind_among=wrong if thing.nameable else None,
-        has_colour=wrong if thing.colour is not None else None,
-        front_error_deg=None if thing.front is None or opening else 180.0,
-        holder=wrong if thing.on is not None else None,
+        annotated.word,
+        annotated.kind,
+        annotated.loose,
+        kind_first=wrong if annotated.nameable else None,
+        kind_among=wrong if annotated.nameable else None,
+        has_colour=wrong if annotated.colour is not None else None,
+        front_error_deg=None if annotated.front is None or opening else 180.0,
+        supporter=wrong if annotated.on is not None else None,
         iou=None if opening else 0.0,
         opening=opening,
     )
@@ -75,40 +77,41 @@ def not_built(photo: str, index: int, thing: AnnotatedThing, opening: bool = Fal
 def measured(
     photo: str,
     index: int,
-    thing: AnnotatedThing,
+    annotated: AnnotatedObject,
     item: SceneObject,
     scene: Scene,
     library: ShapeLibrary,
     index_of: Mapping[str, int],
+    shown: Float[np.ndarray, "3"] | None = None,
 ) -> ThingResult:
     """Compare one thing with its object.
 
     Args:
         photo: the photo's id.
-        index: the thing's place in the photo's list.
-        thing: as annotated.
+        index: the object's place in the photo's list.
+        annotated: the annotation.
         item: what was built.
         scene: the whole, for the camera and what carries what.
         library: where its shapes are from.
         index_of: places of the things by object id.
+        shown: sRGB 0 to 1 that the object's main visible material has in the photo's light; None where it is not seen.
     """
     shape = record_of(library, item.shape_id)
     among = {record_of(library, c.shape_id).category for c in item.candidates} | {shape.category}
     design = form_of(shape.id, shape.category, library.mesh(shape.id), item.size_m) if thing.attributes else {}
-    coloured = thing.colour is not None and item.colour is not None
     return ThingResult(
         photo,
         index,
-        thing.word,
-        thing.kind,
-        thing.loose,
+        annotated.word,
+        annotated.kind,
+        annotated.loose,
         built=shape.category,
         shape=shape.id,
         kind_first=shape.category == thing.kind if thing.nameable else None,
         kind_among=thing.kind in among if thing.nameable else None,
         form=compared(thing.attributes, design),
         has_colour=None if thing.colour is None else item.colour is not None,
-        colour_difference=_colour_difference(thing, item) if coloured else None,
+        colour_difference=_colour_difference(thing, shown),
         front_error_deg=_front_error_deg(thing, item, scene.camera, shape.symmetry),
         holder=None if thing.on is None else _carrier(scene, item.id, index_of) == thing.on,
         iou=None if item.box_px is None else shape_iou(scene, item.id, item.box_px, library),
@@ -122,17 +125,18 @@ def front_deg(item: SceneObject, camera: Camera) -> float:
     return float(np.degrees(np.arctan2(front @ right, -(front @ forward))) % 360.0)
 
 
-def _colour_difference(thing: AnnotatedThing, item: SceneObject) -> float:
-    stated, built = np.array(thing.colour) / 255.0, np.array(item.colour)
-    return float(perceived_difference(stated, built))
+def _colour_difference(thing: AnnotatedThing, shown: Float[np.ndarray, "3"] | None) -> float | None:
+    if thing.colour is None or shown is None:
+        return None
+    return float(perceived_difference(np.array(thing.colour) / 255.0, shown))
 
 
-def _front_error_deg(thing: AnnotatedThing, item: SceneObject, camera: Camera | None, fold: int) -> float | None:
+def _front_error_deg(annotated: AnnotatedObject, item: SceneObject, camera: Camera | None, fold: int) -> float | None:
     """Smallest angle to any of the turns that leave the shape the same."""
-    if thing.front is None or camera is None:
+    if annotated.front is None or camera is None:
         return None
     period = 360.0 / fold
-    off = (front_deg(item, camera) - thing.front) % period
+    off = (front_deg(item, camera) - annotated.front) % period
     return float(min(off, period - off))
 
 

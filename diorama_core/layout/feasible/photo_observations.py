@@ -67,6 +67,7 @@ class PhotoObservations:
         scale: Float[np.ndarray, "3"],
         basis: Float[np.ndarray, "3 2"],
         pinned: Float[np.ndarray, "3"],
+        grown: float = 1.0,
     ) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
         """Centre and scale of object i that agree best with the picture.
 
@@ -77,11 +78,12 @@ class PhotoObservations:
             scale: its settled scale.
             basis: world directions in which it may still move.
             pinned: point of its box, in half extents, that touches supports and walls and stays put when it is resized.
+            grown: what its distance and its size were multiplied by already.
         """
         if not np.isfinite(self.bounds_px[i]).all() or np.linalg.norm(p - self.observed[i]) < MOVED_M:
             return p, scale
-        fit = self.fit(i, R, p, scale, basis, pinned)
-        low, high = np.log(self.least[i] / scale), np.log(self.most[i] / scale)
+        fit = self.fit(i, R, p, scale, basis, pinned, grown)
+        low, high = np.log(grown * self.least[i] / scale), np.log(grown * self.most[i] / scale)
         x = np.zeros(5)
         for _ in range(_STEPS):
             system = fit.linearised(x)
@@ -91,14 +93,22 @@ class PhotoObservations:
         return fit.centre(x), fit.scale * np.exp(x[2:])
 
     def fit(
-        self, i: int, R: np.ndarray, p: np.ndarray, scale: np.ndarray, basis: np.ndarray, pinned: np.ndarray
+        self,
+        i: int,
+        R: np.ndarray,
+        p: np.ndarray,
+        scale: np.ndarray,
+        basis: np.ndarray,
+        pinned: np.ndarray,
+        grown: float = 1.0,
     ) -> ObjectFit:
         """The least-squares problem of one object; arguments as in `fitted`."""
         local = pinned * self.size[i] / 2
+        observed = self.camera.position + grown * (self.observed[i] - self.camera.position)
         return ObjectFit(
             camera=self.camera,
             bounds_px=self.bounds_px[i],
-            observed=self.observed[i],
+            observed=observed,
             depth_weight=self.depth_weight,
             R=R,
             anchor=p + R @ (local * scale),
@@ -106,7 +116,7 @@ class PhotoObservations:
             arms=self.points[i] - local,
             scale=scale,
             basis=basis,
-            metres=float(self.camera.to_camera(self.observed[i])[2]) / self.camera.intrinsics.fx,
+            metres=float(self.camera.to_camera(observed)[2]) / self.camera.intrinsics.fx,
             extent=float((self.size[i] * scale).max()),
         )
 

@@ -55,6 +55,9 @@ class FeasibleRecipe:
     depth_weight: float = REASONED_WEIGHT
     """How much leaving the observed distance counts against leaving the observed outline; for the objects that their
     support or wall moved, when the scene has a camera."""
+    sizes_reasoned: bool = False
+    """Whether sizes follow distances, because a photo alone gave both: an object that its support moves toward the
+    camera then becomes smaller by as much."""
     adherence_m: float = 0.0
     """Faces parallel to a wall and nearer than this are set against it, besides those whose support edge says so. Above
     0 a second run may change a layout: the first can bring objects near walls."""
@@ -75,7 +78,8 @@ class FeasibleRecipe:
         wanted = problem
         for attempt in range(self.attempts):
             seen = None if observations is None else observations.limited(wanted.scale)
-            structure = exact_structure(wanted, self._rays(wanted, scene.camera), seen)
+            eye = scene.camera.position if scene.camera is not None and self.sizes_reasoned else None
+            structure = exact_structure(wanted, self._rays(wanted, scene.camera), seen, eye=eye)
             program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
             found = _apart(program, self.rounds, self._watcher(scene, program, progress, preview))
             if not found.stuck or attempt == self.attempts - 1:

@@ -6,15 +6,14 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass, field
-from itertools import combinations
 from math import hypot, sqrt
 
 import numpy as np
 from jaxtyping import Float
-from scipy.optimize import linprog
 
 from diorama_core.geometry.cross import cross
 from diorama_core.geometry.planes import plane_axes
+from diorama_core.layout.feasible.footprints import INSET_M, largest_share
 from diorama_core.layout.feasible.photo_observations import PhotoObservations
 from diorama_core.layout.feasible.quadratic import HARD, least_distance
 from diorama_core.layout.problem.problem import Problem
@@ -25,10 +24,12 @@ SMALLEST_SHRINK = 0.8
 """An object that does not fit is made smaller by at most this factor; beyond, it stays large and is named."""
 UPRIGHT_WITHIN = float(np.cos(np.deg2rad(35.0)))
 """Objects hung within this angle of upright hang upright; others keep their roll."""
-_FEW_SIDES = 10
-"""Of a surface; with more, a linear program is quicker than all corners."""
-INSET_M = 2e-4
-"""Kept between a contact face and the edge of its support, and under a shelf's ceiling."""
+MAX_GROWTH = 1.7
+"""An object's distance, with its size, is corrected by at most this factor."""
+MAX_DETOUR = 3.0
+"""An object leaves its wall rather than move so many times as far along it to come back onto its support."""
+MIN_SLANT = 0.1
+"""A surface seen more edge-on than this says nothing about distance."""
 
 
 _IDENTITY = np.eye(3)
@@ -77,6 +78,7 @@ def exact_structure(
     observations: PhotoObservations | None = None,
     *,
     only: Collection[int] | None = None,
+    eye: Float[np.ndarray, "3"] | None = None,
 ) -> Structure:
     """Walk the support tree from the top and fix what the supporters determine.
 
@@ -85,6 +87,8 @@ def exact_structure(
         ray: unit viewing directions per object; where given, an object that must rise or sink slides along its ray so
             that it stays where the photo shows it.
         evidence: what the camera saw, for objects that their support moved.
+        eye: the camera's position, where distances and with them sizes were only reasoned: an object that its support
+            moves is then enlarged or reduced about the camera, which leaves the picture as it is.
         only: indices of the objects to settle; the others keep their poses and cannot move. All free ones when None.
     """
     n = problem.count
@@ -98,7 +102,7 @@ def exact_structure(
             if surface is None:
                 walk.basis[i] = np.eye(3)[:, :2]
             else:
-                _settle(problem, walk, i, _posed(walk, problem, i, surface), against.get(i, []), ray, observations)
+                _settle(problem, walk, i, _posed(walk, problem, i, surface), against.get(i, []), ray, observations, eye)
     owners = np.array(walk.owners, dtype=int)
     return Structure(
         walk.R, walk.p, walk.scale, walk.basis, owners,
@@ -128,10 +132,12 @@ def _settle(
     against: list[tuple[int, np.ndarray]],
     ray: np.ndarray | None,
     observations: PhotoObservations | None,
+    eye: np.ndarray | None,
 ) -> None:
     n = surface.normal
     walk.R[i] = _aligned(walk.R[i], problem.contact[i], surface, [(problem.walls[w].normal, f) for w, f in against])
     u, v = plane_axes(n)
+    grown = 1.0 if eye is None else _from_the_eye(problem, walk, i, surface, eye)
     _on_support(problem, walk, i, surface, None if ray is None else ray[i])
     grounded = problem.grounded[i] and is_wall_like(surface)
     walk.basis[i] = np.column_stack([u, np.zeros(3) if grounded else v])
@@ -141,22 +147,75 @@ def _settle(
     if observations is not None:
         pinned = problem.contact[i] + sum((face for _, face in against), np.zeros(3))
         pinned[2] -= float(grounded)
-        walk.p[i], walk.scale[i] = observations.fitted(i, walk.R[i], walk.p[i], walk.scale[i], walk.basis[i], pinned)
-    m, h = surface.outward, surface.offset
-    reach = _fit(problem, walk, i, surface, m, h)
-    walk.p[i] = walk.p[i] + _lift(problem, walk, i, surface) * n
-    contact = _contact_centre(problem, walk, i)
-    slack = h - m @ contact - reach - INSET_M
-    rows = m @ walk.basis[i]
-    mobile = (rows * rows).sum(axis=1) > 1e-12
-    m, slack, rows = m[mobile], slack[mobile], rows[mobile]
+        walk.p[i], walk.scale[i] = observations.fitted(
+            i, walk.R[i], walk.p[i], walk.scale[i], walk.basis[i], pinned, grown
+        )
+    m, slack = _within_support(problem, walk, i, surface)
     if (slack < 0).any():
-        move = walk.basis[i] @ _into(rows, slack)
-        walk.p[i] = walk.p[i] + move
-        slack = slack - m @ move
+        _onto_support(problem, walk, i, surface, slack, m)
+        if observations is not None:
+            _seen_from_the_edge(problem, walk, i, surface, observations, pinned, eye)
+        m, slack = _within_support(problem, walk, i, surface)
     walk.owners += [i] * len(m)
     walk.normals += list(m)
     walk.slacks += [max(float(s), 0.0) for s in slack]
+
+
+def _within_support(
+    problem: Problem, walk: _Walk, i: int, surface: Surface
+) -> tuple[Float[np.ndarray, "k 3"], Float[np.ndarray, " k"]]:
+    """Outward normals of the support's sides that the object's free coordinates can meet, and how far each is.
+
+    The object is shrunk where it does not fit and set on its surface first.
+    """
+    m = surface.outward
+    reach = _fit(problem, walk, i, surface, m, surface.offset)
+    walk.p[i] = walk.p[i] + _lift(problem, walk, i, surface) * surface.normal
+    slack = surface.offset - m @ _contact_centre(problem, walk, i) - reach - INSET_M
+    rows = m @ walk.basis[i]
+    mobile = (rows * rows).sum(axis=1) > 1e-12
+    return m[mobile], slack[mobile]
+
+
+def _onto_support(problem: Problem, walk: _Walk, i: int, surface: Surface, slack: np.ndarray, m: np.ndarray) -> None:
+    """The shortest way onto the surface: with the coordinates that a wall leaves where that is about as short."""
+    plane = np.column_stack(plane_axes(surface.normal))
+    shortest = plane @ _into(m @ plane, slack)
+    along = walk.basis[i] @ _into(m @ walk.basis[i], slack)
+    detour = np.linalg.norm(along) > MAX_DETOUR * np.linalg.norm(shortest) and not problem.grounded[i]
+    walk.p[i] = walk.p[i] + (shortest if detour else along)
+
+
+def _seen_from_the_edge(
+    problem: Problem,
+    walk: _Walk,
+    i: int,
+    surface: Surface,
+    observations: PhotoObservations,
+    pinned: np.ndarray,
+    eye: np.ndarray | None,
+) -> None:
+    """Move an object that had to come back onto its support along the side that it came to, until it is seen best."""
+    m, slack = _within_support(problem, walk, i, surface)
+    reached = m[int(np.argmin(slack))] if len(m) else np.zeros(3)
+    side = cross(surface.normal, reached)
+    length = float(np.linalg.norm(side))
+    free = length > 1e-9 and float(np.linalg.norm(walk.basis[i].T @ (side / max(length, 1e-9)))) > 0.9
+    if not free:
+        return
+    grown = 1.0 if eye is None else _nearness(walk.p[i], problem.p[i], eye)
+    basis = np.column_stack([side / length, np.zeros(3)])
+    start = walk.p[i].copy(), walk.scale[i].copy()
+    walk.p[i], walk.scale[i] = observations.fitted(i, walk.R[i], *start, basis, pinned, grown)
+    m, slack = _within_support(problem, walk, i, surface)
+    if (slack < 0).any():
+        _onto_support(problem, walk, i, surface, slack, m)
+
+
+def _nearness(p: np.ndarray, observed: np.ndarray, eye: np.ndarray) -> float:
+    """How many times as far as it was observed an object is, along its viewing ray and within limits."""
+    sight = observed - eye
+    return float(np.clip((p - eye) @ sight / max(float(sight @ sight), 1e-9), 1.0 / MAX_GROWTH, MAX_GROWTH))
 
 
 def _reach_floor(problem: Problem, walk: _Walk, i: int) -> None:
@@ -195,6 +254,20 @@ def _on_support(problem: Problem, walk: _Walk, i: int, surface: Surface, ray: np
             far = float(np.linalg.norm(sideways))
             shift = shift + sideways * min(1.0, limit / max(far, 1e-9))
     walk.p[i] = walk.p[i] + shift
+
+
+def _from_the_eye(problem: Problem, walk: _Walk, i: int, surface: Surface, eye: np.ndarray) -> float:
+    """Enlarge or reduce the object about the camera until its contact face is on the surface; returns by how much."""
+    sight = _contact_centre(problem, walk, i) - eye
+    meets = float(sight @ surface.normal)
+    if abs(meets) < MIN_SLANT * float(np.linalg.norm(sight)):
+        return 1.0
+    grown = (surface.level - float(eye @ surface.normal)) / meets
+    if not 1.0 / MAX_GROWTH <= grown <= MAX_GROWTH:
+        return 1.0
+    walk.p[i] = eye + grown * (walk.p[i] - eye)
+    walk.scale[i] = grown * walk.scale[i]
+    return grown
 
 
 def _aligned(
@@ -279,7 +352,7 @@ def _fit(problem: Problem, walk: _Walk, i: int, surface: Surface, m: np.ndarray,
     footprint = [k for k in range(3) if k != normal_axis]
     middle = m @ (surface.polygon.sum(axis=0) / len(surface.polygon))
     reach = _reach(problem, walk, i, m)
-    room = _room(m, h - middle, reach)
+    room = largest_share(m, h - middle, reach)
     if room < 1.0:
         for k in footprint:
             axis = walk.R[i][:, k]
@@ -287,7 +360,7 @@ def _fit(problem: Problem, walk: _Walk, i: int, surface: Surface, m: np.ndarray,
             factor = max(width, 1e-6) / float(_size(problem, walk, i)[k])
             if SMALLEST_SHRINK <= factor < 1.0:
                 walk.scale[i, k] *= factor
-        room = _room(m, h - middle, _reach(problem, walk, i, m))
+        room = largest_share(m, h - middle, _reach(problem, walk, i, m))
         if SMALLEST_SHRINK <= room < 1.0:
             walk.scale[i, footprint] *= room
             room = 1.0
@@ -300,32 +373,6 @@ def _fit(problem: Problem, walk: _Walk, i: int, surface: Surface, m: np.ndarray,
 def _reach(problem: Problem, walk: _Walk, i: int, m: np.ndarray) -> np.ndarray:
     half = problem.firm[i] * _size(problem, walk, i) * (1.0 - np.abs(problem.contact[i])) / 2
     return np.abs((m @ walk.R[i]) * half).sum(axis=1)
-
-
-def _room(m: np.ndarray, h: np.ndarray, reach: np.ndarray) -> float:
-    """The largest share t of a footprint that fits somewhere on a surface: m x <= h - t reach; at most 1."""
-    h = h - INSET_M
-    if (h - reach >= 0).all():
-        return 1.0
-    u, v = plane_axes(cross(m[0], m[1]) / max(float(np.linalg.norm(cross(m[0], m[1]))), 1e-9))
-    A = np.column_stack([m @ u, m @ v, reach])
-    share = _highest_vertex(A, h) if len(A) <= _FEW_SIDES else _highest(A, h)
-    return share if share < 1.0 - 1e-9 else 1.0
-
-
-def _highest(A: np.ndarray, h: np.ndarray) -> float:
-    found = linprog([0.0, 0.0, -1.0], A_ub=A, b_ub=h, bounds=[(None, None), (None, None), (0.0, 1.0)])
-    return float(np.asarray(found.x)[2]) if found.status == 0 else 0.0
-
-
-def _highest_vertex(A: np.ndarray, h: np.ndarray) -> float:
-    """The same through all corners of A x <= h at once: a tenth of the time for the few sides that most tops have."""
-    triples = np.array(list(combinations(range(len(A)), 3)))
-    corners, bounds = A[triples], h[triples]
-    firm = np.abs(np.linalg.det(corners)) > 1e-9
-    x = np.linalg.solve(corners[firm], bounds[firm][..., None])[..., 0]
-    inside = (x @ A.T <= h + 1e-9).all(axis=1)
-    return float(np.clip(x[inside, 2].max(initial=0.0), 0.0, 1.0))
 
 
 def _into(rows: np.ndarray, slack: np.ndarray) -> Float[np.ndarray, "2"]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_core.evaluation.metrics.form import agrees, compared, form_of
 from diorama_core.library.catalogue import built_in_library
+from diorama_core.library.form import agrees, compared, form_of
 
 LIBRARY = built_in_library()
 

@@ -1,0 +1,192 @@
+"""Which texels of a floor's picture are floor: a robust model of its colours rejects what stands on it.
+
+What nobody marked is projected onto the floor like the floor itself. The floor's material covers much of what is seen,
+shows on many sides, and is there right before the feet of what stands on it; everything of another colour is rejected,
+unless it is a pattern of the material: intermingled with it nearly everywhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float, Float32, UInt8
+
+from diorama_core.artefacts import DetectedObject
+
+_CELL_LAB = np.array([14.0, 8.0, 8.0])
+"""Colours within about this much are one material in light and shade."""
+_CELLS_TRIED = 8
+_SAMPLES = 4000
+_CONTACT_BAND = (0.012, 0.06)
+"""Before the feet of things, beyond their contact shadows: distances below masks, as shares of the photo's height."""
+_WITHOUT_CONTACT = 0.2
+"""How much a colour counts that is seen at nobody's feet, beside one that is at all of them."""
+_USUAL_LAB, _USUAL_SIGMA_LAB = np.array([52.0, 4.0, 10.0]), np.array([20.0, 9.0, 16.0])
+"""Floors' colours in a photo whose brightest parts are white: wood, carpet, tiles; hardly black, white or blue."""
+_WHITE_SHARE = 95.0
+"""Percentile of the photo's lightness that is about white."""
+_SPREADS = 3.0
+_TOLERANCE_LAB = np.array([16.0, 7.0, 7.0])
+"""A texel is foreign when it differs by more than this many typical deviations, and by this much at least."""
+_WIDEST = 1.5
+"""And whenever it differs by so many times that much."""
+_SHADOW_L = 14.0
+"""What is so much darker is a shadow of what stands there, which will not stay where it is."""
+_PATTERN_M, _PATTERN_SHARE = 0.15, 0.75
+"""Colours of a pattern are within this distance of each other over at least this share of both."""
+_PATTERN_COLOURS = 2
+_FEWEST_OF_PATTERN = 0.03
+_SPECK_M, _RIM_M = 0.02, 0.03
+"""Foreign pieces narrower than the one are grain; so much around the others has their rims and shadows."""
+
+
+def contact_pixels(shape: tuple[int, int], objects: Sequence[DetectedObject]) -> Bool[np.ndarray, "h w"]:
+    """Pixels of the photo a little below the feet of things, where the floor is usually seen."""
+    near, far = (round(share * shape[0]) for share in _CONTACT_BAND)
+    found = np.zeros(shape, dtype=bool)
+    for item in objects:
+        columns = np.flatnonzero(item.mask.any(axis=0))
+        feet = shape[0] - 1 - np.argmax(item.mask[::-1, columns], axis=0)
+        for below in range(near, far + 1):
+            rows = feet + below
+            inside = rows < shape[0]
+            found[rows[inside], columns[inside]] = True
+    for item in objects:
+        found &= ~item.mask
+    return found
+
+
+def white_level(rgb: UInt8[np.ndarray, "h w 3"]) -> float:
+    """Lightness L* of what is about white in a photo: a dark one's floor is as dark as the rest of it."""
+    small = cv2.resize(rgb, (96, 72), interpolation=cv2.INTER_AREA).astype(np.float32) / 255.0
+    lightness = cv2.cvtColor(small, cv2.COLOR_RGB2LAB)[..., 0]
+    return max(float(np.percentile(lightness, _WHITE_SHARE)), 1.0)
+
+
+def floor_colour(
+    rgb: UInt8[np.ndarray, "n 3"], places: Float[np.ndarray, "n 2"], white: float
+) -> tuple[float, float, float]:
+    """The colour (sRGB 0 to 1) of a floor among pixels of it and of what nobody marked.
+
+    Args:
+        rgb: at least one pixel.
+        places: where they are in the photo.
+        white: lightness L* that the photo's white has (`white_level`).
+    """
+    lab = cv2.cvtColor(rgb[:, None].astype(np.float32) / 255.0, cv2.COLOR_RGB2LAB)[:, 0].astype(np.float64)
+    main = _main_colour(lab, places, np.ones(len(lab)), np.zeros(len(lab), dtype=bool), white)
+    red, green, blue = (float(c) / 255.0 for c in np.median(rgb[_of_material(lab, main)], axis=0))
+    return red, green, blue
+
+
+def floor_texels(
+    colours: Float32[np.ndarray, "h w 3"],
+    seen: Bool[np.ndarray, "h w"],
+    weight: Float[np.ndarray, "h w"],
+    contact: Bool[np.ndarray, "h w"],
+    pixel_m: float,
+    white: float = 100.0,
+) -> Bool[np.ndarray, "h w"]:
+    """The seen texels that show the floor's own material.
+
+    Args:
+        colours: 0 to 255.
+        seen: which texels are.
+        weight: how much of the photo each texel covers.
+        contact: texels right before the feet of things.
+        pixel_m: size of a texel.
+        white: lightness L* that the photo's white has (`white_level`).
+    """
+    rows, columns = np.nonzero(seen)
+    if not len(rows):
+        return seen.copy()
+    lab = cv2.cvtColor((colours[rows, columns] / 255.0)[:, None], cv2.COLOR_RGB2LAB)[:, 0].astype(np.float64)
+    every = max(1, len(rows) // _SAMPLES)
+    main = _main_colour(
+        lab[::every],
+        np.stack([rows, columns], axis=1)[::every].astype(np.float64),
+        weight[rows, columns][::every],
+        contact[rows, columns][::every],
+        white,
+    )
+    own = np.zeros(seen.shape, dtype=bool)
+    alike = _of_material(lab, main)
+    own[rows, columns] = alike
+    for _ in range(_PATTERN_COLOURS):
+        left = ~alike
+        if left.mean() < _FEWEST_OF_PATTERN:
+            break
+        other = _of_material(lab, _fullest(lab[left][:: max(1, int(left.sum()) // _SAMPLES)])) & left
+        of_other = np.zeros(seen.shape, dtype=bool)
+        of_other[rows, columns] = other
+        if other.mean() < _FEWEST_OF_PATTERN or not _intermingled(own, of_other, pixel_m):
+            break
+        own |= of_other
+        alike |= other
+    return own & ~_grown_pieces(seen & ~own, pixel_m)
+
+
+def _main_colour(
+    lab: Float[np.ndarray, "n 3"],
+    places: Float[np.ndarray, "n 2"],
+    weight: Float[np.ndarray, "n"],
+    contact: Bool[np.ndarray, "n"],
+    white: float,
+) -> Float[np.ndarray, "3"]:
+    """The colour that covers much of the photo, lies far apart, is at the feet of things, and is usual for floors."""
+    at_feet = max(float(weight[contact].sum()), 1e-12)
+    best, main = -1.0, np.median(lab, axis=0)
+    for cell in _cells(lab, weight):
+        alike = (np.abs(lab - cell) < _CELL_LAB).all(axis=1)
+        spread = float(places[alike].var(axis=0).sum()) ** 0.5 if alike.sum() > 1 else 0.0
+        touched = float(weight[alike & contact].sum()) / at_feet
+        middle = np.median(lab[alike], axis=0) if alike.any() else cell
+        off = (middle * np.array([100.0 / white, 1.0, 1.0]) - _USUAL_LAB) / _USUAL_SIGMA_LAB
+        usual = float(np.exp(-0.5 * (off**2).sum()))
+        score = float(weight[alike].sum()) * spread * (_WITHOUT_CONTACT + touched) * usual
+        if score > best:
+            best, main = score, middle
+    return main
+
+
+def _cells(lab: Float[np.ndarray, "n 3"], weight: Float[np.ndarray, "n"]) -> Float[np.ndarray, "k 3"]:
+    """Middles of the cells of colour that cover most."""
+    cells, index = np.unique(np.round(lab / _CELL_LAB), axis=0, return_inverse=True)
+    covered = np.bincount(index.ravel(), weights=weight)
+    return np.asarray(cells[np.argsort(-covered, kind="stable")][:_CELLS_TRIED] * _CELL_LAB)
+
+
+def _fullest(lab: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "3"]:
+    cell = _cells(lab, np.ones(len(lab)))[0]
+    return np.asarray(np.median(lab[(np.abs(lab - cell) < _CELL_LAB).all(axis=1)], axis=0))
+
+
+def _of_material(lab: Float[np.ndarray, "n 3"], main: Float[np.ndarray, "3"]) -> Bool[np.ndarray, "n"]:
+    """Colours that a material of one main colour has in light and shade."""
+    near = np.abs(lab - main)
+    core = near[(near < _CELL_LAB).all(axis=1)]
+    typical = np.median(core, axis=0) if len(core) else np.zeros(3)
+    allowed = np.clip(_SPREADS * typical, _TOLERANCE_LAB, _WIDEST * _TOLERANCE_LAB)
+    shadow = lab[:, 0] < main[0] - _SHADOW_L
+    return np.asarray((near <= allowed).all(axis=1) & ~shadow)
+
+
+def _intermingled(one: Bool[np.ndarray, "h w"], other: Bool[np.ndarray, "h w"], pixel_m: float) -> bool:
+    """Whether each of two colours has the other near over most of its area."""
+    reach = _disc(_PATTERN_M, pixel_m)
+    beside = [cv2.dilate(part.astype(np.uint8), reach).astype(bool) for part in (one, other)]
+    shares = [float(beside[1 - k][part].mean()) if part.any() else 0.0 for k, part in enumerate((one, other))]
+    return min(shares) >= _PATTERN_SHARE
+
+
+def _grown_pieces(foreign: Bool[np.ndarray, "h w"], pixel_m: float) -> Bool[np.ndarray, "h w"]:
+    """Foreign pieces without specks of grain, with their rims."""
+    pieces = cv2.morphologyEx(foreign.astype(np.uint8), cv2.MORPH_OPEN, _disc(_SPECK_M, pixel_m))
+    return cv2.dilate(pieces, _disc(_RIM_M, pixel_m)).astype(bool) | foreign
+
+
+def _disc(radius_m: float, pixel_m: float) -> UInt8[np.ndarray, "k k"]:
+    radius = max(1, round(radius_m / pixel_m))
+    return cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * radius + 1, 2 * radius + 1)).astype(np.uint8)

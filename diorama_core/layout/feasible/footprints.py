@@ -1,0 +1,42 @@
+"""How much of a footprint has room on a support surface."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+from scipy.optimize import linprog
+
+from diorama_core.geometry.cross import cross
+from diorama_core.geometry.planes import plane_axes
+
+INSET_M = 2e-4
+"""Kept between a contact face and the edge of its support, and under a shelf's ceiling."""
+_FEW_SIDES = 10
+"""Of a surface; with more, a linear program is quicker than all corners."""
+
+
+def largest_share(m: np.ndarray, h: np.ndarray, reach: np.ndarray) -> float:
+    """The largest share t of a footprint that fits somewhere on a surface: m x <= h - t reach; at most 1."""
+    h = h - INSET_M
+    if (h - reach >= 0).all():
+        return 1.0
+    u, v = plane_axes(cross(m[0], m[1]) / max(float(np.linalg.norm(cross(m[0], m[1]))), 1e-9))
+    A = np.column_stack([m @ u, m @ v, reach])
+    share = _highest_vertex(A, h) if len(A) <= _FEW_SIDES else _highest(A, h)
+    return share if share < 1.0 - 1e-9 else 1.0
+
+
+def _highest(A: np.ndarray, h: np.ndarray) -> float:
+    found = linprog([0.0, 0.0, -1.0], A_ub=A, b_ub=h, bounds=[(None, None), (None, None), (0.0, 1.0)])
+    return float(np.asarray(found.x)[2]) if found.status == 0 else 0.0
+
+
+def _highest_vertex(A: np.ndarray, h: np.ndarray) -> float:
+    """The same through all corners of A x <= h at once: a tenth of the time for the few sides that most tops have."""
+    triples = np.array(list(combinations(range(len(A)), 3)))
+    corners, bounds = A[triples], h[triples]
+    firm = np.abs(np.linalg.det(corners)) > 1e-9
+    x = np.linalg.solve(corners[firm], bounds[firm][..., None])[..., 0]
+    inside = (x @ A.T <= h + 1e-9).all(axis=1)
+    return float(np.clip(x[inside, 2].max(initial=0.0), 0.0, 1.0))

@@ -1,0 +1,55 @@
+"""How usual a shape's form is among things of its kind: most chairs and tables stand on four legs.
+
+The outlines that a photo without networks gives fill the space between legs, so that closed forms fit them best; how
+often each form is met says what they cannot. Shares are rough counts in homes and offices.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import trimesh
+
+from diorama_core.geometry.shape_appearance import ShapeAppearance
+from diorama_core.io.cache import LruCache
+from diorama_core.library.form import form_of
+from diorama_core.library.record import Shape
+from diorama_core.library.taxonomy import with_kin
+
+_SEAT = {"four legs": 0.75, "sled": 0.08, "five-star": 0.07, "pedestal": 0.06, "plinth": 0.02}
+_OFFICE_SEAT = {"five-star": 0.8, "four legs": 0.1, "pedestal": 0.05, "sled": 0.05}
+_EASY_SEAT = {"four legs": 0.7, "plinth": 0.12, "pedestal": 0.08, "sled": 0.06, "panel": 0.04}
+_TABLE = {"four legs": 0.7, "pedestal": 0.12, "panel": 0.08, "sled": 0.05, "plinth": 0.03}
+_LOW_TABLE = {"four legs": 0.65, "plinth": 0.12, "panel": 0.1, "sled": 0.07, "pedestal": 0.06}
+_SMALL_TABLE = {"four legs": 0.6, "pedestal": 0.2, "plinth": 0.08, "sled": 0.05, "panel": 0.05}
+_BASES: tuple[tuple[frozenset[str], Mapping[str, float]], ...] = (
+    (with_kin("office chair"), _OFFICE_SEAT),
+    (with_kin("armchair"), _EASY_SEAT),
+    (with_kin("chair", "bench"), _SEAT),
+    (with_kin("coffee table", "console table"), _LOW_TABLE),
+    (with_kin("side table", "stool"), _SMALL_TABLE),
+    (with_kin("table", "desk"), _TABLE),
+)
+_RARE = 0.02
+_SAYS = 0.08
+"""Power of the share that multiplies a retrieval score: scores of shapes that fit well and badly differ little."""
+
+_BASE_OF: LruCache[str, str] = LruCache(4096)
+
+
+def usual_form_factor(shape: Shape, appearance: ShapeAppearance) -> float:
+    """What the score of a shape is multiplied by: 1 for the usual base of its kind, less for rare ones."""
+    for kinds, shares in _BASES:
+        if shape.category in kinds:
+            share = shares.get(_base(shape, appearance), _RARE)
+            return float((share / max(shares.values())) ** _SAYS)
+    return 1.0
+
+
+def _base(shape: Shape, appearance: ShapeAppearance) -> str:
+    def found() -> str:
+        mesh = trimesh.Trimesh(appearance.vertices, appearance.faces, process=False)
+        return str(form_of("", shape.category, mesh, np.asarray(shape.size_m)).get("base", "none"))
+
+    return _BASE_OF.get(shape.content_hash, found)

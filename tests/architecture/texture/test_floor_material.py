@@ -1,0 +1,82 @@
+"""Floors are made of floor: what nobody marked is rejected, patterns stay."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diorama_core.architecture.texture.floor_material import contact_pixels, floor_colour, floor_texels, white_level
+from diorama_core.artefacts import DetectedObject
+
+SIZE, PIXEL_M = 200, 0.02
+OAK, WALNUT, BLUE = (170.0, 130.0, 95.0), (45.0, 30.0, 22.0), (60.0, 90.0, 150.0)
+
+
+def floor(colour: tuple[float, float, float] = OAK, seed: int = 0) -> np.ndarray:
+    """Four metres of one colour with some grain."""
+    noise = np.random.default_rng(seed).normal(0, 4, (SIZE, SIZE, 1))
+    return (np.array(colour) + noise).clip(0, 255).astype(np.float32)
+
+
+def texels(colours: np.ndarray, contact: np.ndarray | None = None) -> np.ndarray:
+    seen = np.ones((SIZE, SIZE), dtype=bool)
+    return floor_texels(colours, seen, np.ones((SIZE, SIZE)), seen & False if contact is None else contact, PIXEL_M)
+
+
+def test_a_plain_floor_is_all_floor():
+    assert texels(floor()).mean() > 0.99
+
+
+@pytest.mark.parametrize("colour", [WALNUT, BLUE, (250.0, 250.0, 250.0)])
+def test_what_nobody_marked_is_rejected(colour):
+    colours = floor()
+    colours[60:130, 40:140] = colour
+    own = texels(colours)
+    assert not own[60:130, 40:140].any()
+    assert own[:50].mean() > 0.99
+
+
+def test_the_floor_is_what_shows_at_the_feet_of_things():
+    colours = floor((96, 108, 84))
+    colours[:, 60:] = OAK  # more of another colour, as of a bed nobody marked
+    contact = np.zeros((SIZE, SIZE), dtype=bool)
+    assert texels(colours, contact)[:, 80:].mean() > 0.9
+    contact[90:110, 10:40] = True
+    assert texels(colours, contact)[:, :50].mean() > 0.9
+
+
+def test_a_pattern_belongs_to_the_floor():
+    rows, columns = np.indices((SIZE, SIZE)) // 10
+    colours = np.where(((rows + columns) % 2 == 0)[..., None], floor((90, 80, 70)), floor((190, 180, 165), 1))
+    assert texels(colours.astype(np.float32)).mean() > 0.95
+
+
+def test_black_is_hardly_a_floor():
+    colours = floor()
+    colours[:, 90:] = 5.0
+    assert texels(colours)[:, :80].mean() > 0.95
+
+
+def test_nothing_seen_is_nothing_known():
+    seen = np.zeros((SIZE, SIZE), dtype=bool)
+    assert not floor_texels(floor(), seen, np.ones((SIZE, SIZE)), seen, PIXEL_M).any()
+
+
+def test_the_plain_colour_is_the_floors_and_not_a_shadows():
+    rgb = np.concatenate([np.full((300, 3), (150, 120, 90)), np.full((350, 3), 4)]).astype(np.uint8)
+    places = np.random.default_rng(0).uniform(0, 100, (650, 2))
+    assert np.allclose(np.array(floor_colour(rgb, places, 95.0)) * 255, (150, 120, 90), atol=2)
+
+
+def test_contact_is_a_little_below_masks_and_in_no_other():
+    mask, other = np.zeros((100, 100), dtype=bool), np.zeros((100, 100), dtype=bool)
+    mask[20:50, 30:60], other[50:60, 30:40] = True, True
+    things = [DetectedObject(f"a_{k}", "chair", "chair", (0, 0, 1, 1), m, k, 1.0) for k, m in enumerate((mask, other))]
+    found = contact_pixels((100, 100), things)
+    assert found[52:55, 42:60].all()
+    assert not found[:50].any()
+    assert not (found & other).any()
+
+
+def test_the_white_of_a_dark_photo_is_dark():
+    assert white_level(np.full((50, 50, 3), 60, np.uint8)) < 30 < white_level(np.full((50, 50, 3), 250, np.uint8))

@@ -1,0 +1,28 @@
+"""Usual forms score higher than rare ones."""
+
+from __future__ import annotations
+
+import pytest
+
+from diorama_core.geometry.shape_appearance import appearance_of
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.retrieval.usual_forms import usual_form_factor
+
+LIBRARY = built_in_library()
+
+
+def factor(shape_id: str) -> float:
+    return usual_form_factor(LIBRARY.shape(shape_id), appearance_of(LIBRARY.parts(shape_id)))
+
+
+@pytest.mark.parametrize(
+    ("usual", "rare"),
+    [("chair-ladder-walnut", "chair-slipcover-linen"), ("coffee-table-tray-linen", "coffee-table-trunk")],
+)
+def test_legs_are_more_usual_than_plinths(usual, rare):
+    assert factor(usual) == 1.0
+    assert 0.7 < factor(rare) < 0.95
+
+
+def test_kinds_without_bases_are_all_as_usual():
+    assert factor("sofa-grey-three") == 1.0
