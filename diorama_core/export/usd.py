@@ -18,7 +18,7 @@ from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import Entry, companion_folder, whole_file, write_package
 from diorama_core.export.gathering import ExportObject, ExportScene, rigid_inverse
 from diorama_core.export.pictures import encoded_picture
-from diorama_core.export.usd_look import add_camera, add_light, add_main_light, add_surfaces
+from diorama_core.export.usd_materials import StageMaterials, add_camera, add_light, add_main_light, add_surfaces
 from diorama_core.export.usd_physics import add_physics, limb_path
 from diorama_core.export.usd_values import place
 from diorama_core.progress import Progress
