@@ -38,7 +38,7 @@ from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.project.storage import Project
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene
-from diorama_core.synthesis import furnished_room, hold_cameras
+from diorama_core.synthesis import furnished_room, sample_cameras
 from diorama_core.synthesis.finishes import finish_textures
 from tests.export.validators import gltf_findings, usd_findings
 
@@ -70,7 +70,7 @@ def sources(a: argparse.Namespace, library: ShapeLibrary) -> Iterator[Source]:
     for seed in a.made:
         kind = ROOMS[seed % len(ROOMS)]
         scene = furnished_room(seed, kind, library)
-        camera = next(iter(hold_cameras(scene, library, seed)), None)
+        camera = next(iter(sample_cameras(scene, library, seed)), None)
         yield Source(f"{kind} room {seed}", replace(scene, camera=camera), finish_textures(scene.architecture))
     if a.text:
         from diorama_core.text.compose import composed_room

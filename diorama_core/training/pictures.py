@@ -16,7 +16,7 @@ from diorama_core.io.atomic import write_atomically
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.scene.values import ArrayValue
-from diorama_core.synthesis import hold_cameras
+from diorama_core.synthesis import sample_cameras
 from diorama_core.synthesis.cameras import Holding
 from diorama_core.synthesis.truth import Studio
 from diorama_core.training.rooms import varied_room
@@ -103,7 +103,7 @@ def _photographed(seed: int, library: ShapeLibrary, names: tuple[str, ...]) -> t
     """No picture where the room cannot be furnished or photographed; it is not tried again."""
     try:
         scene = varied_room(seed, library)
-        cameras = hold_cameras(scene, library, seed, VIEWS, SIZE, HOLDING)
+        cameras = sample_cameras(scene, library, seed, VIEWS, SIZE, HOLDING)
     except (SceneError, LibraryError):
         return ()
     index = {name: k for k, name in enumerate(names)}

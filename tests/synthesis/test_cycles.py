@@ -11,7 +11,7 @@ import pytest
 from diorama_core.errors import SceneError, UnavailableError
 from diorama_core.export.blender import PYTHON_VARIABLE
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.synthesis import furnished_room, in_photo_world
+from diorama_core.synthesis import furnished_room, in_photo_world, sample_cameras
 from diorama_core.synthesis.cycles import truth_picture
 
 

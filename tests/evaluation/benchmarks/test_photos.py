@@ -15,7 +15,7 @@ from diorama_core.errors import InputError
 from diorama_core.evaluation.adapters.photo_annotations import picture_of, read_annotations
 from diorama_core.evaluation.benchmarks.photos import ghost_share, run, usual_colour
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.synthesis import furnished_room, hold_cameras, render_truth
+from diorama_core.synthesis import furnished_room, sample_cameras, render_truth
 
 SIZE = (240, 180)
 ANNOTATIONS = Path(__file__).parents[2] / "photo_annotations.json"
@@ -26,7 +26,7 @@ def made(tmp_path_factory):
     """A rendered bathroom with annotations, one photo of another size, and one that is not there."""
     library = built_in_library()
     room = furnished_room(16, "bathroom", library, clutter=0)
-    view = render_truth(room, hold_cameras(room, library, 1, 1, SIZE)[0], library, SIZE, with_empty_room=False)
+    view = render_truth(room, sample_cameras(room, library, 1, 1, SIZE)[0], library, SIZE, with_empty_room=False)
     folder = tmp_path_factory.mktemp("photos")
     for name in ("made", "other"):
         Image.fromarray(view.inputs.photo.rgb).save(folder / f"{name}.png")
