@@ -20,6 +20,8 @@ NODE = "/size"
 AXIS_COLOURS = ((226, 60, 84), (78, 160, 90), (52, 120, 220))
 WHOLE_COLOUR = (255, 170, 40)
 MARGIN_M = 0.04
+NOTHING_M = 1e-6
+"""A pull by less comes from rounding the ray to the hand."""
 
 
 @dataclass
@@ -125,6 +127,7 @@ class SizeHandles:
             eye = np.asarray(client.viser_client.camera.position, dtype=np.float64)
             start = pull.start.object(pull.object_id)
             by_m = pulled_m(start, handle, pull.grabbed, eye, hand - eye)
+            by_m = 0.0 if abs(by_m) < NOTHING_M else by_m
             snap = client.preferences.snap != inverted
             pull.now = stretched(pull.start, pull.object_id, handle, by_m, snap=snap)
             self._show_scene(pull.start, pull.now)

@@ -336,7 +336,8 @@ class EditorSession:
     @property
     def unfinished(self) -> bool:
         """Whether the project has a photo and nothing was built of it yet."""
-        return self.inputs is not None and not self.scene.objects and not self.scene.architecture.planes
+        empty = not self.scene.objects and not self.scene.architecture.planes
+        return self.inputs is not None and empty and self.project is not None and not self.project.has_scene
 
     def _show_where_left(self, client: ConnectedClient) -> None:
         """An unfinished project opens where its boxes are drawn."""
