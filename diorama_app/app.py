@@ -6,7 +6,7 @@ import logging
 import threading
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import viser
 
@@ -15,11 +15,13 @@ from diorama_app.commands.definitions import build_commands
 from diorama_app.commands.import_model import import_model
 from diorama_app.commands.registry import Command
 from diorama_app.interaction.gestures import Gestures
+from diorama_app.panels.address import Address
 from diorama_app.panels.alternatives import Alternatives
 from diorama_app.panels.compare import Compare
 from diorama_app.panels.dropping import take_dropped_files
 from diorama_app.panels.export import ExportPanel
 from diorama_app.panels.help import show_help
+from diorama_app.panels.in_place import InPlace
 from diorama_app.panels.job import JobStrip
 from diorama_app.panels.library import LibraryPanel
 from diorama_app.panels.measure import Tape
@@ -57,8 +59,10 @@ from diorama_core.project.storage import Project
 
 log = logging.getLogger(__name__)
 
-LEFT_WIDTH_PX = 292
-RIGHT_WIDTH_PX = 312
+P = TypeVar("P", bound=Panel)
+
+LEFT_WIDTH_PX, RIGHT_WIDTH_PX = 246, 254
+"""Together at most 40 % of a screen of 1280 pixels."""
 LEFT_TABS = ("Scene", "Photo", "Arrange", "Project")
 RIGHT_TABS = ("Object", "Library", "Export")
 
@@ -70,7 +74,7 @@ class Editor:
         self, server: viser.ViserServer, library: ShapeLibrary, projects_dir: Path, *, low_graphics: bool
     ) -> None:
         self.server = server
-        library = UserLibrary(library)
+        library = library if isinstance(library, UserLibrary) else UserLibrary(library)
         self.session = EditorSession(server, library, projects_dir, Client, low_graphics=low_graphics)
         self.session.viewport.light(low_graphics=low_graphics)
         self.views = Views(self.session)
@@ -164,32 +168,38 @@ class Editor:
             Walls(gui, client),
         ]
         client.open_tab = Tabs(gui, (LEFT_TABS, RIGHT_TABS)).open
+        client.go_to = Address(gui).go_to
         left = gui.add_tab_group()
         scene, from_photo, arrange, projects = (left.add_tab(name) for name in LEFT_TABS)
+
+        def place(title: str, make: Callable[[], P]) -> P:
+            placed = InPlace(gui, title, make)
+            panels.append(placed)
+            return placed.panel
+
         with scene:
-            panels += [Outliner(gui, client), RoomSize(gui, client)]
+            place("The list of objects", lambda: Outliner(gui, client))
+            place("The size of the room", lambda: RoomSize(gui, client))
         with from_photo:
-            photo = PhotoPanel(gui, client, self.views, self.commands)
-            panels += [photo, PhotoCamera(gui, client, self.views)]
+            photo = place("The photo", lambda: PhotoPanel(gui, client, self.commands))
+            place("The photo's camera", lambda: PhotoCamera(gui, client, self.views))
         with arrange:
-            client.curves = optimiser = Optimiser(gui, client)
-            panels.append(optimiser)
+            client.curves = place("The layout", lambda: Optimiser(gui, client))
         with projects:
-            panels += [Projects(gui, client, self.commands, photo.take), Networks(gui, client)]
+            place("The list of projects", lambda: Projects(gui, client, self.commands, photo.take))
+            place("The list of networks", lambda: Networks(gui, client))
         right = gui.add_panel()
         about, library, exporting = (right.add_tab(name) for name in RIGHT_TABS)
         with about:
-            panels += [
-                Properties(gui, client, self.commands),
-                OwnModel(gui, client),
-                Alternatives(gui, client),
-                Supports(gui, client),
-                PhotoCorrection(gui, client),
-            ]
+            place("The object", lambda: Properties(gui, client, self.commands))
+            place("Your own model", lambda: OwnModel(gui, client))
+            place("The alternatives", lambda: Alternatives(gui, client))
+            place("What supports it", lambda: Supports(gui, client))
+            place("The correction by the photo", lambda: PhotoCorrection(gui, client))
         with library:
-            panels.append(LibraryPanel(gui, client))
+            place("The library", lambda: LibraryPanel(gui, client))
         with exporting:
-            panels.append(ExportPanel(gui, client))
+            place("The export", lambda: ExportPanel(gui, client))
         take_dropped_files(
             gui,
             client,

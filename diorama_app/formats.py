@@ -9,7 +9,7 @@ from typing import Literal
 
 from diorama_core.export import FORMATS, Format
 
-Choice = Literal["ceiling", "selection", "textures", "compressed", "welded"]
+Choice = Literal["ceiling", "selection", "textures", "compressed", "draco", "photo", "welded"]
 """An export option that means something in a format; see `ExportOptions`."""
 
 
@@ -36,13 +36,19 @@ MODELS, SIMULATORS, PLANS, SHOW = "3D models", "Simulators", "Plans and building
 _SHAPES = frozenset[Choice]({"ceiling", "selection"})
 _TEXTURED = _SHAPES | frozenset[Choice]({"textures"})
 _BODIES = _TEXTURED | frozenset[Choice]({"welded"})
+_USD = _BODIES | frozenset[Choice]({"photo"})
 _FURNITURE = frozenset[Choice]({"selection"})
 
 GUIDES: Mapping[str, Guide] = {
-    "glb": Guide(MODELS, "Blender, Unity, Unreal, Godot, three.js", _TEXTURED | frozenset[Choice]({"compressed"})),
-    "usdz": Guide(MODELS, "iPhone and iPad (AR Quick Look)", _BODIES),
-    "usdc": Guide(MODELS, "Isaac Sim, Blender, Unreal, Maya", _BODIES),
-    "usda": Guide(MODELS, "the same programs, as readable text", _BODIES),
+    "glb": Guide(
+        MODELS,
+        "Blender, Unity, Unreal, Godot, three.js",
+        _TEXTURED | frozenset[Choice]({"compressed", "draco", "photo"}),
+    ),
+    "blend": Guide(MODELS, "Blender, with the photo behind the camera", _TEXTURED),
+    "usdz": Guide(MODELS, "iPhone and iPad (AR Quick Look)", _USD),
+    "usdc": Guide(MODELS, "Isaac Sim, Blender, Unreal, Maya", _USD),
+    "usda": Guide(MODELS, "the same programs, as readable text", _USD),
     "obj": Guide(MODELS, "nearly every 3D program", _TEXTURED),
     "ply": Guide(MODELS, "MeshLab, CloudCompare, Open3D", _SHAPES),
     "stl": Guide(MODELS, "slicers for 3D printers", _SHAPES),

@@ -8,6 +8,7 @@ from __future__ import annotations
 import signal
 import socket
 import threading
+import time
 import webbrowser
 from concurrent.futures import Future
 from dataclasses import dataclass
@@ -25,7 +26,11 @@ from diorama_core.project.storage import Project
 if TYPE_CHECKING:
     from diorama_app.app import Editor
     from diorama_app.session.session import EditorSession
+    from diorama_app.workspace import Workspace
     from diorama_core.library.record import ShapeLibrary
+
+MAX_START_S = 60.0
+"""How long a browser waits that came before the editor was there."""
 
 
 @dataclass(frozen=True)
@@ -33,15 +38,20 @@ class Running:
     """A running server."""
 
     server: viser.ViserServer
-    editor: Editor
+    workspace: Workspace
     url: str
     """Where to open it, token included."""
     stopped: threading.Event
     """Set when it has been stopped."""
 
     @property
+    def editor(self) -> Editor:
+        """The first editor: that of an address without a project."""
+        return self.workspace.editors[0]
+
+    @property
     def session(self) -> EditorSession:
-        """The open session."""
+        """The session of the first editor."""
         return self.editor.session
 
     @property
@@ -52,7 +62,7 @@ class Running:
     def stop(self) -> None:
         """Save, end jobs, close the port."""
         self.stopped.set()
-        self.editor.close()
+        self.workspace.close()
         stop_server(self.server)
 
 
@@ -83,21 +93,14 @@ def start(
         ProjectError, SceneError: the project cannot be opened.
     """
     opened = None if project is None else Project.open(project)
-    made: list[Editor] = []
+    made: list[Workspace] = []
 
     host = host or "0.0.0.0"  # an empty one means every address, on a port for each kind
     token = with_token(host, token)
 
     def refused(client_id: int, line: str) -> None:
-        for editor in made:
-            editor.refuse_upload(client_id, line)
-
-    def picture(name: str) -> Future[bytes | None]:
-        if made:
-            return made[0].session.thumbnails.png(name)
-        none_yet: Future[bytes | None] = Future()  # a page of an earlier server asks before the editor is there
-        none_yet.set_result(None)
-        return none_yet
+        for workspace in made:
+            workspace.editors[0].refuse_upload(client_id, line)
 
     server = create_server(
         host=host,
@@ -105,16 +108,17 @@ def start(
         label="Diorama",
         visitors=Visitors(host, token),
         refused=refused,
-        pictures=picture,
+        pictures=lambda name: made[0].picture(name) if made else _no_picture(),
+        projects=_Opening(made),
     )
     try:
-        from diorama_app.app import Editor
+        from diorama_app.workspace import Workspace
 
         if isinstance(library, str):
             library = diorama.open_library(library)
-        editor = Editor(server, library, projects_dir, low_graphics=low_graphics)
-        made.append(editor)
-        editor.open_first(opened)
+        workspace = Workspace(library, projects_dir, low_graphics=low_graphics)
+        workspace.begin(server, opened)
+        made.append(workspace)
     except BaseException:
         stop_server(server)
         raise
@@ -122,7 +126,29 @@ def start(
     threading.Thread(target=warm_up, args=(stopped,), daemon=True, name="warm up").start()
     shown_host = {"": "127.0.0.1", "0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)
     address = f"http://{f'[{shown_host}]' if ':' in shown_host else shown_host}:{server.get_port()}/"
-    return Running(server, editor, address if token is None else f"{address}?token={token}", stopped)
+    return Running(server, workspace, address if token is None else f"{address}?token={token}", stopped)
+
+
+@dataclass(frozen=True)
+class _Opening:
+    """Projects of a server whose editor is being put together; browsers that come earlier wait for it."""
+
+    made: list[Workspace]
+
+    def first(self) -> str | None:
+        return self.made[0].first() if self.made else None
+
+    def server(self, name: str) -> viser.ViserServer | None:
+        until = time.monotonic() + MAX_START_S
+        while not self.made and time.monotonic() < until:
+            time.sleep(0.05)
+        return self.made[0].server(name) if self.made else None
+
+
+def _no_picture() -> Future[bytes | None]:
+    nothing: Future[bytes | None] = Future()  # a page of an earlier server asks before the editor is there
+    nothing.set_result(None)
+    return nothing
 
 
 def serve(

@@ -19,8 +19,10 @@ if TYPE_CHECKING:
     from diorama_core.export import Format
     from diorama_core.export.gathering import ExportOptions, ExportScene
     from diorama_core.library.record import ShapeLibrary
+    from diorama_core.models.store import ModelStore
     from diorama_core.perception.input_arrays import Boxes, Depth, Masks, Picture
     from diorama_core.perception.input_depth import DepthEncoding
+    from diorama_core.pipeline.fallback import ChooseStages
     from diorama_core.pipeline.presets import Profile
     from diorama_core.pipeline.run import Built
     from diorama_core.pipeline.stages import Stages
@@ -155,8 +157,8 @@ def build(
     for warning in read.warnings:
         warn(warning)
     opened, name = _opened(library)
-    chosen = _chosen_stages(read.inputs, opened, profile, recipe, stages)
-    return _built(read.inputs, read.warnings, opened, name, chosen, output, progress)
+    choose = _choice(read.inputs, opened, profile, recipe, stages)
+    return _built(read.inputs, read.warnings, opened, name, choose, output, progress)
 
 
 def build_from_text(
@@ -195,8 +197,8 @@ def build_from_text(
     made = picture_of(prompt, opened, seed=seed, endpoint=endpoint, progress=progress.part(0.0, 0.2))
     for note in made.notes:
         warn(note)
-    chosen = _chosen_stages(made.inputs, opened, profile, recipe, stages)
-    return _built(made.inputs, made.notes, opened, name, chosen, output, progress.part(0.2, 1.0))
+    choose = _choice(made.inputs, opened, profile, recipe, stages)
+    return _built(made.inputs, made.notes, opened, name, choose, output, progress.part(0.2, 1.0))
 
 
 def load(folder: Path | str, *, library: ShapeLibrary | None = None) -> Reconstruction:
@@ -373,17 +375,21 @@ def _opened(library: str | ShapeLibrary) -> tuple[ShapeLibrary, str | None]:
     return (open_library(library), library) if isinstance(library, str) else (library, None)
 
 
-def _chosen_stages(
+def _choice(
     inputs: Inputs,
     library: ShapeLibrary,
     profile: Profile,
     recipe: str,
-    choose: Callable[[Stages], Stages] | None,
-) -> Stages:
+    change: Callable[[Stages], Stages] | None,
+) -> ChooseStages:
+    """How the stages are chosen for the networks that can be used."""
     from diorama_core.pipeline.presets import stages_for
 
-    stages = stages_for(profile, inputs, library, recipe=recipe)
-    return stages if choose is None else choose(stages)
+    def choose(store: ModelStore) -> Stages:
+        stages = stages_for(profile, inputs, library, recipe=recipe, store=store)
+        return stages if change is None else change(stages)
+
+    return choose
 
 
 def _built(
@@ -391,32 +397,31 @@ def _built(
     warnings: tuple[str, ...],
     library: ShapeLibrary,
     library_name: str | None,
-    stages: Stages,
+    choose: ChooseStages,
     output: Path | str | None,
     progress: Progress | None,
 ) -> Reconstruction:
     """The scene of `inputs`, built in a project folder or, without one, in memory."""
-    from diorama_core.pipeline.run import build_scene
-    from diorama_core.project.build import build_project
+    from diorama_core.project.build import build_project, build_with_usable_networks
     from diorama_core.project.lock import ProjectLock
     from diorama_core.project.storage import Project
 
     project = None
     if output is None:
-        built = build_scene(inputs, library, stages=stages, progress=progress)
+        built = build_with_usable_networks(inputs, library, choose, progress=progress)
     else:
         project = Project.create(Path(output))
         with ProjectLock(project.folder, "diorama build"):
             if library_name is not None:
                 project.update_info(library=library_name)
-            built = build_project(project, inputs, library, stages=stages, warnings=warnings, progress=progress)
+            built = build_project(project, inputs, library, choose=choose, warnings=warnings, progress=progress)
     return Reconstruction(
         scene=built.scene,
         library=library,
         textures=built.textures,
         given=replace(inputs, boxes=built.inputs.boxes),
         built=built,
-        stages=stages,
+        stages=built.stages,
         layout=built.layout,
         warnings=warnings,
         library_name=library_name,

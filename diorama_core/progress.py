@@ -17,6 +17,8 @@ class ProgressEvent:
     """Share of the whole job that is done, 0 to 1."""
     message: str
     """What is happening now, in plain words."""
+    found: str = ""
+    """What a stage that just ended found, in a few words; empty otherwise."""
 
 
 class CancelToken:
@@ -58,6 +60,11 @@ class Progress:
         self.check()
         done = self.start + self.span * min(max(fraction, 0.0), 1.0)
         self.on_event(ProgressEvent(fraction=done, message=message))
+
+    def found(self, words: str) -> None:
+        """Report what this part of the job, which is done, found; nothing when there are no words."""
+        if words:
+            self.on_event(ProgressEvent(fraction=self.start + self.span, message=words, found=words))
 
     def check(self) -> None:
         """Raise `Cancelled` when the job was asked to stop."""

@@ -7,12 +7,13 @@ must be picklable. One piece that fails, or kills the process it runs in, never 
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from itertools import islice
-from multiprocessing import get_context
+from multiprocessing import get_context, parent_process
 from typing import Any, Generic, Protocol, TypeVar, runtime_checkable
 
 from diorama_core.errors import DioramaError, InputError, UnavailableError
@@ -114,7 +115,19 @@ class LocalWorkers:
     @staticmethod
     def _pool(count: int) -> ProcessPoolExecutor:
         # Fresh processes: a fork would copy the locks of threads that do not exist in the child.
-        return ProcessPoolExecutor(count, mp_context=get_context("spawn"))
+        return ProcessPoolExecutor(count, mp_context=get_context("spawn"), initializer=_end_with_parent)
+
+
+def _end_with_parent() -> None:
+    """End this process when the one that started it was killed; it would wait for work for ever."""
+    parent = parent_process()
+    assert parent is not None
+
+    def wait_for_end() -> None:
+        parent.join()
+        os._exit(1)
+
+    threading.Thread(target=wait_for_end, daemon=True, name="end-with-parent").start()
 
 
 def _done(item: Item, future: Future[Result]) -> Done[Item, Result]:

@@ -58,18 +58,19 @@ class Person:
         value = json.dumps({"do": do, "arg": arg, "add": False, "at": time.monotonic(), **more})
         self.page.set(self.field, value)
 
-    def shows(self, object_id: str) -> str:
-        """The row of an object, as this page has it."""
+    def hidden(self, object_id: str) -> bool:
+        """Whether this page says that an object is hidden."""
         content = str(self.page.elements[self.outliner].get("content", ""))
-        at = content.find(f'data-do="hide" data-arg="{object_id}"')
-        return content[max(at - 900, 0) : at + 700]
+        found = re.search(rf'data-do="hide" data-arg="{object_id}" title="(Hide|Show)"', content)
+        assert found is not None, f"the outliner has no row for {object_id}"
+        return found[1] == "Show"
 
     def edit(self, object_id: str) -> None:
         """Hide or show an object and wait until the outliner says so."""
-        before, began = self.shows(object_id), time.monotonic()
+        before, began = self.hidden(object_id), time.monotonic()
         self.act("hide", object_id)
         try:
-            self.page.wait_for(lambda: self.shows(object_id) != before, 20.0)
+            self.page.wait_for(lambda: self.hidden(object_id) != before, 20.0)
         except AssertionError:
             self.lost += 1
             return

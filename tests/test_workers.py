@@ -1,13 +1,18 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
+import time
 from collections.abc import Iterator
 from functools import partial
+from pathlib import Path
 
 import pytest
 
 from diorama_core.errors import InputError, LibraryError
 from diorama_core.workers import LocalWorkers, RayWorkers, WorkerDied, Workers, workers
+from tests.processes import runs
 
 
 def power(number: int, exponent: int) -> int:
@@ -47,6 +52,38 @@ def _check(pool: Workers) -> None:
 
 def test_failures_and_killed_processes_cost_only_their_own_piece() -> None:
     _check(LocalWorkers(2))
+
+
+POOL = """
+import time
+from diorama_core.workers import LocalWorkers
+from tests.test_workers import own_id
+if __name__ == "__main__":
+    for done in LocalWorkers(1).map(own_id, [0.0, 60.0]):
+        print(done.value, flush=True)
+"""
+
+
+def own_id(wait_s: float) -> int:
+    time.sleep(wait_s)
+    return os.getpid()
+
+
+def test_processes_end_with_the_program_that_was_killed(tmp_path: Path) -> None:
+    (tmp_path / "pool.py").write_text(POOL)
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[1])}
+    program = subprocess.Popen(
+        [sys.executable, str(tmp_path / "pool.py")], stdout=subprocess.PIPE, text=True, env=environment
+    )
+    assert program.stdout is not None
+    worker = int(program.stdout.readline())
+    program.kill()
+    program.wait()
+    program.stdout.close()
+    until = time.monotonic() + 20.0
+    while runs(worker) and time.monotonic() < until:
+        time.sleep(0.05)
+    assert not runs(worker), "a process of the pool outlives the program"
 
 
 def test_the_same_on_ray(local_ray: Workers) -> None:

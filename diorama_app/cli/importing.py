@@ -36,6 +36,8 @@ def _import(a: argparse.Namespace) -> None:
     project = Project.create(a.output, name=a.file.stem)
     project.update_info(library=imported.library_name)
     project.save_textures(imported.opened.textures)
+    if imported.opened.inputs is not None:
+        project.save_inputs(imported.opened.inputs)
     project.save_scene(imported.opened.scene)
     for line in imported.opened.changes:
         print(f"diorama: note: {line}", file=sys.stderr)

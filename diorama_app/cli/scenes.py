@@ -25,6 +25,8 @@ from diorama_app.formats import EXPORT_FORMATS
 from diorama_core.errors import InputError
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from diorama_core.library.record import ShapeLibrary
     from diorama_core.pipeline.stages import Stages
     from diorama_core.protocols import PoseStage
@@ -228,7 +230,15 @@ def add_export(commands: Any) -> None:
     p.add_argument("--no-ceiling", action="store_true", help="leave ceilings out, to look into the room from above")
     p.add_argument("--only", metavar="ID,ID", help="write these objects only, without the room")
     p.add_argument("--texture-size", type=int, metavar="PX", help="longest side of pictures; larger ones are reduced")
-    p.add_argument("--compress", action="store_true", help="compress geometry (glb: EXT_meshopt_compression)")
+    p.add_argument(
+        "--compress",
+        nargs="?",
+        const="meshopt",
+        default="none",
+        choices=("meshopt", "draco"),
+        help="compress geometry of a GLB (default: meshopt)",
+    )
+    p.add_argument("--photo", action="store_true", help="put the photo into the file, to come back with it (glb, usd)")
     p.add_argument("--welded", action="store_true", help="simulators: nothing moves, objects are welded in place")
     p.add_argument("--simulate", action="store_true", help="report what two seconds of gravity do to the scene")
     p.add_argument("--json", action="store_true", help="print the result as JSON")
@@ -250,7 +260,8 @@ def _export(a: argparse.Namespace) -> None:
         ceiling=not a.no_ceiling,
         only=only,
         max_texture_px=a.texture_size,
-        compression="meshopt" if a.compress else "none",
+        compression=a.compress,
+        photo=a.photo,
         bodies="welded" if a.welded else "free",
     )
     assert room.project is not None
@@ -291,6 +302,8 @@ def add_picture(commands: Any) -> None:
         help="planes: floor, walls and ceiling drawn over the photo; turntable: a film, .mp4 or .gif (default: photo)",
     )
     p.add_argument("--size", type=size, metavar="WxH", help="in pixels (default: the photo's, at most 1024 wide)")
+    p.add_argument("--cycles", action="store_true", help="path-traced by Blender's Cycles, where it is installed")
+    p.add_argument("--samples", type=int, default=64, metavar="N", help="paths a pixel of --cycles (default: 64)")
 
 
 def _picture(a: argparse.Namespace) -> None:
@@ -307,11 +320,33 @@ def _picture(a: argparse.Namespace) -> None:
     kind = {".png": "PNG", ".jpg": "JPEG", ".jpeg": "JPEG"}.get(a.output.suffix.lower())
     if kind is None:
         raise InputError(f"{a.output}: pictures are written as .png or .jpg; choose such a name")
-    image = diorama.render(room, view=a.view, size=a.size)
+    image = _path_traced(room, a) if a.cycles else diorama.render(room, view=a.view, size=a.size)
     buffer = io.BytesIO()
     Image.fromarray(image).save(buffer, kind)
     write_atomically(a.output, buffer.getvalue(), error=InputError)
     print(f"{a.output}: {image.shape[1]}x{image.shape[0]}")
+
+
+def _path_traced(room: diorama.Reconstruction, a: argparse.Namespace) -> np.ndarray:
+    """Render one picture with Cycles."""
+    from diorama_core.export.cycles import cycles_picture
+    from diorama_core.render.picture import scene_view
+    from diorama_core.render.raycast import PinholeView
+
+    view = None if a.view == "planes" else scene_view(room.scene, a.view, a.size)
+    if not isinstance(view, PinholeView):
+        raise InputError(f"--cycles draws perspective views; choose photo or orbit:DEG instead of {a.view}")
+    if a.samples < 1:
+        raise InputError(f"--samples {a.samples}: ask for at least one")
+    with progress_bar() as progress:
+        return cycles_picture(
+            room.scene,
+            room.library,
+            camera=view.camera,
+            textures=room.textures,
+            samples=a.samples,
+            progress=progress,
+        )
 
 
 def _turntable(room: diorama.Reconstruction, a: argparse.Namespace) -> None:

@@ -19,13 +19,13 @@ class Views:
     def room_view(self, client: Client) -> None:
         """Show the whole room."""
         self._plain(client)
-        client.view.move_camera(*room_view(self._session.scene, client.view.aspect))
+        client.view.camera.move(*room_view(self._session.scene, client.view.camera.aspect))
 
     def along(self, client: Client, back: tuple[float, float, float]) -> None:
         """Show the room along an axis from far away, with hardly any perspective."""
         self._plain(client)
-        position, target = side_view(self._session.scene, np.array(back), client.view.aspect)
-        client.view.move_camera(position, target, float(NARROW_FOV_RAD))
+        position, target = side_view(self._session.scene, np.array(back), client.view.camera.aspect)
+        client.view.camera.move(position, target, float(NARROW_FOV_RAD))
 
     def photo(self, client: Client) -> None:
         """Look through the photo's camera, the photo behind the model."""
@@ -36,9 +36,9 @@ class Views:
         low, high = bounds(self._session.scene)
         far = float(np.linalg.norm(high - low)) + 2.0
         middle = float(np.clip(np.linalg.norm((low + high) / 2 - camera.position), 1.0, far))
-        client.view.look_through(camera, middle)
+        client.view.camera.look_through(camera, middle)
         if self._session.photo is not None:
-            client.view.show_backdrop(camera, self._session.photo.rgb, 2.0 * far)
+            client.view.photo.show_backdrop(camera, self._session.photo.rgb, 2.0 * far)
         client.refresh()
 
     def overlay(self, client: Client, opacity: float) -> None:
@@ -46,9 +46,9 @@ class Views:
         photo, camera = self._session.photo, self._session.scene.camera
         if photo is None or camera is None:
             raise EditRefused("this scene has no photo to lay over the model; upload one in the Photo panel")
-        if not client.view.through_photo and opacity > 0.0:
+        if not client.view.camera.through_photo and opacity > 0.0:
             self.photo(client)
-        client.view.show_overlay(camera, photo.rgb, opacity)
+        client.view.photo.show_overlay(camera, photo.rgb, opacity)
         client.show_marks()
 
     def focus(self, client: Client) -> None:
@@ -56,10 +56,10 @@ class Views:
         items = [self._session.scene.object(i) for i in client.need_selection()]
         corners = np.concatenate([o.corners_world for o in items])
         middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
-        client.view.approach(middle, 1.5 * float(np.linalg.norm(np.ptp(corners, axis=0))) + 0.5)
+        client.view.camera.approach(middle, 1.5 * float(np.linalg.norm(np.ptp(corners, axis=0))) + 0.5)
 
     def _plain(self, client: Client) -> None:
-        client.view.close_board()
-        client.view.show_backdrop(None, None, 1.0)
-        client.view.show_overlay(None, None, 0.0)
+        client.view.canvas.close()
+        client.view.photo.show_backdrop(None, None, 1.0)
+        client.view.photo.show_overlay(None, None, 0.0)
         client.refresh()

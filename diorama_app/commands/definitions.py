@@ -14,9 +14,10 @@ from diorama_app.reconstruction.photo_outlines import PhotoOutlines
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_core.editing import aligning as arranging
-from diorama_core.editing.clipboard import copied, pasted
+from diorama_core.editing.clipboard import copied, pasted, pasted_at
 from diorama_core.editing.placing import seated
 from diorama_core.errors import EditRefused
+from diorama_core.scene.room_edits import floor_height
 from diorama_core.scene.types import Scene
 
 TURN_DEG = 15.0
@@ -49,7 +50,7 @@ def build_commands(
         stop_measuring(client)
         if cancel(client):
             return
-        if client.view.drawing:
+        if client.view.canvas.is_open:
             views.room_view(client)
         else:
             client.select(())
@@ -129,7 +130,13 @@ def _objects(session: EditorSession) -> tuple[Command, ...]:
     def paste(client: Client) -> None:
         if session.clip is None:
             raise EditRefused("nothing was copied yet; select something and press Ctrl+C")
-        scene, heads = pasted(session.scene, session.clip)
+        clip, here = session.clip, session.scene
+        original = all(here.has_object(o.id) and here.object(o.id) == o for o in clip.objects)
+        scene, heads = (
+            pasted(here, clip)
+            if original
+            else pasted_at(here, clip, client.view.camera.point_on_level(floor_height(here)))
+        )
         session.commit(f"paste {editing.names_of(scene, heads)}", scene, by=client, selection=heads)
 
     def lock(client: Client) -> None:
@@ -171,7 +178,7 @@ def _several(session: EditorSession) -> tuple[Command, ...]:
     def align(label: str, side: str, anchor: arranging.Anchor) -> Do:
         def run(client: Client) -> None:
             chosen = client.need_selection()
-            axis, flipped = client.view.screen_axis(side)
+            axis, flipped = client.view.camera.screen_axis(side)
             end = {"low": "high", "high": "low"}.get(anchor, anchor) if flipped else anchor
             session.edit(
                 f"align {label}",
@@ -188,7 +195,7 @@ def _several(session: EditorSession) -> tuple[Command, ...]:
 
     def mirror(client: Client) -> None:
         chosen = client.need_selection()
-        axis, _ = client.view.screen_axis("right")
+        axis, _ = client.view.camera.screen_axis("right")
         names = editing.names_of(session.scene, chosen)
         session.edit(f"mirror {names}", lambda s: arranging.mirror(s, chosen, axis), by=client)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from jaxtyping import Float
@@ -12,7 +13,7 @@ from diorama_app.session.client import Client
 from diorama_core.errors import EditRefused
 from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
-from diorama_core.scene.types import Finish, Pose, Scene, SceneObject, Support, yaw_rotation
+from diorama_core.scene.types import Finish, MaterialSource, Pose, Scene, SceneObject, Support, yaw_rotation
 
 NUDGE_MERGE = "fields"
 BESIDE_M = 0.08
@@ -79,6 +80,19 @@ def set_finish(client: Client, ids: Iterable[str], finish: Finish | None) -> Non
     client.session.edit(
         f"{finish} {names}" if finish is not None else f"reset the finish of {names}",
         lambda s: _fold(s, chosen, lambda scene, i: edits.refinish(scene, i, finish)),
+        by=client,
+    )
+
+
+def set_material_source(client: Client, ids: Iterable[str], source: MaterialSource) -> None:
+    """Show the materials that the photo gave objects, or those of their shapes."""
+    chosen = tuple(i for i in ids if client.session.scene.object(i).photo_materials)
+    names = names_of(client.session.scene, chosen or tuple(ids))
+    if not chosen:
+        raise EditRefused(f"the photo shows no material of {names}; build it from the photo first")
+    client.session.edit(
+        f"{names} as in the photo" if source == "photo" else f"library materials of {names}",
+        lambda s: _fold(s, chosen, lambda scene, i: edits.set_material_source(scene, i, source)),
         by=client,
     )
 
@@ -162,14 +176,27 @@ def base_position(item: SceneObject) -> Float[np.ndarray, "3"]:
     return item.pose.position - item.pose.R_world_object[:, 2] * item.size_m[2] / 2
 
 
-def attach(client: Client, object_id: str, parent_id: str) -> None:
-    """Support an object by another object or by a plane, and move it there."""
+def attach(client: Client, object_id: str, parent_id: str, *, anyway: bool = False) -> None:
+    """Support an object by another object or by a plane, and move it there.
+
+    What is too large or too heavy for its supporter is refused with the reason, and offered `anyway`.
+    """
     from diorama_core.editing.placing import seated
+    from diorama_core.editing.sensible_support import why_not_on
 
     session = client.session
     scene = session.scene
     if not scene.has_object(object_id):
         raise EditRefused("that object no longer exists")
+    in_a_circle = parent_id in descendants(scene, object_id)  # refused below, with a better reason
+    why_not = "" if anyway or in_a_circle else why_not_on(scene, object_id, parent_id)
+    if why_not:
+        client.offer(
+            f"{why_not[:1].upper()}{why_not[1:]}",
+            "Put it there anyway",
+            partial(_attach_anyway, client, object_id, parent_id),
+        )
+        return
     wall = scene.has_plane(parent_id) and scene.plane(parent_id).role != "floor"
     support = scene.support_of(object_id)
     edge = Support(
@@ -184,6 +211,10 @@ def attach(client: Client, object_id: str, parent_id: str) -> None:
         lambda s: seated(edits.attach(s, edge), session.library, object_id),
         by=client,
     )
+
+
+def _attach_anyway(client: Client, object_id: str, parent_id: str) -> None:
+    attach(client, object_id, parent_id, anyway=True)
 
 
 def detach(client: Client, object_id: str) -> None:

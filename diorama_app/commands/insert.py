@@ -26,7 +26,7 @@ def insert_shape(client: Client, shape_id: str) -> None:
     else:
         floor = scene.architecture.floor
         height = 0.0 if floor is None else float(floor.offset / max(floor.normal[2], 1e-6))
-        x, y = free_spot(scene, shape, client.view.target_point)
+        x, y = free_spot(scene, shape, client.view.camera.target_point)
         base, edge_parent, yaw = np.array([x, y, height]), None if floor is None else floor.id, facing(scene, x, y)
     new_id = edits.fresh_id(scene, shape.category)
     position = base + np.array([0.0, 0.0, shape.size_m[2] / 2])

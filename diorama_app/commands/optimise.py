@@ -10,13 +10,17 @@ import numpy as np
 
 from diorama_app.session.client import Client
 from diorama_app.session.layout_run import Costs, LayoutRun, Samples
+from diorama_app.session.problem_checker import problems
 from diorama_app.session.session import EditorSession
 from diorama_core.artefacts import LayoutReport
+from diorama_core.editing.collisions import Collisions
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.rotations import rotation_from_vector, rotation_vector
 from diorama_core.layout.weights import AS_IT_IS, Weights
+from diorama_core.layout.what_got_worse import new_problems
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
+from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Pose, Scene
 
 PREVIEW_EVERY_S = 0.05
@@ -62,6 +66,10 @@ def optimise(client: Client, recipe_name: str, only: tuple[str, ...] = (), weigh
             session.ui_thread.post(session.refresh)  # cancelled or failed: everything goes back to the document
             raise
         session.ui_thread.post(lambda: run.read(samples))
+        collisions = Collisions(session.library)
+        run.worse = new_problems(
+            problems(start, session.library, collisions), problems(final, session.library, collisions)
+        )
         if pictures < GLIDE_BELOW:
             _glide(session, start, final, progress)
         client.post(lambda: _arranged(client, final, report, run))
@@ -107,6 +115,21 @@ def put_back(client: Client) -> None:
         there = {o.id: o.pose for o in run.start.objects if session.scene.has_object(o.id)}
         session.edit("revert the layout", lambda s: edits.place(s, there), by=client)
     session.layout_run = None
+    session.refresh_panels()
+
+
+def put_back_worse(client: Client) -> None:
+    """Objects that float, collide or left the room since the last optimisation go back to where they were."""
+    session, run = client.session, client.session.layout_run
+    if run is None or not run.worse:
+        raise EditRefused("nothing got worse")
+    there = {}
+    for object_id in run.worse:
+        for one in (object_id, *descendants(run.start, object_id)):
+            if session.scene.has_object(one) and run.start.has_object(one):
+                there[one] = run.start.object(one).pose
+    session.edit("put back what got worse", lambda s: edits.place(s, there), by=client)
+    run.worse = {}
     session.refresh_panels()
 
 

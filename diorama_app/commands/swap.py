@@ -41,7 +41,11 @@ def candidate_for(library: ShapeLibrary, item: SceneObject, shape_id: str, mode:
 def swapped(scene: Scene, item: SceneObject, candidate: Candidate, *, keep_colour: bool) -> Scene:
     """The scene with an object's shape replaced, at the same position."""
     changed = edits.swap(scene, item.id, candidate, keep_pose=True)
-    return changed if keep_colour else edits.refinish(edits.recolour(changed, item.id, None), item.id, None)
+    if keep_colour:
+        return changed
+    if item.photo_materials:
+        changed = edits.set_material_source(changed, item.id, "library")
+    return edits.refinish(edits.recolour(changed, item.id, None), item.id, None)
 
 
 def swap(client: Client, object_id: str, shape_id: str) -> None:

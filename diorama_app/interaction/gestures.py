@@ -91,7 +91,7 @@ class Gestures:
 
     def _clicked(self, origin: np.ndarray, direction: np.ndarray, *, on_object: bool) -> None:
         doing = self._client.doing
-        if self._client.view.drawing:
+        if self._client.view.canvas.is_open:
             return
         if isinstance(doing, Placing):
             place_at(self._client, doing.shape_id, origin, direction)
@@ -102,7 +102,7 @@ class Gestures:
 
     def _framed(self, low: tuple[float, float], high: tuple[float, float]) -> None:
         client, camera = self._client, self._client.viser_client.camera
-        if client.view.drawing:
+        if client.view.canvas.is_open:
             return
         inside = objects_in(
             self._session.scene,
@@ -129,7 +129,7 @@ class Gestures:
     def _slid(self, object_id: str, phase: str, grabbed: np.ndarray, hand: np.ndarray, inverted: bool) -> None:
         client, session = self._client, self._session
         if phase == "start":
-            if client.doing is not None or client.view.drawing or not session.scene.has_object(object_id):
+            if client.doing is not None or client.view.canvas.is_open or not session.scene.has_object(object_id):
                 return
             if object_id not in client.selection:
                 client.select((object_id,))

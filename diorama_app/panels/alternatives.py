@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import viser
 
 from diorama_app.commands.swap import SIZE_MODES, alike, preview_swap, swap
@@ -75,10 +76,20 @@ class Alternatives:
 
     def _own(self, item: SceneObject) -> str:
         if not item.candidates:
-            return "<p class='dim'>No alternatives were retrieved for it. Search the library above.</p>"
+            return self._similar(item)
         tiles = "".join(self._candidate(item, c) for c in item.candidates[:SHOWN])
         unit = "" if self._client.preferences.unit == "ft-in" else f" ({self._client.preferences.unit})"
         return f'<h4>Alternatives — click to swap <span class="dim">{unit}</span></h4><div class="grid">{tiles}</div>'
+
+    def _similar(self, item: SceneObject) -> str:
+        """For what was inserted by hand: the library's shapes of its category, most alike in size first."""
+        same = self._client.session.library.in_category(item.category)
+        size = np.sort(np.asarray(item.size_m))
+        near = sorted(same, key=lambda s: float(np.abs(np.log(np.sort(np.asarray(s.size_m)) / size)).sum()))
+        if len(near) < 2:
+            return "<p class='dim'>The library has no other shape of this category. Search it above.</p>"
+        tiles = "".join(self._shape(item, s) for s in near[:SHOWN])
+        return f'<h4>Alternatives — click to swap</h4><div class="grid">{tiles}</div>'
 
     def _found(self, item: SceneObject, words: str) -> str:
         found = search(self._client.session.library, words, k=SHOWN)

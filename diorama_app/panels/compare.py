@@ -22,6 +22,6 @@ class Compare:
     def refresh(self) -> None:
         """Offer it where there is a photo to compare with; show all or nothing where something else asked."""
         show_if(self._client.session.photo is not None and self._client.session.scene.camera is not None, self._slider)
-        shown = round(100 * self._client.view.overlay_opacity)
+        shown = round(100 * self._client.view.photo.opacity)
         if shown in (0, 100):
             show_value(self._slider, shown)

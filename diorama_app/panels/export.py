@@ -14,17 +14,21 @@ from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.export import Format
 
 if TYPE_CHECKING:
-    from diorama_core.export.gathering import ExportOptions
+    from diorama_core.export.gathering import Compression, ExportOptions
 
 TEXTURE_SIZES = (0, 2048, 1024, 512, 256)
 """Longest side in pixels; 0 leaves pictures as they are."""
 SWITCHES: dict[Choice, tuple[str, str]] = {
     "ceiling": ("Without ceiling", "To look into the room from above"),
     "selection": ("Only selection", "Only the selected objects, without the room around them"),
-    "compressed": ("Compressed", "Smaller file (meshopt): for three.js and Babylon.js; Blender does not read it"),
+    "compressed": ("Meshopt", "Smaller file: for three.js and Babylon.js; Blender does not read it"),
+    "draco": ("Draco", "Smallest file: Blender, Unity, Unreal and three.js read it"),
+    "photo": ("With photo", "The photo is in the file and comes back when it is opened; who gets the file can see it"),
     "welded": ("Welded", "Nothing moves: every object is fixed where it stands"),
 }
 """What is switched on and off: name and explanation."""
+COMPRESSIONS: dict[str, Compression] = {"compressed": "meshopt", "draco": "draco"}
+"""Of which one is on at most."""
 
 
 class ExportPanel:
@@ -85,6 +89,8 @@ class ExportPanel:
         )
 
     def _is_possible(self, choice: Choice) -> bool:
+        if choice == "photo":
+            return self._client.session.photo is not None
         return choice != "selection" or bool(self._client.selection)
 
     def _is_on(self, choice: Choice) -> bool:
@@ -98,6 +104,7 @@ class ExportPanel:
             self._format = action.arg
         elif action.do == "switch" and action.arg in SWITCHES:
             self._on ^= {action.arg}
+            self._on -= {other for other in COMPRESSIONS if action.arg in COMPRESSIONS and other != action.arg}
         elif action.do == "textures" and action.pair[1] in map(str, TEXTURE_SIZES):
             self._texture_px = int(action.pair[1])
         elif action.do == "export":
@@ -114,6 +121,7 @@ class ExportPanel:
             ceiling="ceiling" not in on,
             only=frozenset(self._client.selection) if "selection" in on else None,
             max_texture_px=(self._texture_px or None) if "textures" in choices else None,
-            compression="meshopt" if "compressed" in on else "none",
+            compression=next((name for choice, name in COMPRESSIONS.items() if choice in on), "none"),
+            photo="photo" in on,
             bodies="welded" if "welded" in on else "free",
         )

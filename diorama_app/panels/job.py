@@ -1,39 +1,59 @@
-"""The status of the running job below the toolbar: title, progress, pause and cancel."""
+"""The strip of the running job over the view: title, stage, what was found so far, time left, pause and cancel."""
 
 from __future__ import annotations
+
+import json
+import time
+from typing import Any
 
 import viser
 
 from diorama_app.commands.optimise import pause
 from diorama_app.session.client import Client
-from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_app.session.jobs import JobStatus
+from diorama_app.web.html import Action, LiveHtml, run_once
+
+MIN_SHARE, MIN_S = 0.08, 4.0
+"""Before, nothing can be said about the time that is left."""
+FOUND_SHOWN = 4
 
 
 class JobStrip:
-    """Progress with a message, a bar and cancel. The button is apart from what changes, so that it can be pressed."""
+    """Tells the page what runs (`static/job.js` draws it) and does what its buttons ask for."""
 
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
-        self._head = LiveHtml(gui, self._act)
-        self._meter = LiveHtml(gui)
+        sender = LiveHtml(gui, self._act)
+        sender.show('<button type="button" id="dio-job-send" style="display:none" tabindex="-1"></button>')
+        self._html = gui.add_html("")
+        self._told = ""
+        self._tell(None)
 
     def refresh(self) -> None:
-        """Draw the running job; nothing when none runs."""
+        """Show the running job; nothing when none runs."""
         session = self._client.session
-        status = session.jobs.status
+        status, run = session.jobs.status, session.layout_run
         if status is None:
-            self._head.show("")
-            self._meter.show("")
+            self._tell(None)
             return
-        buttons = button("Cancel", "cancel", disabled=status.cancelling, title="Stop without changing anything")
-        run = session.layout_run
-        if status.kind == "optimise" and run is not None and not status.cancelling:
-            buttons = button("Resume" if run.paused else "Pause", "pause") + buttons
-        self._head.show(f'<div class="job"><b class="words">{text(status.title)}</b>{buttons}</div>')
-        self._meter.show(
-            f'<div class="meter"><i style="width:{round(100 * status.fraction)}%"></i></div>'
-            f'<p class="dim" style="margin-top:3px">{text(status.message)}</p>'
+        can_pause = status.kind == "optimise" and run is not None and not status.cancelling
+        self._tell(
+            {
+                "title": status.title,
+                "percent": round(100 * status.fraction, 1),
+                "stage": status.message[:1].upper() + status.message[1:],
+                "left": time_left(status, time.monotonic()),
+                "found": " · ".join(status.found[-FOUND_SHOWN:]),
+                "pause": ("Resume" if run is not None and run.paused else "Pause") if can_pause else "",
+                "cancelling": status.cancelling,
+            }
         )
+
+    def _tell(self, job: dict[str, Any] | None) -> None:
+        told = json.dumps(job)
+        if told != self._told:
+            self._told = told
+            self._html.content = run_once(f"window.__dioJob({told})")
 
     def _act(self, action: Action) -> None:
         session = self._client.session
@@ -46,3 +66,19 @@ class JobStrip:
             session.jobs.cancel()
         elif action.do == "pause":
             self._client.post(toggle)
+
+
+def time_left(status: JobStatus, now: float) -> str:
+    """In words, by what was done so far; empty while nothing can be said.
+
+    Args:
+        status: of the running job.
+        now: on the clock of `JobStatus.started_at` (s).
+    """
+    spent = now - status.started_at
+    if status.cancelling or status.fraction < MIN_SHARE or spent < MIN_S:
+        return ""
+    left = spent * (1.0 - status.fraction) / status.fraction
+    if left < 60.0:
+        return f"about {max(5, round(left / 5) * 5)} s left"
+    return f"about {round(left / 60)} min left"

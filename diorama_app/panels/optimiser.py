@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 import viser
 
 from diorama_app.commands.arrangements import Arrangements, switch_arrangement
-from diorama_app.commands.optimise import optimise, put_back, show_before
+from diorama_app.commands.optimise import optimise, put_back, put_back_worse, show_before
 from diorama_app.panels.fields import QUIET_COLOUR, enable, on_change, on_press, show_if, show_value
 from diorama_app.session.client import Client
 from diorama_app.session.layout_run import LayoutRun
 from diorama_app.session.preferences import RecipeName
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.layout.weights import Weights, weighted_costs
+from diorama_core.layout.what_got_worse import in_words
 
 RECIPES: dict[str, RecipeName] = {
-    "Tidy up (feasible)": "feasible",
+    "Tidy up": "feasible",
     "As in the paper": "paper",
     "All in one": "all-in-one",
 }
@@ -89,6 +92,7 @@ class Optimiser:
         self._result = LiveHtml(gui, self._act)
         self._folder = gui.add_folder(None)
         self._plot: viser.GuiUplotHandle | None = None
+        self._plots: dict[tuple[str, ...], viser.GuiUplotHandle] = {}
         self._names: tuple[str, ...] = ()
         self._report = LiveHtml(gui)
         self._arrangements = LiveHtml(gui, self._act)
@@ -106,7 +110,9 @@ class Optimiser:
         enable(self._start, idle)
         enable(self._start_some, idle and bool(self._client.selection))
         self._draw(run)
-        self._result.show(_choice(run) if run is not None and run.final is not None else "")
+        labels = {o.id: o.label for o in session.scene.objects}
+        ended = run is not None and run.final is not None
+        self._result.show(_choice(run) + _worse(run, labels) if run is not None and ended else "")
         self._report.show("" if run is None else _report(run))
         self._arrangements.show(self._others() if idle else "")
 
@@ -119,6 +125,9 @@ class Optimiser:
             optimise(client, name, client.need_selection() if some else (), weights)
 
         client.post(start)
+
+    def _tidied(self) -> None:
+        optimise(self._client, "feasible")
 
     def _others(self) -> str:
         arrangements, chosen = Arrangements(self._client.session.scene), self._client.selection
@@ -150,6 +159,10 @@ class Optimiser:
             client.post(lambda: show_before(session, True))
         elif action.do == "after":
             client.post(lambda: show_before(session, False))
+        elif action.do == "back worse":
+            client.post(lambda: put_back_worse(client))
+        elif action.do == "tidy":
+            client.post(self._tidied)
         elif action.do == "back":
             client.post(lambda: put_back(client))
         elif action.do == "keep":
@@ -186,7 +199,12 @@ class Optimiser:
 
     def _add_plot(self, names: tuple[str, ...], data: tuple[np.ndarray, ...]) -> None:
         if self._plot is not None:
-            self._plot.remove()
+            show_if(False, self._plot)
+        self._names = names
+        if names in self._plots:  # a removed one would still be sent what came before its end
+            self._plot = self._plots[names]
+            self._plot.data = data
+            return
         series = [viser.uplot.Series(label="Seconds")]
         for name, colour in zip(names, COLOURS, strict=False):
             series.append(viser.uplot.Series(label=COSTS.get(name, name), stroke=colour, width=2))
@@ -194,7 +212,7 @@ class Optimiser:
             self._plot = self._gui.add_uplot(
                 data, tuple(series), title="Costs", height=170, scales={"x": viser.uplot.Scale(time=False, auto=True)}
             )
-        self._names = names
+        self._plots[names] = self._plot
 
 
 def _choice(run: LayoutRun) -> str:
@@ -206,6 +224,22 @@ def _choice(run: LayoutRun) -> str:
         + button("Revert", "back", title="Undo the optimisation")
         + "</div>"
     )
+
+
+def _worse(run: LayoutRun, labels: Mapping[str, str]) -> str:
+    """What the recipe made worse, and what can be done about it."""
+    lines = () if run.report is None else in_words(run.report, run.worse, labels)
+    if not lines:
+        return ""
+    back = button("Put back what got worse", "back worse", title="One undo step") if run.worse else ""
+    tidy = (
+        button("Tidy up", "tidy", title="Moves objects onto their supports and apart")
+        if run.recipe != "feasible"
+        else ""
+    )
+    bar = f'<div class="bar tight" style="margin:6px 0 0 0">{back}{tidy}</div>' if back or tidy else ""
+    told = "".join(f"<p>{text(line)}</p>" for line in lines)
+    return f'<div class="card warn" role="status" style="margin-bottom:6px"><b>What got worse</b>{told}{bar}</div>'
 
 
 def _report(run: LayoutRun) -> str:

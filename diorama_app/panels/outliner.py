@@ -43,6 +43,11 @@ class _Tree:
     badges: Mapping[str, tuple[str, ...]]
     others: Cursors = ()
 
+    @property
+    def entry(self) -> str:
+        """The row that the tab key reaches; arrows go on from there."""
+        return next(iter((*self.selection[-1:], *(o.id for o in self.scene.objects))), "")
+
 
 class Outliner:
     """Planes and objects, nested by support edges."""
@@ -87,6 +92,11 @@ class Outliner:
         if action.do == "wrong":
             client.select(client.session.badges)
             return
+        if action.do == "rename":
+            object_id, name = action.pair
+            if scene.has_object(object_id):
+                editing.rename(client, object_id, name)
+            return
         if not scene.has_object(action.arg):
             return
         item = scene.object(action.arg)
@@ -116,18 +126,18 @@ def tree_html(
         start = button("Start with a photo", "start", title="Upload one, or describe a room in words")
         return f'<div class="card">Nothing here yet.<div class="bar" style="margin:6px 0 0 0">{start}</div></div>'
     tree = _Tree(scene, selection, badges or {}, others)
-    parts = [_problems(tree)]
+    parts = []
     for plane in scene.architecture.planes:
         children = scene.children_of(plane.id)
         if children or plane.role == "floor":
             parts.append(_plane_row(scene, plane) + _children(tree, children))
     loose = [o.id for o in scene.objects if scene.support_of(o.id) is None]
     if loose:
-        parts.append('<div class="row" style="cursor:default"><span class="dim name">Without support</span></div>')
+        parts.append(_heading("Without support"))
         parts.append(_children(tree, tuple(loose)))
-    if not scene.objects:
-        parts.append('<p class="dim">No furniture yet. Insert some from the <b>Library</b>.</p>')
-    return "".join(parts)
+    rows = f'<div role="tree" aria-label="Objects of the scene">{"".join(parts)}</div>'
+    none = '<p class="dim">No furniture yet. Insert some from the <b>Library</b>.</p>'
+    return _problems(tree) + rows + ("" if scene.objects else none)
 
 
 def _problems(tree: _Tree) -> str:
@@ -145,30 +155,46 @@ def _children(tree: _Tree, ids: tuple[str, ...]) -> str:
     for object_id in ids:
         item = tree.scene.object(object_id)
         rows.append(_row(tree, item) + _children(tree, tree.scene.children_of(object_id)))
-    return f'<div class="tree">{"".join(rows)}</div>' if rows else ""
+    return f'<div class="tree" role="group">{"".join(rows)}</div>' if rows else ""
 
 
 def _plane_row(scene: Scene, plane: Plane) -> str:
-    name = text(plane_name(scene, plane))
-    row = f'<div class="row" style="cursor:default" data-drop="{text(plane.id)}">'
-    return f'{row}<span class="name dim">{name}</span></div>'
+    return _heading(plane_name(scene, plane), f'data-drop="{text(plane.id)}"')
+
+
+def _heading(name: str, attributes: str = "") -> str:
+    return (
+        f'<div class="row" role="treeitem" aria-expanded="true" tabindex="-1" style="cursor:default" {attributes}>'
+        f'<span class="name dim">{text(name)}</span></div>'
+    )
 
 
 def _row(tree: _Tree, item: SceneObject) -> str:
     hue = zlib.crc32(item.category.encode()) % 360
-    key = text(item.id)
+    key, selected, name = text(item.id), item.id in tree.selection, item.label
     cursors = "".join(
         f'<span class="who" style="background:rgb{colour}" title="{text(name)}"></span>'
         for name, colour, theirs in tree.others
         if item.id in theirs
     )
     return (
-        f'<div class="row {"on" if item.id in tree.selection else ""} {"off" if item.hidden else ""}" '
-        f'data-do="select" data-arg="{key}" data-grab="{key}" data-drop="{key}" draggable="true">'
+        f'<div class="row {"on" if selected else ""} {"off" if item.hidden else ""}" role="treeitem" '
+        f'aria-selected="{"true" if selected else "false"}" tabindex="{0 if item.id == tree.entry else -1}" '
+        f'data-do="select" data-arg="{key}" data-grab="{key}" data-drop="{key}" draggable="true" '
+        f'data-rename="{text(item.label)}">'
         f'<span class="dot" style="background:hsl({hue} 45% 58%)"></span>'
-        f'<span class="name" title="{text(item.label)}">{text(item.label)}</span>{cursors}{_chips(tree, item)}'
-        + _tool("lock", key, LOCK % (CLOSED if item.locked else OPEN), "Unlock" if item.locked else "Lock", item.locked)
-        + _tool("hide", key, EYE % (STRUCK if item.hidden else ""), "Show" if item.hidden else "Hide", item.hidden)
+        f'<span class="name" title="{text(name)} (F2 renames)">{text(name)}</span>{cursors}{_chips(tree, item)}'
+        + _tool(
+            "lock",
+            key,
+            LOCK % (CLOSED if item.locked else OPEN),
+            ("Unlock" if item.locked else "Lock"),
+            name,
+            item.locked,
+        )
+        + _tool(
+            "hide", key, EYE % (STRUCK if item.hidden else ""), ("Show" if item.hidden else "Hide"), name, item.hidden
+        )
         + "</div>"
     )
 
@@ -181,8 +207,8 @@ def _chips(tree: _Tree, item: SceneObject) -> str:
     return chips
 
 
-def _tool(do: str, key: str, icon: str, title: str, on: bool) -> str:
+def _tool(do: str, key: str, icon: str, title: str, name: str, on: bool) -> str:
     return (
-        f'<button type="button" class="tool {"on" if on else ""}" data-do="{do}" data-arg="{key}" '
-        f'title="{title}" aria-label="{title}">{icon}</button>'
+        f'<button type="button" class="tool {"on" if on else ""}" data-do="{do}" data-arg="{key}" tabindex="-1" '
+        f'title="{title}" aria-label="{text(f"{title} {name}")}">{icon}</button>'
     )

@@ -37,7 +37,7 @@ class Overlays:
     def _refresh_picture(self) -> None:
         client, session = self._client, self._client.session
         preferences, scene, photo = client.preferences, session.scene, session.photo
-        shown = client.view.through_photo and photo is not None and scene.camera is not None
+        shown = client.view.camera.through_photo and photo is not None and scene.camera is not None
         masks, planes = preferences.masks and self._outlines.found is not None, preferences.planes
         trial = client.trial_camera
         if not shown or not (masks or planes or trial is not None):
@@ -49,9 +49,9 @@ class Overlays:
             return
         self._picture_of = key
         if key is None or photo is None or scene.camera is None:
-            client.view.show_photo_layer(None, None)
+            client.view.photo.show_layer(None, None)
             return
-        client.view.show_photo_layer(scene.camera, self._picture(scene.camera, masks=masks, planes=planes))
+        client.view.photo.show_layer(scene.camera, self._picture(scene.camera, masks=masks, planes=planes))
 
     def _picture(self, camera: Camera, *, masks: bool, planes: bool) -> UInt8[np.ndarray, "h w 4"]:
         from diorama_app.viewport.overlays import draw_ground, draw_planes, mask_picture, seen_objects

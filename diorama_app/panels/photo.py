@@ -1,46 +1,52 @@
-"""The photo panel: upload the photo and its inputs, draw boxes, build the scene."""
+"""The photo panel: upload the photo and its inputs, draw and name boxes, build the scene."""
 
 from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Callable
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 import viser
 from jaxtyping import UInt8
 from PIL import Image
 
-from diorama_app.commands.camera_presets import Views
 from diorama_app.commands.registry import CommandTable
-from diorama_app.panels.fields import enable, on_change, on_press, show_if, show_label, show_value
+from diorama_app.panels.fields import enable, on_change, on_press, show_if, show_label
+from diorama_app.projects.begin import begin_project
 from diorama_app.reconstruction import build_job as work
-from diorama_app.reconstruction.networks import NO_DETECTOR
+from diorama_app.reconstruction.networks import NO_DETECTOR, can_find_furniture
 from diorama_app.reconstruction.object_correction import add_from_photo
 from diorama_app.reconstruction.text_to_scene import describe_room, how_pictures_come
 from diorama_app.session.client import Client
-from diorama_app.session.draft import Draft, boxes_json, can_find_furniture
 from diorama_app.session.reading import Upload
-from diorama_app.viewport.scene_view import reduced
+from diorama_app.viewport.annotation_canvas import Deleted, Drawn, Event, Finished, Named, Reshaped, Selected
+from diorama_app.viewport.mesh_assets import reduced
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_app.web.viser_adapter import component_uuid
-from diorama_core.artefacts import Box
+from diorama_core.artefacts import Inputs
+from diorama_core.editing.input_corrections import boxes_json, labelled_box, with_box_at, without_box
 from diorama_core.errors import InputError
 from diorama_core.library.taxonomy import CATEGORIES
 from diorama_core.perception.inputs import ReadInputs
 
 COMMON = ("chair", "table", "sofa", "armchair", "bed", "desk", "coffee table", "lamp", "cabinet", "bookshelf")
+NAMES = (*COMMON, *sorted({c.name for c in CATEGORIES} - {*COMMON, "object"}))
 SLOW_BYTES = 2_000_000
 """A file of more is announced while it is read."""
-UPLOADS = {"photo": "Photo", "depth": "Depth (PNG, NPY)", "boxes": "Boxes (JSON)", "masks": "Masks (PNG)"}
+
+Kind = Literal["photo", "boxes", "depth", "masks"]
+KINDS: dict[Kind, str] = {"photo": "Photo", "boxes": "Boxes", "depth": "Depth", "masks": "Masks"}
 
 
 class PhotoPanel:
-    """Uploads, the drawing board's controls, the list of boxes, and "Build scene"."""
+    """Uploads, the drawing of boxes, their list, and "Build scene"."""
 
-    def __init__(self, gui: viser.GuiApi, client: Client, views: Views, commands: CommandTable) -> None:
-        self._client, self._session, self._views = client, client.session, views
+    def __init__(self, gui: viser.GuiApi, client: Client, commands: CommandTable) -> None:
+        self._client, self._session = client, client.session
+        self._next = COMMON[0]
+        """What the next box is called."""
         self._picture_of: object = None
         self._picture = ""
         self._invitation = LiveHtml(gui, self._act)
@@ -65,18 +71,14 @@ class PhotoPanel:
         on_press(self._find, lambda: client.post(lambda: commands["find_furniture"].run(client)))
         self._no_detector = LiveHtml(gui)
         client.open_board = self._open_board
-        names = [*COMMON, *sorted({c.name for c in CATEGORIES} - {*COMMON, "object"})]
-        self._label = gui.add_dropdown("Category", names, hint="Category of the selected or the next box")
-        self._other = gui.add_text("or type", "", hint="Any other category, instead of one in the list")
-        on_change(self._label, lambda value: client.post(lambda: self._labelled(value, listed=True)))
-        on_change(self._other, lambda value: client.post(lambda: self._labelled(value, listed=False), key="word"))
+        self._naming = LiveHtml(gui, self._act)
         self._list = LiveHtml(gui, self._act)
         self._add = gui.add_button(
             "Add selected box to the scene",
             color="blue",
             hint="Reconstructs only the selected box; everything else stays",
         )
-        on_press(self._add, lambda: client.post(self._add_marked))
+        on_press(self._add, lambda: client.post(self._add_selected))
         self._build = gui.add_button("Build scene", color="green", hint="Builds a scene from the photo and its boxes")
         on_press(self._build, lambda: client.post(lambda: work.build(client)))
 
@@ -84,31 +86,30 @@ class PhotoPanel:
         """Take a picture that was dropped somewhere on the page."""
         self._received("photo", name, content)
 
-    @property
-    def label(self) -> str:
-        """What the next box is called."""
-        return self._other.value.strip() or self._label.value
-
     def refresh(self) -> None:
-        """Draw the state of the draft."""
-        draft = self._session.draft
-        has_photo = draft.photo is not None
-        self._invitation.show(self._introduction(draft))
-        show_if(has_photo, self._more, self._draw, self._find, self._label, self._other, self._build)
+        """Draw what is known of the photo."""
+        client, inputs, idle = self._client, self._session.inputs, self._session.jobs.status is None
+        if inputs is None or client.selected_box is None or client.selected_box >= len(inputs.boxes):
+            client.selected_box = None
+        self._invitation.show(self._introduction(inputs))
+        show_if(inputs is not None, self._more, self._draw, self._find, self._build)
         self._drawn_by.show(f'<p class="dim">{text(how_pictures_come())}</p>' if self._words.value.strip() else "")
-        enable(self._describe, self._session.jobs.status is None and bool(self._words.value.strip()))
+        enable(self._describe, idle and bool(self._words.value.strip()))
         finds = can_find_furniture()
-        enable(self._find, self._session.jobs.status is None and finds)
-        self._no_detector.show(f'<p class="dim">{text(NO_DETECTOR)}</p>' if has_photo and not finds else "")
-        self._list.show(_box_list(draft) if has_photo else "")
-        show_if(has_photo and draft.from_project and bool(self._session.scene.objects), self._add)
-        enable(self._add, self._session.jobs.status is None and draft.highlighted is not None)
-        enable(self._build, self._session.jobs.status is None and draft.ready)
-        show_label(self._draw, "Done drawing" if self._client.view.drawing else "Draw boxes")
+        enable(self._find, idle and finds)
+        self._no_detector.show(f'<p class="dim">{text(NO_DETECTOR)}</p>' if inputs is not None and not finds else "")
+        self._naming.show("" if inputs is None else self._name_field(inputs))
+        self._list.show("" if inputs is None else _box_list(inputs, client.selected_box))
+        show_if(inputs is not None and bool(self._session.scene.objects), self._add)
+        enable(self._add, idle and client.selected_box is not None)
+        enable(self._build, idle and work.ready_to_build(inputs))
+        show_label(self._draw, "Done drawing" if client.view.canvas.is_open else "Draw boxes")
+        if inputs is not None:
+            client.view.canvas.show_boxes(inputs.boxes, client.selected_box)
 
     # -- uploads ----------------------------------------------------------------------------------------------
 
-    def _upload(self, gui: viser.GuiApi, kind: str, label: str, mime_type: str) -> str:
+    def _upload(self, gui: viser.GuiApi, kind: Kind, label: str, mime_type: str) -> str:
         handle = gui.add_upload_button(label, mime_type=mime_type)
 
         async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
@@ -118,180 +119,214 @@ class PhotoPanel:
         handle.on_upload(uploaded)
         return component_uuid(handle)
 
-    def _received(self, kind: str, name: str, content: bytes) -> None:
-        draft = self._session.draft
+    def _received(self, kind: Kind, name: str, content: bytes) -> None:
         if kind == "photo":
-            files: dict[str, bytes] = {"photo": content}
-        elif draft.photo is None:
-            raise InputError("upload the photo first, then its boxes, depth or masks")
+            self._session.reader.read(
+                Upload(content, name), self._client.id, self._client.post, lambda read: self._begin(name, read, content)
+            )
         else:
-            files = {**draft.files, kind: content}
-
-        def take(made: Draft) -> None:
-            if kind == "boxes" and made.inputs is not None:
-                made = replace(made, boxes=made.inputs.boxes)
-            self._taken(kind, name, made)
-
-        self._read(files, Draft(name=name) if kind == "photo" else draft, take)
+            self._read_again(f"add {KINDS[kind].lower()}", **{kind: content})
         if len(content) > SLOW_BYTES:
             self._client.notice(f"Reading {name}…")
 
-    def _taken(self, kind: str, name: str, made: Draft) -> None:
-        self._session.draft = made
-        for warning in made.warnings[:3]:
-            self._client.notice(warning)
-        if kind == "photo":
-            self._client.open_tab("Photo")
-            self._open_board()
-        else:
-            self._redraw_boards()
-            self._client.notice(f"{UPLOADS[kind]}: {name} is loaded.", "good")
-        self._session.refresh_panels(self._client)
+    def _begin(self, name: str, read: ReadInputs, content: bytes) -> None:
+        """A photo is a project of its own from the moment when it is read."""
+        project = begin_project(self._session.projects_dir, name, read, content)
+        self._session.visit(self._client, project, " ".join(read.warnings[:3]))
 
-    def _read(self, files: dict[str, bytes], draft: Draft, take: Callable[[Draft], None]) -> None:
-        """Read the files together, in the background; then `take` the draft they make."""
-        files = dict(files)
-        if "photo" not in files:
-            files["photo"] = _png(draft)
-        if "boxes" not in files and draft.boxes and draft.photo is not None:
-            files["boxes"] = boxes_json(draft.boxes, draft.photo)
-        before = self._session.draft.inputs
-
-        def done(read: ReadInputs) -> None:
-            if self._session.draft.inputs is not before:
-                raise InputError("the photo or its inputs changed meanwhile; upload the file again")
-            take(replace(draft, inputs=read.inputs, warnings=read.warnings, files=files, from_project=False))
-
+    def _read_again(self, label: str, **new: bytes) -> None:
+        """Read the photo together with its other files, in the background, and keep what comes of it."""
+        session, client, before = self._session, self._client, self._session.inputs
+        if before is None or session.project is None:
+            raise InputError("upload the photo first, then its boxes, depth or masks")
+        given = session.project.uploads()
+        boxes = new.get("boxes") or (boxes_json(before.boxes, before.photo) if before.boxes else None)
         upload = Upload(
-            files["photo"],
-            draft.name,
-            depth=files.get("depth"),
-            boxes=files.get("boxes"),
-            masks=files.get("masks"),
+            given.get("photo") or _png(before.photo.rgb),
+            before.photo.name,
+            depth=new.get("depth", given.get("depth")),
+            boxes=boxes,
+            masks=new.get("masks", given.get("masks")),
             intrinsics=_intrinsics(self._camera.value),
         )
-        self._session.reader.read(upload, self._client.id, self._client.post, done)
+        project = session.project
+
+        def done(read: ReadInputs) -> None:
+            if session.inputs is not before:
+                raise InputError("the photo or its boxes changed meanwhile; upload the file again")
+            for kind in ("depth", "masks"):
+                if kind in new:
+                    project.save_upload(kind, new[kind])
+            for warning in read.warnings[:3]:
+                client.notice(warning)
+            attitude = replace(
+                read.inputs, camera_attitude=before.camera_attitude, camera_height_m=before.camera_height_m
+            )
+            session.annotate(label, attitude, by=client)
+
+        session.reader.read(upload, client.id, client.post, done)
 
     def _camera_given(self, value: str) -> None:
         def read() -> None:
-            if self._session.draft.photo is not None and (not value.strip() or value.count(",") == 3):
-                self._read(self._session.draft.files, self._session.draft, take)
-
-        def take(made: Draft) -> None:
-            self._session.draft = made
-            self._session.refresh_panels(self._client)
+            if self._session.inputs is not None and (not value.strip() or value.count(",") == 3):
+                self._read_again("set the camera")
 
         self._client.post(read, key="camera")
 
-    # -- the drawing board ------------------------------------------------------------------------------------
+    # -- boxes ------------------------------------------------------------------------------------------------
 
     def _toggle_board(self) -> None:
-        if self._client.view.drawing:
-            self._views.room_view(self._client)
+        if self._client.view.canvas.is_open:
+            self._client.view.canvas.close()
         else:
             self._open_board()
-        self.refresh()
+        self._client.refresh()
 
     def _open_board(self) -> None:
-        photo = self._session.draft.photo
-        if photo is None:
+        inputs = self._session.inputs
+        if inputs is None:
             raise InputError("there is no photo yet; upload one first")
-        self._client.view.open_board(photo.rgb, lambda box: self._client.post(lambda: self._drawn(box)))
-        self._redraw_boards()
+        client = self._client
+        client.view.canvas.open(
+            inputs.photo.rgb,
+            lambda event: client.post(lambda: self._drawn(event)),
+            names=NAMES,
+            next_label=self._next,
+        )
+        self.refresh()
 
-    def _drawn(self, box: Box) -> None:
-        self._change(self._session.draft.with_box(box, self.label))
+    def _drawn(self, event: Event) -> None:
+        """Something was done on the photo."""
+        inputs, client = self._session.inputs, self._client
+        if inputs is None:
+            return
+        index = getattr(event, "index", None)
+        if index is not None and not 0 <= index < len(inputs.boxes):
+            return  # somebody else deleted it just now
+        match event:
+            case Drawn(box):
+                client.selected_box = None
+                made = labelled_box(box, self._next)
+                self._annotate(f"draw a box: {made.label}", replace(inputs, boxes=(*inputs.boxes, made)))
+            case Reshaped(i, box):
+                now = replace(inputs.boxes[i], box=box)
+                self._annotate(f"change the box of {now.label}", with_box_at(inputs, i, now))
+            case Named(i, label):
+                self._rename(i, label)
+            case Deleted(i):
+                client.selected_box = None
+                self._annotate(f"delete the box of {inputs.boxes[i].label}", without_box(inputs, i))
+            case Selected(i):
+                client.selected_box = i
+                client.refresh()
+            case Finished():
+                client.view.canvas.close()
+                client.refresh()
 
-    def _labelled(self, word: str, *, listed: bool) -> None:
-        if listed and self._other.value:
-            show_value(self._other, "")
-        draft = self._session.draft
-        label = word.strip() or self._label.value
-        if draft.highlighted is not None and draft.highlighted < len(draft.boxes):
-            self._change(draft.relabelled(draft.highlighted, label))
+    def _annotate(self, label: str, inputs: Inputs) -> None:
+        self._session.annotate(label, inputs, by=self._client)
 
-    def _change(self, draft: Draft) -> None:
-        self._session.draft = draft
-        self._redraw_boards()
-        self._session.refresh_panels()
+    def _rename(self, index: int, label: str) -> None:
+        inputs, words = self._session.inputs, " ".join(label.split())
+        if inputs is None or not words or inputs.boxes[index].label == words:
+            return
+        now = labelled_box(inputs.boxes[index].box, words)
+        self._annotate(f"{inputs.boxes[index].label} is a {words}", with_box_at(inputs, index, now))
 
-    def _add_marked(self) -> None:
-        draft = self._session.draft
-        if draft.highlighted is None or draft.highlighted >= len(draft.boxes):
+    def _named(self, word: str) -> None:
+        """A name was chosen: of the selected box, or else of the next one."""
+        if self._client.selected_box is not None:
+            self._rename(self._client.selected_box, word)
+        elif word.strip():
+            self._next = " ".join(word.split())
+            if self._client.view.canvas.is_open:
+                self._client.view.canvas.next_label(self._next)
+            self.refresh()
+
+    def _add_selected(self) -> None:
+        inputs, index = self._session.inputs, self._client.selected_box
+        if inputs is None or index is None:
             raise InputError("select a box in the list first, or draw one around the missing object")
-        box = draft.boxes[draft.highlighted]
+        box = inputs.boxes[index]
         add_from_photo(self._client, box.box, box.label)
-
-    def _redraw_boards(self) -> None:
-        draft = self._session.draft
-        for client in self._session.clients.values():
-            client.view.show_boxes(draft.boxes, draft.highlighted)
 
     def _act(self, action: Action) -> None:
         def do() -> None:
-            draft, index = self._session.draft, int(action.arg)
-            if index >= len(draft.boxes):
-                return
-            if action.do == "drop":
-                self._change(draft.without_box(index))
-            elif action.do == "mark":
-                self._change(replace(draft, highlighted=None if draft.highlighted == index else index))
+            if action.do == "named":
+                self._named(action.pair[1])
+            elif action.do == "name":
+                self._named(action.arg)
+            elif action.arg.isdigit() and action.do == "drop":
+                self._drawn(Deleted(int(action.arg)))
+            elif action.arg.isdigit() and action.do == "mark":
+                index = int(action.arg)
+                self._drawn(Selected(None if self._client.selected_box == index else index))
 
-        if action.arg.isdigit():
-            self._client.post(do)
+        self._client.post(do)
 
     # -- words ------------------------------------------------------------------------------------------------
 
-    def _introduction(self, draft: Draft) -> str:
-        if draft.photo is None:
+    def _name_field(self, inputs: Inputs) -> str:
+        index = self._client.selected_box
+        value = self._next if index is None else inputs.boxes[index].label
+        title = "Name of the next box" if index is None else "Name of the selected box"
+        chips = "".join(button(text(name), "name", name, on=name == value) for name in COMMON)
+        options = "".join(f'<option value="{text(name)}">' for name in NAMES)
+        return (
+            f'<h4><label for="dio-box-name">{title}</label></h4><input id="dio-box-name" list="dio-box-names" '
+            f'data-change="named" value="{text(value)}"><datalist id="dio-box-names">{options}</datalist>'
+            f'<div class="bar tight" style="margin-top:6px">{chips}</div>'
+        )
+
+    def _introduction(self, inputs: Inputs | None) -> str:
+        if inputs is None:
             return (
                 f'<div class="drop" data-file="{self._photo_button}"><b>Start with a photo of a room.</b><br>'
-                '<span class="dim">Drop it here or upload it. Then mark the furniture with boxes, and it becomes a '
-                "scene you can edit.</span></div>"
+                '<span class="dim">Drop it here or upload it. Then draw a box around each piece of furniture, and '
+                "build a scene that you can edit.</span></div>"
             )
-        if self._picture_of is not draft.photo:
-            self._picture_of, self._picture = draft.photo, _jpeg_uri(draft.photo.rgb)
-        state = (
-            ("1 box" if len(draft.boxes) == 1 else f"{len(draft.boxes)} boxes")
-            if draft.boxes
-            else (
-                "<b>Build the scene: furniture is detected automatically. Or draw boxes.</b>"
-                if can_find_furniture()
-                else "<b>Draw a box around each piece of furniture.</b>"
-            )
-        )
-        extras = [n for n, there in _extras(draft).items() if there]
+        if self._picture_of is not inputs.photo:
+            self._picture_of, self._picture = inputs.photo, _jpeg_uri(inputs.photo.rgb)
+        extras = [name for name, there in _extras(inputs).items() if there]
         extra = f" · with {', '.join(extras)}" if extras else ""
         return (
-            f'<img class="photo" alt="the photo" src="{self._picture}" data-file="{self._photo_button}" '
-            'title="Drop another photo here to start over">'
-            f'<p style="margin-top:6px">{text(draft.photo.name)}<br><span class="dim">{state}{extra}</span></p>'
+            f'<img class="photo" alt="The photo" src="{self._picture}" data-file="{self._photo_button}"'
+            ' title="Drop another photo here to start another project">'
+            f'<p style="margin-top:6px">{text(inputs.photo.name)}<br>'
+            f'<span class="dim">{_state(inputs)}{extra}</span></p>'
         )
 
 
-def _extras(draft: Draft) -> dict[str, bool]:
-    inputs = draft.inputs
+def _state(inputs: Inputs) -> str:
+    if inputs.boxes:
+        return "1 box" if len(inputs.boxes) == 1 else f"{len(inputs.boxes)} boxes"
+    if can_find_furniture():
+        return "<b>Build the scene: furniture is detected automatically. Or draw boxes.</b>"
+    return "<b>Draw a box around each piece of furniture.</b>"
+
+
+def _extras(inputs: Inputs) -> dict[str, bool]:
     return {
-        "depth": inputs is not None and inputs.depth_m is not None,
-        "masks": inputs is not None and inputs.instances is not None,
-        "camera": inputs is not None and inputs.intrinsics is not None,
+        "depth": inputs.depth_m is not None,
+        "masks": inputs.instances is not None,
+        "camera": inputs.intrinsics is not None,
     }
 
 
-def _box_list(draft: Draft) -> str:
-    if not draft.boxes:
-        return "<p class='dim'>Press <b>Draw boxes</b>, choose a category, and drag a rectangle in the photo.</p>"
+def _box_list(inputs: Inputs, selected: int | None) -> str:
+    if not inputs.boxes:
+        return "<p class='dim'>Choose a name, press <b>Draw boxes</b> and drag a rectangle on the photo.</p>"
     rows = []
-    for index, box in enumerate(draft.boxes):
-        on = "on" if index == draft.highlighted else ""
+    for index, box in enumerate(inputs.boxes):
         unknown = ' <span class="dim">as an object</span>' if box.category == "object" else ""
         rows.append(
-            f'<div class="row {on}" data-do="mark" data-arg="{index}">'
+            f'<div class="row {"on" if index == selected else ""}" data-do="mark" data-arg="{index}" role="treeitem" '
+            f'tabindex="0" aria-selected="{"true" if index == selected else "false"}">'
             f'<span class="name">{text(box.label)}{unknown}</span>'
-            + button("✕", "drop", index, title="Delete this box")
+            + button("✕", "drop", index, title=f"Delete the box of {box.label}")
             + "</div>"
         )
-    return f"<h4>Boxes</h4>{''.join(rows)}"
+    return f'<h4>Boxes</h4><div role="tree" aria-label="Boxes">{"".join(rows)}</div>'
 
 
 def _intrinsics(given: str) -> tuple[float, float, float, float] | None:
@@ -304,11 +339,9 @@ def _intrinsics(given: str) -> tuple[float, float, float, float] | None:
     return fx, fy, cx, cy
 
 
-def _png(draft: Draft) -> bytes:
-    if draft.photo is None:
-        raise InputError("there is no photo yet; upload one first")
+def _png(rgb: UInt8[np.ndarray, "h w 3"]) -> bytes:
     buffer = io.BytesIO()
-    Image.fromarray(draft.photo.rgb).save(buffer, "PNG")
+    Image.fromarray(rgb).save(buffer, "PNG")
     return buffer.getvalue()
 
 

@@ -44,7 +44,7 @@ class PhotoCamera:
         """Draw the camera's figures; typed ones wait for the button."""
         session = self._client.session
         camera = session.scene.camera
-        if camera is None or not session.draft.from_project:
+        if camera is None or session.inputs is None:
             self._html.show("")
             return
         if self._of != camera:

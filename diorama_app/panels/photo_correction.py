@@ -9,8 +9,9 @@ import viser
 
 from diorama_app.reconstruction.object_correction import redraw_box, rename_class, start_outline, use_outline
 from diorama_app.session.client import Client
+from diorama_app.viewport.annotation_canvas import Drawn, Event, Finished, Pointed
 from diorama_app.web.html import Action, LiveHtml, button, text
-from diorama_core.artefacts import Box, LabelledBox
+from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import EditRefused
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ class PhotoCorrection:
         if item is None or item.box_px is None or session.photo is None:
             self._html.show("")
             return
-        if self._of is not None and not self._client.view.drawing:
+        if self._of is not None and not self._client.view.canvas.is_open:
             self._of = self._outline = None
         if self._outline is not None:
             self._html.show(
@@ -66,16 +67,18 @@ class PhotoCorrection:
             rename_class(client, object_id, action.pair[1])
         elif action.do == "box":
             self._of = object_id
-            client.view.open_board(self._photo(), lambda box: client.post(lambda: self._boxed(object_id, box)))
+            client.view.canvas.open(
+                self._photo(), lambda event: client.post(lambda: self._drawn(object_id, event)), "one box"
+            )
             item = client.session.scene.object(object_id)
             if item.box_px is not None:
-                client.view.show_boxes([LabelledBox(item.box_px, item.category, item.label)], 0)
+                client.view.canvas.show_boxes([LabelledBox(item.box_px, item.category, item.label)], 0)
         elif action.do == "outline":
             self._outline, self._of = start_outline(client, object_id), object_id
-            client.view.open_board(
-                self._photo(), None, lambda x, y, part: client.post(lambda: self._clicked(x, y, part))
+            client.view.canvas.open(
+                self._photo(), lambda event: client.post(lambda: self._drawn(object_id, event)), "points"
             )
-            client.view.show_mask(self._outline.mask)
+            client.view.canvas.show_mask(self._outline.mask)
         elif action.do == "use" and self._outline is not None:
             use_outline(client, object_id, self._outline)
             self._close()
@@ -83,18 +86,24 @@ class PhotoCorrection:
             self._close()
         client.refresh()
 
-    def _boxed(self, object_id: str, box: Box) -> None:
-        self._close()
-        redraw_box(self._client, object_id, box)
-
-    def _clicked(self, x: float, y: float, part: bool) -> None:
-        if self._outline is not None:
-            self._outline = self._outline.clicked(x, y, part=part)
-            self._client.view.show_mask(self._outline.mask)
+    def _drawn(self, object_id: str, event: Event) -> None:
+        """Something was done on the photo."""
+        match event:
+            case Drawn(box) if self._outline is None:
+                self._close()
+                redraw_box(self._client, object_id, box)
+            case Pointed(x, y, is_part) if self._outline is not None:
+                self._outline = self._outline.clicked(x, y, part=is_part)
+                self._client.view.canvas.show_mask(self._outline.mask)
+            case Finished() if self._outline is not None:
+                use_outline(self._client, object_id, self._outline)
+                self._close()
+            case Finished():
+                self._close()
 
     def _close(self) -> None:
         self._outline = self._of = None
-        self._client.view.leave_board()
+        self._client.view.canvas.close()
         self._client.refresh()
 
     def _photo(self) -> np.ndarray:

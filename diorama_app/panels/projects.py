@@ -170,10 +170,8 @@ class Projects:
             ProjectLock(folder).release()  # refused while another program has it open
             session.binned = project_care.to_bin(folder, session.projects_dir)
         else:
-            if session.jobs.status is not None:
-                raise EditRefused(f"{session.jobs.status.title} is still running; cancel it or wait")
-            session.open_project(Project.open(folder))
-            session.notice_all(f"Opened {session.project.name if session.project else ''}.", "good")
+            project = Project.open(folder)
+            session.visit(client, project, f"Opened {project.name}.")
 
 
 def _what_becomes_of_changes(session: EditorSession) -> str:

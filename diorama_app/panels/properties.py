@@ -9,13 +9,13 @@ import viser
 
 from diorama_app.commands import edit as editing
 from diorama_app.commands.registry import CommandTable
-from diorama_app.panels.fields import on_change, show_if, show_label, show_options, show_value
+from diorama_app.panels.fields import on_change, show_if, show_value
 from diorama_app.panels.toolbar import run_command
 from diorama_app.session.client import Client
-from diorama_app.session.units import UNITS, format_length, from_unit, in_unit, parse_lengths
+from diorama_app.session.units import UNITS, Unit, format_length, in_unit, parse_length
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.errors import InputError
-from diorama_core.scene.types import Finish, SceneObject
+from diorama_core.scene.types import Finish, MaterialSource, SceneObject
 
 SIZE_ORDER = [1, 0, 2]
 """Fields show width, depth, height; the object's axes are depth, width, height."""
@@ -28,6 +28,18 @@ FINISHES: dict[Finish | None, tuple[str, str]] = {
     "metal": ("Metal", "Brushed metal in its colour"),
 }
 """Label and hint of every finish."""
+
+MATERIAL_SOURCES: dict[MaterialSource, tuple[str, str]] = {
+    "photo": ("As in the photo", "Pictures and materials taken from the photo"),
+    "library": ("Library's", "The shape's own materials, in the colour chosen above"),
+}
+"""Label and hint of every source of materials."""
+
+FIELDS: dict[str, tuple[str, str, tuple[str, str, str]]] = {
+    "Position": ("place", "Of the centre of its base", ("x", "y", "Height")),
+    "Size": ("size", "As it stands", ("Width", "Depth", "Height")),
+}
+"""What the fields are called: the action, a hint, and the name of every axis."""
 
 ALIGN = {
     "align_left": "Left",
@@ -46,29 +58,10 @@ class Properties:
         self._client, self._commands = client, commands
         self._header = LiveHtml(gui, self._act)
         self._name = gui.add_text("Name", "", visible=False)
-        where, size = "Centre of its base: x, y, height", "Width, depth, height"
-        self._place = gui.add_vector3("Position (m)", (0.0, 0.0, 0.0), step=0.01, visible=False, hint=where)
-        self._place_words = gui.add_text("Position (ft)", "", visible=False, hint=where)
-        self._yaw = gui.add_number(
-            "Rotation (°)", 0.0, step=1.0, visible=False, hint="Direction of its front, around the vertical axis"
-        )
-        self._size = gui.add_vector3("Size (m)", (1.0, 1.0, 1.0), step=0.01, visible=False, hint=size)
-        self._size_words = gui.add_text("Size (ft)", "", visible=False, hint=size)
-        self._unit = gui.add_dropdown("Unit", list(UNITS), visible=False, hint="Unit of all lengths")
+        self._fields = LiveHtml(gui, self._act)
         self._colour = gui.add_rgb("Colour", (200, 200, 200), visible=False, hint="Paints its main material")
         self._own = LiveHtml(gui, self._act)
         on_change(self._name, lambda v: self._with(lambda i: editing.rename(client, i, v), "name"))
-        on_change(
-            self._place, lambda v: self._with(lambda i: editing.set_base_position(client, i, self._m(v)), "place")
-        )
-        on_change(self._place_words, lambda v: self._written(v, "place", editing.set_base_position, None))
-        on_change(self._yaw, lambda v: self._with(lambda i: editing.set_yaw(client, i, v), "yaw"))
-        on_change(
-            self._size,
-            lambda v: self._with(lambda i: editing.set_size(client, i, self._m(v)[SIZE_ORDER]), "size"),
-        )
-        on_change(self._size_words, lambda v: self._written(v, "size", editing.set_size, SIZE_ORDER))
-        on_change(self._unit, lambda v: client.post(lambda: client.change_preferences(unit=v)))
         on_change(
             self._colour,
             lambda v: client.post(
@@ -79,54 +72,65 @@ class Properties:
 
     def refresh(self) -> None:
         """Show the selected object, or what to do when there is none."""
-        item, unit = self._client.selected, self._client.preferences.unit
-        there, feet = item is not None, unit == "ft-in"
-        show_if(there, self._name, self._yaw, self._unit, self._colour)
-        show_if(there and not feet, self._place, self._size)
-        show_if(there and feet, self._place_words, self._size_words)
+        item = self._client.selected
+        show_if(item is not None, self._name, self._colour)
         self._header.show(self._advice() if item is None else self._card(item))
-        show_options(self._unit, UNITS, unit)
+        self._fields.show("" if item is None else self._lengths(item))
         if item is None:
             self._own.show("")
             return
         show_value(self._name, item.label)
-        base, size = editing.base_position(item), item.size_m[SIZE_ORDER]
-        if feet:
-            self._show_words(self._place_words, base)
-            self._show_words(self._size_words, size)
-        else:
-            show_label(self._place, f"Position ({unit})")
-            show_label(self._size, f"Size ({unit})")
-            show_value(self._place, tuple(in_unit(float(v), unit) for v in base))
-            show_value(self._size, tuple(in_unit(float(v), unit) for v in size))
-        show_value(self._yaw, round(float(np.degrees(item.pose.yaw_rad)), 1))
-        if item.colour is not None:
-            show_value(self._colour, tuple(round(255 * c) for c in item.colour))
+        show_value(self._colour, self._shown_colour(item))
         self._own.show(_surface(item))
 
-    def _show_words(self, field: viser.GuiTextHandle, lengths_m: np.ndarray) -> None:
-        try:
-            if np.abs(np.array(parse_lengths(field.value, "ft-in")) - lengths_m).max() < 1e-3:
-                return  # the same length, however it was written
-        except InputError:
-            pass
-        show_value(field, ", ".join(format_length(float(v), "ft-in") for v in lengths_m))
+    def _shown_colour(self, item: SceneObject) -> tuple[int, int, int]:
+        """The paint of an object, or else the colour of its shape's main material."""
+        if item.colour is not None:
+            r, g, b = (round(255 * c) for c in item.colour)
+            return r, g, b
+        return self._client.session.shapes.main_colour(item.shape_id)
 
-    def _m(self, values: tuple[float, float, float]) -> np.ndarray:
-        return np.array([from_unit(v, self._client.preferences.unit) for v in values])
+    def _lengths(self, item: SceneObject) -> str:
+        """Fields of place, size and direction, each with what it measures."""
+        unit = self._client.preferences.unit
+        rows = []
+        for name, (do, hint, axes) in FIELDS.items():
+            values = editing.base_position(item) if do == "place" else item.size_m[SIZE_ORDER]
+            cells = "".join(
+                f'<label>{axis}<input data-change="{do}" data-arg="{k}" inputmode="decimal" '
+                f'aria-label="{name}: {axis}" value="{text(_length(float(values[k]), unit))}"></label>'
+                for k, axis in enumerate(axes)
+            )
+            rows.append(f'<h4 title="{hint}">{name}{"" if unit == "ft-in" else f" ({unit})"}</h4>{_grid(cells)}')
+        turn = round(float(np.degrees(item.pose.yaw_rad)), 1) + 0.0  # no minus before a zero
+        units = "".join(f"<option {'selected' if u == unit else ''}>{u}</option>" for u in UNITS)
+        cells = (
+            f'<label>Direction (°)<input data-change="turn" value="{turn:g}" aria-label="Direction (°)" '
+            'inputmode="decimal" title="Of its front, around the vertical axis"></label>'
+            f'<label>Unit<select data-change="unit" aria-label="Unit">{units}</select></label>'
+        )
+        return "".join(rows) + _grid(cells)
 
-    def _written(
-        self,
-        words: str,
-        field: str,
-        act: Callable[[Client, str, np.ndarray], None],
-        order: list[int] | None,
-    ) -> None:
+    def _typed(self, do: str, axis: str, words: str) -> None:
+        """Something was written into one of the fields; what cannot be used goes back to what it was."""
+        client = self._client
+        object_id = client.need_selected()
+        item = client.session.scene.object(object_id)
         try:
-            values = np.array(parse_lengths(words, "ft-in"))
-        except InputError:
-            return  # still being typed
-        self._with(lambda i: act(self._client, i, values if order is None else values[order]), field)
+            if do == "turn":
+                editing.set_yaw(client, object_id, _degrees(words))
+            elif axis in ("0", "1", "2"):
+                place = do == "place"
+                values = np.array(editing.base_position(item) if place else item.size_m[SIZE_ORDER])
+                values[int(axis)] = parse_length(words, client.preferences.unit)
+                if place:
+                    editing.set_base_position(client, object_id, values)
+                else:
+                    editing.set_size(client, object_id, values[SIZE_ORDER])
+        finally:
+            now = client.selected
+            if now is not None:
+                self._fields.show(self._lengths(now), again=True)
 
     def _with(self, act: Callable[[str], None], field: str) -> None:
         """Do something to the object selected now, dropping keystrokes that a newer one of the field overtook."""
@@ -175,21 +179,51 @@ class Properties:
 
     def _act(self, action: Action) -> None:
         client = self._client
-        if action.do == "own":
+        if action.do in ("place", "size", "turn"):
+            client.post(lambda: self._typed(action.do, *action.pair))
+        elif action.do == "unit":
+            unit = next((u for u in UNITS if u == action.pair[1]), None)
+            client.post(lambda: client.change_preferences(unit=unit or client.preferences.unit))
+        elif action.do == "own":
             client.post(lambda: editing.set_colour(client, client.need_selection(), None))
         elif action.do == "finish":
             finish = next((f for f in FINISHES if f == action.arg), None)
             client.post(lambda: editing.set_finish(client, client.need_selection(), finish))
+        elif action.do == "materials":
+            source: MaterialSource = "photo" if action.arg == "photo" else "library"
+            client.post(lambda: editing.set_material_source(client, client.need_selection(), source))
         else:
             run_command(client, self._commands, action)
 
 
 def _surface(item: SceneObject) -> str:
-    """Buttons for the finish of its main material, and one that takes the paint off."""
+    """Buttons for the source of its materials, for the finish of the main one, and one that takes the paint off."""
     finishes = "".join(
         button(label, "finish", finish or "", title=hint, on=item.finish == finish)
         for finish, (label, hint) in FINISHES.items()
     )
     own = button("Original colours", "own", title="Removes the paint") if item.colour is not None else ""
     paint = f'<div class="bar tight">{own}</div>' if own else ""
-    return f'{paint}<div class="bar tight"><span class="dim lead">Finish</span>{finishes}</div>'
+    sources = "".join(
+        button(label, "materials", source, title=hint, on=item.material_source == source)
+        for source, (label, hint) in MATERIAL_SOURCES.items()
+    )
+    taken = f'<div class="bar tight"><span class="dim lead">Materials</span>{sources}</div>'
+    return f"{taken if item.photo_materials else ''}{paint}" + (
+        f'<div class="bar tight"><span class="dim lead">Finish</span>{finishes}</div>'
+    )
+
+
+def _grid(cells: str) -> str:
+    return f'<div class="fields">{cells}</div>'
+
+
+def _length(metres: float, unit: Unit) -> str:
+    return format_length(metres, unit) if unit == "ft-in" else f"{in_unit(metres, unit) + 0.0:g}"
+
+
+def _degrees(words: str) -> float:
+    try:
+        return float(words.replace("°", "").replace(",", ".").strip())
+    except ValueError as error:
+        raise InputError(f"'{words[:20]}' is not an angle; write for example 90") from error

@@ -32,8 +32,15 @@ const recall = (left) => {
   }
   for (const tab of there)
     if (kept.includes(named(tab)) && tab.getAttribute('aria-selected') !== 'true') enter(tab);
+  if (window.__dioTabWanted) enter(there.find((t) => named(t) === window.__dioTabWanted));
 };
-window.__dioOpenTab = (name) => { const tab = tabs().find((t) => named(t) === name); if (tab) enter(tab); };
+delete window.__dioTabWanted;
+window.__dioOpenTab = (name, left = 40) => {
+  window.__dioTabWanted = name;
+  const tab = tabs().find((t) => named(t) === name);
+  if (tab) enter(tab);
+  else if (left) setTimeout(() => window.__dioTabWanted === name && window.__dioOpenTab(name, left - 1), 50);
+};
 recall(%d);
 if (!window.__dioTabs) {
   window.__dioTabs = 'kept';

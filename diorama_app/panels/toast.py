@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import viser
 
 from diorama_app.session.client import Client, Measuring, Placing
@@ -15,12 +17,20 @@ class Toasts:
         self._client = client
         self._html = LiveHtml(gui, self._act, floating="dio-said")
         self._doing = LiveHtml(gui, self._act, floating="dio-doing")
-        client.toast = self.say
+        self._offered: Callable[[], None] | None = None
+        client.toast, client.offer = self.say, self.offer
 
     def say(self, message: str, undo: bool) -> None:
         """Show a message, in place of the one before."""
         again = button("Undo", "undo") if undo else ""
         self._html.show(f'<div class="dio-toast"><span>{text(message)}</span>{again}</div>', again=True)
+
+    def offer(self, message: str, label: str, do: Callable[[], None]) -> None:
+        """Show a message with a button that does something; it stays longer than others."""
+        self._offered = do
+        action = button(text(label), "offered")
+        line = f'<div class="dio-toast long" role="alert"><span>{text(message)}</span>{action}</div>'
+        self._html.show(line, again=True)
 
     def refresh(self) -> None:
         """Say what a click in the view does now."""
@@ -31,9 +41,9 @@ class Toasts:
         elif isinstance(doing, Measuring) and len(doing.points) < 2:
             words = ("Click the first point", "Click the second point")[len(doing.points)]
         stop = button("Esc", "stop", title="Stop")
-        self._doing.show(
-            f'<div class="dio-toast stay" style="bottom:64px"><span>{words}</span>{stop}</div>' if words else ""
-        )
+        above = "bottom:calc(var(--dio-below, 0px) + 64px)"
+        line = f'<div class="dio-toast stay" style="{above}"><span>{words}</span>{stop}</div>'
+        self._doing.show(line if words else "")
 
     def _act(self, action: Action) -> None:
         client = self._client
@@ -43,7 +53,15 @@ class Toasts:
             client.view.show_measure((), "")
             client.refresh()
 
-        if action.do == "undo":
+        def offered() -> None:
+            do, self._offered = self._offered, None
+            self._html.show("")
+            if do is not None:
+                do()
+
+        if action.do == "offered":
+            client.post(offered)
+        elif action.do == "undo":
             client.post(lambda: client.session.undo(client))
         elif action.do == "stop":
             client.post(stop)

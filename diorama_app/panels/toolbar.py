@@ -1,4 +1,4 @@
-"""The rows of buttons above the outliner: undo, redo, views, handles, snapping."""
+"""The buttons over the view: undo, redo, views, handles, snapping. They stay whatever the panels show."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Toolbar:
     def __init__(self, gui: viser.GuiApi, client: Client, commands: CommandTable) -> None:
         self._client, self._commands = client, commands
         gui.add_html(STYLE)
-        self._html = LiveHtml(gui, self._act)
+        self._html = LiveHtml(gui, self._act, floating="dio-toolbar")
 
     def refresh(self) -> None:
         """Draw the buttons as the history allows and the settings say."""
@@ -35,31 +35,31 @@ class Toolbar:
         history = session.document.history
         undo = f"Undo: {history.current.label}" if history.can_undo else "Nothing to undo"
         self._html.show(
-            '<div class="bar tight">'
+            '<div class="bars" role="toolbar" aria-label="Tools"><div class="bar">'
             + self._button("undo", "&#8630; Undo", title=undo, disabled=not history.can_undo)
             + self._button("redo", "&#8631; Redo", disabled=not history.can_redo)
             + self._button("measure", on=self._client.doing is not None)
             + self._button("picture", CAMERA)
             + self._button("theme", HALF_MOON)
             + self._button("help", "?")
-            + "</div><div class='bar tight'>"
+            + "</div><div class='bar'>"
             + self._button("view_photo", "Photo view", disabled=session.scene.camera is None)
             + self._button("view_room", "Room")
             + self._button("view_top", "Top")
             + self._button("view_front", "Front")
             + self._button("view_left", "Side")
-            + "</div><div class='bar tight'>"
+            + "</div><div class='bar'>"
             + self._button("gizmo_floor", on=preferences.gizmo == "floor")
             + self._button("gizmo_free", on=preferences.gizmo == "free")
             + self._button("gizmo_size", on=preferences.gizmo == "size")
             + self._button("snap", on=preferences.snap)
             + self._button("slide", on=preferences.slide)
-            + "</div><div class='bar tight'>"
+            + "</div><div class='bar'>"
             + self._button("names", on=preferences.names)
             + self._button("badges", on=preferences.badges)
             + self._button("masks", on=preferences.masks, disabled=session.photo is None)
             + self._button("planes", on=preferences.planes)
-            + "</div>"
+            + "</div></div>"
         )
 
     def _button(

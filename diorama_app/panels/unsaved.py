@@ -5,6 +5,7 @@ from __future__ import annotations
 import viser
 
 from diorama_app.projects.manage import duplicate_project
+from diorama_app.reconstruction.build_job import build, forget_build
 from diorama_app.session.client import Client
 from diorama_app.session.recovery import Unsaved
 from diorama_app.web.html import Action, LiveHtml, button, text
@@ -26,7 +27,7 @@ class UnsavedChanges:
         if session.project is not self._of:
             self._of = session.project
             self._found = None if session.project is None else session.autosave.recovery.left_behind(session.project)
-        self._html.show(self._trouble() + self._offer())
+        self._html.show(self._trouble() + self._offer() + self._interrupted())
 
     def _trouble(self) -> str:
         session = self._client.session
@@ -51,6 +52,18 @@ class UnsavedChanges:
             + "</div></div>"
         )
 
+    def _interrupted(self) -> str:
+        session = self._client.session
+        if not session.interrupted or session.jobs.status is not None:
+            return ""
+        return (
+            '<div class="card warn">Diorama ended while this scene was being built.'
+            '<div class="bar tight" style="margin:6px 0 0 0">'
+            + button("Continue building", "build", title="Takes up where the build ended")
+            + button("Not now", "no build", title="Build it later with “Build scene”")
+            + "</div></div>"
+        )
+
     def _act(self, action: Action) -> None:
         self._client.post(lambda: self._do(action.do))
 
@@ -59,7 +72,13 @@ class UnsavedChanges:
         if what in ("copy", "again") and session.project is not None:
             copied = what == "copy"
             folder = session.project.folder
-            session.open_project(duplicate_project(folder, session.projects_dir) if copied else Project.open(folder))
+            if copied:
+                session.visit(self._client, duplicate_project(folder, session.projects_dir), "")
+            else:
+                session.open_project(Project.open(folder))
+            return
+        if what in ("build", "no build"):
+            self._settle_build(go_on=what == "build")
             return
         if found is None or not found.path.exists():
             return
@@ -70,3 +89,12 @@ class UnsavedChanges:
         if what in ("restore", "discard"):
             found.discard()
             session.refresh_panels()
+
+    def _settle_build(self, *, go_on: bool) -> None:
+        session = self._client.session
+        if go_on:
+            build(self._client)
+        elif session.project is not None:
+            session.interrupted = False
+            forget_build(session.project)
+        session.refresh_panels()

@@ -15,17 +15,26 @@ BIN = ".bin"
 
 
 def recent_projects(projects_dir: Path) -> list[Path]:
-    """Folders of projects that have a scene, last touched first."""
+    """Folders of projects that have a scene or a photo, last touched first."""
     try:
-        folders = [f for f in projects_dir.iterdir() if (f / "project.json").exists() and (f / "scene.json").exists()]
+        folders = [f for f in projects_dir.iterdir() if (f / "project.json").exists() and _has_content(Project(f))]
     except OSError:
         return []
     return sorted(folders, key=touched, reverse=True)
 
 
+def find_project(projects_dir: Path, name: str) -> Path | None:
+    """The folder of a listed project by its name; None for any other, as the name comes from an address."""
+    return next((folder for folder in recent_projects(projects_dir) if folder.name == name), None)
+
+
 def touched(folder: Path) -> float:
-    """When the project's scene was last written."""
-    return _written(folder / "scene.json")
+    """When the project's scene, or what is said of its photo, was last written."""
+    return max(_written(folder / "scene.json"), _written(folder / "stages" / "inputs.zip"))
+
+
+def _has_content(project: Project) -> bool:
+    return project.has_scene or project.has_photo
 
 
 def _written(path: Path) -> float:
@@ -59,8 +68,10 @@ def duplicate_project(folder: Path, projects_dir: Path) -> Project:
         shutil.copytree(folder, target, ignore=shutil.ignore_patterns("backups", ".*"))
     except OSError as error:
         raise ProjectError(f"cannot copy to {target} ({error.strerror}); free some space") from error
-    (target / "scene.json").touch()
     copy = Project.open(target)
+    for path in (copy.scene_path, copy.stages_folder / "inputs.zip"):
+        if path.exists():
+            path.touch()
     rename_project(copy, f"{name_of(folder)} {number}")
     return copy
 

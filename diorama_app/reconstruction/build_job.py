@@ -1,99 +1,100 @@
-"""The longest job: building a scene from a photo, beside everything else."""
+"""The longest job: building a scene from a photo, beside everything else.
+
+While it runs, the project's file says so: after a program that was killed, the next one offers to go on. Results of
+stages are in the project already, so going on takes up where it ended.
+"""
 
 from __future__ import annotations
 
 import contextlib
-import re
-from pathlib import Path
+import time
+from collections.abc import Iterator
 
+from diorama_app.reconstruction.networks import can_find_furniture
 from diorama_app.session.client import Client
-from diorama_app.session.draft import Draft
-from diorama_app.session.session import EditorSession
-from diorama_core.errors import InputError
+from diorama_app.session.session import BUILDING, EditorSession
+from diorama_core.artefacts import Inputs
+from diorama_core.errors import DioramaError, EditRefused, InputError
 from diorama_core.progress import Progress
-from diorama_core.project.lock import ProjectLock
 from diorama_core.project.storage import Project
 from diorama_core.scene.types import Scene
 
 
+def ready_to_build(inputs: Inputs | None) -> bool:
+    """Whether a scene with objects can be built."""
+    return inputs is not None and (bool(inputs.boxes) or inputs.instances is not None or can_find_furniture())
+
+
 def build(client: Client) -> None:
-    """Build the draft's scene: in the open project when it came from there, else in a new one."""
+    """Build the scene of the open project's photo, as one undo step.
+
+    Raises:
+        EditRefused: the project is read-only.
+        InputError: there is no photo, or nothing is marked in it.
+    """
     session = client.session
-    draft = session.draft
-    if not draft.ready:
+    inputs = session.inputs
+    if inputs is None or not ready_to_build(inputs):
         raise InputError(
             "there is no photo yet; upload one first"
-            if draft.photo is None
+            if inputs is None
             else "nothing is marked in the photo yet; draw a box around each piece of furniture first"
         )
-    inputs = draft.to_build()
-    own = draft.from_project and session.project is not None
-    if own:
-        session.need_writable()
+    start_build(session, inputs, "Building the scene", "build the scene")
+
+
+def start_build(session: EditorSession, inputs: Inputs, title: str, label: str, message: str = "") -> None:
+    """Build the open project's scene from these inputs, in the background.
+
+    Args:
+        session: where.
+        inputs: the photo with everything that is said of it.
+        title: what the job is called.
+        label: what the undo step is called.
+        message: what is said at the end instead of the number of objects.
+    """
+    session.need_writable()
+    project = session.project
+    if project is None:
+        raise EditRefused("no project is open")
 
     def work(progress: Progress) -> None:
         from diorama_core.project.build import build_project
 
-        project = (
-            session.project
-            if own
-            else Project.create(fresh_folder(session.projects_dir, draft.name), name=Path(draft.name).stem)
-        )
-        assert project is not None
         session.autosave.flush()
-        with contextlib.nullcontext() if own else ProjectLock(project.folder, "the editor"):
-            built = build_project(project, inputs, session.library, warnings=draft.warnings, progress=progress)
-        client.post(lambda: show_built(session, draft, project, built.scene, own=own))
+        with _noted(project):
+            warnings = project.info().get("warnings", ())
+            built = build_project(project, inputs, session.library, warnings=warnings, progress=progress)
+        session.ui_thread.post(lambda: show_built(session, project, built.scene, label=label, message=message))
 
-    session.jobs.start("build", "Building the scene", work)
+    session.interrupted = False
+    session.jobs.start("build", title, work)
 
 
-def show_built(
-    session: EditorSession,
-    draft: Draft,
-    project: Project,
-    scene: Scene,
-    *,
-    own: bool,
-    message: str = "",
-    label: str = "build the scene",
-) -> None:
-    """Show the built scene to all clients.
+@contextlib.contextmanager
+def _noted(project: Project) -> Iterator[None]:
+    """While it lasts, the project's file says that its scene is built."""
+    project.update_info(**{BUILDING: time.strftime("%Y-%m-%dT%H:%M:%S")})
+    try:
+        yield
+    finally:
+        forget_build(project)
 
-    Args:
-        room: where.
-        draft: what was handed in when the build began; a newer one is kept.
-        project: where the scene lies.
-        scene: what was built.
-        own: whether it was built in the open project, as one undo step there.
-        message: what to say instead of the number of objects.
-        label: what the undo step is called.
-    """
-    newer = session.draft if session.draft is not draft else None
-    if newer is None:
-        for client in session.clients.values():
-            client.view.close_board()
-    if own and project == session.project:
-        inputs = project.load_inputs()
-        session.textures = project.textures(scene)
-        session.read_notes()
-        session.draft = Draft(inputs, inputs.boxes if inputs else (), from_project=True, name=project.name)
-        session.commit(label, scene, inputs=inputs)
-        session.show_whole_room()
-    else:
-        session.open_project(project)
-    if newer is not None:
-        session.draft = newer  # what somebody handed in meanwhile is not lost
-        session.refresh_panels()
+
+def forget_build(project: Project) -> None:
+    """No build of this project is under way."""
+    with contextlib.suppress(DioramaError):  # the build itself has said what is wrong with the folder
+        project.update_info(**{BUILDING: None})
+
+
+def show_built(session: EditorSession, project: Project, scene: Scene, *, label: str, message: str = "") -> None:
+    """Show the built scene of the open project to all clients, as one undo step."""
+    if project != session.project:
+        return  # it is on disk; somebody opened another project here meanwhile
+    for client in session.clients.values():
+        client.view.canvas.close()
+    session.textures = {**session.textures, **project.textures(scene)}  # undo shows what earlier ones name
+    session.read_notes()
+    session.commit(label, scene, inputs=project.load_inputs())
+    session.show_whole_room()
     session.notice_all(message or f"The scene has {len(scene.objects)} objects. Click one to change it.", "good")
-
-
-def fresh_folder(projects_dir: Path, name: str, *, resume: bool = True) -> Path:
-    """A folder for a new project, named after its photo or file; with `resume`, one without a scene yet is taken up."""
-    stem = re.sub(r"[^A-Za-z0-9._-]+", "-", Path(name).stem).strip("-.")[:60] or "room"
-    for number in range(1, 10_000):
-        folder = projects_dir / (stem if number == 1 else f"{stem}-{number}")
-        begun = (folder / "project.json").exists() and not (folder / "scene.json").exists()
-        if (begun and resume) or not folder.exists():
-            return folder
-    raise InputError(f"{projects_dir} holds too many projects called {stem}; rename the file")

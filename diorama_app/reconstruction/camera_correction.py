@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from diorama_app.reconstruction.build_job import start_build
 from diorama_app.session.client import Client
 from diorama_core.artefacts import Inputs
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.geometry.camera_attitude import CameraAttitude
-from diorama_core.progress import Progress
 from diorama_core.scene.room_edits import floor_height, rescale_to_length
 from diorama_core.scene.types import Camera, Intrinsics, Scene
 
@@ -26,7 +26,7 @@ def rebuild_with_camera(client: Client, fov_deg: float | None, camera_attitude: 
     Args:
         client: the requesting client.
         fov_deg: horizontal field of view; as it was when None.
-        held: against the floor; as it was when None.
+        camera_attitude: pitch and roll against the floor; as it was when None.
     """
     inputs = client.session.document.inputs
     if inputs is None:
@@ -48,25 +48,8 @@ def rebuild_as_found(client: Client) -> None:
 
 
 def _rebuild(client: Client, inputs: Inputs) -> None:
-    session = client.session
-    session.need_writable()
-    project, draft = session.project, session.draft
-    if project is None or not draft.from_project:
-        raise EditRefused("the open scene was not built from this photo; build it first")
-    told = replace(draft, inputs=inputs).to_build()
-
-    def work(progress: Progress) -> None:
-        from diorama_app.reconstruction.build_job import show_built
-        from diorama_core.project.build import build_project
-
-        session.autosave.flush()
-        built = build_project(project, told, session.library, progress=progress)
-        message = "Rebuilt with this camera. Undo restores the previous scene."
-        client.post(
-            lambda: show_built(session, draft, project, built.scene, own=True, message=message, label="set the camera")
-        )
-
-    session.jobs.start("build", "Building with this camera", work)
+    message = "Rebuilt with this camera. Undo restores the previous scene."
+    start_build(client.session, inputs, "Building with this camera", "set the camera", message)
 
 
 def trial_camera(camera: Camera, fov_deg: float, camera_attitude: CameraAttitude) -> Camera:

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from diorama_app.session.client import Client
-from diorama_core.artefacts import Box
+from diorama_core.artefacts import LabelledBox, Photo
+from diorama_core.editing.input_corrections import with_boxes_added
 from diorama_core.errors import EditRefused, InputError
-from diorama_core.models.manifest import Network
+from diorama_core.models.manifest import NETWORKS, Network
 from diorama_core.models.pull import pull
 from diorama_core.models.store import ModelStore
 from diorama_core.progress import Progress
 
 NO_DETECTOR = "Detecting furniture needs a network: download “lite” under Project, Networks."
-SAME_IOU = 0.5
-"""A detected box with at least this IoU with an existing box is a duplicate."""
+
+
+def can_find_furniture() -> bool:
+    """Whether a network that finds furniture is on this machine, so that nobody needs to draw boxes."""
+    store = ModelStore.default()
+    return any(store.has(n) for n in NETWORKS if n.role == "detection")
 
 
 def missing_networks(store: ModelStore, networks: Sequence[Network]) -> tuple[Network, ...]:
@@ -50,9 +54,10 @@ def get_networks(client: Client, networks: Sequence[Network], accepted: frozense
 def find_furniture(client: Client) -> None:
     """Put a box around every piece of furniture that a detector finds in the photo, to be corrected by hand."""
     session = client.session
-    photo = session.draft.photo
+    photo = session.photo
     if photo is None:
         raise InputError("there is no photo yet; upload one first")
+    session.need_writable()
 
     def work(progress: Progress) -> None:
         from diorama_core.pipeline.presets import propose_boxes  # the whole pipeline; opening a project does without
@@ -60,30 +65,23 @@ def find_furniture(client: Client) -> None:
         found = propose_boxes(photo, progress=progress)
         if found is None:
             raise InputError(NO_DETECTOR)
-
-        def show() -> None:
-            draft = session.draft
-            if draft.photo is not photo:
-                return  # somebody uploaded another one meanwhile
-            more = tuple(b for b in found if all(_iou(b.box, old.box) < SAME_IOU for old in draft.boxes))
-            session.draft = replace(draft, boxes=(*draft.boxes, *more), highlighted=None)
-            if more:
-                client.open_board()
-            session.refresh_panels()
-            count = "1 more box" if len(more) == 1 else f"{len(more)} more boxes"
-            words = (
-                f"{count}: check the boxes, then build." if more else "No more furniture was detected in this photo."
-            )
-            client.notice(words, "good")
-
-        client.post(show)
+        client.post(lambda: _put_boxes(client, photo, found))
 
     session.jobs.start("find", "Detecting furniture", work)
 
 
-def _iou(a: Box, b: Box) -> float:
-    """Share of two boxes' union that both cover; boxes as left, top, right, bottom in pixels."""
-    width, height = min(a[2], b[2]) - max(a[0], b[0]), min(a[3], b[3]) - max(a[1], b[1])
-    both = max(width, 0.0) * max(height, 0.0)
-    areas = sum((x2 - x1) * (y2 - y1) for x1, y1, x2, y2 in (a, b))
-    return both / max(areas - both, 1e-9)
+def _put_boxes(client: Client, photo: Photo, found: Sequence[LabelledBox]) -> None:
+    session = client.session
+    inputs = session.inputs
+    if inputs is None or inputs.photo is not photo:
+        return  # somebody opened another project here meanwhile
+    marked = with_boxes_added(inputs, found)
+    more = len(marked.boxes) - len(inputs.boxes)
+    if not more:
+        client.notice("No more furniture was detected in this photo.", "good")
+        return
+    client.selected_box = None
+    session.annotate("detect furniture", marked, by=client)
+    client.open_board()
+    client.refresh()
+    client.notice(f"{'1 more box' if more == 1 else f'{more} more boxes'}: check the boxes, then build.", "good")

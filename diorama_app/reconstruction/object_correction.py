@@ -109,16 +109,17 @@ def _reconstruct(
 
         def show() -> None:
             there = {o.id for o in session.scene.objects}
+            session.add_textures(found.pictures)
             said = with_correction(_inputs(client), before, box, drawn)
             session.edit(label, lambda s: put(s, found), by=client, inputs=said)
             new = [o.id for o in session.scene.objects if o.id not in there]
             if select_new and new:
-                client.view.close_board()
+                client.view.canvas.close()
                 client.select(new)
 
         client.post(show)
 
-    session.jobs.start("look", f"Reconstructing the {box.label}", work)
+    session.jobs.start("outline", f"Reconstructing the {box.label}", work)
 
 
 def _replaced(client: Client, object_id: str) -> Callable[[Scene, Found], Scene]:

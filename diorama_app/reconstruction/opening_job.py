@@ -6,7 +6,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from diorama_app.reconstruction.build_job import fresh_folder
+from diorama_app.projects.begin import fresh_folder
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_core.errors import InputError
@@ -46,7 +46,7 @@ def open_file(client: Client, name: str, content: bytes) -> None:
         opened = _read(session, file_name, content, progress.part(0.0, 0.9))
         progress.report(0.9, "saving the project")
         project = _saved(session, Path(file_name).stem, file_name, opened)
-        client.post(lambda: _show(session, project, file_name))
+        client.post(lambda: _show(client, project, file_name))
 
     session.jobs.start("import", f"Opening {file_name}", work)
 
@@ -70,13 +70,15 @@ def _read(session: EditorSession, name: str, content: bytes, progress: Progress)
 
 def _saved(session: EditorSession, stem: str, file_name: str, opened: Opened) -> Project:
     """A new project with the scene; none is left behind when it cannot be saved."""
-    folder = fresh_folder(session.projects_dir, stem, resume=False)
+    folder = fresh_folder(session.projects_dir, stem)
     try:
         project = Project.create(folder, name=stem)
         with ProjectLock(folder, "the editor"):
             notes = [f"opened from {file_name}", *opened.changes[:MAX_NOTES]]
             project.update_info(library=_library_name(session, opened), notes=notes)
             project.save_textures(opened.textures)
+            if opened.inputs is not None:
+                project.save_inputs(opened.inputs)
             project.save_scene(opened.scene)
         project.load_scene()  # what cannot be read back is refused now, while the open project is still open
     except BaseException:
@@ -93,7 +95,7 @@ def _library_name(session: EditorSession, opened: Opened) -> str:
     return f"{named}+{OWN}" if own and OWN not in named.split("+") else named
 
 
-def _show(session: EditorSession, project: Project, file_name: str) -> None:
-    session.open_project(project)
-    count = len(session.scene.objects)
-    session.notice_all(f"{file_name} is open as a project of its own, with {count} objects.", "good")
+def _show(client: Client, project: Project, file_name: str) -> None:
+    count = len(project.load_scene().objects)
+    message = f"{file_name} is open as a project of its own, with {count} objects."
+    client.session.visit(client, project, message)

@@ -32,12 +32,16 @@ class PhotoOutlines:
             return
 
         def work(progress: Progress) -> None:
+            from diorama_core.pipeline.fallback import with_usable_networks
             from diorama_core.pipeline.plan import evaluate
             from diorama_core.pipeline.presets import stages_for
             from diorama_core.pipeline.runner import Runner
 
-            stages, runner = stages_for("auto", inputs, session.library), Runner(project.stages_folder)
-            found = evaluate(stages, {"given": inputs}, ("objects",), runner, progress)["objects"]
+            runner = Runner(project.stages_folder)
+            found, _ = with_usable_networks(
+                lambda store: stages_for("auto", inputs, session.library, store=store),
+                lambda stages: evaluate(stages, {"given": inputs}, ("objects",), runner, progress)["objects"],
+            )
 
             def keep() -> None:
                 self._of, self._found = inputs, found
@@ -45,4 +49,4 @@ class PhotoOutlines:
 
             client.post(keep)
 
-        session.jobs.start("look", "Segmenting the photo", work)
+        session.jobs.start("outline", "Segmenting the photo", work)

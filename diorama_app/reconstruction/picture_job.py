@@ -46,7 +46,7 @@ def take_picture(client: Client, view: PictureView, width: int) -> None:
         )
         return
     if view == "here":
-        scene = replace(scene, camera=client.view.camera(*size))
+        scene = replace(scene, camera=client.view.camera.for_picture(*size))
     session.jobs.start(
         "picture", "Drawing a picture", lambda p: _still(client, scene, size, f"{stem}-{size[0]}x{size[1]}.png", p)
     )
@@ -65,7 +65,7 @@ def picture_size(client: Client, view: PictureView, width: int) -> tuple[int, in
     if view == "turntable":
         return width // 2 * 2, round(width / FILM_ASPECT / 2) * 2  # H.264 asks for even numbers
     if view == "here":
-        return width, max(1, round(width / max(client.view.aspect, 0.1)))
+        return width, max(1, round(width / max(client.view.camera.aspect, 0.1)))
     camera = client.session.scene.camera
     if camera is None:
         raise EditRefused("this scene has no photo; draw it from this view")

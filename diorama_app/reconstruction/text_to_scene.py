@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_app.reconstruction.build_job import fresh_folder, show_built
+from diorama_app.projects.begin import fresh_folder
 from diorama_app.session.client import Client
 from diorama_core.errors import DioramaError, InputError
 from diorama_core.progress import Progress
@@ -26,7 +26,7 @@ def describe_room(client: Client, words: str) -> None:
     """Create a project from a description, in the background, and open it."""
     from diorama_core.text.pictures import ImageSettings, picture_of
 
-    session, draft = client.session, client.session.draft
+    session = client.session
     said = " ".join(words.split())
     if not said:
         raise InputError("describe the room, for example: a reading corner with two armchairs")
@@ -34,6 +34,7 @@ def describe_room(client: Client, words: str) -> None:
 
     def work(progress: Progress) -> None:
         from diorama_core.project.build import build_project
+        from diorama_core.text.unmet import unmet
 
         made = picture_of(said, session.library, endpoint=endpoint, progress=progress.part(0.0, 0.2))
         name = said[:1].upper() + said[1:60]
@@ -47,6 +48,11 @@ def describe_room(client: Client, words: str) -> None:
         )
         count = len(built.scene.objects)
         what = f"The scene has {count} objects" if count else "No furniture was found; draw boxes"
-        client.post(lambda: show_built(session, draft, project, built.scene, own=False, message=f"{what}; {how}."))
+        lacking = unmet(said, built.scene)
+        if lacking:
+            missing = f"of the description is missing: {', '.join(lacking)}"
+            project.update_info(notes=[missing, *project.info().get("notes", ())])
+            what += f"; {missing}"
+        client.post(lambda: session.visit(client, project, f"{what}; {how}."))
 
     session.jobs.start("text", "Creating the room you described", work)

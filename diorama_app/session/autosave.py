@@ -6,8 +6,10 @@ import logging
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from diorama_app.session.recovery import Recovery
+from diorama_core.artefacts import Inputs
 from diorama_core.errors import DioramaError
 from diorama_core.project.storage import Project
 from diorama_core.scene.types import Scene
@@ -20,6 +22,20 @@ RETRY_S = 5.0
 """Interval between retries of a failed save."""
 
 Told = Callable[[str], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Unwritten:
+    """What is to be written of one project."""
+
+    scene: Scene | None = None
+    inputs: Inputs | None = None
+
+    def with_newer(self, newer: Unwritten) -> Unwritten:
+        """The newer of each."""
+        return Unwritten(
+            self.scene if newer.scene is None else newer.scene, self.inputs if newer.inputs is None else newer.inputs
+        )
 
 
 class Autosave:
@@ -48,16 +64,23 @@ class Autosave:
         self._condition = threading.Condition()
         self._writing = threading.RLock()
         """Locked from dequeuing until written, so that an older scene never overwrites a newer one."""
-        self._waiting: dict[Project, Scene] = {}
+        self._waiting: dict[Project, Unwritten] = {}
         self._new = self._stopping = False
         self.saved_at: float | None = None
         self._thread = threading.Thread(target=self._work, daemon=True, name="autosave")
         self._thread.start()
 
-    def save_soon(self, project: Project, scene: Scene) -> None:
-        """Write this scene, unless a newer one of the same project comes first."""
+    def save_soon(self, project: Project, scene: Scene | None, inputs: Inputs | None = None) -> None:
+        """Write this scene and what is said of the photo, unless newer ones of the same project come first.
+
+        Args:
+            project: where.
+            scene: None where nothing was built yet.
+            inputs: None where they are saved already.
+        """
         with self._condition:
-            self._waiting[project] = scene
+            waiting = self._waiting.get(project, Unwritten())
+            self._waiting[project] = waiting.with_newer(Unwritten(scene, inputs))
             self._new = True
             self._condition.notify_all()
 
@@ -67,10 +90,10 @@ class Autosave:
             with self._condition:
                 waiting, self._waiting = self._waiting, {}
                 self._new = False
-            for project, scene in waiting.items():
-                if not self._write(project, scene):
+            for project, unwritten in waiting.items():
+                if not self._write(project, unwritten):
                     with self._condition:
-                        self._waiting.setdefault(project, scene)
+                        self._waiting[project] = unwritten.with_newer(self._waiting.get(project, Unwritten()))
 
     def stop(self) -> None:
         """Write pending scenes and end the thread."""
@@ -90,22 +113,27 @@ class Autosave:
             with self._writing:
                 with self._condition:
                     newest = dict(self._waiting)
-                for project, scene in newest.items():
-                    self.recovery.note(project, scene)
+                for project, unwritten in newest.items():
+                    if unwritten.scene is not None:
+                        self.recovery.note(project, unwritten.scene)
             with self._condition:
                 self._condition.wait_for(lambda: self._stopping, SETTLE_S)
                 if self._stopping:
                     return
             self.flush()
 
-    def _write(self, project: Project, scene: Scene) -> bool:
+    def _write(self, project: Project, unwritten: Unwritten) -> bool:
+        scene = unwritten.scene
         try:
-            project.save_scene(scene)
+            if unwritten.inputs is not None:
+                project.save_inputs(unwritten.inputs, project.info().get("warnings", ()))
+            if scene is not None:
+                project.save_scene(scene)
         except Exception as error:
             if not isinstance(error, DioramaError):
                 log.exception("the scene of %s cannot be written", project.folder)
             reason = str(error) if isinstance(error, DioramaError) else f"the scene cannot be written ({error})"
-            self._not_saved(reason, retained=self.recovery.note(project, scene))
+            self._not_saved(reason, retained=scene is not None and self.recovery.note(project, scene))
             return False
         self.saved_at = time.time()
         self.recovery.forget(project)

@@ -71,10 +71,15 @@ class Client:
         """Closes the dialog that is open over the page, if one is."""
         self.toast: Callable[[str, bool], None] = lambda message, undo: None
         """Shows a line at the foot of the view, with a button that undoes when asked."""
+        self.offer: Callable[[str, str, Callable[[], None]], None] = lambda message, label, do: None
+        """Shows a line that stays, with a button that does something."""
         self.to_say: tuple[str, bool] | None = None
         """What is shown there with the next redraw."""
         self.open_tab: Callable[[str], None] = lambda name: None
         """Brings a tab of the panels to the front."""
+        self.go_to: Callable[[str], None] = lambda name: None
+        self.selected_box: int | None = None
+        """The box that is selected on the photo."""
         self.open_board: Callable[[], None] = lambda: None
         """Shows the photo with its boxes, to draw on."""
 
@@ -101,7 +106,7 @@ class Client:
         self.selection = tuple(i for i in dict.fromkeys(ids) if self.session.scene.has_object(i))
         if len(self.session.clients) == 1:  # where several work, undo must not select what another one had selected
             self.session.document.note_selection(self.selection)
-        self.session.refresh_cursors(self)
+        self.session.refresh_panels(self)
 
     def toggle(self, object_id: str) -> None:
         """Add an object to the selection, or take it out."""
@@ -153,7 +158,7 @@ class Client:
         session = self.session
         others = [(g.name, g.colour, g.selection) for g in session.clients.values() if g is not self]
         # Over the photo, marks would seem to be the photo's.
-        warned = self.preferences.badges and self.view.overlay_opacity < 0.5
+        warned = self.preferences.badges and self.view.photo.opacity < 0.5
         badges = session.badges if warned else {}
         self.marks.show(
             scene or session.scene,

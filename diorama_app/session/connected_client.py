@@ -33,6 +33,10 @@ class ConnectedClient(Protocol):
     to_say: tuple[str, bool] | None
     """A line for the foot of the view, and whether it offers undo."""
     toast: Callable[[str, bool], None]
+    open_tab: Callable[[str], None]
+    open_board: Callable[[], None]
+    go_to: Callable[[str], None]
+    """Takes this browser to a project, by the name of its folder."""
 
     def drop_missing(self) -> None:
         """Deselect objects that no longer exist."""

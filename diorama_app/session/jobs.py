@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import logging
 import threading
+import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from diorama_app.session.preload import load_open3d
@@ -14,8 +15,8 @@ from diorama_core.progress import CancelToken, Progress, ProgressEvent
 
 log = logging.getLogger(__name__)
 
-JobKind = Literal["build", "optimise", "export", "look", "import", "text", "pull", "find", "picture"]
-PERCEIVING: frozenset[JobKind] = frozenset({"build", "look", "text"})
+JobKind = Literal["build", "optimise", "export", "outline", "import", "text", "pull", "find", "picture"]
+PERCEIVING: frozenset[JobKind] = frozenset({"build", "outline", "text"})
 """Kinds that run the pipeline, which needs Open3D."""
 
 
@@ -28,6 +29,10 @@ class JobStatus:
     fraction: float = 0.0
     message: str = "Starting"
     cancelling: bool = False
+    found: tuple[str, ...] = ()
+    """What was found so far, in a few words each."""
+    started_at: float = field(default_factory=time.monotonic)
+    """On the monotonic clock (s)."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +90,9 @@ class Jobs:
     def _report(self, event: ProgressEvent) -> None:
         status = self._status
         if status is not None and not status.cancelling:
-            self._status = replace(status, fraction=event.fraction, message=event.message)
+            found = (*status.found, event.found) if event.found else status.found
+            message = status.message if event.found else event.message
+            self._status = replace(status, fraction=event.fraction, message=message, found=found)
             self._on_change(self._status)
 
     def _run(self, work: Callable[[Progress], None], progress: Progress) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from diorama_core.artefacts import LayoutReport
@@ -28,6 +28,8 @@ class LayoutRun:
     report: LayoutReport | None = None
     final: Scene | None = None
     """What was committed."""
+    worse: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """Problems that objects have after the run and did not have before it, by id."""
     showing_before: bool = False
     going: threading.Event = field(default_factory=threading.Event)
     """Clear while the run pauses."""

@@ -7,6 +7,7 @@ import threading
 from collections.abc import Callable, Mapping
 
 import numpy as np
+from jaxtyping import Float
 
 from diorama_core.editing.collisions import Collisions
 from diorama_core.editing.placing import places_of
@@ -14,12 +15,14 @@ from diorama_core.errors import DioramaError
 from diorama_core.layout.problem.supports import outside_m
 from diorama_core.library import taxonomy
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.scene.room_edits import floor_height
 from diorama_core.scene.types import Scene, SceneObject
 
 log = logging.getLogger(__name__)
 
 FLOATING_M = 0.03
 OUTSIDE_M = 0.06
+BESIDE_M = 0.02
 SETTLE_S = 0.15
 """Delay so that edits are displayed first and only the last of several quick edits is checked."""
 COLLIDES, FLOATS, OUTSIDE = "collides", "floats", "outside"
@@ -64,8 +67,16 @@ def floats(scene: Scene, library: ShapeLibrary, item: SceneObject) -> bool:
         for p in places_of(Scene(objects=(parent,)), library)
         if p.upward and outside_m(p.surface, foot) < 0.05
     ]
+    if not tops and _is_beside(foot, parent):
+        return low - floor_height(scene) > FLOATING_M
     below = [t for t in tops if t <= low + FLOATING_M] or [float(parent.corners_world[:, 2].max())]
     return low - max(below) > FLOATING_M
+
+
+def _is_beside(foot: Float[np.ndarray, "3"], parent: SceneObject) -> bool:
+    """Whether a foot is outside the box of what should carry it."""
+    local = np.abs((foot - parent.pose.position) @ parent.pose.R_world_object)
+    return bool((local[:2] > parent.size_m[:2] / 2 + BESIDE_M).any())
 
 
 def outside_room(scene: Scene, item: SceneObject) -> bool:

@@ -6,28 +6,30 @@ Everything here runs on the UI thread's thread, except where a method says other
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import threading
-import time
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import viser
-from jaxtyping import UInt8
 
 from diorama_app.session.autosave import Autosave
 from diorama_app.session.connected_client import ConnectedClient
 from diorama_app.session.document import Document
-from diorama_app.session.draft import Draft
-from diorama_app.session.jobs import Jobs, JobStatus, Outcome
+from diorama_app.session.job_reports import JobReports
+from diorama_app.session.jobs import Jobs, Outcome
 from diorama_app.session.layout_run import LayoutRun
 from diorama_app.session.problem_checker import Checker, Problems
+from diorama_app.session.project_access import ProjectAccess
+from diorama_app.session.project_contents import build_notes, read_project
 from diorama_app.session.reading import Reader
 from diorama_app.session.redraws import Redraws
 from diorama_app.session.shape_preparation import Preparer
+from diorama_app.session.textures import Textures, refitted
 from diorama_app.session.ui_thread import UiThread
 from diorama_app.viewport.client_view import NoticeKind
 from diorama_app.viewport.framing import DEFAULT_FOV_RAD, room_view
@@ -36,21 +38,30 @@ from diorama_app.viewport.scene_view import Viewport
 from diorama_app.viewport.thumbnails import Thumbnails
 from diorama_core.artefacts import Inputs, Photo
 from diorama_core.editing.clipboard import Clip
-from diorama_core.errors import DioramaError, EditRefused, ProjectError
+from diorama_core.errors import DioramaError, EditRefused
 from diorama_core.io.bounded import shortened
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.user_library import ShapeRecords
-from diorama_core.project.lock import ProjectLock, ProjectLockedError
 from diorama_core.project.storage import Project
 from diorama_core.scene.schema import check_limits
 from diorama_core.scene.types import Pose, Scene
 
 log = logging.getLogger(__name__)
 
-JOB_TOLD_EVERY_S = 0.15
 MESH_OVERLAP_S = 0.45
 """How long an old mesh stays while the browser parses its successor."""
 
+
+@dataclass
+class Shared:
+    """What all open projects have in common."""
+
+    clip: Clip | None = None
+    """The clipboard."""
+
+
+BUILDING = "building"
+"""Entry of a project's file while its scene is built: since when."""
 
 MakeClient = Callable[["EditorSession", viser.ClientHandle, int], ConnectedClient]
 
@@ -73,34 +84,40 @@ class EditorSession:
         self.projects_dir = projects_dir
         self.low_graphics = low_graphics
         self.document = Document()
-        self.draft = Draft()
         self.project: Project | None = None
         self._inputs_saved: Inputs | None = None
         """Corrections of the photo as saved in the project's folder."""
         self.photo: Photo | None = None
         self.notes: tuple[str, ...] = ()
         """Notes of the pipeline about how the scene was made."""
-        self.textures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]] = {}
+        self.textures: Textures = {}
         self.clients: dict[int, ConnectedClient] = {}
         self.badges: Problems = {}
         """Current problems of objects, in a word or two each."""
         self.on_client: Callable[[Any], None] | None = None
         """Creates the page of a newly connected client."""
         self._clients_so_far = 0
-        self.clip: Clip | None = None
-        """The clipboard, shared by all projects."""
+        self.shared = Shared()
+        self.visit: Callable[[ConnectedClient, Project, str], None] = self._open_here
+        """Takes a client to a project and says something there; raises when it cannot be opened."""
+        self.on_left: Callable[[], None] = lambda: None
+        """Told when a client went away."""
+        self.greeting: tuple[str, NoticeKind] | None = None
+        """What the next client is told that comes."""
         self.binned: Path | None = None
         """The project deleted last, until it is restored."""
         self.layout_run: LayoutRun | None = None
         """The last optimisation run."""
-        self._job_told_at = 0.0
         self.ui_thread = UiThread(lambda message: self.notice_all(message, "bad"))
         self.redraws = Redraws(self.ui_thread, lambda client_id: client_id in self.clients)
-        self.jobs = Jobs(self._job_changed, self._job_ended)
+        reports = JobReports(
+            self.ui_thread, on_start=self.refresh_panels, on_progress=self._refresh_job, on_end=self._job_ended
+        )
+        self.jobs = Jobs(reports.changed, reports.ended)
+        self.interrupted = False
+        """Whether a build of this project was under way when the program ended."""
         self.autosave = Autosave(on_error=lambda line: self._saver_says(line, "bad"), on_saved=self._saver_says)
-        self._lock: ProjectLock | None = None
-        self.read_only = ""
-        """Why the open project is read-only; empty when it is writable."""
+        self._access = ProjectAccess()
         self.shapes = ShapeBytes(library, light=low_graphics)
         self.preparer = Preparer(library)
         self.reader = Reader()
@@ -112,12 +129,32 @@ class EditorSession:
         self.on_pick: Callable[[str, viser.SceneNodePointerEvent], None] | None = None
         self.on_drag: Callable[[str, viser.SceneNodeDragEvent], None] | None = None
 
+    @property
+    def clip(self) -> Clip | None:
+        """The clipboard, shared by all projects."""
+        return self.shared.clip
+
+    @clip.setter
+    def clip(self, clip: Clip | None) -> None:
+        self.shared.clip = clip
+
     # -- the document -----------------------------------------------------------------------------------------
 
     @property
     def scene(self) -> Scene:
         """The scene as it is now."""
         return self.document.scene
+
+    @property
+    def inputs(self) -> Inputs | None:
+        """The photo with everything that is said of it; None without one."""
+        return self.document.inputs
+
+    def annotate(
+        self, label: str, inputs: Inputs, *, by: ConnectedClient | None = None, merge_key: str | None = None
+    ) -> None:
+        """Change what is said of the photo, as one undo step; the scene stays as it is."""
+        self.commit(label, self.scene, by=by, inputs=inputs, merge_key=merge_key)
 
     def edit(
         self,
@@ -157,18 +194,17 @@ class EditorSession:
 
     def _with_pictures_refitted(self, scene: Scene) -> Scene:
         """The edited scene with the pictures of resized planes cut and continued, not stretched."""
-        if not self.textures or scene.architecture is self.scene.architecture:
-            return scene
-        from diorama_core.architecture.texture.refit import (
-            refitted_textures,  # OpenCV; opening a project does without it
-        )
-
-        scene, made = refitted_textures(self.scene, scene, self.textures)
-        if made:
-            self.textures = {**self.textures, **made}
-            if self.project is not None:
-                self.project.save_textures(made)
+        scene, made = refitted(self.scene, scene, self.textures)
+        self.add_textures(made)
         return scene
+
+    def add_textures(self, made: Textures) -> None:
+        """Have pictures for scenes to name, and save them."""
+        if not made:
+            return
+        self.textures = {**self.textures, **made}
+        if self.project is not None:
+            self.project.save_textures(made)
 
     def commit(
         self,
@@ -191,10 +227,14 @@ class EditorSession:
             client.to_say = (f"{who}{label[:1].upper()}{label[1:]}", True)
         self.changed(by)
 
+    @property
+    def read_only(self) -> str:
+        """Why the open project is read-only; empty when it is writable."""
+        return self._access.read_only
+
     def need_writable(self) -> None:
         """Raise `EditRefused` when the open project cannot be changed here."""
-        if self.read_only:
-            raise EditRefused(self.read_only)
+        self._access.need_writable()
 
     def undo(self, by: ConnectedClient) -> None:
         """Take back the last change, whoever made it."""
@@ -216,25 +256,15 @@ class EditorSession:
 
     def changed(self, by: ConnectedClient | None = None) -> None:
         """The document changed: save and show it. Nothing that is shown can keep it from being saved."""
+        inputs = self.document.inputs
         if self.project is not None:
-            self.autosave.save_soon(self.project, self.scene)
-        self._follow_inputs()
+            begun = bool(self.scene.objects or self.scene.architecture.planes) or self.project.has_scene
+            unsaved = None if inputs is self._inputs_saved else inputs
+            self.autosave.save_soon(self.project, self.scene if begun else None, unsaved)
+        self._inputs_saved = inputs
+        self.photo = None if inputs is None else inputs.photo
         self.refresh(by)
         self.checker.look_at(self.scene)
-
-    def _follow_inputs(self) -> None:
-        """What is said of the photo changed: the next build starts from that, in this session and in later ones."""
-        inputs = self.document.inputs
-        if inputs is None or inputs is self._inputs_saved:
-            return
-        try:
-            if self.project is not None:
-                self.project.save_inputs(inputs, self.project.info().get("warnings", ()))
-        except DioramaError as error:
-            self.notice_all(f"corrections of the photo are not saved: {error}", "bad")
-        if self.draft.from_project:
-            self.draft = self.draft.following(inputs)
-        self._inputs_saved, self.photo = inputs, inputs.photo
 
     def _badged(self, found: Problems) -> None:
         self.badges = found
@@ -258,11 +288,7 @@ class EditorSession:
         self.refresh_panels(by)
 
     def refresh_panels(self, by: ConnectedClient | None = None) -> None:
-        """Redraw the panels only."""
-        self.redraws.ask(self.clients.values(), first=by)
-
-    def refresh_cursors(self, by: ConnectedClient | None = None) -> None:
-        """Redraw what everyone sees of the others' selections."""
+        """Redraw the panels, and what everyone sees of the others' selections."""
         self.redraws.ask(self.clients.values(), first=by)
 
     def _draw(self, what: str, draw: Callable[[], None]) -> None:
@@ -283,42 +309,45 @@ class EditorSession:
         One that another program has open is only looked at; of one whose scene is damaged the newest good version
         is shown, and the page says so.
         """
-        scene, damage = project.newest_scene()
-        inputs, lost = _photo_of(project)
-        textures = project.textures(scene)
+        read = read_project(project)
+        scene, inputs = read.scene, read.inputs
         self.autosave.flush()
-        self._take_lock(project)
-        self.project, self.textures = project, textures
-        self.read_notes()
+        if self._access.take(project):
+            with contextlib.suppress(OSError):  # leftovers that cannot be removed disturb nobody
+                self.autosave.recovery.clean_up(project)
+        self.project, self.textures, self.notes = project, read.textures, read.notes
         self.photo = None if inputs is None else inputs.photo
-        self.draft = Draft()
+        self.interrupted = project.info().get(BUILDING) is not None
         self.shapes.expect(len(scene.objects))
-        if inputs is not None:
-            self.draft = Draft(inputs, inputs.boxes, from_project=True, name=project.name)
         self.document.open(scene, inputs)
         self._inputs_saved = inputs
         self.layout_run = None
+        for client in self.clients.values():
+            client.view.canvas.close()
         self.show_whole_room()
         self.refresh()
+        for client in self.clients.values():
+            self._show_where_left(client)
         self.checker.look_at(scene)
-        for line in (self.read_only, damage, lost):
+        for line in (self.read_only, self._access.unwritable, *read.damage):
             if line:
                 self.notice_all(line, "bad")
 
-    def _take_lock(self, project: Project) -> None:
-        """Let go of the project that was open, and have this one to oneself if possible."""
-        if self._lock is not None:
-            if self._lock.folder == project.folder:
-                return
-            self._lock.release()
-        self._lock, self.read_only = None, ""
-        try:
-            self._lock = ProjectLock(project.folder, "the editor")
-            self.autosave.recovery.clean_up(project)
-        except ProjectLockedError as error:
-            self.read_only = f"nothing can be changed here: {error}"
-        except (ProjectError, OSError) as error:
-            log.warning("%s is opened without a lock: %s", project.folder, error)  # saving will say what is wrong
+    @property
+    def unfinished(self) -> bool:
+        """Whether the project has a photo and nothing was built of it yet."""
+        return self.inputs is not None and not self.scene.objects and not self.scene.architecture.planes
+
+    def _show_where_left(self, client: ConnectedClient) -> None:
+        """An unfinished project opens where its boxes are drawn."""
+        if self.unfinished:
+            client.open_tab("Photo")
+            client.open_board()
+
+    def _open_here(self, client: ConnectedClient, project: Project, message: str = "") -> None:
+        self.open_project(project)
+        if message:
+            self.notice_all(message, "good")
 
     def _saver_says(self, message: str, kind: NoticeKind = "good") -> None:
         def tell() -> None:
@@ -329,9 +358,7 @@ class EditorSession:
 
     def read_notes(self) -> None:
         """Learn what the project's build had to say."""
-        notes = self.project.info().get("notes", []) if self.project is not None else []
-        listed = notes if isinstance(notes, list) else []
-        self.notes = tuple(dict.fromkeys(shortened(str(note), 300) for note in listed[:50]))
+        self.notes = () if self.project is None else build_notes(self.project)
 
     def show_whole_room(self) -> None:
         """New visitors and all who are here look at the whole room."""
@@ -342,10 +369,10 @@ class EditorSession:
         for client in self.clients.values():
             client.selection = ()
             client.doing = None
-            client.view.show_backdrop(None, None, 1.0)
-            client.view.show_overlay(None, None, 0.0)
-            if not client.view.drawing:
-                client.view.move_camera(*room_view(self.scene, client.view.aspect))
+            client.view.photo.show_backdrop(None, None, 1.0)
+            client.view.photo.show_overlay(None, None, 0.0)
+            if not client.view.canvas.is_open:
+                client.view.camera.move(*room_view(self.scene, client.view.camera.aspect))
 
     # -- people -----------------------------------------------------------------------------------------------
 
@@ -358,12 +385,18 @@ class EditorSession:
                 self.on_client(client)
             self._show_photo_camera(client)
             client.refresh()
+        client.view.camera.move(*room_view(self.scene, client.view.camera.aspect))
+        self._show_where_left(client)
+        if self.greeting is not None:
+            (message, kind), self.greeting = self.greeting, None
+            client.notice(message, kind)
 
     def left(self, viser_client: viser.ClientHandle) -> None:
         """A browser went away."""
         self.clients.pop(viser_client.client_id, None)
         self.ui_thread.forget(viser_client.client_id)
-        self.refresh_cursors()
+        self.refresh_panels()
+        self.on_left()
 
     def notice(self, client_id: int | None, message: str, kind: NoticeKind = "info") -> None:
         """Tell one person, or all when it is not known which."""
@@ -387,8 +420,7 @@ class EditorSession:
         self.jobs.wait(5.0)
         self.ui_thread.stop()
         self.autosave.stop()
-        if self._lock is not None:
-            self._lock.release()
+        self._access.release()
         self.checker.stop()
         self.preparer.stop()
         self.reader.close()
@@ -402,7 +434,7 @@ class EditorSession:
                 ask = self.on_photo_camera
                 client.post(lambda: ask(client))
 
-        client.view.show_photo_camera(self.scene.camera, photo, through_it)
+        client.view.photo.show_camera(self.scene.camera, photo, through_it)
 
     def _picked(self, object_id: str, event: viser.SceneNodePointerEvent) -> None:
         if self.on_pick is not None:
@@ -417,32 +449,14 @@ class EditorSession:
         timer.daemon = True
         timer.start()
 
-    def _job_changed(self, status: JobStatus) -> None:
-        now = time.monotonic()
-        begins = status.fraction == 0.0
-        if begins or status.cancelling or now - self._job_told_at > JOB_TOLD_EVERY_S:
-            self._job_told_at = now
-            self.ui_thread.post(self.refresh_panels if begins else self._refresh_job, key="job")
-
     def _refresh_job(self) -> None:
         for client in self.clients.values():
             if client.job_panel is not None:
                 client.job_panel.refresh()
 
     def _job_ended(self, outcome: Outcome) -> None:
-        def tell() -> None:
-            self.refresh()
-            if outcome.cancelled:
-                self.notice_all("Cancelled; nothing was changed.")
-            elif outcome.error is not None:
-                self.notice_all(outcome.error, "bad")
-
-        self.ui_thread.post(tell)
-
-
-def _photo_of(project: Project) -> tuple[Inputs | None, str]:
-    """What is known of the photo, and why nothing is where it cannot be read."""
-    try:
-        return project.load_inputs(), ""
-    except ProjectError as error:
-        return None, str(error)
+        self.refresh()
+        if outcome.cancelled:
+            self.notice_all("Cancelled; nothing was changed.")
+        elif outcome.error is not None:
+            self.notice_all(outcome.error, "bad")

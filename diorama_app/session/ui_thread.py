@@ -71,7 +71,7 @@ class UiThread:
             task: quick work; long work belongs in a job.
             key: a newer task with the same key replaces an older one that has not started (a drag's moves).
             on_error: told in one line what went wrong; everybody by default.
-            client: whose turn it takes; the server's own when None.
+            client_id: the browser whose queue it joins; the server's own when None.
             after_s: how long it waits at least.
         """
         posted = _Posted(task, on_error or self._on_error, client_id, key)

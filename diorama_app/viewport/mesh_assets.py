@@ -9,14 +9,22 @@ from jaxtyping import Int32, UInt8
 from PIL import Image
 from trimesh.visual.material import PBRMaterial
 
+from diorama_core.errors import LibraryError
 from diorama_core.geometry.planes import plane_axes, plane_uv
 from diorama_core.io.cache import LruCache
-from diorama_core.library.paint import painted
+from diorama_core.library.paint import main_rgb, painted
+from diorama_core.library.photo_materials import Pictures, with_photo_materials
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.simplify import simplified_glb
-from diorama_core.scene.types import Finish, Plane
+from diorama_core.library.stretch import EVEN, Scale, stretched_parts
+from diorama_core.scene.types import Finish, PhotoMaterial, Plane
 
 Colour = tuple[float, float, float]
+NO_PICTURES: Pictures = {}
+_Key = tuple[str, Colour | None, Finish | None, tuple[PhotoMaterial, ...], Scale, frozenset[str], int | None]
+MAX_PICTURE_PX = 1024
+"""Of one picture from the photo on the page; exports have the whole one."""
+GREY = (200, 200, 200)
 CACHE_BYTES = 512 * 2**20
 """Of all shapes in memory: what the browser asks for again when somebody joins or an edit is undone."""
 LIGHT_SCENE_TRIANGLES = 24_000
@@ -32,28 +40,78 @@ class ShapeBytes:
         """Nothing is made yet; `light` models are simplified, the more the more of them there are."""
         self._library = library
         self._max_triangles = LIGHT_SHAPE_TRIANGLES[0] if light else None
-        self._cached: LruCache[tuple[str, Colour | None, Finish | None, int | None], bytes]
+        self._cached: LruCache[_Key, bytes]
         self._cached = LruCache(CACHE_BYTES, size_of=len)
+        self._main_colours: dict[str, tuple[int, int, int]] = {}
 
     def expect(self, count: int) -> None:
         """From now on shapes are made for a scene of about `count` objects."""
         if self._max_triangles is not None:
             self._max_triangles = int(np.clip(LIGHT_SCENE_TRIANGLES // max(count, 1), *LIGHT_SHAPE_TRIANGLES))
 
-    def glb(self, shape_id: str, colour: Colour | None = None, finish: Finish | None = None) -> bytes:
-        """The shape's GLB; with `colour` (sRGB 0 to 1) and `finish` on its main material."""
+    def glb(
+        self,
+        shape_id: str,
+        colour: Colour | None = None,
+        finish: Finish | None = None,
+        materials: tuple[PhotoMaterial, ...] = (),
+        scale: Scale = EVEN,
+        pictures: Pictures = NO_PICTURES,
+    ) -> bytes:
+        """The shape's GLB; with `colour` (sRGB 0 to 1) and `finish` on its main material, and the photo's on others.
+
+        Args:
+            shape_id: which shape.
+            colour: of its main material.
+            finish: of its main material.
+            materials: from the photo, over both where they match a slot.
+            scale: by which it will be scaled, relative to an even scale: thin parts are made to keep their thickness.
+            pictures: their textures by name.
+        """
         most = self._max_triangles
+        shown = {m.texture: pictures[m.texture] for m in materials if m.texture is not None and m.texture in pictures}
 
         def made() -> bytes:
-            own = colour is None and finish is None
-            data = self._library.glb(shape_id) if own else _painted_glb(self._library.parts(shape_id), colour, finish)
+            own = colour is None and finish is None and not materials and scale == EVEN
+            if own:
+                data = self._library.glb(shape_id)
+            else:
+                parts = stretched_parts(self._library.parts(shape_id), scale)
+                data = _painted_glb(parts, colour, finish, materials, shown)
             return data if most is None else simplified_glb(data, most)
 
-        return self._cached.get((shape_id, colour, finish, most), made)
+        return self._cached.get((shape_id, colour, finish, materials, scale, frozenset(shown), most), made)
+
+    def main_colour(self, shape_id: str) -> tuple[int, int, int]:
+        """The colour of the shape's main material (sRGB, 0 to 255); grey where the shape is missing."""
+        if shape_id not in self._main_colours:
+            try:
+                found = main_rgb(self._library.parts(shape_id))
+            except LibraryError:
+                found = GREY
+            self._main_colours[shape_id] = found
+        return self._main_colours[shape_id]
 
 
-def _painted_glb(parts: trimesh.Scene, colour: Colour | None, finish: Finish | None) -> bytes:
-    return bytes(painted(parts, colour, finish).export(file_type="glb"))
+def _painted_glb(
+    parts: trimesh.Scene,
+    colour: Colour | None,
+    finish: Finish | None,
+    materials: tuple[PhotoMaterial, ...],
+    pictures: Pictures,
+) -> bytes:
+    shown = parts if colour is None and finish is None else painted(parts, colour, finish)
+    if materials:
+        reduced_pictures = {name: reduced(picture, MAX_PICTURE_PX) for name, picture in pictures.items()}
+        shown = with_photo_materials(shown, materials, reduced_pictures)
+    return bytes(shown.export(file_type="glb"))
+
+
+def reduced(picture: UInt8[np.ndarray, "h w 3"], longest: int) -> UInt8[np.ndarray, "h2 w2 3"]:
+    """The picture with its longer side at most `longest` pixels."""
+    image = Image.fromarray(picture)
+    image.thumbnail((longest, longest), Image.Resampling.LANCZOS)
+    return np.asarray(image)
 
 
 def plane_triangles(plane: Plane) -> Int32[np.ndarray, "m 3"]:

@@ -67,7 +67,7 @@ def mask_picture(
 
     Args:
         size_px: width and height of the photo.
-        things: objects to draw; those without a mask as their box.
+        items: objects to draw; those without a mask as their box.
         selection: ids of what is selected.
     """
     scale = min(1.0, LONGEST_PX / max(size_px))

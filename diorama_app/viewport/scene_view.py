@@ -15,9 +15,11 @@ import viser
 from jaxtyping import UInt8
 
 from diorama_app.viewport.decorations import remove_quietly
-from diorama_app.viewport.mesh_assets import ShapeBytes, plane_glb, plane_triangles
+from diorama_app.viewport.mesh_assets import NO_PICTURES, ShapeBytes, plane_glb, plane_triangles, reduced
 from diorama_core.geometry.rotations import quaternion_wxyz
-from diorama_core.scene.types import Finish, Plane, Pose, Scene, SceneObject
+from diorama_core.library.photo_materials import Pictures
+from diorama_core.library.stretch import Scale, relative_scale
+from diorama_core.scene.types import Finish, PhotoMaterial, Plane, Pose, RoomLight, Scene, SceneObject
 
 MESH_NAMES = 8
 """An object's meshes take turns among so many names, so that what is on its way out keeps its own."""
@@ -25,7 +27,11 @@ MESH_NAMES = 8
 SHADOW_ON_PLANES = 0.25
 """How dark."""
 
-Appearance = tuple[str, tuple[float, float, float] | None, Finish | None]
+MAIN_LIGHT_AWAY_M = 12.0
+MAIN_LIGHT_EVEN, MAIN_LIGHT_STRENGTH = 0.6, 2.2
+"""Its intensity where light comes from everywhere, and how much that grows up to light from one side alone."""
+
+Appearance = tuple[str, tuple[float, float, float] | None, Finish | None, tuple[PhotoMaterial, ...], Scale]
 Pick = Callable[[str, Any], None]
 Later = Callable[[Callable[[], None]], None]
 
@@ -63,6 +69,10 @@ class Viewport:
         self._later = later
         self._objects: dict[str, _Shown] = {}
         self._planes: dict[str, tuple[Plane, viser.SceneNodeHandle]] = {}
+        self._main_light: RoomLight | None = None
+        self._main_light_node: viser.DirectionalLightHandle | None = None
+        self._pictures: Pictures = NO_PICTURES
+        """Of planes and objects, as shown last."""
         self._shadow_on_planes: float | bool = SHADOW_ON_PLANES
 
     def light(self, *, low_graphics: bool) -> None:
@@ -83,9 +93,32 @@ class Viewport:
             )
             scene.add_light_ambient("/lights/around", color=(255, 250, 244), intensity=0.55)
 
+    def _show_main_light(self, light: RoomLight | None) -> None:
+        """The photo's main light in place of the usual ones, as far as it is stronger from one side."""
+        if light == self._main_light:
+            return
+        self._main_light = light
+        scene, shadows = self._server.scene, self._shadow_on_planes is not False
+        scene.configure_default_lights(enabled=light is None, cast_shadow=shadows)
+        if self._main_light_node is not None:
+            self._main_light_node.remove()
+            self._main_light_node = None
+        if light is not None:
+            red, green, blue = (round(255 * c) for c in light.colour)
+            away = MAIN_LIGHT_AWAY_M * np.array(light.direction)
+            self._main_light_node = scene.add_light_directional(
+                "/lights/main",
+                color=(red, green, blue),
+                intensity=MAIN_LIGHT_EVEN + MAIN_LIGHT_STRENGTH * light.strength,
+                cast_shadow=shadows,
+                position=(float(away[0]), float(away[1]), float(max(away[2], 1.0))),
+            )
+
     def show(self, scene: Scene, textures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]]) -> None:
         """Make the page show this scene, changing only what differs."""
+        self._pictures = textures
         with self._server.atomic():
+            self._show_main_light(scene.light)
             self._show_planes(scene, textures)
             for gone in [i for i in self._objects if not scene.has_object(i)]:
                 self._objects.pop(gone).frame.remove()
@@ -157,7 +190,7 @@ class Viewport:
             frame = self._server.scene.add_frame(self._fresh_name("/objects"), show_axes=False)
             shown = self._objects[item.id] = _Shown(frame, item)
         shown.item = item
-        replaced = shown.appearance != (item.shape_id, item.colour, item.finish)
+        replaced = shown.appearance != _appearance(item)
         if replaced:
             self._replace_mesh(shown, item)
         if shown.pose is not item.pose or replaced:
@@ -166,14 +199,14 @@ class Viewport:
 
     def _replace_mesh(self, shown: _Shown, item: SceneObject) -> None:
         # A node whose bytes change vanishes until the browser has parsed them, so the old one stays for a moment.
-        data = self._shapes.glb(item.shape_id, item.colour, item.finish)
+        data = self._shapes.glb(*_appearance(item), self._pictures)
         old = shown.mesh
         shown.version = (shown.version + 1) % MESH_NAMES
         mesh = self._server.scene.add_glb(
             f"{shown.frame.name}/v{shown.version}", data, scale=tuple(float(s) for s in item.pose.scale)
         )
         shown.mesh = mesh
-        shown.appearance = (item.shape_id, item.colour, item.finish)
+        shown.appearance = _appearance(item)
         object_id = item.id
 
         async def clicked(event: viser.SceneNodePointerEvent[Any]) -> None:
@@ -207,10 +240,6 @@ class Viewport:
         return next(name for n in range(1, len(taken) + 2) if (name := f"{stem}/{n}") not in taken)
 
 
-def reduced(picture: UInt8[np.ndarray, "h w 3"], longest: int) -> UInt8[np.ndarray, "h2 w2 3"]:
-    """The picture with its longer side at most `longest` pixels."""
-    from PIL import Image
-
-    image = Image.fromarray(picture)
-    image.thumbnail((longest, longest), Image.Resampling.LANCZOS)
-    return np.asarray(image)
+def _appearance(item: SceneObject) -> Appearance:
+    scale = relative_scale(item.pose.scale)
+    return (item.shape_id, item.colour, item.finish, item.shown_photo_materials, scale)

@@ -52,6 +52,11 @@ class Thumbnails:
             self._painted.get(name, lambda: (shape_id, paint))
         return f'<img alt="" loading="lazy" src="{PICTURES}{name}.png">'
 
+    def knows(self, name: str) -> bool:
+        """Whether a page was given a picture of this name."""
+        name = name.removesuffix(".png")
+        return name in self._own or self._painted.find(name) is not None
+
     def png(self, name: str) -> Future[bytes | None]:
         """The picture called so, made beside everything else; None where there is none."""
         name = name.removesuffix(".png")

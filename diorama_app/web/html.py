@@ -20,12 +20,12 @@ OnAction = Callable[["Action"], None]
 
 STYLE = """
 <style>
-.dio, .dio-toast { --ink: #2b2f36; --dim: #626b79; --line: #d5dbe3; --soft: #f4f6f8; --card-line: #e3e7ec; --face: #fff;
+.dio, .dio-toast { --ink: #2b2f36; --dim: #59626f; --line: #d5dbe3; --soft: #f4f6f8; --card-line: #e3e7ec; --face: #fff;
   --hover: #eef3fb; --on: #fdeadb; --accent: #2f6fd6; --tile: #eef1f4; --warn: #fff6e6; --warn-line: #f0d9a8;
   --bad: #c62828; }
 :root[data-mantine-color-scheme="dark"] .dio, :root[data-mantine-color-scheme="dark"] .dio-toast { --ink: #dfe3ea;
-  --dim: #9aa4b2; --line: #454c58; --soft: #2a2e35; --card-line: #3a404a; --face: #30353d; --hover: #363d49;
-  --on: #57402c; --accent: #3f80e8; --tile: #e4e8ed; --warn: #443a20; --warn-line: #6b5a2c; --bad: #ff7d72; }
+  --dim: #b3bcc9; --line: #454c58; --soft: #2a2e35; --card-line: #3a404a; --face: #30353d; --hover: #363d49;
+  --on: #57402c; --accent: #2f6fd6; --tile: #e4e8ed; --warn: #443a20; --warn-line: #6b5a2c; --bad: #ff8f85; }
 .dio { font-size: 13px; line-height: 1.4; color: var(--ink); padding: 0 10px 8px 10px; }
 .dio * { box-sizing: border-box; }
 .dio h4 { margin: 8px 0 6px 0; font-size: 12px; font-weight: 600; color: var(--dim); letter-spacing: .01em; }
@@ -37,12 +37,15 @@ STYLE = """
 .dio button, .dio select, .dio input { font: inherit; border: 1px solid var(--line); background: var(--face);
   color: var(--ink); border-radius: 6px; padding: 4px 9px; }
 .dio button { cursor: pointer; }
-.dio input { width: 100%; min-width: 0; }
+.dio input, .dio select { width: 100%; min-width: 0; }
 .dio button:hover:not(:disabled):not(.on) { background: var(--hover); border-color: #9db7e0; }
 .dio button:focus-visible, .dio input:focus-visible, .dio [tabindex]:focus-visible {
   outline: 2px solid var(--accent); outline-offset: 1px; }
 .dio button:disabled { opacity: .4; cursor: default; }
 .dio button.on { background: var(--accent); border-color: var(--accent); color: #fff; }
+.dio .fields { display: grid; grid-template-columns: repeat(3, 1fr); gap: 4px 6px; margin-bottom: 4px; }
+.dio .fields label { font-size: 11px; color: var(--dim); min-width: 0; }
+.dio .fields input, .dio .fields select { display: block; width: 100%; font-size: 13px; padding: 4px 6px; }
 .dio .bar { display: flex; gap: 4px; flex-wrap: wrap; margin-bottom: 6px; }
 .dio .bar button { flex: 1 1 auto; white-space: nowrap; padding: 5px 8px; }
 .dio .bar button:only-child { flex: 0 1 auto; }
@@ -52,7 +55,7 @@ STYLE = """
 .dio .row:hover { background: var(--hover); }
 .dio .row.on { background: var(--on); box-shadow: inset 3px 0 0 #ff7a1a; }
 .dio .row.over { box-shadow: inset 0 0 0 2px var(--accent); }
-.dio .row .name { flex: 1 1 auto; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
+.dio .row .name { flex: 1 1 auto; min-width: 0; overflow-wrap: break-word; line-height: 1.25; }
 .dio .row.off .name { opacity: .5; }
 .dio .row .tool { border: 0; background: transparent; padding: 2px 4px; opacity: .35; line-height: 0; }
 .dio .row:hover .tool, .dio .row .tool.on { opacity: 1; background: transparent; color: inherit; }
@@ -85,12 +88,16 @@ STYLE = """
 .dio .photo { width: 100%; border-radius: 8px; display: block; }
 .dio .drop { border: 2px dashed var(--line); border-radius: 10px; padding: 12px; text-align: center; }
 .dio .drop.over { border-color: var(--accent); background: var(--hover); }
-.dio-toast { position: fixed; left: 50%; bottom: 18px; transform: translateX(-50%); z-index: 900; display: flex;
-  align-items: center; gap: 12px; max-width: 44vw; padding: 8px 12px; border-radius: 10px; font-size: 13px;
+.dio-toast { position: fixed; left: calc(var(--dio-left, 0px) + var(--dio-width, 100vw) / 2);
+  bottom: calc(var(--dio-below, 0px) + 18px); transform: translateX(-50%); z-index: 900; display: flex;
+  align-items: center; gap: 12px; max-width: calc(var(--dio-width, 100vw) - 24px); width: max-content;
+  box-sizing: border-box; padding: 8px 12px; border-radius: 10px; font-size: 13px;
   color: #fff; background: #262b33ee; box-shadow: 0 4px 16px #0004; animation: dio-fade .7s 5.3s forwards; }
 .dio-toast span { overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
 .dio-toast button { font: inherit; font-weight: 600; cursor: pointer; border: 0; background: transparent;
   color: #8fc0ff; }
+.dio-toast.long { animation-delay: 14s; }
+.dio-toast span { white-space: normal !important; }
 .dio-toast.stay { animation: none; background: #1d4f9eee; }
 @keyframes dio-fade { 100% { opacity: 0; visibility: hidden; } }
 .mantine-Paper-root:has(> .mantine-Paper-root + [aria-hidden=true]) { border-color: transparent;
@@ -123,6 +130,17 @@ _HOVER = html.escape(
     "window.__dioWait=setTimeout(()=>S('peek',k,event),120)}"
 )
 _LEAVE = html.escape("if(window.__dioPeek){window.__dioPeek='';clearTimeout(window.__dioWait);S('peek','',event)}")
+_FOCUS = html.escape(
+    "const t=event.target;if(t.matches('[data-change],.row')){window.__dioField=[t.dataset.change||'',"
+    "t.dataset.arg||'',performance.now()];if(t.matches('input'))setTimeout(()=>document.activeElement===t&&t.select())}"
+)
+"""What is clicked to be changed is selected whole: typing replaces it."""
+_REFOCUS = html.escape(
+    "const f=window.__dioField,b=this.parentElement;this.remove();if(f&&document.activeElement===document.body&&"
+    "performance.now()-f[2]<20000){const t=[...b.querySelectorAll(f[0]?'[data-change]':'.row')].find(t=>"
+    "(t.dataset.change||'')===f[0]&&(t.dataset.arg||'')===f[1]);if(t)t.focus()}"
+)
+"""A field that was drawn anew while somebody was in it has the focus again (`rows.js`: not after a press elsewhere)."""
 _GRAB = html.escape(
     "const t=event.target.closest('[data-grab]');"
     "if(t){event.dataTransfer.setData('text',t.dataset.grab);S('grab',t.dataset.grab,event)}"
@@ -136,8 +154,10 @@ _OVER = html.escape(
     "if(t){event.preventDefault();t.classList.add('over')}"
 )
 _FLOAT = html.escape(
-    "const n=this.parentElement,o=document.getElementById(n.dataset.float);if(o)o.remove();n.id=n.dataset.float;"
-    "this.remove();if(n.dataset.empty)n.remove();else document.body.appendChild(n)"
+    "const n=this.parentElement,o=document.getElementById(n.dataset.float),a=document.activeElement,"
+    "f=o&&o.contains(a)?a.dataset:null;if(o)o.remove();n.id=n.dataset.float;this.remove();"
+    "if(n.dataset.empty)n.remove();else{document.body.appendChild(n);if(f&&f.do)[...n.querySelectorAll('[data-do]')]"
+    ".find(b=>b.dataset.do===f.do&&b.dataset.arg===f.arg)?.focus()}"
 )
 """Takes a piece of HTML out of its panel (which clips it) and lays it over the page, in place of its predecessor."""
 _DROP = html.escape(
@@ -195,6 +215,7 @@ class LiveHtml:
             send = _SEND % uuid
             handlers = {
                 "click": _CLICK,
+                "focusin": _FOCUS,
                 "change": _CHANGE,
                 "mouseover": _HOVER,
                 "mouseleave": _LEAVE,
@@ -230,7 +251,12 @@ class LiveHtml:
             self._handle.visible = True
             self._count += 1
             return
-        self._handle.content = self._frame.replace("%s", body, 1) if body else ""
+        back = (
+            f'<img alt="" src="data:," style="display:none" onerror="{_REFOCUS}">'
+            if "data-change" in body or "treeitem" in body
+            else ""
+        )
+        self._handle.content = self._frame.replace("%s", body + back, 1) if body else ""
         self._handle.visible = bool(body)
 
     @property

@@ -9,7 +9,6 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import functools
-import gzip
 import hmac
 import http
 import io
@@ -23,9 +22,8 @@ from collections.abc import Awaitable, Callable, Iterator
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from http.cookies import CookieError, SimpleCookie
-from pathlib import Path
-from typing import Any
-from urllib.parse import parse_qs, urlsplit
+from typing import Any, Protocol, runtime_checkable
+from urllib.parse import parse_qs, parse_qsl, urlencode, urlsplit
 
 import viser
 import websockets.asyncio.server
@@ -35,39 +33,19 @@ from websockets.asyncio.server import ServerConnection
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
+from diorama_app.web.bridge import Bridge, ConnectionHandler
+from diorama_app.web.responses import TOKEN_COOKIE, add_headers, picture, prepend_scripts
+from diorama_app.web.upload_limits import RunningUpload, why_refused
 from diorama_core.errors import InputError
 
-TOKEN_COOKIE = "diorama_token"
 LOOPBACK_NAMES = frozenset({"127.0.0.1", "localhost", "::1"})
 ANY_HOST = frozenset({"", "0.0.0.0", "::"})
-MAX_UPLOAD_BYTES = 128 * 1024 * 1024
-MAX_UPLOADS_IN_FLIGHT = 8
-MAX_UPLOADS_PER_CLIENT = 3
-MAX_BYTES_IN_FLIGHT = 2 * MAX_UPLOAD_BYTES
-"""Announced by all uploads that are under way: viser holds them in memory."""
 UPLOAD_STALLED_S = 60.0
 """An upload idle for this long is dropped when its slot is needed."""
-MIN_PART_BYTES = 4096
-"""The page sends parts of half a megabyte; very many small ones are only memory."""
 MESSAGES_PER_S, MESSAGES_AT_ONCE = 300, 600
 """Of one connection: a drag and a turning camera together send about a hundred a second."""
 MAX_MESSAGE_BYTES = 16 * 1024 * 1024
 
-HEAD_SCRIPTS = sorted((Path(__file__).parents[1] / "static").glob("*.js"))
-"""Run in the page before viser does."""
-SECURITY_HEADERS = {
-    # viser's page is one file of inline scripts, starts workers from blobs and compiles WebAssembly and templates.
-    "Content-Security-Policy": "default-src 'none'; script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:; "
-    "style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; font-src 'self' data:; "
-    "connect-src 'self' data: blob:; worker-src 'self' blob:; media-src 'self' data: blob:; manifest-src 'self'; "
-    "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'self'",
-    "Cross-Origin-Opener-Policy": "same-origin",
-    "Cross-Origin-Resource-Policy": "same-origin",
-    "Permissions-Policy": "camera=(), geolocation=(), microphone=(), payment=(), usb=()",
-    "Referrer-Policy": "no-referrer",
-    "X-Content-Type-Options": "nosniff",
-    "X-Frame-Options": "SAMEORIGIN",
-}
 PICTURES = "pictures/"
 """Addresses below this one are pictures."""
 
@@ -99,6 +77,22 @@ HttpHandler = Callable[[ServerConnection, Request], Response | None]
 Answer = Callable[[ServerConnection, Request], Response | Awaitable[Response] | None]
 Refused = Callable[[int, str], None]
 Pictures = Callable[[str], "Future[bytes | None]"]
+
+PROJECT = "project"
+"""The parameter of an address that names a project."""
+
+
+@runtime_checkable
+class Projects(Protocol):
+    """Which project an address leads to."""
+
+    def first(self) -> str | None:
+        """The project of an address that names none; None for the page of the server itself."""
+        ...
+
+    def server(self, name: str) -> viser.ViserServer | None:
+        """The server of a project, opened if necessary; None where there is no such project. May take a while."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -175,6 +169,7 @@ def create_server(
     visitors: Visitors,
     refused: Refused | None = None,
     pictures: Pictures | None = None,
+    projects: Projects | None = None,
 ) -> viser.ViserServer:
     """A hardened viser server.
 
@@ -186,13 +181,35 @@ def create_server(
         refused: told (client id, one line) of every upload that was refused.
         pictures: asked for a PNG when a page wants `pictures/<name>`. The browser fetches what it shows and nothing
             else, beside the websocket on which the scene comes.
+        projects: where browsers go whose address names a project (`/?project=...`).
 
     Raises:
         InputError: the port is taken or the address is not this machine's.
     """
     _check_port(host, port)
-    with _guarded_serve(visitors, pictures), contextlib.redirect_stdout(io.StringIO()):
+    with _guarded_serve(visitors, pictures, projects), contextlib.redirect_stdout(io.StringIO()):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=False)
+    _secure(server, refused)
+    return server
+
+
+def create_server_without_port(label: str, refused: Refused | None = None) -> viser.ViserServer:
+    """A viser server whose connections come from the one that has the port (`projects` of `create_server`)."""
+    handlers: list[ConnectionHandler] = []
+
+    def serve(handler: ConnectionHandler, *args: Any, **kwargs: Any) -> _NoPort:
+        handlers.append(handler)
+        return _NoPort()
+
+    with _replaced_serve(serve), contextlib.redirect_stdout(io.StringIO()):
+        server = viser.ViserServer(host="127.0.0.1", port=0, label=label, verbose=False)
+    _HANDLERS[server] = handlers[0]
+    _secure(server, refused)
+    return server
+
+
+def _secure(server: viser.ViserServer, refused: Refused | None) -> None:
+    """No public tunnel, and caps on the uploads of every page."""
     server.request_share_url = _no_share_url
     uploads = _Uploads(refused)
     uploads.watch(server.gui)
@@ -201,7 +218,36 @@ def create_server(
         uploads.watch(viser_client.gui)
 
     server.on_client_connect(watch)  # the first to be told, before anything makes an upload button
-    return server
+
+
+_HANDLERS: weakref.WeakKeyDictionary[viser.ViserServer, ConnectionHandler] = weakref.WeakKeyDictionary()
+"""Of servers without a port: what talks to a browser, in the loop of that server."""
+_STARTING = threading.Lock()
+
+
+class _NoPort:
+    """Stands where viser expects the socket that it listens on."""
+
+    sockets = ()
+
+    async def __aenter__(self) -> _NoPort:
+        self.server = self
+        return self
+
+    async def __aexit__(self, *error: object) -> None:
+        return None
+
+
+@contextlib.contextmanager
+def _replaced_serve(serve: Callable[..., Any]) -> Iterator[None]:
+    """While it lasts, viser starts its websocket servers by `serve`."""
+    with _STARTING:
+        original = websockets.asyncio.server.serve
+        websockets.asyncio.server.serve = serve  # type: ignore[assignment, misc]
+        try:
+            yield
+        finally:
+            websockets.asyncio.server.serve = original  # type: ignore[misc]
 
 
 def stop_server(server: viser.ViserServer) -> None:
@@ -244,20 +290,50 @@ def _check_port(host: str, port: int) -> None:
 
 
 @contextlib.contextmanager
-def _guarded_serve(visitors: Visitors, pictures: Pictures | None) -> Iterator[None]:
+def _guarded_serve(visitors: Visitors, pictures: Pictures | None, projects: Projects | None) -> Iterator[None]:
     """While it lasts, websocket servers are started with the visitors' check in front."""
     original = websockets.asyncio.server.serve
 
     @functools.wraps(original)
     def serve(handler: Any, *args: Any, process_request: HttpHandler | None = None, **kwargs: Any) -> Any:
         kwargs["max_size"] = MAX_MESSAGE_BYTES
-        return original(_paced(handler), *args, process_request=_checked(process_request, visitors, pictures), **kwargs)
+        checked = _checked(process_request, visitors, pictures, projects)
+        routed = handler if projects is None else _routed(handler, projects)
+        return original(_paced(routed), *args, process_request=checked, **kwargs)
 
-    websockets.asyncio.server.serve = serve  # type: ignore[assignment, misc]
-    try:
+    with _replaced_serve(serve):
         yield
-    finally:
-        websockets.asyncio.server.serve = original  # type: ignore[misc]
+
+
+def _routed(handler: ConnectionHandler, projects: Projects) -> ConnectionHandler:
+    """A handler that gives a connection to the server of the project in its address, or else to `handler`."""
+
+    async def handle(connection: ServerConnection) -> None:
+        name = project_of("" if connection.request is None else connection.request.path)
+        server = None if name is None else await asyncio.to_thread(projects.server, name)
+        inner = None if server is None else _HANDLERS.get(server)
+        if server is None or inner is None:
+            await handler(connection)
+            return
+        loop = server._websock_server._background_event_loop
+        assert loop is not None
+        bridge = Bridge(connection, asyncio.get_running_loop())
+        await asyncio.wrap_future(asyncio.run_coroutine_threadsafe(inner(bridge), loop))
+
+    return handle
+
+
+def project_of(address: str) -> str | None:
+    """The project that an address names, or None."""
+    return parse_qs(urlsplit(address).query).get(PROJECT, [None])[0]
+
+
+def _redirected(request: Request, project: str) -> Response:
+    """Sends a page whose address names no project to the address that does."""
+    query = [*parse_qsl(urlsplit(request.path).query, keep_blank_values=True), (PROJECT, project)]
+    headers = Headers({"Location": f"/?{urlencode(query)}", "Content-Length": "0", "Cache-Control": "no-store"})
+    headers["Connection"] = "close"
+    return Response(http.HTTPStatus.FOUND, "Found", headers)
 
 
 def _paced(handler: Callable[[ServerConnection], Awaitable[None]]) -> Callable[[ServerConnection], Awaitable[None]]:
@@ -280,7 +356,9 @@ def _paced(handler: Callable[[ServerConnection], Awaitable[None]]) -> Callable[[
     return handle
 
 
-def _checked(handler: HttpHandler | None, visitors: Visitors, pictures: Pictures | None) -> Answer:
+def _checked(
+    handler: HttpHandler | None, visitors: Visitors, pictures: Pictures | None, projects: Projects | None
+) -> Answer:
     def process_request(connection: ServerConnection, request: Request) -> Response | Awaitable[Response] | None:
         refusal = visitors.refusal(request)
         if refusal is not None:
@@ -293,58 +371,20 @@ def _checked(handler: HttpHandler | None, visitors: Visitors, pictures: Pictures
     def served(connection: ServerConnection, request: Request) -> Response | Awaitable[Response] | None:
         name = urlsplit(request.path).path.removeprefix(f"/{PICTURES}")
         if pictures is not None and f"/{PICTURES}{name}" == urlsplit(request.path).path:
-            return _picture(connection, pictures(name))
+            return picture(connection, pictures(name))
+        is_page = urlsplit(request.path).path in ("", "/") and request.headers.get("Upgrade") != "websocket"
+        first = projects.first() if projects is not None and is_page and project_of(request.path) is None else None
+        if first is not None:
+            redirect = _redirected(request, first)
+            add_headers(redirect, remember=visitors.token if visitors.brings_token(request) else None)
+            return redirect
         response = handler(connection, request) if handler is not None else None
         if response is not None:
-            _prepend_script(response)
-            _add_headers(response, remember=visitors.token if visitors.brings_token(request) else None)
+            prepend_scripts(response)
+            add_headers(response, remember=visitors.token if visitors.brings_token(request) else None)
         return response
 
     return process_request
-
-
-def _prepend_script(response: Response) -> None:
-    """Our scripts in front of viser's, in the page itself."""
-    if not response.headers.get("Content-Type", "").startswith("text/html"):
-        return
-    zipped = response.headers.get("Content-Encoding") == "gzip"
-    response.body = _page(bytes(response.body or b""), zipped)
-    del response.headers["Content-Length"]
-    response.headers["Content-Length"] = str(len(response.body))
-
-
-@functools.lru_cache(maxsize=2)
-def _page(body: bytes, zipped: bool) -> bytes:
-    page = gzip.decompress(body) if zipped else body
-    scripts = b"".join(b"\n<script>" + script.read_bytes() + b"</script>" for script in HEAD_SCRIPTS)
-    page = page.replace(b"<head>", b"<head>" + scripts, 1)
-    return gzip.compress(page, mtime=0) if zipped else page
-
-
-async def _picture(connection: ServerConnection, asked: Future[bytes | None]) -> Response:
-    png = await asyncio.wrap_future(asked)
-    if connection.protocol.eof_sent:
-        raise asyncio.CancelledError  # the page was closed meanwhile; websockets would trip over an answer to nobody
-    if png is None:
-        return Response(http.HTTPStatus.NOT_FOUND, "Not Found", Headers({"Content-Length": "0", "Connection": "close"}))
-    headers = {
-        "Content-Type": "image/png",
-        "Content-Length": str(len(png)),
-        "Cache-Control": "private, max-age=3600",
-        "Connection": "close",
-    }
-    response = Response(http.HTTPStatus.OK, "OK", Headers(headers), png)
-    _add_headers(response, remember=None)
-    return response
-
-
-def _add_headers(response: Response, *, remember: str | None) -> None:
-    for name, value in SECURITY_HEADERS.items():
-        response.headers[name] = value
-    if remember is not None:
-        cookie = SimpleCookie({TOKEN_COOKIE: remember})
-        cookie[TOKEN_COOKIE].update({"path": "/", "httponly": "1", "samesite": "Strict"})
-        response.headers["Set-Cookie"] = cookie[TOKEN_COOKIE].OutputString()
 
 
 class _Uploads:
@@ -363,7 +403,7 @@ class _Uploads:
         start, part = gui._handle_file_transfer_start, gui._handle_file_transfer_part
 
         def capped_start(client_id: Any, message: _messages.FileTransferStartUpload) -> None:
-            reason = self._against(client_id, message)
+            reason = why_refused(message, client_id, self._running())
             if reason is None:
                 self._moved_at[message.transfer_uuid] = time.monotonic()
                 start(client_id, message)
@@ -390,39 +430,16 @@ class _Uploads:
         ):
             handlers[kind] = [new if known == old else known for known in handlers[kind]]
 
-    def _against(self, client_id: Any, message: _messages.FileTransferStartUpload) -> str | None:
-        """Why an upload is refused, or None."""
-        size, parts = message.size_bytes, message.part_count
-        if not (isinstance(size, int) and isinstance(parts, int) and isinstance(message.filename, str)):
-            return "the page sent an invalid request; reload it"
-        if size > MAX_UPLOAD_BYTES:
-            return (
-                f"it has {size / 1e6:.0f} MB, and files up to {MAX_UPLOAD_BYTES / 1e6:.0f} MB can be uploaded; "
-                "make it smaller"
-            )
-        if size < 0 or not 0 <= parts <= size // MIN_PART_BYTES + 2:
-            return "the page sent an invalid request; reload it"
-        running = self._running()
-        if message.transfer_uuid in {uuid for uuid, _ in running}:
-            return "it is being uploaded already"
-        own = sum(state["client_id"] == client_id for _, state in running)
-        announced = sum(state["total_bytes"] for _, state in running)
-        if own >= MAX_UPLOADS_PER_CLIENT or len(running) >= MAX_UPLOADS_IN_FLIGHT:
-            return "other uploads are under way; try again when they are done"
-        if announced + size > MAX_BYTES_IN_FLIGHT:
-            return "other large uploads are under way; try again when they are done"
-        return None
-
-    def _running(self) -> list[tuple[str, Any]]:
+    def _running(self) -> list[RunningUpload]:
         """Uploads under way; those that stand still are given up."""
-        now, found = time.monotonic(), []
+        now, found = time.monotonic(), list[RunningUpload]()
         for gui in list(self._guis):
             for uuid, state in list(gui._current_file_upload_states.items()):
                 if now - self._moved_at.get(uuid, now) > UPLOAD_STALLED_S:
                     gui._current_file_upload_states.pop(uuid, None)
                 else:
-                    found.append((uuid, state))
-        alive = {uuid for uuid, _ in found}
+                    found.append(RunningUpload(uuid, state["client_id"], state["total_bytes"]))
+        alive = {upload.uuid for upload in found}
         self._moved_at = {uuid: at for uuid, at in self._moved_at.items() if uuid in alive}
         return found
 

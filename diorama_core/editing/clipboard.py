@@ -37,6 +37,42 @@ def copied(scene: Scene, ids: Iterable[str]) -> Clip:
     )
 
 
+def pasted_at(scene: Scene, clip: Clip, target_world: Float[np.ndarray, "3"]) -> tuple[Scene, tuple[str, ...]]:
+    """The scene with copies on the floor, around the place nearest to a point from which all of them are inside.
+
+    Returns:
+        The scene and the ids of the copies that do not ride on others.
+    """
+    corners = np.concatenate([o.corners_world for o in clip.objects])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    floor = scene.architecture.floor
+    level, place = 0.0, np.asarray(target_world[:2], dtype=np.float64)
+    if floor is not None:
+        level = float(floor.offset / max(floor.normal[2], 1e-6))
+        half = (high - low)[:2] / 2
+        first, last = floor.polygon[:, :2].min(axis=0) + half, floor.polygon[:, :2].max(axis=0) - half
+        place = np.where(first <= last, np.clip(place, first, last), (first + last) / 2)
+    middle = (low + high)[:2] / 2
+    inner = {s.child: s for s in clip.supports if s.parent in {o.id for o in clip.objects}}
+    objects = tuple(_moved(o, clip, inner, np.append(place - middle, 0.0), level) for o in clip.objects)
+    scene, heads = pasted(scene, Clip(objects, tuple(inner.values())), np.zeros(3))
+    if floor is not None:
+        for object_id in heads:
+            scene = edits.attach(scene, Support(object_id, floor.id))
+    return scene, heads
+
+
+def _moved(
+    item: SceneObject, clip: Clip, inner: dict[str, Support], shift: Float[np.ndarray, "3"], level: float
+) -> SceneObject:
+    """An object moved across, and down to the floor with whatever of the clip it stands on."""
+    base = item.id
+    while base in inner:
+        base = inner[base].parent
+    lowest = next(float(o.corners_world[:, 2].min()) for o in clip.objects if o.id == base)
+    return replace(item, pose=item.pose.moved(shift + np.array([0.0, 0.0, level - lowest])))
+
+
 def pasted(scene: Scene, clip: Clip, offset_world: object = BESIDE_M) -> tuple[Scene, tuple[str, ...]]:
     """The scene with copies, shifted, under ids of their own.
 

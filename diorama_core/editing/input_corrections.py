@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 from jaxtyping import Bool
 
-from diorama_core.artefacts import Box, Inputs, LabelledBox
+from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
 from diorama_core.geometry.projection import box_iou
+from diorama_core.library.taxonomy import resolve
 
 SAME_BOX_IOU = 0.98
 """Boxes that overlap so much are the same one, written with fewer digits."""
+SAME_OBJECT_IOU = 0.5
+"""A detected box that overlaps so much with another one is of the same object."""
 
 
 def with_correction(
@@ -41,6 +46,40 @@ def with_correction(
         return replace(changed, instance_boxes=renamed)
     changed = _without_outline(changed, old)
     return changed if mask is None else _with_outline(changed, now, mask)
+
+
+def without_box(inputs: Inputs, index: int) -> Inputs:
+    """The inputs without one box; an outline that was given for it stays as an outline without a class."""
+    return replace(inputs, boxes=tuple(b for i, b in enumerate(inputs.boxes) if i != index))
+
+
+def with_box_at(inputs: Inputs, index: int, now: LabelledBox) -> Inputs:
+    """The inputs with another box, or another class, in the place of one; its outline goes with another box."""
+    old = inputs.boxes[index]
+    changed = replace(inputs, boxes=tuple(now if i == index else b for i, b in enumerate(inputs.boxes)))
+    if old.box != now.box:
+        return _without_outline(changed, old)
+    renamed = tuple((i, now if b.box == now.box else b) for i, b in inputs.instance_boxes)
+    return replace(changed, instance_boxes=renamed)
+
+
+def with_boxes_added(inputs: Inputs, boxes: Sequence[LabelledBox]) -> Inputs:
+    """The inputs with more boxes, except those that are there already with at least `SAME_OBJECT_IOU`."""
+    old = np.asarray([b.box for b in inputs.boxes]).reshape(-1, 4)
+    new = tuple(b for b in boxes if not len(old) or box_iou(old, np.asarray([b.box])).max() < SAME_OBJECT_IOU)
+    return replace(inputs, boxes=(*inputs.boxes, *new))
+
+
+def labelled_box(box: Box, label: str) -> LabelledBox:
+    """A box with a name as it was typed, and the category that it means."""
+    return LabelledBox(box, resolve(label).category.name, label)
+
+
+def boxes_json(boxes: Sequence[LabelledBox], photo: Photo) -> bytes:
+    """Boxes as the documented file, in pixels of the upright original."""
+    sx, sy = photo.original_size[0] / photo.width, photo.original_size[1] / photo.height
+    rows = [{"bbox": [b.box[0] * sx, b.box[1] * sy, b.box[2] * sx, b.box[3] * sy], "class": b.label} for b in boxes]
+    return json.dumps(rows).encode()
 
 
 def given_outline(inputs: Inputs, box: Box) -> Bool[np.ndarray, "h w"] | None:

@@ -49,6 +49,7 @@ def _described(scene: Scene, object_id: str, found: Found, *, colour: tuple[floa
             box_px=new.box_px,
             confidence=new.confidence,
             colour=colour,
+            photo_materials=new.photo_materials,
         )
 
     return replace(scene, objects=tuple(described(o) if o.id == object_id else o for o in scene.objects))

@@ -14,7 +14,7 @@ from diorama_core.export.physics import Inertia
 from diorama_core.library import taxonomy
 from diorama_core.scene.types import Plane
 
-Points = Float[np.ndarray, "v 3"]
+Points = Float[np.ndarray, "_ 3"]
 
 
 @dataclass(frozen=True, eq=False)

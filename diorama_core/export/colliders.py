@@ -29,8 +29,13 @@ from diorama_core.scene.types import Plane, box_corners
 NEAR_FLOOR_M = 0.03
 """An object without support stands on the floor when its bottom is this near to it."""
 MIN_SLAB_M = 0.05
+THIN_M = 1e-3
+"""Pieces of slabs that are thinner than this are left out."""
 FOOT_M = 0.006
 """What lies this near to the lowest point of an object is its foot."""
+NEAR_TOP_M = 0.012
+"""Corners of a carrier this near to the level of a foot belong to the face that holds it up."""
+MIN_HOLD_M2 = 1e-5
 BALANCE_SHARE = 0.7
 """Centres of mass lie within the foot's outline shrunk to this."""
 
@@ -50,13 +55,13 @@ def physical_scene(gathered: ExportScene) -> PhysicalScene:
         if bodies[child].free:
             bodies[child] = _welded(bodies[child], carrier)
             notes.append(f"{child} is sunk into {carrier or 'the room'} and welded to it")
-    apart = (replace(b, parts=cuts.parts(i), moving=cuts.moving(b)) for i, b in bodies.items())
-    done = tuple(balanced(b) for b in apart)
+    apart = {i: replace(b, parts=cuts.parts(i), moving=cuts.moving(b)) for i, b in bodies.items()}
+    done = tuple(balanced(b, None if b.node.parent is None else apart[b.node.parent]) for b in apart.values())
     return PhysicalScene(done, slabs, tuple(sorted(cuts.ignored)), tuple(notes))
 
 
-def balanced(body: RigidBody) -> RigidBody:
-    """The body with its centre of mass above its foot.
+def balanced(body: RigidBody, carrier: RigidBody | None = None) -> RigidBody:
+    """The body with its centre of mass above its foot, or above that part of it which its carrier holds up.
 
     What stands in a photo is in balance; where guessed masses say otherwise, as for lamps with weighted feet, they are
     wrong. The centre moves to the nearest place well inside the foot's outline.
@@ -64,6 +69,9 @@ def balanced(body: RigidBody) -> RigidBody:
     low = min((float(p[:, 2].min()) for p in _world_parts(body)), default=0.0)
     foot = [p[p[:, 2] < low + FOOT_M][:, :2] for p in _world_parts(body)]
     outline = np.concatenate(foot) if foot else np.zeros((0, 2))
+    if carrier is not None:
+        tops = [p[np.abs(p[:, 2] - low) < NEAR_TOP_M][:, :2] for p in _world_parts(carrier)]
+        outline = _shared_outline(outline, np.concatenate(tops))
     total = body.mass_kg + sum(m.inertia.mass_kg for m in body.moving)
     weighed = [
         (body.inertia.mass_kg, body.inertia.centre),
@@ -79,6 +87,12 @@ def balanced(body: RigidBody) -> RigidBody:
 def _world_parts(body: RigidBody) -> list[Points]:
     T = body.node.T_world
     return [p @ T[:3, :3].T + T[:3, 3] for p in (*body.parts, *(q for m in body.moving for q in m.parts))]
+
+
+def _shared_outline(foot: Float[np.ndarray, "n 2"], top: Float[np.ndarray, "k 2"]) -> Float[np.ndarray, "m 2"]:
+    """Corners of what two convex outlines have in common; those of the foot where that is next to nothing."""
+    both = manifold3d.CrossSection.hull_points(foot) ^ manifold3d.CrossSection.hull_points(top)
+    return foot if both.area() < MIN_HOLD_M2 else np.concatenate(both.to_polygons())
 
 
 def _into(outline: Float[np.ndarray, "n 2"], point: Float[np.ndarray, "2"]) -> Float[np.ndarray, "2"]:
@@ -104,7 +118,16 @@ def slab_pieces(plane: Plane) -> tuple[Points, ...]:
     if _is_convex(flat):
         return (np.vstack([plane.polygon, plane.polygon + depth]),)
     triangles = np.asarray(manifold3d.triangulate([flat]), dtype=int)
-    return tuple(np.vstack([plane.polygon[t], plane.polygon[t] + depth]) for t in triangles)
+    return tuple(
+        np.vstack([plane.polygon[t], plane.polygon[t] + depth]) for t in triangles if _height(flat[t]) > THIN_M
+    )
+
+
+def _height(triangle: Float[np.ndarray, "3 2"]) -> float:
+    """Least height of a triangle: slivers are no bodies for a simulator."""
+    sides = np.roll(triangle, -1, axis=0) - triangle
+    doubled_area = abs(float(sides[0, 0] * sides[1, 1] - sides[0, 1] * sides[1, 0]))
+    return doubled_area / max(float(np.linalg.norm(sides, axis=1).max()), 1e-12)
 
 
 def _is_convex(outline: Float[np.ndarray, "n 2"]) -> bool:

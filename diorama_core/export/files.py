@@ -5,13 +5,20 @@ from __future__ import annotations
 import os
 import shutil
 import tempfile
+import time
 import zipfile
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from diorama_core.errors import ExportError
+from diorama_core.io.atomic import LEFTOVER_S
 
+PART = ".diorama-export-"
+"""How the names of temporary files begin; what a program that was killed left is removed by a later one."""
+
+FAST_DEFLATE = 1
+"""Level of compression: higher ones take several times as long for files a tenth smaller."""
 Entry = tuple[str, bytes]
 """Name of a file inside a package, with forward slashes, and its content."""
 
@@ -29,8 +36,9 @@ def whole_file(path: Path, suffix: str | None = None) -> Iterator[Path]:
     """
     path = Path(path)
     temporary: Path | None = None
+    _remove_leftovers(path.parent)
     try:
-        handle, name = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=suffix or path.suffix, dir=path.parent)
+        handle, name = tempfile.mkstemp(prefix=PART, suffix=suffix or path.suffix, dir=path.parent)
         os.close(handle)
         temporary = Path(name)
         yield temporary
@@ -69,7 +77,7 @@ def write_package(path: Path, main: str, entries: Iterable[Entry]) -> None:
     if path.suffix.lower() == ".zip":
         with whole_file(path) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
             for name, content in entries:
-                archive.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)
+                archive.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED, FAST_DEFLATE)
         return
     _write_beside(path, main, entries)
 
@@ -78,7 +86,7 @@ def _write_beside(path: Path, main: str, entries: Iterable[Entry]) -> None:
     """The companions first, then the main file that refers to them; files of other names there stay."""
     temporary: Path | None = None
     try:
-        temporary = Path(tempfile.mkdtemp(prefix=f".{path.stem}.", dir=path.parent))
+        temporary = Path(tempfile.mkdtemp(prefix=PART, dir=path.parent))
         content, companions = b"", []
         for name, data in entries:
             if name == main:
@@ -96,6 +104,13 @@ def _write_beside(path: Path, main: str, entries: Iterable[Entry]) -> None:
     finally:
         if temporary is not None:
             shutil.rmtree(temporary, ignore_errors=True)
+
+
+def _remove_leftovers(folder: Path) -> None:
+    for left in folder.glob(f"{PART}*"):
+        with suppress(OSError):
+            if time.time() - left.stat().st_mtime > LEFTOVER_S:
+                shutil.rmtree(left) if left.is_dir() else left.unlink()
 
 
 def _settle(path: Path) -> None:

@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene
 
-Outline = Float[np.ndarray, "n 2"]
+Outline = Float[np.ndarray, "_ 2"]
 GRID_M = 0.0005
 """Vertices are taken together on a grid of this size before the union: outlines are drawn at 1:20 at most."""
 GAP_M = 0.002

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, cast, runtime_checkable
@@ -17,7 +17,8 @@ from diorama_core.errors import ExportError, UnavailableError
 from diorama_core.progress import Progress
 
 if TYPE_CHECKING:
-    from diorama_core.export.gathering import ExportOptions, ExportScene, Picture
+    from diorama_core.export.gathering import ExportOptions, ExportScene
+    from diorama_core.export.pictures import Picture
     from diorama_core.library.record import ShapeLibrary
     from diorama_core.scene.types import Scene
 
@@ -49,12 +50,16 @@ class Format:
     """Optional dependency group that it needs."""
     needs: str | None = None
     """Module of that group whose absence stops the format."""
+    check: str | None = None
+    """Function inside `diorama_core.export` (`module:function`) that says what is missing, where no module tells."""
     joints: bool = False
     """Whether shapes that know their joints are written in parts that move."""
 
     @property
     def missing(self) -> str:
         """What to install before it can be written, in one line; empty when nothing is missing."""
+        if self.check is not None:
+            return str(_function(self.check)())
         if self.needs is None or importlib.util.find_spec(self.needs) is not None:
             return ""
         return f"{self.title} needs an optional library: pip install 'diorama[{self.extra}]'"
@@ -67,9 +72,13 @@ class Format:
         """
         if self.missing:
             raise UnavailableError(self.missing)
-        module, function = self.place.split(":")
-        full = module if "." in module else f"diorama_core.export.{module}"
-        return cast(Writer, getattr(importlib.import_module(full), function))
+        return cast(Writer, _function(self.place))
+
+
+def _function(place: str) -> Callable[..., Any]:
+    module, function = place.split(":")
+    full = module if "." in module else f"diorama_core.export.{module}"
+    return cast("Callable[..., Any]", getattr(importlib.import_module(full), function))
 
 
 _USD_KEEPS = "materials, textures, camera, lights, supports, colliders, masses, joints, the scene itself"
@@ -92,6 +101,14 @@ _TABLE = (
     Format("sdf", "SDFormat (Gazebo)", (".sdf", ".zip"), _SIM_KEEPS, "sdf:write_sdf", joints=True),
     Format(
         "obj", "Wavefront OBJ with materials", (".zip", ".obj"), "named objects, materials, textures", "obj:write_obj"
+    ),
+    Format(
+        "blend",
+        "Blender file",
+        (".blend",),
+        "collections, supports as parents, materials, textures, lights, camera with the photo behind it",
+        "blend:write_blend",
+        check="blender:missing_blender",
     ),
     Format("ply", "PLY mesh", (".ply",), "one mesh with vertex colours", "ply:write_ply"),
     Format("stl", "STL for printing", (".stl",), "bare triangles in millimetres", "stl:write_stl"),

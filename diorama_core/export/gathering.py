@@ -7,32 +7,30 @@ library for what an object looks like; colliders come from `diorama_core.export.
 
 from __future__ import annotations
 
-import hashlib
-import re
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Literal
 
-import cv2
 import numpy as np
-from jaxtyping import Float, UInt8
+from jaxtyping import Float
 
-from diorama_core.export.lights import ExportLight, lights_of
-from diorama_core.export.limbs import ExportLimb, articulation_of, limb_of, surfaces_of
-from diorama_core.library.paint import Colour
+from diorama_core.export.lights import ExportLight, MainLight, lights_of, main_light_of
+from diorama_core.export.limbs import ExportLimb, OneShape, articulation_of, by_joint, limb_of
+from diorama_core.export.names import Labels
+from diorama_core.export.photo_textures import MAX_PHOTO_TEXTURES_PX, bounded_pictures
+from diorama_core.export.pictures import Picture, photo_text
+from diorama_core.export.sharing import SharedAppearance
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.stretch import relative_scale
 from diorama_core.progress import Progress
-from diorama_core.render.appearance import Material, Surface, shape_surfaces
+from diorama_core.render.appearance import Material, PartsSource, Surface, shape_surfaces
 from diorama_core.render.slabs import plane_surfaces
 from diorama_core.scene.support import ancestors, top_down
-from diorama_core.scene.types import Camera, Finish, Plane, Scene, SceneObject, Support
+from diorama_core.scene.types import Camera, Plane, Scene, SceneObject, Support
 
-Picture = UInt8[np.ndarray, "h w c"]
-Compression = Literal["none", "meshopt"]
+Compression = Literal["none", "meshopt", "draco"]
 Bodies = Literal["free", "welded"]
-MIN_AREA_M2 = 1e-12
-"""Triangles smaller than this are not written: no format can shade them."""
 
 
 @dataclass(frozen=True)
@@ -45,12 +43,16 @@ class ExportOptions:
     """Ids of the objects to write, without the room around them; None writes everything."""
     max_texture_px: int | None = None
     """Longest side of a picture; larger ones are reduced."""
+    max_photo_textures_px: int = MAX_PHOTO_TEXTURES_PX
+    """Side of a square that all pictures from the photo on objects would fill together; more are reduced alike."""
     compression: Compression = "none"
     """Of geometry, where the format has one (GLB)."""
     bodies: Bodies = "free"
     """Whether simulators may move objects that stand on something; mounted and locked ones never move."""
     joints: bool = False
     """Whether shapes that know their joints are written in parts that move."""
+    photo: bool = False
+    """Whether files that can be opened again hold the photo, too (GLB, USD)."""
 
 
 EVERYTHING = ExportOptions()
@@ -124,6 +126,7 @@ class ExportScene:
     """Every material of the meshes once; names are unique."""
     camera: Camera | None
     lights: tuple[ExportLight, ...]
+    """Of lamps and windows."""
     scene: Scene
     """The whole scene as it was given, for formats that carry it to be read back."""
     library: ShapeLibrary
@@ -142,6 +145,16 @@ class ExportScene:
         for item in self.objects:
             below[item.parent] = (*below.get(item.parent, ()), item)
         return below
+
+    @cached_property
+    def main_light(self) -> MainLight | None:
+        """The photo's main light; None where it tells none, and where the room is not written."""
+        return main_light_of(self.scene) if self.options.only is None else None
+
+    @property
+    def carried_photo(self) -> str | None:
+        """The photo as text for files that hold it; None where it is not asked for, or there is none."""
+        return None if self.photo is None or not self.options.photo else photo_text(self.photo)
 
     def object(self, object_id: str) -> ExportObject:
         """The exported object with this id; raises `KeyError` when it is not exported."""
@@ -175,7 +188,7 @@ def gather(
         scene: What to write; hidden objects are left out, what they carry moves up to their supporter.
         library: Where its shapes are.
         options: What of it is written.
-        textures: Pictures of the planes by `Plane.texture`.
+        textures: Pictures of the planes by `Plane.texture`, and of the objects' materials from the photo.
         photo: The photo that the scene was made from.
         name: What the file calls the scene.
         provenance: Where the scene comes from, as JSON values.
@@ -185,18 +198,20 @@ def gather(
         LibraryError: when a shape is missing.
         Cancelled: when asked to stop.
     """
-    shared, labels = _Shared(options.max_texture_px), _Labels()
-    planes, meshes = _planes(scene, options, textures or {}, shared, labels)
+    shared, labels = SharedAppearance(options.max_texture_px), Labels()
+    textures = bounded_pictures(scene, textures or {}, options.max_photo_textures_px)
+    planes, meshes = _planes(scene, options, textures, shared, labels)
     shown = {o.id for o in scene.objects if not o.hidden and (options.only is None or o.id in options.only)}
     order = [scene.object(i) for i in top_down(scene) if i in shown]
-    painted: dict[tuple[str, Colour | None, Finish | None], dict[int | None, str]] = {}
+    painted: dict[tuple[object, ...], dict[int | None, str]] = {}
     objects = []
     for number, item in enumerate(order):
         if progress is not None:
             progress.report(number / len(order), f"reading {item.label}")
-        paint = (item.shape_id, item.colour, item.finish)
+        scale = relative_scale(item.pose.scale)
+        paint = (item.shape_id, item.colour, item.finish, item.shown_photo_materials, scale)
         if paint not in painted:
-            made = _shape_meshes(library, item, options, shared, labels)
+            made = _shape_meshes(library, item, options, textures, shared, labels)
             painted[paint] = {number: mesh.key for number, mesh in made.items()}
             meshes |= {mesh.key: mesh for mesh in made.values()}
         objects.append(_node(scene, library, item, painted[paint], shown, labels))
@@ -224,14 +239,8 @@ def rigid_inverse(T: Float[np.ndarray, "4 4"]) -> Float[np.ndarray, "4 4"]:
     return out
 
 
-def slug_of(text: str) -> str:
-    """An ASCII identifier that resembles the text: a letter first, then letters, digits and underscores."""
-    plain = re.sub(r"[^A-Za-z0-9]+", "_", text).strip("_")
-    return plain if plain[:1].isalpha() else f"n_{plain}".rstrip("_")
-
-
 def _planes(
-    scene: Scene, options: ExportOptions, textures: Mapping[str, Picture], shared: _Shared, labels: _Labels
+    scene: Scene, options: ExportOptions, textures: Mapping[str, Picture], shared: SharedAppearance, labels: Labels
 ) -> tuple[list[ExportPlane], dict[str, ExportMesh]]:
     found, meshes = [], {}
     for plane in scene.architecture.planes if options.only is None else ():
@@ -247,16 +256,19 @@ def _planes(
 
 
 def _shape_meshes(
-    library: ShapeLibrary, item: SceneObject, options: ExportOptions, shared: _Shared, labels: _Labels
+    library: ShapeLibrary,
+    item: SceneObject,
+    options: ExportOptions,
+    textures: Mapping[str, Picture],
+    shared: SharedAppearance,
+    labels: Labels,
 ) -> dict[int | None, ExportMesh]:
     """The shape's mesh under None; with joints, what each of them moves under its number."""
     pieces = articulation_of(library, item.shape_id) if options.joints else None
-    if pieces is None:
-        grouped: dict[int | None, tuple[Surface, ...]] = {
-            None: shape_surfaces(library, item.shape_id, item.colour, item.finish)
-        }
-    else:
-        grouped = surfaces_of(pieces, item.colour, item.finish)
+    shown: PartsSource = library if pieces is None else OneShape(pieces)
+    paint = (item.colour, item.finish, item.shown_photo_materials)
+    surfaces = shape_surfaces(shown, item.shape_id, *paint, textures, relative_scale(item.pose.scale))
+    grouped = {None: surfaces} if pieces is None else by_joint(surfaces)
     made = {}
     for number, surfaces in grouped.items():
         name = item.shape_id if number is None or pieces is None else f"{item.shape_id} {pieces.joints[number].name}"
@@ -270,7 +282,7 @@ def _node(
     item: SceneObject,
     made: Mapping[int | None, str],
     shown: set[str],
-    labels: _Labels,
+    labels: Labels,
 ) -> ExportObject:
     name = item.label if item.label == item.id else f"{item.label} ({item.id})"
     numbers = [number for number in made if number is not None]
@@ -288,118 +300,3 @@ def _node(
         support=scene.support_of(item.id),
         limbs=tuple(limb_of(item, joints[n], n, made[n]) for n in numbers),
     )
-
-
-class _Labels:
-    """Names that are each used once: many programs address nodes by name."""
-
-    def __init__(self) -> None:
-        self._names: set[str] = set()
-        self._slugs: set[str] = set()
-        self._keys: set[str] = set()
-
-    def name(self, text: str) -> str:
-        return unique_name(text or "object", self._names, " ")
-
-    def slug(self, text: str) -> str:
-        return unique_name(slug_of(text), self._slugs, "_")
-
-    def key(self, text: str) -> str:
-        return unique_name(slug_of(text), self._keys, "_")
-
-
-def unique_name(text: str, taken: set[str], separator: str = " ") -> str:
-    """The text, with a number where it was used before; `taken` is extended.
-
-    Case is ignored, because some disks do so when files are named by it; `taken` holds case-folded names.
-    """
-    candidate, number = text, 2
-    while candidate.casefold() in taken:
-        candidate, number = f"{text}{separator}{number}", number + 1
-    taken.add(candidate.casefold())
-    return candidate
-
-
-class _Shared:
-    """Materials and pictures, each once, whatever number of shapes brings an equal one."""
-
-    def __init__(self, max_px: int | None) -> None:
-        self._max_px = max_px
-        self._materials: dict[Any, Material] = {}
-        self._names: set[str] = set()
-        self._pictures: dict[bytes, Picture] = {}
-        self._read: dict[int, tuple[Picture, bytes]] = {}
-
-    @property
-    def materials(self) -> tuple[Material, ...]:
-        return tuple(self._materials.values())
-
-    def surfaces(self, surfaces: Iterable[Surface]) -> tuple[Surface, ...]:
-        """The same surfaces with shared materials, without triangles that have no area, and with unit normals."""
-        sound = (_with_unit_normals(_without_slivers(s)) for s in surfaces)
-        return tuple(replace(s, material=self._material(s.material)) for s in sound if len(s.faces))
-
-    def _material(self, source: Material) -> Material:
-        texture = None if source.texture is None else self._digest(source.texture)
-        maps = tuple((slot, self._digest(picture)) for slot, picture in sorted(source.maps.items()))
-        values = (source.name, source.colour, source.alpha, source.metallic, source.roughness, source.emissive)
-        key = (*values, source.double_sided, source.photographed, texture, maps)
-        if key not in self._materials:
-            self._materials[key] = replace(
-                source,
-                name=unique_name(source.name, self._names, " "),
-                texture=None if texture is None else self._pictures[texture],
-                maps={slot: self._pictures[digest] for slot, digest in maps},
-            )
-        return self._materials[key]
-
-    def _digest(self, picture: Picture) -> bytes:
-        if id(picture) not in self._read:
-            digest = hashlib.sha256(f"{picture.shape}".encode() + np.ascontiguousarray(picture).tobytes()).digest()
-            self._read[id(picture)] = (picture, digest)  # holding the picture keeps its id from being reused
-            if digest not in self._pictures:
-                self._pictures[digest] = _limited(picture, self._max_px)
-        return self._read[id(picture)][1]
-
-
-def _limited(picture: Picture, max_px: int | None) -> Picture:
-    """The picture, reduced so that its longer side has at most `max_px` pixels."""
-    longest = max(picture.shape[:2])
-    if max_px is None or longest <= max_px:
-        return picture
-    width, height = (max(1, round(n * max_px / longest)) for n in (picture.shape[1], picture.shape[0]))
-    return np.asarray(cv2.resize(picture, (width, height), interpolation=cv2.INTER_AREA))
-
-
-def _without_slivers(surface: Surface) -> Surface:
-    """The surface without triangles that have no area or name a vertex twice."""
-    a, b, c = (surface.vertices[surface.faces[:, k]].astype(np.float64) for k in range(3))
-    sound = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1) > MIN_AREA_M2
-    if sound.all():
-        return surface
-    faces = surface.faces[sound]
-    used = np.unique(faces)
-    return replace(
-        surface,
-        vertices=surface.vertices[used],
-        normals=surface.normals[used],
-        faces=np.searchsorted(used, faces).astype(np.int32),
-        uv=None if surface.uv is None else surface.uv[used],
-        colours=None if surface.colours is None else surface.colours[used],
-    )
-
-
-def _with_unit_normals(surface: Surface) -> Surface:
-    """The surface with the normals that have no length, where creases cancel out, taken from a face at the vertex."""
-    lengths = np.linalg.norm(surface.normals.astype(np.float64), axis=1)
-    if (np.abs(lengths - 1.0) < 1e-4).all():
-        return surface
-    normals = np.divide(surface.normals, np.maximum(lengths, 1e-9)[:, None])
-    lost = lengths < 0.5
-    a, b, c = (surface.vertices[surface.faces[:, k]].astype(np.float64) for k in range(3))
-    flat = np.cross(b - a, c - a)
-    flat /= np.linalg.norm(flat, axis=1, keepdims=True)
-    of_face = np.zeros_like(normals)
-    for corner in range(3):
-        of_face[surface.faces[:, corner]] = flat
-    return replace(surface, normals=np.where(lost[:, None], of_face, normals).astype(np.float32))

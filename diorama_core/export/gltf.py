@@ -26,10 +26,10 @@ from diorama_core.export.gathering import (
     ExportScene,
     gather,
     rigid_inverse,
-    unique_name,
 )
 from diorama_core.export.gltf_document import GltfDocument
-from diorama_core.export.lights import ExportLight
+from diorama_core.export.lights import ExportLight, MainLight
+from diorama_core.export.names import unique_name
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.scene.schema import scene_to_json
@@ -85,7 +85,7 @@ def write_gathered(gathered: ExportScene, path: Path, progress: Progress | None 
 
 
 def _document(gathered: ExportScene, progress: Progress) -> GltfDocument:
-    document = GltfDocument(generator="Diorama", compressed=gathered.options.compression == "meshopt")
+    document = GltfDocument(generator="Diorama", compression=gathered.options.compression)
     return _Builder(gathered, document, progress).built()
 
 
@@ -112,6 +112,8 @@ class _Builder:
         ]
         if self._gathered.camera is not None:
             children.append(self._camera(self._gathered.camera))
+        if self._gathered.main_light is not None:
+            children.append(self._main_light(self._gathered.main_light))
         root: dict[str, Any] = {
             "name": self._unique("diorama"),
             "rotation": [-_HALF_TURN, 0.0, 0.0, _HALF_TURN],
@@ -123,6 +125,8 @@ class _Builder:
                 "provenance": dict(self._gathered.provenance),
             },
         }
+        if self._gathered.carried_photo is not None:
+            root["extras"]["diorama_photo"] = self._gathered.carried_photo
         if children:
             root["children"] = children
         node = self._document.add("nodes", root)
@@ -206,6 +210,13 @@ class _Builder:
             "extensions": {"KHR_lights_punctual": {"light": index}},
             "extras": {"diorama_light": item.id},
         }
+        return self._document.add("nodes", node)
+
+    def _main_light(self, light: MainLight) -> int:
+        about = {"name": "main light", "type": "directional", "color": [float(c) for c in light.colour]}
+        index = self._document.add_light({**about, "intensity": float(light.lux)})
+        extension = {"KHR_lights_punctual": {"light": index}}
+        node = {"name": self._unique("main light"), **_placement(light.T_world), "extensions": extension}
         return self._document.add("nodes", node)
 
     def _camera(self, camera: Camera) -> int:

@@ -9,19 +9,21 @@ from __future__ import annotations
 import io
 import json
 import struct
-from typing import IO, Any
+from typing import Any
 
-import cv2
 import numpy as np
-from jaxtyping import UInt8
-from PIL import Image
 
 from diorama_core.export import meshopt
+from diorama_core.export.draco import EXTENSION, draco_mesh
+from diorama_core.export.gathering import Compression
+from diorama_core.export.pictures import Picture, encoded_picture, picture_suffix, power_of_two
 from diorama_core.export.tangents import tangents
+from diorama_core.io.atomic import ByteSink
 from diorama_core.render.appearance import Material, Surface
 
 _ARRAY_BUFFER, _ELEMENT_ARRAY_BUFFER = 34962, 34963
 _COMPONENT_TYPES = {"f4": 5126, "u2": 5123, "u4": 5125, "i1": 5120}
+_MEDIA_TYPES = {".jpg": "image/jpeg", ".png": "image/png"}
 _WIDTHS = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
 _MAGIC, _JSON_CHUNK, _BINARY_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
 
@@ -29,9 +31,10 @@ _MAGIC, _JSON_CHUNK, _BINARY_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
 class GltfDocument:
     """A document under construction. Every `add_` method returns the index of what it added."""
 
-    def __init__(self, generator: str, *, compressed: bool = False) -> None:
+    def __init__(self, generator: str, *, compression: Compression = "none") -> None:
         self._data = bytearray()
-        self._compressed = compressed
+        self._compressed = compression == "meshopt"
+        self._draco = compression == "draco"
         self._decoded_bytes = 0
         self._json: dict[str, Any] = {"asset": {"version": "2.0", "generator": generator}}
         self._materials: dict[tuple[int, bool], int] = {}
@@ -63,7 +66,7 @@ class GltfDocument:
         """A mesh with one primitive per surface."""
         return self.add("meshes", {"name": name, "primitives": [self._primitive(s) for s in surfaces]})
 
-    def write(self, file: IO[bytes]) -> None:
+    def write(self, file: ByteSink) -> None:
         """Write the finished file."""
         if self._data:
             self._json["buffers"] = [{"byteLength": len(self._data)}]
@@ -104,12 +107,35 @@ class GltfDocument:
             arrays["COLOR_0"] = surface.colours
         arrays = {name: np.ascontiguousarray(values, dtype="<f4") for name, values in arrays.items()}
         faces = surface.faces
+        if self._draco:
+            return self._draco_primitive(arrays, faces, self._material(material, textured=textured))
         if self._compressed:
             arrays, faces = meshopt.prepared(arrays, faces)
         return {
             "attributes": {name: self._attribute(name, values) for name, values in arrays.items()},
             "indices": self._indices(faces.reshape(-1), len(surface.vertices)),
             "material": self._material(material, textured=textured),
+        }
+
+    def _draco_primitive(self, arrays: dict[str, np.ndarray], faces: np.ndarray, material: int) -> dict[str, Any]:
+        """A primitive whose accessors say what Draco's data decode to."""
+        packed = draco_mesh(arrays, faces)
+        self._use(EXTENSION, required=True)
+        accessors = {}
+        for name in arrays:
+            kind = _WIDTHS[arrays[name].shape[1]]
+            entry: dict[str, Any] = {"componentType": 5126, "count": packed.vertices, "type": kind}
+            if name == "POSITION":
+                entry |= {"min": packed.lower.tolist(), "max": packed.upper.tolist()}
+            accessors[name] = self.add("accessors", entry)
+        wide = 5123 if packed.vertices < 65536 else 5125
+        indices = {"componentType": wide, "count": 3 * packed.triangles, "type": "SCALAR"}
+        stored = {"bufferView": self._view(packed.data), "attributes": dict(packed.attributes)}
+        return {
+            "attributes": accessors,
+            "indices": self.add("accessors", indices),
+            "material": material,
+            "extensions": {EXTENSION: stored},
         }
 
     def _attribute(self, name: str, values: np.ndarray) -> int:
@@ -202,34 +228,13 @@ class GltfDocument:
             entry["doubleSided"] = True
         return entry
 
-    def _texture(self, picture: UInt8[np.ndarray, "h w c"]) -> int:
+    def _texture(self, picture: Picture) -> int:
         if id(picture) not in self._pictures:
             self._referenced.append(picture)
             if not self._json.get("samplers"):
                 self.add("samplers", {"magFilter": 9729, "minFilter": 9987, "wrapS": 10497, "wrapT": 10497})
-            encoded, mime = encoded_picture(power_of_two(picture))
-            image = self.add("images", {"bufferView": self._view(encoded), "mimeType": mime})
+            scaled = power_of_two(picture)
+            mime = _MEDIA_TYPES[picture_suffix(scaled)]
+            image = self.add("images", {"bufferView": self._view(encoded_picture(scaled)), "mimeType": mime})
             self._pictures[id(picture)] = self.add("textures", {"sampler": 0, "source": image})
         return self._pictures[id(picture)]
-
-
-def power_of_two(picture: UInt8[np.ndarray, "h w c"]) -> UInt8[np.ndarray, "h w c"]:
-    """The picture with sides that are powers of two, so that every device can repeat and minify it.
-
-    A side goes up to the next power unless it lies less than a tenth above the one below.
-    """
-    height, width = (2 ** max(int(np.ceil(np.log2(n / 1.1))), 0) for n in picture.shape[:2])
-    if (height, width) == picture.shape[:2]:
-        return picture
-    return np.asarray(cv2.resize(picture, (width, height), interpolation=cv2.INTER_LINEAR)).reshape(height, width, -1)
-
-
-def encoded_picture(picture: UInt8[np.ndarray, "h w c"]) -> tuple[bytes, str]:
-    """Content and media type: PNG for small or transparent pictures, JPEG for the large opaque ones."""
-    buffer = io.BytesIO()
-    image = Image.fromarray(np.ascontiguousarray(picture))
-    if picture.shape[2] == 3 and picture.shape[0] * picture.shape[1] > 512 * 512:
-        image.save(buffer, "JPEG", quality=92)
-        return buffer.getvalue(), "image/jpeg"
-    image.save(buffer, "PNG")
-    return buffer.getvalue(), "image/png"

@@ -244,7 +244,9 @@ class _Builder:
 
     def _style(self, item: Any, material: Material) -> None:
         if id(material) not in self._styles:
-            red, green, blue = (float(c) for c in np.clip(linear_to_srgb(np.asarray(material.colour)), 0, 1))
+            red, green, blue = (
+                float(c) for c in np.clip(linear_to_srgb(np.asarray(material.colour, dtype=np.float64)), 0, 1)
+            )
             colour = self._add("IfcColourRgb", None, red, green, blue)
             shading = self._add("IfcSurfaceStyleShading", colour, float(1.0 - material.alpha))
             style = self._add("IfcSurfaceStyle", material.name, "BOTH", [shading])

@@ -26,6 +26,8 @@ LAMP_LUMENS: Mapping[str, float] = {
 """Luminous flux of a usual lamp of each category; categories that are not listed give no light."""
 WINDOW_LUX = 2000.0
 """Daylight that falls through a window, in lumens per square metre of it."""
+MAIN_LUX = 600.0
+"""Of a room's main light at strength 1: that of a bright room."""
 WARM: tuple[float, float, float] = (1.0, 0.78, 0.54)
 """Linear colour of a bulb of about 3000 K."""
 DAYLIGHT: tuple[float, float, float] = (0.92, 0.96, 1.0)
@@ -73,6 +75,30 @@ def lights_of(
         elif item.category == "window":
             found.append(_window(scene, item))
     return tuple(found)
+
+
+@dataclass(frozen=True, eq=False)
+class MainLight:
+    """The photo's main light, as a light infinitely far away."""
+
+    T_world: Float[np.ndarray, "4 4"]
+    """Rigid, in the room's middle; the light shines along its -Z."""
+    lux: float
+    colour: tuple[float, float, float]
+    """Linear, its largest component 1."""
+
+
+def main_light_of(scene: Scene) -> MainLight | None:
+    """The room's main light where the photo tells one."""
+    if scene.light is None or scene.light.strength <= 0.0:
+        return None
+    z = np.array(scene.light.direction)
+    across = np.cross([0.0, 1.0, 0.0] if abs(z[1]) < 0.9 else [1.0, 0.0, 0.0], z)
+    T = np.eye(4)
+    T[:3, 2], T[:3, 0] = z, across / np.linalg.norm(across)
+    T[:3, 1] = np.cross(T[:3, 2], T[:3, 0])
+    T[:3, 3] = _middle(scene)
+    return MainLight(T, MAIN_LUX * scene.light.strength, scene.light.colour)
 
 
 def _lamp(item: SceneObject, surfaces: tuple[Surface, ...]) -> ExportLight:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -9,13 +10,14 @@ import numpy as np
 import trimesh
 from jaxtyping import Float
 
-from diorama_core.geometry.convex import ConvexPart, convex_parts
+from diorama_core.geometry.convex import ConvexPart
+from diorama_core.layout.problem.parts import parts_of_solids
 from diorama_core.library.furniture.articulation import Articulation, articulation, joint_of
 from diorama_core.library.furniture.joints import Joint, JointKind
-from diorama_core.library.paint import Colour
+from diorama_core.library.furniture.model import joined
 from diorama_core.library.record import ShapeLibrary, record_of
-from diorama_core.render.appearance import Surface, shape_surfaces
-from diorama_core.scene.types import Finish, SceneObject
+from diorama_core.render.appearance import Surface
+from diorama_core.scene.types import SceneObject
 
 BUILT_IN = "built in"
 
@@ -45,12 +47,10 @@ def articulation_of(library: ShapeLibrary, shape_id: str) -> Articulation | None
     return articulation(shape_id) if record_of(library, shape_id).source == BUILT_IN else None
 
 
-def surfaces_of(
-    pieces: Articulation, colour: Colour | None, finish: Finish | None
-) -> dict[int | None, tuple[Surface, ...]]:
-    """Surfaces of what stays (None) and of what each joint moves, painted as one shape."""
+def by_joint(surfaces: Iterable[Surface]) -> dict[int | None, tuple[Surface, ...]]:
+    """The surfaces of a jointed shape (`OneShape`) apart: what stays (None) and what each joint moves."""
     grouped: dict[int | None, tuple[Surface, ...]] = {}
-    for surface in shape_surfaces(_OneShape(pieces), "", colour, finish):  # type: ignore[arg-type]
+    for surface in surfaces:
         number = joint_of(surface.name)
         grouped[number] = (*grouped.get(number, ()), surface)
     return grouped
@@ -81,15 +81,16 @@ def limb_parts(shape_id: str, number: int | None) -> tuple[ConvexPart, ...]:
     solids = () if pieces is None else pieces.of_joint(number)
     if not solids:
         return ()
-    meshes = [trimesh.Trimesh(s.vertices, s.faces, process=False) for s in solids]
-    return convex_parts(trimesh.util.concatenate(meshes))
+    whole = joined(solids)
+    return parts_of_solids(whole.vertices, whole.faces)
 
 
-class _OneShape:
-    """Lets a scene of moving parts be read like a shape of a library."""
+class OneShape:
+    """Lets a scene of moving parts be read like the parts of a library's shape."""
 
     def __init__(self, pieces: Articulation) -> None:
         self._pieces = pieces
 
     def parts(self, shape_id: str) -> trimesh.Scene:
+        """All of them, whichever the shape is called."""
         return self._pieces.scene

@@ -6,8 +6,9 @@ rigid frames, moving parts share theirs.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -15,13 +16,15 @@ from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.export.bodies import PhysicalScene, Points, RigidBody
-from diorama_core.export.files import Entry
+from diorama_core.export.colliders import physical_scene
+from diorama_core.export.files import Entry, companion_folder, write_package
 from diorama_core.export.gathering import ExportMesh, ExportScene, rigid_inverse
 from diorama_core.export.limbs import ExportLimb
 from diorama_core.export.physics import Inertia
-from diorama_core.export.wavefront import hull_text, material_text, obj_text, png_bytes
+from diorama_core.export.wavefront import MaterialFile, hull_file, obj_file
 from diorama_core.progress import Progress
 
+MATERIALS = "materials.mtl"
 LinkJoint = Literal["free", "fixed", "hinge", "slide", "swivel"]
 
 
@@ -96,6 +99,35 @@ def _carriers_first(bodies: tuple[RigidBody, ...]) -> list[RigidBody]:
     return done
 
 
+def write_linked(
+    gathered: ExportScene, path: Path, progress: Progress | None, kind: str, describe: Callable[..., str]
+) -> None:
+    """Write a main file that `describe` makes and the meshes it names: beside it, or everything as one `.zip`.
+
+    Args:
+        gathered: The scene.
+        path: The main file, or the `.zip`.
+        progress: Where it is reported and cancelling is noticed.
+        kind: Ending of the main file without its dot.
+        describe: Called with the scene, its bodies, its links and the folder of the meshes; gives the main file.
+
+    Raises:
+        ExportError: when it cannot be written.
+    """
+    progress = progress or Progress()
+    progress.report(0.0, "preparing colliders")
+    physical = physical_scene(gathered)
+    links = links_of(gathered, physical)
+    main, folder = f"{Path(path).stem}.{kind}", companion_folder(path, kind)
+    content = describe(gathered, physical, links, folder).encode()
+
+    def entries() -> Iterator[Entry]:
+        yield from mesh_files(gathered, physical, links, folder, progress)
+        yield main, content
+
+    write_package(path, main, entries())
+
+
 def visual_file(folder: str, mesh: ExportMesh, number: int) -> str:
     """File of one surface of a mesh."""
     return f"{folder}/meshes/{mesh.key}_{number}.obj"
@@ -110,21 +142,18 @@ def mesh_files(
     gathered: ExportScene, physical: PhysicalScene, links: tuple[Link, ...], folder: str, progress: Progress
 ) -> Iterator[Entry]:
     """Visual meshes with their materials and pictures, and convex colliders."""
-    numbers = {id(m): k for k, m in enumerate(gathered.materials)}
-    for number, material in enumerate(gathered.materials):
-        picture = f"{number}.png" if material.texture is not None else None
-        if picture is not None and material.texture is not None:
-            yield f"{folder}/meshes/{picture}", png_bytes(material.texture)
-        yield f"{folder}/meshes/material_{number}.mtl", material_text(f"material_{number}", material, picture).encode()
+    materials = MaterialFile(gathered.materials, display=True, maps=False)
+    yield f"{folder}/meshes/{MATERIALS}", materials.text()
+    for name, content in materials.pictures():
+        yield f"{folder}/meshes/{name}", content
     for done, mesh in enumerate(gathered.meshes.values()):
         progress.report(0.3 + 0.6 * done / len(gathered.meshes), f"writing {mesh.name}")
         for number, surface in enumerate(mesh.surfaces):
-            text = obj_text(surface, f"material_{numbers[id(surface.material)]}")
-            yield visual_file(folder, mesh, number), text.encode()
+            yield visual_file(folder, mesh, number), obj_file(surface, MATERIALS, materials.name(surface.material))
     owners = [(s.slug, s.pieces) for s in physical.slabs] + [(link.name, link.parts) for link in links]
     for owner, parts in owners:
         for number, part in enumerate(parts):
-            yield collider_file(folder, owner, number), hull_text(*hull_faces(part)).encode()
+            yield collider_file(folder, owner, number), hull_file(*hull_faces(part))
 
 
 def hull_faces(points: Points) -> tuple[Points, np.ndarray]:
@@ -135,7 +164,7 @@ def hull_faces(points: Points) -> tuple[Points, np.ndarray]:
         return points, np.array([[0, 1, 2]])
     faces = np.array(hull.simplices)
     a, b, c = (points[faces[:, k]] for k in range(3))
-    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), hull.equations[:, :3]) < 0
+    inward = np.linalg.det(np.stack([b - a, c - a, hull.equations[:, :3]], axis=1)) < 0
     faces[inward] = faces[inward][:, ::-1]
     used = np.unique(faces)
     return points[used], np.searchsorted(used, faces)

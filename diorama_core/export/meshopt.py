@@ -8,15 +8,15 @@ from __future__ import annotations
 
 import meshoptimizer
 import numpy as np
-from jaxtyping import Int
+from jaxtyping import Integer
 
 EXTENSION = "EXT_meshopt_compression"
 _STEPS = {"POSITION": 2.0**14, "TEXCOORD_0": 2.0**12, "COLOR_0": 2.0**8}
 
 
 def prepared(
-    arrays: dict[str, np.ndarray], faces: Int[np.ndarray, "m 3"]
-) -> tuple[dict[str, np.ndarray], Int[np.ndarray, "m 3"]]:
+    arrays: dict[str, np.ndarray], faces: Integer[np.ndarray, "m 3"]
+) -> tuple[dict[str, np.ndarray], Integer[np.ndarray, "m 3"]]:
     """Vertices and faces in the order in which they are used, their values rounded."""
     count = len(arrays["POSITION"])
     indices = np.ascontiguousarray(faces.reshape(-1), dtype=np.uint32)
@@ -35,7 +35,7 @@ def encoded_vertices(values: np.ndarray) -> bytes:
     return bytes(meshoptimizer.encode_vertex_buffer(values))
 
 
-def encoded_faces(indices: Int[np.ndarray, " n"], vertices: int) -> bytes:
+def encoded_faces(indices: Integer[np.ndarray, " n"], vertices: int) -> bytes:
     """Indices of triangles."""
     meshoptimizer.encode_index_version(1)
     return bytes(meshoptimizer.encode_index_buffer(np.ascontiguousarray(indices, np.uint32), len(indices), vertices))

@@ -18,18 +18,20 @@ from diorama_core.export.bodies import MovingPart, PhysicalScene, Points, RigidB
 from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import Entry, companion_folder, write_package
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene, rigid_inverse
-from diorama_core.export.lights import ExportLight
+from diorama_core.export.lights import ExportLight, MainLight
 from diorama_core.export.physics import FLOOR_FRICTION, Inertia
-from diorama_core.export.wavefront import obj_text, png_bytes
-from diorama_core.io.srgb import linear_to_srgb
+from diorama_core.export.pictures import png_bytes
+from diorama_core.export.wavefront import obj_file
+from diorama_core.export.xml_values import numbers, srgb_rgba
 from diorama_core.progress import Progress
-from diorama_core.render.appearance import Material
 from diorama_core.scene.types import Camera
 
 _CAMERA_AXES = np.diag([1.0, -1.0, -1.0])
 """MuJoCo's cameras look along their -z with y up; ours along +z with y down."""
 FULL_LIGHT_CANDELA = 100.0
 """Luminous intensity that MuJoCo's unitless brightness of 1 stands for."""
+FULL_LIGHT_LUX = 1000.0
+"""Of a directional light that MuJoCo shows at full strength."""
 
 
 def write_mjcf(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
@@ -70,6 +72,8 @@ def mjcf_text(gathered: ExportScene, physical: PhysicalScene, folder: str | None
     _room(world, assets, gathered, physical.slabs, folder)
     if gathered.camera is not None:
         _camera(world, gathered.camera)
+    if gathered.main_light is not None:
+        _main_light(world, gathered.main_light)
     below: dict[str | None, list[RigidBody]] = {}
     for body in physical.bodies:
         below.setdefault(None if body.free else body.carrier, []).append(body)
@@ -130,7 +134,7 @@ class _BodyWriter:
         name = f"{body.node.slug}__{limb.slug}"
         element = SubElement(parent, "body", name=name)
         kind = "slide" if limb.kind == "slide" else "hinge"
-        joint = {"name": name, "class": kind, "pos": _numbers(limb.origin), "axis": _numbers(limb.axis)}
+        joint = {"name": name, "class": kind, "pos": numbers(limb.origin), "axis": numbers(limb.axis)}
         if limb.kind != "swivel":
             joint["range"] = f"{limb.lower:.8g} {limb.upper:.8g}"
         SubElement(element, "joint", joint)
@@ -143,7 +147,7 @@ class _BodyWriter:
     def _colliders(self, element: Element, body: RigidBody, parts: tuple[Points, ...], name: str) -> None:
         for number, part in enumerate(parts):
             mesh = f"{name}_part_{number}"
-            SubElement(self._assets, "mesh", name=mesh, vertex=_numbers(part.ravel()), inertia="convex")
+            SubElement(self._assets, "mesh", name=mesh, vertex=numbers(part.ravel()), inertia="convex")
             attributes = {"type": "mesh", "mesh": mesh, "friction": f"{body.friction:.3g}"}
             SubElement(element, "geom", {"name": mesh, "class": "collider", **attributes})
 
@@ -152,7 +156,7 @@ def _inertial(element: Element, inertia: Inertia) -> None:
     moments, axes = inertia.principal
     quaternion = Rotation.from_matrix(axes).as_quat(canonical=True, scalar_first=True)
     values = {"pos": inertia.centre, "quat": quaternion, "diaginertia": moments}
-    attributes = {name: _numbers(value) for name, value in values.items()}
+    attributes = {name: numbers(value) for name, value in values.items()}
     SubElement(element, "inertial", {"mass": f"{inertia.mass_kg:.8g}", **attributes})
 
 
@@ -177,14 +181,14 @@ def _room(
     for slab in slabs:
         plane = slab.plane
         if plane.role == "floor":
-            level = {"pos": _numbers(plane.centre), "zaxis": _numbers(plane.normal), "size": "20 20 1"}
+            level = {"pos": numbers(plane.centre), "zaxis": numbers(plane.normal), "size": "20 20 1"}
             geom = {"name": slab.slug, "class": "collider", "type": "plane", "friction": str(FLOOR_FRICTION)}
             SubElement(world, "geom", {**geom, **level})
         for number, piece in enumerate(() if plane.role == "floor" else slab.pieces):
             name = f"{slab.slug}_part_{number}"
             centre = piece.mean(axis=0)
-            SubElement(assets, "mesh", name=name, vertex=_numbers((piece - centre).ravel()), inertia="convex")
-            geom = {"name": name, "class": "collider", "type": "mesh", "mesh": name, "pos": _numbers(centre)}
+            SubElement(assets, "mesh", name=name, vertex=numbers((piece - centre).ravel()), inertia="convex")
+            geom = {"name": name, "class": "collider", "type": "mesh", "mesh": name, "pos": numbers(centre)}
             SubElement(world, "geom", geom)
     if folder is not None:
         for exported in gathered.planes:
@@ -202,7 +206,7 @@ def _visuals(
     label = label or (mesh.key if node is None else node.slug)
     for number, surface in enumerate(mesh.surfaces):
         name = f"{label}_shape_{number}"
-        scale = {} if node is None else {"scale": _numbers(node.scale)}
+        scale = {} if node is None else {"scale": numbers(node.scale)}
         file = f"{folder}/meshes/{mesh.key}_{number}.obj"
         SubElement(assets, "mesh", {"name": name, "file": file, "inertia": "shell", **scale})
         attributes = {"type": "mesh", "mesh": name, "material": surface.material.name}
@@ -211,18 +215,13 @@ def _visuals(
 
 def _materials(assets: Element, gathered: ExportScene, folder: str) -> None:
     for number, material in enumerate(gathered.materials):
-        attributes = {"name": material.name, "rgba": _numbers(srgb_rgba(material))}
+        attributes = {"name": material.name, "rgba": numbers(srgb_rgba(material))}
         if material.texture is not None:
             SubElement(assets, "texture", name=material.name, type="2d", file=f"{folder}/textures/{number}.png")
             attributes["texture"] = material.name
         attributes |= {"metallic": f"{material.metallic:.3g}", "roughness": f"{material.roughness:.3g}"}
         attributes |= {"specular": f"{0.5 * (1 - material.roughness):.3g}", "emission": f"{max(material.emissive):.3g}"}
         SubElement(assets, "material", attributes)
-
-
-def srgb_rgba(material: Material) -> Float[np.ndarray, "4"]:
-    """A material's colour as programs without linear light expect it."""
-    return np.append(linear_to_srgb(np.asarray(material.colour)), material.alpha)
 
 
 def _assets(gathered: ExportScene, folder: str, progress: Progress) -> Iterator[Entry]:
@@ -232,14 +231,21 @@ def _assets(gathered: ExportScene, folder: str, progress: Progress) -> Iterator[
     for done, mesh in enumerate(gathered.meshes.values()):
         progress.report(0.3 + 0.7 * done / len(gathered.meshes), f"writing {mesh.name}")
         for number, surface in enumerate(mesh.surfaces):
-            yield f"{folder}/meshes/{mesh.key}_{number}.obj", obj_text(surface).encode()
+            yield f"{folder}/meshes/{mesh.key}_{number}.obj", obj_file(surface)
 
 
 def _light(element: Element, T: Float[np.ndarray, "4 4"], light: ExportLight) -> None:
     strength = min(light.candela / FULL_LIGHT_CANDELA, 1.0) * np.asarray(light.colour)
     kind = {"type": "point"} if light.kind == "lamp" else {"type": "spot", "cutoff": "80", "exponent": "1"}
-    place = {"pos": _numbers(T[:3, 3]), "dir": _numbers(-T[:3, 2])}
-    SubElement(element, "light", {**kind, **place, "diffuse": _numbers(strength), "castshadow": "false"})
+    place = {"pos": numbers(T[:3, 3]), "dir": numbers(-T[:3, 2])}
+    SubElement(element, "light", {**kind, **place, "diffuse": numbers(strength), "castshadow": "false"})
+
+
+def _main_light(world: Element, light: MainLight) -> None:
+    diffuse = min(light.lux / FULL_LIGHT_LUX, 1.0) * np.asarray(light.colour)
+    place = {"pos": numbers(light.T_world[:3, 3]), "dir": numbers(-light.T_world[:3, 2])}
+    about = {"name": "main_light", "type": "directional", "diffuse": numbers(diffuse), "castshadow": "false"}
+    SubElement(world, "light", {**about, **place})
 
 
 def _camera(world: Element, camera: Camera) -> None:
@@ -252,8 +258,4 @@ def _camera(world: Element, camera: Camera) -> None:
 
 def _placement(T: Float[np.ndarray, "4 4"]) -> dict[str, str]:
     quaternion = Rotation.from_matrix(T[:3, :3]).as_quat(canonical=True, scalar_first=True)
-    return {"pos": _numbers(T[:3, 3]), "quat": _numbers(quaternion)}
-
-
-def _numbers(values: Float[np.ndarray, " n"]) -> str:
-    return " ".join(f"{float(v):.8g}" for v in values)
+    return {"pos": numbers(T[:3, 3]), "quat": numbers(quaternion)}

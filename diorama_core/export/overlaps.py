@@ -17,6 +17,8 @@ from diorama_core.scene.frames import UP_WORLD
 
 MAX_CUT = 0.4
 """A part is cut by at most this share of its extent; what overlaps more is left to interpenetrate without contact."""
+MAX_SOFT_DIP = 0.25
+"""Soft objects are cut level where they sink into their supporter by at most this share of their height."""
 MAX_RIGID_CUT_M = 0.02
 """Parts of objects that do not give way are cut by at most this."""
 SKIN_M = 1e-4
@@ -43,14 +45,16 @@ class Cuts:
                 self._owners.append(None)
                 self._limbs.append(None)
                 self._world.append(piece)
+        self._rows: dict[tuple[str | None, int | None], list[int]] = {}
+        for row, owner in enumerate(zip(self._owners, self._limbs, strict=True)):
+            self._rows.setdefault(owner, []).append(row)
         self.ignored: set[tuple[str, str]] = set()
         self.sunk: dict[str, str | None] = {}
 
     def parts(self, object_id: str, limb: int | None = None) -> tuple[Points, ...]:
         """The parts of an object, or of one of its limbs, that are left, in the object's rigid frame."""
         T = self._bodies[object_id].node.T_world
-        rows = zip(self._owners, self._limbs, self._world, strict=True)
-        return tuple((w - T[:3, 3]) @ T[:3, :3] for o, k, w in rows if o == object_id and k == limb)
+        return tuple((self._world[row] - T[:3, 3]) @ T[:3, :3] for row in self._rows.get((object_id, limb), ()))
 
     def moving(self, body: RigidBody) -> tuple[MovingPart, ...]:
         """The limbs of an object with the parts that are left."""
@@ -74,17 +78,22 @@ class Cuts:
         """Parts of different owners whose boxes overlap and of which at least one can move against the other."""
         low = np.array([w.min(axis=0) for w in self._world]).reshape(-1, 3)
         high = np.array([w.max(axis=0) for w in self._world]).reshape(-1, 3)
+        numbers = {name: k for k, name in enumerate(dict.fromkeys(self._owners))}
+        owner = np.array([numbers[name] for name in self._owners])
+        moves = np.array([name is not None and self._bodies[name].free for name in self._owners])
         pairs = []
         for i in range(len(low)):
-            near = (low[i + 1 :] < high[i]).all(axis=1) & (high[i + 1 :] > low[i]).all(axis=1)
-            pairs += [(i, i + 1 + int(j)) for j in np.flatnonzero(near) if self._collide(i, i + 1 + int(j))]
+            later = slice(i + 1, None)
+            near = (low[later, 0] < high[i, 0]) & (high[later, 0] > low[i, 0]) & (owner[later] != owner[i])
+            rows = i + 1 + np.flatnonzero(near & (moves[later] | moves[i]))
+            rows = rows[((low[rows] < high[i]) & (high[rows] > low[i])).all(axis=1)]
+            pairs += [(i, int(j)) for j in rows if self._collide(i, int(j))]
         found = np.array(pairs, dtype=int).reshape(-1, 2)
         return found[:, 0], found[:, 1]
 
     def _collide(self, i: int, j: int) -> bool:
+        """Whether parts of two owners may not overlap."""
         a, b = self._owners[i], self._owners[j]
-        if a == b or not any(o is not None and self._bodies[o].free for o in (a, b)):
-            return False
         if a is None or b is None:
             return True
         if self._yields(a, b) or self._yields(b, a):
@@ -114,10 +123,18 @@ class Cuts:
         self._give_up(a, b)
 
     def _lifted(self, rider: int, carrier: int) -> bool:
-        """Cut a rider's part level above its carrier's, where it only dips into it."""
-        top = float(self._world[carrier][:, 2].max())
-        dips = top - float(self._world[rider][:, 2].min()) < MAX_RIGID_CUT_M
+        """Cut a rider's part level above its carrier's, where it only dips into it; soft ones sink in deeper."""
+        top, low = float(self._world[carrier][:, 2].max()), float(self._world[rider][:, 2].min())
+        owner = self._owners[rider]
+        sinks = owner is not None and is_soft(self._bodies[owner].node) and self._lies_on(rider, carrier)
+        dips = top - low < (MAX_SOFT_DIP * float(np.ptp(self._world[rider][:, 2])) if sinks else MAX_RIGID_CUT_M)
         return dips and self._rides(rider, carrier) and self._cut(rider, UP_WORLD, top + SKIN_M)
+
+    def _lies_on(self, rider: int, carrier: int) -> bool:
+        """Whether most of a part lies over another, seen from above."""
+        a, b = self._world[rider][:, :2], self._world[carrier][:, :2]
+        shared = np.minimum(a.max(axis=0), b.max(axis=0)) - np.maximum(a.min(axis=0), b.min(axis=0))
+        return float(np.prod(np.maximum(shared, 0.0))) > 0.5 * float(np.prod(np.ptp(a, axis=0)))
 
     def _rides(self, rider: int, carrier: int) -> bool:
         """Whether one part's object is carried by the other's, directly or not; all ride on the room."""

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Float32
 
+from diorama_core.geometry.rows import unique_rows
 from diorama_core.library.record import Shape
 from diorama_core.render.appearance import Material, Surface
 
@@ -109,28 +110,34 @@ def inertia_of(surfaces: tuple[Surface, ...], scale: Float[np.ndarray, "3"]) -> 
     Each material weighs its closed volume, or its walls where that is less, spread over its surface: a lamp's foot
     outweighs its shade, whatever air the shade encloses.
     """
-    whole = float(np.prod(scale))
-    points, masses = [np.zeros((0, 3))], [np.zeros(0)]
+    total, first, second = 0.0, np.zeros(3), np.zeros((3, 3))
     for surface in surfaces:
-        corners = (surface.vertices * scale)[surface.faces].astype(np.float64)
-        areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-        kind, area = substance_of(surface.material), float(areas.sum())
-        volume = enclosed_m3(surface) * whole
-        sheet = float(np.clip(kind.wall_m, MIN_SHEET_M, MAX_SHEET_M))
-        mass = kind.density * (min(volume, area * kind.wall_m) if volume > 0 else area * sheet)
-        points.append(corners.mean(axis=1))
-        masses.append(areas * (mass / max(area, 1e-12)))
-    return _of_points(np.concatenate(points), np.concatenate(masses))
+        measured = _measured(surface)
+        areas = np.linalg.norm(measured.area_vectors * (np.prod(scale) / scale), axis=1)
+        mass = _mass_kg(
+            substance_of(surface.material), measured.enclosed_m3 * float(np.prod(scale)), float(areas.sum())
+        )
+        masses = areas * (mass / max(float(areas.sum()), 1e-12))
+        total += mass
+        first += masses @ measured.centroids * scale
+        second += (measured.centroids * masses[:, None]).T @ measured.centroids * np.outer(scale, scale)
+    return _of_moments(total, first, second)
 
 
-def _of_points(points: Float[np.ndarray, "n 3"], masses: Float[np.ndarray, " n"]) -> Inertia:
-    total = float(masses.sum())
+def _mass_kg(kind: Substance, volume_m3: float, area_m2: float) -> float:
+    """Mass of a surface of one material: its volume, or its walls where that is less; a sheet where it is open."""
+    if volume_m3 > 0:
+        return kind.density * min(volume_m3, area_m2 * kind.wall_m)
+    return kind.density * area_m2 * float(np.clip(kind.wall_m, MIN_SHEET_M, MAX_SHEET_M))
+
+
+def _of_moments(total: float, first: Float[np.ndarray, "3"], second: Float[np.ndarray, "3 3"]) -> Inertia:
+    """From a mass and its first and second moments about the origin."""
     if total < 1e-9:
         return Inertia(MIN_MASS_KG, np.zeros(3), np.eye(3) * MIN_MASS_KG * MIN_RADIUS_M**2)
-    centre = masses @ points / total
-    arms = points - centre
-    squares = float(masses @ (arms**2).sum(axis=1))
-    tensor = squares * np.eye(3) - (arms * masses[:, None]).T @ arms
+    centre = first / total
+    spread = second - total * np.outer(centre, centre)
+    tensor = np.trace(spread) * np.eye(3) - spread
     found = Inertia(total, centre, tensor + np.eye(3) * total * MIN_RADIUS_M**2)
     return found.weighing(max(total, MIN_MASS_KG))
 
@@ -152,19 +159,34 @@ def friction_of(surfaces: tuple[Surface, ...]) -> float:
     return max(areas, key=areas.__getitem__, default=OTHER).friction
 
 
+@dataclass(frozen=True, eq=False)
+class _Measured:
+    """What the mass of a surface follows from at any scale."""
+
+    centroids: Float32[np.ndarray, "m 3"]
+    """Of the triangles."""
+    area_vectors: Float32[np.ndarray, "m 3"]
+    """Normals of the triangles, as long as their areas."""
+    enclosed_m3: float
+
+
+_MEASURED: WeakKeyDictionary[Surface, _Measured] = WeakKeyDictionary()
+
+
+def _measured(surface: Surface) -> _Measured:
+    """Measured once a surface."""
+    if surface not in _MEASURED:
+        a, b, c = (surface.vertices[surface.faces[:, k]].astype(np.float64) for k in range(3))
+        vectors = 0.5 * np.cross(b - a, c - a)
+        centroids = (a + b + c) / 3.0
+        _MEASURED[surface] = _Measured(centroids.astype(np.float32), vectors.astype(np.float32), enclosed_m3(surface))
+    return _MEASURED[surface]
+
+
 def enclosed_m3(surface: Surface) -> float:
-    """Volume that a surface encloses; 0 when it is not closed. Measured once a surface."""
-    if surface not in _ENCLOSED:
-        _ENCLOSED[surface] = _enclosed_m3(surface)
-    return _ENCLOSED[surface]
-
-
-_ENCLOSED: WeakKeyDictionary[Surface, float] = WeakKeyDictionary()
-
-
-def _enclosed_m3(surface: Surface) -> float:
-    _, place = np.unique(np.round(surface.vertices, 5), axis=0, return_inverse=True)
-    corners = place.reshape(-1)[surface.faces].astype(np.int64)
+    """Volume that a surface encloses; 0 when it is not closed."""
+    _, place = unique_rows(np.round(surface.vertices, 5))
+    corners = place[surface.faces]
     edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
     edges = edges[edges[:, 0] != edges[:, 1]]
     count = int(place.max()) + 1

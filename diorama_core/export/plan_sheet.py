@@ -25,7 +25,7 @@ Grey = float
 class Line:
     """A path on the page."""
 
-    points: tuple[Float[np.ndarray, "n 2"], ...]
+    points: tuple[Float[np.ndarray, "_ 2"], ...]
     """One or more outlines, filled together (a hole runs the other way round)."""
     closed: bool = False
     fill: Grey | None = None

@@ -50,9 +50,9 @@ def write_scene_state(scene: ExportScene, path: Path, progress: Progress | None 
         write_whole(path, text.encode())
         return
     with whole_file(path) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr(f"{path.stem}.json", text)
+        archive.writestr(zipfile.ZipInfo(f"{path.stem}.json"), text, zipfile.ZIP_DEFLATED)
         for name, content in _assets(scene, progress):
-            archive.writestr(name, content)
+            archive.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)
 
 
 def scene_state(scene: ExportScene) -> dict[str, Any]:

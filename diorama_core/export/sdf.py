@@ -5,7 +5,6 @@ What is welded to an object is a link of that object's model; moving parts are l
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
@@ -14,13 +13,12 @@ from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
 from diorama_core.export.bodies import PhysicalScene
-from diorama_core.export.colliders import physical_scene
-from diorama_core.export.files import Entry, companion_folder, write_package
 from diorama_core.export.gathering import ExportMesh, ExportScene
-from diorama_core.export.lights import ExportLight
-from diorama_core.export.links import Link, collider_file, links_of, mesh_files, visual_file
-from diorama_core.export.mjcf import srgb_rgba
+from diorama_core.export.lights import ExportLight, MainLight
+from diorama_core.export.links import Link, collider_file, visual_file, write_linked
+from diorama_core.export.mjcf import FULL_LIGHT_LUX
 from diorama_core.export.physics import FLOOR_FRICTION
+from diorama_core.export.xml_values import inertia_terms, numbers, srgb_rgba
 from diorama_core.progress import Progress
 
 VERSION = "1.9"
@@ -33,18 +31,7 @@ def write_sdf(gathered: ExportScene, path: Path, progress: Progress | None = Non
     Raises:
         ExportError: when it cannot be written.
     """
-    progress = progress or Progress()
-    progress.report(0.0, "preparing colliders")
-    physical = physical_scene(gathered)
-    links = links_of(gathered, physical)
-    main, folder = f"{Path(path).stem}.sdf", companion_folder(path, "sdf")
-    content = sdf_text(gathered, physical, links, folder).encode()
-
-    def entries() -> Iterator[Entry]:
-        yield from mesh_files(gathered, physical, links, folder, progress)
-        yield main, content
-
-    write_package(path, main, entries())
+    write_linked(gathered, path, progress, "sdf", sdf_text)
 
 
 def sdf_text(gathered: ExportScene, physical: PhysicalScene, links: tuple[Link, ...], folder: str) -> str:
@@ -54,6 +41,8 @@ def sdf_text(gathered: ExportScene, physical: PhysicalScene, links: tuple[Link, 
     SubElement(world, "gravity").text = "0 0 -9.81"
     for light in gathered.lights:
         _light(world, f"{gathered.object(light.owner).slug}_light", light)
+    if gathered.main_light is not None:
+        _main_light(world, gathered.main_light)
     _room(world, gathered, physical, folder)
     by_name = {link.name: link for link in links}
     tops = {link.name: _top(link, by_name) for link in links}
@@ -104,12 +93,11 @@ def _link(model: Element, link: Link, T_model: Float[np.ndarray, "4 4"], folder:
     element = SubElement(model, "link", name=link.name)
     SubElement(element, "pose").text = _pose(T_model)
     inertial = SubElement(element, "inertial")
-    SubElement(inertial, "pose").text = f"{_numbers(link.inertia.centre)} 0 0 0"
+    SubElement(inertial, "pose").text = f"{numbers(link.inertia.centre)} 0 0 0"
     SubElement(inertial, "mass").text = f"{link.inertia.mass_kg:.6g}"
     tensor = SubElement(inertial, "inertia")
-    names = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
-    for name, at in names.items():
-        SubElement(tensor, name).text = f"{float(link.inertia.tensor[at]):.8g}"
+    for name, value in inertia_terms(link.inertia.tensor).items():
+        SubElement(tensor, name).text = value
     _visuals(element, link.mesh, link.scale, folder)
     _colliders(element, link.name, len(link.parts), link.friction, folder)
 
@@ -119,13 +107,13 @@ def _joint(model: Element, link: Link) -> None:
     joint = SubElement(model, "joint", name=f"{link.name}_joint", type=kinds.get(link.joint, "fixed"))
     limb = link.limb
     if limb is not None:
-        SubElement(joint, "pose").text = f"{_numbers(limb.origin)} 0 0 0"
+        SubElement(joint, "pose").text = f"{numbers(limb.origin)} 0 0 0"
     SubElement(joint, "parent").text = link.parent
     SubElement(joint, "child").text = link.name
     if limb is None:
         return
     axis = SubElement(joint, "axis")
-    SubElement(axis, "xyz").text = _numbers(limb.axis)
+    SubElement(axis, "xyz").text = numbers(limb.axis)
     if limb.kind != "swivel":
         limit = SubElement(axis, "limit")
         SubElement(limit, "lower").text = f"{limb.lower:.8g}"
@@ -140,11 +128,11 @@ def _visuals(element: Element, mesh: ExportMesh, scale: Float[np.ndarray, "3"], 
         visual = SubElement(element, "visual", name=f"{mesh.key}_{number}")
         shape = SubElement(SubElement(visual, "geometry"), "mesh")
         SubElement(shape, "uri").text = visual_file(folder, mesh, number)
-        SubElement(shape, "scale").text = _numbers(scale)
+        SubElement(shape, "scale").text = numbers(scale)
         if surface.material.texture is None:  # textured ones keep what their own file says
             material = SubElement(visual, "material")
             for slot in ("ambient", "diffuse"):
-                SubElement(material, slot).text = _numbers(srgb_rgba(surface.material))
+                SubElement(material, slot).text = numbers(srgb_rgba(surface.material))
 
 
 def _colliders(element: Element, owner: str, count: int, friction: float, folder: str) -> None:
@@ -160,7 +148,7 @@ def _colliders(element: Element, owner: str, count: int, friction: float, folder
 def _light(world: Element, name: str, light: ExportLight) -> None:
     element = SubElement(world, "light", name=name, type="point" if light.kind == "lamp" else "spot")
     SubElement(element, "pose").text = _pose(light.T_world)
-    SubElement(element, "diffuse").text = f"{_numbers(np.asarray(light.colour))} 1"
+    SubElement(element, "diffuse").text = f"{numbers(np.asarray(light.colour))} 1"
     attenuation = SubElement(element, "attenuation")
     for key, value in (("range", "20"), ("constant", "0.3"), ("linear", "0.1"), ("quadratic", "0.1")):
         SubElement(attenuation, key).text = value
@@ -171,9 +159,13 @@ def _light(world: Element, name: str, light: ExportLight) -> None:
             SubElement(spot, key).text = value
 
 
+def _main_light(world: Element, light: MainLight) -> None:
+    element = SubElement(world, "light", name="main_light", type="directional")
+    SubElement(element, "pose").text = _pose(light.T_world)
+    SubElement(element, "diffuse").text = f"{numbers(np.asarray(light.colour))} 1"
+    SubElement(element, "intensity").text = f"{min(light.lux / FULL_LIGHT_LUX, 1.0):.3g}"
+    SubElement(element, "direction").text = "0 0 -1"
+
+
 def _pose(T: Float[np.ndarray, "4 4"]) -> str:
-    return _numbers(np.concatenate([T[:3, 3], Rotation.from_matrix(T[:3, :3]).as_euler("xyz")]))
-
-
-def _numbers(values: Float[np.ndarray, " n"]) -> str:
-    return " ".join(f"{float(v):.9g}" for v in values)
+    return numbers(np.concatenate([T[:3, 3], Rotation.from_matrix(T[:3, :3]).as_euler("xyz")]))

@@ -6,7 +6,6 @@ Document type: https://www.sweethome3d.com/SweetHome3D.dtd
 
 from __future__ import annotations
 
-import io
 import xml.etree.ElementTree as ET
 import zipfile
 from collections.abc import Iterator, Mapping
@@ -16,15 +15,13 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.export.files import whole_file
+from diorama_core.export.files import FAST_DEFLATE, whole_file
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportPlane, ExportScene
-from diorama_core.export.obj import encoded_picture, material_text
 from diorama_core.export.scene_state import R_SHAPE_FILE
-from diorama_core.export.text import index_rows, number_rows
 from diorama_core.export.wall_lines import OPENING_CATEGORIES, WallLine, wall_lines
-from diorama_core.io.srgb import linear_to_srgb
+from diorama_core.export.wavefront import MaterialFile, ObjText
 from diorama_core.progress import Progress
-from diorama_core.render.appearance import Material
+from diorama_core.render.raycast import unit
 from diorama_core.scene.types import Camera
 
 CM_PER_M = 100.0
@@ -43,13 +40,13 @@ def write_sweet_home(scene: ExportScene, path: Path, progress: Progress | None =
     """
     progress = progress or Progress()
     with whole_file(Path(path)) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.compresslevel = 1
+        archive.compresslevel = FAST_DEFLATE
         models: dict[str, str] = {}
         for number, (key, name, content) in enumerate(_model_files(scene)):
             progress.report(min(number / (3 * len(scene.objects) + 1), 1.0), "writing models")
             models.setdefault(key, name)
-            archive.writestr(name, content)
-        archive.writestr("Home.xml", home_xml(scene, models))
+            archive.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)
+        archive.writestr(zipfile.ZipInfo("Home.xml"), home_xml(scene, models), zipfile.ZIP_DEFLATED)
 
 
 def home_xml(scene: ExportScene, models: Mapping[str, str]) -> bytes:
@@ -179,39 +176,14 @@ def _model_files(scene: ExportScene) -> Iterator[tuple[str, str, bytes]]:
 
 def _obj_files(mesh: ExportMesh, turn: Float[np.ndarray, "3 3"]) -> Iterator[tuple[str, bytes]]:
     """A model in Sweet Home 3D's usual frame: +Y up, +Z front. Colours are sRGB, as it shows them."""
-    materials = list({id(s.material): s.material for s in mesh.surfaces}.values())
-    names = {id(m): f"material_{number}" for number, m in enumerate(materials)}
-    pictures = {id(m.texture): f"{names[id(m)]}{_ending(m)}" for m in materials if m.texture is not None}
-    stream, start, uv_start = io.BytesIO(), 1, 1
-    stream.write(b"mtllib model.mtl\n")
+    materials = MaterialFile({id(s.material): s.material for s in mesh.surfaces}.values(), display=True, maps=False)
+    linear = R_SHAPE_FILE.T @ turn
+    back = np.linalg.inv(linear)
+    text, content = ObjText(decimals=4), b"mtllib model.mtl\n"
     for surface in mesh.surfaces:
-        linear = R_SHAPE_FILE.T @ turn
-        normals = surface.normals @ np.linalg.inv(linear)
-        stream.write(number_rows("v", surface.vertices @ linear.T * CM_PER_M, 4))
-        stream.write(number_rows("vn", normals / np.maximum(np.linalg.norm(normals, axis=1)[:, None], 1e-12), 4))
-        stream.write(f"usemtl {names[id(surface.material)]}\n".encode())
-        corners = surface.faces.astype(np.int64) + start
-        if surface.uv is None:
-            stream.write(index_rows("f %d//%d %d//%d %d//%d", np.repeat(corners, 2, axis=1)))
-        else:
-            stream.write(number_rows("vt", surface.uv, 6))
-            uvs = surface.faces.astype(np.int64) + uv_start
-            rows = np.stack([corners, uvs, corners], axis=2).reshape(-1, 9)
-            stream.write(index_rows("f %d/%d/%d %d/%d/%d %d/%d/%d", rows))
-            uv_start += len(surface.uv)
-        start += len(surface.vertices)
-    yield "model.obj", stream.getvalue()
-    yield "model.mtl", "\n".join(material_text(_shown(m), names[id(m)], pictures) for m in materials).encode()
-    for material in materials:
-        if material.texture is not None:
-            yield pictures[id(material.texture)], encoded_picture(material.texture)
-
-
-def _ending(material: Material) -> str:
-    assert material.texture is not None
-    return ".jpg" if encoded_picture(material.texture)[:2] == b"\xff\xd8" else ".png"
-
-
-def _shown(material: Material) -> Material:
-    red, green, blue = (float(c) for c in linear_to_srgb(np.asarray(material.colour)))
-    return replace(material, colour=(red, green, blue), maps={})
+        points = (surface.vertices @ linear.T * CM_PER_M).astype(np.float32)
+        placed = replace(surface, vertices=points, normals=unit(surface.normals @ back).astype(np.float32))
+        content += text.add(placed, materials.name(surface.material))
+    yield "model.obj", content
+    yield "model.mtl", materials.text()
+    yield from materials.pictures()

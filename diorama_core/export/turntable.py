@@ -35,7 +35,7 @@ def write_turntable(
     *,
     size: tuple[int, int] = SIZE,
     frames: int = FRAMES,
-    textures: Mapping[str, UInt8[np.ndarray, "h w c"]] | None = None,
+    textures: Mapping[str, UInt8[np.ndarray, "_ _ _"]] | None = None,
     progress: Progress | None = None,
 ) -> None:
     """Write a turntable video that loops seamlessly.
@@ -102,7 +102,7 @@ def _frames(
     scene: Scene,
     library: ShapeLibrary,
     cameras: Iterable[Camera],
-    textures: Mapping[str, UInt8[np.ndarray, "h w c"]] | None,
+    textures: Mapping[str, UInt8[np.ndarray, "_ _ _"]] | None,
     progress: Progress,
 ) -> Iterator[Frame]:
     cameras = tuple(cameras)

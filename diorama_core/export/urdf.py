@@ -6,7 +6,6 @@ continuous joints with limits.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
@@ -15,12 +14,10 @@ from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
 from diorama_core.export.bodies import PhysicalScene
-from diorama_core.export.colliders import physical_scene
-from diorama_core.export.files import Entry, companion_folder, write_package
 from diorama_core.export.gathering import ExportMesh, ExportScene
-from diorama_core.export.links import Link, collider_file, links_of, mesh_files, visual_file
-from diorama_core.export.mjcf import srgb_rgba
+from diorama_core.export.links import Link, collider_file, visual_file, write_linked
 from diorama_core.export.physics import Inertia
+from diorama_core.export.xml_values import inertia_terms, numbers, srgb_rgba
 from diorama_core.progress import Progress
 from diorama_core.render.appearance import Material
 
@@ -35,18 +32,7 @@ def write_urdf(gathered: ExportScene, path: Path, progress: Progress | None = No
     Raises:
         ExportError: when it cannot be written.
     """
-    progress = progress or Progress()
-    progress.report(0.0, "preparing colliders")
-    physical = physical_scene(gathered)
-    links = links_of(gathered, physical)
-    main, folder = f"{Path(path).stem}.urdf", companion_folder(path, "urdf")
-    content = urdf_text(gathered, physical, links, folder).encode()
-
-    def entries() -> Iterator[Entry]:
-        yield from mesh_files(gathered, physical, links, folder, progress)
-        yield main, content
-
-    write_package(path, main, entries())
+    write_linked(gathered, path, progress, "urdf", urdf_text)
 
 
 def urdf_text(gathered: ExportScene, physical: PhysicalScene, links: tuple[Link, ...], folder: str) -> str:
@@ -83,24 +69,22 @@ def _link(robot: Element, link: Link, folder: str, materials: dict[int, str]) ->
         SubElement(joint, "origin", _origin(link.T_parent))
         return
     # A moving link's frame lies on its axis: its geometry is shifted back by as much.
-    SubElement(joint, "origin", xyz=_numbers(limb.origin), rpy="0 0 0")
-    SubElement(joint, "axis", xyz=_numbers(limb.axis))
+    SubElement(joint, "origin", xyz=numbers(limb.origin), rpy="0 0 0")
+    SubElement(joint, "axis", xyz=numbers(limb.axis))
     SubElement(joint, "dynamics", damping="1.0")
     limits = {"effort": EFFORT_N, "velocity": VELOCITY}
     if limb.kind != "swivel":
         limits |= {"lower": f"{limb.lower:.8g}", "upper": f"{limb.upper:.8g}"}
     SubElement(joint, "limit", limits)
     for origin in element.iter("origin"):
-        origin.set("xyz", _numbers(np.array(origin.get("xyz", "").split(), dtype=float) - limb.origin))
+        origin.set("xyz", numbers(np.array(origin.get("xyz", "").split(), dtype=float) - limb.origin))
 
 
 def _inertial(element: Element, inertia: Inertia) -> None:
     inertial = SubElement(element, "inertial")
-    SubElement(inertial, "origin", xyz=_numbers(inertia.centre), rpy="0 0 0")
+    SubElement(inertial, "origin", xyz=numbers(inertia.centre), rpy="0 0 0")
     SubElement(inertial, "mass", value=f"{inertia.mass_kg:.6g}")
-    tensor = inertia.tensor
-    names = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
-    SubElement(inertial, "inertia", {name: f"{float(tensor[at]):.8g}" for name, at in names.items()})
+    SubElement(inertial, "inertia", inertia_terms(inertia.tensor))
 
 
 def _visuals(
@@ -110,7 +94,7 @@ def _visuals(
         visual = SubElement(element, "visual")
         SubElement(visual, "origin", xyz="0 0 0", rpy="0 0 0")
         geometry = SubElement(visual, "geometry")
-        SubElement(geometry, "mesh", filename=visual_file(folder, mesh, number), scale=_numbers(scale))
+        SubElement(geometry, "mesh", filename=visual_file(folder, mesh, number), scale=numbers(scale))
         SubElement(visual, "material", name=materials[id(surface.material)])
 
 
@@ -124,13 +108,9 @@ def _colliders(element: Element, owner: str, count: int, folder: str) -> None:
 
 def _material(robot: Element, name: str, material: Material) -> None:
     element = SubElement(robot, "material", name=name)
-    SubElement(element, "color", rgba=_numbers(srgb_rgba(material)))
+    SubElement(element, "color", rgba=numbers(srgb_rgba(material)))
 
 
 def _origin(T: Float[np.ndarray, "4 4"]) -> dict[str, str]:
     roll, pitch, yaw = Rotation.from_matrix(T[:3, :3]).as_euler("xyz")
-    return {"xyz": _numbers(T[:3, 3]), "rpy": _numbers(np.array([roll, pitch, yaw]))}
-
-
-def _numbers(values: Float[np.ndarray, " n"]) -> str:
-    return " ".join(f"{float(v):.9g}" for v in values)
+    return {"xyz": numbers(T[:3, 3]), "rpy": numbers(np.array([roll, pitch, yaw]))}

@@ -17,8 +17,8 @@ from pxr import Gf, Kind, Sdf, Usd, UsdGeom
 from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import Entry, companion_folder, whole_file, write_package
 from diorama_core.export.gathering import ExportObject, ExportScene, rigid_inverse
-from diorama_core.export.gltf_document import encoded_picture
-from diorama_core.export.usd_look import Looks, add_camera, add_light, add_surfaces
+from diorama_core.export.pictures import encoded_picture
+from diorama_core.export.usd_look import Looks, add_camera, add_light, add_main_light, add_surfaces
 from diorama_core.export.usd_physics import add_physics, limb_path
 from diorama_core.export.usd_values import place
 from diorama_core.progress import Progress
@@ -88,21 +88,23 @@ def build_stage(
     if up_axis == "Y":
         root.AddRotateXOp().Set(-90.0)
     _describe(root.GetPrim(), gathered)
-    looks = Looks(stage, textures)
-    _prototypes(stage, gathered, looks, progress)
-    _architecture(stage, gathered, looks)
+    materials = StageMaterials(stage, textures)
+    _prototypes(stage, gathered, materials, progress)
+    _architecture(stage, gathered, materials)
     _objects(stage, gathered)
     if gathered.camera is not None:
         add_camera(stage, f"{ROOT}/PhotoCamera", gathered.camera)
+    if gathered.main_light is not None:
+        add_main_light(stage, f"{ROOT}/MainLight", gathered.main_light)
     for light in gathered.lights:
         owner = gathered.object(light.owner)
         T = rigid_inverse(owner.T_world) @ light.T_world
         add_light(stage, f"{object_path(owner)}/Light", light, T)
     add_physics(stage, gathered, physical_scene(gathered))
     pictures = []
-    for name, picture in looks.pictures():
+    for name, picture in materials.pictures():
         progress.check()
-        pictures.append((name, encoded_picture(picture)[0]))
+        pictures.append((name, encoded_picture(picture)))
     return stage, pictures
 
 
@@ -115,21 +117,23 @@ def _describe(prim: Usd.Prim, gathered: ExportScene) -> None:
     prim.SetDisplayName(gathered.name)
     prim.SetCustomDataByKey("diorama", scene_to_json(gathered.scene))
     prim.SetCustomDataByKey("diorama_objects", json.dumps([o.id for o in gathered.objects]))
+    if gathered.carried_photo is not None:
+        prim.SetCustomDataByKey("diorama_photo", gathered.carried_photo)
     if gathered.provenance:
         prim.SetCustomDataByKey("provenance", json.dumps(dict(gathered.provenance), ensure_ascii=False))
 
 
-def _prototypes(stage: Usd.Stage, gathered: ExportScene, looks: Looks, progress: Progress) -> None:
+def _prototypes(stage: Usd.Stage, gathered: ExportScene, materials: StageMaterials, progress: Progress) -> None:
     stage.CreateClassPrim(PROTOTYPES)
     shapes = [m for m in gathered.meshes.values() if m.shape_id is not None]
     for done, mesh in enumerate(shapes):
         progress.report(0.9 * done / len(shapes), f"writing {mesh.name}")
         path = f"{PROTOTYPES}/{mesh.key}"
         UsdGeom.Xform.Define(stage, path)
-        add_surfaces(stage, path, mesh.surfaces, looks)
+        add_surfaces(stage, path, mesh.surfaces, materials)
 
 
-def _architecture(stage: Usd.Stage, gathered: ExportScene, looks: Looks) -> None:
+def _architecture(stage: Usd.Stage, gathered: ExportScene, materials: StageMaterials) -> None:
     if not gathered.planes:
         return
     group = UsdGeom.Xform.Define(stage, f"{ROOT}/Architecture")
@@ -140,7 +144,7 @@ def _architecture(stage: Usd.Stage, gathered: ExportScene, looks: Looks) -> None
         prim.SetDisplayName(slab.name)
         plane = {"id": slab.plane.id, "role": slab.plane.role, "confidence": slab.plane.confidence}
         prim.SetCustomDataByKey("diorama_plane", json.dumps(plane))
-        add_surfaces(stage, str(prim.GetPath()), gathered.meshes[slab.mesh].surfaces, looks)
+        add_surfaces(stage, str(prim.GetPath()), gathered.meshes[slab.mesh].surfaces, materials)
 
 
 def _objects(stage: Usd.Stage, gathered: ExportScene) -> None:

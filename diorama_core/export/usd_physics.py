@@ -15,6 +15,7 @@ from diorama_core.export.usd_values import extent, integers, quaternion, vectors
 
 ROOT = "/Scene"
 GRAVITY = 9.81
+_COLLIDER_SCHEMAS = ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI", "MaterialBindingAPI"]
 
 
 def add_physics(stage: Usd.Stage, gathered: ExportScene, physical: PhysicalScene) -> None:
@@ -73,21 +74,33 @@ class _Grips:
 
 
 def _colliders(stage: Usd.Stage, path: str, parts: tuple[Points, ...], grip: UsdShade.Material) -> None:
-    """Convex meshes that are not drawn."""
+    """Convex meshes that are not drawn, written into the layer itself: a scene has thousands of them."""
     scope = UsdGeom.Scope.Define(stage, f"{path}/Colliders")
     scope.CreatePurposeAttr(UsdGeom.Tokens.guide)
-    for number, points in enumerate(parts):
-        mesh = UsdGeom.Mesh.Define(stage, f"{path}/Colliders/Part_{number}")
-        vertices, faces = hull_faces(points)
-        mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
-        mesh.CreatePointsAttr(vectors(vertices))
-        mesh.CreateExtentAttr(extent(vertices))
-        mesh.CreateFaceVertexCountsAttr(integers(np.full(len(faces), 3)))
-        mesh.CreateFaceVertexIndicesAttr(integers(faces.reshape(-1)))
-        UsdPhysics.CollisionAPI.Apply(mesh.GetPrim())
-        UsdPhysics.MeshCollisionAPI.Apply(mesh.GetPrim()).CreateApproximationAttr(UsdPhysics.Tokens.convexHull)
-        binding = UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim())
-        binding.Bind(grip, materialPurpose="physics")
+    layer = stage.GetRootLayer()
+    with Sdf.ChangeBlock():
+        for number, points in enumerate(parts):
+            _collider(layer, f"{path}/Colliders/Part_{number}", points, grip.GetPath())
+
+
+def _collider(layer: Sdf.Layer, path: str, points: Points, grip: Sdf.Path) -> None:
+    """One convex mesh with its collision and the material it grips with."""
+    vertices, faces = hull_faces(points)
+    prim = Sdf.CreatePrimInLayer(layer, path)
+    prim.specifier, prim.typeName = Sdf.SpecifierDef, "Mesh"
+    prim.SetInfo("apiSchemas", Sdf.TokenListOp.Create(prependedItems=_COLLIDER_SCHEMAS))
+    types, fixed, varying = Sdf.ValueTypeNames, Sdf.VariabilityUniform, Sdf.VariabilityVarying
+    for name, kind, variability, value in (
+        ("subdivisionScheme", types.Token, fixed, UsdGeom.Tokens.none),
+        ("points", types.Point3fArray, varying, vectors(vertices)),
+        ("extent", types.Float3Array, varying, extent(vertices)),
+        ("faceVertexCounts", types.IntArray, varying, integers(np.full(len(faces), 3))),
+        ("faceVertexIndices", types.IntArray, varying, integers(faces.reshape(-1))),
+        ("physics:approximation", types.Token, fixed, UsdPhysics.Tokens.convexHull),
+    ):
+        Sdf.AttributeSpec(prim, name, kind, variability).default = value
+    binding = Sdf.RelationshipSpec(prim, "material:binding:physics", custom=False)
+    binding.targetPathList.explicitItems = [grip]
 
 
 def _mass(prim: Usd.Prim, inertia: Inertia) -> None:

@@ -1,61 +1,148 @@
-"""Surfaces as Wavefront OBJ text and pictures as PNG, for the packages of simulators."""
+"""Wavefront OBJ and MTL: how surfaces and materials are written, whatever format they are for.
+
+A textured material keeps its colour in the picture, because many programs show `map_Kd` alone. Metallic and roughness
+follow the common extension of MTL (`Pm`, `Pr`).
+"""
 
 from __future__ import annotations
 
-import io
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 import numpy as np
-from jaxtyping import Float, Int, UInt8
-from PIL import Image
+from jaxtyping import Float, Int
 
+from diorama_core.export.pictures import Picture, encoded_picture, picture_suffix, tinted
+from diorama_core.export.text import index_rows, number_rows
 from diorama_core.io.srgb import linear_to_srgb
-from diorama_core.render.appearance import Material, Surface
+from diorama_core.render.appearance import Colour, Material, Surface
+
+DECIMALS = 5
+"""A hundredth of a millimetre."""
+_MAP_KEYWORDS = {"normalTexture": "norm", "metallicRoughnessTexture": "map_Pr", "emissiveTexture": "map_Ke"}
 
 
-def obj_text(surface: Surface, material: str | None = None) -> str:
-    """One surface as a Wavefront object: positions, normals, and texture coordinates where there are some.
+class ObjText:
+    """Surfaces as text of one OBJ, which counts its vertices through all of them."""
+
+    def __init__(self, decimals: int = DECIMALS) -> None:
+        self._decimals = decimals
+        self._vertices = 1
+        self._uvs = 1
+
+    def add(self, surface: Surface, material: str | None = None) -> bytes:
+        """The next surface: positions with colours where it has some, normals, texture coordinates, material, faces."""
+        points = surface.vertices if surface.colours is None else np.hstack([surface.vertices, surface.colours])
+        text = number_rows("v", points, self._decimals) + number_rows("vn", surface.normals, 4)
+        if surface.uv is not None:
+            text += number_rows("vt", surface.uv, 6)
+        text += b"" if material is None else f"usemtl {material}\n".encode()
+        text += self._faces(surface)
+        self._vertices += len(surface.vertices)
+        self._uvs += 0 if surface.uv is None else len(surface.uv)
+        return text
+
+    def _faces(self, surface: Surface) -> bytes:
+        corners = surface.faces.astype(np.int64)
+        if surface.uv is None:
+            return index_rows("f %d//%d %d//%d %d//%d", np.repeat(corners + self._vertices, 2, axis=1))
+        v, t = corners + self._vertices, corners + self._uvs
+        return index_rows("f %d/%d/%d %d/%d/%d %d/%d/%d", np.stack([v, t, v], axis=2).reshape(-1, 9))
+
+
+def obj_file(surface: Surface, materials: str | None = None, material: str | None = None) -> bytes:
+    """One surface as a file.
 
     Args:
         surface: Its triangles.
-        material: Name of its material, which lies in a file of that name beside it; None for none.
+        materials: Name of the material file beside it; None for none.
+        material: Name of its material in that file.
     """
-    lines = [] if material is None else [f"mtllib {material}.mtl"]
-    lines += [_rows("v", surface.vertices, 6), _rows("vn", surface.normals, 4)]
-    corner = "%d/%d/%d" if surface.uv is not None else "%d//%d"
-    if surface.uv is not None:
-        lines.append(_rows("vt", surface.uv, 5))
-    lines += [] if material is None else [f"usemtl {material}"]
-    numbers = np.repeat(surface.faces.reshape(-1) + 1, corner.count("%"))
-    return "\n".join(lines) + "\n" + _filled(f"f {corner} {corner} {corner}\n", len(surface.faces), numbers)
+    head = b"" if materials is None else f"mtllib {materials}\n".encode()
+    return head + ObjText().add(surface, material)
 
 
-def hull_text(points: Float[np.ndarray, "n 3"], faces: Int[np.ndarray, "m 3"]) -> str:
-    """A convex body as a Wavefront object."""
-    lines = [_rows("v", points, 7)]
-    lines += [f"f {a} {b} {c}" for a, b, c in (faces + 1).tolist()]
-    return "\n".join(lines) + "\n"
+def hull_file(points: Float[np.ndarray, "n 3"], faces: Int[np.ndarray, "m 3"]) -> bytes:
+    """A convex body as a file."""
+    return number_rows("v", points, 7) + index_rows("f %d %d %d", faces.astype(np.int64) + 1)
 
 
-def material_text(name: str, material: Material, picture: str | None) -> str:
-    """A material as Wavefront has it; `picture` is the file of its texture beside it."""
-    red, green, blue = linear_to_srgb(np.asarray(material.colour))
-    lines = [f"newmtl {name}", f"Kd {red:.5f} {green:.5f} {blue:.5f}", f"d {material.alpha:.4f}", "Ks 0.1 0.1 0.1"]
-    lines += [] if picture is None else [f"map_Kd {picture}"]
-    return "\n".join(lines) + "\n"
+class MaterialFile:
+    """The material file of some materials with the pictures beside it.
 
+    Args:
+        materials: Each once; surfaces refer to them by identity.
+        pictures: Folder of the pictures, relative to the file, with its slash.
+        display: Whether colours are written as display values (sRGB), for programs without linear light.
+        maps: Whether pictures other than the colour's are written.
+    """
 
-def png_bytes(picture: UInt8[np.ndarray, "h w c"]) -> bytes:
-    """A picture as PNG."""
-    buffer = io.BytesIO()
-    Image.fromarray(np.ascontiguousarray(picture)).save(buffer, "PNG")
-    return buffer.getvalue()
+    def __init__(
+        self, materials: Iterable[Material], *, pictures: str = "", display: bool = False, maps: bool = True
+    ) -> None:
+        self._folder = pictures
+        self._display = display
+        self._files: dict[int, tuple[str, Picture]] = {}
+        self._tints: dict[tuple[int, Colour], Picture] = {}
+        self._names: dict[int, str] = {}
+        self._materials: dict[str, Material] = {}
+        self._sources = tuple(materials)  # holding them keeps their ids from being reused
+        for material in self._sources:
+            name = self._unused(re.sub(r"\s+", "_", material.name.strip()) or "material")
+            self._names[id(material)] = name
+            self._materials[name] = self._written(material if maps else replace(material, maps={}))
 
+    def name(self, material: Material) -> str:
+        """What the file calls a material: no spaces, unique."""
+        return self._names[id(material)]
 
-def _rows(word: str, values: np.ndarray, digits: int) -> str:
-    row = f"{word}{f' %.{digits}f' * values.shape[1]}\n"
-    return _filled(row, len(values), values.reshape(-1)).rstrip("\n")
+    def text(self) -> bytes:
+        """The file."""
+        return "\n".join(self._block(name, material) for name, material in self._materials.items()).encode()
 
+    def pictures(self) -> Iterator[tuple[str, bytes]]:
+        """Names, relative to the file, and contents of the pictures."""
+        for name, picture in self._files.values():
+            yield name, encoded_picture(picture)
 
-def _filled(row: str, count: int, values: np.ndarray) -> str:
-    """A row's format, repeated and filled at once: many times faster than row by row."""
-    return (row * count) % tuple(values.tolist())
+    def _unused(self, stem: str) -> str:
+        name, number = stem, 2
+        while name in self._materials:
+            name, number = f"{stem}_{number}", number + 1
+        return name
+
+    def _written(self, material: Material) -> Material:
+        """The material as it is written; its pictures get their names."""
+        if material.texture is not None:
+            key = (id(material.texture), material.colour)
+            if key not in self._tints:
+                self._tints[key] = tinted(material.texture, material.colour)
+            material = replace(material, colour=(1.0, 1.0, 1.0), texture=self._tints[key])
+        for picture in (material.texture, *(material.maps[k] for k in _MAP_KEYWORDS if k in material.maps)):
+            if picture is not None and id(picture) not in self._files:
+                name = f"{self._folder}{len(self._files):03d}{picture_suffix(picture)}"
+                self._files[id(picture)] = (name, picture)
+        return material
+
+    def _block(self, name: str, material: Material) -> str:
+        shine, specular = 1000.0 * (1.0 - material.roughness) ** 2, 0.5 if material.metallic < 0.5 else 1.0
+        lines = [f"newmtl {name}", f"Kd {self._colour(material.colour)}", f"Ks {specular} {specular} {specular}"]
+        lines += [f"Ns {shine:.1f}", f"d {material.alpha:.4f}"]
+        lines += [
+            f"Pr {material.roughness:.4f}",
+            f"Pm {material.metallic:.4f}",
+            f"illum {4 if material.alpha < 1 else 2}",
+        ]
+        if any(material.emissive):
+            lines.append(f"Ke {self._colour(material.emissive)}")
+        if material.texture is not None:
+            lines.append(f"map_Kd {self._files[id(material.texture)][0]}")
+        for slot, keyword in _MAP_KEYWORDS.items():
+            if slot in material.maps:
+                lines.append(f"{keyword} {self._files[id(material.maps[slot])][0]}")
+        return "\n".join(lines) + "\n"
+
+    def _colour(self, linear: Colour) -> str:
+        values = linear_to_srgb(np.asarray(linear)) if self._display else linear
+        return " ".join(f"{float(c):.6f}" for c in values)

@@ -19,6 +19,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
+from diorama_core.geometry.rows import unique_rows
 from diorama_core.scene.values import ArrayValue, frozen_array
 
 TIGHT = 0.88
@@ -147,8 +148,8 @@ def _components(vertices: np.ndarray, faces: Int[np.ndarray, "f 3"]) -> list[np.
 
     Bodies that merely touch along an edge stay apart; seams within one body, where indices differ, do not cut it.
     """
-    _, merged = np.unique(np.round(vertices, 6), axis=0, return_inverse=True)
-    by_place, by_index = _edge_numbers(merged.reshape(-1)[faces]), _edge_numbers(faces)
+    _, merged = unique_rows(np.round(vertices, 6))
+    by_place, by_index = _edge_numbers(merged[faces]), _edge_numbers(faces)
     of_face = np.repeat(np.arange(len(faces)), 3)
     manifold = np.bincount(by_place)[by_place] == 2
     hubs = np.concatenate([by_place[manifold], int(by_place.max()) + 1 + by_index])

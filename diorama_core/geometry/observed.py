@@ -140,10 +140,10 @@ def observe_among(
 
     Args:
         camera: The photo's camera.
-        things: Everything seen in the photo.
+        items: All objects in the photo.
         centres_world: Where each is.
         parents: For each, which of the others it lies on, if any.
-        index: The one to look at.
+        index: The object to observe.
         cells: Resolution of the window, both ways.
     """
     depths = camera.to_camera(centres_world)[:, 2]

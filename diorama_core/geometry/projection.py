@@ -39,7 +39,7 @@ def visible_bounds(
         The bounds, and whether anything is visible. Where nothing is, the bounds are the point of the picture nearest
         to the cuboid's centre.
     """
-    slack = _frustum_slack(corners_camera, intrinsics)
+    slack = frustum_slack(corners_camera, intrinsics)
     inside = (slack >= 0).all(axis=(1, 2))
     bounds = np.empty((len(corners_camera), 4))
     visible = np.ones(len(corners_camera), dtype=bool)
@@ -68,8 +68,11 @@ def _point_bounds(pixels: Float[np.ndarray, "n p 2"]) -> Float[np.ndarray, "n 4"
     return np.concatenate([pixels.min(axis=1), pixels.max(axis=1)], axis=-1)
 
 
-def _frustum_slack(points: Float[np.ndarray, "n p 3"], k: Intrinsics) -> Float[np.ndarray, "n p 5"]:
-    """How far points are on the inner side of the near plane and the picture's four side planes."""
+def frustum_slack(points: Float[np.ndarray, "n p 3"], k: Intrinsics) -> Float[np.ndarray, "n p 5"]:
+    """How far camera-frame points are on the inner side of the near plane and the picture's four side planes.
+
+    The near plane is in metres, the side planes are times the focal length; positive inside.
+    """
     x, y, z = points[..., 0], points[..., 1], points[..., 2]
     return np.stack(
         [
@@ -131,7 +134,7 @@ def _near_cut_bounds(
     cut = (near[:, a] < 0) != (near[:, b] < 0)
     share = near[:, a] / np.where(cut, near[:, a] - near[:, b], 1.0)
     points = corners[:, a] + share[..., None] * (corners[:, b] - corners[:, a])
-    slack = _frustum_slack(points, k)
+    slack = frustum_slack(points, k)
     slack[..., 0] = np.where(cut, 0.0, -1.0)
     first, second = _edge_pairs_of_faces().T
     return _segment_bounds(points[:, first], points[:, second], slack[:, first], slack[:, second], k)

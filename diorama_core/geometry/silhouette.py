@@ -17,12 +17,12 @@ import trimesh
 from jaxtyping import Bool, Float, Int, UInt32
 from scipy.spatial import ConvexHull, QhullError
 
+from diorama_core.geometry.projection import NEAR_M, frustum_slack
 from diorama_core.scene.types import Camera, box_corners
 
 _OPEN3D: Any = o3d  # its stubs do not know that arrays are taken for tensors
 
 _MIN_EXTENT_M = 1e-4
-_NEAR_M = 0.05
 _HULL_DIRECTIONS = 48
 
 
@@ -120,7 +120,7 @@ class ShapeCaster:
         rays[..., 3:] = directions_world @ to_object.transpose(0, 2, 1)
         depth, normals, triangles = self._cast(rays.reshape(-1, 6))
         depth = depth.reshape(count, rays_each).astype(np.float64)
-        depth[~(depth > _NEAR_M)] = np.inf
+        depth[~(depth > NEAR_M)] = np.inf
         shape = (count, rays_each)
         return Hits(depth, normals.reshape(*shape, 3), triangles.reshape(shape), directions_world, poses)
 
@@ -166,17 +166,7 @@ def clipped_bounds(
 ) -> Float[np.ndarray, "p 4"]:
     """Boxes of the edges' visible parts: clipped to the near plane and to the photo; NaN where nothing is visible."""
     k = camera.intrinsics
-    x, y, z = points_camera[..., 0], points_camera[..., 1], points_camera[..., 2]
-    slack = np.stack(
-        [
-            z - _NEAR_M,
-            k.fx * x + k.cx * z,
-            (k.width - k.cx) * z - k.fx * x,
-            k.fy * y + k.cy * z,
-            (k.height - k.cy) * z - k.fy * y,
-        ],
-        axis=-1,
-    )
+    slack = frustum_slack(points_camera, k)
     inside = (slack >= 0).all(axis=(1, 2))
     bounds = np.empty((len(points_camera), 4))
     uv = _pixels(camera, points_camera[inside])
@@ -186,7 +176,7 @@ def clipped_bounds(
 
 
 def _pixels(camera: Camera, points_camera: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 2"]:
-    k, depth = camera.intrinsics, np.maximum(points_camera[..., 2], _NEAR_M / 2)
+    k, depth = camera.intrinsics, np.maximum(points_camera[..., 2], NEAR_M / 2)
     return np.stack([k.fx * points_camera[..., 0] / depth + k.cx, k.fy * points_camera[..., 1] / depth + k.cy], axis=-1)
 
 

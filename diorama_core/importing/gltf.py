@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import io
 import json
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +17,7 @@ from PIL import Image
 from scipy.spatial.transform import Rotation
 
 from diorama_core.errors import InputError, LibraryError
-from diorama_core.importing.marked import MarkedFile, ObjectNode, as_ids, as_mapping
+from diorama_core.importing.marked import MarkedFile, ObjectNode, as_bytes, as_ids, as_mapping
 from diorama_core.library.ingest.gltf import container
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.references import References, read_bytes
@@ -68,7 +69,9 @@ def read_marked_gltf(path: Path) -> MarkedFile | None:
         planes={plane_id: Z_UP @ n.M_world for plane_id, n in planes.items()},
         T_world_camera=None if camera is None else Z_UP @ camera.M_world @ CAMERA_AXES,
         pictures={i: p for i, n in planes.items() if (p := pictures.of_mesh(n.row.get("mesh"))) is not None},
+        material_pictures=pictures.from_photo(),
         provenance=as_mapping(root.extras.get("provenance")) or {},
+        photo=as_bytes(root.extras.get("diorama_photo")),
     )
 
 
@@ -124,6 +127,10 @@ def _object_nodes(nodes: tuple[_Node, ...]) -> tuple[ObjectNode, ...]:
     return tuple(found)
 
 
+FROM_PHOTO = re.compile(r" from the photo (\S+)(?: \d+)?$")
+"""The end of such a material's name, where a number may tell equal ones apart."""
+
+
 class _Pictures:
     """Base colour pictures of meshes."""
 
@@ -142,6 +149,19 @@ class _Pictures:
             if texture is not None:
                 return self._image(self._document["textures"][texture["index"]])
         return None
+
+    def from_photo(self) -> dict[str, UInt8[np.ndarray, "_ _ 3"]]:
+        """Pictures of the objects' materials from the photo, by the texture names that the materials carry."""
+        found = {}
+        for material in self._document.get("materials", []):
+            name = FROM_PHOTO.search(str(material.get("name", "")))
+            texture = material.get("pbrMetallicRoughness", {}).get("baseColorTexture")
+            picture = (
+                None if name is None or texture is None else self._image(self._document["textures"][texture["index"]])
+            )
+            if name is not None and picture is not None:
+                found[name.group(1)] = picture
+        return found
 
     def _image(self, texture: Json) -> UInt8[np.ndarray, "h w 3"] | None:
         if "source" not in texture:

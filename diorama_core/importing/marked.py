@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-import json
+import base64
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from jaxtyping import Float, UInt8
+
+from diorama_core.errors import InputError
+from diorama_core.io.bounded import parse_json
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,26 +43,40 @@ class MarkedFile:
     """How each plane was moved since it was written, in the world."""
     T_world_camera: Float[np.ndarray, "4 4"] | None = None
     """Where the photo's camera is, axes x right, y down, z forward; None when the file has none."""
-    pictures: Mapping[str, UInt8[np.ndarray, "h w 3"]] = field(default_factory=dict)
+    pictures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]] = field(default_factory=dict)
     """Pictures on planes, by plane id."""
+    material_pictures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]] = field(default_factory=dict)
+    """Pictures of the objects' materials from the photo, by texture name."""
     provenance: Mapping[str, Any] = field(default_factory=dict)
+    photo: bytes | None = None
+    """File of the photo; None when it was not put in."""
 
 
 def as_mapping(value: object) -> Mapping[str, Any] | None:
     """A mark as a mapping: files keep it as JSON text, some programs turn it into a table; None when it is neither."""
     if isinstance(value, str):
-        try:
-            value = json.loads(value)
-        except ValueError:
-            return None
+        value = _parsed(value)
     return value if isinstance(value, Mapping) else None
+
+
+def as_bytes(value: object) -> bytes | None:
+    """Bytes written in base 64; None when it is something else."""
+    try:
+        return base64.b64decode(value, validate=True) if isinstance(value, str) and value else None
+    except ValueError:
+        return None
+
+
+def _parsed(text: str) -> object:
+    """JSON out of a foreign file; None when it is none."""
+    try:
+        return parse_json(text, "a mark", InputError)
+    except InputError:
+        return None
 
 
 def as_ids(value: object) -> frozenset[str] | None:
     """A list of ids, as JSON text or as a list; None when it is neither."""
     if isinstance(value, str):
-        try:
-            value = json.loads(value)
-        except ValueError:
-            return None
+        value = _parsed(value)
     return frozenset(str(v) for v in value) if isinstance(value, list) else None

@@ -10,9 +10,11 @@ from typing import Any
 import numpy as np
 from jaxtyping import UInt8
 
+from diorama_core.artefacts import Inputs, Photo
 from diorama_core.errors import InputError
 from diorama_core.importing.marked import MarkedFile
 from diorama_core.importing.restore import restored
+from diorama_core.perception.input_photo import read_photo, read_source
 from diorama_core.scene.types import Architecture, Scene
 
 GLTF_SUFFIXES = (".glb", ".gltf")
@@ -21,17 +23,31 @@ SUFFIXES = (*GLTF_SUFFIXES, *USD_SUFFIXES, ".sh3d")
 """Endings of files that can be opened as scenes."""
 
 
+MAX_PHOTO_PX = 8192
+"""Longest side of a photo; a larger one does not fit its camera any more."""
+
+
 @dataclass(frozen=True, eq=False)
 class Opened:
     """A scene from a file."""
 
     scene: Scene
     textures: Mapping[str, UInt8[np.ndarray, "h w 3"]] = field(default_factory=dict)
-    """Pictures of the planes by `Plane.texture`."""
+    """Pictures of planes and of objects' materials, by name."""
     changes: tuple[str, ...] = ()
     """What the file has otherwise than it was written, one line each."""
     provenance: Mapping[str, Any] = field(default_factory=dict)
     """Where the scene came from, as the file says."""
+    photo: Photo | None = None
+    """The photo, where the file holds it."""
+
+    @property
+    def inputs(self) -> Inputs | None:
+        """What a later build starts from: the photo and the scene's own camera."""
+        if self.photo is None:
+            return None
+        camera = self.scene.camera
+        return Inputs(photo=self.photo, intrinsics=None if camera is None else camera.intrinsics)
 
 
 def marked_file(path: Path) -> MarkedFile | None:
@@ -53,7 +69,7 @@ def marked_file(path: Path) -> MarkedFile | None:
 def open_marked(file: MarkedFile) -> Opened:
     """The scene that Diorama wrote, as the file has it now; see `restore`."""
     found = restored(file)
-    planes, textures = [], {}
+    planes, textures = [], dict(file.material_pictures)
     for plane in found.scene.architecture.planes:
         picture = file.pictures.get(plane.id)
         if picture is not None:
@@ -61,7 +77,25 @@ def open_marked(file: MarkedFile) -> Opened:
             textures[str(plane.texture)] = picture
         planes.append(plane)
     scene = replace(found.scene, architecture=Architecture(tuple(planes)))
-    return Opened(scene, textures, found.changes, file.provenance)
+    photo, remarks = _photo(file, scene)
+    return Opened(scene, textures, (*found.changes, *remarks), file.provenance, photo)
+
+
+def _photo(file: MarkedFile, scene: Scene) -> tuple[Photo | None, tuple[str, ...]]:
+    """The photo that the file holds, and what to know where it cannot be used."""
+    name = str(file.provenance.get("photo") or "photo.jpg")
+    if file.photo is None:
+        return None, (
+            f"{name} is not in the file; export it again with its photo",
+        ) if "photo" in file.provenance else ()
+    try:
+        photo, _ = read_photo(read_source(file.photo, "photo", name), MAX_PHOTO_PX)
+    except InputError as error:
+        return None, (f"the photo in the file cannot be read: {error}",)
+    camera = scene.camera
+    if camera is not None and (camera.intrinsics.width, camera.intrinsics.height) != (photo.width, photo.height):
+        return None, (f"{name} is not of the camera's size; it was left out",)
+    return photo, ()
 
 
 def _readers() -> dict[str, Callable[[Path], MarkedFile | None]]:

@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from diorama_core.errors import InputError, UnavailableError
 from diorama_core.importing.gltf import CAMERA_AXES, Z_UP
-from diorama_core.importing.marked import MarkedFile, ObjectNode, as_ids, as_mapping
+from diorama_core.importing.marked import MarkedFile, ObjectNode, as_bytes, as_ids, as_mapping
 
 MARK = "diorama"
 
@@ -74,6 +74,7 @@ def read_marked_usd(path: Path) -> MarkedFile | None:
         planes=planes,
         T_world_camera=T_world_camera,
         provenance=as_mapping(root.GetCustomDataByKey("provenance")) or {},
+        photo=as_bytes(root.GetCustomDataByKey("diorama_photo")),
     )
 
 

@@ -8,12 +8,21 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, Protocol, runtime_checkable
 
 from diorama_core.errors import DioramaError
 
 LEFTOVER_S = 3600.0
 """A part older than this belongs to a program that was killed."""
+
+
+@runtime_checkable
+class ByteSink(Protocol):
+    """Where bytes are written: a binary file, memory, or a member of an archive."""
+
+    def write(self, data: bytes | bytearray, /) -> object:
+        """Append bytes."""
+        ...
 
 
 def write_atomically(path: Path, data: bytes, *, error: type[DioramaError] | None = None) -> None:

@@ -4,34 +4,50 @@ from __future__ import annotations
 
 import logging
 import os
-import zipfile
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from io import BytesIO
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
+from diorama_core.errors import InputError
+from diorama_core.io.arrays import arrays_of
 from diorama_core.io.atomic import write_atomically
+from diorama_core.io.bounded import read_bytes, shortened
 
 log = logging.getLogger(__name__)
 
+T = TypeVar("T")
+MAX_DERIVED_BYTES = 400_000_000
+
 
 def read_derived(path: Path) -> bytes | None:
-    """A file's bytes; None when it is absent or cannot be read."""
+    """A file's bytes; None when it is absent, cannot be read, or is larger than any real one."""
     try:
-        return path.read_bytes()
-    except OSError:
+        return read_bytes(path, MAX_DERIVED_BYTES, InputError)
+    except InputError:
         return None
 
 
-def derived(path: Path, make: Callable[[], bytes]) -> bytes:
-    """A file's bytes; made and written when it is absent or cannot be read."""
+def derived(path: Path, make: Callable[[], bytes], value_of: Callable[[bytes], T]) -> T:
+    """The value in a file, which is made and written when it is absent or damaged.
+
+    Args:
+        path: The file.
+        make: Makes its content.
+        value_of: Reads the content; raises anything when it is damaged.
+    """
     data = read_derived(path)
-    if data is None:
-        data = make()
-        write_derived(path, data)
-    return data
+    if data is not None:
+        try:
+            return value_of(data)
+        except Exception as error:  # damaged bytes raise almost anything, and all of it means the same
+            log.warning("%s is damaged (%s); it is made again", path, shortened(str(error)) or type(error).__name__)
+    data = make()
+    write_derived(path, data)
+    return value_of(data)
 
 
 def write_derived(path: Path, data: bytes, *, limit_bytes: int | None = None) -> None:
@@ -59,10 +75,13 @@ def read_arrays(path: Path, *names: str, mark_use: bool = False) -> tuple[np.nda
         names: Of the arrays.
         mark_use: Set the file's time, so that it is not the first to go when its folder is full.
     """
+    content = read_derived(path)
+    if content is None:
+        return None
     try:
-        with np.load(path, allow_pickle=False) as stored:
-            arrays = tuple(stored[name] for name in names)
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        arrays = arrays_of(content, names)
+    except Exception as error:  # damaged bytes make zip and array headers raise almost anything
+        log.warning("%s is damaged (%s); it is made again", path, shortened(str(error)) or type(error).__name__)
         return None
     if mark_use:
         with suppress(OSError):  # another's folder may be read but not touched

@@ -59,6 +59,18 @@ def split_glb(data: bytes) -> tuple[bytes, bytes | None]:
     return chunks[_JSON], chunks.get(_BIN)
 
 
+def whole_glb(data: bytes) -> bytes:
+    """The same bytes.
+
+    Raises:
+        GlbError: when they are not all of a GLB.
+    """
+    split_glb(data)
+    if not is_glb(data):
+        raise GlbError("this is no GLB")
+    return data
+
+
 def read_glb(data: bytes) -> tuple[dict[str, Any], bytes]:
     """The document and the binary data (maybe empty) of a GLB from a trusted writer.
 

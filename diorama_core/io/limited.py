@@ -12,6 +12,7 @@ import socket
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable
 from multiprocessing.connection import Connection
 from typing import Any, ParamSpec, TypeVar
@@ -27,7 +28,7 @@ MAX_MEMORY = 2_000_000_000
 MAX_SECONDS = 60.0
 
 _GLANCE_S = 0.2
-"""How often a cancel is looked for."""
+"""How often a cancel, and the end of the program, is looked for."""
 _TOO_MUCH = "it needs more memory than a file of this kind should, or is damaged; reduce it or save it again"
 _TOO_LONG = "reading it takes too long; reduce it or save it again"
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
@@ -127,7 +128,7 @@ class LimitedProcess:
         self._end()
         ours, theirs = socket.socketpair()
         environment = {**os.environ, **dict.fromkeys(_THREADS, "1"), "PYTHONPATH": os.pathsep.join(sys.path)}
-        command = [sys.executable, "-m", __name__, str(theirs.fileno()), str(self._memory)]
+        command = [sys.executable, "-m", __name__, str(theirs.fileno()), str(self._memory), str(os.getpid())]
         self._process = subprocess.Popen(
             command,
             pass_fds=(theirs.fileno(),),
@@ -151,8 +152,16 @@ class LimitedProcess:
         self._process = self._connection = None
 
 
-def _serve(handle: int, memory: int) -> None:
+def _end_with(program: int) -> None:
+    """End this process when the program is killed, also while it loads or decodes something."""
+    while os.getppid() == program:
+        time.sleep(_GLANCE_S)
+    os._exit(1)
+
+
+def _serve(handle: int, memory: int, program: int) -> None:
     """Answer calls until the other side is gone."""
+    threading.Thread(target=_end_with, args=(program,), daemon=True, name="end-with-parent").start()
     with contextlib.suppress(ImportError, ValueError, OSError):
         import resource
 
@@ -185,4 +194,4 @@ def _answer(function: Callable[..., Any], args: tuple, kwargs: dict[str, Any]) -
 
 
 if __name__ == "__main__":
-    _serve(int(sys.argv[1]), int(sys.argv[2]))
+    _serve(int(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3]))

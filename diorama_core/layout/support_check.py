@@ -15,7 +15,7 @@ from diorama_core.layout.noise import ObservationNoise
 from diorama_core.layout.problem.supports import (
     choose_surface,
     closes_cycle,
-    holds,
+    is_wide_enough,
     label_of,
     misfit,
     outside_m,
@@ -121,7 +121,7 @@ def _candidates(scene: Scene, library: ShapeLibrary, item: SceneObject) -> list[
     if mount == "surface":
         for other in scene.objects:
             edge, shape = Support(item.id, other.id), library.shape(other.shape_id)
-            if surfaces_below(item, other, shape) and holds(item, edge, other, shape):
+            if surfaces_below(item, other, shape) and is_wide_enough(item, edge, other, shape):
                 found.append(edge)
     return found
 

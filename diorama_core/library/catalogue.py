@@ -12,12 +12,16 @@ import platformdirs
 import trimesh
 
 from diorama_core.errors import LibraryError
+from diorama_core.io.bounded import parse_json
 from diorama_core.io.cache import LruCache
 from diorama_core.io.derived import derived
+from diorama_core.io.glb import whole_glb
 from diorama_core.library import furniture, taxonomy
 from diorama_core.library.furniture.geometry_key import geometry_key
+from diorama_core.library.furniture.latest import built_once
 from diorama_core.library.furniture.materials import Material
-from diorama_core.library.furniture.model import Design, built, mesh_of, scene_of
+from diorama_core.library.furniture.model import Design, mesh_of, scene_of
+from diorama_core.library.furniture.roles import with_roles
 from diorama_core.library.furniture.solids import Solid
 from diorama_core.library.record import Shape, SupportSurface, usual_contact_faces
 from diorama_core.library.surfaces import SURFACES_VERSION, support_surfaces
@@ -56,6 +60,8 @@ BULK_DENSITY: dict[str, float] = {
     "dishwasher": 150, "kitchen island": 110, "wall cabinet": 110, "bar cart": 45,
 }  # fmt: skip
 """Kilograms per cubic metre of bounding box: a rough guess for physics, from weighing catalogues' furniture."""
+SCENE_BYTES = 256e6
+"""Of the arrays of models that stay in memory."""
 
 
 def default_cache_dir() -> Path:
@@ -81,7 +87,7 @@ class BuiltInLibrary:
         self._records = {d.id: _record(d) for d in designs}
         self._folder = cache_dir
         self._solids: LruCache[str, list[tuple[Material, Solid]]] = LruCache(8)
-        self._scenes: LruCache[str, trimesh.Scene] = LruCache(64)
+        self._scenes: LruCache[str, trimesh.Scene] = LruCache(SCENE_BYTES, _bytes_of)
         self._meshes: LruCache[str, trimesh.Trimesh] = LruCache(256)
         self._glbs: LruCache[str, bytes] = LruCache(256)
         self._surfaces: LruCache[str, tuple[SupportSurface, ...]] = LruCache(4096)
@@ -110,12 +116,15 @@ class BuiltInLibrary:
     def parts(self, shape_id: str) -> trimesh.Scene:
         """Geometry with materials, in the canonical frame. Shared: do not change it."""
         self._known(shape_id)
-        return self._scenes.get(shape_id, lambda: scene_of(self._built(shape_id)))
+        return self._scenes.get(shape_id, lambda: _scene(self._built(shape_id)))
 
     def glb(self, shape_id: str) -> bytes:
         """`parts` as GLB, +Z up, metres; the same bytes every time."""
         record = self._known(shape_id)
-        return self._glbs.get(shape_id, lambda: derived(self._glb_path(record), lambda: _glb(self.parts(shape_id))))
+        return self._glbs.get(shape_id, lambda: self._stored_glb(record))
+
+    def _stored_glb(self, record: Shape) -> bytes:
+        return derived(self._glb_path(record), lambda: _glb(self.parts(record.id)), whole_glb)
 
     def is_built(self, shape_id: str) -> bool:
         """Whether the model and the support surfaces of a shape are on disk."""
@@ -130,7 +139,7 @@ class BuiltInLibrary:
 
     def _built(self, shape_id: str) -> list[tuple[Material, Solid]]:
         """The latest solids, cached because a request for the mesh is usually followed by one for the materials."""
-        return self._solids.get(shape_id, lambda: built(self._designs[shape_id]))
+        return self._solids.get(shape_id, lambda: built_once(self._designs[shape_id]))
 
     def _known(self, shape_id: str) -> Shape:
         record = self._records.get(shape_id)
@@ -142,7 +151,15 @@ class BuiltInLibrary:
         def measure() -> bytes:
             return _surfaces_to_json(support_surfaces(self.mesh(record.id)))
 
-        return _surfaces_from_json(derived(self._surfaces_path(record), measure))
+        return derived(self._surfaces_path(record), measure, _surfaces_from_json)
+
+
+def _bytes_of(scene: trimesh.Scene) -> float:
+    return float(sum(g.vertices.nbytes * 3 + g.faces.nbytes for g in scene.geometry.values()))
+
+
+def _scene(solids: list[tuple[Material, Solid]]) -> trimesh.Scene:
+    return with_roles(scene_of(solids), [material for material, _ in solids])
 
 
 def _record(design: Design) -> Shape:
@@ -194,5 +211,5 @@ def _surfaces_from_json(data: bytes) -> tuple[SupportSurface, ...]:
             np.inf if row["clearance_m"] is None else float(row["clearance_m"]),
             bool(row["interior"]),
         )
-        for row in json.loads(data)
+        for row in parse_json(data, "support surfaces", LibraryError)
     )

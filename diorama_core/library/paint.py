@@ -8,6 +8,7 @@ from jaxtyping import UInt8
 from PIL import Image
 from trimesh.visual.material import PBRMaterial
 
+from diorama_core.geometry.shape_appearance import material_rgb
 from diorama_core.io.srgb import srgb_to_linear
 from diorama_core.scene.types import Finish
 
@@ -37,12 +38,19 @@ def painted(parts: trimesh.Scene, colour: Colour | None, finish: Finish | None =
         if _material_key(mesh) != main or main is None:
             continue
         if main == _PLAIN:
-            plain = PBRMaterial(baseColorFactor=mesh.visual.main_color, metallicFactor=0.0, roughnessFactor=0.7)
-            mesh.visual = trimesh.visual.TextureVisuals(material=_overridden(plain, colour, finish))
+            mesh.visual = trimesh.visual.TextureVisuals(material=_overridden(physically_based(mesh), colour, finish))
             continue
-        new = new or _overridden(_pbr(mesh), colour, finish)
+        new = new or _overridden(physically_based(mesh), colour, finish)
         mesh.visual = trimesh.visual.TextureVisuals(uv=mesh.visual.uv, material=new)
     return scene
+
+
+def main_rgb(parts: trimesh.Scene) -> tuple[int, int, int]:
+    """The sRGB colour (0 to 255) of a shape's main material; grey where it has none."""
+    main = _main_material(parts)
+    meshes = (m for m in parts.geometry.values() if isinstance(m, trimesh.Trimesh) and _material_key(m) == main)
+    found = next((rgb for m in meshes if (rgb := material_rgb(m.visual)) is not None), None)
+    return (200, 200, 200) if found is None else (int(found[0]), int(found[1]), int(found[2]))
 
 
 _PLAIN = "vertex or face colours"
@@ -64,13 +72,16 @@ def _main_material(scene: trimesh.Scene) -> str | None:
     return max(areas, key=areas.__getitem__, default=None)
 
 
-def _pbr(mesh: trimesh.Trimesh) -> PBRMaterial:
-    material = mesh.visual.material
+def physically_based(mesh: trimesh.Trimesh) -> PBRMaterial:
+    """A mesh's material; a plain one for a mesh that only has colours."""
+    material = getattr(mesh.visual, "material", None)
+    if material is None:
+        return PBRMaterial(baseColorFactor=mesh.visual.main_color, metallicFactor=0.0, roughnessFactor=0.7)
     return material if isinstance(material, PBRMaterial) else material.to_pbr()
 
 
 def _overridden(source: PBRMaterial, colour: Colour | None, finish: Finish | None) -> PBRMaterial:
-    coloured = source.copy() if colour is None else _in_colour(source, colour)
+    coloured = source.copy() if colour is None else in_colour(source, colour)
     if finish is not None:
         coloured.name = f"{coloured.name or 'material'} {finish}"
         coloured.metallicFactor, coloured.roughnessFactor = _METALLIC_ROUGHNESS[finish]
@@ -78,15 +89,18 @@ def _overridden(source: PBRMaterial, colour: Colour | None, finish: Finish | Non
     return coloured
 
 
-def _in_colour(source: PBRMaterial, colour: Colour) -> PBRMaterial:
+def in_colour(source: PBRMaterial, colour: Colour) -> PBRMaterial:
+    """The material in a colour (sRGB 0 to 1); its texture stays as light and dark detail."""
     texture = source.baseColorTexture
-    gain = 1.0 if texture is None else 1.0 / float(srgb_to_linear(np.array(_DETAIL_MEAN)))
+    # A bright colour leaves its detail less room: a factor beyond 1 would be cut off and change the hue.
+    mean = max(_DETAIL_MEAN, *(float(c) for c in colour))
+    gain = 1.0 if texture is None else 1.0 / float(srgb_to_linear(np.array(mean)))
     # glTF's base colour factor is linear.
     linear = np.minimum(srgb_to_linear(np.array(colour, dtype=np.float64)) * gain, 1.0).tolist()
     return PBRMaterial(
         name=f"{source.name or 'material'} painted",
         baseColorFactor=[*(round(255 * c) for c in linear), _opacity(source)],
-        baseColorTexture=None if texture is None else Image.fromarray(_detail(texture)),
+        baseColorTexture=None if texture is None else Image.fromarray(_detail(texture, mean)),
         metallicFactor=source.metallicFactor,
         roughnessFactor=source.roughnessFactor,
         doubleSided=source.doubleSided,
@@ -100,8 +114,8 @@ def _opacity(source: PBRMaterial) -> int:
     return 255 if source.alphaMode != "BLEND" or factor is None else int(factor[3])
 
 
-def _detail(texture: Image.Image) -> UInt8[np.ndarray, "h w 3"]:
-    """The texture's light and dark, without its colour, around a fixed mean."""
+def _detail(texture: Image.Image, mean: float) -> UInt8[np.ndarray, "h w 3"]:
+    """The texture's light and dark, without its colour, around a mean."""
     grey = np.asarray(texture.convert("L"), dtype=np.float64) / 255.0
-    level = grey / max(float(grey.mean()), 1e-3) * _DETAIL_MEAN
+    level = grey / max(float(grey.mean()), 1e-3) * mean
     return np.repeat(np.round(255 * np.clip(level, 0.0, 1.0)).astype(np.uint8)[..., None], 3, axis=2)

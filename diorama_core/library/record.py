@@ -12,6 +12,7 @@ import trimesh
 from jaxtyping import Float
 
 from diorama_core.errors import LibraryError
+from diorama_core.io.bounded import parse_json, shortened
 from diorama_core.scene.types import FaceName
 from diorama_core.scene.values import ArrayValue, frozen_array
 
@@ -145,6 +146,9 @@ def shape_to_json(shape: Shape) -> str:
     return json.dumps(row, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
 
 
+_ADVICE = "add the shape to its library again"
+
+
 def shape_from_json(text: str) -> Shape:
     """The record that `shape_to_json` wrote.
 
@@ -152,13 +156,13 @@ def shape_from_json(text: str) -> Shape:
         LibraryError: when the text is not such a record.
     """
     try:
-        row = json.loads(text)
+        row = parse_json(text, "a shape record", LibraryError, advice=_ADVICE)
         row |= {name: tuple(row[name]) for name in ("size_m", "synonyms", "contact_faces")}
         row["surfaces"] = tuple(_surface_from(s) for s in row["surfaces"])
         row["guess"] = None if row["guess"] is None else _guess_from(row["guess"])
         return Shape(**row)
-    except (ValueError, TypeError, KeyError) as error:
-        raise LibraryError(f"a shape record cannot be read ({error}); add the shape to its library again") from error
+    except (ValueError, TypeError, KeyError, AttributeError) as error:
+        raise LibraryError(f"a shape record cannot be read ({shortened(str(error))}); {_ADVICE}") from error
 
 
 def _surface_from(row: Mapping[str, Any]) -> SupportSurface:

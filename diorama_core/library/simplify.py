@@ -9,8 +9,10 @@ import numpy as np
 
 from diorama_core.io.glb import read_glb, write_glb
 
-LARGEST_ERROR = 0.05
-"""How far a simplified surface may lie from the true one, as a share of the part's size."""
+LARGEST_ERRORS = (0.05, 0.015, 0.004)
+"""How far a simplified surface may lie from the true one, in the part's size: the first that keeps the part."""
+MIN_AREA_SHARE = 0.8
+"""A part of thin bars loses its surface before anything else: less than so much of it is not the same part."""
 FEWEST = 24
 """Triangles that every part of a model keeps."""
 
@@ -51,15 +53,19 @@ def _simplified(triangles: np.ndarray, positions: np.ndarray, share: float) -> n
     target = 3 * max(round(share * len(triangles) / 3), FEWEST)
     if target >= len(triangles):
         return triangles
-    retained = np.empty_like(triangles)
-    count = meshoptimizer.simplify(
-        retained,
-        triangles,
-        np.ascontiguousarray(positions, dtype=np.float32),
-        target_index_count=target,
-        target_error=LARGEST_ERROR,
-    )
-    return retained[:count]
+    points = np.ascontiguousarray(positions, dtype=np.float32)
+    area = _area(triangles, points)
+    for error in LARGEST_ERRORS:
+        retained = np.empty_like(triangles)
+        count = meshoptimizer.simplify(retained, triangles, points, target_index_count=target, target_error=error)
+        if _area(retained[:count], points) >= MIN_AREA_SHARE * area:
+            return retained[:count]
+    return triangles
+
+
+def _area(triangles: np.ndarray, points: np.ndarray) -> float:
+    a, b, c = (points[triangles.reshape(-1, 3)[:, k]].astype(np.float64) for k in range(3))
+    return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
 
 
 def _in_cache_order(triangles: np.ndarray, vertex_count: int) -> np.ndarray:

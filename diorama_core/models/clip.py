@@ -13,11 +13,12 @@ from jaxtyping import Float32, UInt8
 from PIL import Image
 
 from diorama_core.models.images import CLIP_MEAN, CLIP_STD, normalised, resized
-from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
+from diorama_core.models.runtime import SHARED_SESSIONS, Dims, SessionPool
 from diorama_core.models.tokens import clip_tokens, load_tokenizer
 
 TOKENS = 77
 SIDE = 224
+_VECTOR: Dims = (1, 512)
 
 
 @dataclass(frozen=True)
@@ -37,16 +38,16 @@ class OpenClip:
     def texts(self, texts: Sequence[str]) -> Float32[np.ndarray, "n 512"]:
         """One vector per text."""
         session = self.pool.get(self.text_graph)
-        name = next(iter(session.inputs))
+        name, first = session.first_input, session.outputs[0]
         ids, _ = clip_tokens(self._tokenizer, texts, TOKENS)
-        rows = [next(iter(session.run({name: one[None]}).values())) for one in ids]
+        rows = [session.run({name: one[None]}, {first: _VECTOR})[first] for one in ids]
         return unit(np.concatenate(rows)) if rows else np.zeros((0, 512), np.float32)
 
     def images(self, pictures: Sequence[UInt8[np.ndarray, "_ _ 3"]]) -> Float32[np.ndarray, "n 512"]:
         """One vector per picture."""
         session = self.pool.get(self.image_graph)
-        name = next(iter(session.inputs))
-        rows = [next(iter(session.run({name: clip_pixels(p)}).values())) for p in pictures]
+        name, first = session.picture_input, session.outputs[0]
+        rows = [session.run({name: clip_pixels(p)}, {first: _VECTOR})[first] for p in pictures]
         return unit(np.concatenate(rows)) if rows else np.zeros((0, 512), np.float32)
 
 
@@ -61,11 +62,12 @@ class DuoduoClip:
     def shape(self, views: Sequence[UInt8[np.ndarray, "_ _ 3"]]) -> Float32[np.ndarray, "512"]:
         """The shape that the views show; the order of the views does not matter, one is enough (a photo's crop)."""
         session = self.pool.get(self.graph)
-        count = next(iter(session.inputs.values())).shape[1]
+        name, first = session.picture_input, session.outputs[0]
+        count = session.inputs[name].shape[1]
         # A graph for a fixed number of views sees given ones again: attention over copies is that over the originals.
         shown = [views[k % len(views)] for k in range(count)] if isinstance(count, int) else views
         pixels = np.concatenate([clip_pixels(v) for v in shown])[None]
-        return unit(next(iter(session.run({next(iter(session.inputs)): pixels}).values())))[0]
+        return unit(session.run({name: pixels}, {first: _VECTOR})[first])[0]
 
 
 def clip_pixels(rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "1 3 224 224"]:

@@ -17,7 +17,7 @@ from scipy.optimize import minimize_scalar
 
 from diorama_core.errors import UnavailableError
 from diorama_core.models.images import resized
-from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
+from diorama_core.models.runtime import SHARED_SESSIONS, SINGLE, Dims, NetworkError, SessionPool
 from diorama_core.scene.types import Intrinsics
 
 SAMPLES = 64
@@ -62,16 +62,24 @@ class Moge2:
         """Depth, normals and intrinsics; given intrinsics are kept and only the shift is recovered.
 
         Raises:
-            UnavailableError: when the network tells nothing about the picture.
+            NetworkError: when the network fails, or tells nothing about the picture.
         """
         height, width = rgb.shape[:2]
         factor = min(1.0, (MAX_PIXELS / (height * width)) ** 0.5)
         small = (max(16, round(height * factor)), max(16, round(width * factor)))
         picture = resized(rgb, small).astype(np.float32).transpose(2, 0, 1)[None] / np.float32(255.0)
-        out = self.pool.get(self.graph).run({"image": picture, "num_tokens": np.array(self.tokens, np.int64)})
-        scale = out["metric_scale"] if "metric_scale" in out else out["scale"]
+        session = self.pool.get(self.graph)
+        scale = next((n for n in session.outputs if n == "metric_scale"), "scale")
+        out = session.run(
+            {"image": picture, "num_tokens": np.array(self.tokens, np.int64)},
+            {"points": (1, *small, 3), "normal": (1, *small, 3), "mask": (1, *small), scale: SINGLE},
+            gaps=True,
+        )
         known = None if intrinsics is None else intrinsics.scaled(small[1], small[0])
-        seen = recovered(out["points"][0], out["normal"][0], out["mask"][0], float(np.ravel(scale)[0]), known)
+        try:
+            seen = recovered(out["points"][0], out["normal"][0], out["mask"][0], float(np.ravel(out[scale])[0]), known)
+        except UnavailableError as error:
+            raise NetworkError(self.graph, str(error)) from error
         return at_size(seen, height, width)
 
 
@@ -103,6 +111,8 @@ def recovered(
     k = intrinsics or Intrinsics(width, height, focal, focal, width / 2, height / 2)
     depth = (points[..., 2] + shift) * metric_scale
     depth = np.where(valid & (depth > 0), depth, 0.0).astype(np.float32)
+    if not depth.any():
+        raise UnavailableError("the depth network's scale is no length; use --profile embedded")
     return SeenDepth(depth, _toward_camera(normals, depth, k), k)
 
 
@@ -157,17 +167,27 @@ class Metric3d:
     pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
     def predict(self, rgb: UInt8[np.ndarray, "h w 3"], intrinsics: Intrinsics | None) -> SeenDepth:
-        """Depth and normals; without intrinsics a usual field of view is assumed."""
+        """Depth and normals; without intrinsics a usual field of view is assumed.
+
+        Raises:
+            NetworkError: when the network fails, or tells nothing about the picture.
+        """
         height, width = rgb.shape[:2]
         k = intrinsics or Intrinsics.from_fov(width, height, self.usual_fov_rad)
         pixels, (top, left, inner_h, inner_w) = self.pixels(rgb)
         session = self.pool.get(self.graph)
-        out = session.run({next(iter(session.inputs)): pixels})
+        out = session.run({session.picture_input: pixels}, {"predicted_depth": (..., *self.size)}, gaps=True)
+        normals = out.get("predicted_normal")
+        last = normals is not None and normals.shape[-1:] in ((3,), (4,))
+        dims: Dims = (..., *self.size, None) if last else (..., None, *self.size)
+        session.check("predicted_normal", normals, dims, gaps=True)
         window = (slice(top, top + inner_h), slice(left, left + inner_w))
         fx_resized = k.fx * inner_w / width
-        depth = np.squeeze(out["predicted_depth"])[window].astype(np.float64)
+        depth = out["predicted_depth"].reshape(self.size)[window].astype(np.float64)
         depth = np.where(np.isfinite(depth) & (depth > 0), depth, 0.0) * fx_resized / self.canonical_focal_px
-        normals = _channels_last(np.squeeze(out["predicted_normal"]))[window]
+        normals = _channels_last(out["predicted_normal"].reshape(out["predicted_normal"].shape[-3:]))[window]
+        if not (depth > 0).any():
+            raise NetworkError(self.graph, "the depth network sees no geometry in this picture; use --profile embedded")
         small = k.scaled(inner_w, inner_h)
         depth32 = depth.astype(np.float32)
         return at_size(SeenDepth(depth32, _toward_camera(normals, depth32, small), small), height, width, k)

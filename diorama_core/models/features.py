@@ -11,8 +11,9 @@ from jaxtyping import Float32, UInt8
 
 from diorama_core.errors import UnavailableError
 from diorama_core.io.atomic import open_atomically
+from diorama_core.io.bounded import shortened
 from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, normalised, resized
-from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
+from diorama_core.models.runtime import SHARED_SESSIONS, NetworkError, SessionPool
 
 PATCH = 14
 
@@ -40,8 +41,8 @@ class Dinov2:
             raise ValueError(f"the side {side} must be a multiple of {PATCH}")
         graph = self.graph if self.block is None else inner_graph(self.graph, self.block)
         pixels = np.concatenate([normalised(resized(p, (side, side)), IMAGENET_MEAN, IMAGENET_STD) for p in pictures])
-        out = self.pool.get(graph).run({"pixel_values": pixels})["last_hidden_state"]
-        n = side // PATCH
+        n, name = side // PATCH, "last_hidden_state"
+        out = self.pool.get(graph).run({"pixel_values": pixels}, {name: (len(pictures), 1 + n * n, None)})[name]
         return out[:, 1:].reshape(len(pictures), n, n, -1)
 
 
@@ -51,7 +52,8 @@ def inner_graph(graph: Path, block: int) -> Path:
     Made once, beside the original.
 
     Raises:
-        UnavailableError: when `onnx` is missing or the graph has no such block.
+        UnavailableError: when `onnx` is missing.
+        NetworkError: when the graph is damaged, or has no such block.
     """
     target = graph.with_name(f"{graph.stem}.block{block}{graph.suffix}")
     if target.exists() and target.stat().st_mtime >= graph.stat().st_mtime:
@@ -60,10 +62,14 @@ def inner_graph(graph: Path, block: int) -> Path:
         import onnx
     except ImportError as error:
         raise UnavailableError("reading an inner block needs the package onnx; run: pip install onnx") from error
-    model = onnx.load(str(graph))
+    try:
+        model = onnx.load(str(graph))
+    except Exception as error:  # protobuf's own, or whatever damaged data leads to
+        reason = shortened(str(error)) or type(error).__name__
+        raise NetworkError(graph, f"cannot be loaded ({reason}); run: diorama models verify") from error
     sums = _block_outputs([(n.op_type, n.name, list(n.output)) for n in model.graph.node])
     if block not in sums:
-        raise UnavailableError(f"{graph}: there is no block {block} (it has {len(sums)}); run: diorama models verify")
+        raise NetworkError(graph, f"there is no block {block} (it has {len(sums)}); run: diorama models verify")
     last, wanted = sums[max(sums)], sums[block]
     after = False
     for node in model.graph.node:

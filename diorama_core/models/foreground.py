@@ -39,8 +39,9 @@ class Foreground:
     def probability(self, rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "h w"]:
         """0 to 1."""
         session = self.pool.get(self.graph)
-        out = session.run({next(iter(session.inputs)): self.pixels(rgb)})
-        logits = np.squeeze(out[session.outputs[-1]]).astype(np.float32)
+        last = session.outputs[-1]
+        out = session.run({session.picture_input: self.pixels(rgb)}, {last: (..., SIDE, SIDE)}, gaps=True)
+        logits = out[last].reshape(SIDE, SIDE).astype(np.float32)
         probability = 1.0 / (1.0 + np.exp(-np.clip(logits, -30, 30)))
         return enlarged(probability.astype(np.float32), rgb.shape[:2])
 

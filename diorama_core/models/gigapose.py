@@ -60,9 +60,9 @@ class GigaPoseScale:
     def maps(self, crops: Sequence[UInt8[np.ndarray, "_ _ 3"]]) -> Float32[np.ndarray, "b c n n"]:
         """Feature maps of crops, each stretched to 224 x 224."""
         session = self.pool.get(self.features)
-        name = next(iter(session.inputs))
+        name, first = session.picture_input, session.outputs[0]
         pixels = [normalised(resized(c, (SIDE, SIDE)), IMAGENET_MEAN, IMAGENET_STD) for c in crops]
-        return np.concatenate([next(iter(session.run({name: p}).values())) for p in pixels])
+        return np.concatenate([session.run({name: p}, {first: (1, None, None, None)})[first] for p in pixels])
 
     def turns(
         self,
@@ -82,6 +82,7 @@ class GigaPoseScale:
             axis=1,
         )
         session = self.pool.get(self.regressor)
-        out = session.run({next(iter(session.inputs)): pairs})
+        count = len(pairs)
+        out = session.run({session.first_input: pairs}, {"scale": (count, 1), "inplane": (count, 2)})
         cos_sin = out["inplane"].astype(np.float64)
         return PatchTurns(out["scale"].reshape(-1).astype(np.float64), np.arctan2(cos_sin[:, 1], cos_sin[:, 0]))

@@ -44,8 +44,10 @@ class Lama:
         size = (LAMA_SIDE, LAMA_SIDE)
         image = resized(rgb, size).astype(np.float32).transpose(2, 0, 1)[None] / np.float32(255.0)
         small = cv2.resize(hole.astype(np.float32), size, interpolation=cv2.INTER_AREA) > 0
-        out = self.pool.get(self.graph).run({"image": image, "mask": small[None, None].astype(np.float32)})
-        filled = np.clip(next(iter(out.values()))[0].transpose(1, 2, 0), 0, 255).round().astype(np.uint8)
+        session = self.pool.get(self.graph)
+        first = session.outputs[0]
+        out = session.run({"image": image, "mask": small[None, None].astype(np.float32)}, {first: (1, 3, *size)})
+        filled = np.clip(out[first][0].transpose(1, 2, 0), 0, 255).round().astype(np.uint8)
         return merged(rgb, resized(filled, rgb.shape[:2]), hole)
 
 
@@ -62,10 +64,10 @@ class Migan:
         if not hole.any():
             return rgb
         keep = np.where(hole, 0, 255).astype(np.uint8)
-        out = self.pool.get(self.graph).run(
-            {"image": np.ascontiguousarray(rgb.transpose(2, 0, 1)[None]), "mask": keep[None, None]}
-        )
-        return merged(rgb, next(iter(out.values()))[0].transpose(1, 2, 0).astype(np.uint8), hole)
+        session = self.pool.get(self.graph)
+        first, image = session.outputs[0], np.ascontiguousarray(rgb.transpose(2, 0, 1)[None])
+        out = session.run({"image": image, "mask": keep[None, None]}, {first: (1, 3, *hole.shape)})
+        return merged(rgb, out[first][0].transpose(1, 2, 0).astype(np.uint8), hole)
 
 
 def merged(

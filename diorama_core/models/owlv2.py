@@ -55,8 +55,11 @@ class Owlv2:
         for start in range(0, len(phrases), MAX_PHRASES):
             some = phrases[start : start + MAX_PHRASES]
             ids, mask = self.tokens(some)
-            out = self.pool.get(self.graph).run({"input_ids": ids, "attention_mask": mask, "pixel_values": pixels})
-            logits.append(out["logits"][0, :, : len(some)])
+            feeds = {"input_ids": ids, "attention_mask": mask, "pixel_values": pixels}
+            session = self.pool.get(self.graph)
+            out = session.run(feeds, {"logits": (1, None, len(some))})
+            session.check("pred_boxes", out.get("pred_boxes"), (1, out["logits"].shape[1], 4))
+            logits.append(out["logits"][0])
             boxes = out["pred_boxes"][0].astype(np.float64)
         if not logits:
             return Detections(np.zeros((0, 4)), np.zeros(0), np.zeros(0, dtype=int))
@@ -71,8 +74,7 @@ class Owlv2:
 
     def pixels(self, rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "1 3 side side"]:
         """Padded to a square at the right and bottom, reduced with anti-aliasing, CLIP statistics."""
-        shape = self.pool.get(self.graph).inputs["pixel_values"].shape
-        side = shape[-1] if isinstance(shape[-1], int) else DEFAULT_SIDE
+        side = self.pool.get(self.graph).side_px("pixel_values", DEFAULT_SIDE)
         return normalised(antialiased(padded_square(rgb), side), CLIP_MEAN, CLIP_STD)
 
     def tokens(self, phrases: Sequence[str]) -> tuple[Int64[np.ndarray, "q 16"], Int64[np.ndarray, "q 16"]]:

@@ -7,20 +7,43 @@ from __future__ import annotations
 
 import logging
 import os
+import re
 import threading
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import EllipsisType
 from typing import Any
 
 import numpy as np
 
 from diorama_core.errors import UnavailableError
+from diorama_core.io.bounded import shortened
 
 _LOG = logging.getLogger(__name__)
 
 MAX_THREADS = 16
 """More threads than this slow these networks down."""
+_CODES = re.compile(r"\[ONNXRuntimeError\] : \d+ : \w+ : ")
+MAX_SIDE_PX = 4096
+"""Of the pictures that networks ask for; a graph that states more is another network."""
+
+Dims = tuple[int | EllipsisType | None, ...]
+"""A shape: None for any size, an ellipsis in front for any number of leading dimensions of size one."""
+SINGLE: Dims = (...,)
+"""One number, of whatever shape."""
+
+
+class NetworkError(UnavailableError):
+    """A network that is installed cannot be loaded, fails, or answers as another network would."""
+
+    def __init__(self, graph: Path, reason: str) -> None:
+        super().__init__(f"{graph}: {reason}")
+        self.graph, self._reason = graph, reason
+
+    def __reduce__(self) -> tuple[type[NetworkError], tuple[Path, str]]:
+        """Errors cross processes."""
+        return NetworkError, (self.graph, self._reason)
 
 
 @dataclass(frozen=True)
@@ -41,32 +64,87 @@ class Session:
         self.inputs: dict[str, Any] = {i.name: i for i in raw.get_inputs()}
         self.outputs: tuple[str, ...] = tuple(o.name for o in raw.get_outputs())
 
-    def run(self, feeds: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """All outputs by name; inputs are converted to the graph's number types.
+    @property
+    def first_input(self) -> str:
+        """Its name; raises `NetworkError` when there is none."""
+        if not self.inputs:
+            raise self._other("it has no inputs")
+        return next(iter(self.inputs))
+
+    @property
+    def picture_input(self) -> str:
+        """Name of the first input; raises `NetworkError` when it takes no pictures."""
+        name = self.first_input
+        if len(self.inputs[name].shape) < 3:
+            raise self._other(f"input {name} takes no picture")
+        return name
+
+    def side_px(self, name: str, default: int) -> int:
+        """Width of the pictures that an input takes; `default` where any will do.
 
         Raises:
-            UnavailableError: when the graph does not have the expected inputs, or fails.
+            NetworkError: when it is no width of a picture.
         """
-        unknown = sorted(set(feeds) - set(self.inputs))
-        lacking = sorted(set(self.inputs) - set(feeds))
-        if unknown or lacking:
-            raise UnavailableError(
-                f"{self.info.path}: this graph is not the expected network (inputs {', '.join(self.inputs)}); "
-                "run: diorama models verify"
-            )
-        converted: dict[str, np.ndarray] = {
-            name: value.astype(_TYPES[self.inputs[name].type], copy=False) for name, value in feeds.items()
-        }
+        shape = self.inputs[name].shape if name in self.inputs else []
+        side = shape[-1] if len(shape) == 4 else 0
+        if not isinstance(side, int):
+            return default
+        if not 0 < side <= MAX_SIDE_PX:
+            raise self._other(f"input {name}: {shape}")
+        return side
+
+    def run(
+        self, feeds: Mapping[str, np.ndarray], expected: Mapping[str, Dims], *, gaps: bool = False
+    ) -> dict[str, np.ndarray]:
+        """All outputs by name; inputs are converted to the graph's number types.
+
+        Args:
+            feeds: A value for every input.
+            expected: Shapes of the outputs that are used.
+            gaps: Whether these may hold infinities and NaN beside numbers.
+
+        Raises:
+            NetworkError: when the graph does not have these inputs and outputs, or fails.
+        """
+        if set(feeds) != set(self.inputs):
+            raise self._other(f"inputs {', '.join(self.inputs)}")
         try:
+            converted: dict[str, np.ndarray] = {
+                n: v.astype(_TYPES[self.inputs[n].type], copy=False) for n, v in feeds.items()
+            }
             values = self._raw.run(None, converted)
         except Exception as error:
-            reason = " ".join(str(error).split())[:200]
+            reason = _reason(error, self.info.path)
             advice = "try DIORAMA_DEVICE=cpu" if self.info.device == "cuda" else "see `diorama doctor`"
-            raise UnavailableError(f"{self.info.path}: the network failed ({reason}); {advice}") from error
-        return {
-            name: v.astype(np.float32) if v.dtype == np.float16 else v
-            for name, v in zip(self.outputs, values, strict=True)
-        }
+            raise NetworkError(self.info.path, f"the network failed ({reason}); {advice}") from error
+        answers = dict(zip(self.outputs, values, strict=True))
+        for name, dims in expected.items():
+            self.check(name, answers.get(name), dims, gaps=gaps)
+        return {n: v.astype(np.float32) if v.dtype == np.float16 else v for n, v in answers.items()}
+
+    def check(self, name: str, value: object, dims: Dims, *, gaps: bool = False) -> None:
+        """Raise `NetworkError` unless an output has a shape and consists of numbers; see `run`."""
+        if not isinstance(value, np.ndarray) or value.dtype.kind not in "fiub":
+            raise self._other(f"outputs {', '.join(self.outputs)}; no numbers in {name}")
+        if not value.size or not _fits(value.shape, dims):
+            raise self._other(f"output {name} of shape {value.shape}")
+        numbers = np.isfinite(value)
+        if not (numbers.any() if gaps else numbers.all()):
+            raise NetworkError(
+                self.info.path, f"the network's answer ({name}) is not made of numbers; run: diorama models verify"
+            )
+
+    def _other(self, seen: str) -> NetworkError:
+        return NetworkError(
+            self.info.path, f"this graph is not the expected network ({shortened(seen)}); run: diorama models verify"
+        )
+
+
+def _fits(shape: tuple[int, ...], dims: Dims) -> bool:
+    if dims[:1] == (...,):
+        leading = len(shape) - len(dims) + 1
+        return leading >= 0 and set(shape[:leading]) <= {1} and _fits(shape[leading:], dims[1:])
+    return len(shape) == len(dims) and all(d in (None, s) for s, d in zip(shape, dims, strict=True))
 
 
 _TYPES = {
@@ -96,7 +174,7 @@ class SessionPool:
         """The loaded graph.
 
         Raises:
-            UnavailableError: when the file is absent or damaged.
+            NetworkError: when the file is absent or damaged.
         """
         path = path.resolve()
         with self._lock:
@@ -164,7 +242,7 @@ def _load(path: Path) -> Session:
     import onnxruntime
 
     if not path.is_file():
-        raise UnavailableError(f"{path}: this network is not on this machine; run: diorama models pull lite")
+        raise NetworkError(path, "this network is not on this machine; run: diorama models pull lite")
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = thread_count()
     options.inter_op_num_threads = 1
@@ -173,11 +251,17 @@ def _load(path: Path) -> Session:
     try:
         raw = _session(path, options)
     except Exception as error:
-        reason = " ".join(str(error).split())[:160]
-        raise UnavailableError(f"{path}: cannot be loaded ({reason}); run: diorama models verify") from error
+        reason = _reason(error, path)
+        raise NetworkError(path, f"cannot be loaded ({reason}); run: diorama models verify") from error
     grown = _resident_bytes() - before
     device = "cuda" if raw.get_providers()[0].startswith("CUDA") else "cpu"
     return Session(raw, LoadedNetwork(path, device, grown if grown > 0 else _file_bytes(path)))
+
+
+def _reason(error: Exception, path: Path) -> str:
+    """What onnxruntime says, without its codes and the path, which every message begins with."""
+    said = _CODES.sub("", str(error)).replace(str(path), path.name)
+    return shortened(said) or type(error).__name__
 
 
 def _session(path: Path, options: Any) -> Any:
@@ -191,7 +275,7 @@ def _session(path: Path, options: Any) -> Any:
         if len(wanted) == 1:
             raise
         raw = onnxruntime.InferenceSession(str(path), options, providers=wanted[-1:])
-        reason = " ".join(str(error).split())[:120]
+        reason = _reason(error, path)
         _LOG.warning("%s: the graphics card cannot be used (%s); DIORAMA_DEVICE=cpu avoids the try", path.name, reason)
         return raw
 

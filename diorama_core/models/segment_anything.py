@@ -11,9 +11,10 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, enlarged, normalised, resized
-from diorama_core.models.runtime import SHARED_SESSIONS, Session, SessionPool
+from diorama_core.models.runtime import SHARED_SESSIONS, Dims, Session, SessionPool
 
 SIDE = 1024
+_MAP: Dims = (None, None, None, None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,14 +102,17 @@ def _answers(
     scale_xy: tuple[float, float],
 ) -> Iterator[dict[str, np.ndarray]]:
     """The decoder's outputs for every box, scaled from the picture to the network's input; the picture goes in once."""
-    features = encoder.run({"pixel_values": pixels})
+    features = encoder.run({"pixel_values": pixels}, dict.fromkeys(encoder.outputs, _MAP))
     for box in np.asarray(boxes, np.float32).reshape(-1, 4) * np.array(scale_xy * 2, np.float32):
         prompt: dict[str, np.ndarray] = {
             "input_points": np.zeros((1, 1, 0, 2), np.float32),
             "input_labels": np.zeros((1, 1, 0), np.int64),
             "input_boxes": box[None, None],
         }
-        yield decoder.run({name: value for name, value in {**features, **prompt}.items() if name in decoder.inputs})
+        feeds = {name: value for name, value in {**features, **prompt}.items() if name in decoder.inputs}
+        out = decoder.run(feeds, {"iou_scores": (..., None)})
+        decoder.check("pred_masks", out.get("pred_masks"), (..., out["iou_scores"].size, 256, 256), gaps=True)
+        yield out
 
 
 def _best(out: dict[str, np.ndarray], to_picture: Callable[[np.ndarray], np.ndarray]) -> PromptedMask:

@@ -25,6 +25,7 @@ from diorama_core.errors import InputError, UnavailableError
 from diorama_core.io.atomic import write_atomically
 from diorama_core.io.bounded import read_bytes
 from diorama_core.models.manifest import NETWORKS, ModelFile, Network
+from diorama_core.models.runtime import NetworkError
 
 RECORD = "installed.json"
 LICENCES = "licences.json"
@@ -76,6 +77,8 @@ class ModelStore:
     """The networks on this machine."""
 
     folder: Path
+    without: frozenset[str] = frozenset()
+    """Ids of networks that are not used although they are here, because they failed."""
 
     @classmethod
     def default(cls) -> ModelStore:
@@ -96,7 +99,9 @@ class ModelStore:
         return _record(path, about.st_mtime_ns, about.st_size)
 
     def has(self, network: Network) -> bool:
-        """Whether every file is there, whole and checked."""
+        """Whether every file is there, whole and checked, and may be used."""
+        if network.id in self.without:
+            return False
         record = self.installed(network)
         return all(self._whole(network, f, record) for f in network.files)
 
@@ -115,10 +120,29 @@ class ModelStore:
 
         Raises:
             UnavailableError: when the network is not (wholly) on this machine.
+            NetworkError: when another file was put in its place since it was checked.
         """
         if not self.has(network):
             raise UnavailableError(f"{network.title} is not on this machine; {how_to_get(network)}")
-        return self.folder_of(network) / file
+        path = self.folder_of(network) / file
+        self._check_unchanged(network, file, path)
+        return path
+
+    def _check_unchanged(self, network: Network, file: str, path: Path) -> None:
+        """Compare the content of a file that was written after its record, once."""
+        record, about = self.folder_of(network) / RECORD, path.stat()
+        if about.st_mtime_ns <= record.stat().st_mtime_ns:
+            return
+        if _digest(path, about.st_mtime_ns, about.st_size) != self.installed(network).files[file].sha256:
+            raise NetworkError(path, "this file was changed since it was fetched; run: diorama models verify")
+
+    def network_of(self, graph: Path) -> Network | None:
+        """The network that a file in this store belongs to."""
+        try:
+            network_id = graph.resolve().relative_to(self.folder.resolve()).parts[0]
+        except (ValueError, IndexError):
+            return None
+        return next((n for n in NETWORKS if n.id == network_id), None)
 
     def identity(self, network: Network) -> str:
         """Changes with the weights: for cache keys."""
@@ -257,6 +281,12 @@ def _record(path: Path, written_ns: int, size: int) -> Installed:
         return Installed.model_validate_json(read_bytes(path, MAX_RECORD_BYTES, UnavailableError))
     except (UnavailableError, ValidationError):
         return Installed()
+
+
+@lru_cache(maxsize=256)
+def _digest(path: Path, written_ns: int, size: int) -> str:
+    """The digest of a file as it was written then."""
+    return sha256_of(path)
 
 
 def sha256_of(path: Path) -> str:

@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 from jaxtyping import Int64
 
-from diorama_core.errors import UnavailableError
+from diorama_core.models.runtime import NetworkError
 
 
 def load_tokenizer(path: Path) -> Any:
     """The tokenizer of a `tokenizer.json`.
 
     Raises:
-        UnavailableError: when the file is absent or damaged.
+        NetworkError: when the file is absent or damaged.
     """
     from tokenizers import Tokenizer
 
@@ -25,7 +25,7 @@ def load_tokenizer(path: Path) -> Any:
         tokenizer = Tokenizer.from_file(str(path))
     except Exception as error:
         reason = " ".join(str(error).split())[:120]
-        raise UnavailableError(f"{path}: cannot be read ({reason}); run: diorama models verify") from error
+        raise NetworkError(path, f"cannot be read ({reason}); run: diorama models verify") from error
     tokenizer.no_padding()
     tokenizer.no_truncation()
     return tokenizer

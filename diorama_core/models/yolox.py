@@ -41,10 +41,11 @@ class Yolox:
     ) -> Detections:
         """Everything found with at least the given score (objectness times class probability)."""
         session = self.pool.get(self.graph)
-        name, meta = next(iter(session.inputs.items()))
-        side = int(meta.shape[-1]) if isinstance(meta.shape[-1], int) else 640
+        name, first = session.picture_input, session.outputs[0]
+        side = session.side_px(name, 640)
         pixels, scale = letterboxed(rgb, side)
-        raw = next(iter(session.run({name: pixels}).values()))[0]
+        cells = sum((side // stride) ** 2 for stride in _STRIDES)
+        raw = session.run({name: pixels}, {first: (1, cells, 5 + len(COCO_CLASSES))})[first][0]
         boxes = decoded(raw, side) / scale
         scores = raw[:, 4:5] * raw[:, 5:]
         labels = scores.argmax(axis=1)

@@ -110,7 +110,7 @@ def _scaled(raw: Shaped[np.ndarray, "h w"], depth_scale: float, encoding: DepthE
     return depth
 
 
-def _unrotated(values: Shaped[np.ndarray, "h w"]) -> Shaped[np.ndarray, "h w"]:
+def _unrotated(values: Shaped[np.ndarray, "*n"]) -> Shaped[np.ndarray, "*n"]:
     """SUN RGB-D's storage undone: the 16 bits were rotated left by three."""
     v = values.astype(np.uint32)
     return ((v >> 3) | (v << 13)) & 0xFFFF
@@ -159,7 +159,7 @@ def _unit_advice(
 
 def _at_size(
     name: str, depth_m: Float32[np.ndarray, "h w"], photo_size: tuple[int, int]
-) -> tuple[Float32[np.ndarray, "h w"], tuple[str, ...]]:
+) -> tuple[Float32[np.ndarray, "_ _"], tuple[str, ...]]:
     """Nearest neighbour, so that no depth is invented between a chair's edge and the wall behind it."""
     height, width = depth_m.shape
     if (width, height) == photo_size:

@@ -10,17 +10,16 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-import math
 import zipfile
 from dataclasses import Field, fields, is_dataclass
 from typing import Any
 
 import numpy as np
-from numpy.lib import format as npy
 
 from diorama_core import artefacts, provenance
 from diorama_core.errors import ProjectError
 from diorama_core.geometry import camera_attitude
+from diorama_core.io.arrays import array_of, entry
 from diorama_core.io.bounded import parse_json, shortened
 from diorama_core.io.typed import as_member, field_types, fits
 from diorama_core.scene import types
@@ -98,8 +97,8 @@ def load(data: bytes, expected: Any = Any) -> Any:
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             names = _checked_names(archive)
-            tree = parse_json(_entry(archive, "tree.json"), "tree.json", ProjectError, advice="it is made again")
-            arrays = [_array(_entry(archive, name)) for name in names]
+            tree = parse_json(entry(archive, "tree.json"), "tree.json", ProjectError, advice="it is made again")
+            arrays = [array_of(entry(archive, name)) for name in names]
         value = _decode(tree, arrays)
         if not fits(value, type(value)) or not fits(value, expected):
             raise ValueError("a value of another kind than it states")
@@ -120,32 +119,6 @@ def _checked_names(archive: zipfile.ZipFile) -> list[str]:
     if archive.getinfo("tree.json").file_size > MAX_TREE_BYTES:
         raise ValueError("its tree is too large")
     return names
-
-
-def _entry(archive: zipfile.ZipFile, name: str) -> bytes:
-    """One entry's bytes; never more than stated."""
-    stated = archive.getinfo(name).file_size
-    with archive.open(name) as stream:
-        content = stream.read(stated + 1)
-    if len(content) != stated:
-        raise ValueError(f"{name} has another size than stated")
-    return content
-
-
-def _array(content: bytes) -> np.ndarray:
-    """A read-only array over the bytes of a `.npy` entry."""
-    stream = io.BytesIO(content)
-    version = npy.read_magic(stream)
-    shape, fortran, dtype = (
-        npy.read_array_header_1_0(stream) if version == (1, 0) else npy.read_array_header_2_0(stream)
-    )
-    count = math.prod(shape)
-    if dtype.hasobject or dtype.kind not in "biufU" or len(content) - stream.tell() != count * dtype.itemsize:
-        raise ValueError("an array has another size than stated")
-    flat = np.frombuffer(content, dtype, count=count, offset=stream.tell()) if count else np.zeros(0, dtype)
-    array = flat.reshape(shape, order="F" if fortran else "C")
-    array.setflags(write=False)
-    return array
 
 
 def fingerprint(value: Any) -> str:

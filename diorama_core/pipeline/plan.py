@@ -16,6 +16,7 @@ from diorama_core.architecture.walls.passages import without_openings
 from diorama_core.artefacts import Inputs
 from diorama_core.errors import UnavailableError
 from diorama_core.perception.graph.apply import with_graph
+from diorama_core.pipeline.findings import finding
 from diorama_core.pipeline.network_inputs import with_network_inputs
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import ProposalStages, Stages
@@ -55,7 +56,8 @@ class StageStep:
         except UnavailableError as error:
             if not self.dispensable:
                 raise
-            log.warning("%s: the build goes on without: %s", self.name, error)
+            runner.lost.append(f"{self.name}: left out ({error})")
+            log.warning("%s", runner.lost[-1])
             return None
 
 
@@ -138,6 +140,7 @@ def evaluate(
     for step in steps:
         part = progress.part(done / whole, (done + step.share) / whole)
         known[step.gives] = step.evaluate(stages, known, runner, part)
+        part.found(finding(step.gives, known[step.gives]))
         done += step.share
     return known
 

@@ -66,7 +66,7 @@ def prepare_library(
     library = open_library(name)
     shapes = library.shapes()
     wanted = _Wanted(parts, views, templates)
-    missing = [s.id for s in shapes if not wanted.is_kept(library, s)]
+    missing = [s.id for s in shapes if not wanted.is_prepared(library, s)]
     whole = progress.part(0.0, 0.7 if views else 1.0)
     failures: list[tuple[str, str]] = []
     done = 0
@@ -90,20 +90,20 @@ class _Wanted:
     views: bool
     templates: bool
 
-    def is_kept(self, library: ShapeLibrary, shape: Shape) -> bool:
+    def is_prepared(self, library: ShapeLibrary, shape: Shape) -> bool:
         """Whether all of it is on disk."""
         is_built = getattr(library, "is_built", None)  # stored libraries have models and surfaces from the start
         return (
             (is_built is None or is_built(shape.id))
-            and SHARED_APPEARANCES.has(shape.content_hash, _looks())
+            and SHARED_APPEARANCES.has(shape.content_hash, _appearances())
             and (not self.parts or are_cached(shape))
             and (not self.views or EmbeddedSimilarity(library).is_prepared(shape))
             and (not self.templates or TemplateCache().has(shape))
         )
 
 
-def _looks() -> Path:
-    return default_cache_dir() / "looks"
+def _appearances() -> Path:
+    return default_cache_dir() / "appearances"
 
 
 def _prepare(name: str, wanted: _Wanted, shape_ids: Sequence[str]) -> list[tuple[str, str]]:
@@ -115,7 +115,7 @@ def _prepare(name: str, wanted: _Wanted, shape_ids: Sequence[str]) -> list[tuple
         try:
             shape = library.shape(shape_id)
             library.glb(shape_id)
-            SHARED_APPEARANCES.get(shape.content_hash, _looks(), partial(library.parts, shape_id))
+            SHARED_APPEARANCES.get(shape.content_hash, _appearances(), partial(library.parts, shape_id))
             if wanted.parts:
                 parts_of_shape(library, shape)
             if wanted.views:

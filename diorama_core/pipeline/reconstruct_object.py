@@ -6,16 +6,19 @@ only what is downstream of the one box is evaluated again. Where nothing differs
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, UInt8
 
+from diorama_core.appearance.photo_look import photo_look
 from diorama_core.artefacts import DetectedObject, Inputs, LabelledBox, ObjectGeometry, PosedCandidates
 from diorama_core.errors import InputError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.colours import photo_colours, room_illuminant
+from diorama_core.pipeline.fallback import with_usable_networks
 from diorama_core.pipeline.plan import Artefacts, evaluate
 from diorama_core.pipeline.presets import stages_for
 from diorama_core.pipeline.runner import Runner
@@ -34,6 +37,8 @@ class Found:
     """Its id is the asked one."""
     support: Support | None
     detected: DetectedObject
+    pictures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]]
+    """Textures of its materials from the photo, by name."""
     as_built: bool
     """Whether the correction changes nothing: the scene has this object already."""
 
@@ -93,7 +98,24 @@ def reconstruct_object(
     if scene.camera is None:
         raise InputError("this scene has no photo camera; build it from the photo first")
     progress = progress or Progress()
-    stages, runner = stages_for("auto", inputs, library), Runner(cache)
+    found, _ = with_usable_networks(
+        lambda store: stages_for("auto", inputs, library, store=store),
+        lambda stages: _reconstructed(stages, scene, inputs, library, box, object_id, mask, Runner(cache), progress),
+    )
+    return found
+
+
+def _reconstructed(
+    stages: Stages,
+    scene: Scene,
+    inputs: Inputs,
+    library: ShapeLibrary,
+    box: LabelledBox,
+    object_id: str,
+    mask: Bool[np.ndarray, "h w"] | None,
+    runner: Runner,
+    progress: Progress,
+) -> Found:
     photo = evaluate(stages, {"given": inputs}, ("architecture",), runner, progress.part(0.0, 0.5))
     known = next((o for o in photo["objects"] if o.id == object_id), None)
     outlined = next((o for o in photo["outlined_objects"] if o.id == object_id), None)
@@ -183,7 +205,11 @@ def _found(
         colour=photo_colours(balanced, (detected,)).get(detected.id),
     )
     parent = next((s.parent for s in geometry.supports if s.child == detected.id), "floor")
-    return Found(item, _edge(scene, item, parent), detected, as_built)
+    alone = Scene(camera=scene.camera, objects=(item,))
+    objects = (detected, *(o for o in photo["objects"] if o.id != detected.id))
+    look = photo_look(balanced, objects, alone, library, illuminant.rgb)
+    item = look.applied(alone).objects[0]
+    return Found(item, _edge(scene, item, parent), detected, look.pictures, as_built)
 
 
 def _edge(scene: Scene, item: SceneObject, parent: str) -> Support | None:

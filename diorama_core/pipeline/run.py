@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import UInt8
 
+from diorama_core.appearance.photo_look import photo_look
 from diorama_core.architecture.room_extent import containing_room
 from diorama_core.architecture.texture.plane_textures import plane_textures
 from diorama_core.artefacts import (
@@ -55,7 +56,7 @@ class Built:
     layout: LayoutReport | None
     """None when the scene has no objects."""
     textures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]]
-    """The planes' pictures by name."""
+    """The pictures of planes and of objects' materials, by name."""
     illuminant: Illuminant
     """The photo's light, of which colours and pictures of the scene are free."""
     inputs: Inputs
@@ -64,6 +65,8 @@ class Built:
     """Which stage used what, and how long it took."""
     notes: tuple[str, ...] = ()
     """What the user should know, in plain words."""
+    stages: Stages | None = None
+    """The implementations that ran."""
 
 
 def build_scene(
@@ -103,6 +106,8 @@ def build_scene(
     noise = REASONED if inputs.depth_m is None else MEASURED
     checked, changed = checked_supports(_observed({**found, "architecture": room}, balanced, library), library, noise)
     observed = _textured(containing_room(checked), textures)
+    look = photo_look(balanced.photo.rgb, found["furniture_objects"], observed, library, illuminant.rgb)
+    observed, textures = look.applied(observed), {**textures, **look.pictures}
 
     scene, report = observed, None
     if observed.objects:
@@ -127,7 +132,8 @@ def build_scene(
         illuminant=illuminant,
         inputs=inputs,
         runs=tuple(runner.runs),
-        notes=_notes(found, changed, report),
+        stages=stages,
+        notes=(*_notes(found, changed, report), *runner.lost),
     )
 
 

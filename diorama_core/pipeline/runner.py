@@ -48,6 +48,8 @@ class Runner:
     folder: Path | None = None
     """Cache folder; None disables caching."""
     runs: list[StageRun] = field(default_factory=list)
+    lost: list[str] = field(default_factory=list)
+    """A line for each stage that the run went on without."""
     _fingerprints: dict[int, tuple[Any, str]] = field(default_factory=dict)
 
     def run(

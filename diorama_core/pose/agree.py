@@ -29,7 +29,7 @@ def agreed_ranks(
         categories: Category of every object; unnamed objects stand alone.
         ranks: For every object its shapes' log ranks, higher is better.
         trust: How well every object is seen: how much it has to say for its group.
-        most_loss: By how much the shape agreed on may be ranked below an object's own best before the object goes its
+        max_loss: By how much the shape agreed on may be ranked below an object's own best before the object goes its
             own way; where this is finite, only objects that come in sets agree at all.
 
     Returns:

@@ -93,8 +93,8 @@ class AppearanceLikelihood:
         """Logarithms of how likely the picture is under poses of one shape, to compare poses in about one place.
 
         Args:
-            look: the shape.
-            poses: of it.
+            appearance: the shape.
+            poses: poses of it.
             exact: whether details may lie a cell off; without that it takes half the time.
         """
         hits = appearance.caster.cast(self.seen.origin_world, self.seen.directions_world, poses)

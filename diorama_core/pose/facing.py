@@ -115,7 +115,7 @@ def facing_of(
     """Reasons to face somewhere for one object.
 
     Args:
-        thing: The object.
+        item: The object.
         cuboid: Its box in the world.
         cuboids: All boxes, its own included.
         categories: Category of every object id.

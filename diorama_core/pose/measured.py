@@ -40,7 +40,7 @@ class MeasuredObject:
 
         Args:
             mask: the object's visible pixels.
-            evidence: what is known of it.
+            observations: what is known of it.
             cuboid: its box.
             anchor: the face of the box that touches what holds it.
             on_floor: whether that is the floor, whose height is known even where the object hides it.

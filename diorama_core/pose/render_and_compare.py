@@ -178,7 +178,7 @@ class RenderAndCompare:
         return replace(posed, pose=_only(poses), error=error) if error <= posed.error + _LOSS_FOR_A_SET else posed
 
     def _compare(self, shape: Shape) -> ShapeAppearance:
-        folder = default_cache_dir() / "looks"
+        folder = default_cache_dir() / "appearances"
         return SHARED_APPEARANCES.get(shape.content_hash, folder, lambda: self.library.parts(shape.id))
 
     def _tasks(

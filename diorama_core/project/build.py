@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 
 from diorama_core.artefacts import Inputs
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.models.store import ModelStore
+from diorama_core.pipeline.fallback import ChooseStages, with_usable_networks
 from diorama_core.pipeline.presets import stages_for
 from diorama_core.pipeline.run import Built, build_scene
 from diorama_core.pipeline.stages import Stages
@@ -20,24 +23,46 @@ def build_project(
     inputs: Inputs,
     library: ShapeLibrary,
     *,
-    stages: Stages | None = None,
+    choose: ChooseStages | None = None,
     warnings: Sequence[str] = (),
     progress: Progress | None = None,
     preview: Preview | None = None,
 ) -> Built:
     """Build the scene of `inputs` in the project's folder and save inputs, scene, textures and what was used.
 
-    Without `stages`, the auto profile chooses them. Boxes that a network found are saved with the inputs, so that
-    people can correct them like their own.
+    Without `choose`, the auto profile chooses the stages. A network that fails is left out, and the project's notes say
+    so. Boxes that a network found are saved with the inputs, so that people can correct them like their own.
 
     The inputs are saved first and stage results as they come, so an interrupted build resumes. The scene is
     replaced only when the build succeeded.
     """
     project.save_inputs(inputs, warnings)
-    stages = stages or stages_for("auto", inputs, library)
-    built = build_scene(inputs, library, stages=stages, cache=project.stages_folder, progress=progress, preview=preview)
+    built = build_with_usable_networks(
+        inputs, library, choose, cache=project.stages_folder, progress=progress, preview=preview
+    )
     save_built(project, built, inputs, warnings)
     return built
+
+
+def build_with_usable_networks(
+    inputs: Inputs,
+    library: ShapeLibrary,
+    choose: ChooseStages | None = None,
+    *,
+    cache: Path | None = None,
+    progress: Progress | None = None,
+    preview: Preview | None = None,
+) -> Built:
+    """`build_scene` with stages that are chosen again after a network failed; `Built.notes` names those left out."""
+
+    def auto(store: ModelStore) -> Stages:
+        return stages_for("auto", inputs, library, store=store)
+
+    def build(stages: Stages) -> Built:
+        return build_scene(inputs, library, stages=stages, cache=cache, progress=progress, preview=preview)
+
+    built, left_out = with_usable_networks(choose or auto, build)
+    return replace(built, notes=(*built.notes, *left_out))
 
 
 def save_built(project: Project, built: Built, given: Inputs, warnings: Sequence[str] = ()) -> None:

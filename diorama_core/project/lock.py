@@ -21,7 +21,7 @@ from diorama_core.io.atomic import write_atomically
 from diorama_core.io.bounded import read_json, shortened
 
 LOCK = ".diorama.lock"
-HOLDER = ".diorama-holder.lock"
+OWNER = ".diorama-owner.lock"
 
 
 class ProjectLockedError(ProjectError):
@@ -48,7 +48,7 @@ class ProjectLock:
             self._lock.acquire()
         except Timeout:
             raise ProjectLockedError(
-                f"{folder.name} is open in {supporter(folder)}; close it there, or work on a copy"
+                f"{folder.name} is open in {owner(folder)}; close it there, or work on a copy"
             ) from None
         except (OSError, NotImplementedError) as error:
             reason = getattr(error, "strerror", None) or str(error)
@@ -61,7 +61,7 @@ class ProjectLock:
             "since": time.strftime("%d %b %H:%M"),
         }
         try:
-            write_atomically(folder / HOLDER, json.dumps(about).encode(), error=ProjectError)
+            write_atomically(folder / OWNER, json.dumps(about).encode(), error=ProjectError)
         except ProjectError:
             self._lock.release()
             raise
@@ -71,7 +71,7 @@ class ProjectLock:
         if not self._lock.is_locked:
             return
         with contextlib.suppress(OSError):
-            (self.folder / HOLDER).unlink(missing_ok=True)
+            (self.folder / OWNER).unlink(missing_ok=True)
         with contextlib.suppress(OSError):
             self._lock.release()
 
@@ -82,10 +82,10 @@ class ProjectLock:
         self.release()
 
 
-def supporter(folder: Path) -> str:
+def owner(folder: Path) -> str:
     """Who has a project's lock, in words."""
     try:
-        about = read_json(folder / HOLDER, ProjectError, most=10_000)
+        about = read_json(folder / OWNER, ProjectError, most=10_000)
         words = f"{about['what']} of {about['who']} on {about['host']} (process {about['process']}, {about['since']})"
         return shortened(words, 150)
     except (ProjectError, LookupError, TypeError):

@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from jaxtyping import UInt8
@@ -34,8 +34,12 @@ MAX_BACKUPS = 20
 BACKUP_EVERY_S = 60.0
 MAX_INFO_BYTES = 4_000_000
 MAX_NAME = 120
+MAX_UPLOAD_BYTES = 256 * 1024 * 1024
 MAX_TEXTURE_PIXELS = 200_000_000
-"""Of all planes together; the rest are shown in their plain colour."""
+"""Of a whole scene together; the rest are shown in their plain colour."""
+
+Upload = Literal["photo", "depth", "masks"]
+UPLOADS: tuple[Upload, ...] = ("photo", "depth", "masks")
 
 log = logging.getLogger(__name__)
 
@@ -135,6 +139,25 @@ class Project:
             raise ProjectError(f"{path}: the photo cannot be read back ({error}); build the project again") from error
         return inputs
 
+    @property
+    def has_scene(self) -> bool:
+        """Whether a scene was built or saved here; a project begins with a photo alone."""
+        return self.scene_path.exists()
+
+    @property
+    def has_photo(self) -> bool:
+        """Whether there is a photo to build from."""
+        return (self.stages_folder / "inputs.zip").exists()
+
+    def save_upload(self, kind: Upload, content: bytes) -> None:
+        """Keep a file as it was given, so that others can be read together with it later."""
+        write_atomically(self.folder / "uploads" / kind, content, error=ProjectError)
+
+    def uploads(self) -> dict[Upload, bytes]:
+        """The files that were given, as they came."""
+        paths: dict[Upload, Path] = {kind: self.folder / "uploads" / kind for kind in UPLOADS}
+        return {kind: read_bytes(path, MAX_UPLOAD_BYTES, ProjectError) for kind, path in paths.items() if path.exists()}
+
     def photo(self) -> Photo | None:
         """The photo the project was made from."""
         inputs = self.load_inputs()
@@ -179,25 +202,26 @@ class Project:
         self.update_info(stages=[asdict(r) for r in runs])
 
     def save_textures(self, textures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]]) -> None:
-        """Keep the planes' pictures under their names."""
+        """Keep the pictures of planes and objects under their names."""
         for name, picture in textures.items():
             write_atomically(self._texture_path(name), _jpeg(picture), error=ProjectError)
 
     def texture(self, name: str) -> UInt8[np.ndarray, "h w 3"] | None:
-        """A plane's picture, or None when it is missing."""
+        """A picture, or None when it is missing."""
         path = self._texture_path(name)
         return read_picture(path, ProjectError) if path.exists() else None
 
     def textures(self, scene: Scene) -> dict[str, UInt8[np.ndarray, "_ _ 3"]]:
-        """All pictures that the scene's planes name."""
+        """All pictures that the scene's planes name, and its objects' materials from the photo."""
         names = {p.texture for p in scene.architecture.planes if p.texture is not None}
+        names |= {m.texture for o in scene.objects for m in o.photo_materials if m.texture is not None}
         found: dict[str, UInt8[np.ndarray, "h w 3"]] = {}
         pixels = 0
         for name in sorted(names):
             try:
                 picture = self.texture(name)
             except ProjectError as error:
-                log.warning("a plane is shown without its picture: %s", error)
+                log.warning("a plane or an object is shown without its picture: %s", error)
                 continue
             pixels += 0 if picture is None else picture.shape[0] * picture.shape[1]
             if picture is not None and pixels <= MAX_TEXTURE_PIXELS:

@@ -7,6 +7,7 @@ Colours are linear, as glTF states them; pictures (textures) are sRGB, as they c
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 import trimesh
@@ -14,13 +15,16 @@ from jaxtyping import Float, Float32, Int32, UInt8
 from trimesh.visual.color import ColorVisuals
 from trimesh.visual.material import PBRMaterial
 
+from diorama_core.geometry.rows import unique_rows
 from diorama_core.io.cache import LruCache
 from diorama_core.library.paint import painted
-from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.photo_materials import PhotographedMaterial, Pictures, with_photo_materials
+from diorama_core.library.stretch import EVEN, Scale, stretched_parts
 from diorama_core.render.raycast import face_normals, unit
-from diorama_core.scene.types import Finish
+from diorama_core.scene.types import Finish, PhotoMaterial
 
 Colour = tuple[float, float, float]
+NO_PICTURES: Pictures = {}
 CREASE_RAD = np.radians(38.0)
 """Faces that meet at less than this are shaded as one smooth surface."""
 
@@ -65,8 +69,23 @@ class Surface:
         return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
 
 
+@runtime_checkable
+class PartsSource(Protocol):
+    """Where a shape's parts come from; every library is one."""
+
+    def parts(self, shape_id: str) -> trimesh.Scene:
+        """Geometry with materials, in the canonical frame."""
+        ...
+
+
 def shape_surfaces(
-    library: ShapeLibrary, shape_id: str, colour_srgb: Colour | None = None, finish: Finish | None = None
+    library: PartsSource,
+    shape_id: str,
+    colour_srgb: Colour | None = None,
+    finish: Finish | None = None,
+    materials: tuple[PhotoMaterial, ...] = (),
+    pictures: Pictures = NO_PICTURES,
+    scale: Scale = EVEN,
 ) -> tuple[Surface, ...]:
     """A shape's surfaces in its canonical frame, in a stable order.
 
@@ -75,24 +94,42 @@ def shape_surfaces(
         shape_id: Which shape; `LibraryError` when unknown.
         colour_srgb: Override of the main material's colour; see `library.paint.painted`.
         finish: Override of how it throws light back, likewise.
+        materials: From the photo, over both where they match a slot.
+        pictures: Their textures by name; a name always means the same picture.
+        scale: By which they will be scaled, relative to an even scale: thin parts are made to keep their thickness.
     """
-    return _cached_surfaces(library.parts(shape_id), (colour_srgb, finish))
+    parts = library.parts(shape_id)
+    return _cached_surfaces(parts, (colour_srgb, finish), materials, pictures, scale)
 
 
 Paint = tuple[Colour | None, Finish | None]
+_Key = tuple[int, Paint, tuple[PhotoMaterial, ...], frozenset[str | None], Scale]
 
-_CACHE: LruCache[tuple[int, Paint], tuple[trimesh.Scene, tuple[Surface, ...]]] = LruCache(128)
+CACHE_BYTES = 256e6
+"""Of the arrays of surfaces that stay in memory: about a million triangles."""
 
 
-def _cached_surfaces(parts: trimesh.Scene, paint: Paint) -> tuple[Surface, ...]:
+def _bytes_of(entry: tuple[trimesh.Scene, tuple[Surface, ...]]) -> float:
+    return float(sum(s.vertices.nbytes + s.normals.nbytes + s.faces.nbytes for s in entry[1]))
+
+
+_CACHE: LruCache[_Key, tuple[trimesh.Scene, tuple[Surface, ...]]] = LruCache(CACHE_BYTES, _bytes_of)
+
+
+def _cached_surfaces(
+    parts: trimesh.Scene, paint: Paint, materials: tuple[PhotoMaterial, ...], pictures: Pictures, scale: Scale
+) -> tuple[Surface, ...]:
     """The surfaces of a scene of parts, read once while the same scene object keeps being asked for."""
 
     def read() -> tuple[trimesh.Scene, tuple[Surface, ...]]:
-        shown = parts if paint == (None, None) else painted(parts, *paint)
+        shown = stretched_parts(parts, scale)
+        shown = shown if paint == (None, None) else painted(shown, *paint)
+        shown = with_photo_materials(shown, materials, pictures) if materials else shown
         # Caching the scene, too, keeps its id from being given to another.
         return parts, tuple(s for s in _read_parts(shown) if len(s.faces))
 
-    return _CACHE.get((id(parts), paint), read)[1]
+    there = frozenset(m.texture for m in materials if m.texture in pictures)
+    return _CACHE.get((id(parts), paint, materials, there, scale), read)[1]
 
 
 def _read_parts(parts: trimesh.Scene) -> list[Surface]:
@@ -120,8 +157,9 @@ def _surface(
     columns = [points[corners], corner_normals]
     columns += [uv[corners]] if uv is not None else []
     columns += [colours[_colour_rows(mesh, colours, faces)]] if colours is not None else []
-    rows, index = np.unique(np.round(np.concatenate(columns, axis=1), 5) + 0.0, axis=0, return_inverse=True)
-    rows = rows.astype(np.float32)
+    rounded = np.round(np.concatenate(columns, axis=1), 5) + 0.0
+    first, index = unique_rows(rounded)
+    rows = rounded[first].astype(np.float32)
     return Surface(
         vertices=rows[:, :3],
         normals=unit(rows[:, 3:6]).astype(np.float32),
@@ -174,6 +212,7 @@ def _material(source: PBRMaterial) -> Material:
         texture=_picture(source.baseColorTexture),
         maps=maps,
         double_sided=bool(source.doubleSided),
+        photographed=isinstance(source, PhotographedMaterial),
     )
 
 
@@ -191,8 +230,7 @@ def smooth_corner_normals(
     a, b, c = (vertices[faces[:, k]].astype(np.float64) for k in range(3))
     weighted = np.cross(b - a, c - a)
     normals = face_normals(vertices, faces).astype(np.float64)
-    _, place = np.unique(np.round(vertices, 5), axis=0, return_inverse=True)
-    owner = place.reshape(-1)[faces.reshape(-1)]
+    owner = unique_rows(np.round(vertices, 5))[1][faces.reshape(-1)]
     first, second = _pairs_of_equal(owner)
     near = np.einsum("ij,ij->i", normals[first // 3], normals[second // 3]) > np.cos(crease_rad)
     first, second = first[near], second[near]

@@ -164,7 +164,7 @@ def _key(shape: Shape) -> str:
 
 
 def _appearance(library: ShapeLibrary, key: str, shape_id: str) -> ShapeAppearance:
-    return SHARED_APPEARANCES.get(key, default_cache_dir() / "looks", lambda: library.parts(shape_id))
+    return SHARED_APPEARANCES.get(key, default_cache_dir() / "appearances", lambda: library.parts(shape_id))
 
 
 def _features_of_named(

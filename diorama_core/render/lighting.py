@@ -15,6 +15,7 @@ from jaxtyping import Float, Float32, Int
 
 from diorama_core.render.raycast import Caster, dot, facing, unit
 from diorama_core.render.world import World
+from diorama_core.scene.types import RoomLight
 
 TILE = 4
 _ORDER = np.array([0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5])
@@ -82,6 +83,41 @@ def studio(bounds: Float[np.ndarray, "2 3"], toward_camera: Float[np.ndarray, "3
         reference_m=distance,
         sky=np.array([0.57, 0.59, 0.62]),
         ground=np.array([0.5, 0.475, 0.45]),
+        reach_m=max(0.9 * radius, 0.05),
+    )
+
+
+MEAN_IRRADIANCE = 0.885
+"""Of the studio's light, averaged over all directions: pictures are about as bright under any room's light."""
+MIN_ELEVATION = 0.15
+"""Sine of the least elevation of the light in pictures: from below, everything looks odd."""
+
+
+def room_lighting(bounds: Float[np.ndarray, "2 3"], light: RoomLight) -> Lighting:
+    """A room's own light, in white: a soft box where most of it comes from, and an even rest.
+
+    The room's pictures are as white light would have them and not lit again, so that nothing else is tinted either.
+
+    Args:
+        bounds: Corners of what is lit, metres.
+        light: As the photo tells it.
+    """
+    centre, size = bounds.mean(axis=0), bounds[1] - bounds[0]
+    radius = max(0.5 * float(np.linalg.norm(size)), 0.1)
+    x, y, z = light.direction
+    direction = unit(np.array([x, y, max(z, MIN_ELEVATION)]))
+    distance = 1.7 * radius
+    across = unit(np.cross(direction, [0.0, 0.0, 1.0]) + np.array([1e-6, 0.0, 0.0]))
+    # A distant light of irradiance I has the mean I / 4 over all directions and the slope I / 2 (spherical harmonics).
+    directed = 2.0 * light.strength * MEAN_IRRADIANCE
+    even = (MEAN_IRRADIANCE - directed / 4) * np.ones(3)
+    return Lighting(
+        window_centre=centre + direction * distance,
+        window_edges=np.stack([across, np.cross(across, direction)]) * 0.4 * radius,
+        window_irradiance=directed * np.ones(3),
+        reference_m=distance,
+        sky=1.05 * even,
+        ground=0.95 * even,
         reach_m=max(0.9 * radius, 0.05),
     )
 

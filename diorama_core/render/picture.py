@@ -12,7 +12,7 @@ from diorama_core.errors import InputError, SceneError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.render.filters import as_bytes, tone_mapped
-from diorama_core.render.lighting import Effort, Lighting, studio
+from diorama_core.render.lighting import Effort, Lighting, room_lighting, studio
 from diorama_core.render.raycast import OrthographicView, PinholeView, View, unit
 from diorama_core.render.shading import shoot
 from diorama_core.render.world import World, scene_world
@@ -51,7 +51,7 @@ def picture(
         textures: Pictures of the planes by `Plane.texture`.
         photographed: Whether those pictures hold the light of the room, as rectified photos do; then they are only
             darkened where something stands in the way of the light, never lit a second time.
-        light: None lights the room from above left of the viewer.
+        light: None takes the scene's own, or else lights the room from above left of the viewer.
         effort: Rays per pixel.
         progress: Where it is reported and cancelling is noticed.
 
@@ -67,10 +67,16 @@ def picture(
     world = scene_world(scene, library, textures=textures, photographed=photographed, without=without)
     count = len(scene.objects)
     blockers = world.shadow_caster(without=range(count, count + len(scene.architecture.planes)))
-    light = light or studio(_room_bounds(scene, world), -_axis(source))
+    light = light or scene_lighting(scene, world, source)
     shot = shoot(world, blockers, source, light, effort, progress.part(0.1, 1.0))
     background = np.asarray(BACKGROUND_SRGB) * (1 - shot.coverage[..., None])
     return as_bytes(tone_mapped(_uncovered(shot.radiance, shot.coverage)) * shot.coverage[..., None] + background)
+
+
+def scene_lighting(scene: Scene, world: World, view: View) -> Lighting:
+    """The light that a picture of a scene has: the scene's own, or from above left of the viewer."""
+    bounds = _room_bounds(scene, world)
+    return studio(bounds, -_axis(view)) if scene.light is None else room_lighting(bounds, scene.light)
 
 
 def _uncovered(radiance: np.ndarray, coverage: np.ndarray) -> np.ndarray:

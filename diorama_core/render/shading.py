@@ -65,6 +65,15 @@ def shoot(
     return _with_smooth_edges(shot, world, view, light, fallen, progress.part(0.8, 1.0))
 
 
+def light_map(
+    world: World, blockers: Caster, view: View, light: Lighting, effort: Effort, progress: Progress | None = None
+) -> Float32[np.ndarray, "h w 3"]:
+    """The light that falls on what every pixel of a view sees, 0 where nothing is; arguments as for `shoot`."""
+    progress = progress or Progress()
+    parts = each(lambda band: _first_sight(world, view, band), bands(view.height), progress.part(0.0, 0.2))
+    return fallen_light(world, blockers, _grid(parts, view), light, effort, progress.part(0.2, 1.0))
+
+
 @dataclass(frozen=True, eq=False)
 class _Band:
     """What some rows of the picture see."""

@@ -48,7 +48,14 @@ def thumbnail(
         return _CACHE.get(f"{id(library)} {shape_id} {size} {paint}", lambda: _rendered(library, shape_id, size, paint))
     name = f"{shape.content_hash}-{_VERSION}-{size}.png"
     path = (folder or default_cache_dir() / "thumbnails") / name
-    return _CACHE.get(name, lambda: derived(path, lambda: _rendered(library, shape_id, size)))
+    return _CACHE.get(name, lambda: derived(path, lambda: _rendered(library, shape_id, size), _whole_png))
+
+
+def _whole_png(data: bytes) -> bytes:
+    """The same bytes; raises `ValueError` when they are not all of a PNG."""
+    if not (data.startswith(b"\x89PNG\r\n\x1a\n") and data.endswith(b"IEND\xaeB`\x82")):
+        raise ValueError("it is no whole PNG")
+    return data
 
 
 def shape_sheet(

@@ -10,6 +10,7 @@ from jaxtyping import Bool, Float, Float32, Int, Int32, UInt8
 
 from diorama_core.io.srgb import srgb_to_linear
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.stretch import relative_scale
 from diorama_core.render.appearance import Surface, shape_surfaces
 from diorama_core.render.raycast import Caster, Hits, RayArray, face_normals, facing, unit
 from diorama_core.render.slabs import plane_surfaces
@@ -135,14 +136,16 @@ def scene_world(
     Args:
         scene: What to show; hidden objects are left out.
         library: Where its shapes are.
-        textures: Pictures of the planes by `Plane.texture`.
-        photographed: Whether those pictures hold the light of the room, as rectified photos do.
+        textures: Pictures of the planes by `Plane.texture`, and of the objects' materials from the photo.
+        photographed: Whether the planes' pictures hold the light of the room, as rectified photos do.
         without: Ids of objects and planes to leave out.
     """
     placed: list[Placed] = []
     for index, item in enumerate(scene.objects):
         if not item.hidden and item.id not in without:
-            surfaces = shape_surfaces(library, item.shape_id, item.colour, item.finish)
+            paint = (item.colour, item.finish, item.shown_photo_materials)
+            scale = relative_scale(item.pose.scale)
+            surfaces = shape_surfaces(library, item.shape_id, *paint, textures or {}, scale)
             placed.append(Placed(surfaces, item.pose.matrix, index))
     for index, plane in enumerate(scene.architecture.planes, start=len(scene.objects)):
         if plane.id not in without:

@@ -128,7 +128,7 @@ class EmbeddedSimilarity:
 
     def _appearance(self, shape: Shape) -> ShapeAppearance:
         parts = partial(self.library.parts, shape.id)
-        return SHARED_APPEARANCES.get(shape.content_hash, default_cache_dir() / "looks", parts)
+        return SHARED_APPEARANCES.get(shape.content_hash, default_cache_dir() / "appearances", parts)
 
     def _views(self, shape: Shape, appearance: ShapeAppearance) -> Float[np.ndarray, "v width"]:
         # In double precision sums do not depend on the machine's order of adding by more than is rounded away.

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float, Float16
 
+from diorama_core.io.arrays import array_of
 from diorama_core.io.cache import LruCache
-from diorama_core.io.derived import write_derived
+from diorama_core.io.derived import read_derived, write_derived
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape
 
@@ -52,10 +53,14 @@ def _path(kind: str, shape: Shape, folder: Path | None) -> Path:
 
 
 def _read(path: Path) -> np.ndarray | None:
+    content = read_derived(path)
+    if content is None:
+        return None
     try:
-        return np.asarray(np.load(path, allow_pickle=False))
-    except (OSError, ValueError, EOFError):
-        return None  # absent, or damaged: it is made again
+        values = array_of(content)
+    except Exception:  # a damaged header raises almost anything; the features are made again
+        return None
+    return values if values.ndim == 2 and values.dtype == np.float16 else None
 
 
 def _written(path: Path, values: np.ndarray) -> np.ndarray:

@@ -16,7 +16,7 @@ from jaxtyping import Float
 
 from diorama_core.artefacts import CameraEstimate, DetectedObject
 from diorama_core.library.hyponyms import meanings
-from diorama_core.library.taxonomy import UNKNOWN, SizePrior, category
+from diorama_core.library.taxonomy import UNKNOWN, Mount, SizePrior, category
 from diorama_core.scene.types import Intrinsics
 
 _HEIGHTS_M = np.linspace(0.7, 2.2, 16)
@@ -26,7 +26,7 @@ _MEASURED_SIGMA_M = 0.15
 _DISTANCES_M = np.geomspace(0.7, 9.0, 48)
 _FOOT_SIGMA_M, _FOOT_SIGMA_SHARE = 0.05, 0.06
 """How far from the floor a foot may seem to be: by itself, and for every metre of distance."""
-_ON_THINGS_M, _ON_THINGS_SIGMA_M = 0.75, 0.3
+_ON_OBJECTS_M, _ON_OBJECTS_SIGMA_M = 0.75, 0.3
 _ON_WALLS_M, _ON_WALLS_SIGMA_M = 1.45, 0.35
 """Middle heights of what hangs on walls."""
 _CEILING_M, _CEILING_SIGMA_M = 2.55, 0.3
@@ -112,15 +112,15 @@ def _chosen(own: str, senses: Mapping[str, float]) -> str:
     if own == UNKNOWN.name:
         best = max(senses, key=lambda kind: senses[kind])
         return best if senses[best] > _SURE else own
-    mounts: dict[str, float] = {}
+    mounts: dict[Mount, float] = {}
     for kind, share in senses.items():
         mount = category(kind).mount
         mounts[mount] = mounts.get(mount, 0.0) + share
-    held = max(mounts, key=lambda mount: mounts[mount])
-    if mounts[held] <= _SWITCH * mounts.get(category(own).mount, 0.0):
-        held = category(own).mount
-    best = max((kind for kind in senses if category(kind).mount == held), key=lambda kind: senses[kind])
-    return best if held != category(own).mount or senses[best] > _MAJORITY else own
+    mount = max(mounts, key=mounts.__getitem__)
+    if mounts[mount] <= _SWITCH * mounts.get(category(own).mount, 0.0):
+        mount = category(own).mount
+    best = max((kind for kind in senses if category(kind).mount == mount), key=lambda kind: senses[kind])
+    return best if mount != category(own).mount or senses[best] > _MAJORITY else own
 
 
 def _view(
@@ -192,7 +192,7 @@ def _place(
         )
     if mount == "wall":
         return _normal((bottom + top) / 2 - _ON_WALLS_M, _ON_WALLS_SIGMA_M + sigma) * (bottom > 0.0)
-    return _normal(bottom - _ON_THINGS_M, _ON_THINGS_SIGMA_M + sigma)
+    return _normal(bottom - _ON_OBJECTS_M, _ON_OBJECTS_SIGMA_M + sigma)
 
 
 def _normal(off: Float[np.ndarray, "h d"], sigma: Float[np.ndarray, "1 d"] | float) -> Float[np.ndarray, "h d"]:

@@ -26,14 +26,14 @@ from diorama_core.scene.room_edits import (
     set_plane_material,
 )
 from diorama_core.scene.support import check_edge, descendants
-from diorama_core.scene.types import Candidate, Finish, Plane, Pose, Scene, SceneObject, Support
+from diorama_core.scene.types import Candidate, Finish, MaterialSource, Plane, Pose, Scene, SceneObject, Support
 from diorama_core.scene.values import Vector3
 
 __all__ = [
     "attach", "ceiling_height", "detach", "duplicate", "edge_length_m", "floor_height", "fresh_id", "insert", "move",
     "move_plane", "place", "recolour", "refinish", "remove", "rename", "rescale", "rescale_by_edge",
-    "rescale_to_length", "set_ceiling_height", "set_hidden", "set_locked", "set_metrics", "set_plane_material",
-    "set_planes", "swap",
+    "rescale_to_length", "set_ceiling_height", "set_hidden", "set_locked", "set_material_source", "set_metrics",
+    "set_plane_material", "set_planes", "swap",
 ]  # fmt: skip
 
 SMALLEST_SIZE_M = 1e-3
@@ -159,10 +159,24 @@ def rename(scene: Scene, object_id: str, label: str) -> Scene:
 
 
 def recolour(scene: Scene, object_id: str, colour: tuple[float, float, float] | None) -> Scene:
-    """Override the material's colour (sRGB 0 to 1), or give back the shape's own with None."""
-    _unlocked(scene, object_id)
+    """Override the material's colour (sRGB 0 to 1), or give back the shape's own with None.
+
+    An object whose surfaces show the photo's materials shows the library's from then on, in that colour; pictures and
+    the like, which only cover a face, stay.
+    """
+    item = _unlocked(scene, object_id)
     clipped = None if colour is None else tuple(float(np.clip(c, 0.0, 1.0)) for c in colour)
-    return _with(scene, object_id, colour=clipped)
+    tiled = any(m.layout == "tiled" for m in item.photo_materials)
+    source: MaterialSource = "library" if tiled and colour is not None else item.material_source
+    return _with(scene, object_id, colour=clipped, material_source=source)
+
+
+def set_material_source(scene: Scene, object_id: str, source: MaterialSource) -> Scene:
+    """Show the materials that the photo gave an object, or those of its shape."""
+    item = _unlocked(scene, object_id)
+    if source == "photo" and not item.photo_materials:
+        raise EditRefused(f"the photo shows no material of {item.label}; build it from the photo first")
+    return _with(scene, object_id, material_source=source)
 
 
 def refinish(scene: Scene, object_id: str, finish: Finish | None) -> Scene:

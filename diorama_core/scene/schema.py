@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
+from dataclasses import asdict
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -24,13 +25,17 @@ from diorama_core.scene.types import (
     FaceName,
     Finish,
     Intrinsics,
+    MaterialSource,
+    PhotoMaterial,
     Plane,
     PlaneRole,
     Pose,
     Relation,
+    RoomLight,
     Scene,
     SceneObject,
     Support,
+    TextureLayout,
 )
 
 FORMAT = "diorama-scene"
@@ -111,6 +116,17 @@ class _SupportFile(_Model):
     adheres_to: Annotated[list[Id], Field(max_length=MAX_ITEMS)]
 
 
+class _PhotoMaterialFile(_Model):
+    slot: Id
+    colour: Colour
+    texture: Id | None
+    layout: TextureLayout
+    tile_m: Size
+    roughness: Unit
+    metallic: Unit
+    main: bool
+
+
 class _ObjectFile(_Model):
     id: Id
     label: Words
@@ -129,6 +145,14 @@ class _ObjectFile(_Model):
     hidden: bool
     colour: Colour | None
     finish: Finish | None = None
+    photo_materials: Annotated[list[_PhotoMaterialFile], Field(max_length=100)] = []
+    material_source: MaterialSource = "photo"
+
+
+class _LightFile(_Model):
+    direction: tuple[Number, Number, Number]
+    strength: Unit
+    colour: Colour
 
 
 class _SceneFile(_Model):
@@ -140,6 +164,7 @@ class _SceneFile(_Model):
     architecture: _ArchitectureFile
     objects: Annotated[list[_ObjectFile], Field(max_length=MAX_ITEMS)]
     metrics: Annotated[dict[Words, FiniteFloat], Field(max_length=200)]
+    light: _LightFile | None = None
 
 
 def scene_to_json(scene: Scene) -> str:
@@ -153,6 +178,7 @@ def scene_to_json(scene: Scene) -> str:
         "architecture": {"planes": [_plane_to_file(p) for p in scene.architecture.planes]},
         "objects": [_object_to_file(o, scene.support_of(o.id)) for o in scene.objects],
         "metrics": dict(scene.metrics),
+        "light": None if scene.light is None else asdict(scene.light),
     }
     return json.dumps(document, indent=1, allow_nan=False)
 
@@ -274,6 +300,8 @@ def _object_to_file(item: SceneObject, support: Support | None) -> dict[str, Any
         "hidden": item.hidden,
         "colour": None if item.colour is None else _numbers(item.colour),
         "finish": item.finish,
+        "photo_materials": [asdict(m) for m in item.photo_materials],
+        "material_source": item.material_source,
     }
 
 
@@ -303,6 +331,7 @@ def _scene_from_file(file: _SceneFile) -> Scene:
         objects=tuple(_object_from_file(o) for o in file.objects),
         supports=tuple(_support_from_file(o.id, o.support) for o in file.objects if o.support is not None),
         metrics=tuple(file.metrics.items()),
+        light=None if file.light is None else RoomLight(**file.light.model_dump()),
     )
 
 
@@ -353,6 +382,8 @@ def _object_from_file(file: _ObjectFile) -> SceneObject:
         hidden=file.hidden,
         colour=file.colour,
         finish=file.finish,
+        photo_materials=tuple(PhotoMaterial(**m.model_dump()) for m in file.photo_materials),
+        material_source=file.material_source,
     )
 
 

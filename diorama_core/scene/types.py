@@ -20,6 +20,9 @@ PlaneRole = Literal["floor", "ceiling", "wall"]
 Relation = Literal["placed on", "mounted on"]
 FaceName = Literal["bottom", "top", "front", "back", "left", "right"]
 Finish = Literal["matt", "satin", "gloss", "metal"]
+TextureLayout = Literal["front", "top", "tiled"]
+"""A picture over the whole slot, seen from the front or from above, or one that repeats."""
+MaterialSource = Literal["photo", "library"]
 SEEN_CONFIDENCE = 0.35
 """Planes of at least this confidence were observed."""
 
@@ -245,6 +248,25 @@ class Candidate:
 
 
 @dataclass(frozen=True)
+class PhotoMaterial:
+    """What the photo shows of one material slot of an object."""
+
+    slot: str
+    """Name of the slot, by role and rank: "fabric", "wood 2" (`library.slots`)."""
+    colour: tuple[float, float, float]
+    """Mean albedo, sRGB 0 to 1; the whole material where there is no texture."""
+    texture: str | None = None
+    """Name of the picture among the project's files."""
+    layout: TextureLayout = "tiled"
+    tile_m: float = 1.0
+    """Metres of the object that a tiled texture covers."""
+    roughness: float = 0.7
+    metallic: float = 0.0
+    main: bool = False
+    """Whether the slot is the one that covers most of the object."""
+
+
+@dataclass(frozen=True)
 class SceneObject:
     """One thing in the room."""
 
@@ -271,6 +293,15 @@ class SceneObject:
     """Override of the main material's colour, sRGB 0 to 1."""
     finish: Finish | None = None
     """Override of how the main material throws light back; its own when None."""
+    photo_materials: tuple[PhotoMaterial, ...] = ()
+    """Materials taken from the photo; slots that none of them matches keep the shape's own."""
+    material_source: MaterialSource = "photo"
+    """Whether the object shows them or the shape's own materials."""
+
+    @property
+    def shown_photo_materials(self) -> tuple[PhotoMaterial, ...]:
+        """The materials from the photo that the object shows."""
+        return self.photo_materials if self.material_source == "photo" else ()
 
     @property
     def size_m(self) -> Float[np.ndarray, "3"]:
@@ -307,6 +338,18 @@ class Support:
 
 
 @dataclass(frozen=True)
+class RoomLight:
+    """The main light of a room: surfaces receive `1 + strength * (direction . normal)` relative to an even light."""
+
+    direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    """Unit vector in the world toward where most light comes from."""
+    strength: float = 0.25
+    """0 is light from everywhere, 1 about a single small source."""
+    colour: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    """Linear, its largest component 1; the scene's colours and pictures are free of it."""
+
+
+@dataclass(frozen=True)
 class Scene:
     """Everything that is in the room, where it is and what holds it up."""
 
@@ -316,6 +359,8 @@ class Scene:
     supports: tuple[Support, ...] = ()
     metrics: tuple[tuple[str, float], ...] = ()
     """The optimiser's last report, as (name, value) pairs."""
+    light: RoomLight | None = None
+    """As the photo's shades tell it; None where nothing is known."""
 
     def __post_init__(self) -> None:
         # One order for equal graphs, so that equality and the file do not depend on the order of edits.

@@ -2,14 +2,14 @@
 
 ```
 scene = furnished_room(seed, "living")                # truth in the room frame, no camera
-camera, *others = hold_cameras(scene, library, seed)  # cameras as people hold them
+camera, *others = sample_cameras(scene, library, seed)  # cameras as people hold them
 view = render_truth(scene, camera, library)           # picture, depth, ids, truth in the photo's world
 built = build_scene(view.inputs, library)
 ```
 """
 
-from diorama_core.synthesis.cameras import hold_cameras
+from diorama_core.synthesis.cameras import sample_cameras
 from diorama_core.synthesis.grammar import ROOM_KINDS, RoomKind, furnished_room
 from diorama_core.synthesis.truth import TruthView, in_photo_world, render_truth
 
-__all__ = ["ROOM_KINDS", "RoomKind", "TruthView", "furnished_room", "hold_cameras", "in_photo_world", "render_truth"]
+__all__ = ["ROOM_KINDS", "RoomKind", "TruthView", "furnished_room", "in_photo_world", "render_truth", "sample_cameras"]

@@ -27,7 +27,7 @@ UNDER_CEILING_M = 0.2
 
 
 @dataclass(frozen=True)
-class Holding:
+class CameraRanges:
     """How people hold a camera; lowest and highest values."""
 
     height_m: tuple[float, float] = (1.3, 1.65)
@@ -41,13 +41,13 @@ class Holding:
     """From walls; furniture is kept twice as far."""
 
 
-def hold_cameras(
+def sample_cameras(
     scene: Scene,
     library: ShapeLibrary,
     seed: int,
     count: int = 3,
     size: tuple[int, int] = (640, 480),
-    holding: Holding | None = None,
+    ranges: CameraRanges | None = None,
 ) -> tuple[Camera, ...]:
     """Different views of a room, each the best of some that people might take.
 
@@ -59,14 +59,14 @@ def hold_cameras(
         seed: Of the candidates.
         count: How many views.
         size: Width and height of the pictures.
-        holding: How the camera is held.
+        ranges: How the camera is held.
 
     Raises:
         SceneError: when nobody could stand in the room.
     """
     rng = np.random.default_rng((seed, 4711))
     caster = MeshCaster([*_meshes(scene, library), *((_plane_mesh(p), np.eye(4)) for p in scene.architecture.planes)])
-    how, viewpoints = holding or Holding(), list[tuple[Camera, _Viewpoint]]()
+    how, viewpoints = ranges or CameraRanges(), list[tuple[Camera, _Viewpoint]]()
     for closer in (1.0, 0.6, 0.3, 0.1):  # a full or narrow room lets nobody stand well clear of objects
         nearer = replace(how, clearance_m=closer * how.clearance_m)
         tried = [_candidate(scene, rng, size, nearer) for _ in range(CANDIDATES * max(1, count))]
@@ -96,7 +96,7 @@ def _plane_mesh(plane: Plane) -> trimesh.Trimesh:
     return trimesh.Trimesh(front.vertices, front.faces, process=False)
 
 
-def _candidate(scene: Scene, rng: np.random.Generator, size: tuple[int, int], how: Holding) -> Camera | None:
+def _candidate(scene: Scene, rng: np.random.Generator, size: tuple[int, int], how: CameraRanges) -> Camera | None:
     floor = scene.architecture.floor
     if floor is None:
         raise ValueError("a room without a floor cannot be photographed")
@@ -117,10 +117,10 @@ def _candidate(scene: Scene, rng: np.random.Generator, size: tuple[int, int], ho
         if item.category != "rug" and (np.abs(local) < item.size_m / 2 + 2 * how.clearance_m).all():
             return None
     yaw = float(np.arctan2(target[1] - position[1], target[0] - position[0]))
-    return Camera(Intrinsics.from_fov(*size, float(fov)), held(eye, yaw, float(pitch), float(roll)))
+    return Camera(Intrinsics.from_fov(*size, float(fov)), level_pose(eye, yaw, float(pitch), float(roll)))
 
 
-def held(
+def level_pose(
     eye: Float[np.ndarray, "3"], yaw_rad: float, pitch_down_rad: float, roll_rad: float = 0.0
 ) -> Float[np.ndarray, "4 4"]:
     """`T_world_camera` of a camera at `eye` looking along `yaw_rad`, tilted down and rolled clockwise."""

@@ -131,7 +131,7 @@ class Furnisher:
         if not self._floor_free(item, quad, beside, in_zone=in_zone):
             return None
         front = self._front(item, xy, yaw_rad, free_front_m)
-        if free_front_m and (not self.plan.holds(front, 1e-3) or self._blocked(front, beside)):
+        if free_front_m and (not self.plan.contains(front, 1e-3) or self._blocked(front, beside)):
             return None
         parent, base = self._ground(quad)
         pose = self._upright(item, xy, base, yaw_rad)
@@ -215,7 +215,7 @@ class Furnisher:
     def hang_from_ceiling(self, item: Item, xy: Float[np.ndarray, "2"], yaw_rad: float = 0.0) -> str | None:
         """Top against the level part of the ceiling."""
         quad = footprint(item.size_m, xy, yaw_rad)
-        if not self.plan.holds(quad) or (self.plan.roof_m(quad) < self.plan.height_m).any():
+        if not self.plan.contains(quad) or (self.plan.roof_m(quad) < self.plan.height_m).any():
             return None
         z = self.plan.height_m - item.size_m[2] / 2
         if z - item.size_m[2] / 2 < 1.5:
@@ -255,7 +255,7 @@ class Furnisher:
         pose = Pose.upright(centre, parent.pose.yaw_rad + turn_rad, item.scale)
         if not self._under_roof(item, pose):
             return None
-        if not self.plan.holds(footprint(item.size_m, centre[:2], pose.yaw_rad)) or self.bodies.hit_by(item, pose):
+        if not self.plan.contains(footprint(item.size_m, centre[:2], pose.yaw_rad)) or self.bodies.hit_by(item, pose):
             return None
         self._lying.setdefault((parent_id, surface), []).append(quad)
         return self._put(item, pose, Support("", parent_id, "placed on", surface, "bottom"))
@@ -298,7 +298,7 @@ class Furnisher:
     def _floor_free(
         self, item: Item, quad: Float[np.ndarray, "4 2"], beside: Collection[str], *, in_zone: bool = False
     ) -> bool:
-        if not self.plan.holds(quad):
+        if not self.plan.contains(quad):
             return False
         if item.category == "rug":
             return True

@@ -53,7 +53,7 @@ def furnished_room(
 ) -> Scene:
     """A furnished room with its architecture and support graph: the truth that pictures are made of.
 
-    The room frame has its origin in the middle of the floor; the scene has no camera yet (`cameras.hold_cameras`).
+    The room frame has its origin in the middle of the floor; the scene has no camera yet (`cameras.sample_cameras`).
     Shapes are chosen by category, so any library will do; the same library, seed and kind give the same room.
     Planes carry the names of procedural finishes in `Plane.texture` (`finishes.finish_textures`).
 

@@ -99,7 +99,7 @@ class RoomPlan(ArrayValue):
         """Of the floor."""
         return float(self._section.area())
 
-    def holds(self, quad: Float[np.ndarray, "4 2"], slack_m2: float = 1e-5) -> bool:
+    def contains(self, quad: Float[np.ndarray, "4 2"], slack_m2: float = 1e-5) -> bool:
         """Whether a counter-clockwise footprint lies inside the outline."""
         return float((manifold3d.CrossSection([quad]) - self._section).area()) <= slack_m2
 

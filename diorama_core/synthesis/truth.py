@@ -94,7 +94,7 @@ def render_truth(
 
     Args:
         scene: A room from `furnished_room`, in any frame with +Z up and the floor at z = 0.
-        camera: Where it is photographed from (`cameras.hold_cameras`), in the same frame.
+        camera: Where it is photographed from (`cameras.sample_cameras`), in the same frame.
         library: Where its shapes are.
         size: Width and height of the picture.
         with_empty_room: Whether to make the empty room's picture too; black without.

@@ -12,7 +12,7 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.render.raycast import MeshCaster
 from diorama_core.render.slabs import plane_surfaces
 from diorama_core.scene.types import Camera, Intrinsics, Scene
-from diorama_core.synthesis.cameras import held
+from diorama_core.synthesis.cameras import level_pose
 
 PROBE_PX = (96, 72)
 EYE_M, FOV_RAD = 1.6, 1.45
@@ -83,7 +83,7 @@ def _candidates(scene: Scene, size: tuple[int, int], worth: Float[np.ndarray, " 
                 continue
             pitch = float(np.clip(np.arctan2(-away[2], distance), LOWEST_PITCH_RAD, HIGHEST_PITCH_RAD))
             for turn in TURNS_RAD:
-                T = held(eye, float(np.arctan2(away[1], away[0])) + turn, pitch)
+                T = level_pose(eye, float(np.arctan2(away[1], away[0])) + turn, pitch)
                 yield Camera(Intrinsics.from_fov(*size, FOV_RAD), T)
         if free:
             return

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import pytest
 
 from diorama_app.app import LEFT_TABS, RIGHT_TABS, Editor
+from diorama_app.panels.in_place import InPlace
 from diorama_app.session import autosave
 from diorama_app.session.connected_client import ConnectedClient, Panel
 from diorama_core.errors import DioramaError
@@ -45,7 +46,7 @@ def test_the_page_has_every_panel_and_shows_the_project(editor: Editor, tmp_path
     client, page = enter(editor)
     assert isinstance(client, ConnectedClient)
     assert all(isinstance(p, Panel) for p in client.panels)
-    kinds = {type(p).__name__ for p in client.panels}
+    kinds = {type(p.panel if isinstance(p, InPlace) else p).__name__ for p in client.panels}
     assert {
         "Gestures",
         "Toolbar",

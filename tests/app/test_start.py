@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from diorama_app.session import preload as warming
+from diorama_app.session import preload
 from diorama_core.library.ingest import known_shapes
 
 NEVER_AT_START = (
@@ -101,9 +101,9 @@ print(len(added))
 
 def test_what_the_first_upload_needs_is_learnt_beside_and_ends_with_the_server(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(known_shapes, "are_known", lambda: False)
-    monkeypatch.setattr(warming, "LEARN", "import time; time.sleep(60)")
+    monkeypatch.setattr(preload, "LEARN", "import time; time.sleep(60)")
     stopped = threading.Event()
-    beside = threading.Thread(target=warming.learn_shapes, args=(stopped,), daemon=True)
+    beside = threading.Thread(target=preload.learn_shapes, args=(stopped,), daemon=True)
     beside.start()
     time.sleep(0.3)
     assert beside.is_alive()
@@ -114,6 +114,6 @@ def test_what_the_first_upload_needs_is_learnt_beside_and_ends_with_the_server(m
 
 def test_nothing_is_learnt_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(known_shapes, "are_known", lambda: True)
-    monkeypatch.setattr(warming, "LEARN", "raise SystemExit('learnt again')")
+    monkeypatch.setattr(preload, "LEARN", "raise SystemExit('learnt again')")
     monkeypatch.setattr(subprocess, "Popen", None)
-    warming.learn_shapes(threading.Event())
+    preload.learn_shapes(threading.Event())

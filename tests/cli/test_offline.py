@@ -1,6 +1,7 @@
 """Nothing is asked of any network: serve, build and export run where there is none, and the kernel is watched.
 
-`unshare` makes a namespace of its own with loopback only; `strace` lists every connection that is tried.
+`unshare` makes a namespace of its own with loopback only. Python itself reports the connections and look-ups of names
+that its code tries; where `strace` is installed it lists those of native code and of other processes too.
 """
 
 from __future__ import annotations
@@ -19,6 +20,19 @@ from PIL import Image
 ROOT = Path(__file__).resolve().parents[2]
 CONNECT = re.compile(r"connect\(\d+, \{sa_family=AF_INET6?, .*?(?:inet_addr\(\"|AF_INET6, \")([0-9a-f.:]+)\"")
 
+WATCH = """
+import os, sys
+def _watch(event, given):
+    address = given[1] if event == "socket.connect" else given[0]
+    where = address[0] if isinstance(address, tuple) else address
+    if isinstance(where, bytes):
+        where = where.decode()
+    local = where is None or str(where).startswith(("127.", "::1", "localhost", "/", "\\0")) or str(where) == ""
+    if not local and str(where) != __import__("socket").gethostname():
+        with open(os.environ["ASKED"], "a") as stream:
+            stream.write(f"{event} {where}\\n")
+sys.addaudithook(lambda event, given: event in ("socket.connect", "socket.getaddrinfo") and _watch(event, given))
+"""
 SERVE = """
 import sys, urllib.request
 from pathlib import Path
@@ -56,11 +70,29 @@ def traced(tmp_path: Path) -> list[str]:
     return ["strace", "-f", "-qq", "-e", "trace=connect", "-o", str(tmp_path / "trace")]
 
 
-def run(prefix: list[str], code: str, *arguments: object) -> None:
+def run(prefix: list[str], asked: Path, code: str, *arguments: object) -> None:
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1", "HF_HUB_OFFLINE": ""}
-    command = [*prefix, sys.executable, "-c", code, *map(str, arguments)]
+    environment["ASKED"] = str(asked)
+    command = [*prefix, sys.executable, "-c", WATCH + code, *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=300)
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+
+
+def test_a_connection_would_be_seen(tmp_path: Path) -> None:
+    code = """
+import socket
+for address in (("192.0.2.1", 80), ("127.0.0.1", 9)):
+    try:
+        socket.create_connection(address, timeout=0.2)
+    except OSError:
+        pass
+"""
+    watched = traced(tmp_path)
+    run([*cut_off(), *watched], tmp_path / "asked", code)
+    assert "socket.connect 192.0.2.1" in (tmp_path / "asked").read_text()
+    assert "127.0.0.1" not in (tmp_path / "asked").read_text()
+    if watched:
+        assert "192.0.2.1" in CONNECT.findall((tmp_path / "trace").read_text())
 
 
 @pytest.mark.slow
@@ -78,7 +110,8 @@ def test_serving_building_and_exporting_need_no_network(tmp_path: Path) -> None:
         (EXPORT, (tmp_path / "built", tmp_path / "room.glb")),
     )
     for code, arguments in steps:
-        run([*prefix, *watched], code, *arguments)
+        run([*prefix, *watched], tmp_path / "asked", code, *arguments)
+        assert not (tmp_path / "asked").exists(), (tmp_path / "asked").read_text()
         if watched:
             asked = {a for a in CONNECT.findall((tmp_path / "trace").read_text()) if not a.startswith(("127.", "::1"))}
             assert not asked, f"connections were tried to {asked}"

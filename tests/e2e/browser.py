@@ -6,12 +6,14 @@ import shutil
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from urllib.parse import parse_qs, urlsplit
 
 import numpy as np
 from playwright.sync_api import BrowserContext, Locator, Page, expect
 
 from diorama_app.serve import Running
 from diorama_app.session.client import Client
+from diorama_app.session.session import EditorSession
 
 FLAGS = (
     "--no-sandbox",
@@ -49,9 +51,9 @@ PROJECT = """(point) => {
     return [box.left + (p.x + 1) / 2 * box.width, box.top + (1 - p.y) / 2 * box.height];
 }"""
 
-AT_BOARD = """() => {
-    const m = window.__viserMutable, photo = m.nodeRefFromName['/board/photo'];
-    return photo && m.camera.position.distanceTo(photo.getWorldPosition(m.camera.position.clone())) < 3.0;
+ON_PHOTO = """([x, y, width, height]) => {
+    const box = document.querySelector('.dio-canvas-layer').getBoundingClientRect();
+    return [box.left + x / width * box.width, box.top + y / height * box.height];
 }"""
 
 ON_CANVAS = "([x, y]) => (document.elementFromPoint(x, y) || {}).tagName === 'CANVAS'"
@@ -77,7 +79,16 @@ class EditorPage:
     @property
     def client(self) -> Client:
         """This tab, as the program knows it."""
-        return self.running.session.clients[self.client_id]
+        clients = self.session.clients
+        known = self.session is self.running.session and self.client_id in clients
+        return clients[self.client_id] if known else clients[max(clients)]
+
+    @property
+    def session(self) -> EditorSession:
+        """The session of the project in this tab's address."""
+        name = parse_qs(urlsplit(self.page.url).query).get("project", [""])[0]
+        sessions = [e.session for e in self.running.workspace.editors]
+        return next((s for s in sessions if s.project is not None and s.project.folder.name == name), sessions[0])
 
     @property
     def selection(self) -> tuple[str, ...]:
@@ -110,10 +121,21 @@ class EditorPage:
         self.page.wait_for_function(SETTLED, polling=50)
 
     def at_board(self) -> None:
-        """Wait until the photo is there to draw on, and the eye in front of it."""
-        self.until(lambda: self.client.view.drawing, "the drawing board is open")
-        self.page.wait_for_function(AT_BOARD)
+        """Wait until the photo is there to draw on."""
+        self.until(lambda: bool(self.session.clients) and self.client.view.canvas.is_open, "the drawing board is open")
+        self.page.wait_for_selector(".dio-canvas-layer")
         self.settle()
+
+    def on_photo(self, x: float, y: float) -> tuple[float, float]:
+        """Where a pixel of the photo is on the page."""
+        photo = self.session.photo
+        assert photo is not None
+        left, top = self.page.evaluate(ON_PHOTO, [x, y, photo.width, photo.height])
+        return float(left), float(top)
+
+    def draw_box(self, box: tuple[float, float, float, float]) -> None:
+        """Drag a rectangle on the photo, in its pixels."""
+        self.drag(self.on_photo(*box[:2]), self.on_photo(*box[2:]))
 
     def canvas_box(self) -> tuple[float, float, float, float]:
         """Left, top, width and height of the 3D view on the page."""

@@ -102,10 +102,11 @@ def editor(shared_page: EditorPage, tmp_path: Path, request: pytest.FixtureReque
         session.projects_dir = tmp_path / "projects"
         session.clip = session.binned = None
         client = shared_page.client
-        client.view.close_board()
+        client.view.canvas.close()
         client.preferences = Preferences()
         session.open_project(project)
 
+    go_home(shared_page)
     session.jobs.wait(10.0)
     session.ui_thread.post(begin)
     assert session.ui_thread.wait()
@@ -119,6 +120,17 @@ def editor(shared_page: EditorPage, tmp_path: Path, request: pytest.FixtureReque
     session.jobs.cancel()
     shared_page.page.keyboard.press("Escape")
     assert not errors, errors
+
+
+def go_home(editor: EditorPage) -> None:
+    """Back to the first project from wherever the test before went; projects that it made are closed."""
+    workspace = editor.running.workspace
+    if editor.session is not editor.running.session or len(workspace.editors) > 1:
+        editor.page.evaluate("window.__dioGoTo('demo')")
+        editor.until(lambda: bool(editor.running.session.clients), "back")
+        editor.client_id = max(editor.running.session.clients)
+        editor.until(lambda: not any(e.session.clients for e in workspace.editors[1:]), "the others are left")
+        workspace.close_unused(at_once=True)
 
 
 def keep_picture(page: EditorPage, name: str) -> None:

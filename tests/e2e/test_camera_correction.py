@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
 from diorama_app.panels.photo_correction import PhotoCorrection
@@ -10,13 +9,6 @@ from tests.e2e.browser import EditorPage
 from tests.e2e.test_viewport import seen_in_photo
 
 pytestmark = pytest.mark.browser
-
-
-def on_board(editor: EditorPage, x: float, y: float) -> np.ndarray:
-    """Where a pixel of the photo is on the drawing board."""
-    board = editor.client.view.board
-    assert board is not None
-    return board.to_world(np.array([x, y]))
 
 
 def test_a_box_is_drawn_anew_and_an_outline_is_clicked_and_left(editor: EditorPage) -> None:
@@ -28,7 +20,7 @@ def test_a_box_is_drawn_anew_and_an_outline_is_clicked_and_left(editor: EditorPa
     editor.row("dining table").click()
     editor.button("Redraw box").click()
     editor.at_board()
-    editor.drag(editor.place_of(on_board(editor, 230, 190)), editor.place_of(on_board(editor, 450, 430)))
+    editor.draw_box((230, 190, 450, 430))
     editor.until(
         lambda: session.document.history.current.label == "reconstruct dining table", "looked at again", seconds=120
     )
@@ -41,14 +33,16 @@ def test_a_box_is_drawn_anew_and_an_outline_is_clicked_and_left(editor: EditorPa
     assert [session.scene.object(i) for i in apart] == others, (
         "nothing else changed; the lamp goes along with its table"
     )
-    assert not editor.client.view.drawing
+    assert not editor.client.view.canvas.is_open
     editor.button("Fix outline").click()
     editor.at_board()
     panel = next(p for p in editor.client.panels if isinstance(p, PhotoCorrection))
     before = session.scene
-    editor.click_world(on_board(editor, 340, 300))
+    editor.page.mouse.click(*editor.on_photo(340, 300))
     editor.until(lambda: panel._outline is not None and len(panel._outline.clicks) == 1, "part of it")
-    editor.click_world(on_board(editor, 450, 200), modifiers=("Shift",))
+    editor.page.keyboard.down("Shift")
+    editor.page.mouse.click(*editor.on_photo(450, 200))
+    editor.page.keyboard.up("Shift")
     editor.until(lambda: panel._outline is not None and len(panel._outline.clicks) == 2, "no part of it")
     outline = panel._outline
     assert outline is not None
@@ -56,7 +50,7 @@ def test_a_box_is_drawn_anew_and_an_outline_is_clicked_and_left(editor: EditorPa
     assert outline.mask[300, 340]
     assert not outline.mask[200, 450]
     editor.button("Cancel").click()
-    editor.until(lambda: not editor.client.view.drawing)
+    editor.until(lambda: not editor.client.view.canvas.is_open)
     assert session.scene is before
     editor.page.keyboard.press("Control+z")
     editor.until(lambda: session.scene.object("table_1").box_px == (240.0, 200.0, 440.0, 420.0), "one undo step")

@@ -51,17 +51,14 @@ def test_a_box_is_redrawn_on_the_photo_and_its_object_is_looked_at_again(editor:
     others = [o for o in session.scene.objects if o.id != added.id]
     editor.button("Redraw box").click()
     editor.at_board()
-    board = editor.client.view.board
-    assert board is not None
     corners = np.array([[250.0, 210.0], [400.0, 410.0]])
-    start, end = (editor.place_of(p) for p in board.to_world(corners))
-    editor.drag(start, end)
+    editor.draw_box((250.0, 210.0, 400.0, 410.0))
     label = f"reconstruct {added.label}"
     editor.until(lambda: session.document.history.current.label == label, "looked at again", seconds=90)
     again = session.scene.object(added.id)
     np.testing.assert_allclose(np.array(again.box_px).reshape(2, 2), corners, atol=4.0)
     assert [o for o in session.scene.objects if o.id != added.id] == others, "everything else stays"
-    assert not editor.client.view.drawing
+    assert not editor.client.view.canvas.is_open
     editor.page.keyboard.press("Control+z")
     editor.until(lambda: session.scene.object(added.id) == added, "undone")
 
@@ -106,7 +103,7 @@ def test_views_focus_and_selecting_by_keys(editor: EditorPage) -> None:
     for button, back in (("Top", (0, 0, 1)), ("Front", (0, -1, 0)), ("Side", (-1, 0, 0))):
         editor.button(button).click()
         editor.until(lambda b=back: _direction(view) @ np.array(b) > 0.99, f"{button} view")
-        assert editor.client.view.fov_rad < 0.2, "lines that are parallel in the room nearly are on the screen"
+        assert editor.client.view.camera.fov_rad < 0.2, "lines that are parallel in the room nearly are on the screen"
     editor.button("Room").click()
     editor.row("lamp").click()
     editor.page.keyboard.press("f")

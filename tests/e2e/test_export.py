@@ -169,7 +169,7 @@ def test_a_picture_of_this_view_and_of_the_photos(editor: EditorPage, tmp_path: 
     editor.button("640").click()
     here = Image.open(download(editor, "Make picture", tmp_path / "here.png")).convert("RGB")
     assert here.width == 640
-    assert here.height == pytest.approx(640 / editor.client.view.aspect, abs=1)
+    assert here.height == pytest.approx(640 / editor.client.view.camera.aspect, abs=1)
     editor.running.session.jobs.wait(10.0)
     table = editor.running.session.scene.object("table_1").pose.position + np.array([0.3, 0.0, 0.36])
     left, top, width, _ = editor.canvas_box()

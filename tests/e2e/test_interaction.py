@@ -246,7 +246,8 @@ def test_a_photo_begins_another_project_from_the_list_of_projects(editor: Editor
     editor.at_board()
     expect(editor.page.get_by_role("tab", name="Photo", exact=True)).to_have_attribute("aria-selected", "true")
     expect(editor.page.locator("p").filter(has_text="attic.png").first).to_be_visible()
-    assert not editor.running.session.draft.from_project, "the open project stays as it is"
+    assert editor.session is not editor.running.session, "the open project stays as it is"
+    assert editor.session.unfinished
 
 
 def test_dark_keys_palette_and_units(editor: EditorPage) -> None:
@@ -262,13 +263,18 @@ def test_dark_keys_palette_and_units(editor: EditorPage) -> None:
     expect(editor.page.locator("input.mantine-Spotlight-search")).to_be_focused()
     editor.page.keyboard.type("top view")
     editor.page.keyboard.press("Enter")
-    editor.until(lambda: editor.client.view.fov_rad < 0.2, "from above")
+    editor.until(lambda: editor.client.view.camera.fov_rad < 0.2, "from above")
     editor.row("dining table").click()
-    editor.page.get_by_label("Unit").click()
-    editor.page.get_by_role("option", name="ft-in").click()
-    size = editor.page.locator(".mantine-Flex-root", has_text="Size (ft)").locator("input")
-    expect(size).to_have_value("4' 7 1/8\", 2' 7 1/2\", 2' 5 1/8\"")
-    size.fill("5', 3', 2' 6\"")
+    editor.page.get_by_label("Unit").select_option("ft-in")
+    for axis, before, after in (
+        ("Width", "4' 7 1/8\"", "5'"),
+        ("Depth", "2' 7 1/2\"", "3'"),
+        ("Height", "2' 5 1/8\"", "2' 6\""),
+    ):
+        field = editor.page.get_by_label(f"Size: {axis}")
+        expect(field).to_have_value(before)
+        field.fill(after)
+        field.press("Enter")
     editor.until(lambda: np.allclose(scene(editor).object("table_1").size_m, (0.9144, 1.524, 0.762), atol=1e-3))
 
 
@@ -307,13 +313,12 @@ def test_what_was_missed_is_added_from_the_photo_and_renamed(editor: EditorPage)
     np.testing.assert_allclose(session.scene.object(new.id).pose.position[:2], new.pose.position[:2])
     editor.button("Fix outline").click()
     editor.at_board()
-    board = editor.client.view.board
-    assert board is not None
-    editor.click_world(board.to_world(np.array([340.0, 300.0])))
+    editor.page.mouse.click(*editor.on_photo(340.0, 300.0))
+    editor.settle()
     editor.button("Use this outline").click()
     label = f"outline of {session.scene.object(new.id).label}"
     editor.until(lambda: session.document.history.current.label == label, "looked at again", seconds=90)
-    assert not editor.client.view.drawing
+    assert not editor.client.view.canvas.is_open
     assert session.ui_thread.wait()
     retained = session.project.load_inputs()
     drawn = retained.instances == retained.instance_boxes[0][0]

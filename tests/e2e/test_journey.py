@@ -46,7 +46,8 @@ def test_the_example_is_there_and_is_swapped_moved_undone_optimised_and_download
     editor.settle()
     swapped = session.scene.object(chair.id)
     goal = round(float(swapped.pose.position[0]) - 0.2, 2)
-    editor.page.get_by_label("Position (m)").fill(f"{goal:.2f}")
+    editor.page.get_by_label("Position: x").fill(f"{goal:.2f}")
+    editor.page.keyboard.press("Enter")
     editor.until(lambda: abs(session.scene.object(chair.id).pose.position[0] - goal) < 1e-3, "moved")
     editor.button("↶ Undo").click()
     editor.until(lambda: session.scene.object(chair.id).pose == swapped.pose, "undone")
@@ -74,18 +75,18 @@ def test_a_photo_with_boxes_becomes_a_scene(with_example: Running, visit: Callab
 
     editor.tab("Photo")
     editor.upload("Upload a photo", photo)
-    editor.until(
-        lambda: session.draft.photo is not None and session.draft.photo.name == photo.name, "the photo is read"
-    )
+    editor.until(lambda: editor.session.photo is not None and editor.session.photo.name == photo.name, "read")
+    assert session.scene is example, "the example stays as it is"
+    session = editor.session
+    before = session.scene
     editor.page.get_by_text("More about this photo").click()
     editor.upload("Add boxes (JSON)", boxes)
-    editor.until(lambda: len(session.draft.boxes) > 2, "the boxes are read")
-    marked = len(session.draft.boxes)
-    assert session.scene is example, "the open scene stays until the new one is there"
+    editor.until(lambda: len(session.inputs.boxes) > 2, "the boxes are read")
+    marked = len(session.inputs.boxes)
     editor.dismiss_notices()
     editor.button("Build scene").click()
     expect(editor.page.get_by_text("Building the scene")).to_be_visible()
-    editor.until(lambda: session.jobs.status is None and session.scene is not example, "built", seconds=BUILD_S)
+    editor.until(lambda: session.jobs.status is None and session.scene is not before, "built", seconds=BUILD_S)
     assert len(session.scene.objects) >= 0.9 * marked
     assert session.scene.architecture.floor is not None
     assert session.scene.architecture.by_role("wall")

@@ -8,16 +8,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from PIL import Image
 from playwright.sync_api import expect
 
+from diorama_app.commands.edit import rename
+from diorama_app.panels.in_place import InPlace
+from diorama_app.panels.outliner import Outliner
 from diorama_app.serve import Running
-from diorama_app.web import viser_adapter
+from diorama_app.web import upload_limits
 from diorama_core.project.storage import Project
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene
-from tests.app.small_room import PlainLibrary, furnished_scene, make_project, plain_photo
+from tests.app.small_room import PlainLibrary, furnished_scene, make_project
 from tests.e2e.browser import EditorPage
+from tests.e2e.conftest import ARTEFACTS
 
 pytestmark = pytest.mark.browser
 
@@ -34,46 +37,11 @@ WATCH = """(name) => {
 """Notes every height at which a node is drawn."""
 
 
-def test_boxes_drawn_on_the_photo_land_on_its_pixels(editor: EditorPage, tmp_path: Path) -> None:
-    session = editor.running.session
-    path = tmp_path / "my room.png"
-    Image.fromarray(plain_photo().rgb).save(path)
-    editor.tab("Photo")
-    editor.upload("Upload a photo", path)
-    editor.until(
-        lambda: session.draft.photo is not None and session.draft.photo.name == "my room.png", "the photo is read"
-    )
-    assert session.scene.objects, "the open scene stays"
-    expect(editor.page.get_by_text("Draw a box around each piece of furniture.")).to_be_visible()
-    expect(editor.button("Build scene")).to_be_disabled()
-    editor.at_board()
-    editor.dismiss_notices()
-    view = editor.client.view
-    assert view.board is not None
-    corners = np.array([[240.0, 200.0], [440.0, 420.0]])
-    editor.settle()
-    start, end = (editor.place_of(p) for p in view.board.to_world(corners))
-    editor.drag(start, end)
-    editor.until(lambda: len(session.draft.boxes) == 1, "one box")
-    np.testing.assert_allclose(np.array(session.draft.boxes[0].box).reshape(2, 2), corners, atol=4.0)
-    assert session.draft.boxes[0].label == "chair"
-    other = editor.page.get_by_label("or type")
-    field = other if other.count() else editor.page.locator(".mantine-Flex-root", has_text="or type").locator("input")
-    field.fill("couch")
-    editor.until(lambda: session.draft.boxes[0].label == "couch", "named")
-    assert session.draft.boxes[0].category == "sofa"
-    expect(editor.button("Build scene")).to_be_enabled()
-    editor.page.get_by_title("Delete this box").click()
-    editor.until(lambda: session.draft.boxes == (), "deleted")
-    editor.button("Done drawing").click()
-    editor.until(lambda: not editor.client.view.drawing, "back in the room")
-
-
 def test_what_cannot_be_used_is_one_clear_notice_and_nothing_is_lost(
     editor: EditorPage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     session = editor.running.session
-    scene, draft = session.scene, session.draft
+    scene, inputs = session.scene, session.inputs
     words = tmp_path / "words.jpg"
     words.write_text("this is no picture")
     empty = tmp_path / "empty.jpg"
@@ -83,14 +51,14 @@ def test_what_cannot_be_used_is_one_clear_notice_and_nothing_is_lost(
         editor.upload("Upload a photo", path)
         editor.notice(path.name)
         assert session.scene is scene
-        assert session.draft is draft
+        assert session.inputs is inputs
         editor.dismiss_notices()
-    monkeypatch.setattr(viser_adapter, "MAX_UPLOAD_BYTES", 1000)
+    monkeypatch.setattr(upload_limits, "MAX_UPLOAD_BYTES", 1000)
     large = tmp_path / "large.jpg"
     large.write_bytes(b"\xff" * 5000)
     editor.upload("Upload a photo", large)
     editor.notice("can be uploaded")
-    assert session.draft is draft
+    assert session.inputs is inputs
 
 
 def test_a_shape_found_by_words_is_inserted_on_the_selected_table(editor: EditorPage) -> None:
@@ -112,7 +80,7 @@ def test_a_shape_found_by_words_is_inserted_on_the_selected_table(editor: Editor
     assert any(n.startswith(str(session.viewport.node_name(new.id))) for n in shown)
 
 
-@pytest.mark.parametrize("recipe", ["Tidy up (feasible)", "As in the paper"])
+@pytest.mark.parametrize("recipe", ["Tidy up", "As in the paper"])
 def test_the_layout_is_optimised_before_your_eyes_and_undone(editor: EditorPage, recipe: str) -> None:
     session = editor.running.session
     lifted = session.scene.object("chair_1").pose.moved((0.0, 0.0, 0.3))
@@ -182,24 +150,24 @@ def test_the_photo_view_stands_where_the_photo_was_taken(editor: EditorPage) -> 
     assert camera is not None
     editor.button("Photo view").click()
     view = editor.client.view
-    editor.until(lambda: view.through_photo)
+    editor.until(lambda: view.camera.through_photo)
     editor.settle()
     for point in (session.scene.object("table_1").pose.position, np.array([1.0, 2.0, 0.0])):
         u, v = camera.project(point) - (camera.intrinsics.cx, camera.intrinsics.cy)
         box = editor.canvas_box()
         x, y = editor.place_of(point)
-        scale = (box[3] / 2) / np.tan(view.fov_rad / 2) / camera.intrinsics.fy
+        scale = (box[3] / 2) / np.tan(view.camera.fov_rad / 2) / camera.intrinsics.fy
         assert x - (box[0] + box[2] / 2) == pytest.approx(u * scale, abs=2.5)
         assert y - (box[1] + box[3] / 2) == pytest.approx(v * scale, abs=2.5)
     slider = editor.page.locator(".mantine-Flex-root", has_text="Photo over model").locator("input[type=text]")
     slider.fill("100")
     slider.press("Tab")
-    editor.until(lambda: view.comparing, "the photo lies over the model")
+    editor.until(lambda: view.photo.comparing, "the photo lies over the model")
     brown = camera.position + camera.rays(np.array([340.0, 310.0]))
     editor.settle()
     np.testing.assert_allclose(editor.mean_colour(brown), (120, 80, 50), atol=25)
     editor.button("Room").click()
-    editor.until(lambda: not view.comparing and not view.through_photo, "the model alone again")
+    editor.until(lambda: not view.photo.comparing and not view.camera.through_photo, "the model alone again")
 
 
 def test_an_empty_room_says_what_to_do(
@@ -217,3 +185,34 @@ def test_an_empty_room_says_what_to_do(
 
 def _with_pose(scene: Scene, object_id: str, pose: Pose) -> Scene:
     return edits.move(scene, object_id, pose)
+
+
+def test_a_panel_that_fails_is_one_line_in_its_place_until_it_works_again(
+    editor: EditorPage, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    session, page = editor.running.session, editor.page
+    editor.tab("Scene")
+    outliner = next(p.panel for p in editor.client.panels if isinstance(p, InPlace) and isinstance(p.panel, Outliner))
+    line = page.get_by_text("The list of objects cannot be shown (RuntimeError). Your work is saved.")
+
+    def fails() -> None:
+        raise RuntimeError("a fault of the program")
+
+    def named(label: str) -> None:
+        session.ui_thread.post(lambda: rename(editor.client, "chair_1", label))
+        editor.until(lambda: session.scene.object("chair_1").label == label, "renamed")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(outliner, "refresh", fails)
+        named("throne")
+        expect(line).to_be_visible()
+        expect(editor.row("dining table")).to_be_hidden()
+        expect(page.get_by_role("tab", name="Photo", exact=True)).to_be_visible()
+        editor.picture(ARTEFACTS / "a panel that fails.png")
+        assert page.locator(".mantine-Notification-root").count() == 0, "no notice beside the line"
+        session.autosave.flush()
+        assert session.project is not None
+        assert session.project.load_scene().object("chair_1").label == "throne"
+    named("armchair")
+    expect(line).to_be_hidden()
+    expect(editor.row("armchair")).to_be_visible()

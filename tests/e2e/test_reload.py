@@ -49,4 +49,4 @@ def test_theme_unit_snap_recipe_and_open_tabs_outlive_a_reload_and_another_start
     expect(page.button("Snap")).to_have_class("on")
     page.tab("Scene")
     page.row("lamp").click()
-    expect(page.page.get_by_text("Size (ft)", exact=True)).to_be_visible()
+    expect(page.page.get_by_label("Size: Width")).to_have_value('9 7/16"')

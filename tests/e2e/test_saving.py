@@ -103,7 +103,7 @@ def test_files_dropped_on_the_view_go_where_they_belong(editor: EditorPage, tmp_
     editor.until(lambda: len(session.scene.objects) == 6, "placed")
     photo = session.project.folder / "photo.jpg"
     drop(editor, photo, "image/jpeg")
-    editor.until(lambda: session.draft.name == "photo.jpg" and not session.draft.from_project, "a new photo")
+    editor.until(lambda: editor.session.unfinished, "a new photo is a project of its own")
     editor.at_board()
 
 

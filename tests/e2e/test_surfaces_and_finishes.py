@@ -139,11 +139,8 @@ def test_paint_and_finish_are_seen_undone_and_in_the_glb(editor: EditorPage, tmp
     document = glb_json((tmp_path / "room.glb").read_bytes())
     node = next(n for n in document["nodes"] if n.get("extras", {}).get("id") == "table_1")
     used = {p["material"] for p in document["meshes"][node["mesh"]]["primitives"]}
-    looks = [document["materials"][m]["pbrMetallicRoughness"] for m in used]
-    assert any(
-        move_camera.get("metallicFactor", 1.0) == 0.75 and move_camera["baseColorFactor"][2] > 0.4
-        for move_camera in looks
-    )
+    finishes = [document["materials"][m]["pbrMetallicRoughness"] for m in used]
+    assert any(one.get("metallicFactor", 1.0) == 0.75 and one["baseColorFactor"][2] > 0.4 for one in finishes)
     editor.page.keyboard.press("Control+z")
     editor.until(lambda: scene(editor).object("table_1").colour is None)
     assert scene(editor).object("table_1").finish == "metal"

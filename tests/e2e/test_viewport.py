@@ -38,7 +38,7 @@ def test_outlines_lie_over_the_photo_and_the_selected_one_is_orange(editor: Edit
     editor.until(lambda: session.scene.object("table_1").box_px == BOX)
     editor.button("Outlines").click()
     editor.until(lambda: session.jobs.status is None and editor.client.preferences.masks, "outlined", seconds=60)
-    assert editor.client.view.through_photo, "outlines are seen through the photo's camera"
+    assert editor.client.view.camera.through_photo, "outlines are seen through the photo's camera"
     editor.page.wait_for_function(THERE)
     camera = session.scene.camera
     assert camera is not None
@@ -65,7 +65,7 @@ def test_planes_show_their_edges_and_follow_a_moved_wall(editor: EditorPage) -> 
     count = len(editor.running.session.scene.architecture.planes)
     editor.page.wait_for_function(f"{EDGES} == {count}")
     editor.page.keyboard.press("p")
-    editor.until(lambda: editor.client.view.through_photo)
+    editor.until(lambda: editor.client.view.camera.through_photo)
     editor.page.wait_for_function(THERE)
     editor.page.keyboard.press("y")
     editor.page.wait_for_function(f"{EDGES} == 0 && {GONE}")
@@ -94,7 +94,7 @@ def test_what_floats_and_what_is_unsure_is_marked_in_the_view_and_in_the_list(ed
 def test_walls_between_the_eye_and_the_room_are_not_in_the_way(editor: EditorPage) -> None:
     session = editor.running.session
     editor.page.keyboard.press("4")
-    editor.until(lambda: editor.client.view.fov_rad < 0.2, "from the front, outside the room")
+    editor.until(lambda: editor.client.view.camera.fov_rad < 0.2, "from the front, outside the room")
     editor.settle()
     chair = session.scene.object("chair_1")
     assert editor.client.viser_client.camera.position[1] < -5.0, "the eye is behind the front wall"
@@ -117,7 +117,7 @@ def test_walls_fade_with_what_hangs_on_them_and_come_back(editor: EditorPage) ->
 
     editor.until(lambda: left(wall) == 1.0 and left(picture) == 1.0, "the far wall is solid from inside")
     solid = editor.mean_colour(hangs)
-    session.ui_thread.post(lambda: view.move_camera(hangs + np.array([0.5, 5.0, 1.5]), hangs))
+    session.ui_thread.post(lambda: view.camera.move(hangs + np.array([0.5, 5.0, 1.5]), hangs))
     editor.until(lambda: 0.0 < left(wall) < 0.3 and left(picture) == left(wall), "faded, not gone")
     assert left(ceiling) == 0.0, "nothing lies over the room seen from above"
     table = session.scene.object("table_1")
@@ -127,10 +127,10 @@ def test_walls_fade_with_what_hangs_on_them_and_come_back(editor: EditorPage) ->
     editor.until(lambda: left(picture) == 1.0, "what is selected is seen")
     assert left(wall) < 0.3
     editor.page.keyboard.press("p")
-    editor.until(lambda: view.through_photo and left(wall) == 1.0, "solid through the photo's camera")
+    editor.until(lambda: view.camera.through_photo and left(wall) == 1.0, "solid through the photo's camera")
     editor.page.keyboard.press("Escape")
     editor.page.keyboard.press("r")
-    editor.until(lambda: not view.through_photo and left(wall) == 1.0 and left(picture) == 1.0, "back")
+    editor.until(lambda: not view.camera.through_photo and left(wall) == 1.0 and left(picture) == 1.0, "back")
     editor.settle()
     assert np.abs(editor.mean_colour(hangs) - solid).max() < 12.0, "as it was before"
 
@@ -146,7 +146,7 @@ def test_a_fade_takes_a_few_frames_where_there_is_a_graphics_card(editor: Editor
         log = "(w) => { window.__seen = []; setInterval(() => window.__seen.push(window.__dioWalls.shares[w]), 5); }"
         editor.page.evaluate(log, wall)
         hangs = session.scene.object("picture_1").pose.position
-        session.ui_thread.post(lambda: view.move_camera(hangs + np.array([0.5, 5.0, 1.5]), hangs))
+        session.ui_thread.post(lambda: view.camera.move(hangs + np.array([0.5, 5.0, 1.5]), hangs))
         editor.until(lambda: editor.page.evaluate(LEFT_OF, wall) < 0.2, "faded")
         between = [share for share in editor.page.evaluate("window.__seen") if 0.2 < share < 0.95]
         assert between, "not all at once"

@@ -2,21 +2,32 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from diorama_app.reconstruction.camera_correction import camera_height_m, set_camera_height
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
 from diorama_core.artefacts import Inputs, LabelledBox
-from diorama_core.editing.input_corrections import given_outline, with_correction
+from diorama_core.editing.input_corrections import (
+    boxes_json,
+    given_outline,
+    labelled_box,
+    with_box_at,
+    with_boxes_added,
+    with_correction,
+    without_box,
+)
 from diorama_core.geometry.camera_attitude import CameraAttitude
 from diorama_core.perception.camera.given_attitude import GivenAttitudeCamera
+from diorama_core.perception.inputs import read_inputs
 from diorama_core.pipeline import codec
 from diorama_core.pipeline.presets import stages_for
 from diorama_core.pipeline.stages import embedded_stages
@@ -57,6 +68,7 @@ def client(tmp_path: Path) -> Iterator[Client]:
 def retained(client: Client) -> Inputs:
     """What a later session finds."""
     assert client.session.project is not None
+    client.session.autosave.flush()
     found = Project.open(client.session.project.folder).load_inputs()
     assert found is not None
     return found
@@ -115,10 +127,8 @@ def test_corrections_are_undone_redone_and_found_by_the_next_session(client: Cli
     said = with_correction(before, TABLE.box, bench, ROUND)
     session.edit("outline", lambda s: edits.rename(s, "table_1", "bench"), by=client, inputs=said)
     assert retained(client) == said
-    assert session.draft.boxes == (bench,), "the list of boxes follows"
     session.undo(client)
     assert retained(client) == before
-    assert session.draft.boxes == (TABLE,)
     session.redo(client)
     assert retained(client) == said
     project = session.project
@@ -127,19 +137,33 @@ def test_corrections_are_undone_redone_and_found_by_the_next_session(client: Cli
     assert session.document.inputs == said
 
 
-def test_boxes_that_wait_for_a_build_stay_when_something_else_is_corrected(client: Client) -> None:
-    session = client.session
-    session.draft = session.draft.with_box(CHAIR.box, "chair")
-    before = session.document.inputs
-    assert before is not None
-    said = with_correction(before, TABLE.box, replace(TABLE, category="desk", label="desk"))
-    session.edit("it is a desk", lambda s: edits.rename(s, "table_1", "desk"), by=client, inputs=said)
-    assert [b.label for b in session.draft.boxes] == ["desk", "chair"]
-    added = with_correction(said, None, CHAIR)
-    session.edit("insert", lambda s: edits.rename(s, "lamp_1", "other lamp"), by=client, inputs=added)
-    assert [b.label for b in session.draft.boxes] == ["desk", "chair"]
-    session.undo(client)
-    assert [b.label for b in session.draft.boxes] == ["desk", "chair"], "a box that was drawn is not lost by undo"
+def test_boxes_are_drawn_named_moved_and_deleted(inputs: Inputs) -> None:
+    outlined = with_correction(inputs, TABLE.box, TABLE, ROUND)
+    couch = labelled_box((10.0, 20.0, 110.0, 220.0), "couch")
+    assert couch.category == "sofa"
+    marked = replace(outlined, boxes=(*outlined.boxes, couch))
+    desk = with_box_at(marked, 0, labelled_box(TABLE.box, "desk"))
+    assert [b.label for b in desk.boxes] == ["desk", "chair", "couch"]
+    assert given_outline(desk, TABLE.box) is not None, "another name keeps the outline"
+    moved = with_box_at(desk, 0, replace(desk.boxes[0], box=(250.0, 200.0, 440.0, 420.0)))
+    assert moved.instance_boxes == (), "another box drops it"
+    assert [b.label for b in without_box(moved, 1).boxes] == ["desk", "couch"]
+
+
+def test_detected_boxes_join_those_that_are_there(inputs: Inputs) -> None:
+    near = replace(TABLE, box=(245.0, 205.0, 440.0, 420.0))
+    lamp = LabelledBox((500.0, 50.0, 560.0, 150.0), "lamp", "lamp")
+    assert with_boxes_added(inputs, [near, lamp]).boxes == (TABLE, CHAIR, lamp)
+    assert with_boxes_added(replace(inputs, boxes=()), [lamp]).boxes == (lamp,)
+
+
+def test_drawn_boxes_go_back_to_the_files_pixels() -> None:
+    photo = plain_photo()
+    boxes = [labelled_box((10.0, 20.0, 110.0, 220.0), "couch"), labelled_box((5.0, 5.0, 50.0, 60.0), "chair")]
+    buffer = io.BytesIO()
+    Image.fromarray(photo.rgb).save(buffer, "PNG")
+    again = read_inputs(buffer.getvalue(), name="p.png", boxes=boxes_json(boxes, photo))
+    assert [b.box for b in again.inputs.boxes] == [b.box for b in boxes]
 
 
 def test_tilt_and_scale_hold_for_every_later_build(tmp_path: Path, inputs: Inputs) -> None:

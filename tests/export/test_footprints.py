@@ -36,7 +36,7 @@ def test_a_table_is_its_top() -> None:
 def test_a_tilted_object_is_seen_as_it_lies() -> None:
     table = place(LIBRARY, "t", "table", (0, 0, 0.4))
     R = np.array([[0, 0, 1], [0, 1, 0], [-1, 0, 0]], float)  # on its side: its height lies along x
-    lying = replace(table, pose=Pose(R, (0, 0, 0.4), (1, 1, 1)))
+    lying = replace(table, pose=Pose(R, np.array([0.0, 0.0, 0.4]), np.ones(3)))
     points = np.concatenate(footprints(gather(Scene(objects=(lying,)), LIBRARY))["t"])
     np.testing.assert_allclose(np.ptp(points, axis=0), [0.72, 1.4], atol=0.005)
 

@@ -22,8 +22,8 @@ LIBRARY = PrimitiveLibrary()
 @pytest.mark.parametrize("name", list(FORMATS))
 def test_every_format_writes_a_scene_whole(name: str, tmp_path: Path) -> None:
     chosen = FORMATS[name]
-    if chosen.needs is not None:
-        pytest.importorskip(chosen.needs, reason=f"optional extra '{chosen.extra}' is not installed")
+    if chosen.missing:
+        pytest.skip(chosen.missing)
     path = tmp_path / f"room{chosen.suffixes[0]}"
     export_scene(furnished_room(LIBRARY), LIBRARY, path, name)
     assert path.stat().st_size > 100
@@ -33,8 +33,8 @@ def test_every_format_writes_a_scene_whole(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", list(FORMATS))
 def test_cancelling_leaves_the_older_file(name: str, tmp_path: Path) -> None:
     chosen = FORMATS[name]
-    if chosen.needs is not None:
-        pytest.importorskip(chosen.needs, reason=f"optional extra '{chosen.extra}' is not installed")
+    if chosen.missing:
+        pytest.skip(chosen.missing)
     path = tmp_path / f"room{chosen.suffixes[0]}"
     path.write_bytes(b"old")
     token = CancelToken()

@@ -52,7 +52,7 @@ def test_objects_stay_for_two_seconds(source: str) -> None:
 def test_a_object_in_the_air_is_reported_as_falling() -> None:
     scene, library = scene_of("boxes")
     lifted = scene.objects[0]
-    lifted = replace(lifted, pose=lifted.pose.moved((0.0, 0.0, 0.5)))
+    lifted = replace(lifted, pose=lifted.pose.moved(np.array([0.0, 0.0, 0.5])))
     moved = replace(scene, objects=(lifted, *scene.objects[1:]))
     report = stability(gather(moved, library))
     assert report.unstable[0].object_id == lifted.id

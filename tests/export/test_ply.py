@@ -48,7 +48,7 @@ def test_cutting_keeps_the_area_and_is_bounded() -> None:
         np.tile(np.array([0, 0, 1], np.float32), (4, 1)),
         np.array([[0, 1, 2], [0, 2, 3]], np.int32),
         Material(texture=picture),
-        uv=corners[:, :2] / [40, 30],
+        uv=corners[:, :2] / np.array([40, 30], np.float32),
     )
     cut = finely_cut(quad)
     assert len(quad.faces) < len(cut.faces) <= 4 * MAX_PIECES

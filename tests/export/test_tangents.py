@@ -21,7 +21,7 @@ def test_tangents_follow_u_and_the_sign_gives_v_as_pictures_have_it(turn) -> Non
 
 def test_a_mirrored_picture_turns_the_sign() -> None:
     surface = quad()
-    mirrored = replace(surface, uv=surface.uv * [-1, 1])
+    mirrored = replace(surface, uv=surface.uv * np.array([-1, 1], np.float32))
     found = tangents(mirrored)
     np.testing.assert_allclose(found[:, :3], np.tile([-1, 0, 0], (4, 1)), atol=1e-6)
     np.testing.assert_array_equal(found[:, 3], -tangents(surface)[:, 3])

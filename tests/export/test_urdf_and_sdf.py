@@ -37,7 +37,7 @@ def test_urdf_and_mjcf_open_their_joints_alike(tmp_path: Path) -> None:
     write_urdf(scene, tmp_path / "room.urdf")
     write_mjcf(scene, tmp_path / "room.xml")
     names = [link.name for link in links_of(scene, physical_scene(scene)) if link.limb is not None]
-    assert {n.split("_1_")[0] for n in names} == {"dresser", "door", "laptop", "chair"}
+    assert {n.split("_1_")[0] for n in names} == {"dresser", "door", "laptop", "chair", "desk"}
     centres = []
     for file, suffix in (("room.urdf", "_joint"), ("room.xml", "")):
         model = mujoco.MjModel.from_xml_path(str(tmp_path / file))

@@ -1,49 +1,96 @@
 from __future__ import annotations
 
 import io
+from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
 from PIL import Image
 
-from diorama_core.export.wavefront import hull_text, material_text, obj_text, png_bytes
-from diorama_core.render.appearance import Material
+from diorama_core.export.wavefront import MaterialFile, ObjText, hull_file, obj_file
+from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
+from diorama_core.library.ingest.models import read_model
+from diorama_core.render.appearance import Material, shape_surfaces
 from tests.export.surfaces import ball, quad
 
+CHECKS = np.zeros((8, 8, 3), np.uint8)
+CHECKS[:4], CHECKS[4:] = (250, 240, 230), (120, 110, 100)
 
-def loaded(text: str) -> trimesh.Trimesh:
-    return trimesh.load(io.StringIO(text), file_type="obj", process=False, force="mesh")
+
+def loaded(text: bytes) -> trimesh.Trimesh:
+    return trimesh.load(io.BytesIO(text), file_type="obj", process=False, force="mesh")
 
 
 @pytest.mark.parametrize("uv", [True, False])
 def test_surfaces_are_read_back_as_they_were(uv: bool) -> None:
     surface = quad(uv=uv)
-    mesh = loaded(obj_text(surface))
+    mesh = loaded(obj_file(surface))
     corners = surface.vertices[surface.faces]
-    np.testing.assert_allclose(mesh.vertices[mesh.faces], corners, atol=1e-6)
+    np.testing.assert_allclose(mesh.vertices[mesh.faces], corners, atol=1e-5)
     np.testing.assert_allclose(mesh.face_normals, [[0, 0, 1]] * 2, atol=1e-6)
-    text = obj_text(surface, "oak")
-    assert text.startswith("mtllib oak.mtl\n")
+    text = obj_file(surface, "all.mtl", "oak").decode()
+    assert text.startswith("mtllib all.mtl\n")
     assert "usemtl oak" in text
     assert ("vt " in text) is uv
 
 
+def test_vertices_are_counted_through_all_surfaces() -> None:
+    text = ObjText()
+    whole = loaded(text.add(quad()) + text.add(quad(uv=False)) + text.add(quad()))
+    assert len(whole.faces) == 6
+    np.testing.assert_allclose(whole.area, 12.0, rtol=1e-6)
+
+
 def test_hulls_are_closed_bodies() -> None:
     body = ball(radius=0.5)
-    mesh = loaded(hull_text(body.vertices, body.faces))
+    mesh = loaded(hull_file(body.vertices, body.faces))
     assert mesh.volume == pytest.approx(4 / 3 * np.pi * 0.125, rel=0.02)
 
 
-def test_materials_are_srgb_and_name_their_picture() -> None:
-    text = material_text("oak", Material("oak", (1.0, 0.0, 0.2158605), alpha=0.5), "oak.png")
-    assert "newmtl oak" in text
-    assert "Kd 1.00000 0.00000 0.50196" in text or "Kd 1.00000 0.00000 0.5019" in text
-    assert "d 0.5000" in text
-    assert "map_Kd oak.png" in text
-    assert "map_Kd" not in material_text("oak", Material("oak", (1, 1, 1)), None)
+def test_colours_are_linear_or_for_display() -> None:
+    oak = Material("light oak", (1.0, 0.0, 0.2158604), alpha=0.5)
+    linear, display = (MaterialFile([oak], display=d).text().decode() for d in (False, True))
+    assert "newmtl light_oak" in linear
+    assert "Kd 1.000000 0.000000 0.215860" in linear
+    assert "Kd 1.000000 0.000000 0.5019" in display
+    assert "d 0.5000" in linear
+    assert "map_Kd" not in linear
 
 
-def test_pictures_are_png() -> None:
-    picture = np.arange(48, dtype=np.uint8).reshape(4, 4, 3)
-    np.testing.assert_array_equal(np.asarray(Image.open(io.BytesIO(png_bytes(picture[:, ::-1])))), picture[:, ::-1])
+def test_names_and_pictures_are_each_used_once() -> None:
+    materials = [
+        Material("oak", texture=CHECKS),
+        Material("oak", texture=CHECKS),
+        Material("oak", (0.5, 1, 1), texture=CHECKS),
+    ]
+    file = MaterialFile(materials, pictures="textures/")
+    assert [file.name(m) for m in materials] == ["oak", "oak_2", "oak_3"]
+    pictures = dict(file.pictures())
+    assert list(pictures) == ["textures/000.png", "textures/001.png"]
+    assert all(name.encode() in file.text() for name in pictures)
+
+
+def test_a_textured_material_comes_back_in_its_colour(tmp_path: Path) -> None:
+    """Programs that show the picture alone, and those that multiply it by `Kd`, show the same colour."""
+    colour = (0.5, 0.25, 0.1)
+    surface = quad(Material("cloth", colour, texture=CHECKS))
+    file = MaterialFile([surface.material])
+    (tmp_path / "all.mtl").write_bytes(file.text())
+    (tmp_path / "one.obj").write_bytes(obj_file(surface, "all.mtl", file.name(surface.material)))
+    for name, content in file.pictures():
+        (tmp_path / name).write_bytes(content)
+        picture = np.asarray(Image.open(io.BytesIO(content)))
+    expected = 255 * linear_to_srgb(srgb_to_linear(CHECKS / 255) * np.asarray(colour))
+    np.testing.assert_allclose(picture, expected, atol=0.51)
+
+    model = read_model(tmp_path / "one.obj", tmp_path).scene
+
+    class Library:
+        def parts(self, shape_id: str) -> trimesh.Scene:
+            return model
+
+    (back,) = shape_surfaces(Library(), "one")  # type: ignore[arg-type]
+    assert back.material.colour == (1.0, 1.0, 1.0)
+    assert back.material.texture is not None
+    np.testing.assert_allclose(back.material.texture[..., :3], expected, atol=0.51)

@@ -237,6 +237,47 @@ def _language(data: bytes) -> object:
     return json_in(data.decode("utf-8", "replace"))
 
 
+def _archives() -> tuple[bytes, ...]:
+    buffers = [io.BytesIO() for _ in range(2)]
+    values = {"a": np.arange(60, dtype=np.float32).reshape(3, 20), "b": np.array(["chair", "table"])}
+    np.savez(buffers[0], **values)  # type: ignore[arg-type]
+    np.savez_compressed(buffers[1], **values)  # type: ignore[arg-type]
+    return tuple(b.getvalue() for b in buffers)
+
+
+def _cached(data: bytes) -> object:
+    """Files that can be made again: they are read or they are absent, and nothing is raised."""
+    from diorama_core.io.derived import read_arrays
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "file.npz"
+        path.write_bytes(data)
+        return read_arrays(path, "a", "b")
+
+
+def _records() -> tuple[bytes, ...]:
+    from diorama_core.library.record import shape_to_json
+
+    return tuple(shape_to_json(PlainLibrary().shape(name)).encode() for name in ("table_a", "lamp_a"))
+
+
+def _record(data: bytes) -> object:
+    from diorama_core.library.record import shape_from_json
+
+    return shape_from_json(data.decode("utf-8", "replace"))
+
+
+def _metadata(data: bytes) -> object:
+    import gzip
+
+    from diorama_core.library.datasets.layout import read_json
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "models.json.gz"
+        path.write_bytes(gzip.compress(data, 1) if data[:1] in b"[{" else data)
+        return read_json(path)
+
+
 PARSERS: dict[str, Parser] = {
     "photo": Parser(_photos, _inside(_as_photo), damaged),
     "depth": Parser(_depths, _inside(_with_depth), damaged),
@@ -256,4 +297,7 @@ PARSERS: dict[str, Parser] = {
         lambda: (b"Here it is:\n```json\n" + _boxes()[0] + b"\n```", b'{"a": {"b": [1]}}'), _language, damaged
     ),
     "mtl": Parser(lambda: (_MTL,), _mtl, damaged),
+    "cached": Parser(_archives, _cached, strange_zip),
+    "record": Parser(_records, _record, strange_json),
+    "metadata": Parser(lambda: (b'[{"id": "a", "category": "chair", "size": [1, 2.5]}]',), _metadata, strange_json),
 }

@@ -12,7 +12,8 @@ from diorama_core.errors import DioramaError
 from tests.fuzzing.parsers import Parser
 
 MAX_LINE = 600
-SLOW_S = 10.0
+SLOW_S = 3.0
+"""Of the processor: other work on the machine does not count."""
 
 
 class Wrong(Exception):  # noqa: N818
@@ -44,7 +45,7 @@ class Round:
 
     def one(self, data: bytes) -> None:
         """One input through the reader."""
-        began = time.monotonic()
+        began = time.process_time()
         try:
             try:
                 self.parser.read(data)
@@ -56,7 +57,7 @@ class Round:
                     raise Wrong(f"{len(line)} characters: {line[:80]!r}") from error
                 line.encode()
                 self.refused += 1
-            took = time.monotonic() - began
+            took = time.process_time() - began
             self.longest_s = max(self.longest_s, took)
             if took > SLOW_S:
                 raise Wrong(f"{took:.1f} s")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from pathlib import Path
 
@@ -14,8 +15,19 @@ from diorama_core.io.derived import derived, read_arrays, read_derived, write_ar
 def test_bytes_are_made_once(tmp_path: Path) -> None:
     path, made = tmp_path / "kind" / "file", []
     for _ in range(3):
-        assert derived(path, lambda: made.append(1) or b"content") == b"content"
+        assert derived(path, lambda: made.append(1) or b"content", bytes) == b"content"
     assert len(made) == 1
+
+
+def test_what_is_damaged_is_made_again(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    path = tmp_path / "file.json"
+    path.write_bytes(b"[1, 2")
+    assert derived(path, lambda: b"[1, 2, 3]", json.loads) == [1, 2, 3]
+    assert path.read_bytes() == b"[1, 2, 3]"
+    assert caplog.text.count("is damaged") == 1
+    path.unlink()
+    os.mkfifo(path)
+    assert derived(path, lambda: b"[4]", json.loads) == [4], "nobody waits for a pipe"
 
 
 def test_arrays_come_back_as_they_were(tmp_path: Path) -> None:
@@ -48,7 +60,7 @@ def test_a_damaged_file_counts_as_absent(tmp_path: Path, damage: str) -> None:
 def test_a_folder_that_cannot_be_written_costs_one_warning(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     (tmp_path / "taken").write_text("a file")
     path = tmp_path / "taken" / "file"
-    assert derived(path, lambda: b"content") == b"content"
+    assert derived(path, lambda: b"content", bytes) == b"content"
     assert len(caplog.records) == 1
     assert "cannot cache files" in caplog.text
     assert read_derived(path) is None

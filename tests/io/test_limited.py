@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import ctypes
 import os
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +16,7 @@ import pytest
 from diorama_core.errors import Cancelled, InputError, LibraryError
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.progress import CancelToken, Progress, ProgressEvent
+from tests.processes import runs
 
 
 def double(number: int) -> int:
@@ -33,6 +37,19 @@ def refuse() -> None:
 
 def pid() -> int:
     return os.getpid()
+
+
+def say_and_sleep(path: str) -> None:
+    Path(path).write_text(str(os.getpid()))
+    time.sleep(120.0)
+
+
+PROGRAM = """
+import sys
+from diorama_core.io.limited import LimitedProcess
+from tests.io.test_limited import say_and_sleep
+LimitedProcess(seconds=200.0).call("a file", say_and_sleep, sys.argv[1])
+"""
 
 
 @pytest.fixture
@@ -107,3 +124,19 @@ def test_the_limit_of_time_is_between_two_reports(process: LimitedProcess) -> No
     assert process.work("x", slowly, 80, progress=Progress()) == 80, "four seconds in all"
     with pytest.raises(InputError, match="takes too long"):
         process.work("room.glb", silently, 600.0, progress=Progress())
+
+
+def test_it_ends_with_the_program_whatever_it_does(tmp_path: Path) -> None:
+    said = tmp_path / "pid"
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[2])}
+    program = subprocess.Popen([sys.executable, "-c", PROGRAM, str(said)], env=environment)
+    until = time.monotonic() + 120.0
+    while not (said.exists() and said.read_text()) and time.monotonic() < until:
+        time.sleep(0.05)
+    decoding = int(said.read_text())
+    program.kill()
+    program.wait()
+    until = time.monotonic() + 30.0
+    while runs(decoding) and time.monotonic() < until:
+        time.sleep(0.05)
+    assert not runs(decoding), "the decoding process outlives the program"

@@ -17,13 +17,13 @@ CUDA, CPU = "CUDAExecutionProvider", "CPUExecutionProvider"
 
 
 @pytest.fixture(autouse=True)
-def _no_wishes(monkeypatch: pytest.MonkeyPatch) -> None:
+def _no_settings(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("DIORAMA_DEVICE", raising=False)
     monkeypatch.delenv("DIORAMA_THREADS", raising=False)
 
 
 @pytest.mark.parametrize(
-    ("offered", "wish", "chosen"),
+    ("offered", "setting", "chosen"),
     [
         ([CUDA, CPU], "", [CUDA, CPU]),
         ([CUDA, CPU], "cpu", [CPU]),
@@ -34,10 +34,10 @@ def _no_wishes(monkeypatch: pytest.MonkeyPatch) -> None:
     ids=["cuda", "cuda not wanted", "cuda among others", "no cuda", "cuda wanted in vain"],
 )
 def test_cuda_is_used_where_it_is_offered_and_wanted(
-    monkeypatch: pytest.MonkeyPatch, offered: list[str], wish: str, chosen: list[str]
+    monkeypatch: pytest.MonkeyPatch, offered: list[str], setting: str, chosen: list[str]
 ) -> None:
     monkeypatch.setattr(onnxruntime, "get_available_providers", lambda: offered)
-    monkeypatch.setenv("DIORAMA_DEVICE", wish)
+    monkeypatch.setenv("DIORAMA_DEVICE", setting)
     assert providers() == chosen
 
 

@@ -91,8 +91,13 @@ class Counting:
         return repr(self.stage)
 
     def __getattr__(self, name: str) -> object:
-        self.calls.append(name)
-        return getattr(self.stage, name)
+        method = getattr(self.stage, name)
+
+        def counted(*given: object, **more: object) -> object:
+            self.calls.append(name)
+            return method(*given, **more)
+
+        return counted if callable(method) else method
 
 
 def test_only_the_steps_that_lead_to_what_is_wanted_run() -> None:

@@ -58,7 +58,7 @@ def test_a_lock_ends_with_the_program_that_has_it(tmp_path: Path) -> None:
 def test_who_has_it_may_say_anything_of_itself(tmp_path: Path) -> None:
     folder = Project.create(tmp_path / "room").folder
     with ProjectLock(folder, "the editor"):
-        (folder / ".diorama-holder.lock").write_bytes(b"\xff[[")
+        (folder / ".diorama-owner.lock").write_bytes(b"\xff[[")
         with pytest.raises(ProjectLockedError, match="another program"):
             ProjectLock(folder)
 

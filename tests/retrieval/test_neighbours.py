@@ -1,4 +1,4 @@
-"""What is beside a thing and on it makes kinds likelier."""
+"""What is beside an object and on it makes kinds likelier."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from diorama_core.retrieval.neighbours import gap_m, neighbour_factors
 from diorama_core.scene.types import Support
 
 
-def thing(name: str, category: str) -> DetectedObject:
+def detected(name: str, category: str) -> DetectedObject:
     return DetectedObject(name, category, category, (0.0, 0.0, 9.0, 9.0), np.zeros((1, 1), bool), 1, 1.0)
 
 
@@ -20,13 +20,13 @@ def box(name: str, x: float, size=(1.0, 1.0, 0.8)) -> Cuboid:
 
 @pytest.mark.parametrize(("x", "factor"), [(1.2, 4.0), (5.0, 1.0)])
 def test_a_chair_at_a_desk_is_likelier_an_office_chair(x, factor) -> None:
-    objects, cuboids = [thing("a", "chair"), thing("b", "desk")], [box("a", 0.0), box("b", x)]
+    objects, cuboids = [detected("a", "chair"), detected("b", "desk")], [box("a", 0.0), box("b", x)]
     found = neighbour_factors(0, ("chair", "office chair"), objects, cuboids, ())
     assert found == {"chair": 1.0, "office chair": factor}
 
 
 def test_a_table_that_carries_a_monitor_is_likelier_a_desk() -> None:
-    objects, cuboids = [thing("a", "table"), thing("b", "monitor")], [box("a", 0.0), box("b", 0.0)]
+    objects, cuboids = [detected("a", "table"), detected("b", "monitor")], [box("a", 0.0), box("b", 0.0)]
     assert neighbour_factors(0, ("desk",), objects, cuboids, (Support("b", "a"),))["desk"] > 1.0
     assert neighbour_factors(0, ("desk",), objects, cuboids, ())["desk"] == 1.0
 

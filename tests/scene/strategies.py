@@ -10,8 +10,10 @@ from diorama_core.scene.types import (
     Camera,
     Candidate,
     Intrinsics,
+    PhotoMaterial,
     Plane,
     Pose,
+    RoomLight,
     Scene,
     SceneObject,
     Support,
@@ -67,6 +69,22 @@ def objects(draw: st.DrawFn, object_id: str) -> SceneObject:
         hidden=draw(st.booleans()),
         colour=draw(st.none() | colours),
         finish=draw(st.sampled_from([None, "matt", "satin", "gloss", "metal"])),
+        photo_materials=tuple(draw(st.lists(photo_materials(), max_size=2))),
+        material_source=draw(st.sampled_from(["photo", "library"])),
+    )
+
+
+def photo_materials() -> st.SearchStrategy[PhotoMaterial]:
+    return st.builds(
+        PhotoMaterial,
+        slot=st.sampled_from(["fabric", "wood 2", "picture"]),
+        colour=colours,
+        texture=st.none() | st.just("chair-1-fabric-0a1b2c3d"),
+        layout=st.sampled_from(["front", "top", "tiled"]),
+        tile_m=st.floats(0.01, 5.0),
+        roughness=st.floats(0, 1),
+        metallic=st.floats(0, 1),
+        main=st.booleans(),
     )
 
 
@@ -95,4 +113,5 @@ def scenes(draw: st.DrawFn, max_objects: int = 5) -> Scene:
         objects=items,
         supports=tuple(supports),
         metrics=draw(st.sampled_from([(), (("penetration_m", 0.125),)])),
+        light=draw(st.sampled_from([None, RoomLight((0.0, 0.6, 0.8), 0.4, (1.0, 0.9, 0.8))])),
     )

@@ -27,6 +27,19 @@ def test_the_file_is_deterministic_and_states_its_conventions(scene: Scene) -> N
     assert document["axes"]["world_up"] == "+Z"
 
 
+@settings(max_examples=20, deadline=None)
+@given(scenes())
+def test_scenes_from_before_the_photos_look_still_load(scene: Scene) -> None:
+    document = json.loads(scene_to_json(scene))
+    del document["light"]
+    for item in document["objects"]:
+        del item["photo_materials"], item["material_source"]
+    found = scene_from_json(json.dumps(document))
+    assert found.light is None
+    assert [o.id for o in found.objects] == [o.id for o in scene.objects]
+    assert all(o.photo_materials == () for o in found.objects)
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [

@@ -11,7 +11,7 @@ from diorama_core.errors import LibraryError
 from diorama_core.layout.exact import mesh_overlap_m3
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Plane
-from diorama_core.synthesis import ROOM_KINDS, furnished_room, hold_cameras, render_truth
+from diorama_core.synthesis import ROOM_KINDS, furnished_room, render_truth, sample_cameras
 from diorama_core.synthesis.artefacts import photo_only, true_geometry, true_objects, true_supports
 from diorama_core.synthesis.finishes import FLOORS, WALLS, finish_picture
 from diorama_core.synthesis.furnisher import WALL_GAP_M, Furnisher
@@ -34,7 +34,7 @@ def rooms(library):
 
 @pytest.fixture(scope="module")
 def view(rooms, library):
-    camera = hold_cameras(rooms["living"], library, 1, 1, SIZE)[0]
+    camera = sample_cameras(rooms["living"], library, 1, 1, SIZE)[0]
     return render_truth(rooms["living"], camera, library, SIZE)
 
 
@@ -83,7 +83,7 @@ def test_the_same_seed_gives_the_same_room_and_picture(rooms, view, library):
     again = furnished_room(1, "living", library)
     assert [(o.id, o.shape_id) for o in again.objects] == [(o.id, o.shape_id) for o in rooms["living"].objects]
     assert all(np.array_equal(a.pose.matrix, b.pose.matrix) for a, b in zip(again.objects, rooms["living"].objects))
-    camera = hold_cameras(again, library, 1, 1, SIZE)[0]
+    camera = sample_cameras(again, library, 1, 1, SIZE)[0]
     second = render_truth(again, camera, library, SIZE, with_empty_room=False)
     assert second.inputs.photo.rgb.tobytes() == view.inputs.photo.rgb.tobytes()
     other = furnished_room(2, "living", library)
@@ -109,10 +109,10 @@ def test_normals_are_those_of_the_planes_in_the_photos_world(view):
 
 
 def test_a_studio_gives_every_view_as_if_it_were_alone(rooms, view, library):
-    cameras = hold_cameras(rooms["living"], library, 1, 2, SIZE)
+    cameras = sample_cameras(rooms["living"], library, 1, 2, SIZE)
     studio = Studio(rooms["living"], library)
     studio.view(cameras[1], SIZE, with_empty_room=False)
-    again = studio.view(hold_cameras(rooms["living"], library, 1, 1, SIZE)[0], SIZE)
+    again = studio.view(sample_cameras(rooms["living"], library, 1, 1, SIZE)[0], SIZE)
     assert again == view
 
 
@@ -162,10 +162,10 @@ def test_outlines_hold_what_is_inside_only(rng):
     assert plan.area_m2 < 16
     missing = next(
         corner for corner in np.array([[-1.9, -1.9], [1.9, -1.9], [1.9, 1.9], [-1.9, 1.9]])
-        if not plan.holds(footprint(np.array([0.1, 0.1, 1.0]), corner, 0.0))
+        if not plan.contains(footprint(np.array([0.1, 0.1, 1.0]), corner, 0.0))
     )  # fmt: skip
-    assert plan.holds(footprint(np.array([0.1, 0.1, 1.0]), -missing, 0.3))
-    assert not plan.holds(footprint(np.array([3.9, 3.9, 1.0]), np.zeros(2), 0.0))
+    assert plan.contains(footprint(np.array([0.1, 0.1, 1.0]), -missing, 0.3))
+    assert not plan.contains(footprint(np.array([3.9, 3.9, 1.0]), np.zeros(2), 0.0))
     for wall, plane in zip(plan.walls, plan.architecture().by_role("wall")):
         assert np.allclose(plane.normal[:2], wall.inward)
 

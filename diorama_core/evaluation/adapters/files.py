@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -10,19 +9,20 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.errors import InputError
+from diorama_core.io import bounded
+from diorama_core.io.arrays import array_of
 
+MAX_METADATA_BYTES = 600_000_000
 R_ZUP_YUP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 """From worlds with +Y up to ours with +Z up."""
 
 
 def read_json(path: Path) -> Any:
     """A JSON file; one clear line when it is absent or broken."""
-    try:
-        return json.loads(path.read_text())
-    except OSError:
-        raise InputError(f"{path}: there is no such file; give a folder laid out as the dataset publishes it") from None
-    except ValueError as error:
-        raise InputError(f"{path}: not valid JSON ({error}); download it again") from None
+    if not path.exists():
+        raise InputError(f"{path}: there is no such file; give a folder laid out as the dataset publishes it")
+    data = bounded.read_bytes(path, MAX_METADATA_BYTES, InputError, "download it again")
+    return bounded.parse_json(data, str(path), InputError, advice="download it again", finite=False)
 
 
 def read_matrix(path: Path, rows: int, columns: int) -> Float[np.ndarray, "r c"]:
@@ -34,6 +34,16 @@ def read_matrix(path: Path, rows: int, columns: int) -> Float[np.ndarray, "r c"]
     if values.shape != (rows, columns):
         raise InputError(f"{path}: expected {rows} x {columns} numbers, found {values.shape[0]} x {values.shape[1]}")
     return values
+
+
+def read_array(path: Path) -> np.ndarray:
+    """A `.npy` file; one clear line when it is broken."""
+    content = bounded.read_bytes(path, MAX_METADATA_BYTES, InputError, "download it again")
+    try:
+        return array_of(content)
+    except Exception as error:  # a damaged header raises almost anything
+        reason = bounded.shortened(str(error)) or type(error).__name__
+        raise InputError(f"{path}: not an array ({reason}); download it again") from error
 
 
 def existing(folder: Path, *names: str) -> Path:

@@ -1,8 +1,8 @@
 """Photos annotated by hand: boxes, kinds, form, colours, what carries what, and fronts.
 
-One JSON object: photo id -> `{"size": [w, h], "things": [...]}`; each thing has `bbox` (pixels of the original),
+One JSON object: photo id -> `{"size": [w, h], "objects": [...]}`; each object has `bbox` (pixels of the original),
 `class` (the plain word), `kind`, `attributes`, `colour` (sRGB 0 to 255), `on` ("floor", "wall", "ceiling" or the index
-of another thing), `front` (degrees: 0 toward the camera, 90 to the picture's right, 180 away, 270 left) and `occluded`.
+of another object), `front` (degrees: 0 toward the camera, 90 to the picture's right, 180 away, 270 left), `occluded`.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ PICTURES = (".jpg", ".jpeg", ".png")
 _Channel = Annotated[float, Field(ge=0, le=255)]
 
 
-class AnnotatedThing(BaseModel):
-    """One thing in a photo."""
+class AnnotatedObject(BaseModel):
+    """One object in a photo."""
 
     model_config = ConfigDict(frozen=True, populate_by_name=True, extra="ignore")
 
@@ -36,7 +36,7 @@ class AnnotatedThing(BaseModel):
     colour: tuple[_Channel, _Channel, _Channel] | None = None
     """sRGB 0 to 255 of the main visible material."""
     on: Literal["floor", "wall", "ceiling"] | int | None = None
-    """What carries it; a number is the index of a thing."""
+    """What carries it; a number is the index of an object."""
     front: float | None = None
     """Degrees from toward the camera, anticlockwise seen from above: 90 is the picture's right."""
     occluded: float = 0.0
@@ -53,13 +53,13 @@ class AnnotatedThing(BaseModel):
 
 
 class AnnotatedPhoto(BaseModel):
-    """One photo's things."""
+    """One photo's objects."""
 
     model_config = ConfigDict(frozen=True, extra="ignore")
 
     size: tuple[int, int]
     """Width and height of the original file."""
-    things: tuple[AnnotatedThing, ...]
+    objects: tuple[AnnotatedObject, ...]
 
 
 class PhotoRecord(BaseModel):
@@ -77,20 +77,20 @@ _RECORDS = TypeAdapter(list[PhotoRecord])
 
 
 def read_annotations(path: Path) -> dict[str, AnnotatedPhoto]:
-    """The annotated photos by id; words for the room itself (walls, the floor) are no things.
+    """The annotated photos by id; words for the room itself (walls, the floor) are no objects.
 
     Raises:
         InputError: one line, where the file is not laid out as the module says.
     """
     photos = _validated(_ANNOTATIONS, path)
     for name, photo in photos.items():
-        for index, thing in enumerate(photo.things):
-            if isinstance(thing.on, int) and not 0 <= thing.on < len(photo.things):
+        for index, annotated in enumerate(photo.objects):
+            if isinstance(annotated.on, int) and not 0 <= annotated.on < len(photo.objects):
                 raise InputError(
-                    f"{path}: {name}, thing {index}: on {thing.on}, but there are {len(photo.things)} things"
+                    f"{path}: {name}, object {index}: on {annotated.on}, but there are {len(photo.objects)} objects"
                 )
-            if thing.word.lower() in ARCHITECTURE_WORDS:
-                raise InputError(f"{path}: {name}, thing {index} is part of the room ('{thing.word}'); remove it")
+            if annotated.word.lower() in ARCHITECTURE_WORDS:
+                raise InputError(f"{path}: {name}, object {index} is part of the room ('{annotated.word}'); remove it")
     return photos
 
 

@@ -15,7 +15,7 @@ from jaxtyping import Float
 
 from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.errors import InputError
-from diorama_core.evaluation.adapters.files import existing, read_json
+from diorama_core.evaluation.adapters.files import existing, read_array, read_json
 from diorama_core.library.taxonomy import resolve
 from diorama_core.perception.inputs import read_inputs
 
@@ -88,7 +88,7 @@ def _object(number: int, record: dict[str, object]) -> SsdbObject:
 def _segmentation(folder: Path, ids: list[int]) -> np.ndarray:
     """Instance map with id k for the k-th object."""
     path = existing(folder, "seg.npy")
-    values = np.load(path, allow_pickle=False)
+    values = read_array(path)
     rank = {number: k for k, number in enumerate(ids, start=1)}
     if values.ndim == 2:
         instances = np.zeros(values.shape, np.int32)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from diorama_core.errors import Cancelled, InputError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.types import Camera, Scene
-from diorama_core.synthesis import ROOM_KINDS, RoomKind, TruthView, furnished_room, hold_cameras
+from diorama_core.synthesis import ROOM_KINDS, RoomKind, TruthView, furnished_room, sample_cameras
 from diorama_core.synthesis.truth import Studio
 
 log = logging.getLogger(__name__)
@@ -55,7 +55,7 @@ def furnished(case: Case, library: ShapeLibrary) -> Scene:
 def studio_of(case: Case, library: ShapeLibrary, size: tuple[int, int] = SIZE) -> tuple[Studio, tuple[Camera, ...]]:
     """The room of a case ready to be photographed, and where from."""
     scene = furnished(case, library)
-    return Studio(scene, library), hold_cameras(scene, library, case.seed, max(VIEWS, case.view + 1), size)
+    return Studio(scene, library), sample_cameras(scene, library, case.seed, max(VIEWS, case.view + 1), size)
 
 
 def parse_seeds(words: str | None, alone: int) -> tuple[int, ...]:

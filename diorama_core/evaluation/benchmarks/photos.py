@@ -51,7 +51,7 @@ class PhotoResult:
     """One photo."""
 
     photo: str
-    things: tuple[ThingResult, ...]
+    objects: tuple[ObjectResult, ...]
     ghosts: float | None = None
     """Share of the floor's picture; None where the floor has no picture."""
     ghosts_unmarked: float | None = None
@@ -71,16 +71,16 @@ class PhotosBench:
     named: bool
 
     @property
-    def things(self) -> tuple[ThingResult, ...]:
+    def objects(self) -> tuple[ObjectResult, ...]:
         """Of all photos."""
-        return tuple(thing for result in self.results for thing in result.things)
+        return tuple(annotated for result in self.results for annotated in result.objects)
 
     def tables(self) -> tuple[Table, ...]:
         """All photos together, loose words by themselves, every photo, and the attributes of form."""
-        return (_table(self), _form_table(self.things))
+        return (_table(self), _form_table(self.objects))
 
     def to_json(self) -> dict[str, object]:
-        """Tables, every photo and every thing."""
+        """Tables, every photo and every object."""
         return {
             "bench": "photos",
             "named": self.named,
@@ -153,7 +153,7 @@ def _result(
         raise
     except Exception as error:  # whatever goes wrong, the photo counts as failed and the others go on
         log.warning("%s failed: %s", name, error)
-        wrong = tuple(not_built(name, i, thing) for i, thing in enumerate(photo.things))
+        wrong = tuple(not_built(name, i, annotated) for i, annotated in enumerate(photo.objects))
         spent = time.process_time() - begun
         return PhotoResult(name, wrong, None, None, spent, f"{type(error).__name__}: {error}")
 
@@ -161,7 +161,7 @@ def _result(
 def _inputs(
     photo: AnnotatedPhoto, path: Path, intrinsics: tuple[float, float, float, float] | None, named: bool
 ) -> Inputs:
-    boxes = [{"bbox": thing.bbox, "class": thing.word if named else _UNNAMED} for thing in photo.things]
+    boxes = [{"bbox": annotated.bbox, "class": annotated.word if named else _UNNAMED} for annotated in photo.objects]
     inputs = read_inputs(path, intrinsics=intrinsics, boxes=json.dumps(boxes).encode()).inputs
     if inputs.photo.original_size != photo.size:
         stated, found = ("{} x {}".format(*size) for size in (photo.size, inputs.photo.original_size))
@@ -169,7 +169,7 @@ def _inputs(
     return inputs
 
 
-def _things(name: str, photo: AnnotatedPhoto, built: Built, library: ShapeLibrary) -> tuple[ThingResult, ...]:
+def _objects(name: str, photo: AnnotatedPhoto, built: Built, library: ShapeLibrary) -> tuple[ObjectResult, ...]:
     """Objects are numbered by their mask ids in the order of the boxes."""
     by_index = {o.mask_id - 1: o for o in built.scene.objects if o.mask_id is not None}
     index_of = {item.id: index for index, item in by_index.items()}
@@ -179,8 +179,8 @@ def _things(name: str, photo: AnnotatedPhoto, built: Built, library: ShapeLibrar
     return tuple(
         measured(name, i, thing, by_index[i], built.scene, library, index_of, in_light.get(by_index[i].id))
         if i in by_index
-        else not_built(name, i, thing, opening=i not in furniture)
-        for i, thing in enumerate(photo.things)
+        else not_built(name, i, annotated, opening=i not in furniture)
+        for i, annotated in enumerate(photo.objects)
     )
 
 
@@ -239,7 +239,7 @@ def _spread(picture: UInt8[np.ndarray, "h w 3"]) -> Float[np.ndarray, "n 3"]:
 
 
 COLUMNS = (
-    Column("things", "d"), Column("kind first", better="↑"), Column("among", better="↑"), Column("form", better="↑"),
+    Column("objects", "d"), Column("kind first", better="↑"), Column("among", better="↑"), Column("form", better="↑"),
     Column("colour", ".1f", "↓"), Column("no colour", better="↓"), Column("front", better="↑"),
     Column("holder", better="↑"), Column("box IoU", better="↑"), Column("ghosts", better="↓"),
     Column("unmarked", better="↓"), Column("time s", ".1f", "↓"),
@@ -247,7 +247,7 @@ COLUMNS = (
 
 
 def _table(bench: PhotosBench) -> Table:
-    loose = [thing for thing in bench.things if thing.loose]
+    loose = [annotated for annotated in bench.objects if annotated.loose]
     mean_of = [r for r in bench.results if not r.failure]
     overall = _values(bench.things)
     ghosts, unmarked = _mean([r.ghosts for r in mean_of]), _mean([r.ghosts_unmarked for r in mean_of])
@@ -264,30 +264,30 @@ def _table(bench: PhotosBench) -> Table:
     return Table(f"Annotated photos, {words}", COLUMNS, tuple(rows), note.strip())
 
 
-def _values(things: Sequence[ThingResult]) -> tuple[Value, ...]:
-    """The columns that are of things: colours by their median, everything else by its mean."""
-    differences = [t.colour_difference for t in things if t.colour_difference is not None]
+def _values(objects: Sequence[ObjectResult]) -> tuple[Value, ...]:
+    """The columns that are of objects: colours by their median, everything else by its mean."""
+    differences = [t.colour_difference for t in objects if t.colour_difference is not None]
     return (
-        len(things),
-        _mean([t.kind_first for t in things]),
-        _mean([t.kind_among for t in things]),
-        _mean([right for t in things for right in t.form.values()]),
+        len(objects),
+        _mean([t.kind_first for t in objects]),
+        _mean([t.kind_among for t in objects]),
+        _mean([right for t in objects for right in t.form.values()]),
         float(np.median(differences)) if differences else None,
-        _mean([None if t.has_colour is None else not t.has_colour for t in things]),
-        _mean([t.front for t in things]),
-        _mean([t.holder for t in things]),
-        _mean([t.iou for t in things]),
+        _mean([None if t.has_colour is None else not t.has_colour for t in objects]),
+        _mean([t.front for t in objects]),
+        _mean([t.supporter for t in objects]),
+        _mean([t.iou for t in objects]),
     )
 
 
-def _form_table(things: Sequence[ThingResult]) -> Table:
+def _form_table(objects: Sequence[ObjectResult]) -> Table:
     of: dict[str, list[bool]] = {}
-    for thing in things:
-        for name, right in thing.form.items():
+    for annotated in objects:
+        for name, right in annotated.form.items():
             of.setdefault(name, []).append(right)
     rows = tuple(Row(name, (len(right), _mean(right))) for name, right in sorted(of.items()))
-    note = "Of things whose annotation and whose chosen shape's design both state the attribute."
-    return Table("Form", (Column("things", "d"), Column("right", better="↑")), rows, note)
+    note = "Of objects whose annotation and whose chosen shape's design both state the attribute."
+    return Table("Form", (Column("objects", "d"), Column("right", better="↑")), rows, note)
 
 
 def _mean(values: Sequence[float | None]) -> float | None:

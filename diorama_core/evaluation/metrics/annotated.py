@@ -1,4 +1,4 @@
-"""One annotated thing against the object that a build made of it."""
+"""One annotated object compared with the object that was built from it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.evaluation.adapters.photo_annotations import AnnotatedThing
+from diorama_core.evaluation.adapters.photo_annotations import AnnotatedObject
 from diorama_core.evaluation.metrics.colour import perceived_difference
 from diorama_core.evaluation.metrics.photo_agreement import shape_iou
 from diorama_core.library.form import compared, form_of
@@ -19,12 +19,12 @@ FRONT_TOLERANCE_DEG = 45.0
 
 
 @dataclass(frozen=True)
-class ThingResult:
-    """What a build made of one annotated thing; None where the annotation states nothing to compare with."""
+class ObjectResult:
+    """What a build made of one annotated object; None where the annotation states nothing to compare with."""
 
     photo: str
     index: int
-    """In the photo's list of things."""
+    """In the photo's list of objects."""
     word: str
     kind: str
     loose: bool
@@ -42,7 +42,7 @@ class ThingResult:
     colour_difference: float | None = None
     """CIEDE2000, with lightness at half weight, of the material that most of it shows in the photo's view."""
     front_error_deg: float | None = None
-    holder: bool | None = None
+    supporter: bool | None = None
     """Whether it stands on what carries it."""
     iou: float | None = None
     """The posed outline's box with the annotated one."""
@@ -55,20 +55,20 @@ class ThingResult:
         return None if self.front_error_deg is None else self.front_error_deg <= FRONT_TOLERANCE_DEG
 
 
-def not_built(photo: str, index: int, thing: AnnotatedThing, opening: bool = False) -> ThingResult:
+def not_built(photo: str, index: int, annotated: AnnotatedObject, opening: bool = False) -> ObjectResult:
     """Wrong in everything that is annotated; an opening is not judged."""
     wrong = None if opening else False
-    return ThingResult(
+    return ObjectResult(
         photo,
         index,
-        thing.word,
-        thing.kind,
-        thing.loose,
-        kind_first=wrong if thing.nameable else None,
-        kind_among=wrong if thing.nameable else None,
-        has_colour=wrong if thing.colour is not None else None,
-        front_error_deg=None if thing.front is None or opening else 180.0,
-        holder=wrong if thing.on is not None else None,
+        annotated.word,
+        annotated.kind,
+        annotated.loose,
+        kind_first=wrong if annotated.nameable else None,
+        kind_among=wrong if annotated.nameable else None,
+        has_colour=wrong if annotated.colour is not None else None,
+        front_error_deg=None if annotated.front is None or opening else 180.0,
+        supporter=wrong if annotated.on is not None else None,
         iou=None if opening else 0.0,
         opening=opening,
     )
@@ -77,7 +77,7 @@ def not_built(photo: str, index: int, thing: AnnotatedThing, opening: bool = Fal
 def measured(
     photo: str,
     index: int,
-    thing: AnnotatedThing,
+    annotated: AnnotatedObject,
     item: SceneObject,
     scene: Scene,
     library: ShapeLibrary,
@@ -88,8 +88,8 @@ def measured(
 
     Args:
         photo: the photo's id.
-        index: the thing's place in the photo's list.
-        thing: as annotated.
+        index: the object's place in the photo's list.
+        annotated: the annotation.
         item: what was built.
         scene: the whole, for the camera and what carries what.
         library: where its shapes are from.
@@ -102,9 +102,9 @@ def measured(
     return ThingResult(
         photo,
         index,
-        thing.word,
-        thing.kind,
-        thing.loose,
+        annotated.word,
+        annotated.kind,
+        annotated.loose,
         built=shape.category,
         shape=shape.id,
         kind_first=shape.category == thing.kind if thing.nameable else None,
@@ -131,12 +131,12 @@ def _colour_difference(thing: AnnotatedThing, shown: Float[np.ndarray, "3"] | No
     return float(perceived_difference(np.array(thing.colour) / 255.0, shown))
 
 
-def _front_error_deg(thing: AnnotatedThing, item: SceneObject, camera: Camera | None, fold: int) -> float | None:
+def _front_error_deg(annotated: AnnotatedObject, item: SceneObject, camera: Camera | None, fold: int) -> float | None:
     """Smallest angle to any of the turns that leave the shape the same."""
-    if thing.front is None or camera is None:
+    if annotated.front is None or camera is None:
         return None
     period = 360.0 / fold
-    off = (front_deg(item, camera) - thing.front) % period
+    off = (front_deg(item, camera) - annotated.front) % period
     return float(min(off, period - off))
 
 

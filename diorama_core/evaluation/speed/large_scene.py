@@ -6,7 +6,7 @@ import numpy as np
 
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.scene.types import Camera, Intrinsics, Pose, Scene, SceneObject, Support, yaw_rotation
-from diorama_core.synthesis.cameras import held
+from diorama_core.synthesis.cameras import level_pose
 from diorama_core.synthesis.layout_rooms import room_box
 
 KINDS = ("armchair", "chair", "stool", "plant", "night stand", "chest")
@@ -17,7 +17,7 @@ PICTURE = (960, 720)
 
 
 def large_scene(library: ShapeLibrary, count: int, seed: int) -> tuple[Scene, Camera]:
-    """Objects in rows on the floor of a hall as large as they need, and a camera high on a wall that sees them all."""
+    """Objects in rows on the floor of a room as large as necessary, and a camera high on a wall that sees them all."""
     rng = np.random.default_rng((seed, count))
     across = int(np.ceil(np.sqrt(count)))
     side = CELL_M * across + 1.5
@@ -34,7 +34,7 @@ def large_scene(library: ShapeLibrary, count: int, seed: int) -> tuple[Scene, Ca
     scene = Scene(objects=tuple(objects), architecture=room_box(side, side, max(2.6, 0.7 * side)), supports=supports)
     eye = np.array([0.0, 0.15 - side / 2, max(1.6, 0.6 * side)])
     pitch = float(np.arctan2(eye[2] - 0.3, side / 2))
-    return scene, Camera(Intrinsics.from_fov(*PICTURE, 1.25), held(eye, np.pi / 2, pitch))
+    return scene, Camera(Intrinsics.from_fov(*PICTURE, 1.25), level_pose(eye, np.pi / 2, pitch))
 
 
 def _shapes(library: ShapeLibrary) -> list[Shape]:

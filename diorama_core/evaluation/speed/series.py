@@ -25,7 +25,7 @@ from diorama_core.library.store.features import FeatureMatrix
 from diorama_core.pipeline.run import build_scene
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Scene
-from diorama_core.synthesis.cameras import hold_cameras
+from diorama_core.synthesis.cameras import sample_cameras
 from diorama_core.synthesis.layout_rooms import box_library, generate_room
 from diorama_core.synthesis.truth import Studio
 
@@ -81,7 +81,7 @@ def stages_by_size(
     """The renderer, and every stage of a build with true masks and depth, for one room at several picture sizes."""
     found = Collected(MEGAPIXELS)
     scene = furnished(Case(seed, "living"), library)
-    camera = hold_cameras(scene, library, seed, 1)[0]
+    camera = sample_cameras(scene, library, seed, 1)[0]
     studio = Studio(scene, library)
     build_scene(studio.view(camera, sizes[0]).inputs, library)  # makes ready the shapes that later builds find ready
     for k, size in enumerate(sizes):
@@ -98,7 +98,7 @@ def stages_by_objects(library: ShapeLibrary, seed: int, counts: Sequence[int], p
     weights = np.cumsum([5.0, *(float(c) for c in counts)]) / (5.0 + sum(counts))
     _build(_large_scene_inputs(library, 12, seed), library, 0.0, Collected(OBJECTS), progress)  # makes ready the shapes
     for count, done in zip(counts, weights, strict=False):
-        progress.report(float(done), f"a hall of {count} objects")
+        progress.report(float(done), f"a large scene of {count} objects")
         scene, camera = large_scene(library, count, seed)
         studio = Studio(scene, library)
         render = partial(studio.view, camera, PICTURE, with_empty_room=False)

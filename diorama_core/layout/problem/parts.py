@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
 from pathlib import Path
 
 import numpy as np
 import trimesh
+from jaxtyping import Float, Int
 
 from diorama_core.geometry.convex import ConvexPart, convex_parts
 from diorama_core.io.cache import LruCache
@@ -30,6 +32,13 @@ def parts_of_shape(library: ShapeLibrary, shape: Shape) -> tuple[ConvexPart, ...
         return convex_parts(library.mesh(shape.id))
     path = _path(key)
     return _CACHE.get(key, lambda: _read(path) or _made(path, library.mesh(shape.id)))
+
+
+def parts_of_solids(vertices: Float[np.ndarray, "v 3"], faces: Int[np.ndarray, "f 3"]) -> tuple[ConvexPart, ...]:
+    """Convex bodies that together contain a mesh that is no shape of a library, such as one moving part of it."""
+    key = hashlib.sha256(np.round(vertices, 7).tobytes() + faces.astype(np.int64).tobytes()).hexdigest()
+    path = _path(key)
+    return _CACHE.get(key, lambda: _read(path) or _made(path, trimesh.Trimesh(vertices, faces, process=False)))
 
 
 def are_cached(shape: Shape) -> bool:

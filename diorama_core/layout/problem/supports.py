@@ -246,7 +246,7 @@ def wall_faces(
     return faces, np.where(beside < 0.5, gap, np.inf), (toward * faces).sum(axis=1)
 
 
-def holds(item: SceneObject, edge: Support, supporter: SceneObject, shape: Shape) -> bool:
+def is_wide_enough(item: SceneObject, edge: Support, supporter: SceneObject, shape: Shape) -> bool:
     """Whether some surface of a supporter is at least `SMALLEST_SHARE` as wide as the object on it."""
     if edge.relation == "mounted on":
         return True
@@ -279,7 +279,7 @@ def complete_edges(
             edge = None
         if edge is not None and scene.has_object(edge.parent):
             supporter = scene.object(edge.parent)
-            if not holds(item, edge, supporter, by_id[edge.parent]):
+            if not is_wide_enough(item, edge, supporter, by_id[edge.parent]):
                 reasons.append(f"larger than its support: {item.label} cannot stand on {supporter.label}")
                 edge = None
         edges[item.id] = edge

@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import csv
 import gzip
-import json
+import io
+import zlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from diorama_core.errors import InputError
+from diorama_core.io.bounded import megabytes, parse_json, read_bytes
 from diorama_core.library import taxonomy
 from diorama_core.library.ingest.adding import sources
 from diorama_core.library.ingest.guess import Given
 from diorama_core.library.ingest.shaping import Source
+
+MAX_METADATA_BYTES = 600_000_000
+"""Of one file of a data set, unpacked; the largest published ones have a tenth of it."""
+_ADVICE = "download it again"
 
 
 @dataclass(frozen=True)
@@ -77,19 +83,25 @@ def read_json(path: Path) -> Any:
 
 def json_from(path: Path, text: str) -> Any:
     """JSON out of a file's text; raises `InputError` naming the file."""
-    try:
-        return json.loads(text)
-    except ValueError as error:
-        raise InputError(f"{path}: not JSON ({error})") from error
+    return parse_json(text, str(path), InputError, advice=_ADVICE, finite=False)
 
 
 def read_text(path: Path) -> str:
     """A text file, gzipped or not; raises `InputError` when it cannot be read."""
+    data = read_bytes(path, MAX_METADATA_BYTES, InputError, _ADVICE)
     try:
-        data = path.read_bytes()
-        return (gzip.decompress(data) if path.suffix == ".gz" else data).decode("utf-8-sig")
-    except (OSError, EOFError, UnicodeDecodeError) as error:
-        raise InputError(f"{path} cannot be read ({error})") from error
+        return (_unzipped(data) if path.suffix == ".gz" else data).decode("utf-8-sig")
+    except (OSError, EOFError, ValueError, zlib.error) as error:
+        raise InputError(f"{path} cannot be read ({error}); {_ADVICE}") from error
+
+
+def _unzipped(data: bytes) -> bytes:
+    """The content of a gzip file, of at most `MAX_METADATA_BYTES`."""
+    with gzip.GzipFile(fileobj=io.BytesIO(data)) as stream:
+        content = stream.read(MAX_METADATA_BYTES + 1)
+    if len(content) > MAX_METADATA_BYTES:
+        raise ValueError(f"it would unpack to more than {megabytes(MAX_METADATA_BYTES)}")
+    return content
 
 
 def read_rows(path: Path) -> list[dict[str, str]]:

@@ -11,8 +11,10 @@ import trimesh
 
 from diorama_core.library import furniture
 from diorama_core.library.furniture.joints import Joint, Vector
+from diorama_core.library.furniture.latest import latest_parts
 from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.model import Design, Part, joined, scene_of
+from diorama_core.library.furniture.roles import with_roles
 from diorama_core.library.furniture.solids import Solid, unit
 
 _FIXED = "fixed"
@@ -55,7 +57,7 @@ def _designs() -> dict[str, Design]:
 
 
 def _articulated(design: Design) -> Articulation | None:
-    parts = design.build(design.size_m)
+    parts = latest_parts(design)
     if all(p.joint is None for p in parts):
         return None
     whole = np.concatenate([p.solid.vertices for p in parts if p.role != "inside"])
@@ -100,7 +102,7 @@ def _scene(parts: list[Part], solids: tuple[tuple[int | None, Solid], ...]) -> t
         grouped.setdefault((number, part.material), []).append(solid)
     scene = trimesh.Scene()
     for (number, material), group in grouped.items():
-        single = scene_of([(material, joined(group))])
+        single = with_roles(scene_of([(material, joined(group))]), [material])
         (name, mesh), *_ = single.geometry.items()
         label = f"{_FIXED if number is None else number}/{len(scene.geometry):02d} {name}"
         scene.add_geometry(mesh, node_name=label, geom_name=label)

@@ -10,6 +10,7 @@ from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture import styles as s
 from diorama_core.library.furniture.carcass import DrawerSpace, door_front, drawer_front, open_case, plinth, pull
 from diorama_core.library.furniture.cases import Base, Cell, case, feet
+from diorama_core.library.furniture.cavity import Cavity, drop_front, hinged_lid, on_front
 from diorama_core.library.furniture.fittings import at, bar_handle, knob, tap
 from diorama_core.library.furniture.frames import frame, stand_up, wall_outline
 from diorama_core.library.furniture.hollow_ware import hollow
@@ -62,6 +63,7 @@ __all__ = [  # noqa: RUF022
     "Design", "design", "Material", "m", "Style", "s", "CLASSIC", "INDUSTRIAL", "MINIMAL", "MODERN", "RUSTIC",
     "Part", "Parts", "Size", "of", "at", "shifted", "turned", "both_sides", "four", "joined",
     "Joint", "jointed", "with_role", "door_hinge", "drawer_slide", "DrawerSpace",
+    "Cavity", "drop_front", "hinged_lid", "on_front",
     "Solid", "Profile", "ball", "beam", "bend", "box", "cushion", "cylinder", "lathe", "loft", "pillow", "prism",
     "ring_path", "rod", "rounded_rectangle", "shell", "slab", "smooth_profile", "superellipse", "taper", "tube", "unit",
     "Leg", "leg", "Base", "Cell", "case", "feet", "door_front", "drawer_front", "open_case", "plinth", "pull",

@@ -15,6 +15,7 @@ import trimesh
 from PIL import Image
 
 from diorama_core.errors import LibraryError
+from diorama_core.io import bounded
 from diorama_core.library.ingest.limits import Limits
 
 _SCHEME = re.compile(r"^[a-zA-Z][a-zA-Z0-9+.-]+:")
@@ -24,15 +25,7 @@ IMAGE_SUFFIXES = frozenset({".png", ".jpg", ".jpeg", ".webp", ".bmp", ".tga", ".
 
 def read_bytes(path: Path, limits: Limits) -> bytes:
     """A whole file; raises `LibraryError` when it is too large or cannot be read."""
-    try:
-        size = path.stat().st_size
-        if size > limits.file_bytes:
-            raise LibraryError(
-                f"{path.name} has {size / 2**20:.0f} MB; the limit is {limits.file_bytes / 2**20:.0f} MB"
-            )
-        return path.read_bytes()
-    except OSError as error:
-        raise LibraryError(f"{path.name} cannot be read ({error.strerror})") from error
+    return bounded.read_bytes(path, limits.file_bytes, LibraryError, "reduce it, or leave it out")
 
 
 @dataclass

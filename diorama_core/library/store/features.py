@@ -19,10 +19,12 @@ from jaxtyping import Bool, Float, Float16, Int
 
 from diorama_core.errors import LibraryError
 from diorama_core.io.atomic import write_atomically
+from diorama_core.io.bounded import read_bytes, read_json
 
 _RESCORED = 4
 """How many times the wanted rows are scored again in full precision."""
 SEARCH_THREADS = 2
+MAX_KEYS_BYTES = 400_000_000
 INDEX_FOLDER = "index"
 """Where an index of the features is kept, beside them (`store.vectors`)."""
 
@@ -161,7 +163,7 @@ class FeatureMatrix:
                 self._values_path.touch()
                 self._keys_path.touch()
                 write_atomically(about, json.dumps(wanted).encode())
-            found = json.loads(about.read_text())
+            found = read_json(about, LibraryError, most=10_000, advice="delete that folder")
         except (OSError, ValueError) as error:
             raise LibraryError(f"features in {self.folder} cannot be used ({error}); delete that folder") from error
         if found != wanted:
@@ -170,14 +172,15 @@ class FeatureMatrix:
     def _load(self) -> None:
         """Map the values, and take the keys whose rows are complete."""
         try:
-            keys = self._keys_path.read_text().split("\n")[:-1]  # what follows the last line's end is half a key
+            listed = read_bytes(self._keys_path, MAX_KEYS_BYTES, LibraryError, "delete that folder").decode()
+            keys = listed.split("\n")[:-1]  # what follows the last line's end is half a key
             count = min(len(keys), self._values_path.stat().st_size // self._key_bytes)
             shape = (count * self.rows, self.width)
             mapped = (
                 np.memmap(self._values_path, dtype="<f2", mode="r", shape=shape) if count else np.zeros(shape, "<f2")
             )
-        except OSError as error:
-            raise LibraryError(f"features in {self.folder} cannot be read ({error})") from error
+        except (OSError, ValueError) as error:
+            raise LibraryError(f"features in {self.folder} cannot be read ({error}); delete that folder") from error
         self.keys = tuple(keys[:count])
         self._positions = {key: i for i, key in enumerate(self.keys)}
         self._matrix: Float16[np.ndarray, "n width"] = np.asarray(mapped)

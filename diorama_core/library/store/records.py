@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from diorama_core.errors import LibraryError
+from diorama_core.io.bounded import parse_json
 from diorama_core.library.record import Shape, shape_from_json, shape_to_json
 
 VERSION = 1
@@ -113,7 +114,7 @@ class Records:
         if row is None:
             return None
         record, model, source_key, warnings, thumbnail = row
-        return StoredRow(shape_from_json(record), model, source_key, tuple(json.loads(warnings)), thumbnail)
+        return StoredRow(shape_from_json(record), model, source_key, _warnings(warnings), thumbnail)
 
     def source_keys(self) -> frozenset[str]:
         """The source key of everything kept."""
@@ -185,6 +186,11 @@ class Records:
             yield
         except (sqlite3.Error, OSError) as error:
             raise LibraryError(f"the shape library {self._path} cannot be used ({error})") from error
+
+
+def _warnings(text: str) -> tuple[str, ...]:
+    found = parse_json(text, "the warnings of a shape", LibraryError, advice="add the shape to its library again")
+    return tuple(map(str, found)) if isinstance(found, list) else ()
 
 
 @contextmanager

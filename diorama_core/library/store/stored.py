@@ -13,10 +13,14 @@ import trimesh
 
 from diorama_core.errors import LibraryError
 from diorama_core.io.atomic import write_atomically
+from diorama_core.io.bounded import read_bytes
 from diorama_core.io.cache import LruCache
 from diorama_core.library.ingest.sink import Ingested
 from diorama_core.library.record import Shape
 from diorama_core.library.store.records import Records, StoredRow
+
+MAX_MODEL_BYTES = 600_000_000
+"""Of one model as it is stored; ingestion makes none as large."""
 
 
 class StoredLibrary:
@@ -138,12 +142,7 @@ class StoredLibrary:
         return self.folder / "models" / model[:2] / f"{model}.glb"
 
     def _read(self, shape_id: str, model: str) -> bytes:
-        try:
-            return self._model_path(model).read_bytes()
-        except OSError as error:
-            raise LibraryError(
-                f"the model of shape '{shape_id}' cannot be read ({error}); add it to the library again"
-            ) from error
+        return read_bytes(self._model_path(model), MAX_MODEL_BYTES, LibraryError, f"add shape '{shape_id}' again")
 
     def _write(self, glb: bytes) -> str:
         """Keep a model under the hash of its bytes, and return that name."""

@@ -6,13 +6,14 @@ import json
 import re
 from typing import Any
 
-_FENCE = re.compile(r"```(?:json)?\s*\n?(.*?)```", re.DOTALL | re.IGNORECASE)
+_FENCE = "```"
+_LANGUAGE = re.compile("json", re.IGNORECASE)
 _MAX_STARTS = 50
 
 
 def json_in(text: str) -> dict[str, Any] | None:
     """The object that a text is, holds between fences, or holds amid prose; None without any."""
-    for candidate in (text, *(m.group(1) for m in _FENCE.finditer(text))):
+    for candidate in (text, *_fenced(text)):
         try:
             found = json.loads(candidate)
         except (ValueError, RecursionError):
@@ -20,6 +21,12 @@ def json_in(text: str) -> dict[str, Any] | None:
         if isinstance(found, dict):
             return found
     return _amid_prose(text)
+
+
+def _fenced(text: str) -> list[str]:
+    """What stands between pairs of fences. In one pass: replies are as long and as odd as they like."""
+    inside = text.split(_FENCE)[1:-1:2]
+    return [part[4:] if _LANGUAGE.match(part) else part for part in inside]
 
 
 def _amid_prose(text: str) -> dict[str, Any] | None:

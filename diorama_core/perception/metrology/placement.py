@@ -19,7 +19,7 @@ from diorama_core.perception.metrology.silhouette import corner_costs
 from diorama_core.perception.metrology.solver import Solutions, joined
 from diorama_core.perception.metrology.supported_objects import (
     AGAINST_WALLS,
-    FLOOR_THING_COST,
+    FLOOR_OBJECT_COST,
     Extent,
     extent_of,
     place_below_ceiling,
@@ -32,7 +32,7 @@ FLOOR, WALL, CEILING = -1, -2, -3
 """Supporters that are no objects."""
 
 _NEVER = np.inf
-_ON_TOP_COST = {"floor": FLOOR_THING_COST, "surface": 0.0, "wall": 4.0, "ceiling": _NEVER}
+_ON_TOP_COST = {"floor": FLOOR_OBJECT_COST, "surface": 0.0, "wall": 4.0, "ceiling": _NEVER}
 _FLOOR_COST = {"floor": 0.0, "surface": 6.0, "wall": 12.0, "ceiling": _NEVER}
 _WALL_COST = {"floor": 12.0, "surface": 8.0, "wall": 0.0, "ceiling": 6.0}
 _CEILING_COST = {"floor": _NEVER, "surface": _NEVER, "wall": _NEVER, "ceiling": 0.0}

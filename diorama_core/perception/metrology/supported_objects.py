@@ -20,7 +20,7 @@ from diorama_core.perception.metrology.priors import (
 from diorama_core.perception.metrology.problem import Cuboids, Problems
 from diorama_core.perception.metrology.rows import row
 
-FLOOR_THING_COST = 4.0
+FLOOR_OBJECT_COST = 4.0
 """Of a thing that usually stands on the floor and stands on another; portable things pay by their size instead."""
 CEILING_M = 2.6
 CEILING_SIGMA_M = 0.25
@@ -124,7 +124,7 @@ def place_on(
     )
     for base, sigma, level_cost in _levels(observations, parent, tall):
         for mode in supported_modes(names[1]):
-            raised = standing_costs(names[1], mode)[1] - (FLOOR_THING_COST if names[1] in PORTABLE else 0.0)
+            raised = standing_costs(names[1], mode)[1] - (FLOOR_OBJECT_COST if names[1] in PORTABLE else 0.0)
             for turn in (0.0,) if mode.square else (0.0, np.pi / 2):
                 rows.append(
                     row(

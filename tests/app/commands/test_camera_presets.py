@@ -13,9 +13,9 @@ def moves(client, monkeypatch) -> list:
     """Where the camera was sent: position, target and what else."""
     sent: list = []
     monkeypatch.setattr(
-        client.view, "move_camera", lambda position, target, *more: sent.append((position, target, *more))
+        client.view.camera, "move", lambda position, target, *more: sent.append((position, target, *more))
     )
-    monkeypatch.setattr(client.view, "approach", lambda target, distance: sent.append((target, distance)))
+    monkeypatch.setattr(client.view.camera, "approach", lambda target, distance: sent.append((target, distance)))
     return sent
 
 
@@ -39,11 +39,11 @@ def test_views_along_an_axis_look_that_way_nearly_in_parallel(client, views, mov
 
 def test_the_photo_view_needs_a_photo_and_the_plain_views_leave_it(session, client, views) -> None:
     views.photo(client)
-    assert client.view.through_photo
+    assert client.view.camera.through_photo
     views.overlay(client, 0.5)
-    assert client.view.overlay_opacity == 0.5
+    assert client.view.photo.opacity == 0.5
     views.room_view(client)
-    assert client.view.overlay_opacity == 0.0
+    assert client.view.photo.opacity == 0.0
     session.document.open(Scene())
     with pytest.raises(EditRefused, match="no photo"):
         views.photo(client)

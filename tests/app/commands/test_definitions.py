@@ -121,12 +121,12 @@ def test_escape_stops_one_thing_after_another(session, client, commands) -> None
     closed = []
     client.dialog = lambda: closed.append(1) or setattr(client, "dialog", None)
     client.select(["chair_1"])
-    client.view.open_board(session.photo.rgb, lambda box: None)
+    client.view.canvas.open(session.photo.rgb, lambda event: None)
     run(commands, client, "escape")
     assert closed == [1]
-    assert client.view.drawing
+    assert client.view.canvas.is_open
     run(commands, client, "escape")
-    assert not client.view.drawing
+    assert not client.view.canvas.is_open
     assert client.selection == ("chair_1",)
     run(commands, client, "escape")
     assert client.selection == ()

@@ -18,23 +18,17 @@ from diorama_app.panels.fields import unique_names
 from diorama_app.panels.outliner import tree_html
 from diorama_app.panels.room_size import RoomSize
 from diorama_app.panels.supports import supporters
-from diorama_app.reconstruction.build_job import fresh_folder
 from diorama_app.session.client import Client
-from diorama_app.session.draft import Draft, boxes_json
 from diorama_app.session.jobs import Jobs, Outcome
 from diorama_app.session.session import EditorSession
 from diorama_app.session.ui_thread import UiThread
-from diorama_app.viewport.client_view import Board, fitting_fov, screen_rays
-from diorama_app.viewport.framing import room_view
 from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
-from diorama_core.artefacts import Inputs
-from diorama_core.errors import DioramaError, EditRefused, InputError
-from diorama_core.perception.inputs import read_inputs
+from diorama_core.errors import EditRefused, InputError
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
 from diorama_core.scene.support import check_scene
 from tests.app.people import join
-from tests.app.small_room import PlainLibrary, furnished_scene, make_project, photo_camera, plain_photo
+from tests.app.small_room import PlainLibrary, furnished_scene, make_project
 
 
 @pytest.fixture
@@ -244,52 +238,3 @@ def test_one_job_at_a_time_and_cancel_ends_it() -> None:
     jobs.start("build", "Building", fail)
     assert jobs.wait(5.0)
     assert ended[-1].error == "the photo is no photo"
-
-
-def test_drawn_boxes_go_back_to_the_files_pixels() -> None:
-    photo = plain_photo()
-    draft = Draft(Inputs(photo)).with_box((10.0, 20.0, 110.0, 220.0), "couch").with_box((5.0, 5.0, 50.0, 60.0), "chair")
-    assert [b.category for b in draft.boxes] == ["sofa", "chair"]
-    assert draft.without_box(0).relabelled(0, "couch").boxes[0].category == "sofa"
-    path_bytes = boxes_json(draft.boxes, photo)
-    again = read_inputs(_png(photo.rgb), name="p.png", boxes=path_bytes)
-    assert [b.box for b in again.inputs.boxes] == [b.box for b in draft.boxes]
-    with pytest.raises(DioramaError):
-        Draft().to_build()
-
-
-def _png(rgb: np.ndarray) -> bytes:
-    import io
-
-    from PIL import Image
-
-    buffer = io.BytesIO()
-    Image.fromarray(rgb).save(buffer, "PNG")
-    return buffer.getvalue()
-
-
-def test_screen_to_photo_pixels_is_exact_from_any_place_before_the_board(rng: np.random.Generator) -> None:
-    board = Board(640, 480)
-    for _ in range(20):
-        pixels = rng.uniform((0, 0), (640, 480), (6, 2))
-        origin = board.to_world(np.array([320.0, 240.0]), lift_m=1.2) + rng.normal(0, 0.2, 3)
-        np.testing.assert_allclose(board.to_pixels(origin, board.to_world(pixels) - origin), pixels, atol=1e-6)
-    R = np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]])
-    centre = screen_rays(np.array([[0.5, 0.5]]), R, np.radians(50), 1.2)
-    np.testing.assert_allclose(centre, [[0, 1, 0]], atol=1e-12)
-
-
-def test_the_whole_photo_and_the_whole_room_fit_the_view() -> None:
-    k = photo_camera().intrinsics
-    for aspect in (0.6, 1.0, 1.33, 2.2):
-        fov = fitting_fov(k.width, k.height, k.fx, k.fy, k.cx, k.cy, aspect)
-        assert np.tan(fov / 2) >= k.height / 2 / k.fy - 1e-12
-        assert np.tan(fov / 2) * aspect >= k.width / 2 / k.fx - 1e-12
-    position, target = room_view(furnished_scene(), 0.7)
-    assert np.linalg.norm(position - target) > 5.0
-
-
-def test_projects_get_a_folder_of_their_own(tmp_path: Path) -> None:
-    assert fresh_folder(tmp_path, "../my room.jpg").parent == tmp_path
-    make_project(tmp_path / "my-room")
-    assert fresh_folder(tmp_path, "my room.jpg").name == "my-room-2"

@@ -136,7 +136,7 @@ def test_a_frame_adds_what_it_takes_in(session, client, gestures) -> None:
 
 def test_while_boxes_are_drawn_the_view_means_nothing(session, client, gestures) -> None:
     client.select(["chair_1"])
-    client.view.open_board(session.photo.rgb, lambda box: None)
+    client.view.canvas.open(session.photo.rgb, lambda event: None)
     gestures._framed((0.0, 0.0), (1.0, 1.0))
     gestures._clicked(np.zeros(3), np.array([0.0, 1.0, 0.0]), on_object=False)
     drag(session, gestures, "chair_2", (0.3, 0.0, 0.0))

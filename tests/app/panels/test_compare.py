@@ -10,8 +10,8 @@ def test_the_slider_lays_the_photo_over_the_model(session, client, page: Page, v
     panel = Compare(page, client, views)
     panel.refresh()
     page.write(SLIDER, 40)
-    assert client.view.through_photo
-    assert client.view.overlay_opacity == 0.4
+    assert client.view.camera.through_photo
+    assert client.view.photo.opacity == 0.4
     panel.refresh()
     assert page.field(SLIDER).value == 40, "a value in the hand is left alone"
     views.room_view(client)

@@ -11,7 +11,7 @@ from diorama_app.reconstruction.photo_outlines import PhotoOutlines
 def drawn(session, client, monkeypatch):
     """Pictures laid over the photo, and planes named in the room, newest last."""
     layers, planes = [], []
-    monkeypatch.setattr(client.view, "show_photo_layer", lambda camera, picture: layers.append(picture))
+    monkeypatch.setattr(client.view.photo, "show_layer", lambda camera, picture: layers.append(picture))
     monkeypatch.setattr(client.view, "show_planes", lambda shown: planes.append([name for name, _ in shown]))
     client.panels = [Overlays(client, PhotoOutlines(session))]
     return layers, planes

@@ -9,7 +9,9 @@ from PIL import Image
 
 from diorama_app.panels import photo as photo_panel
 from diorama_app.panels.photo import PhotoPanel
-from diorama_app.session.draft import Draft
+from diorama_app.reconstruction import build_job
+from diorama_app.viewport.annotation_canvas import Deleted, Drawn, Named, Reshaped, Selected
+from diorama_core.project.storage import Project
 from tests.app.page import Page
 
 
@@ -20,9 +22,10 @@ def picture(width: int = 64, height: int = 48, kind: str = "PNG") -> bytes:
 
 
 @pytest.fixture
-def panel(session, page: Page, client, views, commands, monkeypatch) -> PhotoPanel:
+def panel(session, page: Page, client, commands, monkeypatch) -> PhotoPanel:
+    monkeypatch.setattr(build_job, "can_find_furniture", lambda: False)
     monkeypatch.setattr(photo_panel, "can_find_furniture", lambda: False)
-    made = PhotoPanel(page, client, views, commands)
+    made = PhotoPanel(page, client, commands)
     client.panels = [made]
     made.refresh()
     return made
@@ -31,9 +34,13 @@ def panel(session, page: Page, client, views, commands, monkeypatch) -> PhotoPan
 @pytest.fixture
 def empty(session, panel) -> PhotoPanel:
     """Before any photo."""
-    session.draft = Draft()
+    session.document.open(session.scene, None)
     panel.refresh()
     return panel
+
+
+def labels(session) -> list[str]:
+    return [b.label for b in session.inputs.boxes]
 
 
 def test_the_page_asks_for_a_photo_first(client, page, empty) -> None:
@@ -43,46 +50,79 @@ def test_the_page_asks_for_a_photo_first(client, page, empty) -> None:
     assert client.viser_client.told == ["upload the photo first, then its boxes, depth or masks"]
 
 
-def test_an_uploaded_photo_opens_the_drawing_board(session, client, page, empty) -> None:
+def test_an_uploaded_photo_is_a_project_at_once(session, client, page, empty) -> None:
     page.upload("Upload a photo", "<room>.png", picture())
-    assert session.draft.photo.width == 64
-    assert client.view.drawing
+    assert session.project.folder.name == "room"
+    assert session.unfinished
+    saved = Project.open(session.project.folder)
+    assert saved.photo().width == 64
+    assert saved.uploads() == {"photo": picture()}
+    assert not saved.has_scene
+    assert client.view.canvas.is_open
     assert "&lt;room&gt;.png" in page.html
     assert page.field("Draw boxes").label == "Done drawing"
     assert "Draw a box around each piece" in page.html
 
 
 def test_what_is_no_picture_is_refused_and_loses_nothing(session, client, page, panel) -> None:
-    before = session.draft
+    before = session.inputs
     page.upload("Upload a photo", "room.png", b"no picture")
-    assert session.draft is before
+    assert session.inputs is before
     assert client.viser_client.told
 
 
-def test_boxes_are_drawn_named_marked_and_deleted(session, client, page, panel) -> None:
+def test_boxes_are_drawn_named_reshaped_deleted_undone_and_saved(session, client, page, panel) -> None:
     page.upload("Upload a photo", "room.png", picture())
-    page.write("Category", "sofa")
-    panel._drawn((5.0, 5.0, 30.0, 30.0))
-    page.write("or type", "beanbag")
-    page.settle()
-    assert session.draft.boxes[-1].label == "beanbag", "the newest box is the marked one"
-    page.write("or type", "")
-    page.write("Category", "chair")
-    panel._drawn((20.0, 10.0, 60.0, 40.0))
-    assert [b.label for b in session.draft.boxes][-1] == "chair"
-    assert "2 boxes" in page.html
+    page.change("named", "sofa")
+    panel._drawn(Drawn((5.0, 5.0, 30.0, 30.0)))
+    assert client.selected_box is None
+    page.change("named", "desk")
+    assert labels(session) == ["sofa"], "the name is of the next box, not of the last"
+    panel._drawn(Drawn((20.0, 10.0, 60.0, 40.0)))
+    assert labels(session) == ["sofa", "desk"]
+    panel._drawn(Selected(0))
+    assert "Name of the selected box" in page.html
+    page.change("named", "beanbag")
+    assert labels(session) == ["beanbag", "desk"]
+    panel._drawn(Reshaped(0, (6.0, 6.0, 31.0, 31.0)))
+    assert session.inputs.boxes[0].box == (6.0, 6.0, 31.0, 31.0)
+    panel._drawn(Deleted(1))
+    assert labels(session) == ["beanbag"]
+    session.autosave.flush()
+    assert Project.open(session.project.folder).load_inputs().boxes == session.inputs.boxes
+    assert not session.project.has_scene, "there is nothing to show yet"
+    for _ in range(3):
+        session.undo(client)
+    assert labels(session) == ["sofa", "desk"]
+    session.autosave.flush()
+    assert Project.open(session.project.folder).load_inputs().boxes == session.inputs.boxes
     assert not page.field("Build scene").disabled
-    page.act("mark", 0)
-    assert session.draft.highlighted == 0
-    page.act("drop", 0)
-    assert [b.label for b in session.draft.boxes] == ["chair"]
+
+
+def test_events_of_boxes_that_are_gone_do_nothing(session, client, page, panel) -> None:
+    before = session.inputs
+    for event in (Deleted(7), Named(-1, "x"), Reshaped(3, (1.0, 1.0, 9.0, 9.0)), Selected(12)):
+        panel._drawn(event)
+    assert session.inputs is before
+    assert client.selected_box is None
+
+
+def test_an_unfinished_project_opens_where_it_was_left(session, client, page, panel) -> None:
+    page.upload("Upload a photo", "room.png", picture())
+    panel._drawn(Drawn((5.0, 5.0, 30.0, 30.0)))
+    unfinished = session.project
+    session.visit(client, Project.open(session.projects_dir / "demo"), "")
+    assert not client.view.canvas.is_open
+    session.visit(client, Project.open(unfinished.folder), "")
+    assert client.view.canvas.is_open
+    assert labels(session) == ["chair"]
 
 
 def test_boxes_come_from_a_file_too(session, page, panel) -> None:
     page.upload("Upload a photo", "room.png", picture())
     boxes = [{"class": "chair", "bbox": [5, 5, 30, 40]}, {"class": "table", "bbox": [20, 10, 60, 40]}]
     page.upload("Add boxes (JSON)", "boxes.json", json.dumps(boxes).encode())
-    assert [b.label for b in session.draft.boxes] == ["chair", "table"]
+    assert labels(session) == ["chair", "table"]
 
 
 def test_depth_and_camera_go_with_the_photo(session, client, page, panel) -> None:
@@ -91,22 +131,22 @@ def test_depth_and_camera_go_with_the_photo(session, client, page, panel) -> Non
     np.save(buffer, np.full((48, 64), 2.5, np.float32))
     page.upload("Add depth (PNG or NPY)", "depth.npy", buffer.getvalue())
     page.write("Camera", "60,60,32,24")
-    assert session.draft.inputs.depth_m.mean() == pytest.approx(2.5)
-    assert session.draft.inputs.intrinsics.fx == 60.0
+    assert session.inputs.depth_m.mean() == pytest.approx(2.5)
+    assert session.inputs.intrinsics.fx == 60.0
     assert "with depth, camera" in page.html
     page.write("Camera", "60,60,32,wide")
     assert any("is not four numbers" in told for told in client.viser_client.told)
-    assert session.draft.inputs.intrinsics.fx == 60.0
+    assert session.inputs.intrinsics.fx == 60.0
 
 
-def test_the_board_is_closed_by_its_button(client, page, panel) -> None:
+def test_the_photo_is_put_away_by_its_button(client, page, panel) -> None:
     page.press("Draw boxes")
-    assert client.view.drawing
+    assert client.view.canvas.is_open
     page.press("Draw boxes")
-    assert not client.view.drawing
+    assert not client.view.canvas.is_open
 
 
-def test_the_marked_box_is_added_to_the_scene(session, client, page, panel, monkeypatch) -> None:
+def test_the_selected_box_is_added_to_the_scene(session, client, page, panel, monkeypatch) -> None:
     asked = []
     monkeypatch.setattr(photo_panel, "add_from_photo", lambda client, box, label: asked.append((box, label)))
     add = "Add selected box to the scene"

@@ -29,7 +29,7 @@ def test_typed_figures_are_tried_as_a_grid_and_taken_back(client, page, panel) -
     assert 'value="20.0"' in page.html
     attitude = CameraAttitude.of(client.trial_camera.T_world_camera[:3, :3])
     assert np.degrees(attitude.pitch_rad) == pytest.approx(20.0)
-    assert client.view.through_photo
+    assert client.view.camera.through_photo
     page.act("back")
     assert client.trial_camera is None
     assert 'value="12.0"' in page.html

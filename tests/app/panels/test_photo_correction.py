@@ -6,6 +6,7 @@ import pytest
 
 from diorama_app.panels import photo_correction
 from diorama_app.panels.photo_correction import PhotoCorrection
+from diorama_app.viewport.annotation_canvas import Drawn, Pointed
 from tests.app.page import Page
 
 BOX = (240.0, 200.0, 440.0, 420.0)
@@ -45,28 +46,28 @@ def test_another_class_is_typed(page, panel, asked) -> None:
 
 def test_a_box_is_drawn_on_the_board(client, page, panel, asked, monkeypatch) -> None:
     shown = []
-    monkeypatch.setattr(client.view, "show_boxes", lambda boxes, marked: shown.append([b.box for b in boxes]))
+    monkeypatch.setattr(client.view.canvas, "show_boxes", lambda boxes, marked: shown.append([b.box for b in boxes]))
     page.act("box")
-    assert client.view.drawing
+    assert client.view.canvas.is_open
     assert shown == [[BOX]]
     assert "Draw a box around it" in page.html
-    panel._boxed("table_1", (1.0, 2.0, 30.0, 40.0))
+    panel._drawn("table_1", Drawn((1.0, 2.0, 30.0, 40.0)))
     assert asked == [("redraw_box", "table_1", (1.0, 2.0, 30.0, 40.0))]
-    assert not client.view.drawing
+    assert not client.view.canvas.is_open
 
 
 def test_an_outline_is_clicked_and_used(client, page, panel, asked, monkeypatch) -> None:
     masks = []
-    monkeypatch.setattr(client.view, "show_mask", masks.append)
+    monkeypatch.setattr(client.view.canvas, "show_mask", masks.append)
     page.act("outline")
     assert "Click the object" in page.html
-    panel._clicked(340.0, 320.0, True)
+    panel._drawn("table_1", Pointed(340.0, 320.0, True))
     assert len(masks) == 2
     page.act("use")
     ((name, object_id, outline),) = asked
     assert (name, object_id) == ("use_outline", "table_1")
     assert outline.clicks == ((340.0, 320.0, True),)
-    assert not client.view.drawing
+    assert not client.view.canvas.is_open
     assert page.shows("outline")
 
 
@@ -74,6 +75,6 @@ def test_an_outline_is_clicked_and_used(client, page, panel, asked, monkeypatch)
 def test_either_can_be_left(client, page, panel, asked, what) -> None:
     page.act(what)
     page.act("stop")
-    assert not client.view.drawing
+    assert not client.view.canvas.is_open
     assert asked == []
     assert page.shows(what)

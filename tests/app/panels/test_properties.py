@@ -1,11 +1,13 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from diorama_app.commands import edit as editing
 from diorama_app.panels.properties import Properties
-from diorama_core.scene.types import Scene
+from diorama_core.scene.types import PhotoMaterial, Scene
 from tests.app.page import Page
 
 
@@ -33,18 +35,20 @@ def test_fields_show_the_selected_thing(session, client, page, panel) -> None:
     client.select(["chair_2"])
     item = session.scene.object("chair_2")
     assert page.field("Name").value == item.label
-    assert page.field("Size (m)").value == pytest.approx((0.52, 0.55, 0.8))
-    assert page.field("Position (m)").value == pytest.approx((1.2, 1.4, 0.0))
-    assert page.field("Rotation (°)").value == pytest.approx(np.degrees(2.6), abs=0.05)
+    for name, value in {"Size: Width": 0.52, "Size: Depth": 0.55, "Position: x": 1.2, "Position: Height": 0}.items():
+        assert f'aria-label="{name}" value="{value:g}"' in page.html
+    assert f'value="{np.degrees(2.6):.4g}" aria-label="Direction' in page.html
     assert "chair &lt;b&gt;by the window&lt;/b&gt;" in page.html
 
 
 def test_what_is_written_becomes_an_edit(session, client, page, panel) -> None:
     client.select(["chair_1"])
     page.write("Name", "throne")
-    page.write("Rotation (°)", 90.0)
-    page.write("Size (m)", (0.6, 0.7, 1.0))
-    page.write("Position (m)", (-1.0, 1.0, 0.0))
+    page.change("turn", "90")
+    for axis, size in enumerate(("0.6", "70 cm", "1")):
+        page.change("size", size, str(axis))
+    for axis, place in enumerate(("-1", "1", "0")):
+        page.change("place", place, str(axis))
     page.write("Colour", (255, 0, 51))
     item = chair(session)
     assert item.label == "throne"
@@ -58,17 +62,31 @@ def test_what_is_written_becomes_an_edit(session, client, page, panel) -> None:
 
 def test_lengths_are_written_in_the_persons_unit(session, client, page, panel) -> None:
     client.select(["chair_1"])
-    page.write("Unit", "cm")
-    assert page.field("Size (cm)").value == pytest.approx((46.0, 50.0, 86.0))
-    page.write("Size (cm)", (50.0, 50.0, 100.0))
-    np.testing.assert_allclose(chair(session).size_m, [0.5, 0.5, 1.0])
-    page.write("Unit", "ft-in")
-    assert not page.field("Size (cm)").visible
-    page.write("Size (ft)", "2', 2', 3")
-    np.testing.assert_allclose(chair(session).size_m[:2], 0.6096)
+    page.change("unit", "cm")
+    assert 'aria-label="Size: Width" value="46"' in page.html
+    page.change("size", "50", "0")
+    assert chair(session).size_m[1] == pytest.approx(0.5)
+    page.change("unit", "ft-in")
+    page.change("size", "2'", "1")
+    assert chair(session).size_m[0] == pytest.approx(0.6096)
     before = session.scene
-    page.write("Size (ft)", "2', 2',")
-    assert session.scene is before, "still being typed"
+    page.change("size", "two feet", "0")
+    assert session.scene is before
+    assert any("is not a length" in told for told in client.viser_client.told)
+
+
+def test_the_colour_field_shows_the_colour_of_what_is_selected(session, client, page, panel) -> None:
+    client.select(["chair_1"])
+    assert page.field("Colour").value == (205, 173, 139), "sRGB of what glTF says in linear light"
+    client.select(["table_1"])
+    assert page.field("Colour").value == (224, 208, 182)
+
+
+def test_a_zero_has_no_minus(session, client, page, panel) -> None:
+    client.select(["chair_1"])
+    page.change("turn", "-0.0")
+    page.change("place", "-0", "0")
+    assert 'value="-0"' not in page.html
 
 
 def test_finishes_are_put_on_and_taken_off(session, client, page, panel) -> None:
@@ -77,6 +95,23 @@ def test_finishes_are_put_on_and_taken_off(session, client, page, panel) -> None
     assert {o.finish for o in session.scene.objects if o.category == "chair"} == {"gloss"}
     page.act("finish", "")
     assert chair(session).finish is None
+
+
+def test_materials_of_the_photo_are_put_on_and_taken_off(session, client, page, panel) -> None:
+    client.select(["chair_1"])
+    assert not page.shows("materials", "photo"), "the photo gave it none"
+    cloth = PhotoMaterial("fabric", (0.5, 0.2, 0.1), main=True)
+    scene = session.scene
+    worn = tuple(replace(o, photo_materials=(cloth,)) if o.id == "chair_1" else o for o in scene.objects)
+    session.commit("build", replace(scene, objects=worn), by=client)
+    page.act("materials", "library")
+    assert chair(session).shown_photo_materials == ()
+    page.act("materials", "photo")
+    assert chair(session).shown_photo_materials == (cloth,)
+    page.write("Colour", (255, 0, 51))
+    assert chair(session).material_source == "library", "paint shows"
+    session.undo(client)
+    assert chair(session).shown_photo_materials == (cloth,)
 
 
 def test_several_things_are_aligned_and_three_distributed(session, client, page, panel) -> None:
@@ -95,8 +130,8 @@ def test_a_refused_value_is_said_and_the_field_goes_back(session, client, page, 
     client.select(["chair_1"])
     editing.set_locked(client, ["chair_1"], True)
     before = session.scene
-    page.write("Rotation (°)", 10.0)
+    page.change("turn", "10")
     assert session.scene is before
     assert any("locked" in told for told in client.viser_client.told)
-    assert page.field("Rotation (°)").value == pytest.approx(np.degrees(0.4), abs=0.05)
+    assert f'value="{np.degrees(0.4):.3g}" aria-label="Direction' in page.html
     assert " · locked" in page.html

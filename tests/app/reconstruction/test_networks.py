@@ -13,13 +13,13 @@ import torch
 from diorama_app.reconstruction.networks import NO_DETECTOR, find_furniture, get_networks
 from diorama_app.reconstruction.text_to_scene import COMPOSED, describe_room, how_pictures_come
 from diorama_app.session.client import Client
-from diorama_app.session.draft import Draft
 from diorama_app.session.session import EditorSession
 from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
 from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.errors import EditRefused, InputError, UnavailableError
 from diorama_core.models.manifest import ModelFile, Network
 from diorama_core.models.store import ModelStore
+from diorama_core.project.storage import Project
 from tests.app.people import LocalClient, join
 from tests.app.small_room import PlainLibrary, make_project, plain_photo
 from tests.models import tiny_networks
@@ -115,28 +115,35 @@ def test_a_pull_can_be_stopped(hub: Hub, store: ModelStore, client: Client) -> N
     assert not store.has(SMALL)
 
 
+def begun(folder: Path, inputs: Inputs) -> Project:
+    """A project with a photo and no scene yet."""
+    project = Project.create(folder)
+    project.save_inputs(inputs)
+    return project
+
+
 def test_found_furniture_joins_the_boxes_drawn_by_hand(store: ModelStore, client: Client, tmp_path: Path) -> None:
     photo = plain_photo(WIDTH, HEIGHT)
-    client.session.draft = Draft(Inputs(photo))
+    client.session.open_project(begun(tmp_path / "projects" / "tiny", Inputs(photo)))
     find_furniture(client)
     assert _told(client) == [NO_DETECTOR]
     example = (torch.zeros(1, 3, 416, 416),)
     graph = tiny_networks.export(_Yolox(), example, tmp_path / "y.onnx", ["images"], ["output"])
     _install(store, "yolox-nano", [graph])
     drawn = LabelledBox((2.0, 2.0, 20.0, 20.0), "lamp", "lamp")
-    client.session.draft = replace(client.session.draft, boxes=(drawn,))
+    client.session.annotate("draw", replace(client.session.inputs, boxes=(drawn,)))
     boards: list[int] = []
     client.open_board = lambda: boards.append(1)
     find_furniture(client)
     assert _told(client) == [NO_DETECTOR]
-    retained, found = client.session.draft.boxes
+    retained, found = client.session.inputs.boxes
     assert retained == drawn
     assert found.label == "chair"
     assert found.box == pytest.approx(BOX, abs=1.0)
     assert boards == [1]
     find_furniture(client)
     _told(client)
-    assert len(client.session.draft.boxes) == 2, "what is marked already is not marked again"
+    assert len(client.session.inputs.boxes) == 2, "what is marked already is not marked again"
 
 
 def test_a_room_needs_words_and_a_whole_setting(

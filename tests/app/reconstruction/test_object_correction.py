@@ -56,7 +56,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[dict]:
         )
         whole = np.zeros((480, 640), dtype=bool)
         detected = DetectedObject(object_id, box.category, box.label, box.box, whole, 1, 1.0)
-        return Found(item, Support(object_id, "floor"), detected, as_built=False)
+        return Found(item, Support(object_id, "floor"), detected, {}, as_built=False)
 
     monkeypatch.setattr(pipeline, "reconstruct_object", look)
     return calls

@@ -28,11 +28,11 @@ def blocked(ui_thread: UiThread) -> threading.Event:
     """Keeps the thread busy until the event is set."""
     go, begun = threading.Event(), threading.Event()
 
-    def hold() -> None:
+    def block() -> None:
         begun.set()
         go.wait(10.0)
 
-    ui_thread.post(hold)
+    ui_thread.post(block)
     assert begun.wait(10.0)
     return go
 

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from diorama_app.viewport.mesh_assets import ShapeBytes
-from diorama_app.viewport.scene_view import MESH_NAMES, Viewport, reduced
+from diorama_app.viewport.mesh_assets import ShapeBytes, reduced
+from diorama_app.viewport.scene_view import MESH_NAMES, Viewport
 from diorama_core.geometry.rotations import quaternion_wxyz
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose

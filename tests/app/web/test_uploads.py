@@ -10,7 +10,13 @@ import pytest
 
 from diorama_app.serve import Running, start
 from diorama_app.web import viser_adapter
-from diorama_app.web.viser_adapter import MAX_UPLOAD_BYTES, MAX_UPLOADS_IN_FLIGHT, MAX_UPLOADS_PER_CLIENT
+from diorama_app.web.upload_limits import (
+    MAX_BYTES_IN_FLIGHT,
+    MAX_UPLOAD_BYTES,
+    MAX_UPLOADS_IN_FLIGHT,
+    MAX_UPLOADS_PER_CLIENT,
+)
+from diorama_core.artefacts import Photo
 from tests.app.small_room import PlainLibrary, make_project
 from tests.app.wire import WirePage
 from tests.io.test_bombs import png
@@ -95,9 +101,14 @@ def test_what_a_page_announces_together_is_bounded(running: Running) -> None:
         button = page.element("Upload a photo", "UploadButton")
         page.begin_upload(button, "large.png", MAX_UPLOAD_BYTES, 256)
     states = settled(running)
-    assert sum(s["total_bytes"] for s in states.values()) <= viser_adapter.MAX_BYTES_IN_FLIGHT
+    assert sum(s["total_bytes"] for s in states.values()) <= MAX_BYTES_IN_FLIGHT
     for page in pages:
         page.close()
+
+
+def newest_photo(running: Running) -> Photo | None:
+    """The photo of the project that was opened last: every uploaded photo becomes one."""
+    return running.workspace.editors[-1].session.photo
 
 
 def test_a_large_picture_is_decoded_while_others_go_on(running: Running) -> None:
@@ -105,25 +116,25 @@ def test_a_large_picture_is_decoded_while_others_go_on(running: Running) -> None
     page, session = WirePage(running.port), running.session
     page.upload(page.element("Upload a photo", "UploadButton"), "large.png", png(9_000, 7_000, 8, 2, 3))
     longest, deadline = 0.0, time.monotonic() + 60.0
-    while session.draft.photo is None or session.draft.photo.name != "large.png":
+    while (photo := newest_photo(running)) is None or photo.name != "large.png":
         assert time.monotonic() < deadline, page.notices
         began = time.monotonic()
         assert session.ui_thread.wait(30.0)
         longest = max(longest, time.monotonic() - began)
         time.sleep(0.02)
     assert longest < 1.5, "the thread that serves everybody was kept"
-    assert session.draft.photo.width == 1600
+    assert photo.width == 1600
     page.close()
 
 
 def test_a_bomb_is_one_line_and_the_next_photo_is_read(running: Running) -> None:
-    page, session = WirePage(running.port), running.session
+    page = WirePage(running.port)
     button = page.element("Upload a photo", "UploadButton")
     page.upload(button, "bomb.png", png(12_000, 9_800, 8, 2, 3))
     page.wait_for(lambda: any("12000 x 9800 pixels are more than" in n for n in page.notices))
     page.upload(button, "room.png", png(640, 480, 8, 2, 3))
     deadline = time.monotonic() + 30.0
-    while session.draft.photo is None or session.draft.photo.name != "room.png":
+    while (photo := newest_photo(running)) is None or photo.name != "room.png":
         assert time.monotonic() < deadline, page.notices
         time.sleep(0.05)
     page.close()

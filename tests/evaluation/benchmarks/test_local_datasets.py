@@ -14,7 +14,7 @@ from diorama_core.evaluation.adapters.scan2cad import AlignedModel, ScanFrame
 from diorama_core.evaluation.benchmarks.local_datasets import LocalResult, aligned, aligned_table, local_cases, run
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Camera, Intrinsics, Pose, Scene, SceneObject, yaw_rotation
-from diorama_core.synthesis import furnished_room, hold_cameras, render_truth
+from diorama_core.synthesis import furnished_room, render_truth, sample_cameras
 from diorama_core.synthesis.artefacts import true_supports
 from diorama_core.synthesis.truth import moved
 
@@ -26,7 +26,7 @@ def ssdb(tmp_path_factory):
     """One picture of a small room."""
     library = built_in_library()
     room = furnished_room(16, "bathroom", library, clutter=2)
-    view = render_truth(room, hold_cameras(room, library, 1, 1, SIZE)[0], library, SIZE, with_empty_room=False)
+    view = render_truth(room, sample_cameras(room, library, 1, 1, SIZE)[0], library, SIZE, with_empty_room=False)
     folder = tmp_path_factory.mktemp("ssdb") / "scene_01"
     folder.mkdir()
     Image.fromarray(view.inputs.photo.rgb).save(folder / "scene.png")

@@ -15,7 +15,7 @@ from diorama_core.errors import InputError
 from diorama_core.evaluation.adapters.photo_annotations import picture_of, read_annotations
 from diorama_core.evaluation.benchmarks.photos import ghost_share, run, usual_colour
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.synthesis import furnished_room, hold_cameras, render_truth
+from diorama_core.synthesis import furnished_room, render_truth, sample_cameras
 
 SIZE = (240, 180)
 ANNOTATIONS = Path(__file__).parents[2] / "photo_annotations.json"
@@ -26,24 +26,24 @@ def made(tmp_path_factory):
     """A rendered bathroom with annotations, one photo of another size, and one that is not there."""
     library = built_in_library()
     room = furnished_room(16, "bathroom", library, clutter=0)
-    view = render_truth(room, hold_cameras(room, library, 1, 1, SIZE)[0], library, SIZE, with_empty_room=False)
+    view = render_truth(room, sample_cameras(room, library, 1, 1, SIZE)[0], library, SIZE, with_empty_room=False)
     folder = tmp_path_factory.mktemp("photos")
     for name in ("made", "other"):
         Image.fromarray(view.inputs.photo.rgb).save(folder / f"{name}.png")
     categories = [(box.box, box.category) for _, box in view.inputs.instance_boxes]
-    things = [
+    objects = [
         {"bbox": box, "class": name, "kind": name, "on": "floor", "colour": [200, 200, 200]} for box, name in categories
     ]
     k = view.scene.camera.intrinsics
     (folder / "photos.json").write_text(json.dumps([{"id": "made", "K": [k.fx, k.fy, k.cx, k.cy]}]))
     document = {
-        "made": {"size": SIZE, "things": things},
-        "other": {"size": (10, 10), "things": things[:1]},
-        "absent": {"size": SIZE, "things": things[:1]},
+        "made": {"size": SIZE, "objects": objects},
+        "other": {"size": (10, 10), "objects": objects[:1]},
+        "absent": {"size": SIZE, "objects": objects[:1]},
     }
     path = folder / "annotations.json"
     path.write_text(json.dumps(document))
-    return path, folder, len(things)
+    return path, folder, len(objects)
 
 
 def test_photos_are_measured_and_failures_do_not_stop_the_others(made, capsys, caplog, tmp_path):
@@ -57,10 +57,10 @@ def test_photos_are_measured_and_failures_do_not_stop_the_others(made, capsys, c
     assert "not in the folder: absent" in shown.out
     assert len([line for line in shown.err.splitlines() if "other failed" in line]) == 1
     of = {photo["photo"]: photo for photo in document["photos"]}
-    assert len(of["made"]["things"]) == count
+    assert len(of["made"]["objects"]) == count
     assert of["made"]["failure"] == ""
-    assert any(thing["kind_first"] for thing in of["made"]["things"])
-    assert all(thing["iou"] == 0.0 for thing in of["other"]["things"])
+    assert any(annotated["kind_first"] for annotated in of["made"]["objects"])
+    assert all(annotated["iou"] == 0.0 for annotated in of["other"]["objects"])
     assert "annotations are of a picture of 10 x 10 pixels" in of["other"]["failure"]
 
 
@@ -70,16 +70,16 @@ def test_a_folder_without_any_of_them_is_an_error(made, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("things", "said"),
+    ("objects", "said"),
     [
-        ([{"bbox": [0, 0, 9, 9], "class": "cup", "kind": "cup", "on": 4}], "on 4, but there are 1 things"),
-        ([{"bbox": [0, 0, 9], "class": "cup", "kind": "cup"}], "things, 0, bbox"),
+        ([{"bbox": [0, 0, 9, 9], "class": "cup", "kind": "cup", "on": 4}], "on 4, but there are 1 objects"),
+        ([{"bbox": [0, 0, 9], "class": "cup", "kind": "cup"}], "objects, 0, bbox"),
         ([{"bbox": [0, 0, 9, 9], "class": "wall", "kind": "object"}], "part of the room"),
     ],
 )
-def test_broken_annotations_are_said_in_one_line(things, said, tmp_path):
+def test_broken_annotations_are_said_in_one_line(objects, said, tmp_path):
     path = tmp_path / "a.json"
-    path.write_text(json.dumps({"p": {"size": [9, 9], "things": things}}))
+    path.write_text(json.dumps({"p": {"size": [9, 9], "objects": objects}}))
     with pytest.raises(InputError, match=said):
         read_annotations(path)
 
@@ -99,9 +99,9 @@ def test_ghosts_are_what_differs_from_the_floor():
 def test_the_projects_own_annotations_can_be_read_and_name_known_kinds():
     photos = read_annotations(ANNOTATIONS)
     assert len(photos) == 21
-    things = [thing for photo in photos.values() for thing in photo.things]
-    assert all(thing.bbox[0] < thing.bbox[2] and thing.bbox[1] < thing.bbox[3] for thing in things)
-    assert {"chair", "table"} <= {thing.word for thing in things if thing.loose}
+    objects = [annotated for photo in photos.values() for annotated in photo.objects]
+    assert all(annotated.bbox[0] < annotated.bbox[2] and annotated.bbox[1] < annotated.bbox[3] for annotated in objects)
+    assert {"chair", "table"} <= {annotated.word for annotated in objects if annotated.loose}
 
 
 @pytest.mark.slow
@@ -112,4 +112,4 @@ def test_a_real_photo_has_the_right_kinds(shared):
     bench = run(ANNOTATIONS, folder, built_in_library(), only=("sunrgbd_corridor",))
     row = bench.tables()[0].row("all")
     assert row["kind first"] > 0.7
-    assert row["holder"] > 0.7
+    assert row["supporter"] > 0.7

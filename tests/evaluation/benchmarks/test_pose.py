@@ -30,7 +30,7 @@ from diorama_core.evaluation.metrics.scene import without_unasked
 from diorama_core.pose import RenderAndCompare
 from diorama_core.pose.correspondence.solvers import HALF_GRID, CorrespondencePose
 from diorama_core.render.templates import TemplateGrid
-from diorama_core.synthesis import hold_cameras, render_truth
+from diorama_core.synthesis import render_truth, sample_cameras
 from diorama_core.synthesis.layout_rooms import box_library, generate_room
 from diorama_core.synthesis.truth import TruthView
 
@@ -43,7 +43,7 @@ def library():
 @pytest.fixture(scope="module")
 def view(library) -> TruthView:
     room = generate_room(3, 8).truth
-    camera = hold_cameras(room, library, 1, 1, (160, 120))[0]
+    camera = sample_cameras(room, library, 1, 1, (160, 120))[0]
     return render_truth(room, camera, library, (160, 120))
 
 

@@ -1,11 +1,11 @@
-"""One thing against its object: the conventions of fronts, carriers and colours."""
+"""One object against its object: the conventions of fronts, carriers and colours."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from diorama_core.evaluation.adapters.photo_annotations import AnnotatedThing
+from diorama_core.evaluation.adapters.photo_annotations import AnnotatedObject
 from diorama_core.evaluation.metrics.annotated import front_deg, measured, not_built
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Camera, Candidate, Intrinsics, Pose, Scene, SceneObject, Support, yaw_rotation
@@ -27,8 +27,8 @@ def placed(shape_id: str, yaw_deg: float, colour=None, name="it", others=()) -> 
     return SceneObject(name, "chair", "chair", shape_id, shape.size_m, pose, candidates, 1, box, colour=colour)
 
 
-def thing(**more) -> AnnotatedThing:
-    return AnnotatedThing.model_validate(
+def annotated(**more) -> AnnotatedObject:
+    return AnnotatedObject.model_validate(
         {"bbox": (270, 200, 370, 380), "class": "chair", "kind": "office chair", "on": "floor", **more}
     )
 
@@ -49,13 +49,13 @@ def test_what_is_compared() -> None:
     assert found.colour_difference == pytest.approx(0.0, abs=1e-3)
     assert found.front_error_deg == pytest.approx(30.0)
     assert found.front
-    assert found.holder is False
+    assert found.supporter is False
     assert found.iou == pytest.approx(1.0, abs=0.01)
 
 
 def test_turns_that_look_the_same_are_the_same_front() -> None:
     item = placed("table-oak-classic", 90)
-    found = measured("p", 0, thing(front=0), item, Scene(camera=CAMERA, objects=(item,)), LIBRARY, {})
+    found = measured("p", 0, annotated(front=0), item, Scene(camera=CAMERA, objects=(item,)), LIBRARY, {})
     assert found.front_error_deg == pytest.approx(0.0, abs=1e-6)
 
 
@@ -63,14 +63,16 @@ def test_a_carrier_is_an_index_of_the_list() -> None:
     table, lamp = placed("table-oak-classic", 0, name="table"), placed("chair-slat-oak", 0, name="lamp")
     scene = Scene(camera=CAMERA, objects=(table, lamp), supports=(Support("lamp", "table"),))
     index_of = {"table": 3, "lamp": 5}
-    assert measured("p", 5, thing(on=3), lamp, scene, LIBRARY, index_of).holder is True
-    assert measured("p", 5, thing(on="floor"), lamp, scene, LIBRARY, index_of).holder is False
+    assert measured("p", 5, annotated(on=3), lamp, scene, LIBRARY, index_of).supporter is True
+    assert measured("p", 5, annotated(on="floor"), lamp, scene, LIBRARY, index_of).supporter is False
 
 
 def test_what_was_not_built_is_wrong_and_an_opening_is_not_judged() -> None:
-    missing = not_built("p", 0, thing(front=10))
-    assert (missing.kind_first, missing.kind_among, missing.holder, missing.front, missing.iou) == (False,) * 4 + (0.0,)
-    opening = not_built("p", 0, thing(front=10), opening=True)
+    missing = not_built("p", 0, annotated(front=10))
+    assert (missing.kind_first, missing.kind_among, missing.supporter, missing.front, missing.iou) == (False,) * 4 + (
+        0.0,
+    )
+    opening = not_built("p", 0, annotated(front=10), opening=True)
     assert opening.kind_first is None
     assert opening.front is None
     assert opening.iou is None

@@ -16,9 +16,9 @@ from diorama_core.layout.problem.supports import (
     choose_surface,
     complete_edges,
     convex_outline,
-    holds,
     is_soft,
     is_wall_like,
+    is_wide_enough,
     misfit,
     object_surfaces,
     outside_m,
@@ -221,11 +221,11 @@ def test_a_supporter_holds_what_is_not_much_wider(room: Room) -> None:
     fits = item_at((0, 0, 1), (spans[0] / 0.36, spans[1] / 0.36, 0.5))
     large = item_at((0, 0, 1), (spans[0] / 0.34, spans[1] / 0.36, 0.5))
     edge = Support("item", table)
-    assert holds(fits, edge, supporter, shape)
-    assert not holds(large, edge, supporter, shape)
-    assert holds(large, replace(edge, relation="mounted on"), supporter, shape)
+    assert is_wide_enough(fits, edge, supporter, shape)
+    assert not is_wide_enough(large, edge, supporter, shape)
+    assert is_wide_enough(large, replace(edge, relation="mounted on"), supporter, shape)
     bigger = replace(supporter, pose=Pose.upright((0, 0, 1), 0.0, (1.2, 1.2, 1.0)))
-    assert holds(large, edge, bigger, shape)
+    assert is_wide_enough(large, edge, bigger, shape)
 
 
 def completed(room: Room, supports: tuple[Support, ...]) -> tuple[dict[str, Support | None], tuple[str, ...]]:

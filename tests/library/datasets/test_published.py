@@ -11,7 +11,7 @@ import pytest
 import trimesh
 
 from diorama_core.errors import InputError
-from diorama_core.library.datasets import as_sources, dataset_named, recognised
+from diorama_core.library.datasets import as_sources, dataset_named, layout, recognised
 from diorama_core.library.ingest.guess import Given
 from diorama_core.library.ingest.models import read_model
 from diorama_core.library.ingest.shaping import Source
@@ -148,8 +148,24 @@ def test_anyones_folder_is_no_data_set(tmp_path: Path) -> None:
 def test_broken_metadata_names_the_file(tmp_path: Path) -> None:
     future(tmp_path)
     (tmp_path / "model_info.json").write_text("[{")
-    with pytest.raises(InputError, match=r"model_info\.json: not JSON"):
+    with pytest.raises(InputError, match=r"model_info\.json is not valid JSON"):
         as_sources(dataset_named("3d-future"), tmp_path, Given())
+
+
+def test_packed_metadata_is_capped_before_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(layout, "MAX_METADATA_BYTES", 100_000)
+    path = tmp_path / "lvis-annotations.json.gz"
+    path.write_bytes(gzip.compress(b'["a"]'))
+    assert layout.read_json(path) == ["a"]
+    path.write_bytes(gzip.compress(b" " * 50_000_000))
+    with pytest.raises(InputError, match=r"unpack to more than 0\.1 MB.*; download it again"):
+        layout.read_json(path)
+    path.write_bytes(gzip.compress(b'["a"]')[:-9])
+    with pytest.raises(InputError, match="cannot be read"):
+        layout.read_json(path)
+    (tmp_path / "deep.json").write_text("[" * 10_000)
+    with pytest.raises(InputError, match="nested"):
+        layout.read_json(tmp_path / "deep.json")
 
 
 def test_an_unknown_data_set_lists_the_known(tmp_path: Path) -> None:

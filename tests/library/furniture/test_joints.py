@@ -13,7 +13,11 @@ from diorama_core.library.furniture.articulation import articulation
 from diorama_core.library.furniture.joints import Joint
 from diorama_core.library.furniture.solids import Solid
 
-FAMILIES = ("dresser", "sideboard", "cabinet", "wardrobe", "night stand", "tv stand", "door", "laptop", "office chair")
+FAMILIES = (
+    "dresser", "sideboard", "cabinet", "wardrobe", "night stand", "tv stand", "door", "laptop", "office chair",
+    "desk", "vanity table", "filing cabinet", "locker", "chest", "box", "wall cabinet", "kitchen counter",
+    "kitchen island", "refrigerator", "dishwasher", "wall oven", "stove", "microwave", "washing machine", "dryer",
+)  # fmt: skip
 STEPS = (0.05, 0.3, 0.6, 1.0)
 TOUCH_M3 = 3e-6
 """What may be shared beyond what is shared at rest: 3 cubic centimetres."""

@@ -7,7 +7,7 @@ import pytest
 from diorama_core.evaluation.benchmarks import relations as relations_bench
 from diorama_core.evaluation.metrics.relations import RelationCount, relations_of
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.synthesis import ROOM_KINDS, TruthView, furnished_room, hold_cameras, render_truth
+from diorama_core.synthesis import ROOM_KINDS, TruthView, furnished_room, render_truth, sample_cameras
 
 SIZE = (480, 360)
 SEEDS = range(6)
@@ -16,7 +16,7 @@ SEEDS = range(6)
 def _view(seed: int) -> TruthView:
     library = built_in_library()
     room = furnished_room(1000 + seed, ROOM_KINDS[seed % len(ROOM_KINDS)], library)
-    camera = hold_cameras(room, library, seed, count=1, size=SIZE)[0]
+    camera = sample_cameras(room, library, seed, count=1, size=SIZE)[0]
     return render_truth(room, camera, library, SIZE, with_empty_room=False, sensor=False)
 
 

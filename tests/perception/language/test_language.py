@@ -289,6 +289,21 @@ def test_json_is_found_amid_anything_without_braces(prose: str, value: dict[str,
     assert found == value
 
 
+@pytest.mark.parametrize(
+    "text",
+    ["```json\n%s\n```", "Here:\n```JSON %s```\nand ```\nmore", "```\nno\n``` ```%s``` ```", "```json%s```"],
+)
+def test_json_is_found_between_fences(text: str) -> None:
+    assert json_in(text % '{"a": 1}') == {"a": 1}
+
+
+@pytest.mark.parametrize("text", ["```" + "\n" * 200_000, "```json" * 30_000, "{" * 200_000, '{"a":' * 40_000])
+def test_absurd_replies_are_read_in_a_moment(text: str) -> None:
+    began = time.monotonic()
+    assert json_in(text) is None
+    assert time.monotonic() - began < 5.0
+
+
 _NAMES = st.sampled_from(["a", "b", "c", "d", "floor", "nothing"])
 
 

@@ -70,11 +70,18 @@ def storage_tub(size: Size, tub: Material, lid: Material) -> Parts:
 def chest(size: Size, wood: Material, strap: Material) -> Parts:
     """A trunk with metal bands."""
     d, w, h = size
-    lid = 0.3 * h
+    tall = 0.3 * h
+    split = h - tall
     bands = [box((d + 0.004, 0.035, h - 0.002), 0.003).moved(0, s * w * 0.3, 0.001) for s in (1, -1)]
-    return of(wood, box((d, w, h - lid - 0.004), 0.006, 2), box((d, w, lid), 0.02, 2).moved(z=h - lid)) + of(
-        strap, *bands, box((0.012, 0.07, 0.07), 0.003).moved(d / 2 + 0.003, 0, h - lid - 0.045)
-    )
+    below = [
+        box((0.004, 0.035, split - 0.006), 0.001).moved(f * d / 2, s * w * 0.3, 0.001) for s in (1, -1) for f in (1, -1)
+    ]
+    above = [box((d + 0.004, 0.035, tall - 0.001), 0.003).moved(0, s * w * 0.3, split) for s in (1, -1)]
+    parts = Cavity((d, w, split - 0.004), opens="top").body(wood, 0.006, 2)
+    parts += with_role("filler", of(strap, *bands)) + with_role("inside", of(strap, *below))
+    parts += of(strap, box((0.012, 0.07, 0.07), 0.003).moved(d / 2 + 0.003, 0, split - 0.045))
+    cover = of(wood, box((d, w, tall), 0.02, 2).moved(z=split)) + with_role("inside", of(strap, *above))
+    return parts + hinged_lid(-d / 2 - 0.002, split, cover)
 
 
 def gift_box(size: Size, card: Material, ribbon: Material) -> Parts:

@@ -20,8 +20,7 @@ def wall_oven(size: Size, front: Material, cavities: int, knobs: bool = True, tr
     """An oven to build into a tall unit: control strip, glass doors, long handles."""
     d, w, h = size
     face = 0.03
-    body = box((d - 0.05, w - 0.03, h - 0.02), 0.003).moved(-0.025, 0, 0.008)
-    parts = of(m.GREY, body)
+    parts = Cavity((d - 0.05, w - 0.03, h - 0.02), (-0.025, 0, 0.008), wall=0.03).body(m.GREY, 0.003)
     strip = 0.11
     x = d / 2 - face - 0.018
     parts += of(front, box((face, w, strip - 0.006), 0.006, 2).moved(x + face / 2, 0, h - strip))
@@ -40,9 +39,10 @@ def wall_oven(size: Size, front: Material, cavities: int, knobs: bool = True, tr
     tall = (h - strip - 0.006) / cavities
     for k in range(cavities):
         z = 0.003 + tall * k
-        parts += of(front, box((face, w, tall - 0.006), 0.006, 2).moved(x + face / 2, 0, z))
-        parts += of(m.DARK_GLASS, box((0.004, w - 0.11, tall - 0.17), 0.002).moved(x + face, 0, z + 0.045))
-        parts += at(bar_handle(w * 0.8, False, trim), x + face - 0.004, 0, z + tall - 0.06)
+        leaf = of(front, box((face, w, tall - 0.006), 0.006, 2).moved(x + face / 2, 0, z))
+        leaf += of(m.DARK_GLASS, box((0.004, w - 0.11, tall - 0.17), 0.002).moved(x + face, 0, z + 0.045))
+        leaf += at(bar_handle(w * 0.8, False, trim), x + face - 0.004, 0, z + tall - 0.06)
+        parts += drop_front(x + face, z, leaf)
     return parts
 
 
@@ -50,60 +50,51 @@ def dishwasher(size: Size, front: Material, trim: Material, panelled: bool = Fal
     """A dishwasher; its door panelled like a cupboard's, or with the controls hidden in the door's edge."""
     d, w, h = size
     x = d / 2 - 0.05
-    parts = of(
-        m.LIGHT_GREY,
-        box((d - 0.06, w - 0.006, h - 0.1), 0.004).moved(-0.025, 0, 0.085),
-        box((d - 0.05, w, 0.018), 0.004, 2).moved(-0.02, 0, h - 0.018),
-    )
+    parts = Cavity((d - 0.06, w - 0.006, h - 0.1), (-0.025, 0, 0.085), wall=0.02).body(m.LIGHT_GREY)
+    parts += of(m.LIGHT_GREY, box((d - 0.05, w, 0.018), 0.004, 2).moved(-0.02, 0, h - 0.018))
     parts += of(
         m.BLACK,
         box((d - 0.14, w - 0.03, 0.09), 0.002).moved(-0.02),
         *four(cylinder(0.02, 0.02, 0.003, 12).moved(d / 2 - 0.12, w / 2 - 0.06)),
     )
     if panelled:
-        return (
-            parts
-            + door_front(x, 0, 0.095, w - 0.006, h - 0.12, front, trim, "none", 1, "shaker")
-            + at(bar_handle(w * 0.45, False, trim), x + 0.016, 0, h - 0.07)
+        leaf = door_front(x, 0, 0.095, w - 0.006, h - 0.12, front, trim, "none", 1, "shaker")
+        return parts + drop_front(
+            x + 0.018, 0.095, leaf + at(bar_handle(w * 0.45, False, trim), x + 0.016, 0, h - 0.07)
         )
     z1 = h - 0.024
     if hidden:
-        return (
-            parts
-            + of(front, box((0.03, w - 0.006, z1 - 0.095), 0.006, 2).moved(x + 0.015, 0, 0.095))
-            + at(bar_handle(w * 0.8, False, trim), x + 0.026, 0, z1 - 0.06)
-        )
-    parts += of(
+        leaf = of(front, box((0.03, w - 0.006, z1 - 0.095), 0.006, 2).moved(x + 0.015, 0, 0.095))
+        return parts + drop_front(x + 0.03, 0.095, leaf + at(bar_handle(w * 0.8, False, trim), x + 0.026, 0, z1 - 0.06))
+    leaf = of(
         front,
         box((0.03, w - 0.006, z1 - 0.225), 0.006, 2).moved(x + 0.015, 0, 0.095),
         box((0.034, w - 0.006, 0.115), 0.006, 2).moved(x + 0.014, 0, z1 - 0.118),
     )
-    parts += of(m.SCREEN, box((0.003, 0.1, 0.03), 0.001).moved(x + 0.031, 0.0, z1 - 0.075)) + of(
+    leaf += of(m.SCREEN, box((0.003, 0.1, 0.03), 0.001).moved(x + 0.031, 0.0, z1 - 0.075)) + of(
         trim,
         *(
             cylinder(0.008, 0.005, 0.001, 12).turned("y", 90).moved(x + 0.03, y, z1 - 0.06)
             for y in np.linspace(-0.4 * w, -0.22 * w, 4)
         ),
     )
-    return parts + of(m.SHADOW, box((0.02, w * 0.4, 0.02), 0.004).moved(x + 0.026, 0, z1 - 0.13))
+    leaf += of(m.SHADOW, box((0.02, w * 0.4, 0.02), 0.004).moved(x + 0.026, 0, z1 - 0.13))
+    return parts + drop_front(x + 0.031, 0.095, leaf)
 
 
 def dryer(size: Size, body: Material, trim: Material, square: bool = False) -> Parts:
     """A tumble dryer: a solid door, round or square, a vent grille at the foot."""
     d, w, h = size
-    parts = of(
-        body,
-        box((d - 0.04, w, h - 0.045), 0.01, 2).moved(-0.018, 0, 0.02),
-        box((d - 0.02, w, 0.025), 0.008, 2).moved(-0.008, 0, h - 0.025),
-    )
-    parts += of(m.BLACK, *four(cylinder(0.022, 0.025, 0.003, 12).moved(d / 2 - 0.1, w / 2 - 0.06)))
     x, zc = d / 2 - 0.038, 0.47 * h
+    drum = Cavity((d - 0.04, w, h - 0.045), (-0.018, 0, 0.02), hole=(-0.21, 0.21, zc - 0.21, zc + 0.21))
+    parts = drum.body(body, 0.01, 2) + of(body, box((d - 0.02, w, 0.025), 0.008, 2).moved(-0.008, 0, h - 0.025))
+    parts += of(m.BLACK, *four(cylinder(0.022, 0.025, 0.003, 12).moved(d / 2 - 0.1, w / 2 - 0.06)))
     parts += of(body, box((0.016, w - 0.012, 0.12), 0.006, 2).moved(x + 0.006, 0, h - 0.15))
     if square:
-        parts += of(trim, box((0.03, 0.4, 0.4), 0.03, 3).moved(x + 0.006, 0, zc - 0.2)) + of(
+        leaf = of(trim, box((0.03, 0.4, 0.4), 0.03, 3).moved(x + 0.006, 0, zc - 0.2)) + of(
             body, box((0.018, 0.34, 0.34), 0.02, 2).moved(x + 0.016, 0, zc - 0.17)
         )
-        parts += of(m.SHADOW, box((0.006, 0.03, 0.11), 0.003).moved(x + 0.026, -0.145, zc - 0.055))
+        leaf += of(m.SHADOW, box((0.006, 0.03, 0.11), 0.003).moved(x + 0.026, -0.145, zc - 0.055))
     else:
         r = 0.2
         door = (
@@ -123,7 +114,8 @@ def dryer(size: Size, body: Material, trim: Material, square: bool = False) -> P
             .turned("y", 90)
             .moved(x, 0, zc)
         )
-        parts += of(trim, door) + of(m.SHADOW, box((0.01, 0.03, 0.1), 0.004).moved(x + 0.018, -0.175, zc - 0.05))
+        leaf = of(trim, door) + of(m.SHADOW, box((0.01, 0.03, 0.1), 0.004).moved(x + 0.018, -0.175, zc - 0.05))
+    parts += jointed(door_hinge(x + 0.03, 0.205, 1), leaf)
     slots = [box((0.004, 0.2, 0.006), 0.001).moved(x + 0.004, 0.0, z) for z in np.linspace(0.06, 0.11, 5)]
     parts += of(m.SHADOW, *slots) + of(m.SCREEN, box((0.003, 0.1, 0.04), 0.001).moved(x + 0.014, -0.15, h - 0.11))
     return parts + at(knob(0.03), x + 0.014, 0.06, h - 0.09)

@@ -12,22 +12,20 @@ def stove(size: Size, body: Material, hob: str) -> Parts:
     d, w, h = size
     back = 0.07 if hob != "glass" else 0.0
     top = h - back - (0.035 if hob == "gas" else 0.0)
-    parts = of(body, box((d - 0.06, w, top - 0.05), 0.006, 2).moved(-0.03, 0, 0.04)) + of(
-        m.BLACK, box((d - 0.14, w - 0.03, 0.05), 0.002).moved(-0.04)
-    )
+    hole = (0.02 - w / 2, w / 2 - 0.02, 0.2, top - 0.16)
+    parts = Cavity((d - 0.06, w, top - 0.05), (-0.03, 0, 0.04), hole=hole).body(body, 0.006, 2)
+    parts += of(m.BLACK, box((d - 0.14, w - 0.03, 0.05), 0.002).moved(-0.04))
     parts += of(
         m.DARK_GLASS if hob == "glass" else m.STAINLESS,
         box((d - 0.03, w, 0.012), 0.004, 2).moved(-0.015, 0, top - 0.012),
     )
     xf = d / 2 - 0.06
-    parts += of(
-        body,
-        box((0.03, w - 0.012, top - 0.36), 0.01, 2).moved(xf + 0.01, 0, 0.2),
-        box((0.026, w - 0.012, 0.13), 0.008, 2).moved(xf + 0.01, 0, 0.06),
-    )
-    parts += of(m.DARK_GLASS, box((0.006, w - 0.14, top - 0.52), 0.002).moved(xf + 0.025, 0, 0.25)) + at(
+    leaf = of(body, box((0.03, w - 0.012, top - 0.36), 0.01, 2).moved(xf + 0.01, 0, 0.2))
+    parts += of(body, box((0.026, w - 0.012, 0.13), 0.008, 2).moved(xf + 0.01, 0, 0.06))
+    leaf += of(m.DARK_GLASS, box((0.006, w - 0.14, top - 0.52), 0.002).moved(xf + 0.025, 0, 0.25)) + at(
         bar_handle(w * 0.72, False), xf + 0.02, 0, top - 0.2
     )
+    parts += drop_front(xf + 0.025, 0.2, leaf)
     parts += of(body, box((0.028, w - 0.004, 0.115), 0.006, 2).moved(xf + 0.008, 0, top - 0.14))
     for y in np.linspace(-0.36 * w, 0.36 * w, 5):
         parts += at(knob(), xf + 0.022, float(y), top - 0.08)

@@ -19,20 +19,23 @@ def counter(
     d, w, h = size
     h -= 0.24 if basin else 0.0  # the tap reaches above the worktop
     t = 0.038
-    parts = of(body, box((d - 0.05, w - 0.01, h - t - 0.1), 0.003).moved(-0.015, 0, 0.1)) + of(
-        m.CHARCOAL, box((d - 0.1, w - 0.02, 0.1), 0.002).moved(-0.025)
-    )
-    parts += of(m.SHADOW, box((0.004, w - 0.014, h - t - 0.104), 0.001).moved(d / 2 - 0.039, 0, 0.102))
+    each, x, z, hh = w / len(units), d / 2 - 0.038, 0.105, h - t - 0.112
+    between = tuple(-w / 2 + each * k for k in range(1, len(units)))
+    cavity = Cavity((d - 0.05, w - 0.01, h - t - 0.1), (-0.015, 0, 0.1), dividers=() if basin else between)
+    parts = cavity.body(body, 0.003) + of(m.CHARCOAL, box((d - 0.1, w - 0.02, 0.1), 0.002).moved(-0.025))
+    shadow = of(m.SHADOW, box((0.004, w - 0.014, h - t - 0.104), 0.001).moved(d / 2 - 0.039, 0, 0.102))
+    parts += with_role("filler", shadow)
     if basin:
         parts += _worktop_with_basin(d, w, h, t, top)
     else:
         parts += of(top, box((d, w, t), 0.006, 2).moved(z=h - t))
-    each, x, z, hh = w / len(units), d / 2 - 0.038, 0.105, h - t - 0.112
     for k, unit_kind in enumerate(units):
         y = -w / 2 + each * (k + 0.5)
         if unit_kind == "drawers":
             for low, share in ((0.0, 0.4), (0.4, 0.36), (0.76, 0.24)):
-                parts += drawer_front(x, y, z + low * hh, each - 0.006, share * hh - 0.006, body, pull, handle)
+                place = (y, z + low * hh, each - 0.006, share * hh - 0.006)
+                space = cavity.behind(*place)
+                parts += drawer_front(x, *place, body, pull, handle, None if basin and low > 0.7 else space)
         elif unit_kind == "pair":
             for s in (1, -1):
                 parts += door_front(

@@ -101,9 +101,8 @@ def wall_units(
         if is_open or is_glass:
             parts += shifted(open_case((depth, each, top), body, [top / 2 + t / 2], t), -0.01, y)
         else:
-            parts += of(body, box((depth, each - 0.001, top), 0.003).moved(-0.01, y)) + of(
-                m.SHADOW, box((0.003, each - 0.004, top - 0.004), 0.001).moved(depth / 2 - 0.0105, y, 0.002)
-            )
+            shadow = of(m.SHADOW, box((0.003, each - 0.004, top - 0.004), 0.001).moved(depth / 2 - 0.0105, y, 0.002))
+            parts += Cavity((depth, each - 0.001, top), (-0.01, y, 0)).body(body, 0.003) + with_role("filler", shadow)
         if is_open:
             continue
         x = depth / 2 - 0.01

@@ -13,12 +13,12 @@ def microwave(size: Size, body: Material, kind: str = "microwave") -> Parts:
         slots = [box((0.026, w * 0.68, 0.012), 0.003).moved(x, 0, h - 0.009) for x in (-0.17 * d, 0.17 * d)]
         lever = box((0.03, 0.03, 0.014), 0.004).moved(0, w / 2 + 0.004, h * 0.6)
         return of(body, shell.moved(0, 0, 0.0)) + of(m.BLACK, *slots, lever, box((d - 0.03, w - 0.03, 0.012), 0.003))
-    parts = of(body, box((d - 0.03, w, h - 0.012), 0.008, 2).moved(-0.015, 0, 0.012)) + of(
-        m.BLACK, *four(cylinder(0.014, 0.015, 0.002, 10).moved(d / 2 - 0.07, w / 2 - 0.05))
-    )
     x, glass_w = d / 2 - 0.032, w * 0.68
     y = w / 2 - glass_w / 2 - 0.014
-    parts += of(
+    hole = (y - glass_w / 2 + 0.002, y + glass_w / 2 - 0.002, 0.03, h - 0.02)
+    parts = Cavity((d - 0.03, w, h - 0.012), (-0.015, 0, 0.012), wall=0.012, hole=hole).body(body, 0.008, 2)
+    parts += of(m.BLACK, *four(cylinder(0.014, 0.015, 0.002, 10).moved(d / 2 - 0.07, w / 2 - 0.05)))
+    leaf = of(
         body if kind == "oven" else m.CHARCOAL, box((0.024, glass_w, h - 0.035), 0.006, 2).moved(x + 0.01, y, 0.022)
     ) + of(m.DARK_GLASS, box((0.004, glass_w - 0.07, h - 0.12), 0.001).moved(x + 0.022, y, 0.06))
     side_y = -w / 2 + (w - glass_w) / 2 - 0.008
@@ -29,16 +29,13 @@ def microwave(size: Size, body: Material, kind: str = "microwave") -> Parts:
     if kind == "oven":
         for z in (0.27, 0.52, 0.77):
             parts += at(knob(0.017), x + 0.016, side_y, z * h)
-        return parts + at(bar_handle(glass_w * 0.8, False), x + 0.01, y, h - 0.045)
+        return parts + drop_front(x + 0.022, 0.022, leaf + at(bar_handle(glass_w * 0.8, False), x + 0.01, y, h - 0.045))
     rows = [(x + 0.016, 0.07 + 0.03 * r) for r in range(4)]
     keys = keypad(box((0.004, 0.02, 0.012), 0.001), rows, spread(3, 0.028, side_y))
     display = box((0.004, 0.085, 0.032), 0.001).moved(x + 0.015, side_y, h - 0.08)
-    return (
-        parts
-        + of(m.GREY, *keys)
-        + of(m.SCREEN, display)
-        + at(bar_handle(h * 0.7, True), x + 0.016, y - glass_w / 2 + 0.03, h / 2)
-    )
+    leaf += at(bar_handle(h * 0.7, True), x + 0.016, y - glass_w / 2 + 0.03, h / 2)
+    parts += jointed(door_hinge(x + 0.022, y + glass_w / 2, 1), leaf)
+    return parts + of(m.GREY, *keys) + of(m.SCREEN, display)
 
 
 DESIGNS: tuple[Design, ...] = (

@@ -12,12 +12,9 @@ def refrigerator(size: Size, body: Material, layout: str, round_edge: float = 0.
     d, w, h = size
     door_t = 0.06
     x = d / 2 - 0.045 - door_t
-    core = box((d - 0.045 - door_t - 0.005, w - 0.006, h - 0.05), 0.008).moved(
-        -d / 2 + (d - 0.05 - door_t) / 2, 0, 0.045
-    )
-    parts = of(body if layout != "double" else m.GREY, core) + of(
-        m.BLACK, box((d - 0.14, w - 0.04, 0.06), 0.003).moved(-0.02)
-    )
+    core = Cavity((d - 0.05 - door_t, w - 0.006, h - 0.05), (-d / 2 + (d - 0.05 - door_t) / 2, 0, 0.045), wall=0.03)
+    parts = core.body(body if layout != "double" else m.GREY, 0.008)
+    parts += of(m.BLACK, box((d - 0.14, w - 0.04, 0.06), 0.003).moved(-0.02))
     z0, z1 = 0.06, h
     split = {"top": 0.68, "bottom": 0.38}.get(layout, 0.0)
     spans = [(z0, z1)] if not split else [(z0, z0 + split * (z1 - z0)), (z0 + split * (z1 - z0), z1)]
@@ -25,7 +22,7 @@ def refrigerator(size: Size, body: Material, layout: str, round_edge: float = 0.
     for y in columns:
         for low, high in spans:
             width, height = (w / 2 if layout == "double" else w) - 0.004, high - low - 0.008
-            parts += of(body, box((door_t, width, height), round_edge, 3).moved(x + door_t / 2, y, low + 0.004))
+            leaf = of(body, box((door_t, width, height), round_edge, 3).moved(x + door_t / 2, y, low + 0.004))
             side = -np.sign(y) if y else 1.0
             length = min(0.5, height * 0.62) if height > 0.6 else min(0.25, 0.6 * height)
             near_split = (
@@ -35,7 +32,8 @@ def refrigerator(size: Size, body: Material, layout: str, round_edge: float = 0.
                 if split
                 else (low + high) / 2
             )
-            parts += at(bar_handle(length, True), x + door_t - 0.004, y + side * (width / 2 - 0.05), near_split)
+            leaf += at(bar_handle(length, True), x + door_t - 0.004, y + side * (width / 2 - 0.05), near_split)
+            parts += jointed(door_hinge(x + door_t, y - side * width / 2, -int(side)), leaf)
     return parts
 
 

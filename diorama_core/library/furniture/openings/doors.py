@@ -103,27 +103,29 @@ def french_door(size: Size, leaf: Material, handle: Material = m.STEEL, rows: in
         box((d, w, bar), 0.006, 2).moved(z=h - bar),
     )
     each, tall = (w - 2 * bar) / 2 - 0.003, h - bar - 0.012
+    lever = [
+        rod((t / 2, -0.05, 1.0), (t / 2 + 0.05, -0.05, 1.0), 0.008),
+        rod((t / 2 + 0.05, -0.05, 1.0), (t / 2 + 0.05, -0.16, 1.0), 0.008),
+        box((0.006, 0.04, 0.2), 0.003).moved(t / 2, -0.05, 0.9),
+    ]
     for s in (1, -1):
         y = s * (each / 2 + 0.0015)
         stile = 0.085
-        parts += of(leaf, *(box((t, stile, tall), 0.005).moved(0, y + f * (each - stile) / 2, 0.006) for f in (1, -1)))
-        parts += of(leaf, *(box((t, each, hh), 0.005).moved(0, y, z) for z, hh in ((0.006, 0.2), (tall - 0.09, 0.095))))
-        parts += of(
+        swung = of(leaf, *(box((t, stile, tall), 0.005).moved(0, y + f * (each - stile) / 2, 0.006) for f in (1, -1)))
+        swung += of(leaf, *(box((t, each, hh), 0.005).moved(0, y, z) for z, hh in ((0.006, 0.2), (tall - 0.09, 0.095))))
+        swung += of(
             leaf,
             *(
                 box((t * 0.6, each - 2 * stile + 0.01, 0.022), 0.004).moved(0, y, 0.2 + (tall - 0.29) * k / rows)
                 for k in range(1, rows)
             ),
         )
-        parts += of(
+        swung += of(
             m.PANE, box((0.006, each - 2 * stile + 0.01, tall - 0.28), 0.001).pictured().moved(-t * 0.1, y, 0.2)
         )
-    lever = [
-        rod((t / 2, -0.05, 1.0), (t / 2 + 0.05, -0.05, 1.0), 0.008),
-        rod((t / 2 + 0.05, -0.05, 1.0), (t / 2 + 0.05, -0.16, 1.0), 0.008),
-        box((0.006, 0.04, 0.2), 0.003).moved(t / 2, -0.05, 0.9),
-    ]
-    return parts + of(handle, *lever)
+        swung += of(handle, *lever) if s < 0 else []
+        parts += jointed(door_hinge(t / 2, s * (each + 0.0015), s), swung)
+    return parts
 
 
 def barn_door(size: Size, wood: Material, iron: Material) -> Parts:

@@ -17,40 +17,40 @@ def blanket_box(
 ) -> Parts:
     """A lidded box with framed panels; plain when `panels` is 0, a padded lid when `cushioned`."""
     d, w, h = size
-    lid = 0.028
+    thick = 0.028
     top = h - (0.07 if cushioned is not None else 0.0)
-    body = box((d - 0.03, w - 0.03, top - lid - 0.06), 0.006, 2).moved(z=0.055)
-    cover = box((d, w, lid), 0.009, 2).moved(z=top - lid)
-    gap = box((d - 0.034, w - 0.034, 0.01), 0.002).moved(z=top - lid - 0.008)
+    cavity = Cavity((d - 0.03, w - 0.03, top - thick - 0.06), (0, 0, 0.055), opens="top")
+    cover = of(wood, box((d, w, thick), 0.009, 2).moved(z=top - thick))
+    gap = box((d - 0.034, w - 0.034, 0.01), 0.002).moved(z=top - thick - 0.008)
     base = [
         box((d - 0.01, w - 0.01, 0.03), 0.008, 2).moved(z=0.045),
         *four(box((0.07, 0.07, 0.05), 0.012, 2).moved(d / 2 - 0.045, w / 2 - 0.045)),
     ]
-    parts = of(wood, body, cover) + of(feet, *base) + of(m.SHADOW, gap)
-    tall = top - lid - 0.13
+    parts = cavity.body(wood, 0.006, 2) + of(feet, *base) + with_role("filler", of(m.SHADOW, gap))
+    tall = top - thick - 0.13
     if panels:
         x, each = d / 2 - 0.013, (w - 0.05) / panels
         stiles = [
             box((0.014, 0.055, tall + 0.05), 0.003).moved(x, -w / 2 + 0.025 + each * k, 0.085)
             for k in range(panels + 1)
         ]
-        rails = [box((0.014, w - 0.03, 0.055), 0.003).moved(x, 0, z) for z in (0.085, top - lid - 0.065)]
+        rails = [box((0.014, w - 0.03, 0.055), 0.003).moved(x, 0, z) for z in (0.085, top - thick - 0.065)]
         ends = both_sides(
-            *(box((d - 0.03, 0.014, 0.055), 0.003).moved(0, w / 2 - 0.013, z) for z in (0.085, top - lid - 0.065))
+            *(box((d - 0.03, 0.014, 0.055), 0.003).moved(0, w / 2 - 0.013, z) for z in (0.085, top - thick - 0.065))
         )
         parts += of(wood, *stiles, *rails, *ends)
     if metal is not None:
-        parts += of(metal, box((0.012, 0.05, 0.07), 0.004).moved(d / 2 - 0.008, 0, top - lid - 0.06))
+        parts += of(metal, box((0.012, 0.05, 0.07), 0.004).moved(d / 2 - 0.008, 0, top - thick - 0.06))
     if cushioned is not None:
-        parts += of(cushioned, cushion((d, w, 0.075), 12, 3.6, 12).moved(z=h - 0.075))
-    return parts
+        cover += of(cushioned, cushion((d, w, 0.075), 12, 3.6, 12).moved(z=h - 0.075))
+    return parts + hinged_lid(-d / 2, top - thick, cover)
 
 
 def trunk(size: Size, hide: Material, straps: Material, metal: Material, domed: bool = False) -> Parts:
     """A travelling trunk: corners, straps and handles; with a domed lid when asked."""
     d, w, h = size
     split = 0.64 * h if domed else 0.7 * h
-    body = box((d - 0.012, w - 0.012, split - 0.025), 0.008, 2).moved(z=0.02)
+    cavity = Cavity((d - 0.012, w - 0.012, split - 0.025), (0, 0, 0.02), wall=0.01, opens="top")
     feet = four(cylinder(0.022, 0.025, 0.003, 12).moved(d / 2 - 0.07, w / 2 - 0.07))
     if domed:
         t = np.linspace(0, np.pi, 15)
@@ -62,27 +62,29 @@ def trunk(size: Size, hide: Material, straps: Material, metal: Material, domed: 
                 for y in (-(w - 0.012) / 2, (w - 0.012) / 2)
             ]
         )
-        lid = loft(rings, crease_rad=0.6)
+        cover = of(hide, loft(rings, crease_rad=0.6))
     else:
-        lid = box((d - 0.012, w - 0.012, h - split - 0.008), 0.012, 2).moved(z=split + 0.004)
-    parts = of(hide, body, lid) + of(metal, *feet)
-    edges = [box((d, w, 0.018), 0.003).moved(z=z) for z in (0.02, split - 0.02)]
-    parts += of(straps, *edges, box((d, w, 0.016), 0.003).moved(z=split + 0.006))
+        cover = of(hide, box((d - 0.012, w - 0.012, h - split - 0.008), 0.012, 2).moved(z=split + 0.004))
+    parts = cavity.body(hide, 0.008, 2) + of(metal, *feet)
+    parts += of(straps, box((d, w, 0.018), 0.003).moved(z=0.02)) + _rim(d, w, split - 0.02, straps)
+    cover += of(straps, box((d, w, 0.016), 0.003).moved(z=split + 0.006))
     for y in (-0.3 * w, 0.3 * w):
         if domed:
             t = np.linspace(0, np.pi, 15)
             hoop = np.column_stack([-np.cos(t) * d / 2, np.full(15, y), split + np.sin(t) * (h - split)])
+            cover += of(straps, tube(hoop, 0.011, 6))
             parts += of(
                 straps,
-                tube(hoop, 0.011, 6),
                 *(box((0.01, 0.035, split - 0.03), 0.003).moved(f * (d / 2 - 0.003), y, 0.02) for f in (1, -1)),
             )
         else:
-            parts += of(
-                straps,
-                *(box((0.008, 0.04, h - 0.03), 0.003).moved(f * (d / 2 - 0.001), y, 0.02) for f in (1, -1)),
-                box((d + 0.006, 0.04, 0.007), 0.003).moved(0, y, h - 0.008),
+            cover += of(straps, box((d + 0.006, 0.04, 0.007), 0.003).moved(0, y, h - 0.008))
+            whole, below, above = (
+                of(straps, *(box((0.008, 0.04, top - low), 0.003).moved(f * (d / 2 - 0.001), y, low) for f in (1, -1)))
+                for low, top in ((0.02, h - 0.01), (0.02, split), (split + 0.006, h - 0.01))
             )
+            parts += with_role("filler", whole) + with_role("inside", below)
+            cover += with_role("inside", above)
         parts += of(metal, box((0.012, 0.028, 0.055), 0.004).moved(d / 2 + 0.002, y, split - 0.035))
     corners = four(
         box((0.05, 0.05, 0.05), 0.008).moved(d / 2 - 0.022, w / 2 - 0.022, 0.018),
@@ -100,7 +102,17 @@ def trunk(size: Size, hide: Material, straps: Material, metal: Material, domed: 
             6,
         )
     )
-    return parts + of(metal, *corners, lock) + of(straps, *grips)
+    parts += of(metal, *corners, lock) + of(straps, *grips)
+    return parts + hinged_lid(-d / 2 - 0.012, split + 0.004, cover)
+
+
+def _rim(d: float, w: float, z: float, straps: Material) -> Parts:
+    """The band round the upper edge: a plate while the trunk is closed, a ring once it opens."""
+    bars = [box((d, 0.016, 0.018), 0.003).moved(0, s * (w - 0.016) / 2, z) for s in (1, -1)]
+    bars += [box((0.016, w - 0.032, 0.018), 0.003).moved(s * (d - 0.016) / 2, 0, z) for s in (1, -1)]
+    return with_role("filler", of(straps, box((d, w, 0.018), 0.003).moved(z=z))) + with_role(
+        "inside", of(straps, *bars)
+    )
 
 
 DESIGNS: tuple[Design, ...] = (

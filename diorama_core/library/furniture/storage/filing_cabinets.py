@@ -8,14 +8,15 @@ from diorama_core.library.furniture.kit import *
 def filing_cabinet(size: Size, steel: Material, drawers: int) -> Parts:
     """A steel filing cabinet with label holders."""
     d, w, h = size
-    parts = of(
-        steel, box((d - 0.03, w, h - 0.02), 0.006, 2).moved(-0.012, 0, 0.02), box((d - 0.08, w - 0.05, 0.03), 0.002)
-    )
+    cavity = Cavity((d - 0.03, w, h - 0.02), (-0.012, 0, 0.02), wall=0.012)
+    parts = cavity.body(steel, 0.006, 2) + of(steel, box((d - 0.08, w - 0.05, 0.03), 0.002))
     each = (h - 0.05) / drawers
     for k in range(drawers):
         z = 0.035 + each * k
-        parts += drawer_front(d / 2 - 0.027, 0, z, w - 0.02, each - 0.008, steel, m.STEEL, "cup")
-        parts += of(m.WHITE, box((0.003, 0.07, 0.03), 0.001).moved(d / 2 - 0.008, 0, z + each * 0.72))
+        space = cavity.behind(0, z, w - 0.02, each - 0.008)
+        front = drawer_front(d / 2 - 0.027, 0, z, w - 0.02, each - 0.008, steel, m.STEEL, "cup", space)
+        label = of(m.WHITE, box((0.003, 0.07, 0.03), 0.001).moved(d / 2 - 0.008, 0, z + each * 0.72))
+        parts += on_front(front, label)
     return parts
 
 

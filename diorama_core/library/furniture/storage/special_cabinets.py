@@ -16,20 +16,20 @@ def wooden_files(size: Size, style: Style, drawers: int, columns: int = 1) -> Pa
     cap = 0.026
     base_h = 0.06
     depth = d - 0.036
-    parts = plinth(depth, w, base_h, style.wood) + of(
-        style.wood, box((depth, w, h - base_h - cap), 0.004).moved(-0.01, 0, base_h)
-    )
-    parts += of(style.top or style.wood, box((d, w + 0.02, cap), style.edge_m, 2).moved(z=h - cap))
     x, each_w, each_h = depth / 2 - 0.01, (w - 0.03) / columns, (h - base_h - cap - 0.02) / drawers
+    between = tuple(-w / 2 + 0.015 + each_w * c for c in range(1, columns))
+    cavity = Cavity((depth, w, h - base_h - cap), (-0.01, 0, base_h), dividers=between)
+    parts = plinth(depth, w, base_h, style.wood) + cavity.body(style.wood)
+    parts += of(style.top or style.wood, box((d, w + 0.02, cap), style.edge_m, 2).moved(z=h - cap))
     for c in range(columns):
         y = -w / 2 + 0.015 + each_w * (c + 0.5)
         for k in range(drawers):
             z = base_h + 0.01 + each_h * k
-            parts += drawer_front(x, y, z, each_w - 0.008, each_h - 0.008, style.wood, style.fitting, "cup")
+            space = cavity.behind(y, z, each_w - 0.008, each_h - 0.008)
+            front = drawer_front(x, y, z, each_w - 0.008, each_h - 0.008, style.wood, style.fitting, "cup", space)
             frame = [box((0.004, 0.085, 0.005), 0.001).moved(x + 0.019, y, z + each_h * 0.72 + f) for f in (0, 0.034)]
-            parts += of(style.fitting, *frame) + of(
-                m.PAPER, box((0.002, 0.075, 0.03), 0.0005).moved(x + 0.019, y, z + each_h * 0.72 + 0.005)
-            )
+            paper = box((0.002, 0.075, 0.03), 0.0005).moved(x + 0.019, y, z + each_h * 0.72 + 0.005)
+            parts += on_front(front, of(style.fitting, *frame) + of(m.PAPER, paper))
     return parts
 
 

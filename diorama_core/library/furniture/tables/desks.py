@@ -15,13 +15,11 @@ def pedestal_desk(size: Size, wood: Material, body: Material, pull: Material, si
     for side in (1, -1):
         y = side * (w / 2 - pw / 2 - 0.02)
         if side in sides:
-            parts += of(
-                body,
-                box((d - 0.06, pw, h - t - 0.05), 0.004).moved(-0.005, y, 0.05),
-                box((d - 0.12, pw - 0.06, 0.05), 0.002).moved(0, y),
-            )
+            cavity = Cavity((d - 0.06, pw, h - t - 0.05), (-0.005, y, 0.05))
+            parts += cavity.body(body) + of(body, box((d - 0.12, pw - 0.06, 0.05), 0.002).moved(0, y))
             for z, fh in ((0.06, 0.30), (0.37, 0.155), (0.535, h - t - 0.545)):
-                parts += drawer_front(d / 2 - 0.037, y, z, pw - 0.012, fh, body, pull, "bar")
+                space = cavity.behind(y, z, pw - 0.012, fh)
+                parts += drawer_front(d / 2 - 0.037, y, z, pw - 0.012, fh, body, pull, "bar", space)
         else:
             parts += of(
                 body,
@@ -37,9 +35,11 @@ def drawer_desk(size: Size, wood: Material, legs: Material, pull: Material, spla
     """A writing desk: shallow drawers under the top, slim legs."""
     d, w, h = size
     t, case = 0.022, 0.1
-    parts = of(
-        wood, box((d, w, t), 0.006, 2).moved(z=h - t), box((d - 0.04, w - 0.06, case), 0.004).moved(z=h - t - case)
-    )
+    n = 3 if w > 1.25 else 2
+    each = (w - 0.09) / n
+    between = tuple(-w / 2 + 0.045 + each * k for k in range(1, n))
+    cavity = Cavity((d - 0.04, w - 0.06, case), (0, 0, h - t - case), wall=0.01, dividers=between)
+    parts = of(wood, box((d, w, t), 0.006, 2).moved(z=h - t)) + cavity.body(wood)
     x, y = d / 2 - 0.07, w / 2 - 0.08
     leg = (
         rod((x + 0.03, y + 0.035, 0), (x - 0.01, y - 0.01, h - t - case + 0.01), 0.012, 0.021, 14)
@@ -47,19 +47,10 @@ def drawer_desk(size: Size, wood: Material, legs: Material, pull: Material, spla
         else taper((x + 0.02, y + 0.02, 0), (x + 0.02, y + 0.02, h - t - case + 0.01), 0.026, 0.04)
     )
     parts += of(legs, *four(leg))
-    n = 3 if w > 1.25 else 2
-    each = (w - 0.09) / n
     for k in range(n):
-        parts += drawer_front(
-            d / 2 - 0.021,
-            -w / 2 + 0.045 + each * (k + 0.5),
-            h - t - case + 0.008,
-            each - 0.008,
-            case - 0.016,
-            wood,
-            pull,
-            "knob",
-        )
+        y, z, wide, tall = -w / 2 + 0.045 + each * (k + 0.5), h - t - case + 0.008, each - 0.008, case - 0.016
+        space = cavity.behind(y, z, wide, tall)
+        parts += drawer_front(d / 2 - 0.021, y, z, wide, tall, wood, pull, "knob", space)
     return parts
 
 

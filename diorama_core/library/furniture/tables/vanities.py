@@ -16,49 +16,35 @@ def vanity(size: Size, style: Style, mirror: str, pedestals: bool = False) -> Pa
     top_z = h if mirror == "none" else TABLE_M
     t, case_h = 0.024, 0.12
     x, y = d / 2 - 0.045, w / 2 - 0.05
+    handle = "knob" if style.handle in ("none", "bar") else style.handle
     parts = of(style.top or style.wood, box((d, w, t), style.edge_m, 2).moved(z=top_z - t))
     if pedestals:
-        wide = 0.29 * w
-        parts += of(
-            style.wood,
-            *both_sides(
-                box((d - 0.05, wide, top_z - t - 0.08), 0.004).moved(-0.012, w / 2 - wide / 2 - 0.012, 0.08),
-                box((d - 0.1, wide - 0.04, 0.085), 0.003).moved(-0.015, w / 2 - wide / 2 - 0.012),
-            ),
-            box((d - 0.06, w - 2 * wide, 0.09), 0.003).moved(-0.012, 0, top_z - t - 0.09),
-        )
+        wide, xf = 0.29 * w, d / 2 - 0.04
+        middle = Cavity((d - 0.06, w - 2 * wide, 0.09), (-0.012, 0, top_z - t - 0.09), wall=0.01)
+        parts += middle.body(style.wood, 0.003)
+        foot = box((d - 0.1, wide - 0.04, 0.085), 0.003).moved(-0.015, w / 2 - wide / 2 - 0.012)
+        parts += of(style.wood, *both_sides(foot))
         each = (top_z - t - 0.1) / 3
         for f in (1, -1):
+            y = f * (w / 2 - wide / 2 - 0.012)
+            cavity = Cavity((d - 0.05, wide, top_z - t - 0.08), (-0.012, y, 0.08))
+            parts += cavity.body(style.wood)
             for k in range(3):
-                parts += drawer_front(
-                    d / 2 - 0.04,
-                    f * (w / 2 - wide / 2 - 0.012),
-                    0.09 + each * k,
-                    wide - 0.012,
-                    each - 0.008,
-                    style.wood,
-                    style.fitting,
-                    "knob" if style.handle in ("none", "bar") else style.handle,
-                )
-        parts += drawer_front(
-            d / 2 - 0.04, 0, top_z - t - 0.085, w - 2 * wide - 0.036, 0.078, style.wood, style.fitting, "knob"
-        )
+                place = (y, 0.09 + each * k, wide - 0.012, each - 0.008)
+                parts += drawer_front(xf, *place, style.wood, style.fitting, handle, cavity.behind(*place))
+        place = (0.0, top_z - t - 0.085, w - 2 * wide - 0.036, 0.078)
+        parts += drawer_front(xf, *place, style.wood, style.fitting, "knob", middle.behind(*place))
     else:
         parts += of(style.frame, *four(leg(style.leg, x, y, top_z - t, 0.045, 0.05)))
-        parts += of(style.wood, box((2 * x + 0.012, 2 * y + 0.012, case_h), 0.004).moved(z=top_z - t - case_h))
         n = 3 if w > 0.95 else 2
         each = (2 * y - 0.05) / n
+        between = tuple(-y + 0.025 + each * k for k in range(1, n))
+        size_of_case = (2 * x + 0.012, 2 * y + 0.012, case_h)
+        cavity = Cavity(size_of_case, (0, 0, top_z - t - case_h), wall=0.01, dividers=between)
+        parts += cavity.body(style.wood)
         for k in range(n):
-            parts += drawer_front(
-                x + 0.003,
-                -y + 0.025 + each * (k + 0.5),
-                top_z - t - case_h + 0.008,
-                each - 0.01,
-                case_h - 0.016,
-                style.wood,
-                style.fitting,
-                "knob" if style.handle in ("none", "bar") else style.handle,
-            )
+            place = (-y + 0.025 + each * (k + 0.5), top_z - t - case_h + 0.008, each - 0.01, case_h - 0.016)
+            parts += drawer_front(x + 0.003, *place, style.wood, style.fitting, handle, cavity.behind(*place))
     return parts + ([] if mirror == "none" else _mirror(d, w, h, top_z, style, mirror))
 
 

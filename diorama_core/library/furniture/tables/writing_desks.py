@@ -16,19 +16,14 @@ def styled_desk(size: Size, style: Style, drawers: int = 3, gallery: bool = Fals
     x, y = d / 2 - 0.05, w / 2 - 0.055
     parts = of(style.top or style.wood, box((d, w, t), style.edge_m, 2).moved(z=desk_h - t))
     parts += of(style.frame, *four(leg(style.leg, x, y, desk_h - t, 0.055, 0.05)))
-    parts += of(style.wood, box((2 * x + 0.01, 2 * y + 0.01, box_h), 0.004).moved(z=desk_h - t - box_h))
     each = (2 * y - 0.06) / max(drawers, 1)
+    between = tuple(-y + 0.03 + each * k for k in range(1, drawers))
+    cavity = Cavity((2 * x + 0.01, 2 * y + 0.01, box_h), (0, 0, desk_h - t - box_h), wall=0.01, dividers=between)
+    parts += cavity.body(style.wood)
     for k in range(drawers):
-        parts += drawer_front(
-            x + 0.002,
-            -y + 0.03 + each * (k + 0.5),
-            desk_h - t - box_h + 0.008,
-            each - 0.01,
-            box_h - 0.016,
-            style.wood,
-            style.fitting,
-            "knob" if style.handle in ("none", "bar") else style.handle,
-        )
+        place = (-y + 0.03 + each * (k + 0.5), desk_h - t - box_h + 0.008, each - 0.01, box_h - 0.016)
+        handle = "knob" if style.handle in ("none", "bar") else style.handle
+        parts += drawer_front(x + 0.002, *place, style.wood, style.fitting, handle, cavity.behind(*place))
     if gallery:
         depth, xb = 0.22, -d / 2
         parts += of(
@@ -49,9 +44,9 @@ def secretary(size: Size, style: Style, open_flap: bool = True) -> Parts:
     low, t = 0.74, 0.022
     body = d * 0.56 if open_flap else d - 0.03
     xb = -d / 2 + body / 2
-    parts = of(
+    cavity = Cavity((body, w, low - 0.1), (xb, 0, 0.1))
+    parts = cavity.body(style.wood) + of(
         style.wood,
-        box((body, w, low - 0.1), 0.004).moved(xb, 0, 0.1),
         *(
             q.moved(xb)
             for q in four(leg("bun" if style.leg == "turned" else "taper", body / 2 - 0.04, w / 2 - 0.05, 0.11, 0.05))
@@ -60,16 +55,9 @@ def secretary(size: Size, style: Style, open_flap: bool = True) -> Parts:
     n, x = 3, -d / 2 + body
     each = (low - 0.14) / n
     for k in range(n):
-        parts += drawer_front(
-            x - 0.01,
-            0,
-            0.115 + each * k,
-            w - 0.03,
-            each - 0.008,
-            style.wood,
-            style.fitting,
-            "knob" if style.handle in ("none", "bar") else style.handle,
-        )
+        place = (0.0, 0.115 + each * k, w - 0.03, each - 0.008)
+        handle = "knob" if style.handle in ("none", "bar") else style.handle
+        parts += drawer_front(x - 0.01, *place, style.wood, style.fitting, handle, cavity.behind(*place))
     side = [
         (-d / 2, 0.0),
         (-d / 2 + body, 0.0),

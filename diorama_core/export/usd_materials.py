@@ -5,23 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from jaxtyping import Float, UInt8
+from jaxtyping import Float
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux, UsdShade, Vt
 
-from diorama_core.export.gathering import slug_of, unique_name
-from diorama_core.export.lights import ExportLight
+from diorama_core.export.lights import ExportLight, MainLight
+from diorama_core.export.names import slug_of, unique_name
+from diorama_core.export.pictures import Picture, picture_suffix
 from diorama_core.export.usd_values import extent, integers, place, vectors
 from diorama_core.render.appearance import Material, Surface
 from diorama_core.scene.types import Camera
 
-Picture = UInt8[np.ndarray, "h w c"]
 _CAMERA_AXES = np.diag([1.0, -1.0, -1.0])
 """USD's cameras look along their -z with y up; ours along +z with y down."""
+SOFT_DEG = 15.0
+"""Angle that a room's main light fills: its shadows have soft edges."""
 _APERTURE = 36.0
 _COLOUR, _NUMBER, _VECTOR = Sdf.ValueTypeNames.Color3f, Sdf.ValueTypeNames.Float, Sdf.ValueTypeNames.Float3
 
 
-class Looks:
+class StageMaterials:
     """Materials of a stage and the files of their pictures."""
 
     def __init__(self, stage: Usd.Stage, folder: str) -> None:
@@ -124,13 +126,12 @@ class Looks:
 
     def _file(self, picture: Picture) -> str:
         if id(picture) not in self._files:
-            large = picture.shape[2] == 3 and picture.shape[0] * picture.shape[1] > 512 * 512
-            name = f"{self._folder}/{len(self._files)}.{'jpg' if large else 'png'}"
+            name = f"{self._folder}/{len(self._files)}{picture_suffix(picture)}"
             self._files[id(picture)] = (name, picture)  # holding the picture keeps its id from being reused
         return self._files[id(picture)][0]
 
 
-def add_surfaces(stage: Usd.Stage, path: str, surfaces: tuple[Surface, ...], looks: Looks) -> None:
+def add_surfaces(stage: Usd.Stage, path: str, surfaces: tuple[Surface, ...], materials: StageMaterials) -> None:
     """One mesh a surface below a prim, with its materials beside them."""
     UsdGeom.Scope.Define(stage, f"{path}/Materials")
     taken: set[str] = set()
@@ -140,7 +141,7 @@ def add_surfaces(stage: Usd.Stage, path: str, surfaces: tuple[Surface, ...], loo
         key = (id(surface.material), textured, coloured)
         if key not in made:
             name = unique_name(slug_of(surface.material.name), taken, "_")
-            material = looks.material(
+            material = materials.material(
                 f"{path}/Materials/{name}", surface.material, textured=textured, coloured=coloured
             )
             made[key] = material
@@ -202,3 +203,13 @@ def add_light(stage: Usd.Stage, path: str, light: ExportLight, T: Float[np.ndarr
         rect.CreateExtentAttr(extent(np.array([[-width, -height, 0.0], [width, height, 0.0]]) / 2))
         made = rect
     place(made, T)
+
+
+def add_main_light(stage: Usd.Stage, path: str, light: MainLight) -> None:
+    """The photo's main light, infinitely far away and a little soft."""
+    made = UsdLux.DistantLight.Define(stage, path)
+    made.CreateIntensityAttr(light.lux)
+    made.CreateAngleAttr(SOFT_DEG)
+    made.CreateNormalizeAttr(True)
+    made.CreateColorAttr(Gf.Vec3f(*light.colour))
+    place(made, light.T_world)

@@ -1,0 +1,56 @@
+"""What is read of a project before it is shown: the scene, the photo, textures, notes, and what is damaged."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from diorama_app.session.textures import Textures
+from diorama_core.artefacts import Inputs
+from diorama_core.errors import ProjectError
+from diorama_core.io.bounded import shortened
+from diorama_core.project.storage import Project
+from diorama_core.scene.types import Scene
+
+MAX_NOTES, MAX_NOTE_LENGTH = 50, 300
+
+
+@dataclass(frozen=True, eq=False)
+class ProjectContents:
+    """A project as it is on disk."""
+
+    scene: Scene
+    """The newest version that can be read; empty where nothing was built yet."""
+    inputs: Inputs | None
+    """What is known of the photo; None without one."""
+    textures: Textures
+    notes: tuple[str, ...]
+    """What the build said about how the scene was made."""
+    damage: tuple[str, ...]
+    """One line for everything that could not be read."""
+
+
+def read_project(project: Project) -> ProjectContents:
+    """Read a project; parts that are damaged are left out and named.
+
+    Raises:
+        ProjectError, SceneError: no version of the scene can be read.
+    """
+    inputs, photo_damage = _inputs(project)
+    unfinished = inputs is not None and not project.has_scene
+    scene, scene_damage = (Scene(), "") if unfinished else project.newest_scene()
+    damage = tuple(line for line in (scene_damage, photo_damage) if line)
+    return ProjectContents(scene, inputs, project.textures(scene), build_notes(project), damage)
+
+
+def build_notes(project: Project) -> tuple[str, ...]:
+    """What the project's build had to say, each line once and of bounded length."""
+    notes = project.info().get("notes", [])
+    listed = notes if isinstance(notes, list) else []
+    return tuple(dict.fromkeys(shortened(str(note), MAX_NOTE_LENGTH) for note in listed[:MAX_NOTES]))
+
+
+def _inputs(project: Project) -> tuple[Inputs | None, str]:
+    try:
+        return project.load_inputs(), ""
+    except ProjectError as error:
+        return None, str(error)

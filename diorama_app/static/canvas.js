@@ -1,0 +1,195 @@
+// The photo over the 3D view, with boxes that are drawn, selected, dragged by their corners and edges, named and deleted.
+// The server tells what there is with __dioCanvas.told (viewport/annotation_canvas.py) and hears what a person does.
+(() => {
+  const C = window.__dioCanvas = {};
+  const COLOURS = ["#2f6fd6", "#d6542f", "#1f8a55", "#a050c8", "#b07a00", "#0f8a99"];
+  const NEAR_PX = 4; // a press that moves less is a click
+  const HANDLES = ["nw", "n", "ne", "e", "se", "s", "sw", "w"];
+  const state = { photo: null, boxes: [], selected: null, mask: null, next: "" };
+  let root, figure, layer, drag;
+
+  const send = (what, arg) => {
+    const button = document.getElementById("dio-canvas-send");
+    if (!button) return;
+    button.dataset.do = what;
+    button.dataset.arg = JSON.stringify(arg);
+    button.click();
+  };
+  const element = (tag, className, more = {}) => Object.assign(document.createElement(tag), { className, ...more });
+
+  const build = () => {
+    root = element("div", "dio-canvas");
+    const bar = element("div", "dio-canvas-bar");
+    bar.append(element("span", "", { textContent: state.photo.hint }));
+    bar.append(element("button", "", { type: "button", textContent: "Done", onclick: () => send("done", null) }));
+    figure = element("div", "dio-canvas-figure");
+    layer = element("div", "dio-canvas-layer", { tabIndex: -1 });
+    const names = element("datalist", "", { id: "dio-canvas-names" });
+    names.append(...state.photo.names.map((value) => element("option", "", { value })));
+    figure.append(element("img", "", { src: state.photo.url, alt: "The photo", draggable: false }), layer);
+    root.append(bar, figure, names);
+    layer.addEventListener("pointerdown", press);
+    layer.addEventListener("pointermove", move);
+    layer.addEventListener("pointerup", release);
+    layer.addEventListener("pointercancel", () => { drag = null; draw(); });
+    layer.addEventListener("dblclick", () => layer.querySelector("input")?.select());
+    document.body.append(root);
+    addEventListener("dio-measured", place);
+    addEventListener("resize", place);
+    place();
+  };
+  const close = () => {
+    removeEventListener("dio-measured", place);
+    removeEventListener("resize", place);
+    root?.remove();
+    root = drag = null;
+  };
+  // Over what is seen of the 3D view: panels may lie over it.
+  const place = () => {
+    if (!root) return;
+    const seen = window.__dioVisible();
+    Object.assign(root.style, {
+      left: `${seen.left}px`, top: `${seen.top}px`, width: `${seen.width}px`, height: `${seen.height}px`,
+    });
+    const [width, height] = state.photo.size, room = [seen.width - 24, seen.height - 68];
+    const scale = Math.max(0.01, Math.min(room[0] / width, room[1] / height));
+    Object.assign(figure.style, { width: `${width * scale}px`, height: `${height * scale}px` });
+  };
+
+  const pixel = (event) => {
+    const seen = layer.getBoundingClientRect(), [width, height] = state.photo.size;
+    const share = (value, low, size) => Math.min(1, Math.max(0, (value - low) / size));
+    return [share(event.clientX, seen.left, seen.width) * width, share(event.clientY, seen.top, seen.height) * height];
+  };
+  const within = ([x, y], [x1, y1, x2, y2]) => x >= x1 && x <= x2 && y >= y1 && y <= y2;
+  const area = ([x1, y1, x2, y2]) => (x2 - x1) * (y2 - y1);
+  const hit = (point) => {
+    let best = null;
+    state.boxes.forEach((row, i) => {
+      if (within(point, row.box) && (best === null || area(row.box) < area(state.boxes[best].box))) best = i;
+    });
+    return best;
+  };
+  const spanned = (a, b) => [Math.min(a[0], b[0]), Math.min(a[1], b[1]), Math.max(a[0], b[0]), Math.max(a[1], b[1])];
+
+  const pulled = ([x1, y1, x2, y2], side, [x, y]) => {
+    if (side.includes("w")) x1 = x;
+    if (side.includes("e")) x2 = x;
+    if (side.includes("n")) y1 = y;
+    if (side.includes("s")) y2 = y;
+    return spanned([x1, y1], [x2, y2]);
+  };
+  const moved = ([x1, y1, x2, y2], dx, dy) => {
+    const [width, height] = state.photo.size;
+    const x = Math.min(Math.max(dx, -x1), width - x2), y = Math.min(Math.max(dy, -y1), height - y2);
+    return [x1 + x, y1 + y, x2 + x, y2 + y];
+  };
+
+  const press = (event) => {
+    if (event.button !== 0 || event.target.closest("input, .dio-canvas-name button")) return;
+    document.activeElement?.blur();
+    event.preventDefault();
+    layer.setPointerCapture(event.pointerId);
+    const from = pixel(event), at = [event.clientX, event.clientY], side = event.target.dataset.side;
+    const chosen = state.selected === null ? undefined : state.boxes[state.selected];
+    if (state.photo.mode === "points") drag = { kind: "point", from, at };
+    else if (side && chosen) drag = { kind: "pull", side, was: chosen.box, from, at };
+    else if (chosen && hit(from) === state.selected) drag = { kind: "move", was: chosen.box, from, at };
+    else drag = { kind: "new", from, at };
+  };
+  const move = (event) => {
+    if (!drag) return;
+    const to = pixel(event);
+    drag.far = drag.far || Math.hypot(event.clientX - drag.at[0], event.clientY - drag.at[1]) >= NEAR_PX;
+    if (!drag.far) return;
+    if (drag.kind === "new") drag.box = spanned(drag.from, to);
+    if (drag.kind === "pull") drag.box = pulled(drag.was, drag.side, to);
+    if (drag.kind === "move") drag.box = moved(drag.was, to[0] - drag.from[0], to[1] - drag.from[1]);
+    draw();
+  };
+  const release = (event) => {
+    if (!drag) return;
+    const { kind, box, far, from } = drag;
+    drag = null;
+    if (kind === "point") { if (!far) send("point", [...from, !event.shiftKey]); return; }
+    if (!far && kind !== "pull") {
+      const found = hit(from);
+      if (state.photo.mode === "boxes") { state.selected = found; send("select", found); }
+    } else if (far && kind === "new") {
+      if (state.photo.mode === "boxes") {
+        state.selected = null;
+        state.boxes = [...state.boxes, { box, label: state.next }];
+      }
+      send("draw", box);
+    } else if (far) {
+      state.boxes[state.selected].box = box;
+      send("change", [state.selected, box]);
+    }
+    draw();
+  };
+
+  const boxElement = (row, i) => {
+    const on = i === state.selected, [width, height] = state.photo.size;
+    const box = on && drag?.box && drag.kind !== "new" ? drag.box : row.box;
+    const node = element("div", `dio-canvas-box${on ? " on" : ""}`);
+    node.style.cssText = `left:${100 * box[0] / width}%;top:${100 * box[1] / height}%;` +
+      `width:${100 * (box[2] - box[0]) / width}%;height:${100 * (box[3] - box[1]) / height}%;` +
+      `--box:${COLOURS[i % COLOURS.length]}`;
+    const name = element("div", `dio-canvas-name${box[1] / height < 0.06 ? " inside" : ""}`);
+    if (on && state.photo.mode === "boxes") {
+      const field = element("input", "", { value: row.label, ariaLabel: "Name of the selected box" });
+      field.setAttribute("list", "dio-canvas-names");
+      field.size = Math.max(8, row.label.length + 1);
+      field.onchange = () => send("name", [i, field.value]);
+      const remove = element("button", "", { type: "button", textContent: "✕", title: "Delete this box (Delete)" });
+      remove.setAttribute("aria-label", `Delete the box ${row.label}`);
+      remove.onclick = () => send("delete", i);
+      name.append(field, remove);
+      node.append(...HANDLES.map((side) => {
+        const handle = element("i", `dio-canvas-handle ${side}`);
+        handle.dataset.side = side;
+        return handle;
+      }));
+    } else {
+      name.textContent = row.label;
+      Object.assign(node, { tabIndex: 0, role: "button", ariaLabel: row.label });
+      node.onkeydown = (event) => {
+        if (event.key !== "Enter" && event.key !== " ") return;
+        event.preventDefault();
+        send("select", i);
+      };
+    }
+    node.append(name);
+    return node;
+  };
+  const draw = () => {
+    if (!root) return;
+    const typing = layer.contains(document.activeElement) && document.activeElement.tagName === "INPUT";
+    if (typing && !drag && document.activeElement.closest(".on")) document.activeElement.blur();
+    const nodes = state.boxes.map(boxElement);
+    if (drag?.kind === "new" && drag.box) {
+      nodes.push(boxElement({ box: drag.box, label: state.next }, state.boxes.length));
+    }
+    if (state.mask) nodes.unshift(element("img", "dio-canvas-mask", { src: state.mask, alt: "Outline" }));
+    layer.replaceChildren(...nodes);
+  };
+
+  addEventListener("keydown", (event) => {
+    if (!root || event.target.closest?.("input, textarea, select")) return;
+    if ((event.key === "Delete" || event.key === "Backspace") && state.photo.mode === "boxes") {
+      event.stopImmediatePropagation();
+      event.preventDefault();
+      if (state.selected !== null) send("delete", state.selected);
+    }
+  }, true);
+
+  C.told = (news) => {
+    const before = state.photo?.url;
+    Object.assign(state, news);
+    if (!state.photo) return close();
+    if (root && before !== state.photo.url) close();
+    if (!root) build();
+    root.querySelector(".dio-canvas-bar span").textContent = state.photo.hint;
+    draw();
+  };
+})();

@@ -1,0 +1,230 @@
+"""The photo over the 3D view in one browser: boxes are drawn, selected, changed and deleted on it, points are clicked.
+
+The page draws it (`static/canvas.js`): a box follows the hand at once, and the server hears when it is let go of.
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+import viser
+from jaxtyping import Bool, UInt8
+from PIL import Image
+
+from diorama_app.viewport.mesh_assets import reduced
+from diorama_app.web.html import Action, LiveHtml, run_once
+from diorama_core.artefacts import Box, LabelledBox
+
+MAX_SIDE_PX, MAX_MASK_PX = 1600, 800
+JPEG_QUALITY = 85
+MASK_COLOUR = (255, 90, 20, 110)
+MIN_BOX_PX = 3
+MAX_LABEL = 40
+
+Mode = Literal["boxes", "one box", "points"]
+HINTS: dict[Mode, str] = {
+    "boxes": "Drag around each piece of furniture. Click a box to change it.",
+    "one box": "Drag a new box around the object.",
+    "points": "Click the object; Shift-click what does not belong to it.",
+}
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A rectangle was drawn, in photo pixels."""
+
+    box: Box
+
+
+@dataclass(frozen=True)
+class Reshaped:
+    """A box was moved or resized."""
+
+    index: int
+    box: Box
+
+
+@dataclass(frozen=True)
+class Selected:
+    """A box was clicked; None for a click beside all boxes."""
+
+    index: int | None
+
+
+@dataclass(frozen=True)
+class Named:
+    """A name was written on a box."""
+
+    index: int
+    label: str
+
+
+@dataclass(frozen=True)
+class Deleted:
+    """A box is to go."""
+
+    index: int
+
+
+@dataclass(frozen=True)
+class Pointed:
+    """A pixel was clicked."""
+
+    x: float
+    y: float
+    is_part: bool
+    """Without Shift: the pixel is part of the object."""
+
+
+@dataclass(frozen=True)
+class Finished:
+    """The person is done."""
+
+
+Event = Drawn | Reshaped | Selected | Named | Deleted | Pointed | Finished
+OnEvent = Callable[[Event], None]
+
+
+class AnnotationCanvas:
+    """Shows the photo and reports what is done on it. Used from the UI thread only."""
+
+    def __init__(self, gui: viser.GuiApi) -> None:
+        self._on_event: OnEvent | None = None
+        self._size = (1, 1)
+        self._names: tuple[str, ...] = ()
+        sender = LiveHtml(gui, self._received)
+        sender.show('<button type="button" id="dio-canvas-send" style="display:none" tabindex="-1"></button>')
+        self._photo, self._boxes, self._mask, self._next = (_Told(gui) for _ in range(4))
+        self._photo.tell({"photo": None})
+
+    @property
+    def is_open(self) -> bool:
+        """Whether this browser shows the canvas."""
+        return self._on_event is not None
+
+    def open(
+        self,
+        photo: UInt8[np.ndarray, "h w 3"],
+        on_event: OnEvent,
+        mode: Mode = "boxes",
+        *,
+        names: Sequence[str] = (),
+        next_label: str = "",
+    ) -> None:
+        """Show the photo to draw on or to click on.
+
+        Args:
+            photo: the picture.
+            on_event: told what is done on it, from viser's event loop.
+            mode: what can be done.
+            names: suggested when a box is named.
+            next_label: what the next box is called.
+        """
+        self.close()
+        self._on_event = on_event
+        height, width = photo.shape[:2]
+        self._size = width, height
+        told = {
+            "url": _uri(Image.fromarray(reduced(photo, MAX_SIDE_PX)), "JPEG", quality=JPEG_QUALITY),
+            "size": [width, height],
+            "mode": mode,
+            "hint": HINTS[mode],
+            "names": list(names),
+        }
+        self._photo.tell({"photo": told})
+        self.next_label(next_label)
+
+    def next_label(self, label: str) -> None:
+        """What the next box is called."""
+        self._next.tell({"next": label})
+
+    def show_boxes(self, boxes: Sequence[LabelledBox], selected: int | None) -> None:
+        """Draw the boxes over the photo."""
+        if self.is_open:
+            rows = [{"box": list(b.box), "label": b.label[:MAX_LABEL]} for b in boxes]
+            self._boxes.tell({"boxes": rows, "selected": selected})
+
+    def show_mask(self, mask: Bool[np.ndarray, "h w"]) -> None:
+        """Lay an outline over the photo."""
+        if not self.is_open:
+            return
+        tint = np.zeros((*mask.shape, 4), dtype=np.uint8)
+        tint[mask] = MASK_COLOUR
+        step = max(1, max(mask.shape) // MAX_MASK_PX)
+        self._mask.tell({"mask": _uri(Image.fromarray(np.ascontiguousarray(tint[::step, ::step])), "PNG")})
+
+    def close(self) -> None:
+        """Put the photo away."""
+        if not self.is_open:
+            return
+        self._on_event = None
+        self._photo.tell({"photo": None})
+        self._boxes.tell({"boxes": [], "selected": None})
+        self._mask.tell({"mask": None})
+
+    def _received(self, action: Action) -> None:
+        on_event = self._on_event
+        event = _event(action, self._size)
+        if on_event is not None and event is not None:
+            on_event(event)
+
+
+class _Told:
+    """One part of what the page knows; a newer message replaces an older one that was not sent yet."""
+
+    def __init__(self, gui: viser.GuiApi) -> None:
+        self._html = gui.add_html("")
+        self._last = ""
+
+    def tell(self, news: dict[str, Any]) -> None:
+        told = json.dumps(news, separators=(",", ":"))
+        if told != self._last:
+            self._last = told
+            self._html.content = run_once(f"window.__dioCanvas.told({told})")
+
+
+def _event(action: Action, size: tuple[int, int]) -> Event | None:
+    """What a page says was done; None for what is no event."""
+    try:
+        arg = json.loads(action.arg)
+        match action.do:
+            case "draw":
+                return Drawn(_box(arg, size))
+            case "change":
+                return Reshaped(int(arg[0]), _box(arg[1], size))
+            case "select":
+                return Selected(None if arg is None else int(arg))
+            case "name":
+                return Named(int(arg[0]), str(arg[1])[:MAX_LABEL])
+            case "delete":
+                return Deleted(int(arg))
+            case "point":
+                return Pointed(float(arg[0]), float(arg[1]), bool(arg[2]))
+            case "done":
+                return Finished()
+    except (ValueError, TypeError, LookupError):
+        return None  # from a page that is not ours, or less than `MIN_BOX_PX`
+    return None
+
+
+def _box(corners: Any, size: tuple[int, int]) -> Box:
+    """The box between two corners, cut at the photo's edges; raises `ValueError` where too little is left."""
+    x1, y1, x2, y2 = (float(v) for v in corners)
+    (x1, x2), (y1, y2) = sorted((x1, x2)), sorted((y1, y2))
+    x1, x2 = (min(max(x, 0.0), float(size[0])) for x in (x1, x2))
+    y1, y2 = (min(max(y, 0.0), float(size[1])) for y in (y1, y2))
+    if not (x2 - x1 >= MIN_BOX_PX and y2 - y1 >= MIN_BOX_PX):
+        raise ValueError("too small")
+    return x1, y1, x2, y2
+
+
+def _uri(picture: Image.Image, kind: str, **options: int) -> str:
+    buffer = io.BytesIO()
+    picture.save(buffer, kind, **options)
+    return f"data:image/{kind.lower()};base64," + base64.b64encode(buffer.getvalue()).decode()

@@ -1,0 +1,133 @@
+"""The camera of one browser's 3D view: where it stands, where it looks, and what it sees."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import viser
+from jaxtyping import Float
+
+from diorama_app.viewport.framing import DEFAULT_FOV_RAD
+from diorama_core.geometry.rotations import quaternion_wxyz, rotation_from_quaternion
+from diorama_core.scene.types import Camera, Intrinsics
+
+
+def screen_rays(
+    screen: Float[np.ndarray, "*n 2"], R_world_camera: Float[np.ndarray, "3 3"], fov_rad: float, aspect: float
+) -> Float[np.ndarray, "*n 3"]:
+    """World directions through points of the screen (0 to 1, from the top left) of a camera with this vertical view."""
+    half = np.tan(fov_rad / 2)
+    s = 2.0 * np.asarray(screen, dtype=np.float64) - 1.0
+    camera = np.stack([s[..., 0] * half * aspect, s[..., 1] * half, np.ones(s.shape[:-1])], axis=-1)
+    return camera @ np.asarray(R_world_camera).T
+
+
+def fitting_fov(width: float, height: float, fx: float, fy: float, cx: float, cy: float, aspect: float) -> float:
+    """The vertical field of view (rad) whose frustum around the optical axis contains the whole photo."""
+    half_up = max(cy, height - cy) / fy
+    half_across = max(cx, width - cx) / fx
+    return float(2 * np.arctan(max(half_up, half_across / max(aspect, 1e-6))))
+
+
+class ViewCamera:
+    """Moves a browser's camera and tells where it is. Used from the UI thread only."""
+
+    def __init__(self, viser_client: viser.ClientHandle, on_move: Callable[[bool], None]) -> None:
+        """A camera that nothing has moved yet.
+
+        Args:
+            viser_client: the browser.
+            on_move: told before every move whether the view then goes through the photo's camera.
+        """
+        self._viser_client = viser_client
+        self._on_move = on_move
+        self.through_photo = False
+        """Whether the view was last sent to the photo's camera."""
+
+    @property
+    def fov_rad(self) -> float:
+        """Vertical field of view of this browser's 3D view."""
+        return float(self._viser_client.camera.fov)
+
+    @property
+    def aspect(self) -> float:
+        """Width over height of this browser's 3D view."""
+        return float(self._viser_client.camera.aspect)
+
+    @property
+    def position(self) -> Float[np.ndarray, "3"]:
+        """The eye, in the world (m)."""
+        return np.asarray(self._viser_client.camera.position, dtype=np.float64)
+
+    @property
+    def R_world_camera(self) -> Float[np.ndarray, "3 3"]:
+        """The eye's axes (OpenCV) in the world."""
+        return rotation_from_quaternion(np.asarray(self._viser_client.camera.wxyz))
+
+    @property
+    def target_point(self) -> Float[np.ndarray, "3"]:
+        """The point in the middle of the view."""
+        return np.asarray(self._viser_client.camera.look_at, dtype=np.float64)
+
+    def point_on_level(self, height_m: float) -> Float[np.ndarray, "3"]:
+        """Where the middle of the view meets a level plane; the target's place where it does not."""
+        position, ahead = self.position, self.target_point - self.position
+        along = (height_m - position[2]) / ahead[2] if abs(ahead[2]) > 1e-6 else -1.0
+        point = position + along * ahead if along > 0 else self.target_point
+        return np.array([point[0], point[1], height_m])
+
+    def for_picture(self, width: int, height: int) -> Camera:
+        """This view as a camera for a picture of the given size (px), with the same vertical field of view."""
+        focal = 0.5 * height / float(np.tan(0.5 * self.fov_rad))
+        T_world_camera = np.eye(4)
+        T_world_camera[:3, :3] = self.R_world_camera
+        T_world_camera[:3, 3] = self.position
+        return Camera(Intrinsics(width, height, focal, focal, width / 2, height / 2), T_world_camera)
+
+    def move(
+        self, position: Float[np.ndarray, "3"], target: Float[np.ndarray, "3"], fov_rad: float = float(DEFAULT_FOV_RAD)
+    ) -> None:
+        """Look from a place at a point, upright."""
+        self._moves(through_photo=False)
+        camera = self._viser_client.camera
+        with self._viser_client.atomic():
+            camera.fov = fov_rad
+            camera.up_direction = (0.0, 0.0, 1.0)
+            camera.position = position
+            camera.look_at = target
+        self._viser_client.flush()
+
+    def look_through(self, camera: Camera, target_distance_m: float) -> None:
+        """Look through the photo's camera, with the whole photo in view."""
+        self._moves(through_photo=True)
+        k, R = camera.intrinsics, camera.T_world_camera[:3, :3]
+        handle = self._viser_client.camera
+        with self._viser_client.atomic():
+            handle.fov = fitting_fov(k.width, k.height, k.fx, k.fy, k.cx, k.cy, self.aspect)
+            handle.up_direction = (0.0, 0.0, 1.0)
+            handle.position = camera.position
+            handle.look_at = camera.position + R[:, 2] * target_distance_m
+            handle.wxyz = quaternion_wxyz(R)
+        self._viser_client.flush()
+
+    def approach(self, target: Float[np.ndarray, "3"], distance_m: float) -> None:
+        """Look at a point from `distance_m`, keeping the direction of view."""
+        back = self.position - self.target_point
+        length = float(np.linalg.norm(back))
+        back = back / length if length > 1e-6 else np.array([-0.5, -0.7, 0.5])
+        self.move(target + back * distance_m, target, self.fov_rad)
+
+    def screen_axis(self, side: str) -> tuple[Float[np.ndarray, "3"], bool]:
+        """The level world axis nearest to the screen's "right" (or to "away" from the eye), and if it runs backward."""
+        right = self.R_world_camera[:, 0]
+        # Straight from above, "away" is the screen's up.
+        direction = right if side == "right" else np.cross((0.0, 0.0, 1.0), right)
+        axis = int(np.abs(direction[:2]).argmax())
+        unit = np.zeros(3)
+        unit[axis] = 1.0
+        return unit, bool(direction[axis] < 0)
+
+    def _moves(self, *, through_photo: bool) -> None:
+        self.through_photo = through_photo
+        self._on_move(through_photo)

@@ -1,0 +1,76 @@
+"""What the server adds to viser's answers: scripts, security headers, the token's cookie; and pictures of shapes."""
+
+from __future__ import annotations
+
+import asyncio
+import functools
+import gzip
+import http
+from concurrent.futures import Future
+from http.cookies import SimpleCookie
+
+from websockets.asyncio.server import ServerConnection
+from websockets.datastructures import Headers
+from websockets.http11 import Response
+
+from diorama_app.web.head import with_head
+
+TOKEN_COOKIE = "diorama_token"
+SECURITY_HEADERS = {
+    # viser's page is one file of inline scripts, starts workers from blobs and compiles WebAssembly and templates.
+    "Content-Security-Policy": "default-src 'none'; script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:; "
+    "style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; font-src 'self' data:; "
+    "connect-src 'self' data: blob:; worker-src 'self' blob:; media-src 'self' data: blob:; manifest-src 'self'; "
+    "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'self'",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Permissions-Policy": "camera=(), geolocation=(), microphone=(), payment=(), usb=()",
+    "Referrer-Policy": "no-referrer",
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "SAMEORIGIN",
+}
+
+
+def prepend_scripts(response: Response) -> None:
+    """Put our scripts in front of viser's, in the page itself; anything but a page is left alone."""
+    if not response.headers.get("Content-Type", "").startswith("text/html"):
+        return
+    zipped = response.headers.get("Content-Encoding") == "gzip"
+    response.body = _page(bytes(response.body or b""), zipped)
+    del response.headers["Content-Length"]
+    response.headers["Content-Length"] = str(len(response.body))
+
+
+@functools.lru_cache(maxsize=2)
+def _page(body: bytes, zipped: bool) -> bytes:
+    page = gzip.decompress(body) if zipped else body
+    page = with_head(page)
+    return gzip.compress(page, mtime=0) if zipped else page
+
+
+async def picture(connection: ServerConnection, asked: Future[bytes | None]) -> Response:
+    """The answer to a page that wants a picture: a PNG, or "not found" when `asked` gives None."""
+    png = await asyncio.wrap_future(asked)
+    if connection.protocol.eof_sent:
+        raise asyncio.CancelledError  # the page was closed meanwhile; websockets would trip over an answer to nobody
+    if png is None:
+        return Response(http.HTTPStatus.NOT_FOUND, "Not Found", Headers({"Content-Length": "0", "Connection": "close"}))
+    headers = {
+        "Content-Type": "image/png",
+        "Content-Length": str(len(png)),
+        "Cache-Control": "private, max-age=3600",
+        "Connection": "close",
+    }
+    response = Response(http.HTTPStatus.OK, "OK", Headers(headers), png)
+    add_headers(response, remember=None)
+    return response
+
+
+def add_headers(response: Response, *, remember: str | None) -> None:
+    """Add the security headers, and the access token as a cookie where one is given."""
+    for name, value in SECURITY_HEADERS.items():
+        response.headers[name] = value
+    if remember is not None:
+        cookie = SimpleCookie({TOKEN_COOKIE: remember})
+        cookie[TOKEN_COOKIE].update({"path": "/", "httponly": "1", "samesite": "Strict"})
+        response.headers["Set-Cookie"] = cookie[TOKEN_COOKIE].OutputString()

@@ -1,0 +1,94 @@
+"""A picture that was seen in part made whole: by its symmetry where it has one, else as the room's planes are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float32, UInt8
+
+from diorama_core.appearance.rectify import Rectified
+from diorama_core.architecture.texture.plane_textures import completed
+
+MIN_OVERLAP = 0.12
+"""Share of a picture that must be seen together with its mirror image to tell whether they are alike."""
+ALIKE = 0.35
+"""Mean difference to the mirror image, as a share of the picture's own variation, at which it is symmetric."""
+MAX_LEVELS = 16.0
+"""And at most this many levels of 255."""
+COMPLETED_SIDE_PX = 224
+"""Longer side at which what was not seen is made up."""
+WHOLLY = 0.99
+"""A reduced texel is known when so much of it was seen."""
+RIM_SHARE = 0.006
+"""Beside what is hidden so much of the longer side is given up: masks are a little small."""
+
+Picture = Float32[np.ndarray, "h w 3"]
+Mirror = Callable[[np.ndarray], np.ndarray]
+MIRRORS: tuple[Mirror, ...] = (
+    lambda picture: picture[:, ::-1],
+    lambda picture: picture[::-1, ::-1],
+    lambda picture: picture[::-1],
+)
+"""Left to right, half a turn, top to bottom."""
+
+
+def completed_picture(found: Rectified, pixel_m: float) -> UInt8[np.ndarray, "h w 3"]:
+    """The whole picture.
+
+    Args:
+        found: At least something of it is seen.
+        pixel_m: Size of a texel.
+    """
+    rim = round(RIM_SHARE * max(found.seen.shape))
+    seen = cv2.erode(found.seen.astype(np.uint8), np.ones((2 * rim + 1,) * 2, np.uint8), borderValue=1).astype(bool)
+    if not seen.any():
+        seen = found.seen
+    colours, seen = mirrored(found.colours, seen)
+    if seen.all():
+        return colours.clip(0, 255).astype(np.uint8)
+    behind = _continued(colours, seen, pixel_m)
+    share = cv2.GaussianBlur(cv2.erode(seen.astype(np.float32), np.ones((3, 3))), (0, 0), 1.5)[..., None]
+    mixed = share * seen[..., None]
+    return (mixed * colours + (1.0 - mixed) * behind).clip(0, 255).astype(np.uint8)
+
+
+def _continued(colours: Picture, seen: Bool[np.ndarray, "h w"], pixel_m: float) -> Picture:
+    """The picture completed at a reduced size: what nobody saw needs no more than its material and its shade."""
+    height, width = seen.shape
+    factor = min(1.0, COMPLETED_SIDE_PX / max(height, width))
+    size = (max(4, round(width * factor)), max(4, round(height * factor)))
+    weight = cv2.resize(seen.astype(np.float32), size, interpolation=cv2.INTER_AREA)
+    if weight.max() < WHOLLY:
+        return np.broadcast_to(np.median(colours[seen], axis=0), colours.shape).astype(np.float32)
+    small = cv2.resize(colours, size, interpolation=cv2.INTER_AREA)
+    known = weight >= WHOLLY
+    red, green, blue = (float(c) / 255.0 for c in np.median(small[known], axis=0))
+    whole = completed(small, known, (red, green, blue), pixel_m / factor, known, ground=True)
+    return cv2.resize(whole, (width, height), interpolation=cv2.INTER_LINEAR).astype(np.float32)
+
+
+def mirrored(colours: Picture, seen: Bool[np.ndarray, "h w"]) -> tuple[Picture, Bool[np.ndarray, "h w"]]:
+    """What is hidden filled in from mirror images of the picture that it is alike."""
+    for mirror in MIRRORS:
+        other, there = mirror(colours), mirror(seen)
+        if not (there & ~seen).any() or not _alike(colours, other, seen & there):
+            continue
+        gained = there & ~seen
+        share = cv2.GaussianBlur(cv2.erode(seen.astype(np.float32), np.ones((3, 3))), (0, 0), 1.5)[..., None]
+        blended = np.where(seen[..., None], colours, other)
+        both = (seen & there)[..., None]
+        colours = np.where(both, share * colours + (1 - share) * other, blended).astype(np.float32)
+        seen = seen | gained
+    return colours, seen
+
+
+def _alike(colours: Picture, other: Picture, both: Bool[np.ndarray, "h w"]) -> bool:
+    if both.mean() < MIN_OVERLAP:
+        return False
+    width = max(1.0, 0.01 * max(both.shape))
+    a, b = (cv2.GaussianBlur(np.ascontiguousarray(p), (0, 0), width)[both] for p in (colours, other))
+    spread = float(a.std(axis=0).mean())
+    difference = float(np.abs(a - b).mean())
+    return difference < MAX_LEVELS and difference < ALIKE * max(spread, 1.0)

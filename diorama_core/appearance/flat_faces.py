@@ -1,0 +1,145 @@
+"""Flat objects wear the photo: pictures, boards, screens that are on, windows' views, dials, rugs, doors, curtains.
+
+The rectangle of the slot that has the face is placed by the object's pose, brought in line with the object's box in
+the photo, and rectified. Frames, mats and stands stay what they are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+import trimesh
+from jaxtyping import Bool, Float, UInt8
+
+from diorama_core.appearance.completion import completed_picture
+from diorama_core.appearance.rectify import Rectified, corners_in_photo, rectified
+from diorama_core.artefacts import DetectedObject
+from diorama_core.geometry.projection import box_iou
+from diorama_core.library.slots import Slot, rectangle_of, slots_of
+from diorama_core.scene.types import Camera, SceneObject, TextureLayout
+
+MAIN = "main"
+FACES: Mapping[str, tuple[tuple[str, ...], TextureLayout]] = {
+    **dict.fromkeys(("picture", "photo frame"), (("picture",), "front")),
+    **dict.fromkeys(("television", "monitor", "laptop", "tablet"), (("screen",), "front")),
+    **dict.fromkeys(("clock", "mantel clock", "grandfather clock"), (("dial",), "front")),
+    **dict.fromkeys(("whiteboard", "bulletin board", "curtain", "blinds"), ((MAIN,), "front")),
+    **dict.fromkeys(("rug", "bath mat", "yoga mat"), ((MAIN,), "top")),
+    "door": ((MAIN, "pane"), "front"),
+    "window": (("pane",), "front"),
+}
+"""By category: roles of the slots that have the face (or the main slot), and which way it faces."""
+SEEN_THROUGH = {"screen", "pane"}
+"""A shape without a slot of these roles has no such face; of other flat things the main slot has it."""
+ROUGHNESS: Mapping[str, float] = {"screen": 0.2, "pane": 0.1, "picture": 0.6, "dial": 0.5, "fabric": 0.95}
+OTHER_ROUGHNESS = 0.6
+MIN_SEEN = 0.2
+"""A face of which less is seen keeps its own picture."""
+MIN_BOX_IOU = 0.5
+"""Boxes that overlap less tell nothing of where exactly the face is."""
+SURE_MASK = 0.95
+LIT_L, LIT_SPREAD_L = 30.0, 12.0
+"""A screen is on when its typical lightness, or its lightness' deviation, is at least this."""
+
+
+@dataclass(frozen=True, eq=False)
+class Face:
+    """The picture of one slot."""
+
+    slot: Slot
+    layout: TextureLayout
+    picture: UInt8[np.ndarray, "h w 3"]
+    roughness: float
+
+
+def faces_of(
+    item: SceneObject,
+    parts: trimesh.Scene,
+    rgb: UInt8[np.ndarray, "h w 3"],
+    hidden: Bool[np.ndarray, "h w"],
+    found: DetectedObject,
+    camera: Camera,
+) -> tuple[Face, ...]:
+    """The faces of an object that show in the photo; none for objects without a flat face.
+
+    Args:
+        item: In the pose in which the photo shows it.
+        parts: Its shape.
+        rgb: The photo.
+        hidden: Where something else stands before it.
+        found: The object in the photo.
+        camera: The photo's.
+    """
+    if item.category not in FACES:
+        return ()
+    roles, layout = FACES[item.category]
+    slots = slots_of(parts)
+    chosen = [s for s in slots if s.role in roles or (s.main and MAIN in roles)]
+    if not chosen and not SEEN_THROUGH & set(roles):
+        chosen = [s for s in slots if s.main]
+    if found.mask_confidence >= SURE_MASK:
+        hidden = hidden | ~found.mask
+    made = [_face(item, parts, slot, layout, rgb, hidden, found, camera) for slot in chosen]
+    return tuple(face for face in made if face is not None)
+
+
+def _face(
+    item: SceneObject,
+    parts: trimesh.Scene,
+    slot: Slot,
+    layout: TextureLayout,
+    rgb: UInt8[np.ndarray, "h w 3"],
+    hidden: Bool[np.ndarray, "h w"],
+    found: DetectedObject,
+    camera: Camera,
+) -> Face | None:
+    rectangle = rectangle_of(parts, slot, layout)
+    corners = corners_in_photo(camera, item.pose.apply(rectangle.corners))
+    if corners is None:
+        return None
+    corners = aligned(corners, _outline_box(item, parts, camera), found.box, (rgb.shape[1], rgb.shape[0]))
+    picture = rectified(rgb, hidden, corners)
+    if picture is None or picture.seen.mean() < MIN_SEEN:
+        return None
+    if slot.role == "screen" and not is_lit(picture):
+        return None
+    pixel_m = float(np.linalg.norm(rectangle.across * item.pose.scale)) / picture.seen.shape[1]
+    return Face(slot, layout, completed_picture(picture, pixel_m), ROUGHNESS.get(slot.role, OTHER_ROUGHNESS))
+
+
+def aligned(
+    corners_px: Float[np.ndarray, "4 2"],
+    projected: Float[np.ndarray, "4"],
+    detected: tuple[float, float, float, float],
+    size_px: tuple[int, int],
+) -> Float[np.ndarray, "4 2"]:
+    """The corners moved and scaled as the object's projected box is to its box in the photo.
+
+    Sides at the photo's edge say nothing; boxes that hardly overlap leave the corners where they are.
+    """
+    box, (width, height) = np.array(detected), size_px
+    inside = np.clip(projected, 0, [width, height, width, height])
+    if float(box_iou(inside, box)) < MIN_BOX_IOU:
+        return corners_px
+    out = corners_px.copy()
+    for axis, most in ((0, width), (1, height)):
+        low, high = projected[axis], projected[axis + 2]
+        to_low = low if box[axis] <= 2 else box[axis]
+        to_high = high if box[axis + 2] >= most - 2 else box[axis + 2]
+        out[:, axis] = to_low + (corners_px[:, axis] - low) * (to_high - to_low) / max(high - low, 1e-6)
+    return out
+
+
+def is_lit(screen: Rectified) -> bool:
+    """Whether a screen shows something: one that is off is dark, and has at most a dim reflection."""
+    pixels = screen.colours[screen.seen][:, None].clip(0, 255) / 255.0
+    lightness = cv2.cvtColor(pixels.astype(np.float32), cv2.COLOR_RGB2Lab)[..., 0]
+    return bool(np.median(lightness) >= LIT_L or lightness.std() >= LIT_SPREAD_L)
+
+
+def _outline_box(item: SceneObject, parts: trimesh.Scene, camera: Camera) -> Float[np.ndarray, "4"]:
+    pixels = camera.project(item.pose.apply(np.asarray(parts.to_geometry().vertices)))
+    return np.concatenate([pixels.min(axis=0), pixels.max(axis=0)])

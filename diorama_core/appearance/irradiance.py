@@ -1,0 +1,46 @@
+"""How much light falls on everything in the photo: the room's main light cast on the scene as it was built.
+
+Objects shade one another, and what is inside or below others is darker than what is not: a material's colour is what is
+left when that is divided out of the photo.
+"""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from jaxtyping import Float32
+
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.render.lighting import Effort
+from diorama_core.render.picture import scene_lighting
+from diorama_core.render.raycast import PinholeView
+from diorama_core.render.shading import light_map
+from diorama_core.render.world import scene_world
+from diorama_core.scene.types import Camera, Scene
+
+LONGEST_PX = 320
+EFFORT = Effort(window_rays=2, sky_rays=3)
+DARKEST, BRIGHTEST = 0.45, 1.6
+"""The scene is not exactly the room: deeper shade than this is not believed."""
+UNKNOWN = 0.9
+
+
+def irradiance_map(scene: Scene, camera: Camera, library: ShapeLibrary) -> Float32[np.ndarray, "h w"]:
+    """Luminance of the light on what each pixel of the photo sees; 1 lights a white surface white.
+
+    Args:
+        scene: With its light, in the poses in which the photo shows it.
+        camera: The photo's; the map has its size.
+        library: Where its shapes are.
+    """
+    k = camera.intrinsics
+    shrink = min(1.0, LONGEST_PX / max(k.width, k.height))
+    small = k.scaled(max(8, round(k.width * shrink)), max(8, round(k.height * shrink)))
+    view = PinholeView(Camera(small, camera.T_world_camera))
+    world = scene_world(scene, library)
+    count = len(scene.objects)
+    blockers = world.shadow_caster(without=range(count, count + len(scene.architecture.planes)))
+    light = light_map(world, blockers, view, scene_lighting(scene, world, view), EFFORT)
+    grey = light @ np.array([0.2126, 0.7152, 0.0722], np.float32)
+    grey = np.where(grey > 0, np.clip(grey, DARKEST, BRIGHTEST), np.float32(UNKNOWN))
+    return np.asarray(cv2.resize(grey.astype(np.float32), (k.width, k.height), interpolation=cv2.INTER_LINEAR))

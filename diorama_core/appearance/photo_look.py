@@ -1,0 +1,165 @@
+"""What the photo shows of every object's surfaces, as materials of its slots and their pictures."""
+
+from __future__ import annotations
+
+import re
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+import trimesh
+from jaxtyping import Bool, Float32, UInt8
+
+from diorama_core.appearance.flat_faces import Face, faces_of
+from diorama_core.appearance.irradiance import irradiance_map
+from diorama_core.appearance.light import estimated_light
+from diorama_core.appearance.surface_materials import ROUGHNESS, SlotPixels, appearance_of, shade_of, slot_pixels
+from diorama_core.appearance.surface_view import SurfaceView, surface_view
+from diorama_core.artefacts import DetectedObject
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.slots import slots_of
+from diorama_core.library.stretch import relative_scale, stretched_parts
+from diorama_core.scene.types import Camera, PhotoMaterial, RoomLight, Scene, SceneObject
+
+MASK_MARGIN = 0.004
+"""Widening of what stands before an object, as a share of the photo's longer side."""
+
+Picture = UInt8[np.ndarray, "_ _ 3"]
+
+
+@dataclass(frozen=True, eq=False)
+class PhotoLook:
+    """Materials by object id, and their pictures by name."""
+
+    materials: Mapping[str, tuple[PhotoMaterial, ...]]
+    pictures: Mapping[str, Picture]
+    light: RoomLight | None = None
+    """What the shades of the objects say of the room's light; None without a camera."""
+
+    def applied(self, scene: Scene) -> Scene:
+        """The scene with objects that show the photo's materials, in the photo's light."""
+        objects = tuple(replace(o, photo_materials=self.materials.get(o.id, o.photo_materials)) for o in scene.objects)
+        return replace(scene, objects=objects, light=self.light or scene.light)
+
+
+@dataclass(frozen=True, eq=False)
+class _Seen:
+    """One object with everything of the photo that its look is read from."""
+
+    item: SceneObject
+    faces: tuple[Face, ...]
+    view: SurfaceView | None
+    pixels: tuple[SlotPixels, ...]
+    visible: Bool[np.ndarray, "h w"]
+
+
+def photo_look(
+    rgb: UInt8[np.ndarray, "h w 3"],
+    objects: tuple[DetectedObject, ...],
+    scene: Scene,
+    library: ShapeLibrary,
+    illuminant_rgb: tuple[float, float, float] = (1.0, 1.0, 1.0),
+) -> PhotoLook:
+    """What the photo shows of the scene's objects.
+
+    Args:
+        rgb: The photo, as white light would have it.
+        objects: What was found in it; those of the scene have their ids.
+        scene: In the poses in which the photo shows it; without a camera nothing is taken.
+        library: Where its shapes are.
+        illuminant_rgb: Linear colour of the light that the photo was freed of; that of the scene's light.
+    """
+    if scene.camera is None:
+        return PhotoLook({}, {})
+    found = {o.id: o for o in objects}
+    seen = [
+        _seen(item, _parts(library, item), rgb, found[item.id], objects, scene.camera)
+        for item in scene.objects
+        if item.id in found
+    ]
+    light = estimated_light([shade_of(s.view, p, rgb) for s in seen if s.view is not None for p in s.pixels])
+    red, green, blue = (float(c) / max(illuminant_rgb) for c in illuminant_rgb)
+    light = replace(light, colour=(red, green, blue))
+    falls = irradiance_map(replace(scene, light=light), scene.camera, library)
+    materials: dict[str, tuple[PhotoMaterial, ...]] = {}
+    pictures: dict[str, Picture] = {}
+    for one in seen:
+        made = [(_face_material(one.item, face), face.picture) for face in one.faces] + _surfaces(one, rgb, falls)
+        materials[one.item.id] = tuple(material for material, _ in made)
+        pictures |= {m.texture: picture for m, picture in made if m.texture is not None and picture is not None}
+    return PhotoLook({key: value for key, value in materials.items() if value}, pictures, light)
+
+
+def _parts(library: ShapeLibrary, item: SceneObject) -> trimesh.Scene:
+    return stretched_parts(library.parts(item.shape_id), relative_scale(item.pose.scale))
+
+
+def _seen(
+    item: SceneObject,
+    parts: trimesh.Scene,
+    rgb: UInt8[np.ndarray, "h w 3"],
+    found: DetectedObject,
+    objects: tuple[DetectedObject, ...],
+    camera: Camera,
+) -> _Seen:
+    hidden = hiding(found, objects)
+    faces = faces_of(item, parts, rgb, hidden, found, camera)
+    visible = cv2.erode(found.mask.astype(np.uint8), np.ones((5, 5), np.uint8)).astype(bool) & ~hidden
+    slots = slots_of(parts)
+    view = surface_view(parts, slots, item.pose, camera, visible)
+    taken = {face.slot.name for face in faces}
+    pixels = () if view is None else slot_pixels(view, slots, rgb, visible)
+    return _Seen(item, faces, view, tuple(p for p in pixels if p.slot.name not in taken), visible)
+
+
+def _surfaces(
+    seen: _Seen, rgb: UInt8[np.ndarray, "h w 3"], light: Float32[np.ndarray, "h w"]
+) -> list[tuple[PhotoMaterial, Picture | None]]:
+    made: list[tuple[PhotoMaterial, Picture | None]] = []
+    if seen.view is None:
+        return made
+    for pixels in seen.pixels:
+        found = appearance_of(seen.view, pixels, rgb, seen.visible, light)
+        roughness, metallic = ROUGHNESS[found.slot.role]
+        name = None if found.texture is None else texture_name(seen.item.id, found.slot.name, found.texture)
+        material = PhotoMaterial(
+            slot=found.slot.name,
+            colour=found.colour,
+            texture=name,
+            tile_m=found.tile_m,
+            roughness=roughness,
+            metallic=metallic,
+            main=found.slot.main,
+        )
+        made.append((material, found.texture))
+    return made
+
+
+def hiding(found: DetectedObject, objects: tuple[DetectedObject, ...]) -> Bool[np.ndarray, "h w"]:
+    """Where other objects stand before one: smaller ones wherever they are, larger ones beside its own mask."""
+    hidden, area = np.zeros(found.mask.shape, dtype=bool), int(found.mask.sum())
+    for other in objects:
+        if other.id != found.id:
+            hidden |= other.mask if other.mask.sum() < area else other.mask & ~found.mask
+    radius = max(1, round(MASK_MARGIN * max(hidden.shape)))
+    return cv2.dilate(hidden.astype(np.uint8), np.ones((2 * radius + 1,) * 2, np.uint8)).astype(bool)
+
+
+def _face_material(item: SceneObject, face: Face) -> PhotoMaterial:
+    red, green, blue = (float(c) / 255.0 for c in face.picture.reshape(-1, 3).mean(axis=0))
+    return PhotoMaterial(
+        slot=face.slot.name,
+        colour=(red, green, blue),
+        texture=texture_name(item.id, face.slot.name, face.picture),
+        layout=face.layout,
+        roughness=face.roughness,
+        main=face.slot.main,
+    )
+
+
+def texture_name(object_id: str, slot: str, picture: Picture) -> str:
+    """A file name for a slot's picture; another picture has another name, so that undo finds the one before."""
+    words = re.sub(r"[^A-Za-z0-9]+", "-", f"{object_id} {slot}").strip("-")
+    return f"{words[:80]}-{zlib.crc32(picture.tobytes()):08x}"

@@ -1,0 +1,145 @@
+"""Materials of surfaces from the pixels that show them: albedo, and a texture by example where there is a pattern."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float, Float32, UInt8
+
+from diorama_core.appearance.light import Shade
+from diorama_core.appearance.surface_view import SurfaceView
+from diorama_core.appearance.texture_example import Example, best_example, tileable
+from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
+from diorama_core.library.slots import Role, Slot
+
+READ_ROLES: frozenset[Role] = frozenset(
+    {"fabric", "leather", "wood", "metal", "stone", "paint", "wicker", "paper", "leaf", "material"}
+)
+PATTERNED_ROLES = READ_ROLES - {"metal", "leaf"}
+"""Of which a texture is taken: what metal mirrors and how leaves lie is no pattern."""
+ROUGHNESS: Mapping[str, tuple[float, float]] = {
+    "fabric": (0.92, 0.0), "leather": (0.45, 0.0), "wood": (0.55, 0.0), "metal": (0.35, 0.45), "stone": (0.4, 0.0),
+    "paint": (0.55, 0.0), "wicker": (0.85, 0.0), "paper": (0.9, 0.0), "leaf": (0.55, 0.0), "material": (0.7, 0.0),
+    "glass": (0.06, 0.0),
+}  # fmt: skip
+"""Roughness and metalness by role."""
+MIN_PIXELS, MIN_SHARE = 40, 0.2
+"""A slot is read from at least so many pixels, of which such a share is of about one colour."""
+MIN_VISIBLE = 0.015
+"""And from at least this share of all that is seen of its object: a pose a little off misses smaller ones."""
+BIN_LAB = np.array([40.0, 20.0, 20.0])
+NEAR_LAB = 20.0
+NORMAL_CELL = 0.35
+"""Normals within about this are one face of a shade."""
+MIN_FACE_PIXELS = 30
+MAX_LINEAR = 0.9
+
+
+@dataclass(frozen=True, eq=False)
+class SlotAppearance:
+    """What the photo shows of one slot."""
+
+    slot: Slot
+    colour: tuple[float, float, float]
+    """Albedo, sRGB 0 to 1."""
+    texture: UInt8[np.ndarray, "h w 3"] | None
+    tile_m: float
+
+
+@dataclass(frozen=True, eq=False)
+class SlotPixels:
+    """The pixels that show one slot, those of its main colour."""
+
+    slot: Slot
+    index: int
+    near: Bool[np.ndarray, "h w"]
+    """Of the view's grid."""
+
+
+def slot_pixels(
+    view: SurfaceView, slots: tuple[Slot, ...], rgb: UInt8[np.ndarray, "h w 3"], visible: Bool[np.ndarray, "h w"]
+) -> tuple[SlotPixels, ...]:
+    """The slots that are seen well enough, with the pixels of their main colours.
+
+    Args:
+        view: The shape in its pose.
+        slots: Its slots.
+        rgb: The photo.
+        visible: The object's inner pixels, without what stands before it.
+    """
+    seen, colours = view.of(visible) & (view.slot >= 0), view.of(rgb)
+    lab = cv2.cvtColor(np.ascontiguousarray(colours, dtype=np.float32) / 255.0, cv2.COLOR_RGB2Lab)
+    found = []
+    for index, slot in enumerate(slots):
+        mine = seen & (view.slot == index)
+        count = int(mine.sum())
+        read = slot.role in READ_ROLES or (slot.main and slot.role == "glass")
+        if not read or count * view.step**2 < MIN_PIXELS or count < MIN_VISIBLE * seen.sum():
+            continue
+        near = _main_pixels(lab, mine)
+        if near.sum() >= MIN_SHARE * count:
+            found.append(SlotPixels(slot, index, near))
+    return tuple(found)
+
+
+def _main_pixels(lab: Float32[np.ndarray, "gh gw 3"], mine: Bool[np.ndarray, "gh gw"]) -> Bool[np.ndarray, "gh gw"]:
+    """Pixels about the fullest bin of a coarse Lab grid: shade varies over one surface, hue hardly."""
+    pixels = lab[mine]
+    _, label, counts = np.unique(np.floor(pixels / BIN_LAB), axis=0, return_inverse=True, return_counts=True)
+    seed = np.median(pixels[label.ravel() == int(np.argmax(counts))], axis=0)
+    return mine & (np.linalg.norm((lab - seed) / (2.0, 1.0, 1.0), axis=-1) < NEAR_LAB)
+
+
+def shade_of(view: SurfaceView, pixels: SlotPixels, rgb: UInt8[np.ndarray, "h w 3"]) -> Shade:
+    """How bright the slot is at each of its normals."""
+    linear = srgb_to_linear(view.of(rgb)[pixels.near] / 255.0) @ np.array([0.2126, 0.7152, 0.0722])
+    cells, label = np.unique(np.round(view.normals_world[pixels.near] / NORMAL_CELL), axis=0, return_inverse=True)
+    count = np.bincount(label.ravel(), minlength=len(cells))
+    chosen = [k for k in range(len(cells)) if count[k] >= MIN_FACE_PIXELS]
+    of = [label.ravel() == k for k in chosen]
+    normals = np.array([view.normals_world[pixels.near][m].mean(axis=0) for m in of]).reshape(-1, 3)
+    luminance = np.array([max(float(np.median(linear[m])), 1e-4) for m in of])
+    weight = np.array([float(m.mean()) for m in of])
+    return Shade(normals, luminance, weight)
+
+
+def appearance_of(
+    view: SurfaceView,
+    pixels: SlotPixels,
+    rgb: UInt8[np.ndarray, "h w 3"],
+    visible: Bool[np.ndarray, "h w"],
+    light: Float32[np.ndarray, "h w"],
+) -> SlotAppearance:
+    """The slot's material under a light.
+
+    Args:
+        view: The shape in its pose.
+        pixels: Those of the slot.
+        rgb: The photo.
+        visible: The object's inner pixels, without what stands before it.
+        light: How much falls on every pixel of the photo.
+    """
+    linear = srgb_to_linear(view.of(rgb)[pixels.near] / 255.0)
+    lit = view.of(light)[pixels.near][:, None]
+    albedo = np.median(linear / lit, axis=0)
+    albedo *= min(1.0, MAX_LINEAR / max(float(albedo.max()), 1e-6))  # not channel by channel: the hue stays
+    red, green, blue = (float(c) for c in linear_to_srgb(albedo))
+    example = None
+    if pixels.slot.role in PATTERNED_ROLES:
+        mine = view.of(visible) & (view.slot == pixels.index)
+        example = best_example(view, mine, pixels.near, rgb)
+    if example is None:
+        return SlotAppearance(pixels.slot, (red, green, blue), None, 1.0)
+    texture = tileable(_in_albedo(example, albedo))
+    return SlotAppearance(pixels.slot, (red, green, blue), texture, example.texel_m * texture.shape[0])
+
+
+def _in_albedo(example: Example, albedo: Float[np.ndarray, "3"]) -> Example:
+    """The example scaled so that its mean is the slot's albedo."""
+    linear = srgb_to_linear(example.colours / 255.0)
+    gain = albedo / np.maximum(linear.reshape(-1, 3).mean(axis=0), 1e-4)
+    scaled = 255.0 * linear_to_srgb(np.clip(linear * gain, 0.0, 1.0))
+    return Example(scaled.astype(np.float32), example.texel_m)

@@ -1,0 +1,47 @@
+"""A scene as a Blender file: its GLB opened in Blender's Python, with collections, lights and the photo's camera."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from diorama_core.export.blender import run_in_blender
+from diorama_core.export.cycles import room_lights
+from diorama_core.export.files import whole_file
+from diorama_core.export.gathering import ExportScene
+from diorama_core.export.gltf import write_gathered
+from diorama_core.progress import Progress
+
+
+def write_blend(scene: ExportScene, path: Path, progress: Progress | None = None) -> None:
+    """Write a `.blend` with everything in it, whole or not at all.
+
+    Objects are parented to their supporters and keep their custom properties; the photo lies behind the camera's view.
+
+    Raises:
+        ExportError: when it cannot be written.
+        UnavailableError: Blender is missing or fails.
+        Cancelled: when asked to stop; what was there stays.
+    """
+    progress = progress or Progress()
+    worker = Path(__file__).with_name("blend_worker.py")
+    with whole_file(Path(path)) as temporary, tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        plain = replace(scene, options=replace(scene.options, compression="none"))
+        write_gathered(plain, folder / "room.glb", progress.part(0.0, 0.3))
+        job: dict[str, object] = {"glb": str(folder / "room.glb"), "blend": str(folder / "room.blend")}
+        job["lights"] = room_lights(scene.scene) if scene.planes or scene.objects else []
+        if scene.camera is not None:
+            k = scene.camera.intrinsics
+            job["camera"] = {"width": k.width, "height": k.height, "fx": k.fx, "fy": k.fy, "cx": k.cx, "cy": k.cy}
+        if scene.photo is not None:
+            Image.fromarray(np.ascontiguousarray(scene.photo)).save(folder / "photo.png")
+            job["photo"] = str(folder / "photo.png")
+        progress.report(0.3, "opening the scene in Blender")
+        run_in_blender(worker, job, name="Blender", progress=progress.part(0.3, 1.0))
+        shutil.copyfile(folder / "room.blend", temporary)

@@ -1,0 +1,98 @@
+"""Runs inside Blender's Python: opens a GLB, sorts it into collections, sets up the camera, and saves a `.blend`."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+AMBIENT = 0.35
+BRANCHES = {"architecture": "Architecture", "objects": "Objects"}
+"""Nodes below the scene's root, and the collections of what hangs below them."""
+
+
+def save(job: dict[str, Any]) -> None:
+    """Open a GLB and save it as a `.blend`.
+
+    Args:
+        job: `glb`, `blend`, and where there are any, `camera` (`width`, `height`, `fx`, `fy`, `cx`, `cy`, in pixels)
+            and `photo` (a picture's file); `lights` as those of `cycles_worker`.
+    """
+    import bpy  # type: ignore[import-not-found,unused-ignore]
+
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.import_scene.gltf(filepath=job["glb"])
+    print("diorama 0.5 sorting collections", flush=True)
+    _room_lights(bpy, job["lights"])
+    _collections(bpy)
+    camera = next((o for o in bpy.data.objects if o.type == "CAMERA"), None)
+    if camera is not None and "camera" in job:
+        _camera(bpy, camera, job["camera"], job.get("photo"))
+    scene = bpy.context.scene
+    scene.render.engine = "CYCLES"
+    scene.unit_settings.system = "METRIC"
+    scene.world = bpy.data.worlds.new("ambient")
+    scene.world.use_nodes = True
+    scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value = AMBIENT
+    bpy.ops.file.pack_all()
+    print("diorama 0.9 saving", flush=True)
+    bpy.ops.wm.save_as_mainfile(filepath=job["blend"], compress=True)
+
+
+def _room_lights(bpy: Any, lights: list[dict[str, Any]]) -> None:
+    """Rectangles before the windows and under the ceiling, so that the room is lit when it is rendered."""
+    from mathutils import Matrix  # type: ignore[import-not-found,unused-ignore]
+
+    for number, light in enumerate(lights):
+        data = bpy.data.lights.new(f"room light {number + 1}", "AREA")
+        data.shape, data.size, data.size_y = "RECTANGLE", light["width_m"], light["height_m"]
+        data.energy = light["watts"]
+        lamp = bpy.data.objects.new(data.name, data)
+        lamp.matrix_world = Matrix(light["matrix"])
+        bpy.context.scene.collection.objects.link(lamp)
+
+
+def _collections(bpy: Any) -> None:
+    """Architecture, Objects, Lights and Camera, each object in one of them."""
+    scene = bpy.context.scene
+    made = {}
+    for name in ("Architecture", "Objects", "Lights", "Camera"):
+        made[name] = bpy.data.collections.new(name)
+        scene.collection.children.link(made[name])
+    for item in list(bpy.data.objects):
+        kinds: dict[str, str] = {"LIGHT": "Lights", "CAMERA": "Camera"}
+        collection = kinds.get(item.type) or _branch(item)
+        for old in list(item.users_collection):
+            old.objects.unlink(item)
+        (scene.collection if collection is None else made[collection]).objects.link(item)
+
+
+def _branch(item: Any) -> str | None:
+    """The collection of the branch that an object hangs below; None for the branches themselves and the root."""
+    while item.parent is not None and item.parent.parent is not None:
+        item = item.parent
+        if item.parent.parent is None and item.name in BRANCHES:
+            return BRANCHES[item.name]
+    return None
+
+
+def _camera(bpy: Any, camera: Any, k: dict[str, float], photo: str | None) -> None:
+    """The photo's lens and size, and the photo behind the view."""
+    scene, lens = bpy.context.scene, camera.data
+    scene.camera = camera
+    scene.render.resolution_x, scene.render.resolution_y = int(k["width"]), int(k["height"])
+    scene.render.pixel_aspect_x, scene.render.pixel_aspect_y = 1.0, k["fx"] / k["fy"]
+    lens.sensor_fit, lens.sensor_width, lens.lens = "HORIZONTAL", 36.0, 36.0 * k["fx"] / k["width"]
+    lens.shift_x = 0.5 - k["cx"] / k["width"]
+    lens.shift_y = (k["cy"] - k["height"] / 2) / k["width"]
+    if photo is not None:
+        behind = lens.background_images.new()
+        behind.image = bpy.data.images.load(photo)
+        behind.image.name = "photo"
+        behind.alpha = 1.0
+        lens.show_background_images = True
+
+
+if __name__ == "__main__":
+    save(json.loads(Path(sys.argv[1]).read_text()))

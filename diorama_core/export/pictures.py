@@ -1,0 +1,78 @@
+"""Pictures as files: encoded, reduced, and multiplied by a colour for formats that know one or the other."""
+
+from __future__ import annotations
+
+import base64
+import io
+
+import cv2
+import numpy as np
+from jaxtyping import UInt8
+from PIL import Image
+
+from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
+
+Picture = UInt8[np.ndarray, "h w c"]
+JPEG_FROM_PX = 512 * 512
+"""Larger opaque pictures are JPEG, the others PNG."""
+JPEG_QUALITY = 92
+
+
+def picture_suffix(picture: Picture) -> str:
+    """How the file of a picture ends."""
+    return ".jpg" if picture.shape[2] == 3 and picture.shape[0] * picture.shape[1] > JPEG_FROM_PX else ".png"
+
+
+def encoded_picture(picture: Picture) -> bytes:
+    """A picture's file: JPEG for large opaque ones, PNG for the others."""
+    if picture_suffix(picture) == ".png":
+        return png_bytes(picture)
+    buffer = io.BytesIO()
+    Image.fromarray(np.ascontiguousarray(picture)).save(buffer, "JPEG", quality=JPEG_QUALITY)
+    return buffer.getvalue()
+
+
+def png_bytes(picture: Picture) -> bytes:
+    """A picture as PNG."""
+    buffer = io.BytesIO()
+    Image.fromarray(np.ascontiguousarray(picture)).save(buffer, "PNG")
+    return buffer.getvalue()
+
+
+def photo_text(photo: Picture) -> str:
+    """A photo as JPEG in base 64, for files that hold text only."""
+    buffer = io.BytesIO()
+    Image.fromarray(np.ascontiguousarray(photo)).save(buffer, "JPEG", quality=JPEG_QUALITY)
+    return base64.b64encode(buffer.getvalue()).decode("ascii")
+
+
+def limited(picture: Picture, max_px: int | None) -> Picture:
+    """The picture, reduced so that its longer side has at most `max_px` pixels."""
+    longest = max(picture.shape[:2])
+    if max_px is None or longest <= max_px:
+        return picture
+    width, height = (max(1, round(n * max_px / longest)) for n in (picture.shape[1], picture.shape[0]))
+    return np.asarray(cv2.resize(picture, (width, height), interpolation=cv2.INTER_AREA))
+
+
+def power_of_two(picture: Picture) -> Picture:
+    """The picture with sides that are powers of two, so that every device can repeat and minify it.
+
+    A side goes up to the next power unless it lies less than a tenth above the one below.
+    """
+    height, width = (2 ** max(int(np.ceil(np.log2(n / 1.1))), 0) for n in picture.shape[:2])
+    if (height, width) == picture.shape[:2]:
+        return picture
+    return np.asarray(cv2.resize(picture, (width, height), interpolation=cv2.INTER_LINEAR)).reshape(height, width, -1)
+
+
+def tinted(picture: Picture, colour: tuple[float, float, float]) -> Picture:
+    """An sRGB picture multiplied by a linear colour, as a renderer multiplies them; alpha stays."""
+    if colour == (1.0, 1.0, 1.0):
+        return picture
+    light = srgb_to_linear(np.arange(256) / 255.0)
+    shades = np.rint(255 * linear_to_srgb(np.clip(light[:, None] * np.asarray(colour), 0.0, 1.0))).astype(np.uint8)
+    out = picture.copy()
+    for channel in range(3):
+        out[..., channel] = shades[picture[..., channel], channel]
+    return out

@@ -1,0 +1,61 @@
+"""Arrays out of bytes that may be damaged: nothing is allocated that the bytes do not hold, nothing is unpickled."""
+
+from __future__ import annotations
+
+import io
+import math
+import zipfile
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.lib import format as npy
+
+MAX_ARCHIVE_BYTES = 400_000_000
+"""Of all arrays of an archive, unpacked."""
+
+
+def array_of(content: bytes) -> np.ndarray:
+    """A read-only array over the bytes of a `.npy` file.
+
+    Raises:
+        ValueError: the bytes are no such file of numbers or words, or not of the stated size. A damaged header may
+            also raise whatever its parser does.
+    """
+    stream = io.BytesIO(content)
+    version = npy.read_magic(stream)
+    shape, fortran, dtype = (
+        npy.read_array_header_1_0(stream) if version == (1, 0) else npy.read_array_header_2_0(stream)
+    )
+    count = math.prod(shape)
+    if dtype.hasobject or dtype.kind not in "biufU" or len(content) - stream.tell() != count * dtype.itemsize:
+        raise ValueError("an array has another size than stated")
+    flat = np.frombuffer(content, dtype, count=count, offset=stream.tell()) if count else np.zeros(0, dtype)
+    array = flat.reshape(shape, order="F" if fortran else "C")
+    array.setflags(write=False)
+    return array
+
+
+def arrays_of(content: bytes, names: Iterable[str]) -> tuple[np.ndarray, ...]:
+    """Arrays of an `.npz` file, by name, read-only.
+
+    Raises:
+        ValueError, KeyError, zipfile.BadZipFile: as `array_of`; one is missing; it would unpack to too much.
+    """
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        if sum(info.file_size for info in archive.infolist()) > MAX_ARCHIVE_BYTES:
+            raise ValueError(f"it would unpack to more than {MAX_ARCHIVE_BYTES / 1e6:.0f} MB")
+        return tuple(array_of(entry(archive, f"{name}.npy")) for name in names)
+
+
+def entry(archive: zipfile.ZipFile, name: str) -> bytes:
+    """One entry's bytes, of the stated size and never more.
+
+    Raises:
+        ValueError, KeyError, zipfile.BadZipFile: it is absent, damaged or of another size.
+    """
+    stated = archive.getinfo(name).file_size
+    with archive.open(name) as stream:
+        content = stream.read(stated + 1)
+    if len(content) != stated:
+        raise ValueError(f"{name} has another size than stated")
+    return content

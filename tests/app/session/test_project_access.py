@@ -1,0 +1,58 @@
+from __future__ import annotations
+
+import logging
+
+import pytest
+
+from diorama_app.session.project_access import ProjectAccess
+from diorama_core.errors import EditRefused, ProjectError
+from diorama_core.project import lock
+from tests.app.small_room import make_project
+
+
+@pytest.fixture
+def project(tmp_path):
+    return make_project(tmp_path / "demo")
+
+
+def test_the_first_to_come_may_change_the_project_and_the_second_reads_why_not(project) -> None:
+    first, second = ProjectAccess(), ProjectAccess()
+    assert first.take(project)
+    first.need_writable()
+    assert not second.take(project)
+    with pytest.raises(EditRefused, match="open in the editor of"):
+        second.need_writable()
+    first.release()
+    assert second.take(project)
+    assert second.read_only == ""
+    second.release()
+
+
+def test_opening_the_same_project_again_keeps_the_lock(project) -> None:
+    access = ProjectAccess()
+    assert access.take(project)
+    assert not access.take(project)
+    assert not ProjectAccess().take(project)
+    access.release()
+
+
+def test_another_project_gives_the_first_one_free(project, tmp_path) -> None:
+    access, other = ProjectAccess(), ProjectAccess()
+    access.take(project)
+    assert access.take(make_project(tmp_path / "second"))
+    assert other.take(project)
+    access.release()
+    other.release()
+
+
+def test_a_folder_that_cannot_be_locked_is_opened_all_the_same(project, monkeypatch, caplog) -> None:
+    def full(*given) -> None:
+        raise ProjectError("the disk is full")
+
+    monkeypatch.setattr("diorama_app.session.project_access.ProjectLock", full)
+    access = ProjectAccess()
+    with caplog.at_level(logging.WARNING):
+        assert not access.take(project)
+    access.need_writable()
+    assert "the disk is full" in caplog.text
+    assert lock.LOCK not in {p.name for p in project.folder.iterdir()}

@@ -1,0 +1,36 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from diorama_app.session.textures import refitted
+from diorama_core.scene import edits
+from tests.app.small_room import furnished_scene
+
+SCENE = furnished_scene()
+
+
+def test_an_edit_of_furniture_leaves_every_picture_alone() -> None:
+    moved = edits.rename(SCENE, "chair_1", "throne")
+    assert refitted(SCENE, moved, {"floor.png": np.zeros((4, 4, 3), dtype=np.uint8)}) == (moved, {})
+
+
+def test_a_longer_floor_gets_a_larger_picture_of_the_same_scale(rng) -> None:
+    floor = next(p for p in SCENE.architecture.planes if p.role == "floor")
+    square = floor.polygon * (*(4.0 / np.ptp(floor.polygon[:, :2], axis=0)), 1.0)
+    textured = replace(floor, texture="floor.png", polygon=square)
+    planes = tuple(textured if p is floor else p for p in SCENE.architecture.planes)
+    before = replace(SCENE, architecture=replace(SCENE.architecture, planes=planes))
+    longer = replace(textured, polygon=square * (1.5, 1.0, 1.0))
+    after = replace(
+        before, architecture=replace(before.architecture, planes=tuple(longer if p is textured else p for p in planes))
+    )
+    picture = rng.integers(0, 256, (80, 80, 3), dtype=np.uint8)
+    scene, made = refitted(before, after, {"floor.png": picture})
+    assert len(made) == 1
+    name = next(iter(made))
+    assert name != "floor.png"
+    assert next(p for p in scene.architecture.planes if p.role == "floor").texture == name
+    grown = np.array(made[name].shape[:2]) / picture.shape[:2]
+    np.testing.assert_allclose(sorted(grown), (1.0, 1.5), atol=0.03)

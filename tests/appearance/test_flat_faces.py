@@ -1,0 +1,37 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diorama_core.appearance.flat_faces import FACES, aligned, is_lit
+from diorama_core.appearance.rectify import Rectified
+from diorama_core.library.taxonomy import CATEGORIES
+
+
+def test_flat_categories_are_the_librarys() -> None:
+    assert set(FACES) <= {c.name for c in CATEGORIES}
+
+
+def test_corners_follow_the_objects_box() -> None:
+    corners = np.array([[20, 20], [80, 20], [80, 60], [20, 60]], float)
+    found = aligned(corners, np.array([10.0, 10, 90, 70]), (14.0, 10.0, 94.0, 76.0), (200, 200))
+    np.testing.assert_allclose(found, [[24, 21], [84, 21], [84, 65], [24, 65]])
+
+
+def test_the_photos_edge_is_no_edge_of_the_object() -> None:
+    corners = np.array([[-20, 20], [80, 20], [80, 60], [-20, 60]], float)
+    found = aligned(corners, np.array([-30.0, 10, 90, 70]), (0.0, 10.0, 90.0, 70.0), (200, 200))
+    np.testing.assert_allclose(found, corners)
+
+
+def test_a_box_somewhere_else_is_ignored() -> None:
+    corners = np.array([[20, 20], [80, 20], [80, 60], [20, 60]], float)
+    found = aligned(corners, np.array([10.0, 10, 90, 70]), (100.0, 100.0, 150.0, 150.0), (200, 200))
+    np.testing.assert_array_equal(found, corners)
+
+
+@pytest.mark.parametrize(("level", "contrast", "lit"), [(12, 3, False), (150, 10, True), (30, 120, True)])
+def test_a_screen_that_is_off_is_dark(level: float, contrast: float, lit: bool) -> None:
+    colours = np.full((40, 60, 3), level, np.float32)
+    colours[:, ::2] += contrast
+    assert is_lit(Rectified(colours, np.ones((40, 60), dtype=bool))) == lit

@@ -1,0 +1,24 @@
+from __future__ import annotations
+
+import numpy as np
+
+from diorama_core.appearance.light import Shade, estimated_light
+from diorama_core.scene.types import RoomLight
+
+NORMALS = np.array([[0.0, 0, 1], [1, 0, 0], [-1, 0, 0], [0, -1, 0], [0, 1, 0]])
+
+
+def shade(albedo: float, b: tuple[float, float, float], normals: np.ndarray = NORMALS) -> Shade:
+    light = 1 + normals @ np.array(b)
+    return Shade(normals, albedo * light, np.full(len(normals), 1 / len(normals)))
+
+
+def test_light_from_the_side_is_found() -> None:
+    true = (0.4, -0.2, 0.4)
+    found = estimated_light([shade(a, true) for a in (0.1, 0.2, 0.3, 0.5, 0.6, 0.7, 0.4, 0.8)])
+    np.testing.assert_allclose(np.array(found.direction) * found.strength, true, atol=0.08)
+
+
+def test_flat_things_say_nothing_of_light() -> None:
+    one = shade(0.5, (0.4, 0, 0), NORMALS[:1])
+    assert estimated_light([one] * 5) == RoomLight()

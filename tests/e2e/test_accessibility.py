@@ -1,0 +1,81 @@
+"""Every panel in light and dark: axe-core finds nothing serious; rows are reached and used by keys."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.e2e.browser import EditorPage
+
+pytestmark = pytest.mark.browser
+
+AXE = Path(__file__).resolve().parents[2] / ".venv" / "node" / "node_modules" / "axe-core" / "axe.min.js"
+needs_axe = pytest.mark.skipif(
+    not AXE.exists(), reason="axe-core is missing: npm install --prefix .venv/node axe-core@4.10.3"
+)
+FINDINGS = """async () => {
+    const rules = { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"] };
+    const found = await axe.run(document, rules);
+    return found.violations.filter((v) => ["serious", "critical"].includes(v.impact)).flatMap((v) =>
+        v.nodes.map((n) => `${v.id}: ${n.html.slice(0, 160)} ${(n.any[0] || {}).message || ""}`));
+}"""
+TABS = ("Scene", "Photo", "Arrange", "Project", "Object", "Library", "Export")
+
+
+def findings(editor: EditorPage) -> list[str]:
+    editor.settle()
+    found: list[str] = editor.page.evaluate(FINDINGS)
+    return found
+
+
+@needs_axe
+@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
+def test_axe_finds_nothing_serious_in_any_panel(editor: EditorPage, dark: bool) -> None:
+    if dark:
+        editor.page.locator("#dio-toolbar [data-arg=theme]").click()
+        editor.page.wait_for_function("document.documentElement.dataset.mantineColorScheme === 'dark'")
+    editor.page.add_script_tag(path=str(AXE))
+    editor.row("lamp").click()
+    editor.until(lambda: editor.selection == ("lamp_1",))
+    found: set[str] = set()
+    for tab in TABS:
+        editor.tab(tab)
+        found |= {f"{tab}: {line}" for line in findings(editor)}
+    editor.tab("Photo")
+    editor.button("Draw boxes").click()
+    editor.at_board()
+    found |= {f"photo: {line}" for line in findings(editor)}
+    if dark:
+        editor.page.locator("#dio-toolbar [data-arg=theme]").click()
+    assert not found, "\n".join(sorted(found))
+
+
+def test_rows_are_used_by_keys(editor: EditorPage) -> None:
+    scene = editor.session.scene
+    editor.page.locator(".dio .row[data-grab]").first.focus()
+    rows = [row.get_attribute("data-arg") for row in editor.page.locator(".dio .row[data-grab]").all()]
+    editor.page.keyboard.press("ArrowDown")
+    editor.page.keyboard.press("ArrowDown")
+    editor.page.keyboard.press("Enter")
+    editor.until(lambda: editor.selection == (rows[2],), "the third row is selected")
+    editor.settle()
+    editor.page.wait_for_function("document.activeElement.matches('.dio .row.on')")
+    editor.page.keyboard.press("ArrowUp")
+    editor.page.keyboard.press("Space")
+    editor.until(lambda: editor.selection == (rows[1],), "the second")
+    editor.settle()
+    editor.page.wait_for_function("document.activeElement.matches('.dio .row.on')")
+    editor.page.keyboard.press("F2")
+    field = editor.page.locator(".dio .row input")
+    expect(field).to_be_focused()
+    field.fill("renamed by keys")
+    editor.page.keyboard.press("Enter")
+    editor.until(lambda: editor.session.scene.object(rows[1]).label == "renamed by keys", "renamed")
+    assert editor.session.scene is not scene
+
+
+def test_names_are_in_the_labels_of_lock_and_hide(editor: EditorPage) -> None:
+    expect(editor.page.get_by_role("button", name="Hide lamp", exact=True)).to_be_visible()
+    expect(editor.page.get_by_role("button", name="Lock lamp", exact=True)).to_be_visible()

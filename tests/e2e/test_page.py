@@ -1,0 +1,136 @@
+"""The page around the room: first paint, what stays in view, panels' widths, a phone, a dead server."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import pytest
+from playwright.sync_api import Page, expect
+
+from diorama_app.serve import Running
+from diorama_core.progress import Progress
+from tests.app.small_room import PlainLibrary, make_project
+from tests.e2e.browser import SIZE, EditorPage
+
+pytestmark = pytest.mark.browser
+
+FOREIGN = ("Inactive", "ws://", "WorldAxes", "Viser", "Dev Settings", "Software WebGL")
+SEEN_TEXT = "document.body.innerText"
+
+
+@pytest.fixture
+def resized(editor: EditorPage) -> Iterator[Page]:
+    yield editor.page
+    editor.page.set_viewport_size({"width": SIZE[0], "height": SIZE[1]})
+    editor.settle()
+
+
+def test_the_first_thing_seen_is_ours(context, serve: Callable[..., Running], tmp_path) -> None:
+    running = serve(make_project(tmp_path / "projects" / "demo").folder, PlainLibrary())
+    page = context.new_page()
+    page.goto(f"http://127.0.0.1:{running.port}/?fixedDpr=1", wait_until="commit")
+    page.wait_for_selector("#dio-loading, #dio-toolbar", state="attached")
+    assert page.title() == "Diorama"
+    while not page.evaluate("document.documentElement.classList.contains('dio-ready')"):
+        seen = page.evaluate(SEEN_TEXT)
+        assert not [word for word in FOREIGN if word in seen], seen
+        page.wait_for_timeout(20)
+    page.wait_for_timeout(500)
+    seen = page.evaluate(SEEN_TEXT)
+    assert not [word for word in FOREIGN if word in seen], seen
+    assert page.title() == "Diorama"
+    page.close()
+
+
+@pytest.mark.parametrize(("width", "height"), [(1440, 900), (1280, 720)])
+def test_panels_leave_the_room_and_the_tools_stay(editor: EditorPage, resized: Page, width: int, height: int) -> None:
+    resized.set_viewport_size({"width": width, "height": height})
+    editor.settle()
+    left, _, across, _ = editor.canvas_box()
+    assert across >= 0.6 * 1280 if width == 1280 else across >= 0.6 * width
+    for tab in ("Scene", "Photo", "Arrange", "Project", "Object", "Library", "Export"):
+        editor.tab(tab)
+        cut = resized.evaluate(
+            "[...document.querySelectorAll('.dio .row .name, .dio button, [role=tab]')].filter((e) => e.offsetParent &&"
+            " e.scrollWidth > e.clientWidth + 1 && getComputedStyle(e).overflowX !== 'visible').map((e) => e.innerText)"
+        )
+        assert not cut, f"cut off in {tab}: {cut}"
+        box = resized.locator("#dio-toolbar").bounding_box()
+        assert box is not None
+        assert box["x"] >= left - 1
+        assert box["x"] + box["width"] <= left + across + 1
+        assert box["y"] < 40
+    corners = np.concatenate([p.polygon for p in editor.session.scene.architecture.planes])
+    editor.button("Room").click()
+    editor.settle()
+    left, top, across, down = editor.canvas_box()
+    bar = resized.locator("#dio-toolbar").bounding_box()
+    assert bar is not None
+    for corner in corners:
+        x, y = editor.place_of(corner)
+        assert left <= x <= left + across, "the whole room is in view"
+        assert bar["y"] + bar["height"] - 6 <= y <= top + down
+
+
+def test_on_a_phone_the_panel_is_a_sheet_and_the_room_above_it(
+    context, serve: Callable[..., Running], tmp_path
+) -> None:
+    running = serve(make_project(tmp_path / "projects" / "demo").folder, PlainLibrary())
+    page = context.new_page()
+    page.set_viewport_size({"width": 390, "height": 844})
+    page.goto(f"http://127.0.0.1:{running.port}/?fixedDpr=1")
+    page.wait_for_selector("html.dio-ready.dio-phone")
+    page.wait_for_timeout(700)
+    canvas = page.evaluate("(({width, bottom}) => [width, bottom])(__viserMutable.canvas.getBoundingClientRect())")
+    sheet = page.evaluate(
+        "(({left, top, width}) => [left, top, width])(document.querySelector('#root .mantine-Paper-root"
+        '[style*="position: fixed"]\').getBoundingClientRect())'
+    )
+    assert canvas[0] == 390
+    assert sheet[0] == 0
+    assert sheet[2] == 390
+    assert abs(canvas[1] - sheet[1]) <= 2, "nothing of the room is under the sheet"
+    assert canvas[1] > 300
+    page.close()
+
+
+def test_the_running_job_is_in_view_in_every_tab_with_what_it_found(editor: EditorPage) -> None:
+    go_on = threading.Event()
+
+    def work(progress: Progress) -> None:
+        progress.report(0.3, "outlining objects")
+        progress.part(0.2, 0.3).found("9 objects")
+        while not go_on.wait(0.02):
+            progress.report(0.5, "finding shapes")
+
+    editor.session.ui_thread.post(lambda: editor.session.jobs.start("build", "Building the scene", work))
+    strip = editor.page.locator("#dio-job")
+    expect(strip).to_be_visible()
+    for tab in ("Project", "Photo", "Scene"):
+        editor.tab(tab)
+        box = strip.bounding_box()
+        assert box is not None
+        assert 0 <= box["y"] <= SIZE[1] - box["height"]
+    expect(strip).to_contain_text("Finding shapes")
+    expect(strip).to_contain_text("9 objects")
+    expect(strip).to_contain_text("left", timeout=10_000)
+    strip.get_by_role("button", name="Cancel").click()
+    editor.until(lambda: editor.session.jobs.status is None, "cancelled")
+    expect(strip).to_be_hidden()
+    go_on.set()
+
+
+def test_a_dead_server_is_told_and_the_page_goes_on_by_itself(
+    context, serve: Callable[..., Running], visit: Callable[[Running], EditorPage], tmp_path
+) -> None:
+    folder = make_project(tmp_path / "projects" / "demo").folder
+    running = serve(folder, PlainLibrary())
+    editor = visit(running)
+    running.stop()
+    expect(editor.page.locator("#dio-lost")).to_be_visible(timeout=15_000)
+    expect(editor.page.locator("#dio-lost")).to_contain_text("Your work is saved")
+    serve(folder, PlainLibrary(), port=running.port)
+    expect(editor.page.locator("#dio-lost")).to_be_hidden(timeout=30_000)
+    editor.page.wait_for_selector("#dio-toolbar")

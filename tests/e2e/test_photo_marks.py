@@ -1,0 +1,163 @@
+"""A photo is a project at once; boxes are objects on it: drawn, selected, dragged, named, deleted, undone."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from playwright.sync_api import expect
+
+from diorama_core.project.storage import Project
+from tests.app.small_room import make_project, plain_photo
+from tests.e2e.browser import EditorPage
+
+pytestmark = pytest.mark.browser
+
+CHAIR, TABLE = (40.0, 250.0, 160.0, 440.0), (240.0, 200.0, 440.0, 420.0)
+
+
+@pytest.fixture
+def photo(tmp_path: Path) -> Path:
+    path = tmp_path / "my room.png"
+    Image.fromarray(plain_photo().rgb).save(path)
+    return path
+
+
+@pytest.fixture
+def started(editor: EditorPage, photo: Path) -> EditorPage:
+    """A photo was uploaded."""
+    scene = editor.session.scene
+    editor.tab("Photo")
+    editor.upload("Upload a photo", photo)
+    editor.until(lambda: editor.session.unfinished, "a project of its own")
+    editor.at_board()
+    editor.dismiss_notices()
+    assert editor.running.session.scene is scene, "the open scene stays"
+    return editor
+
+
+def boxes(editor: EditorPage) -> list[tuple[str, tuple[float, ...]]]:
+    assert editor.session.inputs is not None
+    return [(b.label, b.box) for b in editor.session.inputs.boxes]
+
+
+def name(editor: EditorPage, word: str, of: str) -> None:
+    field = editor.page.get_by_label(f"Name of the {of} box").first
+    field.fill(word)
+    field.press("Enter")
+
+
+def test_a_name_is_of_the_next_box_or_of_the_selected_one(started: EditorPage) -> None:
+    editor = started
+    expect(editor.button("Build scene")).to_be_disabled()
+    editor.draw_box(CHAIR)
+    editor.until(lambda: len(boxes(editor)) == 1, "drawn")
+    np.testing.assert_allclose(boxes(editor)[0][1], CHAIR, atol=4.0)
+    name(editor, "desk", "next")
+    editor.settle()
+    assert boxes(editor)[0][0] == "chair", "the chair stays a chair"
+    editor.draw_box(TABLE)
+    editor.until(lambda: [label for label, _ in boxes(editor)] == ["chair", "desk"], "the next one is a desk")
+    editor.page.mouse.click(*editor.on_photo(340, 300))
+    expect(editor.page.locator(".dio-canvas-box.on")).to_have_count(1)
+    editor.page.locator(".dio-canvas-box.on input").fill("couch")
+    editor.page.keyboard.press("Enter")
+    editor.until(lambda: boxes(editor)[1][0] == "couch", "named on the photo")
+    assert editor.session.inputs.boxes[1].category == "sofa"
+    expect(editor.button("Build scene")).to_be_enabled()
+
+
+def test_corners_drag_delete_deletes_and_every_step_is_undone(started: EditorPage) -> None:
+    editor = started
+    editor.draw_box(TABLE)
+    editor.until(lambda: len(boxes(editor)) == 1, "drawn")
+    editor.page.mouse.click(*editor.on_photo(340, 300))
+    expect(editor.page.locator(".dio-canvas-handle")).to_have_count(8)
+    editor.drag(editor.on_photo(440, 420), editor.on_photo(500, 460))
+    editor.until(lambda: boxes(editor)[0][1][2] > 480, "pulled by its corner")
+    np.testing.assert_allclose(boxes(editor)[0][1], (240, 200, 500, 460), atol=5.0)
+    editor.drag(editor.on_photo(340, 300), editor.on_photo(300, 280))
+    editor.until(lambda: boxes(editor)[0][1][0] < 220, "moved by its body")
+    np.testing.assert_allclose(boxes(editor)[0][1], (200, 180, 460, 440), atol=6.0)
+    editor.page.keyboard.press("Delete")
+    editor.until(lambda: not boxes(editor), "deleted")
+    for left in (200, 240, 240):
+        editor.page.keyboard.press("Control+z")
+        editor.until(lambda left=left: bool(boxes(editor)) and abs(boxes(editor)[0][1][0] - left) < 6, "undone")
+    editor.page.keyboard.press("Control+z")
+    editor.until(lambda: not boxes(editor), "not drawn")
+    editor.page.locator(".dio-canvas").get_by_role("button", name="Done").click()
+    expect(editor.page.locator(".dio-canvas")).to_have_count(0)
+
+
+SERVER = """
+import sys
+from pathlib import Path
+from diorama_app.serve import start
+from tests.app.small_room import PlainLibrary
+running = start(project=Path(sys.argv[1]), projects_dir=Path(sys.argv[1]).parent, port=int(sys.argv[2]),
+                low_graphics=True, library=PlainLibrary())
+print(running.port, flush=True)
+running.stopped.wait()
+"""
+
+
+@pytest.fixture
+def serve_apart(tmp_path: Path) -> Iterator[Callable[[int], subprocess.Popen[str]]]:
+    """Starts a server in a process of its own, which can be killed."""
+    project = make_project(tmp_path / "projects" / "demo")
+    begun: list[subprocess.Popen[str]] = []
+
+    def start(port: int) -> subprocess.Popen[str]:
+        command = [sys.executable, "-c", SERVER, str(project.folder), str(port)]
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env={**os.environ})
+        begun.append(process)
+        return process
+
+    yield start
+    for process in begun:
+        process.kill()
+        process.wait()
+
+
+def test_what_was_drawn_outlives_a_killed_server(context, serve_apart, photo: Path, tmp_path: Path) -> None:
+    server = serve_apart(0)
+    assert server.stdout is not None
+    port = int(server.stdout.readline())
+    page = context.new_page()
+    page.set_default_timeout(60_000)
+    page.goto(f"http://127.0.0.1:{port}/?fixedDpr=1")
+    page.get_by_role("tab", name="Photo", exact=True).click()
+    with page.expect_file_chooser() as chosen:
+        page.get_by_role("button", name="Upload a photo", exact=True).click()
+    chosen.value.set_files(str(photo))
+    page.wait_for_selector(".dio-canvas-layer")
+    area = page.locator(".dio-canvas-layer").bounding_box()
+    assert area is not None
+    page.mouse.move(area["x"] + 40, area["y"] + 40)
+    page.mouse.down()
+    page.mouse.move(area["x"] + 120, area["y"] + 140, steps=4)
+    page.mouse.up()
+    expect(page.locator(".dio-canvas-box")).to_have_count(1)
+    folder = tmp_path / "projects" / "my-room"
+    deadline = time.monotonic() + 20.0
+    while not Project.open(folder).load_inputs().boxes:  # type: ignore[union-attr]
+        assert time.monotonic() < deadline, "not saved"
+        time.sleep(0.05)
+    os.kill(server.pid, signal.SIGKILL)
+    server.wait()
+    serve_apart(port).stdout.readline()  # type: ignore[union-attr]
+    page.goto(f"http://127.0.0.1:{port}/?fixedDpr=1")
+    page.get_by_role("tab", name="Project", exact=True).click()
+    page.locator(".dio .row", has_text="my room").get_by_role("button", name="Open").click()
+    expect(page.locator(".dio-canvas-box")).to_have_count(1)
+    expect(page.get_by_role("tab", name="Photo", exact=True)).to_have_attribute("aria-selected", "true")
+    page.close()

@@ -1,0 +1,53 @@
+"""Exported files are whole or not there, and what killed programs left of them goes."""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+
+import pytest
+
+from diorama_core.export.files import PART, whole_file, write_package, write_whole
+
+
+def _old(path: Path) -> Path:
+    at = time.time() - 7200.0
+    os.utime(path, (at, at))
+    return path
+
+
+def test_what_killed_programs_left_is_removed_and_nothing_else(tmp_path: Path) -> None:
+    left = tmp_path / f"{PART}abc.glb"
+    left.write_bytes(b"half")
+    _old(left)
+    folder = tmp_path / f"{PART}def"
+    (folder / "room_files").mkdir(parents=True)
+    _old(folder)
+    young, own = tmp_path / f"{PART}ghi.glb", tmp_path / ".room.abc.glb"
+    young.write_bytes(b"another program writes it")
+    own.write_bytes(b"the user's")
+    _old(own)
+    write_whole(tmp_path / "room.glb", b"whole")
+    assert sorted(p.name for p in tmp_path.iterdir()) == sorted([young.name, own.name, "room.glb"])
+
+
+def test_a_failure_leaves_the_older_file_and_no_part(tmp_path: Path) -> None:
+    path = tmp_path / "room.glb"
+    write_whole(path, b"older")
+
+    def entries():  # type: ignore[no-untyped-def]
+        yield "room_files/a.bin", b"a"
+        raise RuntimeError("the writer fails")
+
+    def write_half() -> None:
+        with whole_file(path) as temporary:
+            temporary.write_bytes(b"half")
+            raise RuntimeError("the writer fails")
+
+    with pytest.raises(RuntimeError):
+        write_half()
+    with pytest.raises(RuntimeError):
+        write_package(tmp_path / "room.obj", "room.obj", entries())
+    assert path.read_bytes() == b"older"
+    assert [p.name for p in tmp_path.iterdir()] == ["room.glb"]

@@ -1,0 +1,46 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from diorama_core.export.gathering import ExportOptions, gather
+from diorama_core.export.gltf import write_gathered
+from diorama_core.export.lights import main_light_of
+from diorama_core.io.glb import read_glb
+from diorama_core.scene.types import RoomLight, Scene
+from tests.export.validators import gltf_findings, needs_gltf_validator
+from tests.primitives import PrimitiveLibrary, furnished_room
+
+LIBRARY = PrimitiveLibrary()
+LIGHT = RoomLight((0.6, 0.0, 0.8), 0.5)
+
+
+def lit() -> Scene:
+    return replace(furnished_room(LIBRARY), light=LIGHT)
+
+
+def test_it_shines_from_where_the_light_is() -> None:
+    light = main_light_of(lit())
+    assert light is not None
+    np.testing.assert_allclose(-light.T_world[:3, 2], [-0.6, 0.0, -0.8])
+    np.testing.assert_allclose(light.T_world[:3, :3].T @ light.T_world[:3, :3], np.eye(3), atol=1e-12)
+    assert np.linalg.det(light.T_world[:3, :3]) > 0
+    assert main_light_of(replace(lit(), light=None)) is None
+
+
+def test_glb_has_it_and_a_selection_has_not(tmp_path) -> None:
+    path = tmp_path / "scene.glb"
+    write_gathered(gather(lit(), LIBRARY), path)
+    document, _ = read_glb(path.read_bytes())
+    kinds = [light["type"] for light in document["extensions"]["KHR_lights_punctual"]["lights"]]
+    assert kinds.count("directional") == 1
+    alone = ExportOptions(only=frozenset({furnished_room(LIBRARY).objects[0].id}))
+    assert gather(lit(), LIBRARY, options=alone).main_light is None
+
+
+@needs_gltf_validator
+def test_the_khronos_validator_finds_nothing(tmp_path) -> None:
+    path = tmp_path / "scene.glb"
+    write_gathered(gather(lit(), LIBRARY), path)
+    assert gltf_findings(path) == []

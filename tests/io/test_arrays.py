@@ -1,0 +1,54 @@
+from __future__ import annotations
+
+import io
+import zipfile
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as some
+
+from diorama_core.io import arrays
+from diorama_core.io.arrays import array_of, arrays_of
+
+NUMBERS = st.sampled_from([np.uint8, np.int32, np.float16, np.float32, np.float64, np.bool_])
+
+
+def npy(value: np.ndarray) -> bytes:
+    buffer = io.BytesIO()
+    np.save(buffer, value)
+    return buffer.getvalue()
+
+
+@given(some.arrays(NUMBERS, some.array_shapes(min_dims=0, max_dims=4, min_side=0)))
+def test_arrays_come_back_as_they_were(value: np.ndarray) -> None:
+    again = array_of(npy(value))
+    np.testing.assert_array_equal(again, value)
+    assert again.dtype == value.dtype
+    assert not again.flags.writeable
+
+
+def test_headers_are_not_believed() -> None:
+    header = io.BytesIO()
+    np.lib.format.write_array_header_1_0(header, {"descr": "|u1", "fortran_order": False, "shape": (1 << 50,)})
+    with pytest.raises(ValueError, match="another size"):
+        array_of(header.getvalue() + bytes(100))
+    with pytest.raises(ValueError):
+        array_of(npy(np.arange(9))[:-1])
+    with pytest.raises(ValueError):
+        array_of(npy(np.array([{}], dtype=object)))
+
+
+def test_archives_are_capped_before_they_are_unpacked(monkeypatch: pytest.MonkeyPatch) -> None:
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, a=np.zeros(100_000, np.uint8), b=np.arange(3))
+    found = arrays_of(buffer.getvalue(), ["b", "a"])
+    np.testing.assert_array_equal(found[0], np.arange(3))
+    with pytest.raises(KeyError):
+        arrays_of(buffer.getvalue(), ["c"])
+    monkeypatch.setattr(arrays, "MAX_ARCHIVE_BYTES", 50_000)
+    with pytest.raises(ValueError, match="unpack"):
+        arrays_of(buffer.getvalue(), ["b"])
+    with pytest.raises(zipfile.BadZipFile):
+        arrays_of(b"no archive", ["b"])

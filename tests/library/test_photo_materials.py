@@ -1,0 +1,53 @@
+from __future__ import annotations
+
+import numpy as np
+import trimesh
+from trimesh.visual.material import PBRMaterial
+
+from diorama_core.library.photo_materials import PhotographedMaterial, with_photo_materials
+from diorama_core.scene.types import PhotoMaterial
+
+ART = np.random.default_rng(0).integers(0, 255, (20, 30, 3)).astype(np.uint8)
+
+
+def scene() -> trimesh.Scene:
+    art, frame = trimesh.creation.box((0.02, 0.8, 0.6)), trimesh.creation.box((0.04, 1.0, 0.8))
+    art.visual = trimesh.visual.TextureVisuals(material=PBRMaterial(name="painting"))
+    frame.visual = trimesh.visual.TextureVisuals(material=PBRMaterial(name="oak"))
+    return trimesh.Scene({"art": art, "frame": frame})
+
+
+def test_a_face_shows_the_whole_picture_and_the_frame_stays() -> None:
+    shown = with_photo_materials(scene(), [PhotoMaterial("picture", (0.5,) * 3, "art", "front")], {"art": ART})
+    material = shown.geometry["art"].visual.material
+    assert isinstance(material, PhotographedMaterial)
+    np.testing.assert_array_equal(np.asarray(material.baseColorTexture), ART)
+    uv = shown.geometry["art"].visual.uv
+    np.testing.assert_allclose([uv.min(axis=0), uv.max(axis=0)], [[0, 0], [1, 1]], atol=1e-9)
+    assert shown.geometry["frame"].visual.material.name == "oak"
+
+
+def test_a_face_without_its_picture_keeps_its_own() -> None:
+    shown = with_photo_materials(scene(), [PhotoMaterial("picture", (0.5,) * 3, "art", "front")], {})
+    assert shown.geometry["art"].visual.material.name == "painting"
+
+
+def test_a_plain_material_is_its_colour() -> None:
+    shown = with_photo_materials(scene(), [PhotoMaterial("wood", (1.0, 0.5, 0.0), roughness=0.3, main=True)], {})
+    material = shown.geometry["frame"].visual.material
+    np.testing.assert_allclose(
+        np.asarray(material.baseColorFactor)[:3], [255, 54, 0], atol=1
+    )  # glTF factors are linear
+    assert material.roughnessFactor == 0.3
+
+
+def test_a_tiled_material_is_measured_in_metres() -> None:
+    tiled = PhotoMaterial("wood", (0.5,) * 3, "grain", "tiled", tile_m=0.25, main=True)
+    uv = with_photo_materials(scene(), [tiled], {"grain": ART}).geometry["frame"].visual.uv
+    assert np.isclose(np.ptp(uv, axis=0).max(), 1.0 / 0.25)
+
+
+def test_the_given_shape_is_unchanged() -> None:
+    parts = scene()
+    with_photo_materials(parts, [PhotoMaterial("wood", (1.0, 0.5, 0.0), main=True)], {})
+    assert parts.geometry["frame"].visual.material.name == "oak"

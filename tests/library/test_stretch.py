@@ -1,0 +1,93 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial import cKDTree
+
+from diorama_core.library import furniture
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.library.furniture.model import built, mesh_of, scene_of
+from diorama_core.library.stretch import EVEN, relative_scale, stretched_parts
+
+factors = st.floats(0.6, 1.7)
+
+
+def table() -> trimesh.Scene:
+    """A top on four legs 6 cm square, one welded mesh a part."""
+    top = trimesh.creation.box((0.8, 1.4, 0.04))
+    top.apply_translation((0, 0, 0.36))
+    scene = trimesh.Scene({"top": top})
+    for x in (-0.36, 0.36):
+        for y in (-0.66, 0.66):
+            leg = trimesh.creation.box((0.06, 0.06, 0.72))
+            leg.apply_translation((x, y, -0.02))
+            scene.add_geometry(leg, geom_name=f"leg {x} {y}")
+    return scene
+
+
+def merged(scene: trimesh.Scene) -> trimesh.Trimesh:
+    return trimesh.util.concatenate([scene.geometry[n] for n in scene.geometry])
+
+
+def test_a_longer_table_has_no_thicker_legs() -> None:
+    factor = 1.5
+    stretched = stretched_parts(table(), (1.0, factor, 1.0))
+    for name, mesh in stretched.geometry.items():
+        thickness = np.ptp(mesh.bounds, axis=0) * (1.0, factor, 1.0)
+        if name.startswith("leg"):
+            np.testing.assert_allclose(thickness[:2], [0.06, 0.06], atol=1e-6)
+        else:
+            np.testing.assert_allclose(thickness, [0.8, 1.4 * factor, 0.04], atol=1e-6)
+
+
+def test_one_welded_mesh_is_cut_as_well() -> None:
+    whole = trimesh.Scene({"all": trimesh.boolean.union(list(table().geometry.values()), engine="manifold")})
+    stretched = merged(stretched_parts(whole, (1.0, 1.5, 1.0)))
+    low = stretched.vertices[stretched.vertices[:, 2] < -0.3]
+    inner = np.abs(low[:, 1]).min()
+    assert (np.abs(low[:, 1]).max() - inner) * 1.5 == pytest.approx(0.06, abs=1e-3)
+
+
+def test_handles_keep_their_form() -> None:
+    front, handle = trimesh.creation.box((0.02, 0.8, 0.6)), trimesh.creation.box((0.004, 0.1, 0.02))
+    handle.apply_translation((0.008, 0.3, 0.0))
+    stretched = stretched_parts(trimesh.Scene({"front": front, "handle": handle}), (1.0, 1.5, 1.0))
+    assert np.ptp(stretched.geometry["handle"].bounds, axis=0)[1] * 1.5 == pytest.approx(0.1, abs=1e-6)
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.tuples(factors, factors, factors), st.sampled_from(["table", "chair", "bookshelf", "picture", "armchair"]))
+def test_the_bounding_box_stays_and_nothing_folds(scale: tuple[float, float, float], category: str) -> None:
+    design = next(d for d in furniture.designs() if d.category == category)
+    parts = scene_of(built(design))
+    relative = relative_scale(np.array(scale))
+    before, after = merged(parts), merged(stretched_parts(parts, relative))
+    np.testing.assert_allclose(after.bounds, before.bounds, atol=1e-4)
+    assert np.isfinite(after.vertices).all()
+    assert after.faces.shape == before.faces.shape
+
+
+def test_it_is_nearer_than_a_plain_stretch_to_what_the_design_is_at_that_size() -> None:
+    near, plain = [], []
+    for design in [d for d in furniture.designs() if d.category in ("table", "wardrobe")][::9]:
+        factor = np.array([1.0, 1.4, 1.0])
+        truth = mesh_of(built(replace(design, size_m=tuple(np.array(design.size_m) * factor))))
+        base = scene_of(built(design))
+        for found, off in ((stretched_parts(base, relative_scale(factor)), near), (base, plain)):
+            mesh = merged(found)
+            mesh.apply_scale(factor)
+            sampled = cKDTree(trimesh.sample.sample_surface(truth, 200_000, seed=0)[0])
+            off.append(float(sampled.query(trimesh.sample.sample_surface(mesh, 4_000, seed=1)[0])[0].mean()))
+    assert np.mean(near) < 0.9 * np.mean(plain)
+
+
+def test_nearly_even_scales_share_the_shape() -> None:
+    assert relative_scale(np.array([1.3, 1.3, 1.35])) == EVEN
+    assert relative_scale(np.array([1.0, 1.5, 1.0])) != EVEN
+    parts = built_in_library().parts("picture-hills-oak")
+    assert stretched_parts(parts, EVEN) is parts
