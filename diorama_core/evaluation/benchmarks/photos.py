@@ -29,7 +29,7 @@ from diorama_core.evaluation.adapters.photo_annotations import (
     read_annotations,
     read_intrinsics,
 )
-from diorama_core.evaluation.metrics.annotated import ThingResult, measured, not_built
+from diorama_core.evaluation.metrics.annotated import ObjectResult, measured, not_built
 from diorama_core.evaluation.metrics.colour import delta_e_2000, lab_of
 from diorama_core.evaluation.metrics.visible_colours import visible_colours
 from diorama_core.evaluation.reports.tables import Column, Row, Table, Value
@@ -147,8 +147,8 @@ def _result(
         inputs = _inputs(photo, path, intrinsics, named)
         built = build_scene(inputs, library, cache=cache, progress=progress)
         spent = time.process_time() - begun
-        things = _things(name, photo, built, library)
-        return PhotoResult(name, things, floor_ghosts(built), ghosts_unmarked(built), spent)
+        found = _objects(name, photo, built, library)
+        return PhotoResult(name, found, floor_ghosts(built), ghosts_unmarked(built), spent)
     except Cancelled:
         raise
     except Exception as error:  # whatever goes wrong, the photo counts as failed and the others go on
@@ -177,7 +177,7 @@ def _objects(name: str, photo: AnnotatedPhoto, built: Built, library: ShapeLibra
     shown = visible_colours(built.scene, library, built.textures)
     in_light = {key: built.illuminant.lit(colour) for key, colour in shown.items()}
     return tuple(
-        measured(name, i, thing, by_index[i], built.scene, library, index_of, in_light.get(by_index[i].id))
+        measured(name, i, annotated, by_index[i], built.scene, library, index_of, in_light.get(by_index[i].id))
         if i in by_index
         else not_built(name, i, annotated, opening=i not in furniture)
         for i, annotated in enumerate(photo.objects)
@@ -249,13 +249,13 @@ COLUMNS = (
 def _table(bench: PhotosBench) -> Table:
     loose = [annotated for annotated in bench.objects if annotated.loose]
     mean_of = [r for r in bench.results if not r.failure]
-    overall = _values(bench.things)
+    overall = _values(bench.objects)
     ghosts, unmarked = _mean([r.ghosts for r in mean_of]), _mean([r.ghosts_unmarked for r in mean_of])
     seconds = _mean([r.seconds for r in mean_of])
     rows = [
         Row("all", (*overall, ghosts, unmarked, seconds)),
         Row("loose words", (*_values(loose), None, None, None)),
-        *(Row(r.photo, (*_values(r.things), r.ghosts, r.ghosts_unmarked, r.seconds)) for r in bench.results),
+        *(Row(r.photo, (*_values(r.objects), r.ghosts, r.ghosts_unmarked, r.seconds)) for r in bench.results),
     ]
     words = "plain words" if bench.named else "no words"
     notes = [f"not in the folder: {', '.join(bench.missing)}"] if bench.missing else []

@@ -83,8 +83,8 @@ def measured(
     library: ShapeLibrary,
     index_of: Mapping[str, int],
     shown: Float[np.ndarray, "3"] | None = None,
-) -> ThingResult:
-    """Compare one thing with its object.
+) -> ObjectResult:
+    """Compare one annotated object with the one that was built.
 
     Args:
         photo: the photo's id.
@@ -98,8 +98,8 @@ def measured(
     """
     shape = record_of(library, item.shape_id)
     among = {record_of(library, c.shape_id).category for c in item.candidates} | {shape.category}
-    design = form_of(shape.id, shape.category, library.mesh(shape.id), item.size_m) if thing.attributes else {}
-    return ThingResult(
+    design = form_of(shape.id, shape.category, library.mesh(shape.id), item.size_m) if annotated.attributes else {}
+    return ObjectResult(
         photo,
         index,
         annotated.word,
@@ -107,13 +107,13 @@ def measured(
         annotated.loose,
         built=shape.category,
         shape=shape.id,
-        kind_first=shape.category == thing.kind if thing.nameable else None,
-        kind_among=thing.kind in among if thing.nameable else None,
-        form=compared(thing.attributes, design),
-        has_colour=None if thing.colour is None else item.colour is not None,
-        colour_difference=_colour_difference(thing, shown),
-        front_error_deg=_front_error_deg(thing, item, scene.camera, shape.symmetry),
-        holder=None if thing.on is None else _carrier(scene, item.id, index_of) == thing.on,
+        kind_first=shape.category == annotated.kind if annotated.nameable else None,
+        kind_among=annotated.kind in among if annotated.nameable else None,
+        form=compared(annotated.attributes, design),
+        has_colour=None if annotated.colour is None else item.colour is not None,
+        colour_difference=_colour_difference(annotated, shown),
+        front_error_deg=_front_error_deg(annotated, item, scene.camera, shape.symmetry),
+        supporter=None if annotated.on is None else _carrier(scene, item.id, index_of) == annotated.on,
         iou=None if item.box_px is None else shape_iou(scene, item.id, item.box_px, library),
     )
 
@@ -125,10 +125,10 @@ def front_deg(item: SceneObject, camera: Camera) -> float:
     return float(np.degrees(np.arctan2(front @ right, -(front @ forward))) % 360.0)
 
 
-def _colour_difference(thing: AnnotatedThing, shown: Float[np.ndarray, "3"] | None) -> float | None:
-    if thing.colour is None or shown is None:
+def _colour_difference(annotated: AnnotatedObject, shown: Float[np.ndarray, "3"] | None) -> float | None:
+    if annotated.colour is None or shown is None:
         return None
-    return float(perceived_difference(np.array(thing.colour) / 255.0, shown))
+    return float(perceived_difference(np.array(annotated.colour) / 255.0, shown))
 
 
 def _front_error_deg(annotated: AnnotatedObject, item: SceneObject, camera: Camera | None, fold: int) -> float | None:
