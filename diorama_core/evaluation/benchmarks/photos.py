@@ -3,7 +3,7 @@
 Every photo is built from the annotated boxes with their plain words, or without words. Ghosts are what nobody marked
 and what is smeared over the floor nevertheless: the share of its picture that differs from the floor's colour by
 more than `GHOST_DIFFERENCE` (CIEDE2000): smears are dark, so lightness counts in full. It is measured twice: of the
-floor as it is built, and of floors made while every second thing that stands on the floor is kept back, one half after
+floor as it is built, and of floors made while every second object that stands on the floor is kept back, one half after
 the other, against the colour that the floor has when nothing is.
 """
 
@@ -147,8 +147,8 @@ def _result(
         inputs = _inputs(photo, path, intrinsics, named)
         built = build_scene(inputs, library, cache=cache, progress=progress)
         spent = time.process_time() - begun
-        found = _objects(name, photo, built, library)
-        return PhotoResult(name, found, floor_ghosts(built), ghosts_unmarked(built), spent)
+        objects = _objects(name, photo, built, library)
+        return PhotoResult(name, objects, floor_ghosts(built), ghosts_unmarked(built), spent)
     except Cancelled:
         raise
     except Exception as error:  # whatever goes wrong, the photo counts as failed and the others go on
@@ -241,7 +241,7 @@ def _spread(picture: UInt8[np.ndarray, "h w 3"]) -> Float[np.ndarray, "n 3"]:
 COLUMNS = (
     Column("objects", "d"), Column("kind first", better="↑"), Column("among", better="↑"), Column("form", better="↑"),
     Column("colour", ".1f", "↓"), Column("no colour", better="↓"), Column("front", better="↑"),
-    Column("holder", better="↑"), Column("box IoU", better="↑"), Column("ghosts", better="↓"),
+    Column("supporter", better="↑"), Column("box IoU", better="↑"), Column("ghosts", better="↓"),
     Column("unmarked", better="↓"), Column("time s", ".1f", "↓"),
 )  # fmt: skip
 

@@ -84,7 +84,7 @@ def measured(
     index_of: Mapping[str, int],
     shown: Float[np.ndarray, "3"] | None = None,
 ) -> ObjectResult:
-    """Compare one annotated object with the one that was built.
+    """Compare one annotated object with the object built from it.
 
     Args:
         photo: the photo's id.
@@ -93,7 +93,7 @@ def measured(
         item: what was built.
         scene: the whole, for the camera and what carries what.
         library: where its shapes are from.
-        index_of: places of the things by object id.
+        index_of: places of the objects by object id.
         shown: sRGB 0 to 1 that the object's main visible material has in the photo's light; None where it is not seen.
     """
     shape = record_of(library, item.shape_id)
