@@ -17,14 +17,14 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.scene.values import ArrayValue
 from diorama_core.synthesis import sample_cameras
-from diorama_core.synthesis.cameras import Holding
+from diorama_core.synthesis.cameras import CameraRanges
 from diorama_core.synthesis.truth import Studio
 from diorama_core.training.rooms import varied_room
 
 SIZE = (352, 264)
 """Width and height of the pictures."""
 VIEWS = 6
-HOLDING = Holding(height_m=(0.9, 1.9), pitch_rad=(-0.05, 0.5), roll_rad=0.03, fov_rad=(0.75, 1.45))
+CAMERAS = CameraRanges(height_m=(0.9, 1.9), pitch_rad=(-0.05, 0.5), roll_rad=0.03, fov_rad=(0.75, 1.45))
 MIN_PIXELS = 40
 MIN_SIDE_PX = 6
 """Of 352 x 264: what is smaller is background."""
@@ -103,7 +103,7 @@ def _photographed(seed: int, library: ShapeLibrary, names: tuple[str, ...]) -> t
     """No picture where the room cannot be furnished or photographed; it is not tried again."""
     try:
         scene = varied_room(seed, library)
-        cameras = sample_cameras(scene, library, seed, VIEWS, SIZE, HOLDING)
+        cameras = sample_cameras(scene, library, seed, VIEWS, SIZE, CAMERAS)
     except (SceneError, LibraryError):
         return ()
     index = {name: k for k, name in enumerate(names)}

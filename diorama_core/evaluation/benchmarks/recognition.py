@@ -133,7 +133,7 @@ def _read(path: Path, photo: AnnotatedPhoto) -> tuple[Inputs, Float[np.ndarray, 
     inputs = read_inputs(path).inputs
     height, width = inputs.photo.rgb.shape[:2]
     scale = np.array([width, height, width, height]) / np.array([*photo.size, *photo.size])
-    return inputs, np.array([t.bbox for t in photo.things], dtype=float).reshape(-1, 4) * scale
+    return inputs, np.array([t.bbox for t in photo.objects], dtype=float).reshape(-1, 4) * scale
 
 
 def _look(stage: DetectionStage, photo: Photo, boxes: Float[np.ndarray, "n 4"], about: AnnotatedPhoto) -> Found:
@@ -150,7 +150,7 @@ def _look(stage: DetectionStage, photo: Photo, boxes: Float[np.ndarray, "n 4"], 
             k = int(free.argmax())
             taken[k] = True
             right += 1
-            named += _same_kind(box, about.things[k].kind)
+            named += _same_kind(box, about.objects[k].kind)
     return Found(len(boxes), hits, len(proposed), right, named, seconds)
 
 
@@ -159,11 +159,11 @@ def _same_kind(box: LabelledBox, kind: str) -> bool:
 
 
 def _name(namer: Namer, photo: Photo, boxes: Float[np.ndarray, "n 4"], about: AnnotatedPhoto) -> Named:
-    asked = [k for k, t in enumerate(about.things) if t.nameable]
+    asked = [k for k, t in enumerate(about.objects) if t.nameable]
     begun = time.perf_counter()
     ranked = namer(photo, boxes[asked])
     seconds = time.perf_counter() - begun
-    kinds = [about.things[k].kind for k in asked]
+    kinds = [about.objects[k].kind for k in asked]
     first = sum(r[0] == kind for r, kind in zip(ranked, kinds, strict=True))
     five = sum(kind in r[:5] for r, kind in zip(ranked, kinds, strict=True))
     return Named(len(asked), first, five, seconds)

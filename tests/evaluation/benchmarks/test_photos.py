@@ -15,7 +15,7 @@ from diorama_core.errors import InputError
 from diorama_core.evaluation.adapters.photo_annotations import picture_of, read_annotations
 from diorama_core.evaluation.benchmarks.photos import ghost_share, run, usual_colour
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.synthesis import furnished_room, sample_cameras, render_truth
+from diorama_core.synthesis import furnished_room, render_truth, sample_cameras
 
 SIZE = (240, 180)
 ANNOTATIONS = Path(__file__).parents[2] / "photo_annotations.json"
