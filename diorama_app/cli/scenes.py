@@ -23,12 +23,12 @@ from diorama_app.cli.arguments import (
 )
 from diorama_app.formats import EXPORT_FORMATS
 from diorama_core.errors import InputError
-from diorama_core.pipeline.choices import NetworkChoice
 
 if TYPE_CHECKING:
     import numpy as np
 
     from diorama_core.library.record import ShapeLibrary
+    from diorama_core.pipeline.choices import NetworkChoice
     from diorama_core.pipeline.stages import Stages
     from diorama_core.protocols import PoseStage
 
@@ -161,6 +161,8 @@ def _networks(a: argparse.Namespace) -> NetworkChoice:
         raise InputError("--detector finds what boxes or masks would say; give one of them")
     if a.depth_network and a.depth:
         raise InputError("--depth-network reads what --depth says; give one of them")
+    from diorama_core.pipeline.choices import NetworkChoice
+
     return NetworkChoice(a.detector, a.depth_network)
 
 

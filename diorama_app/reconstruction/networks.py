@@ -9,8 +9,8 @@ from diorama_core.artefacts import LabelledBox, Photo
 from diorama_core.editing.input_corrections import with_boxes_added
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.models.manifest import NETWORKS, Network
+from diorama_core.models.own_weights import has_own_recogniser
 from diorama_core.models.pull import pull
-from diorama_core.models.recogniser import has_own_recogniser
 from diorama_core.models.store import ModelStore
 from diorama_core.progress import Progress
 

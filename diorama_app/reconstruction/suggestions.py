@@ -11,7 +11,7 @@ import numpy as np
 from diorama_core.artefacts import Box, Photo
 from diorama_core.errors import UnavailableError
 from diorama_core.io.cache import LruCache
-from diorama_core.models.recogniser import has_own_recogniser
+from diorama_core.models.own_weights import has_own_recogniser
 
 log = logging.getLogger(__name__)
 

@@ -15,10 +15,10 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from importlib.util import find_spec
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 from diorama_core.errors import UnavailableError
 from diorama_core.progress import Progress
@@ -113,7 +113,7 @@ def _follow(process: subprocess.Popen[str], name: str, progress: Progress, timeo
             progress.report(float(fraction), message)
 
 
-def _read(stream: IO[str], lines: queue.Queue[str | None]) -> None:
+def _read(stream: Iterable[str], lines: queue.Queue[str | None]) -> None:
     try:
         for line in stream:
             lines.put(line)

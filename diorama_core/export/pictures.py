@@ -55,7 +55,7 @@ def limited(picture: Picture, max_px: int | None) -> Picture:
     return np.asarray(cv2.resize(picture, (width, height), interpolation=cv2.INTER_AREA))
 
 
-def power_of_two(picture: Picture) -> Picture:
+def power_of_two(picture: Picture) -> UInt8[np.ndarray, "h2 w2 c"]:
     """The picture with sides that are powers of two, so that every device can repeat and minify it.
 
     A side goes up to the next power unless it lies less than a tenth above the one below.

@@ -8,7 +8,6 @@ from jaxtyping import UInt8
 from PIL import Image
 from trimesh.visual.material import PBRMaterial
 
-from diorama_core.geometry.shape_appearance import material_rgb
 from diorama_core.io.srgb import srgb_to_linear
 from diorama_core.scene.types import Finish
 
@@ -49,6 +48,9 @@ def main_rgb(parts: trimesh.Scene) -> tuple[int, int, int]:
     """The sRGB colour (0 to 255) of a shape's main material; grey where it has none."""
     main = _main_material(parts)
     meshes = (m for m in parts.geometry.values() if isinstance(m, trimesh.Trimesh) and _material_key(m) == main)
+    # Its module loads Open3D, which a page without painted shapes does without.
+    from diorama_core.geometry.shape_appearance import material_rgb
+
     found = next((rgb for m in meshes if (rgb := material_rgb(m.visual)) is not None), None)
     return (200, 200, 200) if found is None else (int(found[0]), int(found[1]), int(found[2]))
 

@@ -17,12 +17,11 @@ from jaxtyping import Float, Float32, UInt8
 from scipy.special import expit, softmax
 
 from diorama_core.errors import UnavailableError
+from diorama_core.models import own_weights
 from diorama_core.models.boxes import Detections, clipped, without_doubles
+from diorama_core.models.own_weights import CARD, DETECTOR, NAMER
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
 from diorama_core.models.store import sha256_of
-
-FOLDER = Path(__file__).resolve().parents[2] / "assets" / "models"
-DETECTOR, NAMER, CARD = "room-detector.onnx", "room-namer.onnx", "recogniser.json"
 
 STRIDES = (8, 16, 32)
 CROP_SIDE = 80
@@ -118,11 +117,6 @@ class Recogniser:
         return mean
 
 
-def has_own_recogniser() -> bool:
-    """Whether its weights are there: an installation may leave them out."""
-    return all((FOLDER / name).is_file() for name in (DETECTOR, NAMER, CARD))
-
-
 @cache
 def own_recogniser() -> Recogniser:
     """The recogniser whose weights come with Diorama.
@@ -130,7 +124,7 @@ def own_recogniser() -> Recogniser:
     Raises:
         UnavailableError: when they are not there or damaged.
     """
-    return Recogniser.of(FOLDER)
+    return Recogniser.of(own_weights.FOLDER)
 
 
 def fitted(rgb: UInt8[np.ndarray, "h w 3"], area_px: int) -> tuple[Float32[np.ndarray, "1 3 h2 w2"], float]:

@@ -41,7 +41,7 @@ class NetworkChoice:
         Raises:
             InputError: when the named one finds no boxes.
         """
-        return _chosen(self.detector, (*DETECTORS, OWN_DETECTOR), "detector")
+        return DETECTORS if self.detector is None else _chosen(self.detector, (*DETECTORS, OWN_DETECTOR), "detector")
 
     def depth_networks(self) -> tuple[str, ...]:
         """Ids to look for, best first.

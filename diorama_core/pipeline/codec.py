@@ -60,6 +60,7 @@ _CLASSES: dict[str, type] = {
         types.Candidate,
         types.SceneObject,
         types.Support,
+        types.RoomLight,
         types.Scene,
     )
 }

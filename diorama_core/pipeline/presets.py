@@ -20,7 +20,8 @@ from diorama_core.errors import UnavailableError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.models.foreground import Foreground
 from diorama_core.models.manifest import Network, network
-from diorama_core.models.recogniser import has_own_recogniser, own_recogniser
+from diorama_core.models.own_weights import has_own_recogniser
+from diorama_core.models.recogniser import own_recogniser
 from diorama_core.models.store import ModelStore, how_to_get
 from diorama_core.perception.camera.given_attitude import with_given_attitude
 from diorama_core.perception.foundation.depth_prediction import (

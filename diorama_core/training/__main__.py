@@ -10,7 +10,8 @@ import torch
 
 from diorama_core.errors import DioramaError
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.models.recogniser import CARD, DETECTOR, NAMER, Recogniser
+from diorama_core.models.own_weights import CARD, DETECTOR, NAMER
+from diorama_core.models.recogniser import Recogniser
 from diorama_core.progress import Progress
 from diorama_core.training.export import export_detector, export_namer, write_card
 from diorama_core.training.pictures import category_names, make_pictures

@@ -25,7 +25,7 @@ from diorama_core.project.storage import Project
 from diorama_core.synthesis.layout_rooms import box_library
 from tests.models.test_broken_networks import BROKEN, CASES
 from tests.perception.language.stub_lmm import StubLmm, answering
-from tests.pipeline.test_presets import BOX, _install, _Nothing, graphs, photo, store
+from tests.pipeline.test_presets import BOX, _Nothing, graphs, install, photo, store
 
 __all__ = ["graphs", "photo", "store"]  # fixtures
 
@@ -53,10 +53,10 @@ def test_a_network_that_fails_is_left_out_and_named(
     network_id: str, how: str, photo: Photo, store: ModelStore, graphs: dict[str, list[Path]], tmp_path: Path
 ) -> None:
     for other, files in graphs.items():
-        _install(store, other, files)
+        install(store, other, files)
     broken = tmp_path / "broken.onnx"
     BROKEN[how](CASES[IN_STORE[network_id]], broken)
-    _install(store, network_id, [broken, *graphs[network_id][1:]])
+    install(store, network_id, [broken, *graphs[network_id][1:]])
     built, left_out = _build("auto", Inputs(photo), store)
     assert [line.split(" was left out: ")[0] for line in left_out] == [network(network_id).title]
     assert all("\n" not in line and len(line) < 600 for line in left_out)
@@ -72,7 +72,7 @@ def test_all_networks_may_fail_and_the_project_says_so(
     noise = tmp_path / "noise.onnx"
     noise.write_bytes(np.random.default_rng(0).bytes(3000))
     for network_id in ("slimsam", "sam2.1-large", "migan", "moge-2-vits"):
-        _install(store, network_id, [noise] * len(network(network_id).files))
+        install(store, network_id, [noise] * len(network(network_id).files))
     monkeypatch.setenv("DIORAMA_MODELS", str(store.folder))
     inputs = Inputs(photo, (LabelledBox(BOX, "chair", "chair"),))
     project = Project.create(tmp_path / "room")
@@ -86,10 +86,10 @@ def test_a_profile_that_insists_stops_with_the_reason(
     photo: Photo, store: ModelStore, graphs: dict[str, list[Path]], tmp_path: Path
 ) -> None:
     for other, files in graphs.items():
-        _install(store, other, files)
+        install(store, other, files)
     noise = tmp_path / "noise.onnx"
     noise.write_bytes(b"half a file")
-    _install(store, "moge-2-vits", [noise])
+    install(store, "moge-2-vits", [noise])
     with pytest.raises(NetworkError, match="cannot be loaded"):
         _build("foundation", Inputs(photo), store)
 
@@ -97,7 +97,7 @@ def test_a_profile_that_insists_stops_with_the_reason(
 def test_a_file_that_was_changed_since_it_was_checked_is_not_used(
     photo: Photo, store: ModelStore, graphs: dict[str, list[Path]]
 ) -> None:
-    _install(store, "slimsam", graphs["slimsam"])
+    install(store, "slimsam", graphs["slimsam"])
     slimsam = network("slimsam")
     path = store.path(slimsam, slimsam.files[0].path)
     data = bytearray(path.read_bytes())

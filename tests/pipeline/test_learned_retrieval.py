@@ -24,6 +24,9 @@ class Store(ModelStore):
     def has(self, wanted) -> bool:
         return wanted.id in self.present
 
+    def path(self, wanted, file: str) -> Path:
+        return self.folder_of(wanted) / file
+
     def identity(self, wanted) -> str:
         return f"{wanted.id}-1"
 

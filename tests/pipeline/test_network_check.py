@@ -10,7 +10,7 @@ import pytest
 from diorama_app.projects.example import example_inputs
 from diorama_core.models.manifest import NETWORKS, network
 from diorama_core.models.store import ModelStore
-from diorama_core.pipeline import network_check
+from diorama_core.pipeline import network_check, network_stages
 from diorama_core.pipeline.network_check import Measurement, check_networks
 from tests.models import tiny_networks
 from tests.models.tiny_networks import install
@@ -35,6 +35,16 @@ def test_the_real_detector_passes(shared: Path, tmp_path: Path) -> None:
     assert check.network.id == "yolox-nano"
     assert check.words.startswith("boxes ")
     assert check.device == "cpu"
+
+
+def test_the_large_detector_is_given_the_side_that_its_patches_need(tmp_path: Path) -> None:
+    store = ModelStore(tmp_path / "store")
+    graph = tiny_networks.migan(tmp_path / "model.onnx")
+    for network_id in ("owlv2-large", "owlv2-base"):
+        install(store, network_id, [graph, graph])
+    sides = {i: repr(network_stages.detector(store, network(i))) for i in ("owlv2-large", "owlv2-base")}
+    assert "side=1008" in sides["owlv2-large"]
+    assert "side=960" in sides["owlv2-base"]
 
 
 def test_a_network_of_another_kind_in_its_place_fails_with_one_line(tmp_path: Path) -> None:

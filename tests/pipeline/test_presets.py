@@ -12,7 +12,7 @@ import torch
 from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.errors import InputError, UnavailableError
-from diorama_core.models import recogniser
+from diorama_core.models import own_weights
 from diorama_core.models.manifest import network
 from diorama_core.models.store import ModelStore
 from diorama_core.perception.foundation.proposals import OwnDetection
@@ -218,7 +218,7 @@ def test_without_networks_the_recogniser_of_our_own_proposes_and_builds_use_what
     assert {b.box for b in sure} <= {b.box for b in likely}
     marked = Inputs(photo, (LabelledBox(BOX, "sofa", "sofa"),))
     assert stages_for("embedded", marked, box_library(), store=store).detection is None
-    monkeypatch.setattr(recogniser, "FOLDER", tmp_path)
+    monkeypatch.setattr(own_weights, "FOLDER", tmp_path)
     assert stages_for("embedded", Inputs(photo), box_library(), store=store).detection is None
     assert propose_boxes(photo, store=store) is None
 
@@ -231,7 +231,7 @@ def test_a_network_can_be_named_instead_of_the_best(
         stages_for("auto", Inputs(photo), box_library(), store=store, choice=NetworkChoice(detector)).detection
         for detector in (None, "yolox-nano", "own")
     ]
-    assert [type(stage).__name__ for stage in named] == ["EverydayDetection", "EverydayDetection", "OwnDetection"]
+    assert [type(stage).__name__ for stage in named] == ["JoinedDetection", "EverydayDetection", "OwnDetection"]
     with pytest.raises(UnavailableError, match="models pull owlv2-base"):
         stages_for("auto", Inputs(photo), box_library(), store=store, choice=NetworkChoice("owlv2-base"))
     with pytest.raises(InputError, match="no depth network"):

@@ -16,7 +16,7 @@ from diorama_core.pipeline.run import build_scene
 from diorama_core.synthesis.layout_rooms import box_library
 from tests.models import tiny_networks
 from tests.models.test_depth import HEIGHT, WIDTH, _Moge
-from tests.pipeline.test_presets import BOX, _install
+from tests.pipeline.test_presets import BOX, install
 
 
 @pytest.mark.parametrize("networks", [False, True], ids=["embedded", "networks"])
@@ -30,8 +30,8 @@ def test_a_box_is_looked_at_with_what_built_the_scene(
         moge = (torch.zeros(1, 3, HEIGHT, WIDTH), torch.tensor(1800))
         names = ["points", "normal", "mask", "metric_scale"]
         graph = tiny_networks.export(_Moge(), moge, tmp_path / "m.onnx", ["image", "num_tokens"], names)
-        _install(store, "moge-2-vits", [graph])
-        _install(store, "slimsam", tiny_networks.slimsam(tmp_path)[1:])
+        install(store, "moge-2-vits", [graph])
+        install(store, "slimsam", tiny_networks.slimsam(tmp_path)[1:])
     rgb = rng.integers(100, 140, (HEIGHT, WIDTH, 3)).astype(np.uint8)
     rgb[48:82, 44:88] = (200, 60, 40)
     box = LabelledBox(BOX, "chair", "chair")

@@ -9,7 +9,8 @@ import pytest
 import torch
 
 from diorama_core.errors import Cancelled, InputError
-from diorama_core.models.recogniser import CARD, DETECTOR, NAMER, Recogniser, box_crop, box_geometry
+from diorama_core.models.own_weights import CARD, DETECTOR, NAMER
+from diorama_core.models.recogniser import Recogniser, box_crop, box_geometry
 from diorama_core.models.runtime import SessionPool
 from diorama_core.progress import Progress
 from diorama_core.training import pictures

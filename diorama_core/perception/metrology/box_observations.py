@@ -66,7 +66,7 @@ class BoxObservations:
 
 def gather(objects: tuple[DetectedObject, ...], width: int, height: int) -> BoxObservations:
     """The evidence of the objects of a picture of `width` x `height` pixels."""
-    boxes = np.array([_proper(o.box, width, height) for o in objects]).reshape(-1, 4)
+    boxes = np.array([_proper(o.box, width, height) for o in objects], dtype=float).reshape(-1, 4)
     extent = np.tile(boxes[:, 2:] - boxes[:, :2], 2)
     sigma = _SHARE_SIGMA * extent + _PIXEL_SIGMA * max(width, height) / 640
     border = np.array([0.0, 0.0, width, height])

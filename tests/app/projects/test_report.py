@@ -56,7 +56,7 @@ def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
         return SimpleNamespace(
             project=project,
             built=built,
-            stages=SimpleNamespace(layout=CountingLayout(*pairs)),
+            stages=SimpleNamespace(layout=CountingLayout(*pairs), detection=None),
             library=PlainLibrary(),
             scene=replace(furnished_scene(), metrics=(("structure", 1.0),)),
             layout=LayoutReport("feasible", {}, {"overlapping_pairs": 1.0}, 0.1),

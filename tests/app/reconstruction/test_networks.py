@@ -24,7 +24,7 @@ from tests.app.people import LocalClient, join
 from tests.app.small_room import PlainLibrary, make_project, plain_photo
 from tests.models import tiny_networks
 from tests.models.stub_hub import SHA, Hub, serving
-from tests.pipeline.test_presets import BOX, HEIGHT, WIDTH, _install, _Yolox
+from tests.pipeline.test_presets import BOX, HEIGHT, WIDTH, _Yolox, install
 
 GRAPH = bytes(range(256)) * 2000
 SMALL = Network(
@@ -129,7 +129,7 @@ def test_found_furniture_joins_the_boxes_drawn_by_hand(store: ModelStore, client
     assert _told(client) == [NO_DETECTOR]
     example = (torch.zeros(1, 3, 416, 416),)
     graph = tiny_networks.export(_Yolox(), example, tmp_path / "y.onnx", ["images"], ["output"])
-    _install(store, "yolox-nano", [graph])
+    install(store, "yolox-nano", [graph])
     drawn = LabelledBox((2.0, 2.0, 20.0, 20.0), "lamp", "lamp")
     client.session.annotate("draw", replace(client.session.inputs, boxes=(drawn,)))
     boards: list[int] = []

@@ -19,7 +19,7 @@ def test_errors_name_the_file_and_what_to_do(tmp_path: Path) -> None:
     (tmp_path / "broken.json").write_text("{")
     (tmp_path / "good.json").write_text('{"a": [1]}')
     assert read_json(tmp_path / "good.json") == {"a": [1]}
-    with pytest.raises(InputError, match=r"broken\.json: not valid JSON .*download it again"):
+    with pytest.raises(InputError, match=r"broken\.json is not valid JSON .*download it again"):
         read_json(tmp_path / "broken.json")
     with pytest.raises(InputError, match=r"gone\.json: there is no such file"):
         read_json(tmp_path / "gone.json")

@@ -12,7 +12,7 @@ from diorama_core.perception.metrology.problem import Cuboids
 
 def boxes(*rows: tuple[float, float, float, float, float]) -> Cuboids:
     """x, y, yaw, depth, width; all 0.8 m high."""
-    table = np.array(rows)
+    table = np.array(rows, dtype=float)
     heights = np.full(len(rows), 0.8)
     return Cuboids(np.column_stack([table[:, :2], heights / 2]), table[:, 2], np.column_stack([table[:, 3:], heights]))
 

@@ -1,0 +1,13 @@
+"""Where the weights that come with Diorama lie; light to ask."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+FOLDER = Path(__file__).resolve().parents[2] / "assets" / "models"
+DETECTOR, NAMER, CARD = "room-detector.onnx", "room-namer.onnx", "recogniser.json"
+
+
+def has_own_recogniser() -> bool:
+    """Whether the recogniser's weights are there: an installation may leave them out."""
+    return all((FOLDER / name).is_file() for name in (DETECTOR, NAMER, CARD))

@@ -1,0 +1,85 @@
+"""What is found, what is named, and what counts once."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from PIL import Image
+
+from diorama_core.artefacts import LabelledBox, Photo
+from diorama_core.errors import InputError
+from diorama_core.evaluation.benchmarks.recognition import run
+from diorama_core.models.own_weights import CARD, DETECTOR, NAMER
+from diorama_core.models.recogniser import Recogniser
+from diorama_core.progress import Progress
+from diorama_core.training.detector import Detector
+from diorama_core.training.export import export_detector, export_namer, write_card
+from diorama_core.training.naming import Namer
+from diorama_core.training.score import score
+
+OBJECTS = [
+    {"bbox": [10, 10, 50, 60], "class": "chair", "kind": "office chair"},
+    {"bbox": [60, 20, 110, 70], "class": "table", "kind": "table"},
+    {"bbox": [5, 70, 25, 78], "class": "thing", "kind": "object"},
+]
+
+
+@dataclass(frozen=True)
+class Finder:
+    """Always finds the same."""
+
+    boxes: tuple[tuple[tuple[float, float, float, float], str], ...]
+
+    def detect(self, photo: Photo, words: tuple[str, ...], progress: Progress) -> tuple[LabelledBox, ...]:
+        """The boxes."""
+        return tuple(LabelledBox(box, name, name, 0.9) for box, name in self.boxes)
+
+
+@pytest.fixture
+def annotated(tmp_path: Path) -> Path:
+    Image.fromarray(np.full((80, 120, 3), 130, np.uint8)).save(tmp_path / "made.png")
+    file = tmp_path / "annotations.json"
+    file.write_text(json.dumps({"made": {"size": [120, 80], "things": OBJECTS}}))
+    return file
+
+
+def test_each_object_is_found_once(annotated: Path) -> None:
+    twice = ((10.0, 10.0, 50.0, 60.0), "office chair"), ((11.0, 11.0, 50.0, 60.0), "chair")
+    near = ((60.0, 20.0, 110.0, 46.0), "desk")  # half of the table
+    bench = run(annotated, annotated.parent, {"finder": Finder((*twice, near))}, {})
+    (found,) = bench.found["finder"].values()
+    assert (found.objects, found.boxes) == (3, 3)
+    assert found.hits == (2, 2)
+    assert found.right == 2
+    assert found.named == 1
+    assert bench.tables()[0].row("finder")["precision"] == pytest.approx(2 / 3)
+
+
+def test_names_are_compared_where_the_library_has_the_kind(annotated: Path) -> None:
+    def namer(photo: Photo, boxes: np.ndarray) -> Sequence[Sequence[str]]:
+        return [("chair", "office chair", "stool"), ("table",)][: len(boxes)]
+
+    named = run(annotated, annotated.parent, {}, {"own": namer}).named["own"]["made"]
+    assert (named.objects, named.first, named.among_five) == (2, 1, 2)
+
+
+def test_a_folder_without_the_photos_is_one_clear_line(annotated: Path, tmp_path: Path) -> None:
+    (tmp_path / "made.png").unlink()
+    with pytest.raises(InputError, match="none of the 1 annotated photos"):
+        run(annotated, tmp_path, {}, {})
+
+
+def test_untrained_networks_can_be_scored(annotated: Path, tmp_path: Path) -> None:
+    torch.manual_seed(0)
+    export_detector(Detector(4, width=8), tmp_path / DETECTOR)
+    export_namer(Namer(4, width=8), tmp_path / NAMER)
+    write_card(tmp_path / CARD, ["office chair", "table", "bed", "sofa"])
+    bench = score(annotated, annotated.parent, Recogniser.of(tmp_path))
+    assert bench.named["own"]["made"].among_five == 2
+    assert json.dumps(bench.to_json())
