@@ -6,11 +6,11 @@ lie in a folder beside it.
 
 from __future__ import annotations
 
+import io
 import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import BinaryIO
 
 from diorama_core.export.files import FAST_DEFLATE, companion_folder, whole_file, write_whole
 from diorama_core.export.gathering import ExportScene
@@ -58,7 +58,11 @@ def _created(folder: Path) -> Iterator[None]:
 
 
 def _write_geometry(
-    scene: ExportScene, stream: BinaryIO, material_file: str, materials: MaterialFile, progress: Progress | None
+    scene: ExportScene,
+    stream: io.BufferedIOBase,
+    material_file: str,
+    materials: MaterialFile,
+    progress: Progress | None,
 ) -> None:
     stream.write(f"# Diorama: metres, +Y up\nmtllib {material_file}\n".encode())
     text = ObjText()

@@ -12,7 +12,7 @@ from PIL import Image
 
 from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
 
-Picture = UInt8[np.ndarray, "h w c"]
+Picture = UInt8[np.ndarray, "_ _ _"]
 JPEG_FROM_PX = 512 * 512
 """Larger opaque pictures are JPEG, the others PNG."""
 JPEG_QUALITY = 92
@@ -55,7 +55,7 @@ def limited(picture: Picture, max_px: int | None) -> Picture:
     return np.asarray(cv2.resize(picture, (width, height), interpolation=cv2.INTER_AREA))
 
 
-def power_of_two(picture: Picture) -> UInt8[np.ndarray, "h2 w2 c"]:
+def power_of_two(picture: Picture) -> Picture:
     """The picture with sides that are powers of two, so that every device can repeat and minify it.
 
     A side goes up to the next power unless it lies less than a tenth above the one below.

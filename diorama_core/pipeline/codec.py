@@ -61,6 +61,7 @@ _CLASSES: dict[str, type] = {
         types.SceneObject,
         types.Support,
         types.RoomLight,
+        types.PhotoMaterial,
         types.Scene,
     )
 }

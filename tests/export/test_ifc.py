@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from diorama_core.export import export_scene
+from diorama_core.library.stretch import relative_scale
 from tests.export.test_plan import room_with_door_and_window
 from tests.primitives import PrimitiveLibrary
 
@@ -48,7 +49,7 @@ def test_shapes_are_shared_and_stand_where_the_scene_says(model) -> None:
 
     scene = room_with_door_and_window()
     maps = model.by_type("IfcRepresentationMap")
-    assert len(maps) == len({(o.shape_id, o.colour, o.finish) for o in scene.objects})
+    assert len(maps) == len({(o.shape_id, o.colour, o.finish, relative_scale(o.pose.scale)) for o in scene.objects})
     settings = ifcopenshell.geom.settings()
     settings.set("use-world-coords", True)
     for element in (*model.by_type("IfcFurniture"), *model.by_type("IfcDoor"), *model.by_type("IfcWindow")):

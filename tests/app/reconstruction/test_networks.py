@@ -17,6 +17,7 @@ from diorama_app.session.session import EditorSession
 from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
 from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.errors import EditRefused, InputError, UnavailableError
+from diorama_core.models import own_weights
 from diorama_core.models.manifest import ModelFile, Network
 from diorama_core.models.store import ModelStore
 from diorama_core.project.storage import Project
@@ -122,7 +123,10 @@ def begun(folder: Path, inputs: Inputs) -> Project:
     return project
 
 
-def test_found_furniture_joins_the_boxes_drawn_by_hand(store: ModelStore, client: Client, tmp_path: Path) -> None:
+def test_found_furniture_joins_the_boxes_drawn_by_hand(
+    store: ModelStore, client: Client, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(own_weights, "FOLDER", tmp_path / "left out")
     photo = plain_photo(WIDTH, HEIGHT)
     client.session.open_project(begun(tmp_path / "projects" / "tiny", Inputs(photo)))
     find_furniture(client)
