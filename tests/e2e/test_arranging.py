@@ -99,10 +99,12 @@ def test_numeric_fields_move_turn_and_resize(editor: EditorPage) -> None:
     x.press("Tab")
     editor.until(lambda: abs(scene(editor).object("chair_2").pose.position[0] - 0.65) < 1e-3, "x is 0.65 m")
     assert scene(editor).object("chair_2").pose.position[1] == pytest.approx(before.pose.position[1])
+    editor.settle()  # the fields are drawn anew after every change
     turn = editor.page.get_by_label("Direction (°)")
     turn.fill("90")
     turn.press("Tab")
     editor.until(lambda: abs(np.degrees(scene(editor).object("chair_2").pose.yaw_rad) - 90) < 1e-3, "turned")
+    editor.settle()
     width = editor.page.get_by_label("Size: Width")
     width.fill("0.9")
     width.press("Tab")

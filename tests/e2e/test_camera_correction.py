@@ -28,6 +28,7 @@ def test_a_box_is_drawn_anew_and_an_outline_is_clicked_and_left(editor: EditorPa
     assert table.box_px == pytest.approx((230.0, 190.0, 450.0, 430.0), abs=4.0)
     assert table.category == "table"
     assert session.ui_thread.wait()
+    session.autosave.flush()
     retained = session.project.load_inputs()
     assert retained.boxes[0].box == table.box_px, "the next build starts from this box"
     assert [session.scene.object(i) for i in apart] == others, (
@@ -55,4 +56,5 @@ def test_a_box_is_drawn_anew_and_an_outline_is_clicked_and_left(editor: EditorPa
     editor.page.keyboard.press("Control+z")
     editor.until(lambda: session.scene.object("table_1").box_px == (240.0, 200.0, 440.0, 420.0), "one undo step")
     assert session.ui_thread.wait()
+    session.autosave.flush()
     assert session.project.load_inputs().boxes[0].box == (240.0, 200.0, 440.0, 420.0)

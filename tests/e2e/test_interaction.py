@@ -320,6 +320,7 @@ def test_what_was_missed_is_added_from_the_photo_and_renamed(editor: EditorPage)
     editor.until(lambda: session.document.history.current.label == label, "looked at again", seconds=90)
     assert not editor.client.view.canvas.is_open
     assert session.ui_thread.wait()
+    session.autosave.flush()
     retained = session.project.load_inputs()
     drawn = retained.instances == retained.instance_boxes[0][0]
     assert drawn[300, 340], "the next build takes the outline as it was drawn"
