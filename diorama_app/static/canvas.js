@@ -93,6 +93,7 @@
     const from = pixel(event), at = [event.clientX, event.clientY], side = event.target.dataset.side;
     const chosen = state.selected === null ? undefined : state.boxes[state.selected];
     if (state.photo.mode === "points") drag = { kind: "point", from, at };
+    else if (state.photo.mode === "one box") drag = { kind: "new", from, at }; // also where the old box is
     else if (side && chosen) drag = { kind: "pull", side, was: chosen.box, from, at };
     else if (chosen && hit(from) === state.selected) drag = { kind: "move", was: chosen.box, from, at };
     else drag = { kind: "new", from, at };

@@ -22,7 +22,7 @@ def scene(editor: EditorPage) -> Scene:
 
 
 def test_the_room_becomes_higher_and_what_hangs_on_a_moved_wall_goes_with_it(editor: EditorPage) -> None:
-    editor.page.get_by_text("Room", exact=True).last.click()
+    editor.page.get_by_text("Room", exact=True).first.click()
     height = editor.page.get_by_label("Height", exact=True)
     expect(height).to_have_value("2.5 m")
     height.fill("2.9")
@@ -47,10 +47,12 @@ def test_a_box_is_redrawn_on_the_photo_and_its_object_is_looked_at_again(editor:
     editor.page.locator(".dio .row[data-do=mark]", has_text="dining table").click()
     editor.button("Add selected box to the scene").click()
     editor.until(lambda: session.jobs.status is None and len(editor.selection) == 1, "added", seconds=90)
+    editor.settle()
     added = session.scene.object(editor.selection[0])
     others = [o for o in session.scene.objects if o.id != added.id]
     editor.button("Redraw box").click()
     editor.at_board()
+    editor.settle()
     corners = np.array([[250.0, 210.0], [400.0, 410.0]])
     editor.draw_box((250.0, 210.0, 400.0, 410.0))
     label = f"reconstruct {added.label}"

@@ -141,6 +141,7 @@ def test_projects_are_saved_reopened_and_exported(editor: EditorPage, tmp_path: 
     editor.page.locator(".dio .row", has_text="second").get_by_role("button", name="Open").click()
     editor.until(lambda: editor.session.project is not None and editor.session.project.name == "second", "opened")
     editor.until(lambda: editor.session.scene.has_object("lamp_1"), "its scene is shown")
+    editor.tab("Project")
     expect(editor.page.locator(".dio .row", has_text="demo").get_by_role("button", name="Open")).to_be_visible()
 
 
