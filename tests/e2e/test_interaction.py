@@ -57,7 +57,10 @@ def test_an_object_is_dragged_over_the_floor_stopped_by_the_table_and_undone(edi
     editor.page.keyboard.press("c")
     editor.until(lambda: not editor.client.preferences.slide, "now it may go through things")
     editor.settle()
-    start, into = editor.place_of(seat(editor)), editor.place_of(table + np.array([0.1, -0.3, 0.1]))
+    start, into = (
+        editor.place_of(seat(editor) + np.array([0.13, 0.13, 0.0])),
+        editor.place_of(table + np.array([0.1, -0.3, 0.1])),
+    )
     editor.page.mouse.move(*start)
     editor.settle()
     editor.page.mouse.down()
