@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from diorama_app.panels.in_place import InPlace
 from diorama_app.panels.photo_correction import PhotoCorrection
 from tests.e2e.browser import EditorPage
 from tests.e2e.test_viewport import seen_in_photo
@@ -37,7 +38,8 @@ def test_a_box_is_drawn_anew_and_an_outline_is_clicked_and_left(editor: EditorPa
     assert not editor.client.view.canvas.is_open
     editor.button("Fix outline").click()
     editor.at_board()
-    panel = next(p for p in editor.client.panels if isinstance(p, PhotoCorrection))
+    placed = [p.panel for p in editor.client.panels if isinstance(p, InPlace)]
+    panel = next(p for p in placed if isinstance(p, PhotoCorrection))
     before = session.scene
     editor.page.mouse.click(*editor.on_photo(340, 300))
     editor.until(lambda: panel._outline is not None and len(panel._outline.clicks) == 1, "part of it")

@@ -98,18 +98,22 @@ def test_an_exported_glb_is_opened_again_with_the_same_scene(example: EditorPage
     expect(example.button("Open a file")).to_be_enabled()
     example.upload("Open a file", path)
     example.until(
-        lambda: session.project is not None and session.project.folder != folder, "a project of its own", JOB_MS / 1000
+        lambda: example.session.project is not None and example.session.project.folder != folder,
+        "a project of its own",
+        JOB_MS / 1000,
     )
-    assert session.project is not None
-    assert session.project.name == "my room"
-    assert session.scene.objects == before.objects
-    assert session.scene.supports == before.supports
-    assert scene_to_json(session.scene) == scene_to_json(before)
-    assert Project.open(session.project.folder).load_scene() == session.scene
+    opened = example.session
+    example.until(lambda: bool(opened.scene.objects), "its scene is read")
+    assert opened.project is not None
+    assert opened.project.name == "my room"
+    assert opened.scene.objects == before.objects
+    assert opened.scene.supports == before.supports
+    assert scene_to_json(opened.scene) == scene_to_json(before)
+    assert Project.open(opened.project.folder).load_scene() == opened.scene
     example.settle()
     drawn = example.page.evaluate("Object.keys(window.__viserMutable.nodeRefFromName)")
-    for item in session.scene.objects:
-        assert any(n.startswith(f"{session.viewport.node_name(item.id)}/") for n in drawn), f"{item.id} is drawn"
+    for item in opened.scene.objects:
+        assert any(n.startswith(f"{opened.viewport.node_name(item.id)}/") for n in drawn), f"{item.id} is drawn"
     expect(example.page.get_by_text("Opened from my room.glb.")).to_be_visible()
 
 
