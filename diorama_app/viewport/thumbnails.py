@@ -7,7 +7,7 @@ import logging
 import time
 from concurrent.futures import Future, ThreadPoolExecutor
 
-from diorama_app.web.viser_adapter import PICTURES
+from diorama_app.web.requests import PICTURES
 from diorama_core.errors import DioramaError
 from diorama_core.io.cache import LruCache
 from diorama_core.library.record import ShapeLibrary

@@ -15,7 +15,8 @@ from diorama_app.reconstruction.photo_outlines import PhotoOutlines
 from diorama_app.session import autosave, redraws
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
-from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
+from diorama_app.web.viser_adapter import create_server, stop_server
+from diorama_app.web.visitors import Visitors
 from tests.app.page import Page
 from tests.app.people import join
 from tests.app.small_room import PlainLibrary, make_project

@@ -22,7 +22,8 @@ from diorama_app.session.client import Client
 from diorama_app.session.jobs import Jobs, Outcome
 from diorama_app.session.session import EditorSession
 from diorama_app.session.ui_thread import UiThread
-from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
+from diorama_app.web.viser_adapter import create_server, stop_server
+from diorama_app.web.visitors import Visitors
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.progress import Progress
 from diorama_core.scene import edits

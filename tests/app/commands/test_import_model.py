@@ -13,7 +13,8 @@ from diorama_app.commands.import_model import FIXES, correct_model, is_own_model
 from diorama_app.commands.insert import insert_shape
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
-from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
+from diorama_app.web.viser_adapter import create_server, stop_server
+from diorama_app.web.visitors import Visitors
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.library.ingest.shaping import packed_shape
 from diorama_core.library.record import Shape

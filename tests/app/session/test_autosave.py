@@ -20,7 +20,8 @@ from diorama_app.projects import manage as project_care
 from diorama_app.reconstruction.photo_outlines import PhotoOutlines
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
-from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
+from diorama_app.web.viser_adapter import create_server, stop_server
+from diorama_app.web.visitors import Visitors
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
 from tests.app.people import join

@@ -11,7 +11,8 @@ from diorama_app.commands.edit import rename
 from diorama_app.reconstruction import build_job as work
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
-from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
+from diorama_app.web.viser_adapter import create_server, stop_server
+from diorama_app.web.visitors import Visitors
 from diorama_core.errors import DioramaError, EditRefused
 from diorama_core.project import storage
 from diorama_core.project.storage import Project
