@@ -4,39 +4,22 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from diorama_app.projects.report import build_report, write_arrangements
 from diorama_core.api import Reconstruction
 from diorama_core.artefacts import (
-    ArchitectureEstimate,
-    CameraEstimate,
-    DepthMap,
-    Inputs,
     LayoutReport,
-    ObjectGeometry,
 )
-from diorama_core.perception.illuminant import Illuminant
-from diorama_core.pipeline.run import Built
 from diorama_core.pipeline.runner import StageRun
 from diorama_core.pipeline.stages import embedded_stages
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
-from diorama_core.provenance import (
-    AttitudeSource,
-    CameraSource,
-    DepthSource,
-    FocalSource,
-    HeadingSource,
-    RoomMethod,
-    RoomSource,
-    ScaleSource,
-)
 from diorama_core.retrieval import appearance_similarity
 from diorama_core.scene.schema import scene_from_json
 from diorama_core.scene.types import Scene
-from tests.app.small_room import PlainLibrary, furnished_scene, make_project, plain_photo
+from tests.app.small_room import PlainLibrary, furnished_scene, make_project
+from tests.built import built_scene
 
 
 class CountingLayout:
@@ -49,26 +32,7 @@ class CountingLayout:
         return scene, LayoutReport("feasible", {}, {"overlapping_pairs": float(self.pairs.pop(0))}, 0.1)
 
 
-def built_room() -> Built:
-    """What the stages gave for the furnished scene, as far as a report reads it."""
-    scene, camera = furnished_scene(), CameraSource(FocalSource.GIVEN, AttitudeSource.GIVEN, HeadingSource.GIVEN)
-    nothing = np.zeros((1, 1), np.float32)
-    return Built(
-        scene=scene,
-        camera=CameraEstimate((), 0.5, camera),
-        objects=(),
-        geometry=ObjectGeometry(scene.camera, (), (), ScaleSource.DEPTH),
-        graph=None,
-        architecture=ArchitectureEstimate(scene.architecture, (), 0.5, RoomSource(RoomMethod.DEPTH_PLANES)),
-        depth=DepthMap(nothing, np.zeros((1, 1, 3), np.float32), DepthSource.MEASURED),
-        observed=scene,
-        layout=None,
-        textures={},
-        illuminant=Illuminant(),
-        inputs=Inputs(plain_photo(), depth_m=nothing, depth_source=DepthSource.MEASURED),
-        runs=(StageRun("pose", "Fit", 1.25, cached=False), StageRun("layout", "Feasible", 0.5, cached=True)),
-        notes=("a note",),
-    )
+RUNS = (StageRun("pose", "Fit", 1.25, cached=False), StageRun("layout", "Feasible", 0.5, cached=True))
 
 
 @pytest.fixture
@@ -84,7 +48,7 @@ def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     project: Project = make_project(tmp_path / "room")
 
     def made(*pairs: int):
-        built, library = built_room(), PlainLibrary()
+        built, library = replace(built_scene(furnished_scene()), runs=RUNS, notes=("a note",)), PlainLibrary()
         return Reconstruction(
             scene=replace(furnished_scene(), metrics=(("structure", 1.0),)),
             library=library,
