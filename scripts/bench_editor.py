@@ -355,7 +355,7 @@ FIGURES = ("start", "load", "swap", "undo", "drag", "optimiser", "four")
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])  # type: ignore[union-attr]
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--objects", type=int, default=60)
     parser.add_argument("--library", choices=("built-in", "plain"), default="built-in")
     parser.add_argument("--only", default=",".join(FIGURES))

@@ -78,6 +78,6 @@ class Thumbnails:
             time.sleep(PAINTED_WAIT_S)
         try:
             return thumbnail(self._library, shape_id, size=SIDE_PX, paint=paint)
-        except Exception:
+        except Exception:  # one picture is missing then; the page shows the name instead
             log.exception("no thumbnail of %s", shape_id)
             return None

@@ -66,9 +66,9 @@ def test_the_page_has_every_panel_and_shows_the_project(editor: Editor, tmp_path
 def test_clicks_and_drags_go_to_the_gestures_of_whoever_made_them(editor: Editor, tmp_path: Path) -> None:
     editor.open_first(make_project(tmp_path / "projects" / "demo"))
     client, _ = enter(editor)
-    editor.session.on_pick("chair_1", pointer.clicked(client.viser_client, "chair_1"))
+    editor.session.view.on_pick("chair_1", pointer.clicked(client.viser_client, "chair_1"))
     nobody = LocalClient(editor.session.server, 7)
-    editor.session.on_pick("lamp_1", pointer.clicked(nobody, "lamp_1"))
+    editor.session.view.on_pick("lamp_1", pointer.clicked(nobody, "lamp_1"))
     assert editor.session.ui_thread.wait(20.0)
     assert client.selection == ("chair_1",)
 
