@@ -347,7 +347,7 @@ class Bench:
         line("four browsers in step", taken, "< 300", used)
 
     def _do(self, task: Callable[[], object]) -> None:
-        self.session.ui_thread.post(task)  # type: ignore[arg-type]
+        self.session.ui_thread.post(task)
         self.session.ui_thread.wait(60.0)
 
 

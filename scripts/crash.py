@@ -412,7 +412,7 @@ def main() -> int:
         began = time.monotonic()
         until = began + 60.0 * options.minutes
         kills, said, wrong = KINDS[name](
-            lambda done, until=until: done < options.kills and time.monotonic() < until,  # type: ignore[misc]
+            lambda done, until=until: done < options.kills and time.monotonic() < until,
             np.random.default_rng(options.seed),
         )
         all_wrong += wrong

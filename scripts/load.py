@@ -92,7 +92,7 @@ def serving(folder: Path) -> tuple[subprocess.Popen, int]:
     root = str(Path(__file__).resolve().parents[1])
     process = subprocess.Popen([sys.executable, "-c", SERVE, str(folder)], stdout=subprocess.PIPE, text=True, cwd=root)
     assert process.stdout is not None
-    port = int(re.search(r":(\d+)/", process.stdout.readline())[1])  # type: ignore[index]
+    port = int(re.search(r":(\d+)/", process.stdout.readline())[1])
     return process, port
 
 

@@ -51,7 +51,7 @@ class PhotoEntry:
             self.path,
             intrinsics=self.intrinsics,
             depth=self.depth,
-            depth_encoding=self.depth_encoding,  # type: ignore[arg-type]
+            depth_encoding=self.depth_encoding,
             boxes=self.boxes,
             masks=self.masks,
         )

@@ -161,7 +161,7 @@ class Soak:
 
     def _paint(self) -> None:
         colour = None if self.rng.integers(3) == 0 else tuple(float(c) for c in self.rng.uniform(0, 1, 3).round(1))
-        editing.set_colour(self.client, self.client.selection, colour)  # type: ignore[arg-type]
+        editing.set_colour(self.client, self.client.selection, colour)
 
     def _align(self) -> None:
         chosen = self.client.need_selection()

@@ -57,7 +57,7 @@ def npy(array: np.ndarray) -> bytes:
 def refusal(*args: object, **kwargs: object) -> str:
     """The one line with which the input is refused."""
     with pytest.raises(InputError) as caught:
-        read_inputs(*args, **kwargs)  # type: ignore[arg-type]
+        read_inputs(*args, **kwargs)
     line = str(caught.value)
     assert "\n" not in line
     assert 15 < len(line) < 240

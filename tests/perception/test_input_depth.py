@@ -113,7 +113,7 @@ class TestDepth:
     photo = encoded(picture())
 
     def read(self, data: bytes, **options: object) -> np.ndarray:
-        depth = read_inputs(self.photo, depth=data, **options).inputs.depth_m  # type: ignore[arg-type]
+        depth = read_inputs(self.photo, depth=data, **options).inputs.depth_m
         assert depth is not None
         assert depth.dtype == np.float32
         assert depth.shape == (HEIGHT, WIDTH)

@@ -44,7 +44,7 @@ def test_the_second_server_only_looks_and_says_who_has_it(new_room: NewRoom, tmp
     first.open_project(project)
     client = join(second)
     second.open_project(Project.open(project.folder))
-    assert "open in the editor of" in client.viser_client.told[-1]  # type: ignore[attr-defined]
+    assert "open in the editor of" in client.viser_client.told[-1]
     for act in (
         lambda: rename(client, "chair_1", "throne"),
         lambda: second.undo(client),
@@ -90,7 +90,7 @@ def test_a_damaged_scene_opens_with_the_newest_version_that_can_be_read(
     client = join(session)
     session.open_project(project)
     assert session.scene == furnished_scene()
-    told = client.viser_client.told[-1]  # type: ignore[attr-defined]
+    told = client.viser_client.told[-1]
     assert "is shown, since the scene file is not valid JSON" in told
     assert len(told) < 400
 
@@ -102,4 +102,4 @@ def test_a_damaged_photo_does_not_keep_the_scene_shut(new_room: NewRoom, tmp_pat
     client = join(session)
     session.open_project(project)
     assert session.scene == furnished_scene()
-    assert "photo cannot be read back" in client.viser_client.told[-1]  # type: ignore[attr-defined]
+    assert "photo cannot be read back" in client.viser_client.told[-1]

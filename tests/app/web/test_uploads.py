@@ -36,7 +36,7 @@ def in_flight(running: Running) -> dict[str, dict]:
     """Uploads under way in all projects."""
     servers = [e.server for e in running.workspace.editors]
     guis = [gui for s in servers for gui in (s.gui, *(c.gui for c in s.get_clients().values()))]
-    return {uuid: state for gui in guis for uuid, state in gui._current_file_upload_states.items()}  # type: ignore[misc]
+    return {uuid: state for gui in guis for uuid, state in gui._current_file_upload_states.items()}
 
 
 def settled(running: Running) -> dict[str, dict]:

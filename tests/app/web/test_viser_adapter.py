@@ -73,7 +73,7 @@ def test_drawing_from_many_threads_never_disturbs_the_loop() -> None:
     class Waiters(deque):
         """Tells whether another thread than the loop's ever touches the list of waiters."""
 
-        def __iter__(self):  # type: ignore[no-untyped-def]
+        def __iter__(self):
             touched.add(threading.get_ident())
             return super().__iter__()
 
@@ -81,7 +81,7 @@ def test_drawing_from_many_threads_never_disturbs_the_loop() -> None:
 
     async def wait_for_messages() -> int:
         buffer = _infra.AsyncMessageBuffer(asyncio.get_running_loop(), persistent_messages=False)
-        buffer.message_event._waiters = Waiters()  # type: ignore[attr-defined]
+        buffer.message_event._waiters = Waiters()
         windows = buffer.window_generator(client_id=0)
         arrived = 0
 
