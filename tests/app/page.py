@@ -22,6 +22,8 @@ class Page:
     client: Client
     made: list[tuple[str, str, Any]] = field(default_factory=list)
     """Kind, label and handle, in the order they were made."""
+    sent: int = 0
+    """How many actions were sent."""
 
     def __getattr__(self, name: str) -> Any:
         real = getattr(self.gui, name)
@@ -87,7 +89,8 @@ class Page:
 
     def send(self, hidden: Any, do: str, arg: object, *, add: bool = False) -> None:
         """Write a message into the hidden field of a piece of HTML, as its handler does."""
-        hidden.value = json.dumps({"do": do, "arg": str(arg), "add": add, "at": len(self.made)})
+        self.sent += 1
+        hidden.value = json.dumps([{"do": do, "arg": str(arg), "add": add, "number": self.sent}])
         self._told(hidden)
 
     def settle(self) -> None:
