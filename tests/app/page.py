@@ -20,6 +20,8 @@ class Page(viser.GuiApi):
         self.client = client
         self.made: list[tuple[str, str, Any]] = []
         """Kind, label and handle, in the order they were made."""
+        self.sent = 0
+        """How many actions were sent."""
 
     def __getattribute__(self, name: str) -> Any:
         if name in vars(Page) or name in object.__getattribute__(self, "__dict__") or name == "__dict__":
@@ -87,7 +89,8 @@ class Page(viser.GuiApi):
 
     def send(self, hidden: Any, do: str, arg: object, *, add: bool = False) -> None:
         """Write a message into the hidden field of a piece of HTML, as its handler does."""
-        hidden.value = json.dumps({"do": do, "arg": str(arg), "add": add, "at": len(self.made)})
+        self.sent += 1
+        hidden.value = json.dumps([{"do": do, "arg": str(arg), "add": add, "number": self.sent}])
         self._told(hidden)
 
     def settle(self) -> None:
