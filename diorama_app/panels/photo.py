@@ -97,8 +97,9 @@ class PhotoPanel:
         show_if(inputs is not None, self._more, self._draw, self._find, self._build)
         self._drawn_by.show(f'<p class="dim">{text(how_pictures_come())}</p>' if self._words.value.strip() else "")
         enable(self._describe, idle and bool(self._words.value.strip()))
-        enable(self._find, idle and can_propose_boxes())
-        self._no_detector.show(_about_detection() if inputs is not None and not can_find_furniture() else "")
+        finds, about = self._session.glances.of("detection", _detection)
+        enable(self._find, idle and finds)
+        self._no_detector.show(about if inputs is not None else "")
         self._naming.show("" if inputs is None else self._name_field(inputs))
         self._list.show("" if inputs is None else _box_list(inputs, client.selected_box))
         show_if(inputs is not None and bool(self._session.scene.objects), self._add)
@@ -308,8 +309,11 @@ def _state(inputs: Inputs) -> str:
     return "<b>Draw a box around each piece of furniture.</b>"
 
 
-def _about_detection() -> str:
-    return f'<p class="dim">{text(PROPOSALS_ONLY if can_propose_boxes() else NO_DETECTOR)}</p>'
+def _detection() -> tuple[bool, str]:
+    """Whether anything on this machine finds furniture, and what there is to say where no detector does."""
+    finds = can_propose_boxes()
+    about = f'<p class="dim">{text(PROPOSALS_ONLY if finds else NO_DETECTOR)}</p>'
+    return finds, "" if can_find_furniture() else about
 
 
 def _extras(inputs: Inputs) -> dict[str, bool]:
