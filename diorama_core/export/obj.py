@@ -6,11 +6,11 @@ lie in a folder beside it.
 
 from __future__ import annotations
 
-import io
 import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import IO
 
 from diorama_core.export.files import FAST_DEFLATE, companion_folder, whole_file, write_whole
 from diorama_core.export.gathering import ExportScene
@@ -32,7 +32,7 @@ def write_obj(scene: ExportScene, path: Path, progress: Progress | None = None) 
         with whole_file(path) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
             archive.compresslevel = FAST_DEFLATE
             with archive.open(f"{path.stem}.obj", "w", force_zip64=True) as stream:
-                _write_geometry(scene, stream, f"{path.stem}.mtl", materials, progress)  # type: ignore[arg-type]
+                _write_geometry(scene, stream, f"{path.stem}.mtl", materials, progress)
             for name, content in _companions(materials, f"{path.stem}.mtl"):
                 archive.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)
         return
@@ -59,7 +59,7 @@ def _created(folder: Path) -> Iterator[None]:
 
 def _write_geometry(
     scene: ExportScene,
-    stream: io.BufferedIOBase,
+    stream: IO[bytes],
     material_file: str,
     materials: MaterialFile,
     progress: Progress | None,

@@ -2,9 +2,9 @@ from __future__ import annotations
 
 import html
 import json
-from types import SimpleNamespace
 
 import pytest
+import viser
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -66,7 +66,7 @@ def test_clicks_arrive_and_what_others_write_is_ignored(page: Page) -> None:
     hidden.value = '[{"do": "run", "arg": "there", "add": false, "number": 9}]'
     for callback in hidden._impl.update_cb:
         with pytest.raises(StopIteration):
-            callback(SimpleNamespace(client_id=None, target=hidden)).send(None)
+            callback(viser.GuiEvent(None, None, hidden)).send(None)
     assert len(told) == 1, "the program's own writing is no click"
 
 
