@@ -15,20 +15,13 @@ from diorama_app.session.client import Client
 class Page(viser.GuiApi):
     """Stands before a server's panel API, makes everything for real, and remembers it by label."""
 
-<<<<<<< HEAD
-    gui: viser.GuiApi
-    client: Client
-    made: list[tuple[str, str, Any]] = field(default_factory=list)
-    """Kind, label and handle, in the order they were made."""
-    sent: int = 0
-    """How many actions were sent."""
-=======
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self.gui = gui
         self.client = client
         self.made: list[tuple[str, str, Any]] = []
         """Kind, label and handle, in the order they were made."""
->>>>>>> house
+        self.sent = 0
+        """How many actions were sent."""
 
     def __getattribute__(self, name: str) -> Any:
         if name in vars(Page) or name in object.__getattribute__(self, "__dict__") or name == "__dict__":
