@@ -22,12 +22,23 @@ from diorama_app.reconstruction.suggestions import Suggestions
 from diorama_app.reconstruction.text_to_scene import describe_room, how_pictures_come
 from diorama_app.session.client import Client
 from diorama_app.session.reading import Upload
-from diorama_app.viewport.annotation_canvas import Deleted, Drawn, Event, Finished, Named, Reshaped, Selected
+from diorama_app.viewport.annotation_canvas import (
+    Accepted,
+    Clicked,
+    Deleted,
+    Dismissed,
+    Drawn,
+    Event,
+    Finished,
+    Named,
+    Reshaped,
+    Selected,
+)
 from diorama_app.viewport.mesh_assets import reduced
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_app.web.viser_adapter import component_uuid
-from diorama_core.artefacts import Inputs
-from diorama_core.editing.input_corrections import boxes_json, labelled_box, with_box_at, without_box
+from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
+from diorama_core.editing.input_corrections import boxes_json, labelled_box, same_object, with_box_at, without_box
 from diorama_core.errors import InputError
 from diorama_core.library.taxonomy import CATEGORIES
 from diorama_core.perception.inputs import ReadInputs
@@ -48,7 +59,9 @@ class PhotoPanel:
         self._client, self._session = client, client.session
         self._next = COMMON[0]
         """What the next box is called."""
-        self._suggestions = Suggestions(lambda: client.post(self.refresh, key="suggestions"))
+        self._suggestions: Suggestions | None = None
+        self._dismissed: set[Box] = set()
+        """Proposals that were turned down."""
         self._picture_of: object = None
         self._picture = ""
         self._invitation = LiveHtml(gui, self._act)
@@ -106,7 +119,25 @@ class PhotoPanel:
         enable(self._build, idle and work.ready_to_build(inputs))
         show_label(self._draw, "Done drawing" if client.view.canvas.is_open else "Draw boxes")
         if inputs is not None:
-            client.view.canvas.show_boxes(inputs.boxes, client.selected_box)
+            self._show_on_canvas(inputs)
+
+    def _show_on_canvas(self, inputs: Inputs) -> None:
+        index, canvas = self._client.selected_box, self._client.view.canvas
+        likely = () if index is None else self._suggested(inputs).names(inputs.boxes[index].box)
+        canvas.show_boxes(inputs.boxes, index, likely)
+        if canvas.is_open:
+            canvas.show_proposals(self._proposals(inputs))
+
+    def _suggested(self, inputs: Inputs) -> Suggestions:
+        if self._suggestions is None or self._suggestions.photo is not inputs.photo:
+            self._suggestions = Suggestions(inputs.photo, lambda: self._client.post(self.refresh, key="suggestions"))
+            self._dismissed = set()
+        return self._suggestions
+
+    def _proposals(self, inputs: Inputs) -> tuple[LabelledBox, ...]:
+        """Likely objects that nobody marked or turned down yet."""
+        likely = (b for b in self._suggested(inputs).boxes() if b.box not in self._dismissed)
+        return tuple(b for b in likely if same_object(inputs.boxes, b.box) is None)
 
     # -- uploads ----------------------------------------------------------------------------------------------
 
@@ -202,7 +233,8 @@ class PhotoPanel:
         if inputs is None:
             return
         index = getattr(event, "index", None)
-        if index is not None and not 0 <= index < len(inputs.boxes):
+        rows = self._proposals(inputs) if isinstance(event, Accepted | Dismissed) else inputs.boxes
+        if index is not None and not 0 <= index < len(rows):
             return  # somebody else deleted it just now
         match event:
             case Drawn(box):
@@ -217,12 +249,42 @@ class PhotoPanel:
             case Deleted(i):
                 client.selected_box = None
                 self._annotate(f"delete the box of {inputs.boxes[i].label}", without_box(inputs, i))
+            case Clicked(x, y):
+                client.selected_box = None
+                client.refresh()
+                photo = inputs.photo
+                self._suggested(inputs).at(x, y, lambda box: client.post(lambda: self._meant(photo, box)))
+            case Accepted(i, label):
+                self._mark(inputs, labelled_box(rows[i].box, label or rows[i].label))
+            case Dismissed(i):
+                self._dismissed.add(rows[i].box)
+                client.refresh()
             case Selected(i):
                 client.selected_box = i
                 client.refresh()
             case Finished():
                 client.view.canvas.close()
                 client.refresh()
+
+    def _meant(self, photo: Photo, box: LabelledBox | None) -> None:
+        """What was clicked on is known: it becomes a box, or the one that is there already is selected."""
+        inputs = self._session.inputs
+        if inputs is None or inputs.photo is not photo:
+            return  # another project was opened meanwhile
+        known = None if box is None else same_object(inputs.boxes, box.box)
+        if box is None:
+            self._client.notice("Nothing is recognised there; drag a box around the object.")
+        elif known is None:
+            self._mark(inputs, labelled_box(box.box, box.label))
+        else:
+            self._client.selected_box = known
+            self._client.refresh()
+
+    def _mark(self, inputs: Inputs, box: LabelledBox) -> None:
+        """Add a box and select it, so that it can be named and changed at once."""
+        self._annotate(f"mark: {box.label}", replace(inputs, boxes=(*inputs.boxes, box)))
+        self._client.selected_box = len(inputs.boxes)
+        self._client.refresh()
 
     def _annotate(self, label: str, inputs: Inputs) -> None:
         self._session.annotate(label, inputs, by=self._client)
@@ -271,7 +333,7 @@ class PhotoPanel:
         index = self._client.selected_box
         value = self._next if index is None else inputs.boxes[index].label
         title = "Name of the next box" if index is None else "Name of the selected box"
-        likely = () if index is None else self._suggestions.of(inputs.photo, inputs.boxes[index].box)
+        likely = () if index is None else self._suggested(inputs).names(inputs.boxes[index].box)
         names = (*likely, *(name for name in COMMON if name not in likely))[: len(COMMON)]
         chips = "".join(button(text(name), "name", name, on=name == value) for name in names)
         options = "".join(f'<option value="{text(name)}">' for name in NAMES)
