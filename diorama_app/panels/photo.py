@@ -16,7 +16,15 @@ from diorama_app.commands.registry import CommandTable
 from diorama_app.panels.fields import enable, on_change, on_press, show_if, show_label
 from diorama_app.projects.begin import begin_project
 from diorama_app.reconstruction import build_job as work
-from diorama_app.reconstruction.networks import NO_DETECTOR, PROPOSALS_ONLY, can_find_furniture, can_propose_boxes
+from diorama_app.reconstruction.networks import (
+    NO_DETECTOR,
+    PROPOSALS_ONLY,
+    SMALLEST,
+    can_find_furniture,
+    can_propose_boxes,
+    detect_with_networks,
+    missing_networks,
+)
 from diorama_app.reconstruction.object_correction import add_from_photo
 from diorama_app.reconstruction.suggestions import Suggestions
 from diorama_app.reconstruction.text_to_scene import describe_room, how_pictures_come
@@ -41,6 +49,8 @@ from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
 from diorama_core.editing.input_corrections import boxes_json, labelled_box, same_object, with_box_at, without_box
 from diorama_core.errors import InputError
 from diorama_core.library.taxonomy import CATEGORIES
+from diorama_core.models.manifest import networks_of
+from diorama_core.models.store import ModelStore
 from diorama_core.perception.inputs import ReadInputs
 
 COMMON = ("chair", "table", "sofa", "armchair", "bed", "desk", "coffee table", "lamp", "cabinet", "bookshelf")
@@ -84,7 +94,7 @@ class PhotoPanel:
         on_press(self._draw, lambda: client.post(self._toggle_board))
         self._find = gui.add_button("Detect furniture", hint=commands["find_furniture"].tooltip)
         on_press(self._find, lambda: client.post(lambda: commands["find_furniture"].run(client)))
-        self._no_detector = LiveHtml(gui)
+        self._no_detector = LiveHtml(gui, self._act)
         client.open_board = self._open_board
         self._naming = LiveHtml(gui, self._act)
         self._list = LiveHtml(gui, self._act)
@@ -111,7 +121,7 @@ class PhotoPanel:
         self._drawn_by.show(f'<p class="dim">{text(how_pictures_come())}</p>' if self._words.value.strip() else "")
         enable(self._describe, idle and bool(self._words.value.strip()))
         enable(self._find, idle and can_propose_boxes())
-        self._no_detector.show(_about_detection() if inputs is not None and not can_find_furniture() else "")
+        self._no_detector.show(_about_detection(idle) if inputs is not None and not can_find_furniture() else "")
         self._naming.show("" if inputs is None else self._name_field(inputs))
         self._list.show("" if inputs is None else _box_list(inputs, client.selected_box))
         show_if(inputs is not None and bool(self._session.scene.objects), self._add)
@@ -315,7 +325,9 @@ class PhotoPanel:
 
     def _act(self, action: Action) -> None:
         def do() -> None:
-            if action.do == "named":
+            if action.do == "download":
+                detect_with_networks(self._client)
+            elif action.do == "named":
                 self._named(action.pair[1])
             elif action.do == "name":
                 self._named(action.arg)
@@ -370,8 +382,21 @@ def _state(inputs: Inputs) -> str:
     return "<b>Draw a box around each piece of furniture.</b>"
 
 
-def _about_detection() -> str:
-    return f'<p class="dim">{text(PROPOSALS_ONLY if can_propose_boxes() else NO_DETECTOR)}</p>'
+def _about_detection(idle: bool) -> str:
+    """What detects furniture now, and the networks that would do it better, with their size and licences."""
+    words = f'<p class="dim">{text(PROPOSALS_ONLY if can_propose_boxes() else NO_DETECTOR)}</p>'
+    missing = missing_networks(ModelStore.default(), networks_of(SMALLEST))
+    if not missing:
+        return words
+    size = f"{sum(n.size_bytes for n in missing) / 1e6:.0f} MB"
+    licences = ", ".join(sorted({n.licence for n in missing}))
+    return (
+        words
+        + button(
+            f"Download {size} and detect", "download", title=f"Accepts their licences: {licences}", disabled=not idle
+        )
+        + f'<p class="dim">Licences: {text(licences)}. Nothing else is sent or fetched.</p>'
+    )
 
 
 def _extras(inputs: Inputs) -> dict[str, bool]:
