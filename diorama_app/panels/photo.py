@@ -14,6 +14,7 @@ from PIL import Image
 
 from diorama_app.commands.registry import CommandTable
 from diorama_app.panels.fields import enable, on_change, on_press, show_if, show_label
+from diorama_app.panels.photo_boxes import PhotoBoxes, box_list
 from diorama_app.projects.begin import begin_project
 from diorama_app.reconstruction import build_job as work
 from diorama_app.reconstruction.networks import (
@@ -26,35 +27,23 @@ from diorama_app.reconstruction.networks import (
     missing_networks,
 )
 from diorama_app.reconstruction.object_correction import add_from_photo
-from diorama_app.reconstruction.suggestions import Suggestions
 from diorama_app.reconstruction.text_to_scene import describe_room, how_pictures_come
 from diorama_app.session.client import Client
 from diorama_app.session.reading import Upload
 from diorama_app.viewport.annotation_canvas import (
-    Accepted,
-    Clicked,
     Deleted,
-    Dismissed,
-    Drawn,
-    Event,
-    Finished,
-    Named,
-    Reshaped,
     Selected,
 )
 from diorama_app.viewport.mesh_assets import reduced
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_app.web.viser_adapter import component_uuid
-from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
-from diorama_core.editing.input_corrections import boxes_json, labelled_box, same_object, with_box_at, without_box
+from diorama_core.artefacts import Inputs
+from diorama_core.editing.input_corrections import boxes_json
 from diorama_core.errors import InputError
-from diorama_core.library.taxonomy import CATEGORIES
 from diorama_core.models.manifest import networks_of
 from diorama_core.models.store import ModelStore
 from diorama_core.perception.inputs import ReadInputs
 
-COMMON = ("chair", "table", "sofa", "armchair", "bed", "desk", "coffee table", "lamp", "cabinet", "bookshelf")
-NAMES = (*COMMON, *sorted({c.name for c in CATEGORIES} - {*COMMON, "object"}))
 SLOW_BYTES = 2_000_000
 """A file of more is announced while it is read."""
 
@@ -67,11 +56,7 @@ class PhotoPanel:
 
     def __init__(self, gui: viser.GuiApi, client: Client, commands: CommandTable) -> None:
         self._client, self._session = client, client.session
-        self._next = COMMON[0]
-        """What the next box is called."""
-        self._suggestions: Suggestions | None = None
-        self._dismissed: set[Box] = set()
-        """Proposals that were turned down."""
+        self._boxes = PhotoBoxes(client, self.refresh)
         self._picture_of: object = None
         self._picture = ""
         self._invitation = LiveHtml(gui, self._act)
@@ -91,11 +76,11 @@ class PhotoPanel:
             self._camera = gui.add_text("Camera", "", hint="fx,fy,cx,cy in pixels of the photo; empty: estimated")
             on_change(self._camera, self._camera_given)
         self._draw = gui.add_button("Draw boxes", color="blue", hint="Draw a box around each piece of furniture")
-        on_press(self._draw, lambda: client.post(self._toggle_board))
+        on_press(self._draw, lambda: client.post(self._boxes.toggle))
         self._find = gui.add_button("Detect furniture", hint=commands["find_furniture"].tooltip)
         on_press(self._find, lambda: client.post(lambda: commands["find_furniture"].run(client)))
         self._no_detector = LiveHtml(gui, self._act)
-        client.open_board = self._open_board
+        client.open_board = self._boxes.open
         self._naming = LiveHtml(gui, self._act)
         self._list = LiveHtml(gui, self._act)
         self._add = gui.add_button(
@@ -122,32 +107,14 @@ class PhotoPanel:
         enable(self._describe, idle and bool(self._words.value.strip()))
         enable(self._find, idle and can_propose_boxes())
         self._no_detector.show(_about_detection(idle) if inputs is not None and not can_find_furniture() else "")
-        self._naming.show("" if inputs is None else self._name_field(inputs))
-        self._list.show("" if inputs is None else _box_list(inputs, client.selected_box))
+        self._naming.show("" if inputs is None else self._boxes.name_field(inputs))
+        self._list.show("" if inputs is None else box_list(inputs, client.selected_box))
         show_if(inputs is not None and bool(self._session.scene.objects), self._add)
         enable(self._add, idle and client.selected_box is not None)
         enable(self._build, idle and work.ready_to_build(inputs))
         show_label(self._draw, "Done drawing" if client.view.canvas.is_open else "Draw boxes")
         if inputs is not None:
-            self._show_on_canvas(inputs)
-
-    def _show_on_canvas(self, inputs: Inputs) -> None:
-        index, canvas = self._client.selected_box, self._client.view.canvas
-        likely = () if index is None else self._suggested(inputs).names(inputs.boxes[index].box)
-        canvas.show_boxes(inputs.boxes, index, likely)
-        if canvas.is_open:
-            canvas.show_proposals(self._proposals(inputs))
-
-    def _suggested(self, inputs: Inputs) -> Suggestions:
-        if self._suggestions is None or self._suggestions.photo is not inputs.photo:
-            self._suggestions = Suggestions(inputs.photo, lambda: self._client.post(self.refresh, key="suggestions"))
-            self._dismissed = set()
-        return self._suggestions
-
-    def _proposals(self, inputs: Inputs) -> tuple[LabelledBox, ...]:
-        """Likely objects that nobody marked or turned down yet."""
-        likely = (b for b in self._suggested(inputs).boxes() if b.box not in self._dismissed)
-        return tuple(b for b in likely if same_object(inputs.boxes, b.box) is None)
+            self._boxes.show(inputs)
 
     # -- uploads ----------------------------------------------------------------------------------------------
 
@@ -215,107 +182,6 @@ class PhotoPanel:
 
         self._client.post(read, key="camera")
 
-    # -- boxes ------------------------------------------------------------------------------------------------
-
-    def _toggle_board(self) -> None:
-        if self._client.view.canvas.is_open:
-            self._client.view.canvas.close()
-        else:
-            self._open_board()
-        self._client.refresh()
-
-    def _open_board(self) -> None:
-        inputs = self._session.inputs
-        if inputs is None:
-            raise InputError("there is no photo yet; upload one first")
-        client = self._client
-        client.view.canvas.open(
-            inputs.photo.rgb,
-            lambda event: client.post(lambda: self._drawn(event)),
-            names=NAMES,
-            next_label=self._next,
-        )
-        self.refresh()
-
-    def _drawn(self, event: Event) -> None:
-        """Something was done on the photo."""
-        inputs, client = self._session.inputs, self._client
-        if inputs is None:
-            return
-        index = getattr(event, "index", None)
-        rows = self._proposals(inputs) if isinstance(event, Accepted | Dismissed) else inputs.boxes
-        if index is not None and not 0 <= index < len(rows):
-            return  # somebody else deleted it just now
-        match event:
-            case Drawn(box):
-                client.selected_box = None
-                made = labelled_box(box, self._next)
-                self._annotate(f"draw a box: {made.label}", replace(inputs, boxes=(*inputs.boxes, made)))
-            case Reshaped(i, box):
-                now = replace(inputs.boxes[i], box=box)
-                self._annotate(f"change the box of {now.label}", with_box_at(inputs, i, now))
-            case Named(i, label):
-                self._rename(i, label)
-            case Deleted(i):
-                client.selected_box = None
-                self._annotate(f"delete the box of {inputs.boxes[i].label}", without_box(inputs, i))
-            case Clicked(x, y):
-                client.selected_box = None
-                client.refresh()
-                photo = inputs.photo
-                self._suggested(inputs).at(x, y, lambda box: client.post(lambda: self._meant(photo, box)))
-            case Accepted(i, label):
-                self._mark(inputs, labelled_box(rows[i].box, label or rows[i].label))
-            case Dismissed(i):
-                self._dismissed.add(rows[i].box)
-                client.refresh()
-            case Selected(i):
-                client.selected_box = i
-                client.refresh()
-            case Finished():
-                client.view.canvas.close()
-                client.refresh()
-
-    def _meant(self, photo: Photo, box: LabelledBox | None) -> None:
-        """What was clicked on is known: it becomes a box, or the one that is there already is selected."""
-        inputs = self._session.inputs
-        if inputs is None or inputs.photo is not photo:
-            return  # another project was opened meanwhile
-        known = None if box is None else same_object(inputs.boxes, box.box)
-        if box is None:
-            self._client.notice("Nothing is recognised there; drag a box around the object.")
-        elif known is None:
-            self._mark(inputs, labelled_box(box.box, box.label))
-        else:
-            self._client.selected_box = known
-            self._client.refresh()
-
-    def _mark(self, inputs: Inputs, box: LabelledBox) -> None:
-        """Add a box and select it, so that it can be named and changed at once."""
-        self._annotate(f"mark: {box.label}", replace(inputs, boxes=(*inputs.boxes, box)))
-        self._client.selected_box = len(inputs.boxes)
-        self._client.refresh()
-
-    def _annotate(self, label: str, inputs: Inputs) -> None:
-        self._session.annotate(label, inputs, by=self._client)
-
-    def _rename(self, index: int, label: str) -> None:
-        inputs, words = self._session.inputs, " ".join(label.split())
-        if inputs is None or not words or inputs.boxes[index].label == words:
-            return
-        now = labelled_box(inputs.boxes[index].box, words)
-        self._annotate(f"{inputs.boxes[index].label} is a {words}", with_box_at(inputs, index, now))
-
-    def _named(self, word: str) -> None:
-        """A name was chosen: of the selected box, or else of the next one."""
-        if self._client.selected_box is not None:
-            self._rename(self._client.selected_box, word)
-        elif word.strip():
-            self._next = " ".join(word.split())
-            if self._client.view.canvas.is_open:
-                self._client.view.canvas.next_label(self._next)
-            self.refresh()
-
     def _add_selected(self) -> None:
         inputs, index = self._session.inputs, self._client.selected_box
         if inputs is None or index is None:
@@ -328,32 +194,18 @@ class PhotoPanel:
             if action.do == "download":
                 detect_with_networks(self._client)
             elif action.do == "named":
-                self._named(action.pair[1])
+                self._boxes.name(action.pair[1])
             elif action.do == "name":
-                self._named(action.arg)
+                self._boxes.name(action.arg)
             elif action.arg.isdigit() and action.do == "drop":
-                self._drawn(Deleted(int(action.arg)))
+                self._boxes.happened(Deleted(int(action.arg)))
             elif action.arg.isdigit() and action.do == "mark":
                 index = int(action.arg)
-                self._drawn(Selected(None if self._client.selected_box == index else index))
+                self._boxes.happened(Selected(None if self._client.selected_box == index else index))
 
         self._client.post(do)
 
     # -- words ------------------------------------------------------------------------------------------------
-
-    def _name_field(self, inputs: Inputs) -> str:
-        index = self._client.selected_box
-        value = self._next if index is None else inputs.boxes[index].label
-        title = "Name of the next box" if index is None else "Name of the selected box"
-        likely = () if index is None else self._suggested(inputs).names(inputs.boxes[index].box)
-        names = (*likely, *(name for name in COMMON if name not in likely))[: len(COMMON)]
-        chips = "".join(button(text(name), "name", name, on=name == value) for name in names)
-        options = "".join(f'<option value="{text(name)}">' for name in NAMES)
-        return (
-            f'<h4><label for="dio-box-name">{title}</label></h4><input id="dio-box-name" list="dio-box-names" '
-            f'data-change="named" value="{text(value)}"><datalist id="dio-box-names">{options}</datalist>'
-            f'<div class="bar tight" style="margin-top:6px">{chips}</div>'
-        )
 
     def _introduction(self, inputs: Inputs | None) -> str:
         if inputs is None:
@@ -405,22 +257,6 @@ def _extras(inputs: Inputs) -> dict[str, bool]:
         "masks": inputs.instances is not None,
         "camera": inputs.intrinsics is not None,
     }
-
-
-def _box_list(inputs: Inputs, selected: int | None) -> str:
-    if not inputs.boxes:
-        return "<p class='dim'>Choose a name, press <b>Draw boxes</b> and drag a rectangle on the photo.</p>"
-    rows = []
-    for index, box in enumerate(inputs.boxes):
-        unknown = ' <span class="dim">as an object</span>' if box.category == "object" else ""
-        rows.append(
-            f'<div class="row {"on" if index == selected else ""}" data-do="mark" data-arg="{index}" role="treeitem" '
-            f'tabindex="0" aria-selected="{"true" if index == selected else "false"}">'
-            f'<span class="name">{text(box.label)}{unknown}</span>'
-            + button("✕", "drop", index, title=f"Delete the box of {box.label}")
-            + "</div>"
-        )
-    return f'<h4>Boxes</h4><div role="tree" aria-label="Boxes">{"".join(rows)}</div>'
 
 
 def _intrinsics(given: str) -> tuple[float, float, float, float] | None:
