@@ -22,7 +22,6 @@ import threading
 import time
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -44,18 +43,20 @@ class Person:
         self.page = WirePage(port)
         self.latencies: list[float] = []
         self.lost = 0
+        self.actions = 0
         self.outliner, self.field = self.page.wait_for(self._find, 120.0)
 
     def _find(self) -> tuple[str, str] | None:
         for uuid, element in self.page.elements.items():
             content = str(element.get("content", ""))
             if 'data-do="hide"' in content:
-                found = re.search(r'label\[for=(?:"|&quot;|\\")+([0-9a-f-]+)', content)
+                found = re.search(r"__dioSend\((?:'|&#x27;)([0-9a-f-]+)", content)
                 return (uuid, found[1]) if found else None
         return None
 
-    def act(self, do: str, arg: str, **more: Any) -> None:
-        value = json.dumps({"do": do, "arg": arg, "add": False, "at": time.monotonic(), **more})
+    def act(self, do: str, arg: str) -> None:
+        self.actions += 1
+        value = json.dumps([{"do": do, "arg": arg, "add": False, "number": self.actions}])
         self.page.set(self.field, value)
 
     def hidden(self, object_id: str) -> bool:

@@ -105,8 +105,9 @@ class PhotoPanel:
         show_if(inputs is not None, self._more, self._draw, self._find, self._build)
         self._drawn_by.show(f'<p class="dim">{text(how_pictures_come())}</p>' if self._words.value.strip() else "")
         enable(self._describe, idle and bool(self._words.value.strip()))
-        enable(self._find, idle and can_propose_boxes())
-        self._no_detector.show(_about_detection(idle) if inputs is not None and not can_find_furniture() else "")
+        finds, about = self._session.glances.of("detection", _detection)
+        enable(self._find, idle and finds)
+        self._no_detector.show(about if inputs is not None else "")
         self._naming.show("" if inputs is None else self._boxes.name_field(inputs))
         self._list.show("" if inputs is None else box_list(inputs, client.selected_box))
         show_if(inputs is not None and bool(self._session.scene.objects), self._add)
@@ -234,20 +235,18 @@ def _state(inputs: Inputs) -> str:
     return "<b>Draw a box around each piece of furniture.</b>"
 
 
-def _about_detection(idle: bool) -> str:
-    """What detects furniture now, and the networks that would do it better, with their size and licences."""
-    words = f'<p class="dim">{text(PROPOSALS_ONLY if can_propose_boxes() else NO_DETECTOR)}</p>'
+def _detection() -> tuple[bool, str]:
+    """Whether anything detects furniture now, and what would do it better, with its size and licences."""
+    finds = can_propose_boxes()
     missing = missing_networks(ModelStore.default(), networks_of(SMALLEST))
-    if not missing:
-        return words
+    if can_find_furniture() or not missing:
+        return finds, ""
     size = f"{sum(n.size_bytes for n in missing) / 1e6:.0f} MB"
     licences = ", ".join(sorted({n.licence for n in missing}))
-    return (
-        words
-        + button(
-            f"Download {size} and detect", "download", title=f"Accepts their licences: {licences}", disabled=not idle
-        )
-        + f'<p class="dim">Licences: {text(licences)}. Nothing else is sent or fetched.</p>'
+    fetch = button(f"Download {size} and detect", "download", title=f"Accepts their licences: {licences}")
+    return finds, (
+        f'<p class="dim">{text(PROPOSALS_ONLY if finds else NO_DETECTOR)}</p>{fetch}'
+        f'<p class="dim">Licences: {text(licences)}.</p>'
     )
 
 

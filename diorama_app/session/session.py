@@ -18,6 +18,7 @@ import viser
 from diorama_app.session.autosave import Autosave
 from diorama_app.session.connected_client import ConnectedClient
 from diorama_app.session.document import Document
+from diorama_app.session.glances import Glances
 from diorama_app.session.job_reports import JobReports
 from diorama_app.session.jobs import Jobs, Outcome
 from diorama_app.session.layout_run import LayoutRun
@@ -99,6 +100,7 @@ class EditorSession:
         """Told when a client went away."""
         self.greeting: tuple[str, NoticeKind] | None = None
         """What the next client is told that comes."""
+        self.glances = Glances()
         self.binned: Path | None = None
         """The project deleted last, until it is restored."""
         self.layout_run: LayoutRun | None = None
@@ -293,6 +295,7 @@ class EditorSession:
             with contextlib.suppress(OSError):  # leftovers that cannot be removed disturb nobody
                 self.autosave.recovery.clean_up(project)
         self.project, self.textures, self.notes = project, read.textures, read.notes
+        self.glances.forget()
         self.photo = None if inputs is None else inputs.photo
         self.interrupted = project.info().get(BUILDING) is not None
         self.shapes.expect(len(scene.objects))
@@ -329,6 +332,7 @@ class EditorSession:
 
     def _saver_says(self, message: str, kind: NoticeKind = "good") -> None:
         def tell() -> None:
+            self.glances.forget()
             self.notice_all(message, kind)
             self.refresh_panels()
 
@@ -396,6 +400,7 @@ class EditorSession:
                 client.job_panel.refresh()
 
     def _job_ended(self, outcome: Outcome) -> None:
+        self.glances.forget()
         self.refresh()
         if outcome.cancelled:
             self.notice_all("Cancelled; nothing was changed.")

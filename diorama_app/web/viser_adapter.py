@@ -11,6 +11,7 @@ import contextlib
 import functools
 import io
 import itertools
+import logging
 import socket
 import threading
 import time
@@ -24,6 +25,7 @@ import websockets.asyncio.server
 from viser import _messages
 from viser.infra import _infra
 from websockets.asyncio.server import ServerConnection
+from websockets.exceptions import InvalidMessage
 
 from diorama_app.web.bridge import Bridge, ConnectionHandler
 from diorama_app.web.requests import HttpHandler, Pictures, Projects, paced, project_of, request_check
@@ -37,6 +39,14 @@ MAX_MESSAGE_BYTES = 16 * 1024 * 1024
 
 Refused = Callable[[int, str], None]
 """Told (client id, one line) of every upload that was refused."""
+
+
+def _is_worth_logging(record: logging.LogRecord) -> bool:
+    """Not of a connection that ends before it asks for anything: browsers open some in advance."""
+    return not (record.exc_info and isinstance(record.exc_info[1], InvalidMessage))
+
+
+logging.getLogger("websockets.server").addFilter(_is_worth_logging)
 
 
 class _LoopEvent(asyncio.Event):

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Bool, Float, UInt8
 
-from diorama_core.appearance.photo_look import photo_look
+from diorama_core.appearance.photo_appearance import photo_appearance
 from diorama_core.artefacts import DetectedObject, Inputs, LabelledBox, ObjectGeometry, PosedCandidates
 from diorama_core.errors import InputError
 from diorama_core.library.record import ShapeLibrary
@@ -217,9 +217,9 @@ def _found(
     parent = next((s.parent for s in geometry.supports if s.child == detected.id), "floor")
     alone = Scene(camera=scene.camera, objects=(item,))
     objects = (detected, *(o for o in photo["objects"] if o.id != detected.id))
-    look = photo_look(balanced, objects, alone, library, illuminant.rgb)
-    item = look.applied(alone).objects[0]
-    return Found(item, _edge(scene, item, parent), detected, look.pictures, as_built)
+    appearance = photo_appearance(balanced, objects, alone, library, illuminant.rgb)
+    item = appearance.applied(alone).objects[0]
+    return Found(item, _edge(scene, item, parent), detected, appearance.pictures, as_built)
 
 
 def _edge(scene: Scene, item: SceneObject, parent: str) -> Support | None:

@@ -163,7 +163,7 @@ class HierarchicalRetrieval:
         return float((fit.max() + of_appearances * like) / (of_size + of_outline + of_appearances))
 
     def _appearance(self, shape: Shape) -> ShapeAppearance:
-        folder = default_cache_dir() / "looks"
+        folder = default_cache_dir() / "appearance"
         return SHARED_APPEARANCES.get(shape.content_hash, folder, lambda: self.library.parts(shape.id))
 
     def _usual(self, shape: Shape, item: DetectedObject) -> float:

@@ -144,7 +144,7 @@ def _least_used(f: Furnisher, hosts: list[str]) -> list[str]:
 
 
 def _chosen(f: Furnisher, requested: RequestedObject) -> Item | None:
-    """A shape of the category, of the asked looks where there is one; of a set, always the same shape."""
+    """A shape of the category, with the attributes asked for where there is one; of a set, always the same shape."""
     before = [o for o in f.objects if o.category == requested.category]
     if before and requested.count > 1:
         return replace(f.items[before[-1].id])

@@ -27,7 +27,7 @@ MAX_OBJECTS = 60
 
 
 class Soak:
-    """A room, a guest, and a generator of edits."""
+    """An open project, a client, and a generator of edits."""
 
     def __init__(self, folder: Path, seed: int) -> None:
         self.server = create_server(host="127.0.0.1", port=0, label="soak", visitors=Visitors("127.0.0.1"))

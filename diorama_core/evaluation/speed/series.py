@@ -92,7 +92,7 @@ def stages_by_size(
 
 
 def stages_by_objects(library: ShapeLibrary, seed: int, counts: Sequence[int], progress: Progress) -> list[Series]:
-    """The renderer, every stage of a build, and export, for halls of more and more objects; pictures of one size."""
+    """The renderer, every stage of a build, and export, for scenes of more and more objects; pictures of one size."""
     found = Collected(OBJECTS)
     weights = np.cumsum([5.0, *(float(c) for c in counts)]) / (5.0 + sum(counts))
     _build(_large_scene_inputs(library, 12, seed), library, 0.0, Collected(OBJECTS), progress)  # makes ready the shapes

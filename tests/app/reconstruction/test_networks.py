@@ -14,17 +14,14 @@ from diorama_app.reconstruction import networks
 from diorama_app.reconstruction.networks import NO_DETECTOR, detect_with_networks, find_furniture, get_networks
 from diorama_app.reconstruction.text_to_scene import COMPOSED, describe_room, how_pictures_come
 from diorama_app.session.client import Client
-from diorama_app.session.session import EditorSession
-from diorama_app.web.viser_adapter import create_server, stop_server
-from diorama_app.web.visitors import Visitors
 from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.errors import EditRefused, InputError, UnavailableError
 from diorama_core.models import own_weights
 from diorama_core.models.manifest import ModelFile, Network
 from diorama_core.models.store import ModelStore
 from diorama_core.project.storage import Project
-from tests.app.people import LocalClient, join
-from tests.app.small_room import PlainLibrary, make_project, plain_photo
+from tests.app.people import LocalClient
+from tests.app.small_room import plain_photo
 from tests.models import tiny_networks
 from tests.models.stub_hub import SHA, Hub, serving
 from tests.pipeline.test_presets import BOX, HEIGHT, WIDTH, _Yolox, install
@@ -54,16 +51,6 @@ def hub(monkeypatch: pytest.MonkeyPatch) -> Iterator[Hub]:
     with serving(Hub({"owner/name/model.onnx": GRAPH})) as running:
         monkeypatch.setenv("HF_ENDPOINT", running.address)
         yield running
-
-
-@pytest.fixture
-def client(tmp_path: Path) -> Iterator[Client]:
-    server = create_server(host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1"))
-    session = EditorSession(server, PlainLibrary(), tmp_path / "projects", Client)
-    session.open_project(make_project(tmp_path / "projects" / "demo"))
-    yield join(session)
-    session.close()
-    stop_server(server)
 
 
 def _told(client: Client) -> list[str]:

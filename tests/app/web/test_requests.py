@@ -59,6 +59,16 @@ def test_addresses_that_make_no_sense_are_refused_not_an_error(
     assert not [r for r in caplog.records if r.levelname == "ERROR"]
 
 
+def test_a_connection_that_asks_for_nothing_is_no_error(
+    server: viser.ViserServer, caplog: pytest.LogCaptureFixture
+) -> None:
+    socket.create_connection(("127.0.0.1", server.get_port())).close()
+    with socket.create_connection(("127.0.0.1", server.get_port())) as page:
+        page.sendall(b"GET / HT")
+    assert fetch(server)[0] == 200
+    assert not caplog.records
+
+
 def test_pictures_are_served_beside_the_page_to_those_who_may_see_it() -> None:
     def picture(name: str) -> Future[bytes | None]:
         asked: Future[bytes | None] = Future()

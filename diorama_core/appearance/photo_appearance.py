@@ -30,7 +30,7 @@ Picture = UInt8[np.ndarray, "_ _ 3"]
 
 
 @dataclass(frozen=True, eq=False)
-class PhotoLook:
+class PhotoAppearance:
     """Materials by object id, and their pictures by name."""
 
     materials: Mapping[str, tuple[PhotoMaterial, ...]]
@@ -55,13 +55,13 @@ class _Seen:
     visible: Bool[np.ndarray, "h w"]
 
 
-def photo_look(
+def photo_appearance(
     rgb: UInt8[np.ndarray, "h w 3"],
     objects: tuple[DetectedObject, ...],
     scene: Scene,
     library: ShapeLibrary,
     illuminant_rgb: tuple[float, float, float] = (1.0, 1.0, 1.0),
-) -> PhotoLook:
+) -> PhotoAppearance:
     """What the photo shows of the scene's objects.
 
     Args:
@@ -72,7 +72,7 @@ def photo_look(
         illuminant_rgb: Linear colour of the light that the photo was freed of; that of the scene's light.
     """
     if scene.camera is None:
-        return PhotoLook({}, {})
+        return PhotoAppearance({}, {})
     found = {o.id: o for o in objects}
     seen = [
         _seen(item, _parts(library, item), rgb, found[item.id], objects, scene.camera)
@@ -89,7 +89,7 @@ def photo_look(
         made = [(_face_material(one.item, face), face.picture) for face in one.faces] + _surfaces(one, rgb, falls)
         materials[one.item.id] = tuple(material for material, _ in made)
         pictures |= {m.texture: picture for m, picture in made if m.texture is not None and picture is not None}
-    return PhotoLook({key: value for key, value in materials.items() if value}, pictures, light)
+    return PhotoAppearance({key: value for key, value in materials.items() if value}, pictures, light)
 
 
 def _parts(library: ShapeLibrary, item: SceneObject) -> trimesh.Scene:
