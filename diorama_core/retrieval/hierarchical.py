@@ -44,8 +44,8 @@ _GUESSED_SIZE = 0.5
 """Reduced weight of a size that was not observed but taken from the category's prior."""
 _MIN_VOICE = 0.1
 _MOUNTS = {"wall": ("wall",), "ceiling": ("ceiling",)}
-_OTHER_MOUNT = 0.1
-"""How likely a thing is of a kind that is held otherwise than it is."""
+_OTHER_MOUNT, _OTHER_MOUNT_OF_UNNAMED = 0.1, 0.5
+"""How likely a thing is of a kind that is held otherwise than it is; what holds one without a name is guessed too."""
 _KINDS, _KINDS_OF_UNNAMED = 3, 7
 """How many kinds are among the candidates of a thing with and without a name, where it may be of so many."""
 _OF_WORDS = 0.12
@@ -89,7 +89,7 @@ class HierarchicalRetrieval:
         cuboids = {c.object_id: c for c in geometry.cuboids}
         measured = [o for o in objects if o.id in cuboids]
         sizes = [cuboids[o.id].size_m for o in measured]
-        named = [resolve(o.label).category is not UNKNOWN for o in measured]
+        named = [_has_name(o) for o in measured]
         groups = _groups([o.category if n else UNKNOWN.name for o, n in zip(measured, named, strict=True)], sizes)
         senses = _senses(measured, [cuboids[o.id] for o in measured], geometry)
         pools = self._pools(measured, sizes, groups, geometry.supports, senses)
@@ -148,6 +148,7 @@ class HierarchicalRetrieval:
                 supports_objects=any(measured[i].id in holders for i in members),
                 supported_by=parent_of.get(first.id, "floor"),
                 senses=_mean_senses([senses[i] for i in members]),
+                named=_has_name(first),
             )
             pools.append(pool_for(self.library, query))
         return pools
@@ -179,6 +180,11 @@ class HierarchicalRetrieval:
         )
 
 
+def _has_name(item: DetectedObject) -> bool:
+    """Whether it is called something that the taxonomy knows."""
+    return resolve(item.label).category is not UNKNOWN
+
+
 def _senses(
     objects: Sequence[DetectedObject], cuboids: Sequence[Cuboid], geometry: ObjectGeometry
 ) -> list[Mapping[str, float]]:
@@ -190,9 +196,10 @@ def _senses(
     for index, senses in enumerate(by_box):
         factors = neighbour_factors(index, tuple(senses), objects, cuboids, geometry.supports)
         mounts = _MOUNTS.get(parent_of.get(objects[index].id, "floor"), ("floor", "surface"))
+        other = _OTHER_MOUNT if _has_name(objects[index]) else _OTHER_MOUNT_OF_UNNAMED
         found.append(
             {
-                kind: share * factors[kind] * (1.0 if category(kind).mount in mounts else _OTHER_MOUNT)
+                kind: share * factors[kind] * (1.0 if category(kind).mount in mounts else other)
                 for kind, share in senses.items()
             }
         )
