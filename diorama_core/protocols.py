@@ -2,7 +2,8 @@
 
 ```
 (Photo -> recognition -> detection, depth prediction ->)
-Inputs -> camera -> objects (-> naming) -> geometry (-> graph) -> architecture -> depth -> retrieval -> pose -> Scene -> layout
+Inputs -> camera -> objects (-> naming) -> geometry (-> graph) -> architecture -> depth -> retrieval -> pose
+-> Scene -> layout
 ```
 
 With measured depth, camera and geometry read it; from a photo alone they reason from vanishing points, contact

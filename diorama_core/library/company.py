@@ -65,17 +65,21 @@ CARRIED: tuple[Carried, ...] = (
 )  # fmt: skip
 """Kinds that are not named lie there now and then if they lie on things at all."""
 
+CARRIED_KINDS: frozenset[str] = frozenset(kind for row in CARRIED for kind in row.kinds)
+"""All that lies on other things now and then, whatever else it stands on."""
+
 SELDOM_CARRIED, HARDLY_CARRIED = 0.3, 0.08
 """The same of kinds that lie on things and are not named, and of those that stand on floors or hang."""
 
 ROOMS: Mapping[str, frozenset[str]] = {
     "bedroom": frozenset({
         "bed", "bunk bed", "day bed", "crib", "night stand", "dresser", "wardrobe", "pillow", "blanket", "lamp",
-        "mirror", "toy", "vanity table", "laundry basket", "curtain", "chest", "handbag",
+        "wall lamp", "mirror", "toy", "vanity table", "laundry basket", "curtain", "chest", "handbag",
     }),
     "living": frozenset({
         "sofa", "sectional sofa", "armchair", "coffee table", "side table", "tv stand", "television", "rug", "pillow",
-        "floor lamp", "bookshelf", "fireplace", "plant", "curtain", "picture", "books", "sideboard", "speaker",
+        "lamp", "wall lamp", "floor lamp", "bookshelf", "fireplace", "plant", "curtain", "picture", "books",
+        "sideboard", "speaker",
     }),
     "dining": frozenset({
         "table", "chair", "sideboard", "chandelier", "vase", "bowl", "plate", "glass", "display cabinet", "wine rack",
