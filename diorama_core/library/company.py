@@ -79,11 +79,11 @@ ROOMS: Mapping[str, frozenset[str]] = {
     "living": frozenset({
         "sofa", "sectional sofa", "armchair", "coffee table", "side table", "tv stand", "television", "rug", "pillow",
         "lamp", "wall lamp", "floor lamp", "bookshelf", "fireplace", "plant", "curtain", "picture", "books",
-        "sideboard", "speaker",
+        "sideboard", "speaker", "chandelier",
     }),
     "dining": frozenset({
         "table", "chair", "sideboard", "chandelier", "vase", "bowl", "plate", "glass", "display cabinet", "wine rack",
-        "bottle", "fruit", "candle", "ceiling lamp", "picture", "cabinet",
+        "bottle", "fruit", "candle", "picture", "cabinet",
     }),
     "kitchen": frozenset({
         "kitchen counter", "wall cabinet", "stove", "refrigerator", "sink", "microwave", "range hood", "dishwasher",

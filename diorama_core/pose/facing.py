@@ -52,7 +52,7 @@ _AGAINST_WALLS = 2.0
 """Storage has its back to a wall rather than other furniture."""
 _DRAWN_UP_M = 0.9
 _DRAWN_UP_COFFEE_M = 1.6
-_LEANING = 1.5
+_LEANING = 3.0
 _WALL_REACH_M = 0.7
 _WALL_LATERAL_M = 3.0
 _WALL_SAMPLES = 3000
