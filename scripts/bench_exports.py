@@ -38,7 +38,7 @@ def hall(library: ShapeLibrary) -> Scene:
     """The scene."""
     shapes = [s for s in library.shapes() if s.category in KINDS]
     rng = np.random.default_rng(0)
-    rng.shuffle(shapes)  # type: ignore[arg-type]
+    rng.shuffle(shapes)
     objects = []
     for k in range(COUNT):
         shape = library.shape(shapes[k % len(shapes)].id)

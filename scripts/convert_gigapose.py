@@ -84,7 +84,7 @@ def read_checkpoint(path: Path, trusted: bool) -> dict[str, Any]:
     """A checkpoint, without running code that it may carry unless it is trusted."""
     try:
         return torch.load(path, map_location="cpu", weights_only=not trusted)
-    except Exception as error:
+    except Exception as error:  # unpickling raises almost anything
         words = " ".join(str(error).split())[:120]
         advice = "is it the right file?" if trusted else "add --trust if you know where it comes from (it may run code)"
         sys.exit(f"{path}: cannot be read ({words}); {advice}")

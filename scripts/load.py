@@ -61,7 +61,7 @@ class Person:
     def hidden(self, object_id: str) -> bool:
         """Whether this page says that an object is hidden."""
         content = str(self.page.elements[self.outliner].get("content", ""))
-        found = re.search(rf'data-do="hide" data-arg="{object_id}" title="(Hide|Show)"', content)
+        found = re.search(rf'data-do="hide" data-arg="{object_id}"[^>]* title="(Hide|Show)"', content)
         assert found is not None, f"the outliner has no row for {object_id}"
         return found[1] == "Show"
 
@@ -92,7 +92,7 @@ def serving(folder: Path) -> tuple[subprocess.Popen, int]:
     root = str(Path(__file__).resolve().parents[1])
     process = subprocess.Popen([sys.executable, "-c", SERVE, str(folder)], stdout=subprocess.PIPE, text=True, cwd=root)
     assert process.stdout is not None
-    port = int(re.search(r":(\d+)/", process.stdout.readline())[1])  # type: ignore[index]
+    port = int(re.search(r":(\d+)/", process.stdout.readline())[1])
     return process, port
 
 
@@ -144,7 +144,7 @@ def room_of(count: int) -> Scene:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])  # type: ignore[union-attr]
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--clients", type=int, default=20)
     parser.add_argument("--projects", type=int, default=1)
     parser.add_argument("--objects", type=int, default=60, help="in each project's scene")

@@ -27,7 +27,17 @@ from diorama_core.progress import Progress
 from diorama_core.protocols import ObjectStage
 from diorama_core.retrieval.seen_kinds import with_seen_kinds
 from diorama_core.retrieval.word_senses import with_word_senses
-from diorama_core.scene.types import Camera, Candidate, Plane, Pose, Scene, SceneObject, Support, yaw_rotation
+from diorama_core.scene.types import (
+    Camera,
+    Candidate,
+    Plane,
+    PlaneRole,
+    Pose,
+    Scene,
+    SceneObject,
+    Support,
+    yaw_rotation,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,8 +230,8 @@ def _edge(scene: Scene, item: SceneObject, parent: str) -> Support | None:
     """The edge in the scene's terms: floor, wall and ceiling become planes, what is gone becomes the floor."""
     if scene.has_object(parent) and parent != item.id:
         return Support(item.id, parent)
-    role = parent if parent in ("wall", "ceiling") else "floor"
-    planes = scene.architecture.by_role(role)  # type: ignore[arg-type]
+    role: PlaneRole = "wall" if parent == "wall" else "ceiling" if parent == "ceiling" else "floor"
+    planes = scene.architecture.by_role(role)
     if not planes:
         return None
 

@@ -14,7 +14,8 @@ from PIL import Image
 from diorama_app.reconstruction.camera_correction import camera_height_m, set_camera_height
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
-from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
+from diorama_app.web.viser_adapter import create_server, stop_server
+from diorama_app.web.visitors import Visitors
 from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.editing.input_corrections import (
     boxes_json,

@@ -117,7 +117,7 @@ class _Sam2Decoder(torch.nn.Module):
         super().__init__()
         self.model = model
 
-    def forward(self, e0, e1, e2, points, labels, boxes):  # type: ignore[no-untyped-def]
+    def forward(self, e0, e1, e2, points, labels, boxes):
         out = self.model(image_embeddings=[e0, e1, e2], input_boxes=boxes, multimask_output=True)
         # Points count for nothing, as none are ever given, but they belong to the signature.
         return out.iou_scores + 0.0 * points.sum() + 0.0 * labels.sum(), out.pred_masks, out.object_score_logits
@@ -188,7 +188,7 @@ class _SamDecoder(torch.nn.Module):
         super().__init__()
         self.model = model
 
-    def forward(self, points, labels, boxes, embeddings, positions):  # type: ignore[no-untyped-def]
+    def forward(self, points, labels, boxes, embeddings, positions):
         out = self.model(image_embeddings=embeddings, input_boxes=boxes, multimask_output=True)
         nothing = 0.0 * points.sum() + 0.0 * labels.sum() + 0.0 * positions.sum()
         return out.iou_scores + nothing, out.pred_masks

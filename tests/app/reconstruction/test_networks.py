@@ -14,7 +14,8 @@ from diorama_app.reconstruction.networks import NO_DETECTOR, find_furniture, get
 from diorama_app.reconstruction.text_to_scene import COMPOSED, describe_room, how_pictures_come
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
-from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
+from diorama_app.web.viser_adapter import create_server, stop_server
+from diorama_app.web.visitors import Visitors
 from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.errors import EditRefused, InputError, UnavailableError
 from diorama_core.models import own_weights

@@ -11,7 +11,7 @@ from diorama_core.errors import InputError
 @settings(deadline=None)
 @given(metres=st.floats(-50, 50), unit=st.sampled_from(UNITS))
 def test_what_is_written_reads_as_the_same_length(metres: float, unit: str) -> None:
-    assert parse_length(format_length(metres, unit), unit) == pytest.approx(metres, abs=1.1e-3)  # type: ignore[arg-type]
+    assert parse_length(format_length(metres, unit), unit) == pytest.approx(metres, abs=1.1e-3)
 
 
 @pytest.mark.parametrize(
@@ -31,7 +31,7 @@ def test_what_is_written_reads_as_the_same_length(metres: float, unit: str) -> N
     ids=str,
 )
 def test_lengths_as_people_write_them(words: str, unit: str, metres: float) -> None:
-    assert parse_length(words, unit) == pytest.approx(metres)  # type: ignore[arg-type]
+    assert parse_length(words, unit) == pytest.approx(metres)
 
 
 @pytest.mark.parametrize("words", ["", "two", "1.2 parsecs", "3/0"])
