@@ -29,8 +29,9 @@ ROUGHNESS: Mapping[str, tuple[float, float]] = {
 MIN_PIXELS, MIN_SHARE = 40, 0.2
 """A slot is read from at least so many pixels, of which such a share is of about one colour."""
 MIN_OUTLINED = 0.35
-"""Of the pixels where the posed shape shows a slot a mask must hold this share; else it has lost the slot's part of the
-object (white bedding on a dark bed), and the slot is read where the shape shows it."""
+"""Of the pixels where the posed shape is a mask must hold this share. Where it holds less of one slot, it has lost that
+part of the object (white bedding on a dark bed), and the slot is read where the shape shows it; where it holds less of
+the whole, mask and pose do not belong together, and the mask alone counts."""
 MIN_VISIBLE = 0.015
 """And from at least this share of all that is seen of its object: a pose a little off misses smaller ones."""
 BIN_LAB = np.array([40.0, 20.0, 20.0])
@@ -82,11 +83,12 @@ def slot_pixels(
     """
     seen, colours = view.of(visible) & (view.slot >= 0), view.of(rgb)
     shown = view.of(unhidden) & (cv2.erode((view.slot >= 0).astype(np.uint8), np.ones((5, 5), np.uint8)) > 0)
+    together = seen.sum() >= MIN_OUTLINED * shown.sum()
     lab = cv2.cvtColor(np.ascontiguousarray(colours, dtype=np.float32) / 255.0, cv2.COLOR_RGB2Lab)
     found = []
     for index, slot in enumerate(slots):
         mine, posed = seen & (view.slot == index), shown & (view.slot == index)
-        if mine.sum() < MIN_OUTLINED * posed.sum():
+        if together and mine.sum() < MIN_OUTLINED * posed.sum():
             mine = posed
         count = int(mine.sum())
         read = slot.role in READ_ROLES or (slot.main and slot.role == "glass")

@@ -58,3 +58,11 @@ def test_a_slot_that_the_mask_lost_is_read_where_the_shape_shows_it() -> None:
     assert [p.slot.role for p in both] == ["fabric", "wood"]
     found = appearance_of(view, both[1], rgb, light)
     np.testing.assert_allclose(found.colour, linear_to_srgb(np.array(ALBEDO["wood"])), atol=0.02)
+
+
+def test_a_mask_that_is_elsewhere_is_not_replaced_by_the_shape() -> None:
+    view, slots, rgb, mask, _ = seen()
+    little = np.zeros_like(mask)
+    little[70:84, 90:112] = True
+    (body,) = slot_pixels(view, slots, rgb, mask & little, mask)
+    assert body.mine.sum() <= little.sum()
