@@ -52,7 +52,6 @@ class _Seen:
     faces: tuple[Face, ...]
     view: SurfaceView | None
     pixels: tuple[SlotPixels, ...]
-    visible: Bool[np.ndarray, "h w"]
 
 
 def photo_appearance(
@@ -108,10 +107,18 @@ def _seen(
     faces = faces_of(item, parts, rgb, hidden, found, camera)
     visible = cv2.erode(found.mask.astype(np.uint8), np.ones((5, 5), np.uint8)).astype(bool) & ~hidden
     slots = slots_of(parts)
-    view = surface_view(parts, slots, item.pose, camera, visible)
+    unhidden = visible if found.mask_confidence >= 1.0 else _in_box(found) & ~hidden
+    view = surface_view(parts, slots, item.pose, camera, visible | unhidden)
     taken = {face.slot.name for face in faces}
-    pixels = () if view is None else slot_pixels(view, slots, rgb, visible)
-    return _Seen(item, faces, view, tuple(p for p in pixels if p.slot.name not in taken), visible)
+    pixels = () if view is None else slot_pixels(view, slots, rgb, visible, unhidden)
+    return _Seen(item, faces, view, tuple(p for p in pixels if p.slot.name not in taken))
+
+
+def _in_box(found: DetectedObject) -> Bool[np.ndarray, "h w"]:
+    inside = np.zeros(found.mask.shape, dtype=bool)
+    x1, y1, x2, y2 = (max(round(v), 0) for v in found.box)
+    inside[y1:y2, x1:x2] = True
+    return inside
 
 
 def _surfaces(
@@ -121,7 +128,7 @@ def _surfaces(
     if seen.view is None:
         return made
     for pixels in seen.pixels:
-        found = appearance_of(seen.view, pixels, rgb, seen.visible, light)
+        found = appearance_of(seen.view, pixels, rgb, light)
         roughness, metallic = ROUGHNESS[found.slot.role]
         name = None if found.texture is None else texture_name(seen.item.id, found.slot.name, found.texture)
         material = PhotoMaterial(

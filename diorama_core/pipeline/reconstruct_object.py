@@ -25,6 +25,7 @@ from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import Stages
 from diorama_core.progress import Progress
 from diorama_core.protocols import ObjectStage
+from diorama_core.retrieval.seen_kinds import with_seen_kinds
 from diorama_core.retrieval.word_senses import with_word_senses
 from diorama_core.scene.types import (
     Camera,
@@ -166,6 +167,9 @@ def _posed_alone(
 ) -> tuple[Artefacts, PosedCandidates | None]:
     """The photo's artefacts with the object among the others, and the object's candidates, ranked for it alone."""
     others = tuple(o for o in photo["objects"] if o.id != detected.id)
+    if stages.naming is not None:
+        seen = stages.naming.name(photo["inputs"].photo, (detected,), progress.part(0.0, 0.0))
+        detected = with_seen_kinds((detected,), seen)[0]
     objects = (*others, with_word_senses((*others, detected), photo["camera"])[-1])
     fixed = {name: photo[name] for name in ("given", "inputs", "camera", "architecture")}
     uncached = Runner(None)

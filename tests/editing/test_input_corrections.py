@@ -16,6 +16,7 @@ from diorama_core.editing.input_corrections import (
     boxes_json,
     given_outline,
     labelled_box,
+    same_object,
     with_box_at,
     with_boxes_added,
     with_correction,
@@ -144,3 +145,10 @@ def test_inputs_about_whose_camera_nothing_was_said_are_the_bytes_they_were(inpu
     said = replace(inputs, camera_attitude=CameraAttitude(0.1, 0.0), camera_height_m=1.5)
     assert codec.load(codec.dump(said)) == said
     assert said.of_any_camera == inputs
+
+
+def test_the_same_object_is_the_one_that_overlaps_most() -> None:
+    boxes = (LabelledBox((0.0, 0.0, 10.0, 10.0), "chair", "chair"), LabelledBox((8.0, 0.0, 18.0, 10.0), "sofa", "sofa"))
+    assert same_object(boxes, (9.0, 0.0, 18.0, 10.0)) == 1
+    assert same_object(boxes, (40.0, 0.0, 50.0, 10.0)) is None
+    assert same_object((), (0.0, 0.0, 10.0, 10.0)) is None

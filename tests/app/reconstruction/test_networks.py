@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 import torch
 
-from diorama_app.reconstruction.networks import NO_DETECTOR, find_furniture, get_networks
+from diorama_app.reconstruction import networks
+from diorama_app.reconstruction.networks import NO_DETECTOR, detect_with_networks, find_furniture, get_networks
 from diorama_app.reconstruction.text_to_scene import COMPOSED, describe_room, how_pictures_come
 from diorama_app.session.client import Client
 from diorama_core.artefacts import Inputs, LabelledBox
@@ -109,6 +110,29 @@ def begun(folder: Path, inputs: Inputs) -> Project:
     project = Project.create(folder)
     project.save_inputs(inputs)
     return project
+
+
+def test_networks_are_downloaded_and_detect_at_once(
+    store: ModelStore, client: Client, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    photo = plain_photo(WIDTH, HEIGHT)
+    client.session.open_project(begun(tmp_path / "projects" / "tiny", Inputs(photo)))
+    example = (torch.zeros(1, 3, 416, 416),)
+    graph = tiny_networks.export(_Yolox(), example, tmp_path / "y.onnx", ["images"], ["output"])
+    accepted: list[str] = []
+
+    def pulled(into: ModelStore, missing: tuple[Network, ...], *, accept, progress) -> tuple[Network, ...]:
+        assert accept(missing), "the licences shown beside the button are accepted"
+        accepted.extend(n.id for n in missing)
+        install(into, "yolox-nano", [graph])
+        return missing
+
+    monkeypatch.setattr(networks, "pull", pulled)
+    detect_with_networks(client)
+    assert _told(client) == []
+    assert "yolox-nano" in accepted
+    assert client.session.inputs is not None
+    assert "chair" in [b.label for b in client.session.inputs.boxes]
 
 
 def test_found_furniture_joins_the_boxes_drawn_by_hand(
