@@ -37,7 +37,7 @@ from tests.waiting import until
 def session(tmp_path: Path) -> Iterator[EditorSession]:
     server = create_server(host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1"))
     made = EditorSession(server, PlainLibrary(), tmp_path / "projects", Client)
-    made.checker.look_at = lambda scene: None  # its thread would post to the desk
+    made.checker.look_at = lambda scene: None  # its thread would post to the UI thread
     made.open_project(make_project(tmp_path / "projects" / "demo"))
     yield made
     made.close()
