@@ -40,7 +40,7 @@ _HIDDEN_SHARE, _HIDDEN_RANGE = 0.15, 2.0
 """Of things much of which is hidden: then any smaller size, over this range of its logarithm, is as likely."""
 _UNSUPPORTED, _INSIDE = 0.15, 0.5
 """How likely a thing lies on another one where no box is below it, and where one is all around it."""
-_ALSO_CARRIED = 0.3
+_ALSO_CARRIED = 0.5
 """How often boxes, baskets and plants lie on other things, which else stand on the floor."""
 _BORDER_PX = 3.0
 _SWITCH = 1.5
