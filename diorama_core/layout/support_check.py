@@ -64,9 +64,11 @@ def checked_supports(scene: Scene, library: ShapeLibrary, noise: ObservationNois
             continue
         better = _better(scene, library, item, edge, noise)
         if better is not None:
+            gap = _gap(scene, library, item, edge)
+            where = f"{100 * gap:.0f} cm from" if not _inside_m(scene, library, item, edge) else "in something that is on"
             reasons.append(
-                f"support changed: {item.label} is {100 * _gap(scene, library, item, edge):.0f} cm from "
-                f"{label_of(scene, edge.parent)} and rests on {label_of(scene, better.parent)}"
+                f"support changed: {item.label} is {where} {label_of(scene, edge.parent)} and rests on "
+                f"{label_of(scene, better.parent)}"
             )
             scene = edits.attach(scene, better)
         elif hangs and _is_set_down(item):
@@ -90,7 +92,8 @@ def _better(
 
     What lies on the same supporter right under the object is there, too: a tray under a bottle.
     """
-    gap = _gap(scene, library, item, edge)
+    inside = _inside_m(scene, library, item, edge)
+    gap = _gap(scene, library, item, edge) + inside
     contradicted = gap > _tolerance(scene, item, edge, noise)
     options = []
     for other in _candidates(scene, library, item):
@@ -99,7 +102,8 @@ def _better(
         cost, limit = _gap(scene, library, item, other), _tolerance(scene, item, other, noise)
         beneath = scene.support_of(other.parent)
         between = beneath is not None and beneath.parent == edge.parent and _is_thin(scene, other.parent, limit)
-        if cost <= (min(CLEARLY * gap, limit) if contradicted else limit * between):
+        between &= edge.relation == "placed on"
+        if cost <= (min(CLEARLY * gap, max(limit, inside)) if contradicted else limit * between):
             options.append((cost, other.parent, other))
     return min(options, key=lambda option: option[:2])[2] if options else None
 
@@ -118,7 +122,7 @@ def _candidates(scene: Scene, library: ShapeLibrary, item: SceneObject) -> list[
         for plane in scene.architecture.planes
         if plane.role in usual
     ]
-    if mount == "surface":
+    if mount in ("surface", "wall"):
         for other in scene.objects:
             edge, shape = Support(item.id, other.id), library.shape(other.shape_id)
             if surfaces_below(item, other, shape) and is_wide_enough(item, edge, other, shape):
@@ -138,6 +142,29 @@ def _gap(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support) 
     surface = choose_surface(scene, item, edge, library.shape(parent.shape_id))
     world = surface.in_world(parent.pose)
     return resting_cost(scene, item, edge, world) if edge.relation == "mounted on" else misfit(item, world)
+
+
+def _inside_m(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support) -> float:
+    """How far an object would have to go to stand on the floor beside the furniture that it was observed in."""
+    if not scene.has_plane(edge.parent) or scene.plane(edge.parent).role != "floor":
+        return 0.0
+    return max(
+        (
+            _overlap_m(item, other)
+            for other in scene.objects
+            if surfaces_below(item, other, library.shape(other.shape_id))
+            and is_wide_enough(item, Support(item.id, other.id), other, library.shape(other.shape_id))
+        ),
+        default=0.0,
+    )
+
+
+def _overlap_m(item: SceneObject, other: SceneObject) -> float:
+    """Depth in plan by which an object's box is in another's, along the other's axes."""
+    axes = other.pose.R_world_object[:, :2]
+    reach = 0.5 * (np.abs(axes.T @ item.pose.R_world_object) @ item.size_m + other.size_m[:2])
+    away = np.abs(axes.T @ (item.pose.position - other.pose.position))
+    return max(float((reach - away).min()), 0.0)
 
 
 def _tolerance(scene: Scene, item: SceneObject, edge: Support, noise: ObservationNoise) -> float:

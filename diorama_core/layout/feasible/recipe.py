@@ -12,6 +12,7 @@ from jaxtyping import Float
 from diorama_core.artefacts import LayoutReport
 from diorama_core.layout.feasible.photo_observations import PhotoObservations, disagreements, photo_observations
 from diorama_core.layout.feasible.relocate import relocate
+from diorama_core.layout.feasible.resize import fitted_sizes
 from diorama_core.layout.feasible.separate import Program, Separation, base, build_program, relaxed, separate
 from diorama_core.layout.feasible.structure import Structure, exact_structure
 from diorama_core.layout.problem.problem import Problem, build_problem
@@ -81,6 +82,9 @@ class FeasibleRecipe:
             eye = scene.camera.position if scene.camera is not None and self.sizes_reasoned else None
             structure = exact_structure(wanted, self._rays(wanted, scene.camera), seen, eye=eye)
             program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
+            if seen is not None:
+                structure = fitted_sizes(program, self._outline_cost(wanted))
+                program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
             found = _apart(program, self.rounds, self._watcher(scene, program, progress, preview))
             if not found.stuck or attempt == self.attempts - 1:
                 break
@@ -88,7 +92,10 @@ class FeasibleRecipe:
         p = structure.p + program.moves(found.y)
         after = measure(replace(problem, surface=structure.surface), structure.R, p, structure.scale)
         reasons = (
-            problem.reasons + structure.reasons + _shrunk_reasons(problem, wanted) + _stuck_reasons(problem, found)
+            problem.reasons
+            + structure.reasons
+            + _shrunk_reasons(problem, wanted, structure)
+            + _stuck_reasons(problem, found)
         )
         if scene.camera is not None:
             reasons += disagreements(problem, scene.camera, structure.R, p, structure.scale)
@@ -129,6 +136,10 @@ class FeasibleRecipe:
         if camera is None or self._across <= 1.0:
             return None
         return photo_observations(problem, camera, depth_weight=self.depth_weight * self.weights.distance)
+
+    def _outline_cost(self, problem: Problem) -> Float[np.ndarray, " n"]:
+        """What a metre of outline counts, by object: moving it across the viewing ray."""
+        return np.sqrt(self._across * np.maximum(problem.certainty, MIN_CERTAINTY))
 
     def _costs(
         self, problem: Problem, camera: Camera | None
@@ -173,9 +184,10 @@ def _smaller(problem: Problem, structure: Structure, found: Separation) -> Probl
     return replace(problem, scale=scale, adheres=tuple(a for a in problem.adheres if a[0] not in stuck))
 
 
-def _shrunk_reasons(problem: Problem, wanted: Problem) -> tuple[str, ...]:
-    shrunk = np.flatnonzero((wanted.scale < problem.scale - 1e-12).any(axis=1))
-    return tuple(f"tight: {problem.labels[i]} was made a little smaller to fit" for i in shrunk)
+def _shrunk_reasons(problem: Problem, wanted: Problem, structure: Structure) -> tuple[str, ...]:
+    shrunk = (wanted.scale < problem.scale - 1e-12).any(axis=1)
+    shrunk[list(structure.reduced)] = True
+    return tuple(f"tight: {problem.labels[i]} was made a little smaller to fit" for i in np.flatnonzero(shrunk))
 
 
 def _stuck_reasons(problem: Problem, found: Separation) -> tuple[str, ...]:

@@ -24,7 +24,7 @@ def relocate(program: Program, y: Float[np.ndarray, " v"]) -> Separation:
     depth, pairs = overlaps(program, y)
     refused: set[tuple[int, int]] = set()
     while left := [pair for pair in pairs if pair not in refused]:
-        found = [spot for k in _movable(program, left[0]) if (spot := _cheapest_spot(program, y, k)) is not None]
+        found = [spot for k in _movable(program, left[0]) if (spot := cheapest_spot(program, y, k)) is not None]
         if not found:
             refused.add(left[0])
             continue
@@ -35,7 +35,7 @@ def relocate(program: Program, y: Float[np.ndarray, " v"]) -> Separation:
 
 
 @dataclass(frozen=True, eq=False)
-class _Spot:
+class Spot:
     """A place that is free."""
 
     cost: float
@@ -49,7 +49,8 @@ def _movable(program: Program, pair: tuple[int, int]) -> list[int]:
     return [k for k in (*first, *second) if (k in first) != (k in second) and program.problem.free[k]]
 
 
-def _cheapest_spot(program: Program, y: Float[np.ndarray, " v"], i: int) -> _Spot | None:
+def cheapest_spot(program: Program, y: Float[np.ndarray, " v"], i: int) -> Spot | None:
+    """The cheapest place without overlap for an object and what it supports; None where nothing within reach is free."""
     columns = np.flatnonzero(program.own[i])
     if not len(columns):
         return None
@@ -65,7 +66,7 @@ def _cheapest_spot(program: Program, y: Float[np.ndarray, " v"], i: int) -> _Spo
         cost = np.where(far <= np.minimum(limit, reach), program.cost(tried), np.inf)
         best = int(cost.argmin())
         if np.isfinite(cost[best]):
-            return _Spot(float(cost[best]), tried[best], moving)
+            return Spot(float(cost[best]), tried[best], moving)
     return None
 
 
