@@ -63,9 +63,12 @@ def checked_supports(scene: Scene, library: ShapeLibrary, noise: ObservationNois
             scene = edits.attach(scene, Support(item.id, floor.id))
             continue
         better = _better(scene, library, item, edge, noise)
+        if better is None and floor is not None and _is_lifted(scene, library, item, edge, noise):
+            better = Support(item.id, floor.id)
         if better is not None:
             gap = _gap(scene, library, item, edge)
-            where = f"{100 * gap:.0f} cm from" if not _inside_m(scene, library, item, edge) else "in something that is on"
+            inside = _inside_m(scene, library, item, edge) > 0.0
+            where = "in something that is on" if inside else f"{100 * gap:.0f} cm from"
             reasons.append(
                 f"support changed: {item.label} is {where} {label_of(scene, edge.parent)} and rests on "
                 f"{label_of(scene, better.parent)}"
@@ -78,6 +81,12 @@ def checked_supports(scene: Scene, library: ShapeLibrary, noise: ObservationNois
         elif (walls := _touched(scene, item, edge, noise)) != edge.adheres_to:
             scene = edits.attach(scene, replace(edge, adheres_to=walls))
     return scene, tuple(reasons)
+
+
+def _is_lifted(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support, noise: ObservationNoise) -> bool:
+    """Whether furniture is said to stand on something that the measured gap contradicts: its foot is hidden."""
+    on_object = scene.has_object(edge.parent) and edge.relation == "placed on" and item.category in _NEVER_HANGS
+    return on_object and _gap(scene, library, item, edge) > _tolerance(scene, item, edge, noise)
 
 
 def _is_set_down(item: SceneObject) -> bool:
@@ -94,7 +103,8 @@ def _better(
     """
     inside = _inside_m(scene, library, item, edge)
     gap = _gap(scene, library, item, edge) + inside
-    contradicted = gap > _tolerance(scene, item, edge, noise)
+    unusual = _is_unusual(scene, item, edge)
+    contradicted = gap > _tolerance(scene, item, edge, noise) or unusual
     options = []
     for other in _candidates(scene, library, item):
         if other.parent == edge.parent or closes_cycle({s.child: s for s in scene.supports}, item.id, other.parent):
@@ -102,8 +112,9 @@ def _better(
         cost, limit = _gap(scene, library, item, other), _tolerance(scene, item, other, noise)
         beneath = scene.support_of(other.parent)
         between = beneath is not None and beneath.parent == edge.parent and _is_thin(scene, other.parent, limit)
-        between &= edge.relation == "placed on"
-        if cost <= (min(CLEARLY * gap, max(limit, inside)) if contradicted else limit * between):
+        between = between and edge.relation == "placed on" and _carries(scene, other.parent)
+        most = min(CLEARLY * gap, max(limit, UNUSUAL_M * unusual)) if contradicted else limit * between
+        if cost <= max(most, inside):
             options.append((cost, other.parent, other))
     return min(options, key=lambda option: option[:2])[2] if options else None
 
@@ -125,7 +136,7 @@ def _candidates(scene: Scene, library: ShapeLibrary, item: SceneObject) -> list[
     if mount in ("surface", "wall"):
         for other in scene.objects:
             edge, shape = Support(item.id, other.id), library.shape(other.shape_id)
-            if surfaces_below(item, other, shape) and is_wide_enough(item, edge, other, shape):
+            if surfaces_below(item, other, shape, under=1.0) and is_wide_enough(item, edge, other, shape):
                 found.append(edge)
     return found
 
@@ -134,14 +145,25 @@ def _gap(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support) 
     """How badly the observed pose agrees with an edge, metres."""
     if scene.has_plane(edge.parent):
         plane = scene.plane(edge.parent)
-        unusual = plane.role == "wall" and taxonomy.resolve(item.category).category.mount == "surface"
         # How far the floor reaches is a guess where it was not seen; how high it is, is not.
         beside = outside_m(plane_surface(plane), item.pose.position) if plane.role == "floor" else 0.0
-        return resting_cost(scene, item, edge, plane_surface(plane)) - beside + UNUSUAL_M * unusual
+        return (
+            resting_cost(scene, item, edge, plane_surface(plane)) - beside + UNUSUAL_M * _is_unusual(scene, item, edge)
+        )
     parent = scene.object(edge.parent)
     surface = choose_surface(scene, item, edge, library.shape(parent.shape_id))
     world = surface.in_world(parent.pose)
     return resting_cost(scene, item, edge, world) if edge.relation == "mounted on" else misfit(item, world)
+
+
+def _is_unusual(scene: Scene, item: SceneObject, edge: Support) -> bool:
+    """Whether an edge hangs on a wall what people put on surfaces."""
+    on_wall = scene.has_plane(edge.parent) and scene.plane(edge.parent).role == "wall"
+    return on_wall and taxonomy.resolve(item.category).category.mount == "surface"
+
+
+def _carries(scene: Scene, object_id: str) -> bool:
+    return taxonomy.resolve(scene.object(object_id).category).category.supports_objects
 
 
 def _inside_m(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support) -> float:
@@ -152,7 +174,7 @@ def _inside_m(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Supp
         (
             _overlap_m(item, other)
             for other in scene.objects
-            if surfaces_below(item, other, library.shape(other.shape_id))
+            if surfaces_below(item, other, library.shape(other.shape_id), under=1.0)
             and is_wide_enough(item, Support(item.id, other.id), other, library.shape(other.shape_id))
         ),
         default=0.0,

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Bool, Float
 
+from diorama_core.artefacts import PhotoDisagreement
 from diorama_core.geometry.projection import box_iou
 from diorama_core.layout.problem.problem import Problem
 from diorama_core.layout.problem.supports import box_misfit
@@ -20,28 +21,32 @@ from diorama_core.scene.types import Camera, box_corners
 MOVED_M = 2e-3
 """Objects that structure moved less than this already agree: a settled layout stays as it is, and so does what a person
 arranged."""
-MAX_STRETCH = 1.5
+MAX_STRETCH = 1.3
 """Sizes change by at most this factor either way."""
 FAR_M = 0.2
 """Objects that a layout moves farther are named,"""
 SHARED_OUTLINE = 0.6
 """and those whose outline shares less than this with the observed one (intersection over union of bounds)."""
 SAME_PLACE = 0.4
-"""A posed shape whose bounds share at least this with the object's box (intersection over union) is where it was seen."""
+"""A posed shape whose bounds share at least this with the object's box (intersection over union) is where it was
+seen."""
 BORDER_PX = 2.0
 """Boxes that end nearer to the picture's border go on beyond it."""
 DIFFERENT = 0.08
-"""Posed bounds that differ from the photo's by less than this share of the box are as good: shapes are not the things."""
+"""Posed bounds that differ from the photo's by less than this share of the box are as good: shapes are not what they
+stand for."""
 COVERED = 0.3
 """A side of a box is hidden where a nearer object's box covers more than this share of it."""
 UPWARD = 0.98
 """Normals with a larger z are of places on which things are put down."""
+LOAD_M = 0.12
+"""What was observed farther from its place says nothing about that place."""
 _OUTWARD = np.array([-1.0, -1.0, 1.0, 1.0])
 _NEAREST_M = 0.1
 _STEPS = 4
 _KEEP_PLACE = 0.1
 """Weight of staying where structure put an object, against one metre of disagreement with the picture."""
-_LOAD = 0.7
+_LOAD = 1.5
 """Weight of a metre between a place and what was observed on it."""
 _KEEP_SIZE = 0.4
 """Weight of a relative change of size, times the largest extent."""
@@ -139,7 +144,6 @@ class PhotoObservations:
             metres=float(self.camera.to_camera(observed)[2]) / self.camera.intrinsics.fx,
             extents=self.size[i] * scale,
         )
-
 
     def _grown_loads(self, i: int, grown: float) -> Float[np.ndarray, "m 2"]:
         level, foot = self.loads[i].T
@@ -266,7 +270,9 @@ def _loads(problem: Problem, i: int) -> Float[np.ndarray, "m 2"]:
         posed = [s.at(problem.R[i], problem.p[i], problem.scale[i]) for s in flat]
         if posed and problem.firm[k] == 1.0:
             nearest = int(np.argmin([box_misfit(corners, size, s) for s in posed]))
-            found.append((flat[nearest].level, float(corners[:, 2].min())))
+            foot = float(corners[:, 2].min())
+            if abs(foot - posed[nearest].level) <= LOAD_M:
+                found.append((flat[nearest].level, foot))
     return np.array(found).reshape(-1, 2)
 
 
@@ -331,17 +337,14 @@ def disagreements(
     R: Float[np.ndarray, "n 3 3"],
     p: Float[np.ndarray, "n 3"],
     scale: Float[np.ndarray, "n 3"],
-) -> tuple[str, ...]:
-    """A line for each free object that a layout took clearly away from where the camera saw it."""
+) -> tuple[PhotoDisagreement, ...]:
+    """The free objects that a layout took clearly away from where the camera saw them."""
     seen = _posed_bounds_px(problem, camera)
     now = _posed_bounds_px(replace(problem, R=R, p=p, scale=scale), camera)
-    lines = []
+    found = []
     for i in np.flatnonzero(problem.free):
         moved = float(np.linalg.norm(p[i] - problem.p[i]))
         shared = float(box_iou(seen[i], now[i])) if np.isfinite([seen[i], now[i]]).all() else 1.0
         if moved > FAR_M or shared < SHARED_OUTLINE:
-            lines.append(
-                f"agrees less with the photo: {problem.labels[i]} moved {100 * moved:.0f} cm; its outline still covers "
-                f"{100 * shared:.0f} % of where it was seen"
-            )
-    return tuple(lines)
+            found.append(PhotoDisagreement(problem.ids[i], problem.labels[i], moved, shared))
+    return tuple(found)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.artefacts import LayoutReport
+from diorama_core.artefacts import LayoutReport, PhotoDisagreement
 from diorama_core.layout.feasible.photo_observations import PhotoObservations, disagreements, photo_observations
 from diorama_core.layout.feasible.relocate import relocate
 from diorama_core.layout.feasible.resize import fitted_sizes
@@ -18,6 +18,7 @@ from diorama_core.layout.feasible.structure import Structure, exact_structure
 from diorama_core.layout.problem.problem import Problem, build_problem
 from diorama_core.layout.report import measure
 from diorama_core.layout.weights import AS_IT_IS, Weights
+from diorama_core.layout.what_got_worse import disagreement_in_words
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.protocols import Preview
@@ -27,7 +28,7 @@ from diorama_core.scene.types import Camera, Scene
 MEASURED_WEIGHT, REASONED_WEIGHT = 2.0, 0.3
 """What leaving the observed distance costs against leaving the observed outline: for a measured distance, and for one
 that was reasoned from a photo alone."""
-SHRINK = 0.95
+SHRINK = 0.9
 """What a stuck object's footprint is multiplied by, each attempt."""
 
 
@@ -49,7 +50,7 @@ class FeasibleRecipe:
     """Ids free to move (with what they hold up); all when None."""
     rounds: int = 12
     """Most rounds of choosing axes."""
-    attempts: int = 3
+    attempts: int = 5
     """How often stuck objects are made a little smaller before giving up."""
     observations: float = 4.0
     """Cost of moving across the viewing ray relative to along it, when the scene has a camera; 1 is indifferent."""
@@ -97,9 +98,11 @@ class FeasibleRecipe:
             + _shrunk_reasons(problem, wanted, structure)
             + _stuck_reasons(problem, found)
         )
+        apart: tuple[PhotoDisagreement, ...] = ()
         if scene.camera is not None:
-            reasons += disagreements(problem, scene.camera, structure.R, p, structure.scale)
-        report = LayoutReport("feasible", before, after, time.perf_counter() - begun, reasons)
+            apart = disagreements(problem, scene.camera, structure.R, p, structure.scale)
+        reasons += tuple(map(disagreement_in_words, apart))
+        report = LayoutReport("feasible", before, after, time.perf_counter() - begun, reasons, apart)
         settled = edits.place(scene, problem.poses(structure.R, p, structure.scale))
         return edits.set_metrics(settled, after), report
 
@@ -139,7 +142,7 @@ class FeasibleRecipe:
 
     def _outline_cost(self, problem: Problem) -> Float[np.ndarray, " n"]:
         """What a metre of outline counts, by object: moving it across the viewing ray."""
-        return np.sqrt(self._across * np.maximum(problem.certainty, MIN_CERTAINTY))
+        return np.sqrt(self._across * _certainty(problem))
 
     def _costs(
         self, problem: Problem, camera: Camera | None
@@ -155,8 +158,15 @@ class FeasibleRecipe:
             return load[:, None, None] * np.eye(2), None
         along = rays[:, :, None] * rays[:, None, :]
         seen = self._across * np.eye(3) - (self._across - 1.0) * along
-        certainty = np.maximum(problem.certainty, MIN_CERTAINTY)
+        certainty = _certainty(problem)
         return np.tile(RIDING * np.eye(2), (problem.count, 1, 1)), certainty[:, None, None] * seen
+
+
+def _certainty(problem: Problem) -> Float[np.ndarray, " n"]:
+    """How surely it is known where each object is: by itself or by anything that was seen on it."""
+    doubt = 1.0 - np.clip(problem.certainty, 0.0, 1.0)
+    known = np.array([1.0 - np.prod(doubt[problem.rides(i)]) for i in range(problem.count)]).reshape(-1)
+    return np.maximum(known, MIN_CERTAINTY)
 
 
 def _apart(program: Program, rounds: int, check: Callable[[np.ndarray, float], None]) -> Separation:
@@ -185,9 +195,9 @@ def _smaller(problem: Problem, structure: Structure, found: Separation) -> Probl
 
 
 def _shrunk_reasons(problem: Problem, wanted: Problem, structure: Structure) -> tuple[str, ...]:
-    shrunk = (wanted.scale < problem.scale - 1e-12).any(axis=1)
-    shrunk[list(structure.reduced)] = True
-    return tuple(f"tight: {problem.labels[i]} was made a little smaller to fit" for i in np.flatnonzero(shrunk))
+    shrunk = np.flatnonzero((wanted.scale < problem.scale - 1e-12).any(axis=1))
+    smaller = sorted({int(i) for i in shrunk} | set(structure.reduced))
+    return tuple(f"tight: {problem.labels[i]} was made a little smaller to fit" for i in smaller)
 
 
 def _stuck_reasons(problem: Problem, found: Separation) -> tuple[str, ...]:

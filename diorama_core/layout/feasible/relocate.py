@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +12,7 @@ from diorama_core.geometry.sat import PairAxes, pair_axes
 from diorama_core.layout.escape import exits, ring
 from diorama_core.layout.feasible.separate import APART_M, Program, Separation, overlaps
 
-_REACHES_M = (0.15, 0.6, 2.0)
+REACHES_M = (0.15, 0.6, 2.0)
 """Looked through in turn: most find a place close by, and then only close neighbours were compared."""
 
 
@@ -49,8 +50,17 @@ def _movable(program: Program, pair: tuple[int, int]) -> list[int]:
     return [k for k in (*first, *second) if (k in first) != (k in second) and program.problem.free[k]]
 
 
-def cheapest_spot(program: Program, y: Float[np.ndarray, " v"], i: int) -> Spot | None:
-    """The cheapest place without overlap for an object and what it supports; None where nothing within reach is free."""
+def cheapest_spot(
+    program: Program, y: Float[np.ndarray, " v"], i: int, reaches_m: Sequence[float] = REACHES_M
+) -> Spot | None:
+    """The cheapest place without overlap for an object and what it supports; None where none is within reach.
+
+    Args:
+        program: the moves that are possible, and what they cost.
+        y: the moves so far.
+        i: index of the object.
+        reaches_m: looked through in turn until a place is found.
+    """
     columns = np.flatnonzero(program.own[i])
     if not len(columns):
         return None
@@ -59,7 +69,7 @@ def cheapest_spot(program: Program, y: Float[np.ndarray, " v"], i: int) -> Spot 
     steps = directions @ np.linalg.pinv(lever).T
     moving = np.abs(program.J[:, :, columns]).max(axis=(1, 2)) > 1e-9
     limit = _limits(program, y, columns, steps)
-    for reach in _REACHES_M:
+    for reach in reaches_m:
         far = _free_distances(program, y, moving, directions, reach)
         tried = y + np.zeros((len(far), 1))
         tried[:, columns] += np.where(np.isfinite(far), far, 0.0)[:, None] * steps

@@ -1,7 +1,8 @@
 """Sizes at which colliding objects fit where they were seen.
 
-A shape is not the thing: arms that do not pass under a desk, a frame that is too wide for its gap. Moving such an object
-out of the way takes it farther from where the photo shows it than a slightly smaller size does; both are costed alike.
+A retrieved shape differs from the object: its arms do not pass under a desk, its frame is too wide for a gap. Moving it
+out of the way can take it farther from where the photo shows it than a slightly smaller size does; both are costed
+alike.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.geometry.sat import place_bodies
-from diorama_core.layout.feasible.relocate import cheapest_spot
+from diorama_core.layout.feasible.relocate import REACHES_M, cheapest_spot
 from diorama_core.layout.feasible.separate import Program, base, overlaps
 from diorama_core.layout.feasible.structure import SMALLEST_SHRINK, Structure
 
@@ -20,6 +21,8 @@ _STEPS = (0.95, 0.9, 0.85, SMALLEST_SHRINK)
 _AXES = np.array([[1, 1, 1], [1, 1, 0], [0, 0, 1], [1, 0, 0], [0, 1, 0]], dtype=bool)
 """Which extents are reduced together: all, the footprint, the height, depth and width alone."""
 _FACTORS = np.array([np.where(axes, step, 1.0) for step in _STEPS for axes in _AXES])
+MAX_PAIRS = 12
+"""With more pairs in collision sizes are left alone: a crowd is parted by moves."""
 WORTH = 0.8
 """A smaller size is taken where it costs less than this share of the move that it saves."""
 
@@ -36,7 +39,8 @@ def fitted_sizes(program: Program, outline_cost: Float[np.ndarray, " n"]) -> Str
     problem = program.problem
     factors = np.ones((problem.count, 3))
     y = base(program)
-    for pair in overlaps(program, y)[1]:
+    pairs = overlaps(program, y)[1]
+    for pair in pairs if len(pairs) <= MAX_PAIRS else ():
         options = [
             (cost, k, factor)
             for k in pair
@@ -58,12 +62,14 @@ def _options(
     """What each size of one object costs, with the move that it still needs."""
     problem, structure = program.problem, program.structure
     extents = problem.shape_size[k] * structure.scale[k]
-    found = []
+    found: list[tuple[float, Float[np.ndarray, "3"]]] = []
     for factor in np.vstack([np.ones(3), _FACTORS]):
         shrunk = 0.5 * float(np.linalg.norm((1.0 - factor) * extents)) * outline_cost
         if found and shrunk >= min(cost for cost, _ in found):
             continue
-        spot = cheapest_spot(_resized(program, k, factors, factor), y, k)
+        # A smaller size that still has to go far away is no help, and looking far takes long.
+        reaches_m = REACHES_M if (factor == 1.0).all() else REACHES_M[:1]
+        spot = cheapest_spot(_resized(program, k, factors, factor), y, k, reaches_m)
         if spot is not None:
             found.append((float(np.hypot(spot.cost, shrunk)), factor))
     return found

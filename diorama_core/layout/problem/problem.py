@@ -120,7 +120,7 @@ class Problem:
         return list(self._riders[index])
 
     def walls_near(self, index: int) -> tuple[Plane, ...]:
-        """The walls that were seen, that an object could reach and that it was observed before; not the one it is on."""
+        """The seen walls that an object could reach and before which it was observed; not the one it is on."""
         found = []
         radius = 0.5 * float(np.linalg.norm(self.shape_size[index] * self.scale[index]))
         for wall in self.walls:
