@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.errors import EditRefused
-from diorama_core.geometry.planes import clip_polygon
+from diorama_core.geometry.planes import clip_polygon, in_polygon
 from diorama_core.library import taxonomy
 from diorama_core.scene.room_edits import ceiling_height, move_plane, set_ceiling_height
 from diorama_core.scene.types import Architecture, Plane, Scene, SceneObject, Support
@@ -32,20 +32,19 @@ def containing_room(scene: Scene) -> Scene:
     floor = scene.architecture.floor
     if floor is None:
         return scene
-    scene = _with_ceiling(scene, floor)
     standing = [o for o in scene.objects if (edge := scene.support_of(o.id)) is not None and edge.parent == floor.id]
     for wall in scene.architecture.by_role("wall"):
         if not wall.seen:
             scene = _given_way(scene, wall.id, standing)
     prints = [_footprint(scene, o) for o in standing]
-    return _with_floor_under(scene, [p for p in prints if len(p) >= 3])
+    return _with_ceiling(_with_floor_under(scene, [p for p in prints if len(p) >= 3]))
 
 
-def _with_ceiling(scene: Scene, floor: Plane) -> Scene:
+def _with_ceiling(scene: Scene) -> Scene:
     """A ceiling that was not seen is where lamps hang from it: at the walls' top as far as the lamps reach there."""
     hanging = [o for o in scene.objects if taxonomy.resolve(o.category).category.mount == "ceiling"]
-    top_m = ceiling_height(scene)
-    if not hanging or top_m is None or scene.architecture.by_role("ceiling"):
+    floor, top_m = scene.architecture.floor, ceiling_height(scene)
+    if not hanging or floor is None or top_m is None or scene.architecture.by_role("ceiling"):
         return scene
     ends = [(float(o.corners_world[:, 2].min()), float(o.corners_world[:, 2].max())) for o in hanging]
     ground = float(floor.centre[2])
@@ -55,8 +54,13 @@ def _with_ceiling(scene: Scene, floor: Plane) -> Scene:
         scene = replace(set_ceiling_height(scene, level - ground), objects=scene.objects)
     except EditRefused:
         return scene
-    outline = np.column_stack([floor.polygon[::-1, :2], np.full(len(floor.polygon), level)])
-    ceiling = Plane("ceiling", "ceiling", outline, confidence=0.0)
+    outline = floor.polygon[:, :2]
+    corners = np.vstack([o.corners_world[:, :2] for o in hanging])
+    if not in_polygon(corners, outline).all():
+        points = manifold3d.CrossSection.hull_points(np.vstack([outline, corners]))
+        outline = points.to_polygons()[0]
+    polygon = np.column_stack([outline[::-1], np.full(len(outline), level)])
+    ceiling = Plane("ceiling", "ceiling", polygon, confidence=0.0)
     edges = {o.id: Support(o.id, ceiling.id, "mounted on") for o in hanging}
     supports = (*(s for s in scene.supports if s.child not in edges), *edges.values())
     return replace(scene, architecture=Architecture((*scene.architecture.planes, ceiling)), supports=supports)

@@ -51,7 +51,8 @@ def holding_shapes(scene: Scene, library: ShapeLibrary, noise: ObservationNoise)
             continue
         for o in members:
             scene = _reshaped(scene, o, _candidate(o, min(options)[1]))
-            reasons.append(f"shape changed: {o.label} has a place where {_names(loads[o.id])} seen")
+            loaded = f"has a place where {_names(loads[o.id])} seen" if loads[o.id] else "is of one shape with others"
+            reasons.append(f"shape changed: {o.label} {loaded}")
     return scene, tuple(reasons)
 
 
