@@ -23,6 +23,7 @@ _MARGIN_M = 0.01
 LONGEST_CORD = 1.4
 """A lamp's cord makes it at most so many times as high as it was seen."""
 _MIN_AREA_M2 = 1e-4
+_JOINED_M = 0.02
 
 
 def containing_room(scene: Scene) -> Scene:
@@ -36,6 +37,7 @@ def containing_room(scene: Scene) -> Scene:
     for wall in scene.architecture.by_role("wall"):
         if not wall.seen:
             scene = _given_way(scene, wall.id, standing)
+        scene = _drawn_out(scene, wall.id)
     prints = [_footprint(scene, o) for o in standing]
     return _with_ceiling(_with_floor_under(scene, [p for p in prints if len(p) >= 3]))
 
@@ -77,6 +79,36 @@ def _given_way(scene: Scene, wall_id: str, standing: list[SceneObject]) -> Scene
     except EditRefused:
         return scene
     return replace(moved, objects=scene.objects)
+
+
+def _drawn_out(scene: Scene, wall_id: str) -> Scene:
+    """The wall long enough for what hangs on it: an end is known only where it meets another wall that was seen."""
+    wall = scene.plane(wall_id)
+    hanging = [scene.object(s.child) for s in scene.supports if s.parent == wall_id and s.relation == "mounted on"]
+    if not hanging:
+        return scene
+    level = np.cross([0.0, 0.0, 1.0], wall.normal)
+    along = wall.polygon @ level
+    needed = np.concatenate([o.corners_world @ level for o in hanging])
+    polygon = wall.polygon.copy()
+    for end, reach in ((along.min(), needed.min() - _MARGIN_M), (along.max(), needed.max() + _MARGIN_M)):
+        at_end = np.abs(along - end) < _JOINED_M
+        beyond = (reach - end) * np.sign(end - along.mean())
+        if beyond > 0.0 and not _meets_a_wall(scene, wall, wall.polygon[at_end]):
+            polygon[at_end] += (reach - end) * level
+    if np.array_equal(polygon, wall.polygon):
+        return scene
+    planes = tuple(replace(p, polygon=polygon) if p.id == wall_id else p for p in scene.architecture.planes)
+    return replace(scene, architecture=Architecture(planes))
+
+
+def _meets_a_wall(scene: Scene, wall: Plane, corners: Float[np.ndarray, "k 3"]) -> bool:
+    """Whether corners of a wall are on another wall that was seen."""
+    return any(
+        bool((np.linalg.norm(other.polygon[:, None] - corners[None], axis=2).min(axis=0) < _JOINED_M).all())
+        for other in scene.architecture.by_role("wall")
+        if other.id != wall.id and other.seen
+    )
 
 
 def _behind(item: SceneObject, wall: Plane) -> float:

@@ -63,7 +63,7 @@ def checked_supports(scene: Scene, library: ShapeLibrary, noise: ObservationNois
             scene = edits.attach(scene, Support(item.id, floor.id))
             continue
         better = _better(scene, library, item, edge, noise)
-        if better is None and floor is not None and _is_lifted(scene, library, item, edge, noise):
+        if better is None and floor is not None and _belongs_on_floor(scene, library, item, edge, noise):
             better = Support(item.id, floor.id)
         if better is not None:
             gap = _gap(scene, library, item, edge)
@@ -83,10 +83,13 @@ def checked_supports(scene: Scene, library: ShapeLibrary, noise: ObservationNois
     return scene, tuple(reasons)
 
 
-def _is_lifted(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support, noise: ObservationNoise) -> bool:
-    """Whether furniture is said to stand on something that the measured gap contradicts: its foot is hidden."""
+def _belongs_on_floor(
+    scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support, noise: ObservationNoise
+) -> bool:
+    """Whether the measured gap contradicts the edge of furniture on an object, or of a door: their feet are hidden."""
     on_object = scene.has_object(edge.parent) and edge.relation == "placed on" and item.category in _NEVER_HANGS
-    return on_object and _gap(scene, library, item, edge) > _tolerance(scene, item, edge, noise)
+    is_door = scene.has_plane(edge.parent) and edge.relation == "mounted on" and item.category == "door"
+    return (on_object or is_door) and _gap(scene, library, item, edge) > _tolerance(scene, item, edge, noise)
 
 
 def _is_set_down(item: SceneObject) -> bool:

@@ -89,3 +89,23 @@ def test_without_hanging_lamps_no_ceiling_is_made() -> None:
     room.put("lamp_16", (0.0, 0.5, 0.25))
     scene = containing_room(room.scene(architecture=sliver(), camera=looking_north(5.0)))
     assert not scene.architecture.by_role("ceiling")
+
+
+def test_a_wall_is_drawn_out_behind_what_hangs_on_it() -> None:
+    room = Room(LIBRARY)
+    picture = room.put("picture_13", (1.2, 2.48, 1.5), on="wall_1", relation="mounted on", yaw=-np.pi / 2)
+    scene = containing_room(room.scene(architecture=sliver(), camera=looking_north(5.0)))
+    wall = scene.plane("wall_1").polygon
+    assert wall[:, 0].max() >= scene.object(picture).corners_world[:, 0].max()
+    assert wall[:, 0].min() == -1.0
+    settled = FeasibleRecipe(LIBRARY).optimise(scene, Progress())[0]
+    assert np.linalg.norm(settled.object(picture).pose.position - scene.object(picture).pose.position) < 0.03
+
+
+def test_a_wall_ends_at_the_corner_with_another_that_was_seen() -> None:
+    room = Room(LIBRARY)
+    room.put("picture_13", (1.2, 2.48, 1.5), on="wall_1", relation="mounted on", yaw=-np.pi / 2)
+    corner = np.array([[1.0, 2.5, 0], [1.0, 0.0, 0], [1.0, 0.0, 2.5], [1.0, 2.5, 2.5]])
+    planes = (*sliver().planes, Plane("wall_2", "wall", corner))
+    scene = containing_room(room.scene(architecture=Architecture(planes), camera=looking_north(5.0)))
+    assert scene.plane("wall_1").polygon[:, 0].max() == 1.0

@@ -13,7 +13,7 @@ from tests.layout.small_rooms import Room
 
 LIBRARY = box_library()
 TALL, LOW = "bookshelf_6", "bookshelf_7"
-"""Boards at 0.02, 0.47, 0.91, 1.35 and 1.8 m; those of the other, stretched to one height, at 0.03, 0.62, 1.22 and 1.8."""
+"""Boards at 0.02, 0.47, 0.91, 1.35 and 1.8 m; those of the other, equally high, at 0.03, 0.62, 1.22 and 1.8 m."""
 
 
 def candidate(shape_id: str, score: float) -> Candidate:

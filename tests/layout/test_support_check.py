@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from diorama_core.layout.feasible.recipe import FeasibleRecipe
@@ -97,3 +99,10 @@ def test_a_lamp_away_from_its_wall_stands_on_what_is_right_below_it(room: Room) 
     lamp = room.put("lamp_16", (0.0, 1.5, 1.0), on="wall_2", relation="mounted on")
     checked, _ = checked_supports(room.scene(camera=looking_north()), LIBRARY, MEASURED)
     assert checked.support_of(lamp).parent == table
+
+
+def test_a_door_far_from_its_wall_stands_on_the_floor(room: Room) -> None:
+    door = room.put("wardrobe_12", (0.0, 1.0, 1.1), on="wall_2", relation="mounted on")
+    room.objects[0] = replace(room.objects[0], category="door")
+    checked, _ = checked_supports(room.scene(camera=looking_north()), LIBRARY, MEASURED)
+    assert checked.support_of(door).parent == "floor"
