@@ -82,9 +82,9 @@ class Editor:
         self._gestures: dict[int, Gestures] = {}
         session = self.session
         session.on_client = self._lay_out
-        session.on_photo_camera = self.views.photo
-        session.on_pick = lambda object_id, event: self._hand(event, lambda g: g.picked(object_id, event))
-        session.on_drag = lambda object_id, event: self._hand(event, lambda g: g.dragged(object_id, event))
+        session.view.on_photo_camera = self.views.photo
+        session.view.on_pick = lambda object_id, event: self._hand(event, lambda g: g.picked(object_id, event))
+        session.view.on_drag = lambda object_id, event: self._hand(event, lambda g: g.dragged(object_id, event))
         self._outlines = PhotoOutlines(session)
         self.commands = build_commands(session, self.views, self._outlines, self._cancel, self._help, show_picture)
         self.commands.register(server.gui, self._asked)
@@ -119,7 +119,7 @@ class Editor:
                     self.session.open_project(project)
                 else:
                     self._open_example()
-            except BaseException as error:
+            except BaseException as error:  # raised again by whoever waits for it
                 done.append(error)
 
         self.session.ui_thread.post(open_it)

@@ -20,7 +20,8 @@ import viser
 
 import diorama_core as diorama
 from diorama_app.session.preload import warm_up
-from diorama_app.web.viser_adapter import ANY_HOST, Visitors, create_server, stop_server, with_token
+from diorama_app.web.viser_adapter import create_server, stop_server
+from diorama_app.web.visitors import ANY_HOST, Visitors, with_token
 from diorama_core.project.storage import Project
 
 if TYPE_CHECKING:

@@ -45,11 +45,14 @@ class Workspace:
         self._low_graphics = low_graphics
         self._lock = threading.RLock()
         self._editors: list[Editor] = []
+        self._front: viser.ViserServer | None = None
+        """The server that has the port."""
         self._asked_for: dict[Editor, float] = {}
 
     def begin(self, server: viser.ViserServer, project: Project | None) -> Editor:
         """Put the first editor on the server that has the port."""
         with self._lock:
+            self._front = server
             return self._add(server, project)
 
     @property
@@ -139,8 +142,11 @@ class Workspace:
             if shown is not None and shown.folder.resolve() == project.folder.resolve():
                 self._asked_for[editor] = time.monotonic()
                 return editor
+        assert self._front is not None, "begin comes first"
         made: list[Editor] = []
-        server = create_server_without_port("Diorama", lambda client, line: made[0].refuse_upload(client, line))
+        server = create_server_without_port(
+            "Diorama", front=self._front, refused=lambda client, line: made[0].refuse_upload(client, line)
+        )
         try:
             made.append(self._add(server, project))
         except BaseException:

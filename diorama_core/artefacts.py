@@ -125,6 +125,18 @@ class DetectedObject(ArrayValue):
     mask_id: int
     mask_confidence: float
     """Agreement of segmentations, 0 to 1; 1 for a mask given by the user."""
+    looks_like: tuple[tuple[str, float], ...] = ()
+    """Kinds with the probabilities that its picture gives them; empty where it was not looked at."""
+
+
+@dataclass(frozen=True, eq=False)
+class SeenKinds(ArrayValue):
+    """Which kinds the picture of one object looks like."""
+
+    object_id: str
+    kinds: tuple[str, ...]
+    probabilities: Float[np.ndarray, "k"]
+    """Of those kinds, all equally frequent."""
 
 
 @dataclass(frozen=True, eq=False)

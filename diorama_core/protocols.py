@@ -2,7 +2,8 @@
 
 ```
 (Photo -> recognition -> detection, depth prediction ->)
-Inputs -> camera -> objects -> geometry (-> graph) -> architecture -> depth -> retrieval -> pose -> Scene -> layout
+Inputs -> camera -> objects (-> naming) -> geometry (-> graph) -> architecture -> depth -> retrieval -> pose
+-> Scene -> layout
 ```
 
 With measured depth, camera and geometry read it; from a photo alone they reason from vanishing points, contact
@@ -42,6 +43,7 @@ from diorama_core.artefacts import (
     PosedCandidates,
     RankedShapes,
     SceneGraph,
+    SeenKinds,
 )
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Intrinsics, Scene
@@ -175,6 +177,27 @@ class ObjectStage(Protocol):
         Returns:
             One object per given instance and per box without one: an `id` that is unique in the photo, a `mask_id`
             from 1, and a boolean `mask` (h, w) that is not empty.
+
+        Raises:
+            UnavailableError: the network is missing or damaged.
+        """
+        ...
+
+
+@runtime_checkable
+class NamingStage(Protocol):
+    """Looks at every object and says which kinds it looks like, whatever it is called."""
+
+    def name(self, photo: Photo, objects: tuple[DetectedObject, ...], progress: Progress) -> tuple[SeenKinds, ...]:
+        """Compare every object's picture with the kinds of the taxonomy.
+
+        Args:
+            photo: upright, `rgb` of shape (h, w, 3).
+            objects: with their boxes.
+            progress: reports and cancellation.
+
+        Returns:
+            One for each object, in their order.
 
         Raises:
             UnavailableError: the network is missing or damaged.

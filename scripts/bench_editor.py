@@ -347,7 +347,7 @@ class Bench:
         line("four browsers in step", taken, "< 300", used)
 
     def _do(self, task: Callable[[], object]) -> None:
-        self.session.ui_thread.post(task)  # type: ignore[arg-type]
+        self.session.ui_thread.post(task)
         self.session.ui_thread.wait(60.0)
 
 
@@ -355,7 +355,7 @@ FIGURES = ("start", "load", "swap", "undo", "drag", "optimiser", "four")
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])  # type: ignore[union-attr]
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--objects", type=int, default=60)
     parser.add_argument("--library", choices=("built-in", "plain"), default="built-in")
     parser.add_argument("--only", default=",".join(FIGURES))

@@ -2,9 +2,9 @@
 
     PYTHONPATH=. python scripts/bench_exports.py [--formats glb usdc ...] [-o table.md]
 
-The objects are 292 different shapes of the built-in library at random sizes, on the floor of a hall. Every format is
-written in a process of its own: the first time with nothing in memory, the second time as an editor does that shows the
-scene already. Seconds are those of the processor, because a busy machine changes them little.
+The objects are 292 different shapes of the built-in library at random sizes, on the floor of a large room. Every
+format is written in a process of its own: the first time with nothing in memory, the second time as an editor does
+that shows the scene already. Seconds are those of the processor, because a busy machine changes them little.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ KINDS = (
 )  # fmt: skip
 
 
-def hall(library: ShapeLibrary) -> Scene:
+def large_room(library: ShapeLibrary) -> Scene:
     """The scene."""
     shapes = [s for s in library.shapes() if s.category in KINDS]
     rng = np.random.default_rng(0)
-    rng.shuffle(shapes)  # type: ignore[arg-type]
+    rng.shuffle(shapes)
     objects = []
     for k in range(COUNT):
         shape = library.shape(shapes[k % len(shapes)].id)
@@ -54,10 +54,10 @@ def hall(library: ShapeLibrary) -> Scene:
 def measured(name: str) -> dict[str, float]:
     """Costs of one format, in this process."""
     library = built_in_library()
-    scene, chosen = hall(library), EXPORT_FORMATS[name]
+    scene, chosen = large_room(library), EXPORT_FORMATS[name]
     found: dict[str, float] = {}
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"hall{chosen.suffixes[-1]}"
+        path = Path(folder) / f"large{chosen.suffixes[-1]}"
         for key in ("first", "again"):
             begun, wall = os.times(), time.monotonic()
             gathered = export_scene(scene, library, path, chosen)

@@ -11,13 +11,14 @@ from __future__ import annotations
 
 import argparse
 import sys
-import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import torch
 from torch.nn import functional
+
+from diorama_core.models.onnx_export import write_graph
 
 HEAD = 64
 """Channels of an attention head in every CLIP transformer."""
@@ -81,7 +82,7 @@ def read_checkpoint(path: Path, trusted: bool) -> dict[str, Any]:
     """A checkpoint, without running code that it may carry unless it is trusted."""
     try:
         return torch.load(path, map_location="cpu", weights_only=not trusted)
-    except Exception as error:
+    except Exception as error:  # unpickling raises almost anything
         words = " ".join(str(error).split())[:120]
         advice = "is it the right file?" if trusted else "add --trust if you know where it comes from (it may run code)"
         sys.exit(f"{path}: cannot be read ({words}); {advice}")
@@ -101,19 +102,8 @@ def shape_tower(saved: Mapping[str, Any]) -> ShapeTower:
 
 
 def write_tower(tower: ShapeTower, target: Path) -> None:
-    target.parent.mkdir(parents=True, exist_ok=True)
-    with torch.no_grad(), warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        torch.onnx.export(
-            tower,
-            (torch.zeros(1, 3, 3, SIDE, SIDE),),
-            str(target),
-            input_names=["views"],
-            output_names=["embedding"],
-            dynamic_axes={"views": {1: "v"}},
-            opset_version=17,
-            dynamo=False,
-        )
+    example = (torch.zeros(1, 3, 3, SIDE, SIDE),)
+    write_graph(tower, example, target, inputs=["views"], outputs=["embedding"], dynamic={"views": {1: "v"}})
 
 
 def main(arguments: list[str] | None = None) -> None:

@@ -11,13 +11,14 @@ from __future__ import annotations
 
 import argparse
 import sys
-import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import torch
 from torch.nn import functional
+
+from diorama_core.models.onnx_export import write_graph
 
 SIDE, INNER_SIDE = 224, 256
 """Of the crops, and of what the backbone enlarges them to."""
@@ -84,7 +85,7 @@ def read_checkpoint(path: Path, trusted: bool) -> dict[str, Any]:
     """A checkpoint, without running code that it may carry unless it is trusted."""
     try:
         return torch.load(path, map_location="cpu", weights_only=not trusted)
-    except Exception as error:
+    except Exception as error:  # unpickling raises almost anything
         words = " ".join(str(error).split())[:120]
         advice = "is it the right file?" if trusted else "add --trust if you know where it comes from (it may run code)"
         sys.exit(f"{path}: cannot be read ({words}); {advice}")
@@ -104,29 +105,12 @@ def part(saved: Mapping[str, Any], name: str) -> dict[str, torch.Tensor]:
 def write_networks(saved: Mapping[str, Any], folder: Path) -> None:
     backbone, regressor = Backbone(part(saved, "backbone")).eval(), Regressor(part(saved, "regressor")).eval()
     channels = regressor.get_buffer("scale_predictor__0__weight").shape[1]
-    folder.mkdir(parents=True, exist_ok=True)
-    with torch.no_grad(), warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        torch.onnx.export(
-            backbone,
-            (torch.zeros(1, 3, SIDE, SIDE),),
-            str(folder / "features.onnx"),
-            input_names=["image"],
-            output_names=["features"],
-            dynamic_axes={"image": {0: "b"}, "features": {0: "b"}},
-            opset_version=17,
-            dynamo=False,
-        )
-        torch.onnx.export(
-            regressor,
-            (torch.zeros(4, channels),),
-            str(folder / "regressor.onnx"),
-            input_names=["pairs"],
-            output_names=["scale", "inplane"],
-            dynamic_axes={"pairs": {0: "n"}, "scale": {0: "n"}, "inplane": {0: "n"}},
-            opset_version=17,
-            dynamo=False,
-        )
+    image, pairs = (torch.zeros(1, 3, SIDE, SIDE),), (torch.zeros(4, channels),)
+    any_number = {"image": {0: "b"}, "features": {0: "b"}}
+    write_graph(backbone, image, folder / "features.onnx", inputs=["image"], outputs=["features"], dynamic=any_number)
+    any_number = {name: {0: "n"} for name in ("pairs", "scale", "inplane")}
+    outputs = ["scale", "inplane"]
+    write_graph(regressor, pairs, folder / "regressor.onnx", inputs=["pairs"], outputs=outputs, dynamic=any_number)
 
 
 def main(arguments: list[str] | None = None) -> None:

@@ -129,7 +129,7 @@ def _work_and_exit(work: Work, pipe: int) -> None:
     try:
         work(say)
         say("finished")
-    except BaseException:
+    except BaseException:  # the process ends here: the line is all that is heard of it
         say("failed " + traceback.format_exc().replace("\n", " | "))
     os._exit(0)
 
@@ -401,7 +401,7 @@ KINDS = {f.__name__: f for f in (edits, builds, optimiser, exports, library, upl
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])  # type: ignore[union-attr]
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--kills", type=int, default=200)
     parser.add_argument("--minutes", type=float, default=60.0, help="of each kind at most")
     parser.add_argument("--seed", type=int, default=0)
@@ -412,7 +412,7 @@ def main() -> int:
         began = time.monotonic()
         until = began + 60.0 * options.minutes
         kills, said, wrong = KINDS[name](
-            lambda done, until=until: done < options.kills and time.monotonic() < until,  # type: ignore[misc]
+            lambda done, until=until: done < options.kills and time.monotonic() < until,
             np.random.default_rng(options.seed),
         )
         all_wrong += wrong

@@ -43,7 +43,7 @@ def main() -> int:
             continue
         try:
             rows.append(evaluate(a.folder, record, a.output, library, a.pictures))
-        except Exception:
+        except Exception:  # the other photos are worth measuring; the exit status says that one failed
             traceback.print_exc()
             rows.append({"id": record["id"], "failed": True})
         print(line(rows[-1]), flush=True)

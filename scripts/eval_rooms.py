@@ -1,6 +1,6 @@
 """Finds the planes of many random rooms of known geometry from their depth and reports what was missed or made up.
 
-    python scripts/eval_rooms.py --rooms 5 --things 20 [--kinds box alcove] [--no-masks]
+    python scripts/eval_rooms.py --rooms 5 --objects 20 [--kinds box alcove] [--no-masks]
 
 Per kind of room, without noise and with 2 % noise and a structured-light sensor's steps: share of the planes found and
 share of the found ones that are true (within 1 degree and 3 cm; 3 degrees and 8 cm with noise), largest errors, and the
@@ -25,14 +25,14 @@ from tests.architecture.known_rooms import KINDS, photographed
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rooms", type=int, default=5, help="of each kind")
-    parser.add_argument("--things", type=int, default=20, help="that stand in each room")
+    parser.add_argument("--objects", type=int, default=20, help="that stand in each room")
     parser.add_argument("--kinds", nargs="*", default=KINDS, choices=KINDS)
     parser.add_argument("--no-masks", action="store_true", help="do not tell which pixels show furniture")
     a = parser.parse_args()
     for noise, angle, offset in ((0.0, 1.0, 0.03), (0.02, 3.0, 0.08)):
         total = [0, 0, 0]
         for kind in a.kinds:
-            counts = evaluate(kind, a.rooms, a.items, not a.no_masks, noise, angle, offset)
+            counts = evaluate(kind, a.rooms, a.objects, not a.no_masks, noise, angle, offset)
             total = [x + y for x, y in zip(total, counts, strict=True)]
         print(f"noise {noise:.2f} all: {shares(total)}")
 

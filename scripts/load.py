@@ -22,7 +22,6 @@ import threading
 import time
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -44,24 +43,26 @@ class Person:
         self.page = WirePage(port)
         self.latencies: list[float] = []
         self.lost = 0
+        self.actions = 0
         self.outliner, self.field = self.page.wait_for(self._find, 120.0)
 
     def _find(self) -> tuple[str, str] | None:
         for uuid, element in self.page.elements.items():
             content = str(element.get("content", ""))
             if 'data-do="hide"' in content:
-                found = re.search(r'label\[for=(?:"|&quot;|\\")+([0-9a-f-]+)', content)
+                found = re.search(r"__dioSend\((?:'|&#x27;)([0-9a-f-]+)", content)
                 return (uuid, found[1]) if found else None
         return None
 
-    def act(self, do: str, arg: str, **more: Any) -> None:
-        value = json.dumps({"do": do, "arg": arg, "add": False, "at": time.monotonic(), **more})
+    def act(self, do: str, arg: str) -> None:
+        self.actions += 1
+        value = json.dumps([{"do": do, "arg": arg, "add": False, "number": self.actions}])
         self.page.set(self.field, value)
 
     def hidden(self, object_id: str) -> bool:
         """Whether this page says that an object is hidden."""
         content = str(self.page.elements[self.outliner].get("content", ""))
-        found = re.search(rf'data-do="hide" data-arg="{object_id}" title="(Hide|Show)"', content)
+        found = re.search(rf'data-do="hide" data-arg="{object_id}"[^>]* title="(Hide|Show)"', content)
         assert found is not None, f"the outliner has no row for {object_id}"
         return found[1] == "Show"
 
@@ -92,7 +93,7 @@ def serving(folder: Path) -> tuple[subprocess.Popen, int]:
     root = str(Path(__file__).resolve().parents[1])
     process = subprocess.Popen([sys.executable, "-c", SERVE, str(folder)], stdout=subprocess.PIPE, text=True, cwd=root)
     assert process.stdout is not None
-    port = int(re.search(r":(\d+)/", process.stdout.readline())[1])  # type: ignore[index]
+    port = int(re.search(r":(\d+)/", process.stdout.readline())[1])
     return process, port
 
 
@@ -144,7 +145,7 @@ def room_of(count: int) -> Scene:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])  # type: ignore[union-attr]
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--clients", type=int, default=20)
     parser.add_argument("--projects", type=int, default=1)
     parser.add_argument("--objects", type=int, default=60, help="in each project's scene")

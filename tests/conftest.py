@@ -25,7 +25,7 @@ from diorama_core.perception.inputs import ReadInputs, read_inputs
 settings.register_profile("deterministic", derandomize=True, deadline=None)
 settings.load_profile("deterministic")
 
-UNCHECKED_FOLDERS = frozenset({"app", "cli", "e2e", "evaluation", "fuzzing", "test_docs.py", "test_examples.py"})
+UNCHECKED_FOLDERS = frozenset()
 """Folders whose newest tests still pass values that annotations do not allow; take one out after mending its tests."""
 
 SHARED = Path(__file__).resolve().parents[2] / "shared"
@@ -51,7 +51,7 @@ class PhotoEntry:
             self.path,
             intrinsics=self.intrinsics,
             depth=self.depth,
-            depth_encoding=self.depth_encoding,  # type: ignore[arg-type]
+            depth_encoding=self.depth_encoding,
             boxes=self.boxes,
             masks=self.masks,
         )

@@ -131,7 +131,7 @@ def test_optimising_reports_costs_and_leaves_the_original(room: diorama.Reconstr
     assert dict(optimised.scene.metrics) == pytest.approx(optimised.layout.after)
     assert room.scene is before
     with pytest.raises(InputError, match="feasible, paper, all-in-one"):
-        diorama.optimise(room, recipe="magic")  # type: ignore[arg-type]
+        diorama.optimise(room, recipe="magic")
 
 
 def test_export_takes_the_format_from_the_name(room: diorama.Reconstruction, tmp_path: Path) -> None:

@@ -34,7 +34,7 @@ def test_sources_survive_a_project_file(source: object) -> None:
     again = codec.load(codec.dump(source), type(source))
     assert again == source
     hints = field_types(type(source))
-    for field in fields(source):  # type: ignore[arg-type]
+    for field in fields(source):
         if isinstance(hints[field.name], type):
             assert isinstance(getattr(again, field.name), hints[field.name])
 
@@ -47,4 +47,4 @@ def test_a_known_camera_is_given_in_every_respect() -> None:
 
 def test_a_source_cannot_be_changed() -> None:
     with pytest.raises(AttributeError):
-        CameraSource.given().few_lines = True  # type: ignore[misc]
+        CameraSource.given().few_lines = True

@@ -39,9 +39,9 @@ def test_wrong_fields_of_values_raise() -> None:
 
 def test_wrong_types_raise_in_both_packages() -> None:
     with pytest.raises(TypeCheckError, match="role"):
-        Architecture((Plane("floor", "floor", SQUARE),)).by_role("roof")  # type: ignore[arg-type]
+        Architecture((Plane("floor", "floor", SQUARE),)).by_role("roof")
     with pytest.raises(TypeCheckError, match="script"):
-        html.run_once(3)  # type: ignore[arg-type]
+        html.run_once(3)
 
 
 def test_wrong_results_raise() -> None:

@@ -101,7 +101,7 @@ def test_items_are_drawn_as_needed_and_the_rest_is_dropped() -> None:
 
     answers = LocalWorkers(1).map(square_or_fail, numbers())
     assert next(answers).value == 100
-    answers.close()  # type: ignore[attr-defined]
+    answers.close()
     assert len(drawn) < 10
 
 

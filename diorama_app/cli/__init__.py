@@ -40,7 +40,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 1
     except BrokenPipeError:
         return 1
-    except Exception as error:
+    except Exception as error:  # a user gets a line, not a traceback
         if arguments.verbose:
             logging.exception("details")
         where = f"{type(error).__name__}: {error}"

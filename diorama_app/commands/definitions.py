@@ -21,6 +21,7 @@ from diorama_core.scene.room_edits import floor_height
 from diorama_core.scene.types import Scene
 
 TURN_DEG = 15.0
+OPPOSITE: dict[arranging.Anchor, arranging.Anchor] = {"low": "high", "middle": "middle", "high": "low"}
 Do = Callable[[Client], None]
 
 
@@ -179,12 +180,8 @@ def _several(session: EditorSession) -> tuple[Command, ...]:
         def run(client: Client) -> None:
             chosen = client.need_selection()
             axis, flipped = client.view.camera.screen_axis(side)
-            end = {"low": "high", "high": "low"}.get(anchor, anchor) if flipped else anchor
-            session.edit(
-                f"align {label}",
-                lambda s: arranging.align(s, chosen, axis, end),  # type: ignore[arg-type]
-                by=client,
-            )
+            end = OPPOSITE[anchor] if flipped else anchor
+            session.edit(f"align {label}", lambda s: arranging.align(s, chosen, axis, end), by=client)
 
         return run
 

@@ -63,7 +63,7 @@ def rescale_measured(client: Client, length_true_m: float) -> None:
     shown = format_length(length_true_m, client.preferences.unit)
     rescale_room(client, f"rescale: {format_length(now, client.preferences.unit)} is {shown}", now, length_true_m)
     stop_measuring(client)
-    client.session.show_whole_room()
+    client.session.view.show_whole_room()
     client.session.refresh()
 
 

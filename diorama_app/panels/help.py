@@ -5,6 +5,7 @@ from __future__ import annotations
 import viser
 
 from diorama_app.commands.registry import Command, CommandTable
+from diorama_app.panels.dialog import dialog
 from diorama_app.panels.fields import on_press
 from diorama_app.session.client import Client
 from diorama_app.web.html import STYLE, text
@@ -24,15 +25,7 @@ MOUSE = (
 def show_help(client: Client, commands: CommandTable) -> None:
     """Open the list over the page."""
     gui: viser.GuiApi = client.viser_client.gui
-    if client.dialog is not None:
-        client.dialog()
-
-    def close() -> None:
-        client.dialog = None
-        modal.close()
-
-    with gui.add_modal("Mouse and keyboard") as modal:
-        client.dialog = close
+    with dialog(client, "Mouse and keyboard") as close:
         mouse = "".join(f"<tr><td>{text(a)}</td><td><kbd>{text(b)}</kbd></td></tr>" for a, b in MOUSE)
         keys = "".join(_row(c) for c in commands.all if c.keys)
         rest = ", ".join(text(c.label) for c in commands.all if not c.keys)

@@ -39,7 +39,7 @@ class InPlace(Generic[P]):
         """Draw the panel, or the line where that fails."""
         try:
             self.panel.refresh()
-        except Exception as error:
+        except Exception as error:  # whatever one panel does wrong, the page stands
             log.log(logging.DEBUG if self._line.body else logging.ERROR, "the panel %s", self._title, exc_info=True)
             self._show(shortened(str(error)) if isinstance(error, DioramaError) else type(error).__name__)
         else:

@@ -14,26 +14,36 @@ from PIL import Image
 
 from diorama_app.commands.registry import CommandTable
 from diorama_app.panels.fields import enable, on_change, on_press, show_if, show_label
+from diorama_app.panels.photo_boxes import PhotoBoxes, box_list
 from diorama_app.projects.begin import begin_project
 from diorama_app.reconstruction import build_job as work
-from diorama_app.reconstruction.networks import NO_DETECTOR, PROPOSALS_ONLY, can_find_furniture, can_propose_boxes
+from diorama_app.reconstruction.networks import (
+    NO_DETECTOR,
+    PROPOSALS_ONLY,
+    SMALLEST,
+    can_find_furniture,
+    can_propose_boxes,
+    detect_with_networks,
+    missing_networks,
+)
 from diorama_app.reconstruction.object_correction import add_from_photo
-from diorama_app.reconstruction.suggestions import Suggestions
 from diorama_app.reconstruction.text_to_scene import describe_room, how_pictures_come
 from diorama_app.session.client import Client
 from diorama_app.session.reading import Upload
-from diorama_app.viewport.annotation_canvas import Deleted, Drawn, Event, Finished, Named, Reshaped, Selected
+from diorama_app.viewport.annotation_canvas import (
+    Deleted,
+    Selected,
+)
 from diorama_app.viewport.mesh_assets import reduced
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_app.web.viser_adapter import component_uuid
 from diorama_core.artefacts import Inputs
-from diorama_core.editing.input_corrections import boxes_json, labelled_box, with_box_at, without_box
+from diorama_core.editing.input_corrections import boxes_json
 from diorama_core.errors import InputError
-from diorama_core.library.taxonomy import CATEGORIES
+from diorama_core.models.manifest import networks_of
+from diorama_core.models.store import ModelStore
 from diorama_core.perception.inputs import ReadInputs
 
-COMMON = ("chair", "table", "sofa", "armchair", "bed", "desk", "coffee table", "lamp", "cabinet", "bookshelf")
-NAMES = (*COMMON, *sorted({c.name for c in CATEGORIES} - {*COMMON, "object"}))
 SLOW_BYTES = 2_000_000
 """A file of more is announced while it is read."""
 
@@ -46,9 +56,7 @@ class PhotoPanel:
 
     def __init__(self, gui: viser.GuiApi, client: Client, commands: CommandTable) -> None:
         self._client, self._session = client, client.session
-        self._next = COMMON[0]
-        """What the next box is called."""
-        self._suggestions = Suggestions(lambda: client.post(self.refresh, key="suggestions"))
+        self._boxes = PhotoBoxes(client, self.refresh)
         self._picture_of: object = None
         self._picture = ""
         self._invitation = LiveHtml(gui, self._act)
@@ -68,11 +76,11 @@ class PhotoPanel:
             self._camera = gui.add_text("Camera", "", hint="fx,fy,cx,cy in pixels of the photo; empty: estimated")
             on_change(self._camera, self._camera_given)
         self._draw = gui.add_button("Draw boxes", color="blue", hint="Draw a box around each piece of furniture")
-        on_press(self._draw, lambda: client.post(self._toggle_board))
+        on_press(self._draw, lambda: client.post(self._boxes.toggle))
         self._find = gui.add_button("Detect furniture", hint=commands["find_furniture"].tooltip)
         on_press(self._find, lambda: client.post(lambda: commands["find_furniture"].run(client)))
-        self._no_detector = LiveHtml(gui)
-        client.open_board = self._open_board
+        self._no_detector = LiveHtml(gui, self._act)
+        client.open_board = self._boxes.open
         self._naming = LiveHtml(gui, self._act)
         self._list = LiveHtml(gui, self._act)
         self._add = gui.add_button(
@@ -97,16 +105,17 @@ class PhotoPanel:
         show_if(inputs is not None, self._more, self._draw, self._find, self._build)
         self._drawn_by.show(f'<p class="dim">{text(how_pictures_come())}</p>' if self._words.value.strip() else "")
         enable(self._describe, idle and bool(self._words.value.strip()))
-        enable(self._find, idle and can_propose_boxes())
-        self._no_detector.show(_about_detection() if inputs is not None and not can_find_furniture() else "")
-        self._naming.show("" if inputs is None else self._name_field(inputs))
-        self._list.show("" if inputs is None else _box_list(inputs, client.selected_box))
+        finds, about = self._session.glances.of("detection", _detection)
+        enable(self._find, idle and finds)
+        self._no_detector.show(about if inputs is not None else "")
+        self._naming.show("" if inputs is None else self._boxes.name_field(inputs))
+        self._list.show("" if inputs is None else box_list(inputs, client.selected_box))
         show_if(inputs is not None and bool(self._session.scene.objects), self._add)
         enable(self._add, idle and client.selected_box is not None)
         enable(self._build, idle and work.ready_to_build(inputs))
         show_label(self._draw, "Done drawing" if client.view.canvas.is_open else "Draw boxes")
         if inputs is not None:
-            client.view.canvas.show_boxes(inputs.boxes, client.selected_box)
+            self._boxes.show(inputs)
 
     # -- uploads ----------------------------------------------------------------------------------------------
 
@@ -174,76 +183,6 @@ class PhotoPanel:
 
         self._client.post(read, key="camera")
 
-    # -- boxes ------------------------------------------------------------------------------------------------
-
-    def _toggle_board(self) -> None:
-        if self._client.view.canvas.is_open:
-            self._client.view.canvas.close()
-        else:
-            self._open_board()
-        self._client.refresh()
-
-    def _open_board(self) -> None:
-        inputs = self._session.inputs
-        if inputs is None:
-            raise InputError("there is no photo yet; upload one first")
-        client = self._client
-        client.view.canvas.open(
-            inputs.photo.rgb,
-            lambda event: client.post(lambda: self._drawn(event)),
-            names=NAMES,
-            next_label=self._next,
-        )
-        self.refresh()
-
-    def _drawn(self, event: Event) -> None:
-        """Something was done on the photo."""
-        inputs, client = self._session.inputs, self._client
-        if inputs is None:
-            return
-        index = getattr(event, "index", None)
-        if index is not None and not 0 <= index < len(inputs.boxes):
-            return  # somebody else deleted it just now
-        match event:
-            case Drawn(box):
-                client.selected_box = None
-                made = labelled_box(box, self._next)
-                self._annotate(f"draw a box: {made.label}", replace(inputs, boxes=(*inputs.boxes, made)))
-            case Reshaped(i, box):
-                now = replace(inputs.boxes[i], box=box)
-                self._annotate(f"change the box of {now.label}", with_box_at(inputs, i, now))
-            case Named(i, label):
-                self._rename(i, label)
-            case Deleted(i):
-                client.selected_box = None
-                self._annotate(f"delete the box of {inputs.boxes[i].label}", without_box(inputs, i))
-            case Selected(i):
-                client.selected_box = i
-                client.refresh()
-            case Finished():
-                client.view.canvas.close()
-                client.refresh()
-
-    def _annotate(self, label: str, inputs: Inputs) -> None:
-        self._session.annotate(label, inputs, by=self._client)
-
-    def _rename(self, index: int, label: str) -> None:
-        inputs, words = self._session.inputs, " ".join(label.split())
-        if inputs is None or not words or inputs.boxes[index].label == words:
-            return
-        now = labelled_box(inputs.boxes[index].box, words)
-        self._annotate(f"{inputs.boxes[index].label} is a {words}", with_box_at(inputs, index, now))
-
-    def _named(self, word: str) -> None:
-        """A name was chosen: of the selected box, or else of the next one."""
-        if self._client.selected_box is not None:
-            self._rename(self._client.selected_box, word)
-        elif word.strip():
-            self._next = " ".join(word.split())
-            if self._client.view.canvas.is_open:
-                self._client.view.canvas.next_label(self._next)
-            self.refresh()
-
     def _add_selected(self) -> None:
         inputs, index = self._session.inputs, self._client.selected_box
         if inputs is None or index is None:
@@ -253,33 +192,21 @@ class PhotoPanel:
 
     def _act(self, action: Action) -> None:
         def do() -> None:
-            if action.do == "named":
-                self._named(action.pair[1])
+            if action.do == "download":
+                detect_with_networks(self._client)
+            elif action.do == "named":
+                self._boxes.name(action.pair[1])
             elif action.do == "name":
-                self._named(action.arg)
+                self._boxes.name(action.arg)
             elif action.arg.isdigit() and action.do == "drop":
-                self._drawn(Deleted(int(action.arg)))
+                self._boxes.happened(Deleted(int(action.arg)))
             elif action.arg.isdigit() and action.do == "mark":
                 index = int(action.arg)
-                self._drawn(Selected(None if self._client.selected_box == index else index))
+                self._boxes.happened(Selected(None if self._client.selected_box == index else index))
 
         self._client.post(do)
 
     # -- words ------------------------------------------------------------------------------------------------
-
-    def _name_field(self, inputs: Inputs) -> str:
-        index = self._client.selected_box
-        value = self._next if index is None else inputs.boxes[index].label
-        title = "Name of the next box" if index is None else "Name of the selected box"
-        likely = () if index is None else self._suggestions.of(inputs.photo, inputs.boxes[index].box)
-        names = (*likely, *(name for name in COMMON if name not in likely))[: len(COMMON)]
-        chips = "".join(button(text(name), "name", name, on=name == value) for name in names)
-        options = "".join(f'<option value="{text(name)}">' for name in NAMES)
-        return (
-            f'<h4><label for="dio-box-name">{title}</label></h4><input id="dio-box-name" list="dio-box-names" '
-            f'data-change="named" value="{text(value)}"><datalist id="dio-box-names">{options}</datalist>'
-            f'<div class="bar tight" style="margin-top:6px">{chips}</div>'
-        )
 
     def _introduction(self, inputs: Inputs | None) -> str:
         if inputs is None:
@@ -308,8 +235,19 @@ def _state(inputs: Inputs) -> str:
     return "<b>Draw a box around each piece of furniture.</b>"
 
 
-def _about_detection() -> str:
-    return f'<p class="dim">{text(PROPOSALS_ONLY if can_propose_boxes() else NO_DETECTOR)}</p>'
+def _detection() -> tuple[bool, str]:
+    """Whether anything detects furniture now, and what would do it better, with its size and licences."""
+    finds = can_propose_boxes()
+    missing = missing_networks(ModelStore.default(), networks_of(SMALLEST))
+    if can_find_furniture() or not missing:
+        return finds, ""
+    size = f"{sum(n.size_bytes for n in missing) / 1e6:.0f} MB"
+    licences = ", ".join(sorted({n.licence for n in missing}))
+    fetch = button(f"Download {size} and detect", "download", title=f"Accepts their licences: {licences}")
+    return finds, (
+        f'<p class="dim">{text(PROPOSALS_ONLY if finds else NO_DETECTOR)}</p>{fetch}'
+        f'<p class="dim">Licences: {text(licences)}.</p>'
+    )
 
 
 def _extras(inputs: Inputs) -> dict[str, bool]:
@@ -318,22 +256,6 @@ def _extras(inputs: Inputs) -> dict[str, bool]:
         "masks": inputs.instances is not None,
         "camera": inputs.intrinsics is not None,
     }
-
-
-def _box_list(inputs: Inputs, selected: int | None) -> str:
-    if not inputs.boxes:
-        return "<p class='dim'>Choose a name, press <b>Draw boxes</b> and drag a rectangle on the photo.</p>"
-    rows = []
-    for index, box in enumerate(inputs.boxes):
-        unknown = ' <span class="dim">as an object</span>' if box.category == "object" else ""
-        rows.append(
-            f'<div class="row {"on" if index == selected else ""}" data-do="mark" data-arg="{index}" role="treeitem" '
-            f'tabindex="0" aria-selected="{"true" if index == selected else "false"}">'
-            f'<span class="name">{text(box.label)}{unknown}</span>'
-            + button("✕", "drop", index, title=f"Delete the box of {box.label}")
-            + "</div>"
-        )
-    return f'<h4>Boxes</h4><div role="tree" aria-label="Boxes">{"".join(rows)}</div>'
 
 
 def _intrinsics(given: str) -> tuple[float, float, float, float] | None:

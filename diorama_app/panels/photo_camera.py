@@ -38,6 +38,8 @@ class PhotoCamera:
         self._html = LiveHtml(gui, self._act)
         self._typed: dict[str, float] = {}
         self._of: Camera | None = None
+        self._figures: dict[str, float] = {}
+        """Of that camera."""
         self._used = False
 
     def refresh(self) -> None:
@@ -48,9 +50,9 @@ class PhotoCamera:
             self._html.show("")
             return
         if self._of != camera:
-            self._of, self._typed = camera, {}
+            self._of, self._figures, self._typed = camera, figures(camera), {}
             self._client.trial_camera = None
-        values = {**figures(camera), **self._typed}
+        values = {**self._figures, **self._typed}
         shown_as = {name: f"{round(value, 1) + 0.0:.1f}" for name, value in values.items()}  # no minus before a zero
         rows = "".join(_row(label, name, shown_as[name], hint) for name, (label, hint) in FIELDS.items())
         shown = format_length(camera_height_m(session.scene) or 0.0, self._client.preferences.unit)
@@ -97,7 +99,7 @@ class PhotoCamera:
         """Show what was typed as a grid on the floor, over the photo."""
         if self._of is None:
             return
-        values = {**figures(self._of), **typed}
+        values = {**self._figures, **typed}
         check_fov(values["fov"])
         camera_attitude = checked_angles(values["tilt"], values["roll"])
         self._typed, self._used = typed, True
@@ -106,7 +108,7 @@ class PhotoCamera:
         self._client.refresh()
 
     def _build(self, camera: Camera) -> None:
-        typed, known = self._typed, figures(camera)
+        typed, known = self._typed, self._figures
         camera_attitude: CameraAttitude | None = None
         if "tilt" in typed or "roll" in typed:
             camera_attitude = checked_angles(typed.get("tilt", known["tilt"]), typed.get("roll", known["roll"]))

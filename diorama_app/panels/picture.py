@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import viser
 
+from diorama_app.panels.dialog import dialog
 from diorama_app.reconstruction.picture_job import PictureView, film_suffix, picture_size, take_picture
 from diorama_app.session.client import Client
 from diorama_app.web.html import STYLE, Action, LiveHtml, button, text
@@ -23,15 +24,7 @@ VIEWS: dict[PictureView, tuple[str, str]] = {
 def show_picture(client: Client) -> None:
     """Open the choices over the page; the picture itself is a job."""
     gui: viser.GuiApi = client.viser_client.gui
-    if client.dialog is not None:
-        client.dialog()
-
-    def close() -> None:
-        client.dialog = None
-        modal.close()
-
-    with gui.add_modal("Picture") as modal:
-        client.dialog = close
+    with dialog(client, "Picture") as close:
         gui.add_html(STYLE)
         _Choices(gui, client, close).show()
 

@@ -6,6 +6,7 @@ import base64
 import io
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import viser
@@ -77,20 +78,17 @@ class Projects:
         if session.project is None:
             self._status.show('<div class="card">No project is open.</div>')
         else:
-            name = text(session.project.name)
-            earlier = "".join(
-                f'<div class="row"><span class="name">{text(when)}</span>'
-                + button("Restore this version", "version", file)
-                + "</div>"
-                for file, when in project_care.earlier_versions(session.project)
-            )
-            versions = f"<details><summary class='dim'>Earlier versions</summary>{earlier}</details>" if earlier else ""
+            named, versions = session.glances.of("versions", partial(_name_and_versions, session.project))
             self._status.show(
-                f'<input data-change="rename" value="{name}" aria-label="Project name" title="Type to rename">'
-                f"<p class='dim' style='margin-top:4px'>{text(_what_becomes_of_changes(session))}</p>{versions}"
+                f"{named}<p class='dim' style='margin-top:4px'>{text(_what_becomes_of_changes(session))}</p>{versions}"
             )
         notes = "".join(f"<p>{text(note[:1].upper() + note[1:])}.</p>" for note in session.notes[:6])
         self._notes.show(f'<h4>How this scene was made</h4><div class="card">{notes}</div>' if notes else "")
+        self._list.show(session.glances.of("projects", self._listed))
+
+    def _listed(self) -> str:
+        """The other projects, and what is in the bin."""
+        session = self._client.session
         rows = "".join(self._row(folder) for folder in project_care.recent_projects(session.projects_dir)[:RECENT])
         binned = project_care.in_bin(session.projects_dir)
         undelete = ""
@@ -101,7 +99,7 @@ class Projects:
         bin_of = "".join(_binned_row(place) for place in binned[:RECENT] if place != session.binned)
         if bin_of:
             bin_of = f"<details><summary class='dim'>Bin</summary>{bin_of}</details>"
-        self._list.show(f"<h4>Recent projects</h4>{undelete}{rows}{bin_of}" if rows or undelete or bin_of else "")
+        return f"<h4>Recent projects</h4>{undelete}{rows}{bin_of}" if rows or undelete or bin_of else ""
 
     def _row(self, folder: Path) -> str:
         session = self._client.session
@@ -143,6 +141,7 @@ class Projects:
             self._bring_back(action.arg)
         elif action.do in ("open", "copy", "bin"):
             self._with_listed(action.do, action.arg)
+        session.glances.forget()
         session.refresh_panels()
 
     def _bring_back(self, name: str) -> None:
@@ -172,6 +171,20 @@ class Projects:
         else:
             project = Project.open(folder)
             session.visit(client, project, f"Opened {project.name}.")
+
+
+def _name_and_versions(project: Project) -> tuple[str, str]:
+    """The field with the project's name, and its earlier versions."""
+    earlier = "".join(
+        f'<div class="row"><span class="name">{text(when)}</span>'
+        + button("Restore this version", "version", file)
+        + "</div>"
+        for file, when in project_care.earlier_versions(project)
+    )
+    return (
+        f'<input data-change="rename" value="{text(project.name)}" aria-label="Project name" title="Type to rename">',
+        f"<details><summary class='dim'>Earlier versions</summary>{earlier}</details>" if earlier else "",
+    )
 
 
 def _what_becomes_of_changes(session: EditorSession) -> str:

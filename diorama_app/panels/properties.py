@@ -164,13 +164,13 @@ class Properties:
             + self._command("mirror", "Mirror")
             + self._command("delete", "Delete")
             + "</div>"
-            + (self._together(several) if several > 1 else "")
+            + (self._together(item, several) if several > 1 else "")
         )
 
-    def _together(self, several: int) -> str:
+    def _together(self, item: SceneObject, several: int) -> str:
         align = "".join(self._command(c, label) for c, label in ALIGN.items())
         spread = self._command("distribute", "Distribute evenly") if several > 2 else ""
-        return f'<h4>Align with {text(self._client.selected.label)}</h4><div class="bar tight">{align}</div>' + (  # type: ignore[union-attr]
+        return f'<h4>Align with {text(item.label)}</h4><div class="bar tight">{align}</div>' + (
             f'<div class="bar tight">{spread}</div>' if spread else ""
         )
 

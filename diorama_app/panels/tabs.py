@@ -21,17 +21,17 @@ const enter = (tab) => tab.dispatchEvent(new KeyboardEvent('keydown', { key: 'En
 const read = () => { try { return JSON.parse(localStorage.getItem(key)) || []; } catch { return []; } };
 const note = () => {
   const open = tabs().filter((t) => t.getAttribute('aria-selected') === 'true').map(named);
-  const kept = groups.map((names) => names.find((name) => open.includes(name)) || names[0]);
-  try { localStorage.setItem(key, JSON.stringify(kept)); } catch { window.__dioTabs = 'not kept'; }
+  const remembered = groups.map((names) => names.find((name) => open.includes(name)) || names[0]);
+  try { localStorage.setItem(key, JSON.stringify(remembered)); } catch { window.__dioTabs = 'not remembered'; }
 };
 const recall = (left) => {
-  const there = tabs(), kept = read();
+  const there = tabs(), remembered = read();
   if (groups.flat().some((name) => !there.some((t) => named(t) === name))) {
     if (left) setTimeout(() => recall(left - 1), 50);
     return;
   }
   for (const tab of there)
-    if (kept.includes(named(tab)) && tab.getAttribute('aria-selected') !== 'true') enter(tab);
+    if (remembered.includes(named(tab)) && tab.getAttribute('aria-selected') !== 'true') enter(tab);
   if (window.__dioTabWanted) enter(there.find((t) => named(t) === window.__dioTabWanted));
 };
 delete window.__dioTabWanted;
@@ -43,7 +43,7 @@ window.__dioOpenTab = (name, left = 40) => {
 };
 recall(%d);
 if (!window.__dioTabs) {
-  window.__dioTabs = 'kept';
+  window.__dioTabs = 'remembered';
   for (const kind of ['pointerup', 'keyup'])
     document.addEventListener(kind, () => setTimeout(note, 200), true);
 }

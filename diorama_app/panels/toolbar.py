@@ -95,7 +95,8 @@ def run_command(client: Client, commands: CommandTable, action: Action) -> None:
 def title_bar(client: Client) -> str:
     """Name of the project, number of objects, and the other connected clients."""
     session = client.session
-    name = text(session.project.name) if session.project is not None else "No project"
+    project = session.project
+    name = "No project" if project is None else text(session.glances.of("name", lambda: project.name))
     others = [g for g in session.clients.values() if g is not client]
     here = "".join(
         f' <span class="chip" style="border-color:rgb{g.colour}" title="also has this open">{text(g.name)}</span>'

@@ -96,5 +96,5 @@ def show_built(session: EditorSession, project: Project, scene: Scene, *, label:
     session.textures = {**session.textures, **project.textures(scene)}  # undo shows what earlier ones name
     session.read_notes()
     session.commit(label, scene, inputs=project.load_inputs())
-    session.show_whole_room()
+    session.view.show_whole_room()
     session.notice_all(message or f"The scene has {len(scene.objects)} objects. Click one to change it.", "good")

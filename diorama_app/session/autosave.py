@@ -129,7 +129,7 @@ class Autosave:
                 project.save_inputs(unwritten.inputs, project.info().get("warnings", ()))
             if scene is not None:
                 project.save_scene(scene)
-        except Exception as error:
+        except Exception as error:  # whatever it is, the work must be retained and tried again
             if not isinstance(error, DioramaError):
                 log.exception("the scene of %s cannot be written", project.folder)
             reason = str(error) if isinstance(error, DioramaError) else f"the scene cannot be written ({error})"

@@ -145,7 +145,7 @@ class Client:
         """Draw one part of the page; one that fails says so in a line, once, and the others go on."""
         try:
             draw()
-        except Exception as error:
+        except Exception as error:  # whatever one panel does wrong, the others are drawn
             log.log(logging.DEBUG if name in self.failing else logging.ERROR, "panel %s", name, exc_info=True)
             if name not in self.failing:
                 self.failing[name] = str(error) if isinstance(error, DioramaError) else type(error).__name__

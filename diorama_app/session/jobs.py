@@ -107,7 +107,7 @@ class Jobs:
             outcome = Outcome(status.kind, cancelled=True)
         except DioramaError as error:
             outcome = Outcome(status.kind, error=str(error))
-        except Exception:
+        except Exception:  # the thread ends here: the outcome is all that is heard of it
             log.exception("%s failed", status.title)
             outcome = Outcome(
                 status.kind, error=f"{status.title} failed unexpectedly; nothing was changed (see the log)"

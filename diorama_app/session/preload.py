@@ -44,7 +44,7 @@ def load_open3d() -> None:
     """Load Open3D: it looks through the loaded modules, and fails where another thread loads one at that moment."""
     for remaining in reversed(range(OPEN3D_TRIES)):
         try:
-            import open3d  # noqa: F401
+            import open3d  # noqa: F401  # loading it is the whole work
         except RuntimeError as error:
             if "changed size during iteration" not in str(error) or not remaining:
                 raise

@@ -142,7 +142,7 @@ class Checker:
             except DioramaError as error:
                 log.warning("the scene cannot be checked: %s", error)
                 found = {}
-            except Exception:
+            except Exception:  # badges are missing then; the thread goes on with the next scene
                 log.exception("the scene cannot be checked")
                 found = {}
             if found != last:

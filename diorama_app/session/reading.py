@@ -87,7 +87,7 @@ class Reader:
             packed, warnings = self._process.call(upload.name, read_packed, upload)
             read = ReadInputs(codec.load(packed), warnings)
             post(lambda: then(read))
-        except Exception as error:
+        except Exception as error:  # raised again on the UI thread, for whoever uploaded
             post(_raising(error))
         finally:
             with self._lock:

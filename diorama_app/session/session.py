@@ -1,6 +1,6 @@
 """One open project: the document, its jobs, and the people who look at it.
 
-Everything here runs on the UI thread's thread, except where a method says otherwise. A change goes through `edit`; then
+Everything here runs on the UI thread, except where a method says otherwise. A change goes through `edit`; then
 `refresh` brings the page in line with the document, and the project's folder follows within a second.
 """
 
@@ -8,10 +8,8 @@ from __future__ import annotations
 
 import contextlib
 import logging
-import threading
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +18,7 @@ import viser
 from diorama_app.session.autosave import Autosave
 from diorama_app.session.connected_client import ConnectedClient
 from diorama_app.session.document import Document
+from diorama_app.session.glances import Glances
 from diorama_app.session.job_reports import JobReports
 from diorama_app.session.jobs import Jobs, Outcome
 from diorama_app.session.layout_run import LayoutRun
@@ -27,12 +26,12 @@ from diorama_app.session.problem_checker import Checker, Problems
 from diorama_app.session.project_access import ProjectAccess
 from diorama_app.session.project_contents import build_notes, read_project
 from diorama_app.session.reading import Reader
-from diorama_app.session.redraws import Redraws
 from diorama_app.session.shape_preparation import Preparer
+from diorama_app.session.shared_view import SharedView
 from diorama_app.session.textures import Textures, refitted
 from diorama_app.session.ui_thread import UiThread
 from diorama_app.viewport.client_view import NoticeKind
-from diorama_app.viewport.framing import DEFAULT_FOV_RAD, room_view
+from diorama_app.viewport.framing import room_view
 from diorama_app.viewport.mesh_assets import ShapeBytes
 from diorama_app.viewport.scene_view import Viewport
 from diorama_app.viewport.thumbnails import Thumbnails
@@ -47,9 +46,6 @@ from diorama_core.scene.schema import check_limits
 from diorama_core.scene.types import Pose, Scene
 
 log = logging.getLogger(__name__)
-
-MESH_OVERLAP_S = 0.45
-"""How long an old mesh stays while the browser parses its successor."""
 
 
 @dataclass
@@ -104,12 +100,12 @@ class EditorSession:
         """Told when a client went away."""
         self.greeting: tuple[str, NoticeKind] | None = None
         """What the next client is told that comes."""
+        self.glances = Glances()
         self.binned: Path | None = None
         """The project deleted last, until it is restored."""
         self.layout_run: LayoutRun | None = None
         """The last optimisation run."""
         self.ui_thread = UiThread(lambda message: self.notice_all(message, "bad"))
-        self.redraws = Redraws(self.ui_thread, lambda client_id: client_id in self.clients)
         reports = JobReports(
             self.ui_thread, on_start=self.refresh_panels, on_progress=self._refresh_job, on_end=self._job_ended
         )
@@ -118,16 +114,13 @@ class EditorSession:
         """Whether a build of this project was under way when the program ended."""
         self.autosave = Autosave(on_error=lambda line: self._saver_says(line, "bad"), on_saved=self._saver_says)
         self._access = ProjectAccess()
-        self.shapes = ShapeBytes(library, light=low_graphics)
-        self.preparer = Preparer(library)
         self.reader = Reader()
         self.checker = Checker(library, lambda found: self.ui_thread.post(lambda: self._badged(found)))
         self.records = ShapeRecords(library)
         self.thumbnails = Thumbnails(library, self.records)
-        self.viewport = Viewport(server, self.shapes, pick=self._picked, drag=self._dragged, later=self._later)
-        self.on_photo_camera: Callable[[Any], None] | None = None
-        self.on_pick: Callable[[str, viser.SceneNodePointerEvent], None] | None = None
-        self.on_drag: Callable[[str, viser.SceneNodeDragEvent], None] | None = None
+        self.shapes = ShapeBytes(library, light=low_graphics)
+        self.preparer = Preparer(library)
+        self.view = SharedView(self, self.shapes, self.preparer)
 
     @property
     def clip(self) -> Clip | None:
@@ -270,36 +263,22 @@ class EditorSession:
         self.badges = found
         self.refresh_panels()
 
+    @property
+    def viewport(self) -> Viewport:
+        """The scene as all browsers see it."""
+        return self.view.viewport
+
     def preview(self, poses: Mapping[str, Pose]) -> None:
         """Show poses that are not (yet) part of the document."""
         self.viewport.preview(poses)
 
     def refresh(self, by: ConnectedClient | None = None) -> None:
-        """Bring every browser in line with the document: the scene at once, panels as often as can be followed.
-
-        Args:
-            by: who caused it; sees the panels follow before the others do.
-        """
-        self._draw("the view", lambda: self.viewport.show(self.scene, self.textures))
-        self.preparer.want(o.shape_id for o in self.scene.objects)
-        for client in self.clients.values():
-            client.drop_missing()
-            self._draw("the photo's camera", partial(self._show_photo_camera, client))
-        self.refresh_panels(by)
+        """Bring every browser in line with the document; see `SharedView.refresh`."""
+        self.view.refresh(by)
 
     def refresh_panels(self, by: ConnectedClient | None = None) -> None:
         """Redraw the panels, and what everyone sees of the others' selections."""
-        self.redraws.ask(self.clients.values(), first=by)
-
-    def _draw(self, what: str, draw: Callable[[], None]) -> None:
-        """Draw a part of the page; an unexpected error costs that part only."""
-        try:
-            draw()
-        except DioramaError as error:
-            self.notice_all(str(error), "bad")
-        except Exception:
-            log.exception("%s cannot be drawn", what)
-            self.notice_all(f"{what} could not be drawn; your work is saved. See the server's log.", "bad")
+        self.view.refresh_panels(by)
 
     # -- projects ---------------------------------------------------------------------------------------------
 
@@ -316,6 +295,7 @@ class EditorSession:
             with contextlib.suppress(OSError):  # leftovers that cannot be removed disturb nobody
                 self.autosave.recovery.clean_up(project)
         self.project, self.textures, self.notes = project, read.textures, read.notes
+        self.glances.forget()
         self.photo = None if inputs is None else inputs.photo
         self.interrupted = project.info().get(BUILDING) is not None
         self.shapes.expect(len(scene.objects))
@@ -324,7 +304,7 @@ class EditorSession:
         self.layout_run = None
         for client in self.clients.values():
             client.view.canvas.close()
-        self.show_whole_room()
+        self.view.show_whole_room()
         self.refresh()
         for client in self.clients.values():
             self._show_where_left(client)
@@ -352,6 +332,7 @@ class EditorSession:
 
     def _saver_says(self, message: str, kind: NoticeKind = "good") -> None:
         def tell() -> None:
+            self.glances.forget()
             self.notice_all(message, kind)
             self.refresh_panels()
 
@@ -360,20 +341,6 @@ class EditorSession:
     def read_notes(self) -> None:
         """Learn what the project's build had to say."""
         self.notes = () if self.project is None else build_notes(self.project)
-
-    def show_whole_room(self) -> None:
-        """New visitors and all who are here look at the whole room."""
-        position, target = room_view(self.scene)
-        self.server.initial_camera.position = position
-        self.server.initial_camera.look_at = target
-        self.server.initial_camera.fov = float(DEFAULT_FOV_RAD)
-        for client in self.clients.values():
-            client.selection = ()
-            client.doing = None
-            client.view.photo.show_backdrop(None, None, 1.0)
-            client.view.photo.show_overlay(None, None, 0.0)
-            if not client.view.canvas.is_open:
-                client.view.camera.move(*room_view(self.scene, client.view.camera.aspect))
 
     # -- people -----------------------------------------------------------------------------------------------
 
@@ -384,7 +351,7 @@ class EditorSession:
         with viser_client.atomic():
             if self.on_client is not None:
                 self.on_client(client)
-            self._show_photo_camera(client)
+            self.view.show_photo_camera(client)
             client.refresh()
         client.view.camera.move(*room_view(self.scene, client.view.camera.aspect))
         self._show_where_left(client)
@@ -427,35 +394,13 @@ class EditorSession:
         self.reader.close()
         self.thumbnails.stop()
 
-    def _show_photo_camera(self, client: ConnectedClient) -> None:
-        photo = None if self.photo is None else self.photo.rgb
-
-        def through_it() -> None:
-            if self.on_photo_camera is not None:
-                ask = self.on_photo_camera
-                client.post(lambda: ask(client))
-
-        client.view.photo.show_camera(self.scene.camera, photo, through_it)
-
-    def _picked(self, object_id: str, event: viser.SceneNodePointerEvent) -> None:
-        if self.on_pick is not None:
-            self.on_pick(object_id, event)
-
-    def _dragged(self, object_id: str, event: viser.SceneNodeDragEvent) -> None:
-        if self.on_drag is not None:
-            self.on_drag(object_id, event)
-
-    def _later(self, task: Callable[[], None]) -> None:
-        timer = threading.Timer(MESH_OVERLAP_S, lambda: self.ui_thread.post(task))
-        timer.daemon = True
-        timer.start()
-
     def _refresh_job(self) -> None:
         for client in self.clients.values():
             if client.job_panel is not None:
                 client.job_panel.refresh()
 
     def _job_ended(self, outcome: Outcome) -> None:
+        self.glances.forget()
         self.refresh()
         if outcome.cancelled:
             self.notice_all("Cancelled; nothing was changed.")

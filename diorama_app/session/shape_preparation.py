@@ -46,7 +46,7 @@ class Preparer:
         while (shape_id := self._queue.get()) is not None:
             try:
                 parts_of_shape(self._library, self._library.shape(shape_id))
-            except Exception:
+            except Exception:  # a gesture will find out; the thread goes on with the next
                 log.exception("the shape %s cannot be prepared", shape_id)
                 continue
             self._ready.add(shape_id)

@@ -164,6 +164,6 @@ class UiThread:
                 posted.task()
             except DioramaError as error:
                 posted.on_error(str(error))
-            except Exception:
+            except Exception:  # one task must not end the thread that serves everybody
                 log.exception("an unexpected error in the editor")
                 posted.on_error("Something went wrong; earlier changes are safe. See the server's log.")

@@ -37,14 +37,6 @@ def parse_length(words: str, unit: Unit) -> float:
     return sign * total
 
 
-def parse_lengths(words: str, unit: Unit, count: int = 3) -> tuple[float, ...]:
-    """Several lengths, apart by commas or semicolons; raises `InputError` when there are not `count`."""
-    parts = [p for p in re.split(r"[;,]", words) if p.strip()]
-    if len(parts) != count:
-        raise InputError(f"'{words[:40]}' is not {count} lengths; write them with commas between")
-    return tuple(parse_length(p, unit) for p in parts)
-
-
 def format_length(metres: float, unit: Unit) -> str:
     """A length to about a millimetre: "1.25 m", "125 cm", "4' 1 1/4\\""."""
     if unit == "m":
@@ -61,11 +53,6 @@ def format_length(metres: float, unit: Unit) -> str:
 def in_unit(metres: float, unit: Unit) -> float:
     """The number that a field in metres or centimetres shows."""
     return round(metres, 3) if unit == "m" else round(100 * metres, 1)
-
-
-def from_unit(value: float, unit: Unit) -> float:
-    """Metres of a number in a field in metres or centimetres."""
-    return value if unit == "m" else value / 100
 
 
 def format_size(width: float, depth: float, height: float, unit: Unit) -> str:

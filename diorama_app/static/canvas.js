@@ -5,8 +5,9 @@
   const COLOURS = ["#2f6fd6", "#d6542f", "#1f8a55", "#a050c8", "#b07a00", "#0f8a99"];
   const NEAR_PX = 4; // a press that moves less is a click
   const HANDLES = ["nw", "n", "ne", "e", "se", "s", "sw", "w"];
-  const state = { photo: null, boxes: [], selected: null, mask: null, next: "" };
+  const state = { photo: null, boxes: [], selected: null, likely: [], proposals: [], mask: null, next: "" };
   let root, figure, layer, drag;
+  let at = null, next = 0; // the proposal that keys are for, and the one that Tab goes to after an accepted one
 
   const send = (what, arg) => {
     const button = document.getElementById("dio-canvas-send");
@@ -63,12 +64,20 @@
   };
   const within = ([x, y], [x1, y1, x2, y2]) => x >= x1 && x <= x2 && y >= y1 && y <= y2;
   const area = ([x1, y1, x2, y2]) => (x2 - x1) * (y2 - y1);
-  const hit = (point) => {
+  const hit = (point, rows = state.boxes) => {
     let best = null;
-    state.boxes.forEach((row, i) => {
-      if (within(point, row.box) && (best === null || area(row.box) < area(state.boxes[best].box))) best = i;
+    rows.forEach((row, i) => {
+      if (within(point, row.box) && (best === null || area(row.box) < area(rows[best].box))) best = i;
     });
     return best;
+  };
+  const click = (point) => {
+    const found = hit(point), proposed = hit(point, state.proposals);
+    at = null;
+    state.selected = found;
+    if (found !== null) send("select", found);
+    else if (proposed !== null) send("accept", [proposed, ""]);
+    else send("click", point);
   };
   const spanned = (a, b) => [Math.min(a[0], b[0]), Math.min(a[1], b[1]), Math.max(a[0], b[0]), Math.max(a[1], b[1])];
 
@@ -114,8 +123,7 @@
     drag = null;
     if (kind === "point") { if (!far) send("point", [...from, !event.shiftKey]); return; }
     if (!far && kind !== "pull") {
-      const found = hit(from);
-      if (state.photo.mode === "boxes") { state.selected = found; send("select", found); }
+      if (state.photo.mode === "boxes") click(from);
     } else if (far && kind === "new") {
       if (state.photo.mode === "boxes") {
         state.selected = null;
@@ -129,6 +137,11 @@
     draw();
   };
 
+  // Names stay on the photo: below the upper edge of boxes at its top, from the right edge of boxes in its right half.
+  const nameSide = ([x1, y1]) => {
+    const [width, height] = state.photo.size;
+    return `${y1 / height < 0.06 ? " inside" : ""}${x1 / width > 0.5 ? " right" : ""}`;
+  };
   const boxElement = (row, i) => {
     const on = i === state.selected, [width, height] = state.photo.size;
     const box = on && drag?.box && drag.kind !== "new" ? drag.box : row.box;
@@ -136,7 +149,7 @@
     node.style.cssText = `left:${100 * box[0] / width}%;top:${100 * box[1] / height}%;` +
       `width:${100 * (box[2] - box[0]) / width}%;height:${100 * (box[3] - box[1]) / height}%;` +
       `--box:${COLOURS[i % COLOURS.length]}`;
-    const name = element("div", `dio-canvas-name${box[1] / height < 0.06 ? " inside" : ""}`);
+    const name = element("div", `dio-canvas-name${nameSide(row.box)}`);
     if (on && state.photo.mode === "boxes") {
       const field = element("input", "", { value: row.label, ariaLabel: "Name of the selected box" });
       field.setAttribute("list", "dio-canvas-names");
@@ -145,7 +158,13 @@
       const remove = element("button", "", { type: "button", textContent: "✕", title: "Delete this box (Delete)" });
       remove.setAttribute("aria-label", `Delete the box ${row.label}`);
       remove.onclick = () => send("delete", i);
-      name.append(field, remove);
+      const likely = state.likely.map((word, k) => {
+        const choice = element("button", `likely${word === row.label ? " chosen" : ""}`, { type: "button", title: `Key ${k + 1}` });
+        choice.append(element("kbd", "", { textContent: k + 1 }), ` ${word}`);
+        choice.onclick = () => send("name", [i, word]);
+        return choice;
+      });
+      name.append(field, remove, ...likely);
       node.append(...HANDLES.map((side) => {
         const handle = element("i", `dio-canvas-handle ${side}`);
         handle.dataset.side = side;
@@ -163,11 +182,21 @@
     node.append(name);
     return node;
   };
+  const proposalElement = (row, i) => {
+    const [width, height] = state.photo.size, [x1, y1, x2, y2] = row.box;
+    const node = element("div", `dio-canvas-proposal${i === at ? " at" : ""}`);
+    Object.assign(node, { role: "button", ariaLabel: `Proposal: ${row.label}`, title: "Click to accept" });
+    node.style.cssText = `left:${100 * x1 / width}%;top:${100 * y1 / height}%;` +
+      `width:${100 * (x2 - x1) / width}%;height:${100 * (y2 - y1) / height}%`;
+    node.append(element("div", `dio-canvas-name${nameSide(row.box)}`, { textContent: `${row.label}?` }));
+    return node;
+  };
   const draw = () => {
     if (!root) return;
     const typing = layer.contains(document.activeElement) && document.activeElement.tagName === "INPUT";
     if (typing && !drag && document.activeElement.closest(".on")) document.activeElement.blur();
-    const nodes = state.boxes.map(boxElement);
+    const proposals = state.photo.mode === "boxes" ? state.proposals.map(proposalElement) : [];
+    const nodes = [...proposals, ...state.boxes.map(boxElement)];
     if (drag?.kind === "new" && drag.box) {
       nodes.push(boxElement({ box: drag.box, label: state.next }, state.boxes.length));
     }
@@ -175,18 +204,43 @@
     layer.replaceChildren(...nodes);
   };
 
+  // Tab goes from proposal to proposal, and on to the rest of the page after the last one.
+  const key = (event) => {
+    const digit = /^[1-4]$/.test(event.key) ? Number(event.key) - 1 : null;
+    if (event.key === "Tab" && !event.shiftKey) {
+      at = at === null ? next : at + 1;
+      next = 0;
+      if (at >= state.proposals.length) { at = null; draw(); return false; }
+      if (state.selected !== null) { state.selected = null; send("select", null); }
+      draw();
+    } else if (event.key === "Delete" || event.key === "Backspace") {
+      if (at !== null) { state.proposals.splice(at, 1); send("dismiss", at); draw(); }
+      else if (state.selected !== null) send("delete", state.selected);
+    } else if (event.key === "Enter" && at !== null) {
+      send("accept", [at, ""]);
+      next = at;
+      at = null;
+    } else if (digit !== null && state.selected !== null && state.likely[digit]) {
+      send("name", [state.selected, state.likely[digit]]);
+    } else {
+      return false;
+    }
+    return true;
+  };
   addEventListener("keydown", (event) => {
-    if (!root || event.target.closest?.("input, textarea, select")) return;
-    if ((event.key === "Delete" || event.key === "Backspace") && state.photo.mode === "boxes") {
+    const plain = !event.ctrlKey && !event.metaKey && !event.altKey;
+    if (!root || !plain || state.photo.mode !== "boxes" || event.target.closest?.("input, textarea, select")) return;
+    if (key(event)) {
       event.stopImmediatePropagation();
       event.preventDefault();
-      if (state.selected !== null) send("delete", state.selected);
     }
   }, true);
 
   C.told = (news) => {
     const before = state.photo?.url;
     Object.assign(state, news);
+    if (next >= state.proposals.length) next = 0;
+    if (at !== null) at = state.proposals.length ? Math.min(at, state.proposals.length - 1) : null;
     if (!state.photo) return close();
     if (root && before !== state.photo.url) close();
     if (!root) build();

@@ -36,9 +36,6 @@
     event.preventDefault();
     event.stopImmediatePropagation();
   }, true);
-  addEventListener("pointerdown", (event) => {
-    if (!event.target.closest?.(".dio [data-change], .dio .row")) window.__dioField = null;
-  }, true);
   addEventListener("dblclick", (event) => {
     const row = event.target.closest?.(ROW);
     if (row && event.target.closest(".name")) rename(row);

@@ -29,7 +29,7 @@ MAX_LABEL = 40
 
 Mode = Literal["boxes", "one box", "points"]
 HINTS: dict[Mode, str] = {
-    "boxes": "Drag around each piece of furniture. Click a box to change it.",
+    "boxes": "Click each piece of furniture, or drag a box around it. Keys 1 to 4 choose a name, Delete deletes.",
     "one box": "Drag a new box around the object.",
     "points": "Click the object; Shift-click what does not belong to it.",
 }
@@ -83,11 +83,34 @@ class Pointed:
 
 
 @dataclass(frozen=True)
+class Clicked:
+    """A pixel beside all boxes was clicked: what is there?"""
+
+    x: float
+    y: float
+
+
+@dataclass(frozen=True)
+class Accepted:
+    """A proposal becomes a box, under another name where one is given."""
+
+    index: int
+    label: str
+
+
+@dataclass(frozen=True)
+class Dismissed:
+    """A proposal is to go."""
+
+    index: int
+
+
+@dataclass(frozen=True)
 class Finished:
     """The person is done."""
 
 
-Event = Drawn | Reshaped | Selected | Named | Deleted | Pointed | Finished
+Event = Drawn | Reshaped | Selected | Named | Deleted | Pointed | Clicked | Accepted | Dismissed | Finished
 OnEvent = Callable[[Event], None]
 
 
@@ -100,7 +123,7 @@ class AnnotationCanvas:
         self._names: tuple[str, ...] = ()
         sender = LiveHtml(gui, self._received)
         sender.show('<button type="button" id="dio-canvas-send" style="display:none" tabindex="-1"></button>')
-        self._photo, self._boxes, self._mask, self._next = (_Told(gui) for _ in range(4))
+        self._photo, self._boxes, self._proposals, self._mask, self._next = (_Told(gui) for _ in range(5))
         self._photo.tell({"photo": None})
 
     @property
@@ -144,11 +167,15 @@ class AnnotationCanvas:
         """What the next box is called."""
         self._next.tell({"next": label})
 
-    def show_boxes(self, boxes: Sequence[LabelledBox], selected: int | None) -> None:
-        """Draw the boxes over the photo."""
+    def show_boxes(self, boxes: Sequence[LabelledBox], selected: int | None, likely: Sequence[str] = ()) -> None:
+        """Draw the boxes over the photo; the selected one offers its likely names."""
         if self.is_open:
-            rows = [{"box": list(b.box), "label": b.label[:MAX_LABEL]} for b in boxes]
-            self._boxes.tell({"boxes": rows, "selected": selected})
+            self._boxes.tell({"boxes": _rows(boxes), "selected": selected, "likely": list(likely)})
+
+    def show_proposals(self, boxes: Sequence[LabelledBox]) -> None:
+        """Draw boxes that nobody accepted yet."""
+        if self.is_open:
+            self._proposals.tell({"proposals": _rows(boxes)})
 
     def show_mask(self, mask: Bool[np.ndarray, "h w"]) -> None:
         """Lay an outline over the photo."""
@@ -165,7 +192,8 @@ class AnnotationCanvas:
             return
         self._on_event = None
         self._photo.tell({"photo": None})
-        self._boxes.tell({"boxes": [], "selected": None})
+        self._boxes.tell({"boxes": [], "selected": None, "likely": []})
+        self._proposals.tell({"proposals": []})
         self._mask.tell({"mask": None})
 
     def _received(self, action: Action) -> None:
@@ -206,11 +234,21 @@ def _event(action: Action, size: tuple[int, int]) -> Event | None:
                 return Deleted(int(arg))
             case "point":
                 return Pointed(float(arg[0]), float(arg[1]), bool(arg[2]))
+            case "click":
+                return Clicked(float(arg[0]), float(arg[1]))
+            case "accept":
+                return Accepted(int(arg[0]), str(arg[1])[:MAX_LABEL])
+            case "dismiss":
+                return Dismissed(int(arg))
             case "done":
                 return Finished()
     except (ValueError, TypeError, LookupError):
         return None  # from a page that is not ours, or less than `MIN_BOX_PX`
     return None
+
+
+def _rows(boxes: Sequence[LabelledBox]) -> list[dict[str, Any]]:
+    return [{"box": list(b.box), "label": b.label[:MAX_LABEL]} for b in boxes]
 
 
 def _box(corners: Any, size: tuple[int, int]) -> Box:

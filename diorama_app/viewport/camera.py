@@ -13,16 +13,6 @@ from diorama_core.geometry.rotations import quaternion_wxyz, rotation_from_quate
 from diorama_core.scene.types import Camera, Intrinsics
 
 
-def screen_rays(
-    screen: Float[np.ndarray, "*n 2"], R_world_camera: Float[np.ndarray, "3 3"], fov_rad: float, aspect: float
-) -> Float[np.ndarray, "*n 3"]:
-    """World directions through points of the screen (0 to 1, from the top left) of a camera with this vertical view."""
-    half = np.tan(fov_rad / 2)
-    s = 2.0 * np.asarray(screen, dtype=np.float64) - 1.0
-    camera = np.stack([s[..., 0] * half * aspect, s[..., 1] * half, np.ones(s.shape[:-1])], axis=-1)
-    return camera @ np.asarray(R_world_camera).T
-
-
 def fitting_fov(width: float, height: float, fx: float, fy: float, cx: float, cy: float, aspect: float) -> float:
     """The vertical field of view (rad) whose frustum around the optical axis contains the whole photo."""
     half_up = max(cy, height - cy) / fy

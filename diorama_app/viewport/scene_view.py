@@ -47,6 +47,8 @@ class _Shown:
     appearance: Appearance | None = None
     pose: Pose | None = None
     """Where it is shown: the document's place, or a preview's."""
+    drawn: SceneObject | None = None
+    """The object that is shown; None since a preview moved it."""
 
 
 class Viewport:
@@ -132,6 +134,7 @@ class Viewport:
             for object_id, pose in poses.items():
                 shown = self._objects.get(object_id)
                 if shown is not None:
+                    shown.drawn = None
                     self._set_pose(shown, pose)
         self._server.flush()
 
@@ -189,7 +192,9 @@ class Viewport:
         if shown is None:
             frame = self._server.scene.add_frame(self._fresh_name("/objects"), show_axes=False)
             shown = self._objects[item.id] = _Shown(frame, item)
-        shown.item = item
+        if shown.drawn is item:
+            return  # as most objects are after an edit
+        shown.item = shown.drawn = item
         replaced = shown.appearance != _appearance(item)
         if replaced:
             self._replace_mesh(shown, item)

@@ -7,7 +7,7 @@ import logging
 import time
 from concurrent.futures import Future, ThreadPoolExecutor
 
-from diorama_app.web.viser_adapter import PICTURES
+from diorama_app.web.requests import PICTURES
 from diorama_core.errors import DioramaError
 from diorama_core.io.cache import LruCache
 from diorama_core.library.record import ShapeLibrary
@@ -78,6 +78,6 @@ class Thumbnails:
             time.sleep(PAINTED_WAIT_S)
         try:
             return thumbnail(self._library, shape_id, size=SIDE_PX, paint=paint)
-        except Exception:
+        except Exception:  # one picture is missing then; the page shows the name instead
             log.exception("no thumbnail of %s", shape_id)
             return None

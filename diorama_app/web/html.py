@@ -1,7 +1,8 @@
 """Pieces of HTML for the panels: escaped text, one style sheet, and a way for clicks in HTML to reach Python.
 
 viser's panels have no tree and no picture grid. A piece of HTML carries `data-do` attributes; one inline handler writes
-what was clicked into a hidden text field beside it, and that field's change arrives here.
+what was clicked into a hidden text field beside it, and that field's change arrives here. The page sends only the
+newest of values that change fast, so the field says the latest actions, numbered, and each is told once.
 """
 
 from __future__ import annotations
@@ -108,13 +109,8 @@ canvas[data-engine] { background: linear-gradient(#f3f5f8, #dfe4eb); }
 </style>
 """
 
-_SEND = html.escape(
-    "const S=(d,a,e)=>{const f=document.querySelector('label[for=\"%s\"]').closest('.mantine-Flex-root')"
-    ".querySelector('input');const v=JSON.stringify({do:d,arg:a||'',add:!!(e.shiftKey||e.ctrlKey||e.metaKey),"
-    "at:performance.now()});Object.getOwnPropertyDescriptor(HTMLInputElement.prototype,'value').set.call(f,v);"
-    "f.dispatchEvent(new Event('input',{bubbles:true}))};"
-)
-"""Defines S(what to do, its argument, the event): writes it into the hidden field with this id."""
+_SEND = html.escape("const S=(d,a,e)=>window.__dioSend('%s',d,a,e);")
+"""Defines S(what to do, its argument, the event), for the hidden field with this id (`actions.js`)."""
 
 _CLICK = html.escape(
     "const t=event.target.closest('[data-do]');"
@@ -130,23 +126,14 @@ _HOVER = html.escape(
     "window.__dioWait=setTimeout(()=>S('peek',k,event),120)}"
 )
 _LEAVE = html.escape("if(window.__dioPeek){window.__dioPeek='';clearTimeout(window.__dioWait);S('peek','',event)}")
-_FOCUS = html.escape(
-    "const t=event.target;if(t.matches('[data-change],.row')){window.__dioField=[t.dataset.change||'',"
-    "t.dataset.arg||'',performance.now()];if(t.matches('input'))setTimeout(()=>document.activeElement===t&&t.select())}"
-)
-"""What is clicked to be changed is selected whole: typing replaces it."""
-_REFOCUS = html.escape(
-    "const f=window.__dioField,b=this.parentElement;this.remove();if(f&&document.activeElement===document.body&&"
-    "performance.now()-f[2]<20000){const t=[...b.querySelectorAll(f[0]?'[data-change]':'.row')].find(t=>"
-    "(t.dataset.change||'')===f[0]&&(t.dataset.arg||'')===f[1]);if(t)t.focus()}"
-)
-"""A field that was drawn anew while somebody was in it has the focus again (`rows.js`: not after a press elsewhere)."""
+_REFOCUS = html.escape("const b=this.parentElement;this.remove();window.__dioRefocus(b)")
+"""A field that is drawn anew keeps the focus and what was being typed (`fields.js`)."""
 _GRAB = html.escape(
     "const t=event.target.closest('[data-grab]');"
     "if(t){event.dataTransfer.setData('text',t.dataset.grab);S('grab',t.dataset.grab,event)}"
 )
 _RELEASE = html.escape("if(event.dataTransfer.dropEffect==='none')S('release','',event)")
-"""Only where nothing took it: of two events at once the page sends the later one."""
+"""Only where nothing took it."""
 _OVER = html.escape(
     "const z=event.target.closest('[data-file]');if(z){event.preventDefault();z.classList.add('over')}"
     "const t=event.target.closest('[data-drop]');"
@@ -207,6 +194,8 @@ class LiveHtml:
         self._body = ""
         self._floating = floating
         self._count = 0
+        self._done = 0
+        """Number of the last action of the page that was told."""
         self._frame = '<div class="dio">%s</div>'
         if on_action is not None:
             field = gui.add_text("·", "")
@@ -215,7 +204,6 @@ class LiveHtml:
             send = _SEND % uuid
             handlers = {
                 "click": _CLICK,
-                "focusin": _FOCUS,
                 "change": _CHANGE,
                 "mouseover": _HOVER,
                 "mouseleave": _LEAVE,
@@ -228,9 +216,12 @@ class LiveHtml:
             self._frame = f'<div class="dio" {events}>%s</div>'
 
             async def clicked(event: viser.GuiEvent[Any]) -> None:
-                action = _read_action(event)
-                if action is not None:
-                    on_action(action)
+                if event.client_id is None:
+                    return
+                for number, action in _read_actions(event.target.value):
+                    if number > self._done:
+                        self._done = number
+                        on_action(action)
 
             field.on_update(clicked)
         self._handle = gui.add_html("", visible=False)
@@ -282,11 +273,9 @@ def button(label: str, do: str, arg: object = "", *, title: str = "", on: bool =
     return f'<button class="{"on" if on else ""}" {attributes} {"disabled" if disabled else ""}>{label}</button>'
 
 
-def _read_action(event: viser.GuiEvent[Any]) -> Action | None:
-    if event.client_id is None:
-        return None
+def _read_actions(value: str) -> list[tuple[int, Action]]:
+    """The page's latest actions with their numbers: a message that overtakes another repeats what that one said."""
     try:
-        message = json.loads(event.target.value)
-        return Action(str(message["do"]), str(message["arg"]), bool(message["add"]))
+        return [(int(m["number"]), Action(str(m["do"]), str(m["arg"]), bool(m["add"]))) for m in json.loads(value)]
     except (ValueError, KeyError, TypeError):
-        return None  # typed by hand, or by a page that is not ours
+        return []  # typed by hand, or by a page that is not ours

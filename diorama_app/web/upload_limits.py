@@ -30,17 +30,17 @@ class RunningUpload:
     """An upload that is under way."""
 
     uuid: str
-    client_id: int
+    page: tuple[int, int]
     total_bytes: int
 
 
-def why_refused(request: UploadRequest, client_id: int, running: Sequence[RunningUpload]) -> str | None:
+def why_refused(request: UploadRequest, page: tuple[int, int], running: Sequence[RunningUpload]) -> str | None:
     """Why an upload may not start, in words for the user; None when it may.
 
     Args:
         request: what the page announces.
-        client_id: whose page.
-        running: uploads of all pages that are under way.
+        page: number of the server of its project, and of the client there.
+        running: uploads of all pages of all projects that are under way.
     """
     size, parts = request.size_bytes, request.part_count
     if not (isinstance(size, int) and isinstance(parts, int) and isinstance(request.filename, str)):
@@ -54,7 +54,7 @@ def why_refused(request: UploadRequest, client_id: int, running: Sequence[Runnin
         return "the page sent an invalid request; reload it"
     if any(request.transfer_uuid == upload.uuid for upload in running):
         return "it is being uploaded already"
-    own = sum(upload.client_id == client_id for upload in running)
+    own = sum(upload.page == page for upload in running)
     if own >= MAX_UPLOADS_PER_CLIENT or len(running) >= MAX_UPLOADS_IN_FLIGHT:
         return "other uploads are under way; try again when they are done"
     if sum(upload.total_bytes for upload in running) + size > MAX_BYTES_IN_FLIGHT:

@@ -28,6 +28,10 @@ ROUGHNESS: Mapping[str, tuple[float, float]] = {
 """Roughness and metalness by role."""
 MIN_PIXELS, MIN_SHARE = 40, 0.2
 """A slot is read from at least so many pixels, of which such a share is of about one colour."""
+MIN_OUTLINED = 0.35
+"""Of the pixels where the posed shape is a mask must hold this share. Where it holds less of one slot, it has lost that
+part of the object (white bedding on a dark bed), and the slot is read where the shape shows it; where it holds less of
+the whole, mask and pose do not belong together, and the mask alone counts."""
 MIN_VISIBLE = 0.015
 """And from at least this share of all that is seen of its object: a pose a little off misses smaller ones."""
 BIN_LAB = np.array([40.0, 20.0, 20.0])
@@ -57,10 +61,16 @@ class SlotPixels:
     index: int
     near: Bool[np.ndarray, "h w"]
     """Of the view's grid."""
+    mine: Bool[np.ndarray, "h w"]
+    """Those of the slot of any colour, on the same grid."""
 
 
 def slot_pixels(
-    view: SurfaceView, slots: tuple[Slot, ...], rgb: UInt8[np.ndarray, "h w 3"], visible: Bool[np.ndarray, "h w"]
+    view: SurfaceView,
+    slots: tuple[Slot, ...],
+    rgb: UInt8[np.ndarray, "h w 3"],
+    visible: Bool[np.ndarray, "h w"],
+    unhidden: Bool[np.ndarray, "h w"],
 ) -> tuple[SlotPixels, ...]:
     """The slots that are seen well enough, with the pixels of their main colours.
 
@@ -69,19 +79,24 @@ def slot_pixels(
         slots: Its slots.
         rgb: The photo.
         visible: The object's inner pixels, without what stands before it.
+        unhidden: Pixels in the object's box that nothing else hides; of use where the mask is doubtful.
     """
     seen, colours = view.of(visible) & (view.slot >= 0), view.of(rgb)
+    shown = view.of(unhidden) & (cv2.erode((view.slot >= 0).astype(np.uint8), np.ones((5, 5), np.uint8)) > 0)
+    together = seen.sum() >= MIN_OUTLINED * shown.sum()
     lab = cv2.cvtColor(np.ascontiguousarray(colours, dtype=np.float32) / 255.0, cv2.COLOR_RGB2Lab)
     found = []
     for index, slot in enumerate(slots):
-        mine = seen & (view.slot == index)
+        mine, posed = seen & (view.slot == index), shown & (view.slot == index)
+        if together and mine.sum() < MIN_OUTLINED * posed.sum():
+            mine = posed
         count = int(mine.sum())
         read = slot.role in READ_ROLES or (slot.main and slot.role == "glass")
-        if not read or count * view.step**2 < MIN_PIXELS or count < MIN_VISIBLE * seen.sum():
+        if not read or count * view.step**2 < MIN_PIXELS or count < MIN_VISIBLE * max(seen.sum(), shown.sum()):
             continue
         near = _main_pixels(lab, mine)
         if near.sum() >= MIN_SHARE * count:
-            found.append(SlotPixels(slot, index, near))
+            found.append(SlotPixels(slot, index, near, mine))
     return tuple(found)
 
 
@@ -110,7 +125,6 @@ def appearance_of(
     view: SurfaceView,
     pixels: SlotPixels,
     rgb: UInt8[np.ndarray, "h w 3"],
-    visible: Bool[np.ndarray, "h w"],
     light: Float32[np.ndarray, "h w"],
 ) -> SlotAppearance:
     """The slot's material under a light.
@@ -119,7 +133,6 @@ def appearance_of(
         view: The shape in its pose.
         pixels: Those of the slot.
         rgb: The photo.
-        visible: The object's inner pixels, without what stands before it.
         light: How much falls on every pixel of the photo.
     """
     linear = srgb_to_linear(view.of(rgb)[pixels.near] / 255.0)
@@ -129,8 +142,7 @@ def appearance_of(
     red, green, blue = (float(c) for c in linear_to_srgb(albedo))
     example = None
     if pixels.slot.role in PATTERNED_ROLES:
-        mine = view.of(visible) & (view.slot == pixels.index)
-        example = best_example(view, mine, pixels.near, rgb)
+        example = best_example(view, pixels.mine, pixels.near, rgb)
     if example is None:
         return SlotAppearance(pixels.slot, (red, green, blue), None, 1.0)
     texture = tileable(_in_albedo(example, albedo))

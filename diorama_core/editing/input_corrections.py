@@ -65,9 +65,17 @@ def with_box_at(inputs: Inputs, index: int, now: LabelledBox) -> Inputs:
 
 def with_boxes_added(inputs: Inputs, boxes: Sequence[LabelledBox]) -> Inputs:
     """The inputs with more boxes, except those that are there already with at least `SAME_OBJECT_IOU`."""
-    old = np.asarray([b.box for b in inputs.boxes]).reshape(-1, 4)
-    new = tuple(b for b in boxes if not len(old) or box_iou(old, np.asarray([b.box])).max() < SAME_OBJECT_IOU)
+    new = tuple(b for b in boxes if same_object(inputs.boxes, b.box) is None)
     return replace(inputs, boxes=(*inputs.boxes, *new))
+
+
+def same_object(boxes: Sequence[LabelledBox], box: Box) -> int | None:
+    """Which of the boxes is of the same object as another one, as far as overlap tells; None for none."""
+    if not boxes:
+        return None
+    overlaps = box_iou(np.asarray([b.box for b in boxes]), np.asarray([box])).ravel()
+    best = int(np.argmax(overlaps))
+    return best if overlaps[best] >= SAME_OBJECT_IOU else None
 
 
 def labelled_box(box: Box, label: str) -> LabelledBox:

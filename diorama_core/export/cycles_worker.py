@@ -17,8 +17,8 @@ def render(job: dict[str, Any]) -> None:
             rectangles in the world of the scene file: `matrix` (4 x 4, local -z is where it shines), `width_m`,
             `height_m`, `watts`.
     """
-    import bpy  # type: ignore[import-not-found,unused-ignore]
-    from mathutils import Matrix  # type: ignore[import-not-found,unused-ignore]
+    import bpy  # type: ignore[import-not-found,unused-ignore]  # Blender's Python has it, ours rarely
+    from mathutils import Matrix  # type: ignore[import-not-found,unused-ignore]  # as bpy
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.import_scene.gltf(filepath=job["glb"])

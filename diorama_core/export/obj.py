@@ -6,9 +6,8 @@ lie in a folder beside it.
 
 from __future__ import annotations
 
-import io
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -32,14 +31,14 @@ def write_obj(scene: ExportScene, path: Path, progress: Progress | None = None) 
         with whole_file(path) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
             archive.compresslevel = FAST_DEFLATE
             with archive.open(f"{path.stem}.obj", "w", force_zip64=True) as stream:
-                _write_geometry(scene, stream, f"{path.stem}.mtl", materials, progress)  # type: ignore[arg-type]
+                _write_geometry(scene, stream.write, f"{path.stem}.mtl", materials, progress)
             for name, content in _companions(materials, f"{path.stem}.mtl"):
                 archive.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)
         return
     folder = companion_folder(path)
     with whole_file(path) as temporary, _created(path.parent / folder):
         with temporary.open("wb") as stream:
-            _write_geometry(scene, stream, f"{folder}/{path.stem}.mtl", materials, progress)
+            _write_geometry(scene, stream.write, f"{folder}/{path.stem}.mtl", materials, progress)
         for name, content in _companions(materials, f"{path.stem}.mtl"):
             (path.parent / folder / name).parent.mkdir(exist_ok=True)
             write_whole(path.parent / folder / name, content)
@@ -59,17 +58,17 @@ def _created(folder: Path) -> Iterator[None]:
 
 def _write_geometry(
     scene: ExportScene,
-    stream: io.BufferedIOBase,
+    write: Callable[[bytes], object],
     material_file: str,
     materials: MaterialFile,
     progress: Progress | None,
 ) -> None:
-    stream.write(f"# Diorama: metres, +Y up\nmtllib {material_file}\n".encode())
+    write(f"# Diorama: metres, +Y up\nmtllib {material_file}\n".encode())
     text = ObjText()
     for mesh in world_meshes(scene, progress, R=Y_UP):
-        stream.write(f"o {one_line(mesh.name)}\n".encode())
+        write(f"o {one_line(mesh.name)}\n".encode())
         for surface in mesh.surfaces:
-            stream.write(text.add(surface, materials.name(surface.material)))
+            write(text.add(surface, materials.name(surface.material)))
 
 
 def _companions(materials: MaterialFile, material_file: str) -> Iterator[tuple[str, bytes]]:

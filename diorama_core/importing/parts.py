@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import trimesh
@@ -205,13 +206,13 @@ def _yaw(M_root: Float[np.ndarray, "4 4"], to_world: Float[np.ndarray, "4 4"]) -
     return 0.0
 
 
-def _usd_scene(stage: object) -> trimesh.Scene:
+def _usd_scene(stage: Any) -> trimesh.Scene:
     """Meshes of a stage with one plain material each, as a scene in the stage's frame."""
     from pxr import Usd, UsdGeom
 
     scene = trimesh.Scene()
     scope = Usd.TraverseInstanceProxies(Usd.PrimDefaultPredicate)
-    for prim in Usd.PrimRange(stage.GetPseudoRoot(), scope):  # type: ignore[attr-defined]
+    for prim in Usd.PrimRange(stage.GetPseudoRoot(), scope):
         imaged = UsdGeom.Imageable(prim)
         if not prim.IsA(UsdGeom.Mesh) or imaged.ComputePurpose() not in ("default", "render"):
             continue
@@ -226,9 +227,9 @@ def _usd_scene(stage: object) -> trimesh.Scene:
     return scene
 
 
-def _chain(scene: trimesh.Scene, prim: object) -> str:
+def _chain(scene: trimesh.Scene, prim: Any) -> str:
     """Nodes for the prims above a mesh, which keep the stage's groups; they carry no transform of their own."""
-    paths = list(prim.GetPath().GetPrefixes())  # type: ignore[attr-defined]
+    paths = list(prim.GetPath().GetPrefixes())
     above = scene.graph.base_frame
     for path in paths[:-1]:
         if str(path) not in scene.graph.nodes:
@@ -237,12 +238,12 @@ def _chain(scene: trimesh.Scene, prim: object) -> str:
     return str(above)
 
 
-def _usd_mesh(mesh: object) -> trimesh.Trimesh | None:
+def _usd_mesh(mesh: Any) -> trimesh.Trimesh | None:
     from pxr import UsdGeom
 
-    points = np.array(mesh.GetPointsAttr().Get() or [], dtype=np.float64).reshape(-1, 3)  # type: ignore[attr-defined]
-    counts = np.array(mesh.GetFaceVertexCountsAttr().Get() or [], dtype=int)  # type: ignore[attr-defined]
-    corners = np.array(mesh.GetFaceVertexIndicesAttr().Get() or [], dtype=int)  # type: ignore[attr-defined]
+    points = np.array(mesh.GetPointsAttr().Get() or [], dtype=np.float64).reshape(-1, 3)
+    counts = np.array(mesh.GetFaceVertexCountsAttr().Get() or [], dtype=int)
+    corners = np.array(mesh.GetFaceVertexIndicesAttr().Get() or [], dtype=int)
     if not len(points) or not len(counts):
         return None
     starts = np.cumsum(counts) - counts
@@ -255,8 +256,8 @@ def _usd_mesh(mesh: object) -> trimesh.Trimesh | None:
         else [_fans(corners, starts, counts)]
     )
     faces = np.concatenate(fans)
-    world = matrix_of(UsdGeom.XformCache().GetLocalToWorldTransform(mesh.GetPrim()))  # type: ignore[attr-defined]
-    if (np.linalg.det(world[:3, :3]) < 0) != (mesh.GetOrientationAttr().Get() == "leftHanded"):  # type: ignore[attr-defined]
+    world = matrix_of(UsdGeom.XformCache().GetLocalToWorldTransform(mesh.GetPrim()))
+    if (np.linalg.det(world[:3, :3]) < 0) != (mesh.GetOrientationAttr().Get() == "leftHanded"):
         faces = faces[:, ::-1]
     material = PBRMaterial(
         name="material", baseColorFactor=[*_usd_colour(mesh), 1.0], roughnessFactor=0.7, metallicFactor=0.0
@@ -276,15 +277,15 @@ def _fans(corners: np.ndarray, starts: np.ndarray, counts: np.ndarray) -> np.nda
     return np.array(rows, dtype=int).reshape(-1, 3)
 
 
-def _usd_colour(mesh: object) -> tuple[float, float, float]:
+def _usd_colour(mesh: Any) -> tuple[float, float, float]:
     """The bound preview material's colour, or the display colour, or grey."""
     from pxr import UsdShade
 
-    bound = UsdShade.MaterialBindingAPI(mesh.GetPrim()).ComputeBoundMaterial()[0]  # type: ignore[attr-defined]
+    bound = UsdShade.MaterialBindingAPI(mesh.GetPrim()).ComputeBoundMaterial()[0]
     shader = bound.ComputeSurfaceSource()[0] if bound else None
     found = shader.GetInput("diffuseColor").Get() if shader and shader.GetInput("diffuseColor") else None
     if found is None:
-        shown = mesh.GetDisplayColorAttr().Get()  # type: ignore[attr-defined]
+        shown = mesh.GetDisplayColorAttr().Get()
         found = shown[0] if shown else (0.7, 0.7, 0.7)
     red, green, blue = (float(min(max(c, 0.0), 1.0)) for c in found)
     return red, green, blue

@@ -11,7 +11,7 @@ from jaxtyping import Float
 
 from diorama_core.importing.parts import Part
 from diorama_core.library.taxonomy import category
-from diorama_core.scene.types import Plane, Scene, SceneObject, Support
+from diorama_core.scene.types import Plane, PlaneRole, Scene, SceneObject, Support
 
 THIN_M = 0.5
 """Parts thicker than this are no wall, floor or ceiling, whatever they are called."""
@@ -22,7 +22,7 @@ ROUND_M = 0.3
 RESTS_M = 0.05
 """How far an object may hover over, or sink into, what it stands on."""
 NEAR_WALL_M = 0.15
-_ROLES = {"floor": r"floor|ground", "ceiling": r"ceiling|roof", "wall": r"walls?"}
+_ROLES: dict[PlaneRole, str] = {"floor": r"floor|ground", "ceiling": r"ceiling|roof", "wall": r"walls?"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,14 +36,13 @@ class Room:
 
 def room_of(parts: Sequence[Part]) -> Room:
     """Tell the room from what stands in it."""
-    named = {id(p): _role(p) for p in parts}
-    objects = tuple(p for p in parts if named[id(p)] is None)
-    flat = [p for p in parts if named[id(p)] is not None]
+    roles = [(p, _role(p)) for p in parts]
+    objects = tuple(p for p, role in roles if role is None)
+    flat = [(p, role) for p, role in roles if role is not None]
     inside = objects or tuple(parts)
     middle = np.mean([p.whole.bounds.mean(axis=0) for p in inside], axis=0)
     planes: list[Plane] = []
-    for part in flat:
-        role = str(named[id(part)])
+    for part, role in flat:
         number = 1 + sum(p.role == role for p in planes)
         plane = _plane(part, role, role if number == 1 and role != "wall" else f"{role}-{number}", middle)
         if not any(_same(plane, other) for other in planes):
@@ -55,7 +54,7 @@ def room_of(parts: Sequence[Part]) -> Room:
     return Room(tuple(planes), objects, tuple(notes))
 
 
-def _role(part: Part) -> str | None:
+def _role(part: Part) -> PlaneRole | None:
     words = re.sub(r"[^a-z]+", " ", part.name.lower())
     for role, pattern in _ROLES.items():
         if re.search(rf"\b({pattern})\b", words) and not re.search(
@@ -65,7 +64,7 @@ def _role(part: Part) -> str | None:
     return None
 
 
-def _is_flat(part: Part, role: str) -> bool:
+def _is_flat(part: Part, role: PlaneRole) -> bool:
     (_, sides, _), height = _rectangle(part), float(np.ptp(part.whole.bounds[:, 2]))
     if role == "wall":
         return min(sides) < THIN_M and max(sides) > LARGE_M / 2 and height > LARGE_M
@@ -80,7 +79,7 @@ def _rectangle(part: Part) -> tuple[Float[np.ndarray, "2"], tuple[float, float],
     return np.array([x, y]), (float(a), float(b)), float(np.radians(angle))
 
 
-def _plane(part: Part, role: str, name: str, middle: Float[np.ndarray, "3"]) -> Plane:
+def _plane(part: Part, role: PlaneRole, name: str, middle: Float[np.ndarray, "3"]) -> Plane:
     centre, (a, b), angle = _rectangle(part)
     along, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
     low, high = (float(v) for v in part.whole.bounds[:, 2])
@@ -88,7 +87,7 @@ def _plane(part: Part, role: str, name: str, middle: Float[np.ndarray, "3"]) -> 
         corners = [centre + s * a / 2 * along + t * b / 2 * across for s, t in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
         z = high if role == "floor" else low
         polygon = np.array([[*c, z] for c in corners])
-        return Plane(name, role, polygon if role == "floor" else polygon[::-1], max(high - low, 0.01))  # type: ignore[arg-type]
+        return Plane(name, role, polygon if role == "floor" else polygon[::-1], max(high - low, 0.01))
     if a < b:
         a, b, along, across = b, a, across, along
     inward = across if (middle[:2] - centre) @ across > 0 else -across

@@ -189,7 +189,7 @@ def _answer(function: Callable[..., Any], args: tuple, kwargs: dict[str, Any]) -
         return False, type(error)(str(error))
     except MemoryError:
         return False, ""
-    except Exception as error:
+    except Exception as error:  # decoders of untrusted bytes raise almost anything
         return False, f"it cannot be read ({type(error).__name__}); save it again"
 
 

@@ -38,8 +38,8 @@ def ring(R: Float[np.ndarray, "3 3"], span: Float[np.ndarray, "3 c"]) -> Float[n
 
 def exits(
     blocks: Sequence[PairAxes],
-    offsets: Sequence[Float[np.ndarray, "m 3"]],
-    signs: Sequence[Float[np.ndarray, " m"]],
+    offsets: Sequence[Float[np.ndarray, "_ 3"]],
+    signs: Sequence[Float[np.ndarray, " _"]],
     directions: Float[np.ndarray, "d 3"],
     apart_m: float,
 ) -> Float[np.ndarray, " d"]:
@@ -49,9 +49,9 @@ def exits(
     one another from 0.
 
     Args:
-        blocks: the pairs' separating axes.
-        offsets: how far a has already moved relative to b, a block.
-        signs: 1 where a is what goes, -1 where b is.
+        blocks: the pairs' separating axes, each block with a number of pairs of its own.
+        offsets: for every block, how far a has already moved relative to b in each of its pairs.
+        signs: for every block, 1 where a is what goes, -1 where b is.
         directions: unit.
         apart_m: separation asked for.
     """

@@ -24,7 +24,7 @@ _SAMPLES = 6000
 _TOP_SLAB = 0.06
 """Of the height: what counts as the top."""
 _SQUARE_RATIO = 1.15
-_FULL_RECTANGLE = 0.92
+FULL_RECTANGLE = 0.92
 """Share of its bounding rectangle that a rectangular top fills; a round one fills 0.785."""
 _FOOT, _SLABS = (0.0, 0.06), ((0.03, 0.1), (0.1, 0.2), (0.2, 0.3), (0.3, 0.42))
 """Slabs of the height in which bases are told apart: a shelf or a stretcher between legs is in one of them only."""
@@ -98,7 +98,7 @@ def _top(points: Float[np.ndarray, "n 3"], size_m: Float[np.ndarray, "3"]) -> st
     outline = cv2.convexHull(_slab(points, (1.0 - _TOP_SLAB, 1.0)).astype(np.float32))
     filled = cv2.contourArea(outline) / max(float(np.prod(np.ptp(outline[:, 0], axis=0))), 1e-9)
     even = max(size_m[:2]) / max(min(size_m[:2]), 1e-9) < _SQUARE_RATIO
-    if filled >= _FULL_RECTANGLE:
+    if filled >= FULL_RECTANGLE:
         return "square" if even else "rectangular"
     return "round" if even else "oval"
 

@@ -140,7 +140,7 @@ def meanings(label: str, category: str) -> Mapping[str, float]:
         category: the canonical category that it was understood as; its own special kinds where no row says more.
     """
     word = _plain(label)
-    if resolve(word).category is UNKNOWN and word not in MEANINGS:
+    if not is_named(label):
         shares = {c.name: FREQUENCIES.get(c.name, _RARE) for c in CATEGORIES if c is not UNKNOWN}
         if category in shares:
             shares[category] = 2 * max(shares.values())
@@ -155,6 +155,12 @@ def meanings(label: str, category: str) -> Mapping[str, float]:
     if category != UNKNOWN.name:
         shares.setdefault(category, min(shares.values()))
     return _ordered(shares)
+
+
+def is_named(label: str) -> bool:
+    """Whether a label says anything of what a thing is."""
+    word = _plain(label)
+    return resolve(word).category is not UNKNOWN or word in MEANINGS
 
 
 def _ordered(shares: Mapping[str, float]) -> dict[str, float]:

@@ -19,7 +19,7 @@ from diorama_core.scene.types import PhotoMaterial
 Pictures = Mapping[str, UInt8[np.ndarray, "_ _ 3"]]
 
 
-class PhotographedMaterial(PBRMaterial):  # type: ignore[misc]
+class PhotographedMaterial(PBRMaterial):  # type: ignore[misc]  # untyped base
     """A material whose picture holds the light of its room: it is shown as it is, not lit a second time."""
 
 

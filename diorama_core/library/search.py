@@ -58,7 +58,12 @@ def find(library: ShapeLibrary, text: str, k: int = 24) -> Found:
     id and the shape's own synonyms, also by meaning ("wooden" finds oak) and comparative size ("small", "tall", or a
     size such as "60 x 50 x 110 cm"). Nothing that shares neither a category nor a word with the text is found.
     """
-    index, query = text_index(library), understand(text)
+    return find_in(text_index(library), text, k)
+
+
+def find_in(index: TextIndex, text: str, k: int = 24) -> Found:
+    """As `find`, in an index made before."""
+    query = understand(text)
     if not tokens(text):
         return Found(index.shapes[:k], (0.0,) * min(k, len(index.shapes)), query)
     scores = index.scores(query)

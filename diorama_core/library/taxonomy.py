@@ -10,7 +10,7 @@ import difflib
 import re
 from dataclasses import dataclass
 from functools import cache
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from jaxtyping import Float
@@ -81,13 +81,13 @@ def _c(
     sigma: tuple[float, float, float],
     mount: Mount = "floor",
     synonyms: str = "",
-    **more: object,
+    modes: tuple[tuple[float, float, float, float, float, float], ...] = (),
+    **more: Any,
 ) -> Category:
     """A table row; `hwd` and `sigma` are height, width, depth, as furniture is usually measured."""
-    extra = more.pop("modes", ())
-    priors = (SizePrior(*hwd, *sigma), *(SizePrior(*m) for m in extra))  # type: ignore[attr-defined]
+    priors = (SizePrior(*hwd, *sigma), *(SizePrior(*m) for m in modes))
     words = tuple(s.strip() for s in synonyms.split(",") if s.strip())
-    return Category(name, priors, mount, words, **more)  # type: ignore[arg-type]
+    return Category(name, priors, mount, words, **more)
 
 
 UNKNOWN = _c("object", (0.6, 0.6, 0.6), (0.7, 0.7, 0.6), synonyms="void, thing, item, other, misc, unknown, otherprop")

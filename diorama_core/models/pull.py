@@ -138,12 +138,12 @@ def _meter(heard: _Heard, size: int) -> type:
     """A progress-bar class for `huggingface_hub` that draws nothing and reports what was heard."""
     from huggingface_hub.utils.tqdm import tqdm as hub_tqdm
 
-    class Meter(hub_tqdm):  # type: ignore[misc, unused-ignore]
+    class Meter(hub_tqdm):  # type: ignore[misc, unused-ignore]  # tqdm has no types where its stubs are absent
         """Reports the bytes of one file."""
 
         def __init__(self, *args: Any, **kwargs: Any) -> None:
             self._bytes = int(kwargs.get("initial") or 0)
-            super().__init__(*args, **{**kwargs, "disable": True})  # type: ignore[no-untyped-call]
+            super().__init__(*args, **{**kwargs, "disable": True})  # type: ignore[no-untyped-call]  # as above
 
         def update(self, n: float | None = 1) -> None:
             """So many more bytes."""
@@ -224,7 +224,7 @@ def _one_line(store: ModelStore, network: Network) -> Iterator[None]:
         yield
     except (UnavailableError, InputError, Cancelled):
         raise
-    except Exception as error:
+    except Exception as error:  # of the hub, HTTP, sockets or the disk; each is explained
         raise _explained(store, network, error) from error
 
 

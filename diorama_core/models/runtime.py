@@ -137,7 +137,7 @@ class Session:
             values = self._raw.run(None, converted) if progress is None else self._watched(converted, progress)
         except Cancelled:
             raise
-        except Exception as error:
+        except Exception as error:  # onnxruntime's errors have no base of their own
             reason = _reason(error, self.info.path)
             advice = "see `diorama doctor`" if self.info.device == "cpu" else "try DIORAMA_DEVICE=cpu"
             raise NetworkError(self.info.path, f"the network failed ({reason}); {advice}") from error
@@ -297,7 +297,7 @@ def _load(path: Path) -> Session:
     before = _resident_bytes()
     try:
         raw, note = _session(path)
-    except Exception as error:
+    except Exception as error:  # onnxruntime's errors have no base of their own
         reason = _reason(error, path)
         raise NetworkError(path, f"cannot be loaded ({reason}); run: diorama models verify") from error
     grown = _resident_bytes() - before
@@ -326,7 +326,7 @@ def _session(path: Path) -> tuple[Any, str]:
     for names, level, note in tries:
         try:
             raw = onnxruntime.InferenceSession(str(path), _options(level), providers=names)
-        except Exception as error:
+        except Exception as error:  # as above; the first one is raised where every try fails
             first = first or error
             continue
         if note and first is not None:

@@ -23,7 +23,7 @@ def load_tokenizer(path: Path) -> Any:
 
     try:
         tokenizer = Tokenizer.from_file(str(path))
-    except Exception as error:
+    except Exception as error:  # the tokenizer raises plain `Exception` on damaged files
         reason = " ".join(str(error).split())[:120]
         raise NetworkError(path, f"cannot be read ({reason}); run: diorama models verify") from error
     tokenizer.no_padding()

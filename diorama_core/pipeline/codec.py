@@ -38,6 +38,7 @@ _CLASSES: dict[str, type] = {
         artefacts.CameraHypothesis,
         artefacts.CameraEstimate,
         artefacts.DetectedObject,
+        artefacts.SeenKinds,
         artefacts.Cuboid,
         artefacts.ObjectGeometry,
         artefacts.DepthMap,

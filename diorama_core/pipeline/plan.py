@@ -21,6 +21,7 @@ from diorama_core.pipeline.network_inputs import with_network_inputs
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import ProposalStages, Stages
 from diorama_core.progress import Progress
+from diorama_core.retrieval.seen_kinds import with_seen_kinds
 from diorama_core.retrieval.word_senses import with_word_senses
 
 log = logging.getLogger(__name__)
@@ -97,7 +98,9 @@ PLAN: tuple[StageStep | Derivation, ...] = (
     # Outlines do not depend on the camera: correcting its field of view must not look for them again.
     Derivation(lambda inputs: inputs.of_any_camera, ("inputs",), "camera_free_inputs"),
     StageStep("objects", "segment", ("camera_free_inputs",), "outlined_objects", 0.15),
-    Derivation(with_word_senses, ("outlined_objects", "camera"), "objects"),
+    StageStep("naming", "name", ("photo", "outlined_objects"), "seen_kinds", 0.01, dispensable=True),
+    Derivation(with_seen_kinds, ("outlined_objects", "seen_kinds"), "seen_objects"),
+    Derivation(with_word_senses, ("seen_objects", "camera"), "objects"),
     StageStep("geometry", "measure", ("inputs", "camera", "objects"), "measured_geometry", 0.13),
     StageStep("graph", "relate", ("inputs", "objects", "measured_geometry"), "graph", 0.02),
     Derivation(with_graph, ("measured_geometry", "graph"), "supported_geometry"),

@@ -1,6 +1,6 @@
 """Chooses an implementation for each stage: the best installed network, or the embedded method.
 
-`auto` mixes stage by stage and needs nothing; `embedded` uses no network; `foundation` insists on the paper's networks
+`auto` mixes stage by stage and needs nothing; `embedded` downloads none; `foundation` insists on the paper's networks
 and takes the paper's way to poses, by correspondences of patch features.
 """
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Bool, Float, UInt8
 
-from diorama_core.appearance.photo_look import photo_look
+from diorama_core.appearance.photo_appearance import photo_appearance
 from diorama_core.artefacts import DetectedObject, Inputs, LabelledBox, ObjectGeometry, PosedCandidates
 from diorama_core.errors import InputError
 from diorama_core.library.record import ShapeLibrary
@@ -25,8 +25,19 @@ from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import Stages
 from diorama_core.progress import Progress
 from diorama_core.protocols import ObjectStage
+from diorama_core.retrieval.seen_kinds import with_seen_kinds
 from diorama_core.retrieval.word_senses import with_word_senses
-from diorama_core.scene.types import Camera, Candidate, Plane, Pose, Scene, SceneObject, Support, yaw_rotation
+from diorama_core.scene.types import (
+    Camera,
+    Candidate,
+    Plane,
+    PlaneRole,
+    Pose,
+    Scene,
+    SceneObject,
+    Support,
+    yaw_rotation,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,6 +167,9 @@ def _posed_alone(
 ) -> tuple[Artefacts, PosedCandidates | None]:
     """The photo's artefacts with the object among the others, and the object's candidates, ranked for it alone."""
     others = tuple(o for o in photo["objects"] if o.id != detected.id)
+    if stages.naming is not None:
+        seen = stages.naming.name(photo["inputs"].photo, (detected,), progress.part(0.0, 0.0))
+        detected = with_seen_kinds((detected,), seen)[0]
     objects = (*others, with_word_senses((*others, detected), photo["camera"])[-1])
     fixed = {name: photo[name] for name in ("given", "inputs", "camera", "architecture")}
     uncached = Runner(None)
@@ -207,17 +221,17 @@ def _found(
     parent = next((s.parent for s in geometry.supports if s.child == detected.id), "floor")
     alone = Scene(camera=scene.camera, objects=(item,))
     objects = (detected, *(o for o in photo["objects"] if o.id != detected.id))
-    look = photo_look(balanced, objects, alone, library, illuminant.rgb)
-    item = look.applied(alone).objects[0]
-    return Found(item, _edge(scene, item, parent), detected, look.pictures, as_built)
+    appearance = photo_appearance(balanced, objects, alone, library, illuminant.rgb)
+    item = appearance.applied(alone).objects[0]
+    return Found(item, _edge(scene, item, parent), detected, appearance.pictures, as_built)
 
 
 def _edge(scene: Scene, item: SceneObject, parent: str) -> Support | None:
     """The edge in the scene's terms: floor, wall and ceiling become planes, what is gone becomes the floor."""
     if scene.has_object(parent) and parent != item.id:
         return Support(item.id, parent)
-    role = parent if parent in ("wall", "ceiling") else "floor"
-    planes = scene.architecture.by_role(role)  # type: ignore[arg-type]
+    role: PlaneRole = "wall" if parent == "wall" else "ceiling" if parent == "ceiling" else "floor"
+    planes = scene.architecture.by_role(role)
     if not planes:
         return None
 

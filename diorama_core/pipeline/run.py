@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import UInt8
 
-from diorama_core.appearance.photo_look import photo_look
+from diorama_core.appearance.photo_appearance import photo_appearance
 from diorama_core.architecture.room_extent import containing_room
 from diorama_core.architecture.texture.plane_textures import plane_textures
 from diorama_core.artefacts import (
@@ -108,8 +108,8 @@ def build_scene(
     shaped, reshaped = holding_shapes(_observed({**found, "architecture": room}, balanced, library), library, noise)
     checked, changed = checked_supports(shaped, library, noise)
     observed = _textured(containing_room(checked), textures)
-    look = photo_look(balanced.photo.rgb, found["furniture_objects"], observed, library, illuminant.rgb)
-    observed, textures = look.applied(observed), {**textures, **look.pictures}
+    appearance = photo_appearance(balanced.photo.rgb, found["furniture_objects"], observed, library, illuminant.rgb)
+    observed, textures = appearance.applied(observed), {**textures, **appearance.pictures}
 
     scene, report = observed, None
     if observed.objects:

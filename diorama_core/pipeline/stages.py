@@ -17,6 +17,7 @@ from diorama_core.perception.graph.geometric import GeometricGraph
 from diorama_core.perception.masks import EmbeddedMasks
 from diorama_core.perception.measured import MeasuredGeometry
 from diorama_core.perception.metrology import SingleViewMetrology
+from diorama_core.perception.naming import own_naming
 from diorama_core.pose import RenderAndCompare
 from diorama_core.protocols import (
     ArchitectureStage,
@@ -27,6 +28,7 @@ from diorama_core.protocols import (
     GeometryStage,
     GraphStage,
     LayoutStage,
+    NamingStage,
     ObjectStage,
     PoseStage,
     RecognitionStage,
@@ -50,13 +52,15 @@ class Stages:
     pose: PoseStage
     layout: LayoutStage
     recognition: RecognitionStage | None = None
-    """Names kinds of objects to detect; optional, as are the next four."""
+    """Names kinds of objects to detect; optional, as are the next five."""
     detection: DetectionStage | None = None
     """Proposes boxes where the user gave none."""
     depth_prediction: DepthPredictionStage | None = None
     """Predicts depth from the photo where the user measured none."""
     graph: GraphStage | None = None
     """Decides what supports what; without it the geometry stage does."""
+    naming: NamingStage | None = None
+    """Says what objects look like; without it, words, sizes and places decide."""
     filler: EmptyRoomFiller | None = None
     """Inpaints furniture for the planes' textures; without it each plane is continued by itself."""
 
@@ -82,4 +86,5 @@ def embedded_stages(inputs: Inputs, library: ShapeLibrary, *, recipe: str = DEFA
         pose=RenderAndCompare(library),
         layout=layout_recipe(recipe, library, depth_measured=measured, sizes_reasoned=not measured),
         graph=GeometricGraph() if measured else None,
+        naming=own_naming(),
     )

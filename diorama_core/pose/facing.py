@@ -50,9 +50,11 @@ _STORAGE = with_kin(
 )
 _AGAINST_WALLS = 2.0
 """Storage has its back to a wall rather than other furniture."""
+_ROW_GAP_M, _ROW_RATIO, _IN_A_ROW = 0.3, 1.5, 1.0
+"""Storage beside storage that is so many times as long as deep faces as that does: a refrigerator at a counter."""
 _DRAWN_UP_M = 0.9
 _DRAWN_UP_COFFEE_M = 1.6
-_LEANING = 1.5
+_LEANING = 3.0
 _WALL_REACH_M = 0.7
 _WALL_LATERAL_M = 3.0
 _WALL_SAMPLES = 3000
@@ -144,6 +146,8 @@ def facing_of(
     against = _AGAINST_WALLS if broad(item.category) in _STORAGE else 1.0
     preferences += [(against * weight, to) for weight, to in _away_from_walls(cuboid, walls) if weight > 0.05]
     preferences += _away_from_pillows(cuboid, pillows)
+    if broad(item.category) in _STORAGE:
+        preferences += _in_a_row(cuboid, cuboids, categories, camera)
     middle = np.mean([c.centre[:2] for c in cuboids], axis=0) - cuboid.centre[:2]
     if len(cuboids) >= 3 and np.linalg.norm(middle) > 0.3:
         preferences.append((0.3, _unit(middle)))
@@ -157,6 +161,20 @@ def _leaning(pillow: Cuboid, carrier: Cuboid, on_bed: bool, toward_camera: Float
     along = [axis for axis, half in axes if (half == longest) == on_bed] or [axis for axis, _ in axes]
     inward = carrier.centre[:2] - pillow.centre[:2] if on_bed else toward_camera
     return Facing(((_LEANING, max(along, key=lambda axis: float(axis @ inward))),))
+
+
+def _in_a_row(
+    cuboid: Cuboid, cuboids: Sequence[Cuboid], categories: dict[str, str], camera: Camera
+) -> list[tuple[float, Float[np.ndarray, "2"]]]:
+    """The way that long storage beside it faces: across its length, to the camera's side."""
+    found = []
+    for other in cuboids:
+        beside = other.object_id != cuboid.object_id and _gap_m(cuboid, other) < _ROW_GAP_M
+        sides = other.size_m[:2]
+        if beside and broad(categories.get(other.object_id, "")) in _STORAGE and max(sides) > _ROW_RATIO * min(sides):
+            across = [axis for axis, half in _axes_xy(other) if half == min(sides) / 2]
+            found.append(max(across, key=lambda axis: float(axis @ (camera.position[:2] - other.centre[:2]))))
+    return [(_IN_A_ROW / len(found), direction) for direction in found]
 
 
 def _away_from_pillows(cuboid: Cuboid, pillows: Sequence[Cuboid]) -> list[tuple[float, Float[np.ndarray, "2"]]]:

@@ -18,6 +18,10 @@ _FINE_STEP_RAD = np.deg2rad(15.0)
 _THIN_M = 0.1
 _SAME_TURN_RAD = np.deg2rad(20.0)
 _SAME_PLACE = 0.15
+_LONG_RATIO = 1.25
+"""Of the sides of a cuboid from which on it matters which one is the longer."""
+_TURNED_MISFIT = 0.15
+"""Misfit, as a logarithm of extents, that is held against turning the cuboid itself."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +78,9 @@ def hypotheses_for(
 ) -> Hypotheses:
     """Turns of the shape about its up axis that its symmetry tells apart, each scaled toward the cuboid.
 
-    Quarter turns of the cuboid for all; finer ones for categories that often stand at odd angles.
+    Quarter turns of the cuboid for all; finer ones for categories that often stand at odd angles. Where its front is
+    not known, the whole cuboid may be turned by a quarter: of a thing seen at an angle one picture hardly tells which
+    side is the long one.
     """
     quarters = np.arange(4) * (np.pi / 2)
     fine = np.arange(-2, 4) * _FINE_STEP_RAD if category(category_name).quarter_turns_free else np.zeros(1)
@@ -86,14 +92,18 @@ def hypotheses_for(
         distinct = np.mod(total + 1e-6, 2 * np.pi) < 2 * np.pi / symmetry
         total, turns, off_axis = total[distinct], turns[distinct], off_axis[distinct]
     odd = np.round(turns / (np.pi / 2)).astype(int) % 2 == 1
-    wanted = np.where(odd[:, None], cuboid.size_m[[1, 0, 2]], cuboid.size_m)
+    long = float(cuboid.size_m[:2].max()) > _LONG_RATIO * max(float(cuboid.size_m[:2].min()), 1e-6)
+    again = np.flatnonzero(odd) if long and not cuboid.front_known else np.zeros(0, dtype=int)
+    turned = np.concatenate([np.zeros(len(total), dtype=bool), np.ones(len(again), dtype=bool)])
+    total, off_axis, odd = (np.concatenate([values, values[again]]) for values in (total, off_axis, odd))
+    wanted = np.where((odd & ~turned)[:, None], cuboid.size_m[[1, 0, 2]], cuboid.size_m)
     R = np.array([cuboid.R_world_object @ yaw_rotation(angle) for angle in total])
     scale = limits.scale_for(wanted)
     sizes = scale * limits.shape_size_m
     position = anchor.placed(np.tile(cuboid.centre, (len(total), 1)), R, sizes)
     thick = np.maximum(cuboid.size_m.min(), _THIN_M)
     misfit = np.sqrt((np.log(np.maximum(sizes, thick) / np.maximum(wanted, thick)) ** 2).mean(axis=1))
-    return Hypotheses(PoseBatch(R, position, scale), np.abs(off_axis), misfit)
+    return Hypotheses(PoseBatch(R, position, scale), np.abs(off_axis), np.hypot(misfit, _TURNED_MISFIT * turned))
 
 
 def unlike_best(

@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from diorama_core.artefacts import (
     Cuboid,
@@ -46,6 +46,8 @@ _RETRIEVAL_WITH_DEPTH = 0.7
 """What retrieval says beside `Evidence.log_likelihood` where depth was measured: that tells shapes apart."""
 _MAX_THREADS = 4
 """Objects posed side by side: casting and array work let go of the interpreter, the rest of it does not."""
+_FACES_BETTER = 0.3
+"""Cost by which a hypothesis must face more usually than the best ones to be refined although it fits worse so far."""
 _LOSS_FOR_A_SET = 0.02
 """Additional image error allowed for an object to take the size of its set."""
 
@@ -251,7 +253,7 @@ class RenderAndCompare:
         return _Tried(shape, liked, appearance, limits, tried, scores)
 
     def _pose_by_outline(self, task: _Task, tried: _Tried) -> _Posed:
-        best = np.argsort(-tried.scores, kind="stable")[: self.refined]
+        best = _worth_refining(tried.scores, task.fine.facing.cost(tried.hypotheses.poses.R), self.refined)
         poses, error, score = self._chosen(task, tried, tried.hypotheses[best])
         of_retrieval, of_pose = _POWERS
         return _Posed(tried.shape, _only(poses), error, of_retrieval * tried.liked + of_pose * score)
@@ -295,6 +297,16 @@ class RenderAndCompare:
             return task.measured.fit(limits).refined(caster, start)
         yaw_sigma = np.deg2rad(9.0 if category(task.item.category).quarter_turns_free else 4.0)
         return BoxFit(task.fine.camera, task.fine.seen, task.anchor, limits, float(yaw_sigma)).refined(caster, start)
+
+
+def _worth_refining(
+    scores: Float[np.ndarray, "p"], facing_cost: Float[np.ndarray, "p"], count: int
+) -> Int[np.ndarray, "k"]:
+    """Indices of the best hypotheses, and of the best one of those that face more usually than they do."""
+    order = np.argsort(-scores, kind="stable")
+    best, others = order[:count], order[count:]
+    usual = others[facing_cost[others] < facing_cost[best].min() - _FACES_BETTER]
+    return np.concatenate([best, usual[:1]])
 
 
 def _batch(pose: Pose) -> PoseBatch:

@@ -12,6 +12,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 import trimesh
 from jaxtyping import Float, Float32, Int32, UInt8
+from PIL import Image
 from trimesh.visual.color import ColorVisuals
 from trimesh.visual.material import PBRMaterial
 
@@ -216,11 +217,11 @@ def _material(source: PBRMaterial) -> Material:
     )
 
 
-def _picture(image: object) -> UInt8[np.ndarray, "h w c"] | None:
+def _picture(image: Image.Image | None) -> UInt8[np.ndarray, "h w c"] | None:
     if image is None:
         return None
-    mode = "RGBA" if getattr(image, "mode", "RGB") in ("RGBA", "LA", "P") else "RGB"
-    return np.asarray(image.convert(mode))  # type: ignore[attr-defined]
+    mode = "RGBA" if image.mode in ("RGBA", "LA", "P") else "RGB"
+    return np.asarray(image.convert(mode))
 
 
 def smooth_corner_normals(

@@ -15,8 +15,9 @@ from diorama_core.geometry.observed import Observed, observe_among
 from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES, ShapeAppearance
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.catalogue import default_cache_dir
+from diorama_core.library.hyponyms import is_named
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.library.taxonomy import UNKNOWN, category, resolve, with_kin
+from diorama_core.library.taxonomy import UNKNOWN, category, with_kin
 from diorama_core.progress import Progress
 from diorama_core.retrieval.appearance_similarity import (
     EMBEDDED_FEATURES,
@@ -44,8 +45,8 @@ _GUESSED_SIZE = 0.5
 """Reduced weight of a size that was not observed but taken from the category's prior."""
 _MIN_VOICE = 0.1
 _MOUNTS = {"wall": ("wall",), "ceiling": ("ceiling",)}
-_OTHER_MOUNT = 0.1
-"""How likely a thing is of a kind that is held otherwise than it is."""
+_OTHER_MOUNT, _OTHER_MOUNT_OF_UNNAMED = 0.1, 0.5
+"""How likely a thing is of a kind that is held otherwise than it is; what holds one without a name is guessed too."""
 _KINDS, _KINDS_OF_UNNAMED = 3, 7
 """How many kinds are among the candidates of a thing with and without a name, where it may be of so many."""
 _OF_WORDS = 0.12
@@ -89,7 +90,7 @@ class HierarchicalRetrieval:
         cuboids = {c.object_id: c for c in geometry.cuboids}
         measured = [o for o in objects if o.id in cuboids]
         sizes = [cuboids[o.id].size_m for o in measured]
-        named = [resolve(o.label).category is not UNKNOWN for o in measured]
+        named = [is_named(o.label) for o in measured]
         groups = _groups([o.category if n else UNKNOWN.name for o, n in zip(measured, named, strict=True)], sizes)
         senses = _senses(measured, [cuboids[o.id] for o in measured], geometry)
         pools = self._pools(measured, sizes, groups, geometry.supports, senses)
@@ -148,6 +149,7 @@ class HierarchicalRetrieval:
                 supports_objects=any(measured[i].id in holders for i in members),
                 supported_by=parent_of.get(first.id, "floor"),
                 senses=_mean_senses([senses[i] for i in members]),
+                named=is_named(first.label),
             )
             pools.append(pool_for(self.library, query))
         return pools
@@ -163,7 +165,7 @@ class HierarchicalRetrieval:
         return float((fit.max() + of_appearances * like) / (of_size + of_outline + of_appearances))
 
     def _appearance(self, shape: Shape) -> ShapeAppearance:
-        folder = default_cache_dir() / "looks"
+        folder = default_cache_dir() / "appearance"
         return SHARED_APPEARANCES.get(shape.content_hash, folder, lambda: self.library.parts(shape.id))
 
     def _usual(self, shape: Shape, item: DetectedObject) -> float:
@@ -190,9 +192,10 @@ def _senses(
     for index, senses in enumerate(by_box):
         factors = neighbour_factors(index, tuple(senses), objects, cuboids, geometry.supports)
         mounts = _MOUNTS.get(parent_of.get(objects[index].id, "floor"), ("floor", "surface"))
+        other = _OTHER_MOUNT if is_named(objects[index].label) else _OTHER_MOUNT_OF_UNNAMED
         found.append(
             {
-                kind: share * factors[kind] * (1.0 if category(kind).mount in mounts else _OTHER_MOUNT)
+                kind: share * factors[kind] * (1.0 if category(kind).mount in mounts else other)
                 for kind, share in senses.items()
             }
         )

@@ -31,6 +31,8 @@ _MAX_POOL = 110
 """No more kinds are added to so many shapes."""
 _MIN_SENSE = 0.04
 """Kinds less likely than this share of the likeliest are not looked at."""
+_LEAST_UNNAMED = 10
+"""So many kinds are looked at whatever their share, where a thing has no name."""
 _VIEWS_SAY = 10.0
 """How sharply views tell kinds apart: agreeing better by a factor f makes up for a kind less likely by f to this."""
 _SUBSTITUTES = 3
@@ -165,20 +167,22 @@ class RetrievalQuery(ArrayValue):
     """What holds it up: "floor", "wall", "ceiling" or an object's id."""
     senses: Mapping[str, float] = field(default_factory=dict)
     """How likely its word means each kind, views apart; by default its category alone."""
+    named: bool = True
+    """Whether a word says what it is: the category of a thing without one is a guess."""
 
 
 def pool_for(library: ShapeLibrary, query: RetrievalQuery) -> Pool:
     """Shapes worth comparing with the picture, some dozens; nearest sizes where there are more."""
-    unnamed = query.category == UNKNOWN.name
-    if unnamed and not query.senses:
+    if query.category == UNKNOWN.name and not query.senses:
         return Pool(_plausible(library, query))
     senses = dict(query.senses) or {query.category: 1.0}
     best = max(senses.values())
     members: list[Pooled] = []
-    for kind, share in sorted(senses.items(), key=lambda row: (-row[1], row[0])):
-        if share >= _MIN_SENSE * best and len(members) < _MAX_POOL:
+    least = 1 if query.named else _LEAST_UNNAMED
+    for rank, (kind, share) in enumerate(sorted(senses.items(), key=lambda row: (-row[1], row[0]))):
+        if rank < least or (share >= _MIN_SENSE * best and len(members) < _MAX_POOL):
             own = len(senses) == 1 or kind == query.category
-            most = _NAMED_POOL if own else _UNNAMED_EACH if unnamed else _OTHER_POOL
+            most = _NAMED_POOL if own else _OTHER_POOL if query.named else _UNNAMED_EACH
             near_shapes = _nearest(_usable(library, library.in_category(kind), query), query.size_m, most)
             members += [Pooled(shape, sense_factor(share / best)) for shape in near_shapes]
     found = bool(members)

@@ -1,19 +1,21 @@
 """How usual a shape's form is among things of its kind: most chairs and tables stand on four legs.
 
 The outlines that a photo without networks gives fill the space between legs, so that closed forms fit them best; how
-often each form is met says what they cannot. Shares are rough counts in homes and offices.
+often each form is met says what they cannot, and so it does of pictures whose outline is lost on a plain wall. Shares
+are rough counts in homes and offices.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
+import cv2
 import numpy as np
 import trimesh
 
 from diorama_core.geometry.shape_appearance import ShapeAppearance
 from diorama_core.io.cache import LruCache
-from diorama_core.library.form import form_of
+from diorama_core.library.form import FULL_RECTANGLE, form_of
 from diorama_core.library.record import Shape
 from diorama_core.library.taxonomy import with_kin
 
@@ -31,25 +33,49 @@ _BASES: tuple[tuple[frozenset[str], Mapping[str, float]], ...] = (
     (with_kin("side table", "stool"), _SMALL_TABLE),
     (with_kin("table", "desk"), _TABLE),
 )
+_TOPS: Mapping[str, float] = {"rectangular": 0.6, "square": 0.6, "round": 0.25, "oval": 0.1}
+_TABLES = with_kin("table", "desk", "coffee table", "side table", "console table", "night stand")
+_FLAT = {"rectangular": 0.93, "other": 0.07}
+"""Of what hangs flat on walls or stands in frames: round, oval and free outlines."""
+_FLAT_KINDS = with_kin("picture", "window") | {"mirror", "floor mirror"}
 _RARE = 0.02
 _SAYS = 0.08
 """Power of the share that multiplies a retrieval score: scores of shapes that fit well and badly differ little."""
 
-_BASE_OF: LruCache[str, str] = LruCache(4096)
+_FORM_OF: LruCache[str, tuple[str, str]] = LruCache(4096)
+_OUTLINE_OF: LruCache[str, str] = LruCache(4096)
 
 
 def usual_form_factor(shape: Shape, appearance: ShapeAppearance) -> float:
-    """What the score of a shape is multiplied by: 1 for the usual base of its kind, less for rare ones."""
-    for kinds, shares in _BASES:
-        if shape.category in kinds:
-            share = shares.get(_base(shape, appearance), _RARE)
-            return float((share / max(shares.values())) ** _SAYS)
-    return 1.0
+    """What a shape's score is multiplied by: 1 for the usual base, top or outline of its kind, less for rare ones."""
+    if shape.category in _FLAT_KINDS:
+        return float((_FLAT[_outline(shape, appearance)] / max(_FLAT.values())) ** _SAYS)
+    bases = next((shares for kinds, shares in _BASES if shape.category in kinds), None)
+    tops = _TOPS if shape.category in _TABLES else None
+    if bases is None and tops is None:
+        return 1.0
+    of_form = zip((bases, tops), _form(shape, appearance), strict=True)
+    usual = [shares.get(form, _RARE) / max(shares.values()) for shares, form in of_form if shares is not None]
+    return float(np.prod(usual) ** _SAYS)
 
 
-def _base(shape: Shape, appearance: ShapeAppearance) -> str:
-    def found() -> str:
+def _form(shape: Shape, appearance: ShapeAppearance) -> tuple[str, str]:
+    """Base and top."""
+
+    def found() -> tuple[str, str]:
         mesh = trimesh.Trimesh(appearance.vertices, appearance.faces, process=False)
-        return str(form_of("", shape.category, mesh, np.asarray(shape.size_m)).get("base", "none"))
+        form = form_of("", shape.category, mesh, np.asarray(shape.size_m))
+        return str(form.get("base", "none")), str(form.get("top", "none"))
 
-    return _BASE_OF.get(shape.content_hash, found)
+    return _FORM_OF.get(shape.content_hash, found)
+
+
+def _outline(shape: Shape, appearance: ShapeAppearance) -> str:
+    """From the front: whether it fills the rectangle around it."""
+
+    def found() -> str:
+        outline = cv2.convexHull(np.ascontiguousarray(appearance.vertices[:, 1:], np.float32))
+        around = max(float(np.prod(np.ptp(outline[:, 0], axis=0))), 1e-9)
+        return "rectangular" if cv2.contourArea(outline) >= FULL_RECTANGLE * around else "other"
+
+    return _OUTLINE_OF.get(shape.content_hash, found)

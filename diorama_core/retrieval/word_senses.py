@@ -3,7 +3,8 @@
 "Lamp" is said of lamps on tables, floors, walls and ceilings, "table" of desks and of coffee tables, and geometry needs
 to know which before it can measure anything. Every kind that a word may mean is set at many distances; where its foot
 or its top would be, and its size, are compared with what such things usually have. The camera's height is inferred from
-all boxes together, on a grid: given the height, boxes are taken to be independent (naive Bayes).
+all boxes together, on a grid: given the height, boxes are taken to be independent (naive Bayes). What the picture of a
+thing looks like joins in where that is known, and then what lies on what and the type of the room (`kinds_together`).
 """
 
 from __future__ import annotations
@@ -15,8 +16,11 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import CameraEstimate, DetectedObject
-from diorama_core.library.hyponyms import meanings
+from diorama_core.library.company import CARRIED_KINDS
+from diorama_core.library.hyponyms import is_named, meanings
 from diorama_core.library.taxonomy import UNKNOWN, Mount, SizePrior, category
+from diorama_core.retrieval.kinds_together import carriers, kinds_together
+from diorama_core.retrieval.seen_kinds import as_it_looks
 from diorama_core.scene.types import Intrinsics
 
 _HEIGHTS_M = np.linspace(0.7, 2.2, 16)
@@ -34,8 +38,10 @@ _VIEW_SIGMA = 0.3
 """Of the logarithms of sizes read off a box: turns, perspective, ornaments."""
 _HIDDEN_SHARE, _HIDDEN_RANGE = 0.15, 2.0
 """Of things much of which is hidden: then any smaller size, over this range of its logarithm, is as likely."""
-_UNSUPPORTED = 0.15
-"""How likely a thing lies on another one where no box is below it."""
+_UNSUPPORTED, _INSIDE = 0.15, 0.5
+"""How likely a thing lies on another one where no box is below it, and where one is all around it."""
+_ALSO_CARRIED = 0.5
+"""How often boxes, baskets and plants lie on other things, which else stand on the floor."""
 _BORDER_PX = 3.0
 _SWITCH = 1.5
 """How many times likelier it must be that a thing is held otherwise than its word says before geometry takes it so."""
@@ -59,8 +65,8 @@ class _View:
     cut_bottom: bool
     cut_top: bool
     cut_side: bool
-    supported: bool
-    """Whether the box's foot is within or just above another one."""
+    carried: float
+    """How likely such a box is for what lies on another thing, by the boxes below it."""
 
 
 def with_word_senses(objects: tuple[DetectedObject, ...], camera: CameraEstimate) -> tuple[DetectedObject, ...]:
@@ -91,8 +97,14 @@ def sense_probabilities(
         R_world_camera: how it is held; world +Z is up.
         height_m: of the camera above the floor, where that is known.
     """
-    views = [_view(item, objects, intrinsics, R_world_camera) for item in objects]
-    senses = [meanings(item.label, item.category) for item in objects]
+    below = carriers([item.box for item in objects])
+    views = [
+        _view(item, _carried(item, objects, on), intrinsics, R_world_camera)
+        for item, on in zip(objects, below, strict=True)
+    ]
+    senses = [
+        as_it_looks(meanings(item.label, item.category), item.looks_like, is_named(item.label)) for item in objects
+    ]
     likely = [{kind: _likelihood(view, kind) for kind in of_word} for view, of_word in zip(views, senses, strict=True)]
     usual, sigma = (_USUAL_HEIGHT_M, _HEIGHT_SIGMA_M) if height_m is None else (height_m, _MEASURED_SIGMA_M)
     log_height = -0.5 * ((_HEIGHTS_M - np.clip(usual, _HEIGHTS_M[0], _HEIGHTS_M[-1])) / sigma) ** 2
@@ -105,7 +117,7 @@ def sense_probabilities(
         posterior = {kind: share * float((height * of_view[kind] / mixed).sum()) for kind, share in of_word.items()}
         whole = sum(posterior.values())
         found.append({kind: value / whole for kind, value in posterior.items()})
-    return found
+    return kinds_together(found, below)
 
 
 def _chosen(own: str, senses: Mapping[str, float]) -> str:
@@ -123,12 +135,19 @@ def _chosen(own: str, senses: Mapping[str, float]) -> str:
     return best if mount != category(own).mount or senses[best] > _MAJORITY else own
 
 
-def _view(
-    item: DetectedObject,
-    objects: Sequence[DetectedObject],
-    k: Intrinsics,
-    R_world_camera: Float[np.ndarray, "3 3"],
-) -> _View:
+def _carried(item: DetectedObject, objects: Sequence[DetectedObject], inside: int | None) -> float:
+    if any(_stands_on(other.box, item.box) for other in objects if other is not item):
+        return 1.0
+    return _UNSUPPORTED if inside is None else _INSIDE
+
+
+def _stands_on(below: tuple[float, float, float, float], box: tuple[float, float, float, float]) -> bool:
+    """Whether a box's foot is over another one that begins lower than it."""
+    x, slack = (box[0] + box[2]) / 2, 0.1 * (box[3] - box[1])
+    return below[0] <= x <= below[2] and box[1] < below[1] <= box[3] + slack <= below[3] + slack
+
+
+def _view(item: DetectedObject, carried: float, k: Intrinsics, R_world_camera: Float[np.ndarray, "3 3"]) -> _View:
     x1, y1, x2, y2 = item.box
     middle_x, middle_y = (x1 + x2) / 2, (y1 + y2) / 2
     pixels = np.array([[middle_x, y2], [middle_x, y1], [x1, middle_y], [x2, middle_y]])
@@ -142,23 +161,19 @@ def _view(
         cut_bottom=y2 > k.height - _BORDER_PX,
         cut_top=y1 < _BORDER_PX,
         cut_side=x1 < _BORDER_PX or x2 > k.width - _BORDER_PX,
-        supported=any(_carries(other.box, item.box) for other in objects if other is not item),
+        carried=carried,
     )
-
-
-def _carries(below: tuple[float, float, float, float], box: tuple[float, float, float, float]) -> bool:
-    """Whether a box's foot is over another one that begins lower than it."""
-    x, slack = (box[0] + box[2]) / 2, 0.1 * (box[3] - box[1])
-    return below[0] <= x <= below[2] and box[1] < below[1] <= box[3] + slack <= below[3] + slack
 
 
 def _likelihood(view: _View, kind: str) -> Float[np.ndarray, "h"]:
     """How likely such a box is for a kind, for every camera height: over all distances and the kind's modes."""
     entry = category(kind)
-    of_modes = [_of_size(view, prior, entry.mount) for prior in entry.priors]
-    likely = np.mean(of_modes, axis=0)
-    if entry.mount == "surface" and not view.supported:
-        likely = likely * _UNSUPPORTED
+    likely = np.mean([_of_size(view, prior, entry.mount) for prior in entry.priors], axis=0)
+    if entry.mount == "surface":
+        likely = likely * view.carried
+    elif entry.mount == "floor" and kind in CARRIED_KINDS:
+        lying = np.mean([_of_size(view, prior, "surface") for prior in entry.priors], axis=0)
+        likely = (1.0 - _ALSO_CARRIED) * likely + _ALSO_CARRIED * view.carried * lying
     return likely + _CERTAIN
 
 

@@ -7,8 +7,9 @@ object carries along everything it holds up.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
@@ -230,11 +231,11 @@ def _check_size(item: SceneObject, pose: Pose) -> None:
         )
 
 
-def _map_objects(scene: Scene, change: object) -> Scene:
-    return replace(scene, objects=tuple(change(o) for o in scene.objects))  # type: ignore[operator]
+def _map_objects(scene: Scene, change: Callable[[SceneObject], SceneObject]) -> Scene:
+    return replace(scene, objects=tuple(change(o) for o in scene.objects))
 
 
-def _with(scene: Scene, object_id: str, **changes: object) -> Scene:
+def _with(scene: Scene, object_id: str, **changes: Any) -> Scene:
     _existing(scene, object_id)
     return _map_objects(scene, lambda o: replace(o, **changes) if o.id == object_id else o)
 

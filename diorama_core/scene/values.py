@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields
-from typing import Any
+from dataclasses import Field, fields
+from typing import Any, ClassVar
 
 import numpy as np
 from jaxtyping import Real
@@ -42,12 +42,15 @@ def _hashable(value: Any) -> Any:
 class ArrayValue:
     """Base of `@dataclass(frozen=True, eq=False)` values whose fields may be arrays: equal by content."""
 
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+    """As every subclass has them."""
+
     def __eq__(self, other: object) -> bool:
         if self is other:
             return True
         if type(self) is not type(other):
             return NotImplemented
-        return all(_same(getattr(self, f.name), getattr(other, f.name)) for f in fields(self))  # type: ignore[arg-type]
+        return all(_same(getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
 
     def __hash__(self) -> int:
-        return hash(tuple(_hashable(getattr(self, f.name)) for f in fields(self)))  # type: ignore[arg-type]
+        return hash(tuple(_hashable(getattr(self, f.name)) for f in fields(self)))

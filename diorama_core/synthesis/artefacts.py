@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from diorama_core.artefacts import (
-    ArchitectureEstimate,
     CameraEstimate,
     CameraHypothesis,
     Cuboid,
-    DepthMap,
     DetectedObject,
     Inputs,
     LayoutReport,
@@ -18,7 +16,7 @@ from diorama_core.artefacts import (
 )
 from diorama_core.progress import Progress
 from diorama_core.protocols import Preview
-from diorama_core.provenance import CameraSource, DepthSource, RoomMethod, RoomSource, ScaleSource
+from diorama_core.provenance import CameraSource, ScaleSource
 from diorama_core.scene.types import Scene, Support
 from diorama_core.synthesis.truth import TruthView
 
@@ -68,17 +66,6 @@ def true_geometry(view: TruthView) -> ObjectGeometry:
         o = view.scene.objects[index]
         cuboids.append(Cuboid(o.id, o.pose.R_world_object, o.pose.position, o.size_m, 1.0, front_known=True))
     return ObjectGeometry(view.camera, tuple(cuboids), true_supports(view), ScaleSource.GIVEN)
-
-
-def true_architecture(view: TruthView) -> ArchitectureEstimate:
-    """The room itself."""
-    return ArchitectureEstimate(view.scene.architecture, true_supports(view), 1.0, RoomSource(RoomMethod.GIVEN))
-
-
-def true_depth(view: TruthView) -> DepthMap:
-    """Depth and normals of every pixel."""
-    assert view.inputs.depth_m is not None
-    return DepthMap(view.inputs.depth_m, view.normals_world, DepthSource.MEASURED)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import trimesh
@@ -16,7 +17,7 @@ from diorama_core.errors import EditRefused, LibraryError
 from diorama_core.geometry.rotations import rotation_from_vector
 from diorama_core.library.record import Shape, SupportSurface
 from diorama_core.scene import edits
-from diorama_core.scene.types import Architecture, Plane, Pose, Scene, SceneObject, Support, yaw_rotation
+from diorama_core.scene.types import Architecture, Plane, Pose, Relation, Scene, SceneObject, Support, yaw_rotation
 
 Boxes = tuple[tuple[tuple[float, float, float], tuple[float, float, float]], ...]
 """(lower, upper) corners of the boxes of a compound."""
@@ -84,11 +85,12 @@ def _record(number: int, compound: BoxShape) -> tuple[Shape, trimesh.Trimesh]:
         for x0, y0, x1, y1, z, clearance, interior in compound.tops
     )
     digest = hashlib.sha256(np.ascontiguousarray(corners).tobytes()).hexdigest()[:16]
+    depth, width, height = high - low
     shape = Shape(
         id=f"{compound.word}_{number}",
         category=compound.category,
         caption=f"{compound.category} of boxes",
-        size_m=tuple(float(x) for x in high - low),  # type: ignore[arg-type]
+        size_m=(float(depth), float(width), float(height)),
         surfaces=surfaces,
         content_hash=f"boxes-{digest}",
     )
@@ -286,10 +288,10 @@ class _Builder:
         options = [s for c in categories for s in self.library.in_category(c)]
         return options[int(self.rng.integers(len(options)))]
 
-    def _put(self, shape: Shape, pose: Pose, parent: str, relation: str = "placed on", **edge: object) -> str:
+    def _put(self, shape: Shape, pose: Pose, parent: str, relation: Relation = "placed on", **edge: Any) -> str:
         name = f"{shape.category.replace(' ', '_')}_{len(self.objects):03d}"
         self.objects.append(SceneObject(name, name, shape.category, shape.id, shape.size_m, pose))
-        self.supports.append(Support(name, parent, relation, **edge))  # type: ignore[arg-type]
+        self.supports.append(Support(name, parent, relation, **edge))
         return name
 
     def _free_floor(self, half: np.ndarray, *, margin: float = 0.02) -> np.ndarray | None:

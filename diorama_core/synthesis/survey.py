@@ -60,7 +60,7 @@ class ViewSurvey:
             for fault, found in (
                 ("few objects", self.asked < min_asked),
                 ("no floor", self.floor < MIN_FLOOR),
-                ("one thing fills it", self.largest > LARGEST_SHARE),
+                ("one object fills it", self.largest > LARGEST_SHARE),
                 ("too near", self.near > NEAR_SHARE),
             )
             if found

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -111,7 +112,7 @@ def _rank(requested: RequestedObject) -> tuple[int, int]:
 
 
 def _place(f: Furnisher, requested: RequestedObject, placed: dict[str, list[str]]) -> str | None:
-    """One thing: where the prompt says, else where people put such objects."""
+    """Place one object: where the prompt says, else where people put such objects."""
     item = _chosen(f, requested)
     if item is None:
         return None
@@ -120,11 +121,11 @@ def _place(f: Furnisher, requested: RequestedObject, placed: dict[str, list[str]
     ways: list[Callable[[], str | None]] = []
     for host in hosts:
         if requested.place == "on":
-            ways.append(lambda host=host: _on(f, item, host))  # type: ignore[misc]
+            ways.append(partial(_on, f, item, host))
         elif requested.place in ("beside", "before", "around", "under"):
-            ways.append(lambda host=host: _by(f, item, host, requested))  # type: ignore[misc]
+            ways.append(partial(_by, f, item, host, requested))
         elif requested.place == "above":
-            ways.append(lambda host=host: _above(f, item, host))  # type: ignore[misc]
+            ways.append(partial(_above, f, item, host))
     if mount == "surface" or requested.place == "on":
         ways.append(lambda: _on_anything(f, item))
     elif mount == "wall":
@@ -143,7 +144,7 @@ def _least_used(f: Furnisher, hosts: list[str]) -> list[str]:
 
 
 def _chosen(f: Furnisher, requested: RequestedObject) -> Item | None:
-    """A shape of the category, of the asked looks where there is one; of a set, always the same shape."""
+    """A shape of the category, with the attributes asked for where there is one; of a set, always the same shape."""
     before = [o for o in f.objects if o.category == requested.category]
     if before and requested.count > 1:
         return replace(f.items[before[-1].id])

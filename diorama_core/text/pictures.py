@@ -145,13 +145,13 @@ def _generated(words: str, endpoint: ImageSettings) -> bytes:
     client = openai.OpenAI(
         base_url=endpoint.base_url, api_key=endpoint.key or "none", timeout=endpoint.timeout_s, max_retries=1
     )
-    asked = {"model": endpoint.model, "prompt": TEMPLATE.format(words), "n": 1}
+    words = TEMPLATE.format(words)
     try:
         with client:
             try:
-                made = client.images.generate(**asked, response_format="b64_json")  # type: ignore[call-overload]
+                made = client.images.generate(model=endpoint.model, prompt=words, n=1, response_format="b64_json")
             except openai.BadRequestError:
-                made = client.images.generate(**asked)  # type: ignore[call-overload]
+                made = client.images.generate(model=endpoint.model, prompt=words, n=1)
     except openai.OpenAIError as error:
         said = " ".join(str(getattr(error, "message", error)).split())[:140]
         raise UnavailableError(

@@ -1,4 +1,4 @@
-"""What a prompt asks for: a kind of room, objects with counts and looks, and where they go."""
+"""What a prompt asks for: a kind of room, objects with counts and attributes, and where they go."""
 
 from __future__ import annotations
 
@@ -140,7 +140,7 @@ def _placed(requested: RequestedObject, place: str, target: str) -> RequestedObj
 
 
 def _phrase(phrase: str) -> tuple[RequestedObject | None, list[str]]:
-    """A noun phrase: count, looks, noun."""
+    """A noun phrase: count, attributes, noun."""
     left, of, _ = phrase.partition(" of ")
     if of and (head := _phrase(left))[0] is not None:
         return head  # "a vase of flowers" is a vase; "a pair of chairs" goes on below

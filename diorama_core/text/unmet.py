@@ -10,9 +10,9 @@ from diorama_core.text.prompt import RequestedObject, understood_prompt
 
 
 def unmet(prompt: str, scene: Scene) -> tuple[str, ...]:
-    """Every wish of a description that a scene does not meet, one line each; empty where all are met.
+    """Every request of a description that a scene does not meet, one line each; empty where all are met.
 
-    An object counts for the first wish that names its category, else for one of a kindred category.
+    An object counts for the first request that names its category, else for one of a kindred category.
     """
     request = understood_prompt(prompt)
     there = Counter(o.category for o in scene.objects)

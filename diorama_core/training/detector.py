@@ -48,8 +48,9 @@ class Detector(nn.Module):
         self.kind_tower = nn.Sequential(convolution(2 * w, 2 * w), convolution(2 * w, 2 * w))
         self.box = nn.Conv2d(2 * w, 5, 3, padding=1)
         self.kind = nn.Conv2d(2 * w, kinds, 1)
-        nn.init.constant_(self.box.bias[:1], -4.0)  # type: ignore[index]  # few places hold anything
-        nn.init.constant_(self.box.bias[1:], 0.7)  # type: ignore[index]
+        assert self.box.bias is not None
+        nn.init.constant_(self.box.bias[:1], -4.0)  # few places hold anything
+        nn.init.constant_(self.box.bias[1:], 0.7)
 
     def forward(self, pictures: Float[Tensor, "b 3 h w"]) -> Float[Tensor, "b n c"]:
         """Rows of all levels, finest first, row by row of the grid."""

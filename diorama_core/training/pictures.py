@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -70,12 +69,6 @@ def make_pictures(folder: Path, library: ShapeLibrary, seeds: range, progress: P
             write_atomically(target, _packed(_photographed(seed, library, names)))
             made += 1
     return made
-
-
-def read_pictures(folder: Path) -> Iterator[LabelledPicture]:
-    """Every picture of a folder, in the order of rooms and views."""
-    for path in sorted(folder.glob("room_*.npz")):
-        yield from read_room(path)
 
 
 def read_room(path: Path) -> tuple[LabelledPicture, ...]:

@@ -145,7 +145,7 @@ class Trainer:
             group["lr"] = self.schedule.rate_at(self.step)
         total, words = self.loss(self.network, batch)
         self._optimiser.zero_grad(set_to_none=True)
-        total.backward()  # type: ignore[no-untyped-call]
+        total.backward()  # type: ignore[no-untyped-call]  # torch annotates its result only
         nn.utils.clip_grad_norm_(self.network.parameters(), 10.0)
         self._optimiser.step()
         self._average()

@@ -15,7 +15,8 @@ from diorama_app.reconstruction.photo_outlines import PhotoOutlines
 from diorama_app.session import autosave, redraws
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
-from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
+from diorama_app.web.viser_adapter import create_server, stop_server
+from diorama_app.web.visitors import Visitors
 from tests.app.page import Page
 from tests.app.people import join
 from tests.app.small_room import PlainLibrary, make_project
@@ -35,7 +36,7 @@ def session(server: viser.ViserServer, tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(redraws, "EVERY_S", 0.0)  # panels are drawn at once
     monkeypatch.setattr(redraws, "SHARE", 1e9)
     made = EditorSession(server, PlainLibrary(), tmp_path / "projects", Client)
-    made.checker.look_at = lambda scene: None  # type: ignore[method-assign]  # its thread would post to the desk
+    made.checker.look_at = lambda scene: None  # its thread would post to the desk
     made.open_project(make_project(tmp_path / "projects" / "demo"))
     yield made
     made.close()

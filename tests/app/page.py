@@ -5,8 +5,6 @@ from __future__ import annotations
 import asyncio
 import html
 import json
-from dataclasses import dataclass, field
-from types import SimpleNamespace
 from typing import Any
 
 import viser
@@ -14,16 +12,20 @@ import viser
 from diorama_app.session.client import Client
 
 
-@dataclass
-class Page:
+class Page(viser.GuiApi):
     """Stands before a server's panel API, makes everything for real, and remembers it by label."""
 
-    gui: viser.GuiApi
-    client: Client
-    made: list[tuple[str, str, Any]] = field(default_factory=list)
-    """Kind, label and handle, in the order they were made."""
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self.gui = gui
+        self.client = client
+        self.made: list[tuple[str, str, Any]] = []
+        """Kind, label and handle, in the order they were made."""
+        self.sent = 0
+        """How many actions were sent."""
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattribute__(self, name: str) -> Any:
+        if name in vars(Page) or name in object.__getattribute__(self, "__dict__") or name == "__dict__":
+            return object.__getattribute__(self, name)
         real = getattr(self.gui, name)
         if not name.startswith("add_"):
             return real
@@ -87,7 +89,8 @@ class Page:
 
     def send(self, hidden: Any, do: str, arg: object, *, add: bool = False) -> None:
         """Write a message into the hidden field of a piece of HTML, as its handler does."""
-        hidden.value = json.dumps({"do": do, "arg": str(arg), "add": add, "at": len(self.made)})
+        self.sent += 1
+        hidden.value = json.dumps([{"do": do, "arg": str(arg), "add": add, "number": self.sent}])
         self._told(hidden)
 
     def settle(self) -> None:
@@ -97,7 +100,7 @@ class Page:
         assert self.client.session.ui_thread.wait(20.0)
 
     def _told(self, handle: Any) -> None:
-        event = SimpleNamespace(client_id=self.client.id, client=self.client.viser_client, target=handle)
+        event = viser.GuiEvent(self.client.viser_client, self.client.id, handle)
         for callback in list(handle._impl.update_cb):
             asyncio.run(callback(event))
         self.settle()

@@ -56,6 +56,6 @@ class LocalClient(viser.ClientHandle):
 
 
 def join(session: EditorSession, client_id: int = 0) -> Client:
-    """Somebody comes into the room."""
+    """A browser connects to the session."""
     session.joined(LocalClient(session.server, client_id))
     return session.clients[client_id]

@@ -12,7 +12,8 @@ from diorama_app.commands import swap as swapping
 from diorama_app.commands.insert import insert_shape
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
-from diorama_app.web.viser_adapter import Visitors, create_server, last_message_arrived, stop_server
+from diorama_app.web.viser_adapter import create_server, last_message_arrived, stop_server
+from diorama_app.web.visitors import Visitors
 from diorama_core.editing import aligning as arranging
 from diorama_core.editing.clipboard import copied, pasted
 from diorama_core.errors import DioramaError
@@ -26,7 +27,7 @@ MAX_OBJECTS = 60
 
 
 class Soak:
-    """A room, a guest, and a generator of edits."""
+    """An open project, a client, and a generator of edits."""
 
     def __init__(self, folder: Path, seed: int) -> None:
         self.server = create_server(host="127.0.0.1", port=0, label="soak", visitors=Visitors("127.0.0.1"))
@@ -160,7 +161,7 @@ class Soak:
 
     def _paint(self) -> None:
         colour = None if self.rng.integers(3) == 0 else tuple(float(c) for c in self.rng.uniform(0, 1, 3).round(1))
-        editing.set_colour(self.client, self.client.selection, colour)  # type: ignore[arg-type]
+        editing.set_colour(self.client, self.client.selection, colour)
 
     def _align(self) -> None:
         chosen = self.client.need_selection()

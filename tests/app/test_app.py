@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 
@@ -14,6 +13,7 @@ from diorama_app.session import autosave
 from diorama_app.session.connected_client import ConnectedClient, Panel
 from diorama_core.errors import DioramaError
 from diorama_core.project.storage import Project
+from tests.app import pointer
 from tests.app.page import Page
 from tests.app.people import LocalClient
 from tests.app.small_room import PlainLibrary, make_project
@@ -66,8 +66,9 @@ def test_the_page_has_every_panel_and_shows_the_project(editor: Editor, tmp_path
 def test_clicks_and_drags_go_to_the_gestures_of_whoever_made_them(editor: Editor, tmp_path: Path) -> None:
     editor.open_first(make_project(tmp_path / "projects" / "demo"))
     client, _ = enter(editor)
-    editor.session.on_pick("chair_1", SimpleNamespace(client_id=0, screen_pos=(0.5, 0.5), modifier=None))
-    editor.session.on_pick("lamp_1", SimpleNamespace(client_id=7, screen_pos=(0.5, 0.5), modifier=None))
+    editor.session.view.on_pick("chair_1", pointer.clicked(client.viser_client, "chair_1"))
+    nobody = LocalClient(editor.session.server, 7)
+    editor.session.view.on_pick("lamp_1", pointer.clicked(nobody, "lamp_1"))
     assert editor.session.ui_thread.wait(20.0)
     assert client.selection == ("chair_1",)
 

@@ -85,7 +85,7 @@ def test_a_shelf_grows_with_ones_own_models(tmp_path: Path, monkeypatch: pytest.
 
 def test_a_library_that_cannot_grow_says_so() -> None:
     client = Client.__new__(Client)
-    client.session = SimpleNamespace(library=PlainLibrary())  # type: ignore[assignment]
+    client.session = SimpleNamespace(library=PlainLibrary())
     with pytest.raises(EditRefused, match="models cannot be added"):
         import_model(client, "x.glb", b"")
 

@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from diorama_app.workspace import Workspace
+from diorama_core.editing.clipboard import copied
 from diorama_core.errors import DioramaError
-from tests.app.people import LocalClient
+from tests.app.people import LocalClient, join
 from tests.app.small_room import PlainLibrary, make_project
 
 
@@ -46,7 +47,7 @@ def test_a_name_of_no_project_is_told_on_the_first_page(workspace: Workspace, na
 def test_a_copy_made_in_one_project_is_pasted_in_another(workspace: Workspace) -> None:
     workspace.server("second")
     first, second = (e.session for e in workspace.editors)
-    first.clip = object()
+    first.clip = copied(first.scene, ["chair_1"])
     assert second.clip is first.clip
 
 
@@ -69,7 +70,7 @@ def test_a_damaged_project_leaves_everybody_where_they_are(workspace: Workspace,
     project = make_project(tmp_path / "projects" / "broken")
     project.scene_path.write_text("{")
     with pytest.raises(DioramaError):
-        workspace.visit(None, project, "")  # type: ignore[arg-type]
+        workspace.visit(join(workspace.editors[0].session), project, "")
     assert len(workspace.editors) == 1
 
 

@@ -26,8 +26,8 @@ def seen(turn: float = 0.6):
 
 def test_albedo_is_freed_from_the_light() -> None:
     view, slots, rgb, mask, light = seen()
-    for pixels in slot_pixels(view, slots, rgb, mask):
-        found = appearance_of(view, pixels, rgb, mask, light)
+    for pixels in slot_pixels(view, slots, rgb, mask, mask):
+        found = appearance_of(view, pixels, rgb, light)
         want = linear_to_srgb(np.array(ALBEDO[found.slot.role]))
         np.testing.assert_allclose(found.colour, want, atol=0.02)
         assert found.texture is None
@@ -35,7 +35,7 @@ def test_albedo_is_freed_from_the_light() -> None:
 
 def test_faces_of_one_material_tell_the_light() -> None:
     view, slots, rgb, mask, _ = seen()
-    (body, *_) = slot_pixels(view, slots, rgb, mask)
+    (body, *_) = slot_pixels(view, slots, rgb, mask, mask)
     shade = shade_of(view, body, rgb)
     assert len(shade.luminance) == 2
     lit = 1.0 + shade.normals_world @ B
@@ -46,4 +46,23 @@ def test_slots_that_are_hardly_seen_are_not_read() -> None:
     view, slots, rgb, mask, _ = seen()
     few = np.zeros_like(mask)
     few[70:74, 98:102] = True
-    assert slot_pixels(view, slots, rgb, few) == ()
+    assert slot_pixels(view, slots, rgb, few, few) == ()
+
+
+def test_a_slot_that_the_mask_lost_is_read_where_the_shape_shows_it() -> None:
+    view, slots, rgb, mask, light = seen()
+    lost = mask & np.array([s.role != "wood" for s in slots])[view.slot]
+    body_alone = slot_pixels(view, slots, rgb, lost, lost)
+    both = slot_pixels(view, slots, rgb, lost, mask)
+    assert [p.slot.role for p in body_alone] == ["fabric"]
+    assert [p.slot.role for p in both] == ["fabric", "wood"]
+    found = appearance_of(view, both[1], rgb, light)
+    np.testing.assert_allclose(found.colour, linear_to_srgb(np.array(ALBEDO["wood"])), atol=0.02)
+
+
+def test_a_mask_that_is_elsewhere_is_not_replaced_by_the_shape() -> None:
+    view, slots, rgb, mask, _ = seen()
+    little = np.zeros_like(mask)
+    little[70:84, 90:112] = True
+    (body,) = slot_pixels(view, slots, rgb, mask & little, mask)
+    assert body.mine.sum() <= little.sum()

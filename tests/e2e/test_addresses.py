@@ -38,9 +38,10 @@ def test_opening_a_project_leaves_the_other_browsers_where_they_are(
     editor.tab("Project")
     editor.page.locator(".dio .row", has_text="second").get_by_role("button", name="Open").click()
     expect(editor.page).to_have_url(re.compile("project=second"))
-    expect(editor.page.get_by_label("Project name")).to_have_value("second", timeout=30_000)
+    editor.page.wait_for_function(f"window.__viserMutable && {OBJECTS} === 3")
     editor.settle()
-    editor.page.wait_for_function(f"{OBJECTS} === 3")
+    editor.tab("Project")
+    expect(editor.page.get_by_label("Project name")).to_have_value("second", timeout=30_000)
     assert other.page.evaluate(OBJECTS) == 5
     assert "project=first" in other.page.url
     assert running.session.project is not None

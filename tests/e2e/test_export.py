@@ -207,8 +207,7 @@ def test_a_film_can_be_cancelled_and_leaves_nothing(editor: EditorPage) -> None:
 
 
 def test_a_file_of_another_program_becomes_objects_that_are_drawn(editor: EditorPage, tmp_path: Path) -> None:
-    session = editor.running.session
-    shapes = len(session.library.shapes())
+    shapes = len(editor.session.library.shapes())
     foreign = trimesh.Scene()
     floor, chair = trimesh.creation.box((4.0, 0.02, 4.0)), trimesh.creation.box((0.5, 0.9, 0.5))
     foreign.add_geometry(floor, node_name="floor", transform=trimesh.transformations.translation_matrix((0, -0.01, 0)))
@@ -218,8 +217,15 @@ def test_a_file_of_another_program_becomes_objects_that_are_drawn(editor: Editor
     editor.tab("Project")
     editor.upload("Open a file", path)
     editor.until(
-        lambda: session.project is not None and session.project.name == "their flat", "opened", LEARN_MS / 1000
+        lambda: (
+            editor.session.project is not None
+            and editor.session.project.name == "their flat"
+            and bool(editor.session.scene.objects)
+        ),
+        "opened",
+        LEARN_MS / 1000,
     )
+    session = editor.session
     (item,) = session.scene.objects
     assert item.category == "chair"
     np.testing.assert_allclose(item.corners_world.min(axis=0), (0.75, -0.25, 0.0), atol=1e-3)

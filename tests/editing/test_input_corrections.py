@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,15 +10,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from diorama_app.reconstruction.camera_correction import camera_height_m, set_camera_height
-from diorama_app.session.client import Client
-from diorama_app.session.session import EditorSession
-from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
+from diorama_app.reconstruction.camera_correction import camera_height_m
 from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.editing.input_corrections import (
     boxes_json,
     given_outline,
     labelled_box,
+    same_object,
     with_box_at,
     with_boxes_added,
     with_correction,
@@ -34,9 +31,7 @@ from diorama_core.pipeline.stages import embedded_stages
 from diorama_core.progress import Progress
 from diorama_core.project.build import build_project
 from diorama_core.project.storage import Project
-from diorama_core.scene import edits
-from tests.app.people import join
-from tests.app.small_room import PlainLibrary, make_project, plain_photo
+from tests.app.small_room import PlainLibrary, plain_photo
 
 TABLE = LabelledBox((240.0, 200.0, 440.0, 420.0), "table", "dining table")
 CHAIR = LabelledBox((40.0, 250.0, 160.0, 440.0), "chair", "chair")
@@ -53,25 +48,6 @@ ROUND = disc(340.0, 310.0, 80.0)
 @pytest.fixture
 def inputs() -> Inputs:
     return Inputs(plain_photo(), (TABLE, CHAIR))
-
-
-@pytest.fixture
-def client(tmp_path: Path) -> Iterator[Client]:
-    server = create_server(host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1"))
-    session = EditorSession(server, PlainLibrary(), tmp_path / "projects", Client)
-    session.open_project(make_project(tmp_path / "projects" / "demo"))
-    yield join(session)
-    session.close()
-    stop_server(server)
-
-
-def retained(client: Client) -> Inputs:
-    """What a later session finds."""
-    assert client.session.project is not None
-    client.session.autosave.flush()
-    found = Project.open(client.session.project.folder).load_inputs()
-    assert found is not None
-    return found
 
 
 def test_another_word_keeps_box_and_outline(inputs: Inputs) -> None:
@@ -119,24 +95,6 @@ def test_the_next_build_takes_the_outline_as_it_was_drawn(inputs: Inputs) -> Non
     assert {o.label for o in found} == {"dining table", "chair"}
 
 
-def test_corrections_are_undone_redone_and_found_by_the_next_session(client: Client) -> None:
-    session = client.session
-    before = session.document.inputs
-    assert before is not None
-    bench = replace(TABLE, category="bench", label="bench")
-    said = with_correction(before, TABLE.box, bench, ROUND)
-    session.edit("outline", lambda s: edits.rename(s, "table_1", "bench"), by=client, inputs=said)
-    assert retained(client) == said
-    session.undo(client)
-    assert retained(client) == before
-    session.redo(client)
-    assert retained(client) == said
-    project = session.project
-    assert project is not None
-    session.open_project(Project.open(project.folder))
-    assert session.document.inputs == said
-
-
 def test_boxes_are_drawn_named_moved_and_deleted(inputs: Inputs) -> None:
     outlined = with_correction(inputs, TABLE.box, TABLE, ROUND)
     couch = labelled_box((10.0, 20.0, 110.0, 220.0), "couch")
@@ -181,16 +139,16 @@ def test_tilt_and_scale_hold_for_every_later_build(tmp_path: Path, inputs: Input
     assert camera_height_m(scene) == pytest.approx(1.8)
 
 
-def test_a_known_length_is_retained_as_the_height_of_the_camera(client: Client) -> None:
-    set_camera_height(client, 1.9)
-    assert retained(client).camera_height_m == pytest.approx(1.9)
-    client.session.undo(client)
-    assert retained(client).camera_height_m is None
-
-
 def test_inputs_about_whose_camera_nothing_was_said_are_the_bytes_they_were(inputs: Inputs) -> None:
     assert b"camera_attitude" not in codec.dump(inputs)
     assert b"camera_height" not in codec.dump(inputs)
     said = replace(inputs, camera_attitude=CameraAttitude(0.1, 0.0), camera_height_m=1.5)
     assert codec.load(codec.dump(said)) == said
     assert said.of_any_camera == inputs
+
+
+def test_the_same_object_is_the_one_that_overlaps_most() -> None:
+    boxes = (LabelledBox((0.0, 0.0, 10.0, 10.0), "chair", "chair"), LabelledBox((8.0, 0.0, 18.0, 10.0), "sofa", "sofa"))
+    assert same_object(boxes, (9.0, 0.0, 18.0, 10.0)) == 1
+    assert same_object(boxes, (40.0, 0.0, 50.0, 10.0)) is None
+    assert same_object((), (0.0, 0.0, 10.0, 10.0)) is None

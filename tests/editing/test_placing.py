@@ -111,7 +111,7 @@ def test_aligned_distributed_and_mirrored() -> None:
     x = np.array([1.0, 0.0, 0.0])
     ids = ["chair_1", "chair_2", "table_1"]
     for anchor, pick in (("low", np.min), ("high", np.max)):
-        made = arranging.align(scene, ids, x, anchor)  # type: ignore[arg-type]
+        made = arranging.align(scene, ids, x, anchor)
         ends = [pick(made.object(i).corners_world[:, 0]) for i in ids]
         assert np.ptp(ends) == pytest.approx(0.0, abs=1e-9)
         assert made.object("table_1").pose == scene.object("table_1").pose

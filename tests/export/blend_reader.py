@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 import sys
 
-import bpy  # type: ignore[import-not-found,unused-ignore]
-from mathutils import Vector  # type: ignore[import-not-found,unused-ignore]
+import bpy
+from mathutils import Vector
 
 bpy.ops.wm.open_mainfile(filepath=sys.argv[1])
 scene = bpy.context.scene

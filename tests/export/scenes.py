@@ -53,7 +53,7 @@ def fitted_room(library: ShapeLibrary) -> Scene:
         pose = Pose.upright((*at, centre_z), yaw)
         item = SceneObject(name, category, category, shape.id, shape.size_m, pose)
         objects.append(item)
-        supports.append(Support(name, on, **edge))  # type: ignore[arg-type]
+        supports.append(Support(name, on, **edge))
         return item
 
     wall_y = 3.4

@@ -36,7 +36,7 @@ def test_a_failure_leaves_the_older_file_and_no_part(tmp_path: Path) -> None:
     path = tmp_path / "room.glb"
     write_whole(path, b"older")
 
-    def entries():  # type: ignore[no-untyped-def]
+    def entries():
         yield "room_files/a.bin", b"a"
         raise RuntimeError("the writer fails")
 

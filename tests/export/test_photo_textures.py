@@ -38,7 +38,7 @@ def test_pictures_of_objects_are_bounded_together() -> None:
 def test_the_look_is_in_the_file_and_comes_back(tmp_path) -> None:
     path = tmp_path / "scene.glb"
     write_gathered(gather(hung_picture(), built_in_library(), textures=pictures()), path)
-    opened = open_marked(marked_file(path))  # type: ignore[arg-type]
+    opened = open_marked(marked_file(path))
     assert opened.scene.objects == hung_picture().objects
     np.testing.assert_array_equal(opened.textures["picture-1-picture-0"], ART)
     assert opened.textures["picture-1-wood-1"].shape == (32, 32, 3)

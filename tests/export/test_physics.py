@@ -18,7 +18,7 @@ def surface(mesh: trimesh.Trimesh, name: str, **material: float) -> Surface:
         np.asarray(mesh.vertices, np.float32),
         np.asarray(mesh.vertex_normals, np.float32),
         np.asarray(mesh.faces, np.int32),
-        Material(name=name, **material),  # type: ignore[arg-type]
+        Material(name=name, **material),
     )
 
 

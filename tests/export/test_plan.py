@@ -93,7 +93,7 @@ def test_svg_is_in_millimetres_and_well_formed(tmp_path) -> None:
     assert '<table> & "ü" 桌' in texts
     wall = next(g for g in root.iter(f"{svg}g") if g.get("class") == "walls")[0]
     numbers = np.array(re.findall(r"-?\d+\.\d+", wall.get("d", "")), float).reshape(-1, 2)
-    scale = int(re.search(r"1 : (\d+)", root.find(f"{svg}desc").text or "").group(1))  # type: ignore[union-attr]
+    scale = int(re.search(r"1 : (\d+)", root.find(f"{svg}desc").text or "").group(1))
     np.testing.assert_allclose(np.ptp(numbers, axis=0), np.array([4.1, 5.1]) * 1000 / scale, atol=2e-3)
 
 
@@ -102,7 +102,7 @@ def test_pdf_has_the_page_and_the_texts(tmp_path) -> None:
     export_scene(room_with_door_and_window(), LIBRARY, tmp_path / "p.pdf", "pdf")
     data = (tmp_path / "p.pdf").read_bytes()
     assert data.startswith(b"%PDF-")
-    box = [float(v) for v in re.search(rb"/MediaBox \[ ([\d. ]+)\]", data).group(1).split()]  # type: ignore[union-attr]
+    box = [float(v) for v in re.search(rb"/MediaBox \[ ([\d. ]+)\]", data).group(1).split()]
     assert sorted(round(v * 25.4 / 72) for v in box[2:]) in ([210, 297], [297, 420])
     export_scene(room_with_door_and_window(), LIBRARY, tmp_path / "q.pdf", "pdf", name="p")
     assert (tmp_path / "q.pdf").read_bytes() == data, "the same plan gives the same file"

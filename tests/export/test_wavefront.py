@@ -90,7 +90,7 @@ def test_a_textured_material_comes_back_in_its_colour(tmp_path: Path) -> None:
         def parts(self, shape_id: str) -> trimesh.Scene:
             return model
 
-    (back,) = shape_surfaces(Library(), "one")  # type: ignore[arg-type]
+    (back,) = shape_surfaces(Library(), "one")
     assert back.material.colour == (1.0, 1.0, 1.0)
     assert back.material.texture is not None
     np.testing.assert_allclose(back.material.texture[..., :3], expected, atol=0.51)

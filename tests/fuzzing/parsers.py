@@ -240,8 +240,8 @@ def _language(data: bytes) -> object:
 def _archives() -> tuple[bytes, ...]:
     buffers = [io.BytesIO() for _ in range(2)]
     values = {"a": np.arange(60, dtype=np.float32).reshape(3, 20), "b": np.array(["chair", "table"])}
-    np.savez(buffers[0], **values)  # type: ignore[arg-type]
-    np.savez_compressed(buffers[1], **values)  # type: ignore[arg-type]
+    np.savez(buffers[0], **values)
+    np.savez_compressed(buffers[1], **values)
     return tuple(b.getvalue() for b in buffers)
 
 

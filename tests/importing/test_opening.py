@@ -32,11 +32,11 @@ def test_the_photo_comes_back_where_it_was_put_in(suffix: str, tmp_path: Path) -
     scene, library = scene_of("fittings")
     path, options = tmp_path / f"room.{suffix}", ExportOptions(photo=True)
     export_scene(scene, library, path, suffix, photo=photo_of(scene), options=options, provenance={"photo": "room.jpg"})
-    opened = open_marked(marked_file(path))  # type: ignore[arg-type]
+    opened = open_marked(marked_file(path))
     assert opened.changes == ()
     assert opened.inputs is not None
     assert opened.inputs.photo.name == "room.jpg"
-    assert opened.inputs.intrinsics == scene.camera.intrinsics  # type: ignore[union-attr]
+    assert opened.inputs.intrinsics == scene.camera.intrinsics
     np.testing.assert_allclose(opened.inputs.photo.rgb.astype(int), photo_of(scene).astype(int), atol=6)
 
 
@@ -45,7 +45,7 @@ def test_a_file_without_its_photo_says_so(tmp_path: Path) -> None:
     path = tmp_path / "room.glb"
     export_scene(scene, library, path, "glb", photo=photo_of(scene), provenance={"photo": "room.jpg"})
     assert b"diorama_photo" not in path.read_bytes()
-    opened = open_marked(marked_file(path))  # type: ignore[arg-type]
+    opened = open_marked(marked_file(path))
     assert opened.inputs is None
     assert opened.changes == ("room.jpg is not in the file; export it again with its photo",)
 

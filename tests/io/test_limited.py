@@ -89,7 +89,7 @@ def test_errors_meant_for_people_arrive_as_they_are(process: LimitedProcess) -> 
     with pytest.raises(LibraryError, match="a chair has no legs"):
         process.call("x", refuse)
     with pytest.raises(InputError, match=r"x: it cannot be read \(TypeError\)"):
-        process.call("x", double, None)  # type: ignore[arg-type]
+        process.call("x", double, None)
 
 
 def slowly(steps: int, progress: Progress) -> int:

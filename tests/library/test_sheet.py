@@ -12,7 +12,7 @@ def test_every_shape_gets_its_place(tmp_path: Path) -> None:
     shapes = built_in_library(tmp_path).in_category("sofa")[:5]
     asked: list[str] = []
 
-    def red(shape) -> Image.Image:  # type: ignore[no-untyped-def]
+    def red(shape) -> Image.Image:
         asked.append(shape.id)
         return Image.new("RGB", (10, 10), (200, 0, 0))
 

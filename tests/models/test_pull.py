@@ -36,7 +36,7 @@ def _network(**changes: object) -> Network:
         "files": (ModelFile("onnx/model.onnx", len(GRAPH), _sha(GRAPH)), ModelFile("tokenizer.json")),
         "tiers": ("lite",),
     }
-    return Network(**{**given, **changes})  # type: ignore[arg-type]
+    return Network(**{**given, **changes})
 
 
 @pytest.fixture
@@ -84,7 +84,7 @@ def test_a_network_is_fetched_checked_and_used_by_path(hub: Hub, store: ModelSto
 def test_licences_are_shown_once_and_a_refusal_fetches_nothing(hub: Hub, store: ModelStore) -> None:
     asked: list[str] = []
 
-    def accept(answer: bool):  # type: ignore[no-untyped-def]
+    def accept(answer: bool):
         return lambda networks: asked.extend(n.id for n in networks) or answer
 
     with pytest.raises(InputError, match="licence"):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -22,6 +21,7 @@ from transformers import (
 )
 
 from diorama_core.models.manifest import network
+from diorama_core.models.onnx_export import write_graph
 from diorama_core.models.store import FileRecord, Installed, ModelStore, sha256_of, write_json
 
 START, END = "<|startoftext|>", "<|endoftext|>"
@@ -36,20 +36,7 @@ def export(
     dynamic: Mapping[str, Mapping[int, str]] | None = None,
 ) -> Path:
     """Write a graph as the published ones were written."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with warnings.catch_warnings(), torch.no_grad():
-        warnings.simplefilter("ignore")
-        torch.onnx.export(
-            network.eval(),
-            arguments,
-            str(path),
-            input_names=list(inputs),
-            output_names=list(outputs),
-            dynamic_axes={k: dict(v) for k, v in (dynamic or {}).items()},
-            opset_version=17,
-            dynamo=False,
-        )
-    return path
+    return write_graph(network, arguments, path, inputs=inputs, outputs=outputs, dynamic=dynamic)
 
 
 def clip_tokenizer(path: Path) -> Path:
@@ -117,7 +104,7 @@ class _Sam2Decoder(torch.nn.Module):
         super().__init__()
         self.model = model
 
-    def forward(self, e0, e1, e2, points, labels, boxes):  # type: ignore[no-untyped-def]
+    def forward(self, e0, e1, e2, points, labels, boxes):
         out = self.model(image_embeddings=[e0, e1, e2], input_boxes=boxes, multimask_output=True)
         # Points count for nothing, as none are ever given, but they belong to the signature.
         return out.iou_scores + 0.0 * points.sum() + 0.0 * labels.sum(), out.pred_masks, out.object_score_logits
@@ -188,7 +175,7 @@ class _SamDecoder(torch.nn.Module):
         super().__init__()
         self.model = model
 
-    def forward(self, points, labels, boxes, embeddings, positions):  # type: ignore[no-untyped-def]
+    def forward(self, points, labels, boxes, embeddings, positions):
         out = self.model(image_embeddings=embeddings, input_boxes=boxes, multimask_output=True)
         nothing = 0.0 * points.sum() + 0.0 * labels.sum() + 0.0 * positions.sum()
         return out.iou_scores + nothing, out.pred_masks

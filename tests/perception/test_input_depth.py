@@ -1,6 +1,8 @@
-"""Reading depth, each rule by itself; the whole of it is in `test_inputs`."""
+"""Reading depth, each rule by itself, then whole files as people hand them in."""
 
 from __future__ import annotations
+
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,7 +12,8 @@ from hypothesis import strategies as st
 from diorama_core.errors import InputError
 from diorama_core.perception.input_depth import FARTHEST_M, SKY_M, check_same_proportions, read_depth
 from diorama_core.perception.input_photo import Source
-from tests.perception.test_inputs import depth_png, encoded, npy, picture
+from diorama_core.perception.inputs import read_inputs
+from tests.perception.input_files import HEIGHT, WIDTH, depth_png, encoded, npy, picture, refusal
 
 FLAT = np.full((48, 64), 2.5, np.float32)
 
@@ -104,3 +107,102 @@ def test_proportions_must_be_the_photos() -> None:
         check_same_proportions("d", "depth", (240, 320), (640, 480))
     with pytest.raises(InputError, match="of this very photo"):
         check_same_proportions("d", "depth", (320, 320), (640, 480))
+
+
+class TestDepth:
+    photo = encoded(picture())
+
+    def read(self, data: bytes, **options: object) -> np.ndarray:
+        depth = read_inputs(self.photo, depth=data, **options).inputs.depth_m
+        assert depth is not None
+        assert depth.dtype == np.float32
+        assert depth.shape == (HEIGHT, WIDTH)
+        return depth
+
+    def test_millimetres_and_other_units(self) -> None:
+        values = np.full((HEIGHT, WIDTH), 2500)
+        values[0, 0] = 0
+        depth = self.read(depth_png(values))
+        assert depth[0, 0] == 0
+        assert depth[5, 5] == pytest.approx(2.5)
+        assert self.read(depth_png(values), depth_scale=5000.0)[5, 5] == pytest.approx(0.5)
+
+    def test_metres_with_everything_that_means_missing(self) -> None:
+        values = np.full((HEIGHT, WIDTH), 3.0)
+        values[0, :5] = [np.nan, np.inf, -np.inf, -1.0, 0.0]
+        depth = self.read(npy(values))
+        assert (depth[0, :5] == 0).all()
+        assert (depth[1] == 3).all()
+
+    @pytest.mark.parametrize("dtype", [np.float16, np.float32, np.float64])
+    def test_float_sizes(self, dtype: type) -> None:
+        assert self.read(npy(np.full((HEIGHT, WIDTH, 1), 1.5, dtype)))[0, 0] == 1.5
+
+    def test_exr_in_metres(self) -> None:
+        photo = encoded(picture(24 * 4, 20 * 4))
+        depth = read_inputs(photo, depth=Path(__file__).parent / "exr" / "zip.exr").inputs.depth_m
+        assert depth is not None
+        assert (depth[2, 2], depth[-2, 2]) == (1.0, 2.0)
+
+    def test_a_renderers_sky_is_missing(self) -> None:
+        values = np.full((HEIGHT, WIDTH), 1e10, np.float32)
+        values[: HEIGHT // 3] = 3.0
+        assert set(np.unique(self.read(npy(values)))) == {0.0, 3.0}
+
+    def test_other_size_is_met_by_nearest_values(self) -> None:
+        values = np.where(np.arange(WIDTH * 2) < WIDTH, 1000, 3000)[None].repeat(HEIGHT * 2, 0)
+        depth = self.read(depth_png(values))
+        assert set(np.unique(depth)) == {1.0, 3.0}
+        assert (depth[:, : WIDTH // 2] == 1).all()
+
+    def test_other_proportions_are_refused(self) -> None:
+        square = depth_png(np.full((HEIGHT, HEIGHT), 1000))
+        assert "64 x 64" in refusal(self.photo, depth=square)
+        lying = depth_png(np.full((WIDTH, HEIGHT), 1000))
+        assert "upright" in refusal(self.photo, depth=lying)
+
+    def test_rotated_bits_are_recognised_but_not_guessed(self) -> None:
+        millimetres = np.full((HEIGHT, WIDTH), 2659, dtype=np.uint16)
+        rotated = (millimetres << 3) | (millimetres >> 13)
+        assert "--depth-encoding sunrgbd" in refusal(self.photo, depth=depth_png(rotated))
+        depth = self.read(depth_png(rotated), depth_encoding="sunrgbd")
+        np.testing.assert_allclose(depth, 2.659, rtol=1e-6)
+
+    @pytest.mark.parametrize(
+        ("data", "word"),
+        [
+            (b"", "0 bytes"),
+            (b"not depth", "not a picture"),
+            (encoded(picture()), "16 bits"),
+            (encoded(picture(mode="L")), "16 bits"),
+            (depth_png(np.zeros((HEIGHT, WIDTH))), "empty"),
+            (npy(np.full((HEIGHT, WIDTH), np.nan)), "empty"),
+            (npy(np.full((HEIGHT, WIDTH), 2500.0)), "metres"),
+            (npy(np.full((HEIGHT, WIDTH), 2500)), "metres"),
+            (npy(np.full((HEIGHT, WIDTH, 3), 2.5)), "two-dimensional"),
+            (npy(np.full((HEIGHT, WIDTH), 2.5))[:500], "truncated"),
+            (npy(np.array([{"a": 1}], dtype=object)), "metres"),
+            (depth_png(np.full((HEIGHT, WIDTH), 20)), "--depth-scale"),
+            (depth_png(np.full((HEIGHT, WIDTH), 1500))[:60], "damaged"),
+            (b"\x76\x2f\x31\x01" + b"\0" * 64, "EXR"),
+            (b"\x76\x2f\x31\x01\x02\x02\0\0", "damaged"),
+            ((Path(__file__).parent / "exr" / "piz.exr").read_bytes()[:200], "damaged"),
+        ],
+    )
+    def test_refused_in_one_line(self, data: bytes, word: str) -> None:
+        assert word in refusal(self.photo, depth=data)
+
+    def test_a_header_that_promises_too_much_allocates_nothing(self) -> None:
+        header = b"{'descr': '<f8', 'fortran_order': False, 'shape': (1000000, 1000000), }"
+        data = b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header
+        assert "1000000 megapixels" in refusal(self.photo, depth=data)
+        data = data.replace(b"(1000000, 1000000), ", b"(1000000, 30), 0000 ".replace(b"0000", b"    "))
+        assert "truncated" in refusal(self.photo, depth=data)
+
+    def test_scale_must_be_positive(self) -> None:
+        assert "--depth-scale" in refusal(self.photo, depth=npy(np.ones((HEIGHT, WIDTH))), depth_scale=0.0)
+
+    def test_sparse_depth_is_used_with_a_remark(self) -> None:
+        values = np.zeros((HEIGHT, WIDTH))
+        values[:6] = 2.0
+        assert any("measured" in w for w in read_inputs(self.photo, depth=npy(values)).warnings)

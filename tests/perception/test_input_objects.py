@@ -1,4 +1,4 @@
-"""Boxes and masks, each rule by itself; the whole of it is in `test_inputs`."""
+"""Boxes and masks, each rule by itself, then whole files as people hand them in."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import InputError
 from diorama_core.perception.input_objects import match_instances, read_boxes, read_masks, understood
 from diorama_core.perception.input_photo import Source
-from tests.perception.test_inputs import box, boxes_json, encoded
+from diorama_core.perception.inputs import read_inputs
+from tests.perception.input_files import HEIGHT, WIDTH, box, boxes_json, encoded, picture, refusal
 
 SIZE = (96, 64)
 
@@ -133,3 +134,143 @@ def test_a_box_goes_whole_to_one_mask_only() -> None:
     found = dict(match_instances(instances, (sofa,)))
     assert found[1] is sofa
     assert found[2] == LabelledBox((42.0, 10.0, 50.0, 50.0), "sofa", "my sofa", 0.9)
+
+
+class TestBoxes:
+    photo = encoded(picture())
+
+    def test_classes_are_understood_and_words_retained(self) -> None:
+        given = boxes_json(
+            box(1, 1, 20, 20, word="night_stand"),
+            box(1, 1, 20, 20, word="couches"),
+            box(1, 1, 20, 20, word="void"),
+            box(1, 1, 20, 20, word="zorgblatt"),
+        )
+        read = read_inputs(self.photo, boxes=given)
+        assert [b.category for b in read.inputs.boxes] == ["night stand", "sofa", "object", "object"]
+        assert [b.label for b in read.inputs.boxes] == ["night stand", "couches", "object", "zorgblatt"]
+        assert any("zorgblatt" in w for w in read.warnings)
+
+    def test_the_room_itself_is_no_object(self) -> None:
+        read = read_inputs(self.photo, boxes=boxes_json(box(1, 1, 20, 20, word="Wall"), box(1, 1, 20, 20)))
+        assert len(read.inputs.boxes) == 1
+        assert any("Wall" in w for w in read.warnings)
+
+    def test_partly_outside_is_clipped_and_said(self) -> None:
+        read = read_inputs(self.photo, boxes=boxes_json(box(-30, 10, 40, 200)))
+        assert read.inputs.boxes[0].box == (0, 10, 40, HEIGHT)
+        assert any("clipped" in w for w in read.warnings)
+
+    def test_a_pixel_over_the_edge_is_not_worth_a_word(self) -> None:
+        assert read_inputs(self.photo, boxes=boxes_json(box(0, 0, WIDTH + 1, 20))).warnings == ()
+
+    @pytest.mark.parametrize(
+        ("data", "word"),
+        [
+            (boxes_json(box(1, 1, 20, 20), box(200, 10, 300, 40)), "box 1"),
+            (boxes_json(box(20, 1, 5, 20)), "box 0"),
+            (boxes_json(box(5, 5, 5, 5)), "no area"),
+            (b"[{", "not valid JSON"),
+            (b"", "0 bytes"),
+            (b"\xff\xfe\x00", "no text"),
+            (b'{"bbox": [1, 2, 3, 4]}', "list"),
+            (boxes_json({"bbox": [1, 2, 3]}), "entry 0"),
+            (boxes_json({"bbox": [1, 2, 3, "x"]}), "entry 0"),
+            (boxes_json({"class": "chair"}), "entry 0"),
+            (b'[{"bbox": [NaN, 1, 20, 20]}]', "NaN is no number"),
+            (b'[{"bbox": [1e999, 1, 20, 20]}]', "too large"),
+            (b'[{"bbox": [1e30, 1, 20, 20]}]', "entry 0"),
+            (b'[{"bbox": [1, 1, 20, 20], "class": "\\ud800"}]', "no text"),
+            (b"[" * 100_000, "nested"),
+            (b"[" + b"1," * 3_000_000 + b"1]", "more than 500 boxes take"),
+            (b'[{"bbox": [1, 1, 20, 20], "class": 7}]', "entry 0"),
+            (boxes_json(*[box(1, 1, 20, 20)] * 501), "501"),
+        ],
+    )
+    def test_refused_in_one_line(self, data: bytes, word: str) -> None:
+        assert word in refusal(self.photo, boxes=data)
+
+    def test_words_cannot_break_a_line(self) -> None:
+        read = read_inputs(self.photo, boxes=boxes_json(box(1, 1, 20, 20, word="  big\n\tred\x00 chair ")))
+        assert read.inputs.boxes[0].label == "big red chair"
+
+    @given(st.lists(st.floats(-500, 500), min_size=4, max_size=4))
+    def test_every_box_is_inside_or_refused(self, bbox: list[float]) -> None:
+        try:
+            boxes = read_inputs(self.photo, boxes=boxes_json(box(*bbox))).inputs.boxes
+        except InputError:
+            return
+        x1, y1, x2, y2 = boxes[0].box
+        assert 0 <= x1 < x2 <= WIDTH
+        assert 0 <= y1 < y2 <= HEIGHT
+
+
+class TestMasks:
+    photo = encoded(picture())
+
+    def colours(self, *, speck: bool = False) -> Image.Image:
+        pixels = np.zeros((HEIGHT, WIDTH, 3), np.uint8)
+        pixels[10:50, 5:60] = (200, 30, 30)
+        pixels[20:30, 20:35] = (30, 200, 30)
+        if speck:
+            pixels[60, 90] = (1, 2, 3)
+            pixels[2, 2] = (200, 30, 30)
+        return Image.fromarray(pixels)
+
+    def test_colours_are_numbered_from_the_top_left(self) -> None:
+        inputs = read_inputs(self.photo, masks=encoded(self.colours())).inputs
+        assert inputs.instances is not None
+        assert inputs.instances[12, 10] == 1
+        assert inputs.instances[25, 25] == 2
+        assert inputs.instances[0, 0] == 0
+        assert [(k, b.category) for k, b in inputs.instance_boxes] == [(1, "object"), (2, "object")]
+        assert inputs.instance_boxes[1][1].box == (20, 20, 35, 30)
+
+    def test_ids_palettes_and_colours_agree(self) -> None:
+        ids = np.zeros((HEIGHT, WIDTH), np.uint8)
+        ids[10:50, 5:60], ids[20:30, 20:35] = 7, 9
+        palette = Image.fromarray(ids)
+        palette.putpalette([*range(256)] * 3)
+        expected = read_inputs(self.photo, masks=encoded(self.colours())).inputs.instances
+        for image in (Image.fromarray(ids), palette, Image.fromarray(ids.astype(np.uint16) * 257)):
+            np.testing.assert_array_equal(read_inputs(self.photo, masks=encoded(image)).inputs.instances, expected)
+
+    def test_class_of_the_box_that_fits_best(self) -> None:
+        given = boxes_json(box(20, 19, 36, 31, word="pillow"), box(4, 9, 61, 51, word="sofa"))
+        inputs = read_inputs(self.photo, masks=encoded(self.colours()), boxes=given).inputs
+        assert [(k, b.category) for k, b in inputs.instance_boxes] == [(1, "sofa"), (2, "pillow")]
+        assert inputs.instance_boxes[0][1] is inputs.boxes[1]
+
+    def test_two_masks_of_one_box_keep_their_own_extents(self) -> None:
+        inputs = read_inputs(
+            self.photo, masks=encoded(self.colours()), boxes=boxes_json(box(4, 9, 61, 51, word="sofa"))
+        ).inputs
+        assert [b.category for _, b in inputs.instance_boxes] == ["sofa", "sofa"]
+        assert inputs.instance_boxes[0][1].box == (4, 9, 61, 51)
+        assert inputs.instance_boxes[1][1].box == (20, 20, 35, 30)
+
+    def test_specks_are_dropped_and_said(self) -> None:
+        read = read_inputs(self.photo, masks=encoded(self.colours(speck=True)))
+        clean = read_inputs(self.photo, masks=encoded(self.colours()))
+        np.testing.assert_array_equal(read.inputs.instances, clean.inputs.instances)
+        assert any("specks" in w for w in read.warnings)
+
+    def test_reduced_with_the_photo(self) -> None:
+        large = encoded(picture(WIDTH * 4, HEIGHT * 4))
+        mask = encoded(self.colours().resize((WIDTH * 4, HEIGHT * 4), Image.Resampling.NEAREST))
+        small = read_inputs(large, masks=mask, max_side=WIDTH).inputs.instances
+        expected = read_inputs(self.photo, masks=encoded(self.colours())).inputs.instances
+        np.testing.assert_array_equal(small, expected)
+
+    @pytest.mark.parametrize(
+        ("data", "word"),
+        [
+            (encoded(Image.new("RGB", (WIDTH, HEIGHT))), "no object"),
+            (encoded(picture()), "instance mask"),
+            (encoded(picture(), "JPEG"), "PNG"),
+            (encoded(picture(64, 64)), "64 x 64"),
+            (b"nothing", "not a picture"),
+        ],
+    )
+    def test_refused_in_one_line(self, data: bytes, word: str) -> None:
+        assert word in refusal(self.photo, masks=data)

@@ -22,11 +22,11 @@ def picture(height: int = 240, width: int = 320) -> tuple[np.ndarray, np.ndarray
 
 
 def inputs(rgb: np.ndarray, *boxes: LabelledBox, **more: object) -> Inputs:
-    return Inputs(Photo(rgb, "test.png", (rgb.shape[1], rgb.shape[0])), boxes, **more)  # type: ignore[arg-type]
+    return Inputs(Photo(rgb, "test.png", (rgb.shape[1], rgb.shape[0])), boxes, **more)
 
 
 def chair(*box: float) -> LabelledBox:
-    return LabelledBox(box, "chair", "chair")  # type: ignore[arg-type]
+    return LabelledBox(box, "chair", "chair")
 
 
 def test_oval_is_found_inside_its_box() -> None:

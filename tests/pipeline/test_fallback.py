@@ -33,10 +33,10 @@ IN_STORE = {"yolox-nano": "yolox", "slimsam": "sam encoder", "migan": "migan", "
 """What breaks which network."""
 
 
-def _choose(profile: Profile, inputs: Inputs):  # type: ignore[no-untyped-def]
+def _choose(profile: Profile, inputs: Inputs):
     def choose(store: ModelStore) -> Stages:
         stages = stages_for(profile, inputs, box_library(), store=store)
-        return replace(stages, retrieval=_Nothing(), pose=_Nothing())  # type: ignore[arg-type]
+        return replace(stages, retrieval=_Nothing(), pose=_Nothing())
 
     return choose
 

@@ -78,7 +78,7 @@ def test_a_corrected_object_is_measured_in_the_room_that_the_build_had(depth: bo
     assert found.support is not None
     assert found.support.parent == "floor"
     names = {path.name.rsplit("-", 1)[0] for path in cache.glob("*.zip")}
-    assert names == {"camera", "objects", "geometry", "architecture", *(["graph"] if stages.graph else [])}
+    assert names == {"camera", "objects", "naming", "geometry", "architecture", *(["graph"] if stages.graph else [])}
 
 
 class Counting:
@@ -108,7 +108,7 @@ def test_only_the_steps_that_lead_to_what_is_wanted_run() -> None:
     known = evaluate(stages, {"given": inputs}, ("outlined_objects",), Runner(None), Progress())
     assert calls == ["segment"]
     evaluate(stages, known, ("supported_geometry",), Runner(None), Progress())
-    assert calls == ["segment", "estimate", "measure"]
+    assert calls == ["segment", "estimate", "name", "measure"]
 
 
 def test_an_unknown_artefact_is_named() -> None:

@@ -92,7 +92,7 @@ def photo(rng: np.random.Generator) -> Photo:
 
 
 def _build(stages: Stages, inputs: Inputs, cache: Path | None = None) -> Built:
-    quiet = replace(stages, retrieval=_Nothing(), pose=_Nothing())  # type: ignore[arg-type]
+    quiet = replace(stages, retrieval=_Nothing(), pose=_Nothing())
     return build_scene(inputs, box_library(), stages=quiet, cache=cache)
 
 

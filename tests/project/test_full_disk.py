@@ -143,7 +143,8 @@ from diorama_app.session.client import Client
 from diorama_app.session.recovery import Recovery
 from diorama_app.session.session import EditorSession
 from diorama_app.commands.edit import rename
-from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
+from diorama_app.web.viser_adapter import create_server, stop_server
+from diorama_app.web.visitors import Visitors
 from tests.app.people import join
 sized("16m")
 project = make_project(disk / "projects" / "demo")

@@ -133,14 +133,14 @@ def test_cache_renders_once_per_content(chair: tuple[BuiltInLibrary, str, Templa
     first = TemplateCache(tmp_path)
     assert not first.has(shape, SMALL)
     for cache in (first, first, TemplateCache(tmp_path)):
-        found = cache.get(counting, shape, SMALL)  # type: ignore[arg-type]
+        found = cache.get(counting, shape, SMALL)
         assert np.array_equal(found.depth_codes, expected.depth_codes)
         assert np.array_equal(found.normal_codes, expected.normal_codes)
         assert found.size_m == pytest.approx(expected.size_m)
     assert first.has(shape, SMALL)
     assert counting.asked == 1
     changed = dataclasses.replace(shape, content_hash="other")
-    first.get(counting, changed, SMALL)  # type: ignore[arg-type]
+    first.get(counting, changed, SMALL)
     assert counting.asked == 2
 
 

@@ -37,6 +37,16 @@ def test_kinds_that_a_word_may_mean_are_looked_at_the_likelier_the_more_they_cou
     assert sense_factor(0.1) < sense_factor(0.5) < 1.0
 
 
+def test_many_kinds_are_looked_at_where_no_word_says_what_a_thing_is() -> None:
+    kinds = ("chair", "stool", "table", "bench", "sofa", "bed", "desk", "plant", "box", "basket")
+    senses = {kind: 0.9 if kind == "chair" else 0.01 for kind in kinds}
+    size = np.array((0.5, 0.5, 0.9))
+    unnamed = pool_for(LIBRARY, RetrievalQuery("chair", size, False, "floor", senses, named=False))
+    named = pool_for(LIBRARY, RetrievalQuery("chair", size, False, "floor", senses))
+    assert {m.shape.category for m in unnamed.members} == set(kinds)
+    assert {m.shape.category for m in named.members} == {"chair"}
+
+
 @pytest.mark.parametrize("name", [c.name for c in CATEGORIES])
 def test_every_category_finds_something_in_the_built_in_library(name: str) -> None:
     prior = category(name).priors[0]

@@ -26,3 +26,12 @@ def test_legs_are_more_usual_than_plinths(usual, rare):
 
 def test_kinds_without_bases_are_all_as_usual():
     assert factor("sofa-grey-three") == 1.0
+
+
+def test_tables_are_usually_rectangular():
+    assert factor("table-trestle-x") > factor("table-round-tulip")
+
+
+def test_pictures_are_usually_rectangular():
+    assert factor("picture-hills-oak") == 1.0
+    assert 0.7 < factor("mirror-pebble") < 0.95

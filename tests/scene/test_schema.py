@@ -54,7 +54,7 @@ def test_scenes_from_before_the_photos_look_still_load(scene: Scene) -> None:
 )
 def test_a_wrong_file_is_refused_in_one_line(change: object, message: str) -> None:
     document = json.loads(scene_to_json(Scene()))
-    change(document)  # type: ignore[operator]
+    change(document)
     with pytest.raises(SceneError, match=message) as caught:
         scene_from_json(json.dumps(document))
     assert "\n" not in str(caught.value)

@@ -70,7 +70,7 @@ def test_pictures_nobody_would_take_are_told():
     good = ViewSurvey("a", 6, 0.2, 0.3, 0.0, 2)
     assert good.faults(4) == ()
     assert replace(good, asked=3).faults(4) == ("few objects",)
-    assert replace(good, floor=0.0, largest=0.9, near=0.5).faults(4) == ("no floor", "one thing fills it", "too near")
+    assert replace(good, floor=0.0, largest=0.9, near=0.5).faults(4) == ("no floor", "one object fills it", "too near")
 
 
 def test_finishes_and_room_styles_are_split():

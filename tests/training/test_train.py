@@ -58,7 +58,7 @@ def test_a_run_goes_on_where_it_stopped(kind: str, files: PictureFiles, tmp_path
             raise Cancelled("stopped")
         return learn(batch)
 
-    first._learn = learn_and_stop  # type: ignore[method-assign]
+    first._learn = learn_and_stop
     with pytest.raises(Cancelled):
         first.run(stop)
     second = trainer(kind, files, tmp_path / "parts.pt", 4)

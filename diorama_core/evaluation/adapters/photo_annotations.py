@@ -7,6 +7,7 @@ of another object), `front` (degrees: 0 toward the camera, 90 to the picture's r
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Literal, TypeVar
 
@@ -82,7 +83,7 @@ def read_annotations(path: Path) -> dict[str, AnnotatedPhoto]:
     Raises:
         InputError: one line, where the file is not laid out as the module says.
     """
-    photos = _validated(_ANNOTATIONS, path)
+    photos = _validated(_ANNOTATIONS.validate_python, path)
     for name, photo in photos.items():
         for index, annotated in enumerate(photo.objects):
             if isinstance(annotated.on, int) and not 0 <= annotated.on < len(photo.objects):
@@ -99,7 +100,7 @@ def read_intrinsics(folder: Path) -> dict[str, tuple[float, float, float, float]
     path = folder / "photos.json"
     if not path.is_file():
         return {}
-    return {record.id: record.K for record in _validated(_RECORDS, path) if record.K is not None}
+    return {record.id: record.K for record in _validated(_RECORDS.validate_python, path) if record.K is not None}
 
 
 def picture_of(folder: Path, name: str) -> Path | None:
@@ -108,9 +109,9 @@ def picture_of(folder: Path, name: str) -> Path | None:
     return next((path for path in named if path.is_file()), None)
 
 
-def _validated(adapter: TypeAdapter[T], path: Path) -> T:
+def _validated(validate: Callable[[object], T], path: Path) -> T:
     try:
-        return adapter.validate_python(read_json(path))
+        return validate(read_json(path))
     except ValidationError as error:
         first = error.errors(include_url=False, include_input=False)[0]
         place = ", ".join(str(p) for p in first["loc"])

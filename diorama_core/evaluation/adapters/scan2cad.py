@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
@@ -89,9 +90,9 @@ def _matrix(trs: dict[str, list[float]]) -> Float[np.ndarray, "4 4"]:
     return M
 
 
-def _model(record: dict[str, object], scan: Float[np.ndarray, "4 4"]) -> AlignedModel:
+def _model(record: dict[str, Any], scan: Float[np.ndarray, "4 4"]) -> AlignedModel:
     """Scan2CAD aligns to its own world; `scan` maps the ScanNet scan into that world."""
-    M = np.linalg.inv(scan) @ _matrix(record["trs"])  # type: ignore[arg-type]
+    M = np.linalg.inv(scan) @ _matrix(record["trs"])
     box = np.eye(4)
     box[:3, 3] = np.array(record["center"], dtype=np.float64)
     M = M @ box

@@ -98,7 +98,7 @@ def rooms_table(rooms: Sequence[RoomSurvey]) -> Table:
 def views_table(views: Sequence[ViewSurvey]) -> Table:
     """What the pictures show."""
     columns = (
-        Column("pictures", "d"), Column("objects asked for"), Column("floor"), Column("largest thing"),
+        Column("pictures", "d"), Column("objects asked for"), Column("floor"), Column("largest object"),
         Column("walls seen"), Column("faulty", "d", "↓"),
     )  # fmt: skip
     row = Row(
@@ -112,7 +112,7 @@ def views_table(views: Sequence[ViewSurvey]) -> Table:
             sum(bool(v.faults(MIN_ASKED)) for v in views),
         ),
     )
-    note = "Least, middle and greatest. Faulty: too few objects, no floor, one thing before all else, or too near."
+    note = "Least, middle and greatest. Faulty: too few objects, no floor, one object before all else, or too near."
     return Table("Pictures", columns, (row,), note)
 
 

@@ -231,10 +231,3 @@ def build_case(
         spent, waited = time.process_time() - begun, time.perf_counter() - wall
         failed = SceneScores.failed(len(view.asked))
         return None, CaseResult(case.name, failed, spent, waited, f"{type(error).__name__}: {error}")
-
-
-def without_times(bench: SystemBench) -> SystemBench:
-    """The same results with all times 0: what must be equal for equal seeds."""
-    return replace(
-        bench, results=tuple((n, tuple(replace(r, seconds=0.0, wall_s=0.0) for r in rows)) for n, rows in bench.results)
-    )

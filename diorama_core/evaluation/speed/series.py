@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import cast
 
 import numpy as np
 from jaxtyping import Float32
@@ -19,8 +18,8 @@ from diorama_core.evaluation.speed.large_scene import PICTURE, large_scene
 from diorama_core.evaluation.speed.meter import Cost, StageClock, cost_of, growth_exponent
 from diorama_core.export.gltf import glb_bytes
 from diorama_core.layout.recipes import recipe as layout_recipe
-from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.library.search import TextIndex, find
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.search import TextIndex, find_in
 from diorama_core.library.store.features import FeatureMatrix
 from diorama_core.pipeline.run import build_scene
 from diorama_core.progress import Progress
@@ -93,7 +92,7 @@ def stages_by_size(
 
 
 def stages_by_objects(library: ShapeLibrary, seed: int, counts: Sequence[int], progress: Progress) -> list[Series]:
-    """The renderer, every stage of a build, and export, for halls of more and more objects; pictures of one size."""
+    """The renderer, every stage of a build, and export, for scenes of more and more objects; pictures of one size."""
     found = Collected(OBJECTS)
     weights = np.cumsum([5.0, *(float(c) for c in counts)]) / (5.0 + sum(counts))
     _build(_large_scene_inputs(library, 12, seed), library, 0.0, Collected(OBJECTS), progress)  # makes ready the shapes
@@ -183,19 +182,9 @@ def words_by_library(library: ShapeLibrary, counts: Sequence[int], progress: Pro
     for k, count in enumerate(counts):
         progress.report(k / len(counts), f"words of {count:,} shapes")
         renamed = (replace(records[i % len(records)], id=f"shape_{i:07d}") for i in range(count))
-        listed = cast(ShapeLibrary, _Listed(tuple(renamed)))  # a search in words asks for nothing but records
-        found.add("index the words", count, cost_of(partial(TextIndex, listed.shapes())))
-        search: Callable[[], object] = partial(find, listed, "a small oak bookcase", NEAREST)
+        shapes = tuple(renamed)
+        found.add("index the words", count, cost_of(partial(TextIndex, shapes)))
+        search = partial(find_in, TextIndex(shapes), "a small oak bookcase", NEAREST)
         search()
         found.add("find by words", count, cost_of(search, 3))
     return found.series()
-
-
-class _Listed:
-    """A library of records alone."""
-
-    def __init__(self, shapes: tuple[Shape, ...]) -> None:
-        self._shapes = shapes
-
-    def shapes(self) -> tuple[Shape, ...]:
-        return self._shapes

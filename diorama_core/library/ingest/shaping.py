@@ -24,7 +24,7 @@ from diorama_core.library.ingest.relief import relief, turned
 from diorama_core.library.ingest.repair import Repaired, repaired
 from diorama_core.library.ingest.sink import Ingested
 from diorama_core.library.ingest.symmetry import symmetry_fold
-from diorama_core.library.record import Guess, Shape, ShapeLibrary, usual_contact_faces
+from diorama_core.library.record import Guess, Shape, ShapeLibrary, SymmetryFold, usual_contact_faces
 from diorama_core.library.surfaces import support_surfaces
 
 Painter = Callable[[ShapeLibrary, str], bytes]
@@ -187,7 +187,7 @@ def _whole(meshes: Sequence[trimesh.Trimesh]) -> trimesh.Trimesh:
     return Repaired(tuple(meshes), ()).whole
 
 
-def _record(source: Source, raw: RawModel, frame: Frame, fold: int) -> Shape:
+def _record(source: Source, raw: RawModel, frame: Frame, fold: SymmetryFold) -> Shape:
     given = source.given
     words = " ".join(words_of(source.path.stem))
     return Shape(
@@ -197,7 +197,7 @@ def _record(source: Source, raw: RawModel, frame: Frame, fold: int) -> Shape:
         size_m=(0.0, 0.0, 0.0),
         source=given.source or source.path.name,
         licence=given.licence or "unknown",
-        symmetry=fold,  # type: ignore[arg-type]  # one of the folds, from symmetry_fold
+        symmetry=fold,
         synonyms=given.synonyms,
         contact_faces=usual_contact_faces(taxonomy.category(frame.category).mount),
         guess=frame.guess,

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.artefacts import LabelledBox, Photo
+from diorama_core.artefacts import Box, LabelledBox, Photo
 from diorama_core.library.hyponyms import meanings
 from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN
-from diorama_core.models.boxes import overlaps
+from diorama_core.models.boxes import Detections, areas, overlaps
 from diorama_core.models.recogniser import Recogniser
 from diorama_core.progress import Progress
 from diorama_core.protocols import DetectionStage
@@ -23,6 +23,12 @@ MIN_SIDE_PX = 8.0
 SAME_IOU = 0.5
 """Two boxes that overlap at least so much are one object's."""
 SUGGESTIONS = 5
+FAINT, MOST_FAINT = 0.3, 300
+"""Score from which a box is worth a click on the object, and how many such boxes a photo has at most."""
+CLICK_SPREAD = 0.25
+"""How far from the middle of an object people click, as a share of its box (standard deviation)."""
+SMALLER_FIRST = 0.3
+"""Exponent of the box's area: of two that fit a click as well, the smaller is meant more often."""
 
 
 @dataclass(frozen=True)
@@ -71,6 +77,19 @@ def left_out(stage: OwnDetection, photo: Photo) -> int:
     """How many likely objects a build did not use, because it takes only those of which the detector is sure."""
     likely = OwnDetection(stage.recogniser, LIKELY, stage.most).detect(photo, (), Progress())
     return sum(box.score < stage.threshold for box in likely)
+
+
+def clicked_box(found: Detections, x: float, y: float) -> Box | None:
+    """The box that somebody means who clicks at (x, y), in photo pixels; None where no box holds the pixel."""
+    low, high = found.boxes[:, :2], found.boxes[:, 2:]
+    offset = (np.array([x, y]) - (low + high) / 2) / np.maximum(high - low, 1.0)
+    meant = found.scores * np.exp(-np.sum(offset**2, axis=1) / (2 * CLICK_SPREAD**2))
+    meant = meant / np.maximum(areas(found.boxes), 1.0) ** SMALLER_FIRST
+    holds = np.all(np.abs(offset) <= 0.5, axis=1)
+    if not holds.any():
+        return None
+    x1, y1, x2, y2 = (float(v) for v in found.boxes[np.argmax(np.where(holds, meant, -1.0))])
+    return x1, y1, x2, y2
 
 
 def names_of(recogniser: Recogniser, photo: Photo, boxes: Float[np.ndarray, "n 4"]) -> Sequence[tuple[str, ...]]:

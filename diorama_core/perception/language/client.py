@@ -278,7 +278,7 @@ class LmmClient:
             client,
             client.chat.completions.with_streaming_response.create(
                 model=self.settings.model,
-                messages=messages,  # type: ignore[arg-type]
+                messages=messages,  # type: ignore[arg-type]  # plain dictionaries, as the endpoint takes them
                 **extra,
             ) as response,
         ):

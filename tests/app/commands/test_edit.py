@@ -22,7 +22,8 @@ from diorama_app.session.client import Client
 from diorama_app.session.jobs import Jobs, Outcome
 from diorama_app.session.session import EditorSession
 from diorama_app.session.ui_thread import UiThread
-from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
+from diorama_app.web.viser_adapter import create_server, stop_server
+from diorama_app.web.visitors import Visitors
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
@@ -35,7 +36,7 @@ from tests.app.small_room import PlainLibrary, furnished_scene, make_project
 def session(tmp_path: Path) -> Iterator[EditorSession]:
     server = create_server(host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1"))
     made = EditorSession(server, PlainLibrary(), tmp_path / "projects", Client)
-    made.checker.look_at = lambda scene: None  # type: ignore[method-assign]  # its thread would post to the desk
+    made.checker.look_at = lambda scene: None  # its thread would post to the desk
     made.open_project(make_project(tmp_path / "projects" / "demo"))
     yield made
     made.close()

@@ -4,6 +4,7 @@ import asyncio
 from types import SimpleNamespace
 
 import pytest
+import viser
 
 from diorama_app.commands.registry import Command, CommandTable
 
@@ -26,23 +27,29 @@ def test_keys_are_written_as_people_write_them(hotkey, modifier, keys) -> None:
     assert Command("x", "Do it", lambda client: None).tooltip == "Do it"
 
 
-def test_every_command_is_registered_and_asks_for_itself() -> None:
-    asked, handlers = [], []
+class Palette(viser.GuiApi):
+    """Remembers the commands that are put on it, and what listens to each."""
 
-    def add_command(label, **options):
+    def __init__(self) -> None:
+        self.handlers: list = []
+
+    def add_command(self, label, **options):
         def listen(handler):
-            handlers.append((label, options, handler))
+            self.handlers.append((label, options, handler))
 
         return SimpleNamespace(on_trigger=listen)
 
+
+def test_every_command_is_registered_and_asks_for_itself() -> None:
+    asked, palette = [], Palette()
     table = CommandTable((Command("a", "A", lambda c: None, "A"), Command("b", "B", lambda c: None, hint="hint")))
-    table.register(SimpleNamespace(add_command=add_command), lambda command, client: asked.append((command.id, client)))
-    assert [(label, o["hotkey"], o["description"]) for label, o, _ in handlers] == [
+    table.register(palette, lambda command, client: asked.append((command.id, client)))
+    assert [(label, o["hotkey"], o["description"]) for label, o, _ in palette.handlers] == [
         ("A", "A", None),
         ("B", None, "hint"),
     ]
-    for _, _, handler in handlers:
-        asyncio.run(handler(SimpleNamespace(client_id=7)))
+    for _, _, handler in palette.handlers:
+        asyncio.run(handler(viser.CommandEvent(None, 7, handler)))
     assert asked == [("a", 7), ("b", 7)]
     assert "a" in table
     assert "c" not in table

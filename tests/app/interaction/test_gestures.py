@@ -15,6 +15,7 @@ from diorama_app.session.session import EditorSession
 from diorama_core.editing.collisions import Collisions
 from diorama_core.geometry.rotations import quaternion_wxyz
 from diorama_core.scene.types import Pose, yaw_rotation
+from tests.app import pointer
 
 
 @pytest.fixture
@@ -30,8 +31,9 @@ def settle(session: EditorSession) -> None:
     assert session.ui_thread.wait(20.0)
 
 
-def pick(gestures: Gestures, object_id: str, modifier: str | None = None, at=(0.5, 0.5)) -> None:
-    gestures.picked(object_id, SimpleNamespace(screen_pos=at, modifier=modifier))  # type: ignore[arg-type]
+def pick(gestures: Gestures, object_id: str, modifier: pointer.Modifier | None = None, at=pointer.MIDDLE) -> None:
+    visitor = gestures._client.viser_client
+    gestures.picked(object_id, pointer.clicked(visitor, object_id, at=at, modifier=modifier))
 
 
 def drag(session: EditorSession, gestures: Gestures, object_id: str, by: tuple, *, phases=("update", "end"), alt=False):
@@ -39,11 +41,15 @@ def drag(session: EditorSession, gestures: Gestures, object_id: str, by: tuple, 
     grabbed = session.scene.object(object_id).pose.position
     for phase in ("start", *phases):
         hand = grabbed if phase == "start" else grabbed + np.array(by)
-        event = SimpleNamespace(
-            phase=phase, modifier="alt" if alt else None, start_position=tuple(grabbed), end_position=tuple(hand)
-        )
-        gestures.dragged(object_id, event)  # type: ignore[arg-type]
-        settle(session)
+        send(session, gestures, object_id, phase, grabbed, hand, "alt" if alt else None)
+
+
+def send(session: EditorSession, gestures: Gestures, object_id: str, phase, grabbed, hand, modifier=None) -> None:
+    """One event of a drag."""
+    target = node(session, session.viewport.node_name(object_id))
+    event = pointer.dragged(gestures._client.viser_client, target, phase, grabbed, hand, modifier=modifier)
+    gestures.dragged(object_id, event)
+    settle(session)
 
 
 def shown_at(session: EditorSession, object_id: str) -> np.ndarray:
@@ -156,9 +162,7 @@ def test_a_drag_is_seen_while_it_lasts_and_one_step_when_it_ends(session, client
     seen = shown_at(session, "chair_1")
     assert np.linalg.norm(seen - start.object("chair_1").pose.position) > 0.1
     grabbed = start.object("chair_1").pose.position
-    end = SimpleNamespace(phase="end", modifier=None, start_position=tuple(grabbed), end_position=tuple(grabbed))
-    gestures.dragged("chair_1", end)
-    settle(session)
+    send(session, gestures, "chair_1", "end", grabbed, grabbed)
     after = session.scene.object("chair_1")
     np.testing.assert_allclose(after.pose.position, seen, atol=1e-6)
     assert after.corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-6)
@@ -229,9 +233,7 @@ def test_esc_puts_everything_back(session, client, gestures) -> None:
     drag(session, gestures, "chair_1", (0.5, 0.0, 0.0), phases=("update",))
     assert gestures.cancel()
     np.testing.assert_allclose(shown_at(session, "chair_1"), start.object("chair_1").pose.position)
-    drag_end = SimpleNamespace(phase="end", modifier=None, start_position=(0, 0, 0), end_position=(0, 0, 0))
-    gestures.dragged("chair_1", drag_end)
-    settle(session)
+    send(session, gestures, "chair_1", "end", (0, 0, 0), (0, 0, 0))
     assert session.scene is start
     assert not gestures.cancel()
 
@@ -246,10 +248,8 @@ def test_a_locked_thing_is_not_dragged_and_says_why(session, client, gestures) -
 def test_a_drag_ends_on_the_scene_as_it_is_by_then(session, client, gestures) -> None:
     drag(session, gestures, "chair_1", (0.2, 0.0, 0.0), phases=("update",))
     editing.rename(client, "lamp_1", "a lamp renamed meanwhile")
-    grabbed = tuple(session.scene.object("chair_1").pose.position)
-    end = SimpleNamespace(phase="end", modifier=None, start_position=grabbed, end_position=grabbed)
-    gestures.dragged("chair_1", end)
-    settle(session)
+    grabbed = session.scene.object("chair_1").pose.position
+    send(session, gestures, "chair_1", "end", grabbed, grabbed)
     assert session.scene.object("lamp_1").label == "a lamp renamed meanwhile"
     assert session.scene.object("chair_1").pose.position[0] != -0.9
 

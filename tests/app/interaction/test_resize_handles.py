@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import asyncio
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +11,7 @@ from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_core.editing.stretching import HANDLES, handle_place
 from diorama_core.scene.types import Scene
+from tests.app import pointer
 
 HANDLE = {h.name: h for h in HANDLES}
 
@@ -55,14 +55,13 @@ def pull(session: EditorSession, name: str, by_m: float, phases=("start", "updat
     outward = item.pose.R_world_object @ np.array(handle.along)
     for phase in phases:
         hand = grabbed if phase == "start" else grabbed + by_m * outward
-        event = SimpleNamespace(
-            phase=phase,
-            modifier="alt" if alt else None,
-            start_position=tuple(grabbed),
-            end_position=tuple(hand),
-        )
-        asyncio.run(nodes(session)[f"{NODE}/{name}"]._impl.drag_cb[0].callback(event))
-        assert session.ui_thread.wait(20.0)
+        send(session, nodes(session)[f"{NODE}/{name}"], phase, grabbed, hand, "alt" if alt else None)
+
+
+def send(session: EditorSession, node, phase: str, grabbed, hand, modifier=None) -> None:
+    visitor = session.clients[0].viser_client
+    asyncio.run(node._impl.drag_cb[0].callback(pointer.dragged(visitor, node, phase, grabbed, hand, modifier=modifier)))
+    assert session.ui_thread.wait(20.0)
 
 
 def test_every_face_has_a_handle_in_its_middle(session, handles) -> None:
@@ -139,8 +138,6 @@ def test_a_thing_deleted_meanwhile_stays_deleted(session, client, handles) -> No
     pull(session, "top", 0.3, phases=("start", "update"))
     node = nodes(session)[f"{NODE}/top"]
     editing.delete_selected(client)
-    event = SimpleNamespace(phase="end", modifier=None, start_position=(0.0, 0, 0), end_position=(0.0, 0, 0.1))
-    asyncio.run(node._impl.drag_cb[0].callback(event))
-    assert session.ui_thread.wait(20.0)
+    send(session, node, "end", (0.0, 0, 0), (0.0, 0, 0.1))
     assert not session.scene.has_object("chair_1")
     assert not handles.pulling

@@ -22,7 +22,7 @@ class Moody:
 
 
 def test_a_line_stands_where_the_panel_was_until_it_can_be_drawn(page: Page) -> None:
-    placed = InPlace(page, "The list", lambda: Moody(page))  # type: ignore[arg-type]
+    placed = InPlace(page, "The list", lambda: Moody(page))
     folder = next(handle for kind, _, handle in page.made if kind == "folder")
     placed.refresh()
     assert (placed.panel.drawn, page.html) == (1, "")

@@ -74,19 +74,19 @@ def test_what_is_no_picture_is_refused_and_loses_nothing(session, client, page, 
 def test_boxes_are_drawn_named_reshaped_deleted_undone_and_saved(session, client, page, panel) -> None:
     page.upload("Upload a photo", "room.png", picture())
     page.change("named", "sofa")
-    panel._drawn(Drawn((5.0, 5.0, 30.0, 30.0)))
+    panel._boxes.happened(Drawn((5.0, 5.0, 30.0, 30.0)))
     assert client.selected_box is None
     page.change("named", "desk")
     assert labels(session) == ["sofa"], "the name is of the next box, not of the last"
-    panel._drawn(Drawn((20.0, 10.0, 60.0, 40.0)))
+    panel._boxes.happened(Drawn((20.0, 10.0, 60.0, 40.0)))
     assert labels(session) == ["sofa", "desk"]
-    panel._drawn(Selected(0))
+    panel._boxes.happened(Selected(0))
     assert "Name of the selected box" in page.html
     page.change("named", "beanbag")
     assert labels(session) == ["beanbag", "desk"]
-    panel._drawn(Reshaped(0, (6.0, 6.0, 31.0, 31.0)))
+    panel._boxes.happened(Reshaped(0, (6.0, 6.0, 31.0, 31.0)))
     assert session.inputs.boxes[0].box == (6.0, 6.0, 31.0, 31.0)
-    panel._drawn(Deleted(1))
+    panel._boxes.happened(Deleted(1))
     assert labels(session) == ["beanbag"]
     session.autosave.flush()
     assert Project.open(session.project.folder).load_inputs().boxes == session.inputs.boxes
@@ -102,14 +102,14 @@ def test_boxes_are_drawn_named_reshaped_deleted_undone_and_saved(session, client
 def test_events_of_boxes_that_are_gone_do_nothing(session, client, page, panel) -> None:
     before = session.inputs
     for event in (Deleted(7), Named(-1, "x"), Reshaped(3, (1.0, 1.0, 9.0, 9.0)), Selected(12)):
-        panel._drawn(event)
+        panel._boxes.happened(event)
     assert session.inputs is before
     assert client.selected_box is None
 
 
 def test_an_unfinished_project_opens_where_it_was_left(session, client, page, panel) -> None:
     page.upload("Upload a photo", "room.png", picture())
-    panel._drawn(Drawn((5.0, 5.0, 30.0, 30.0)))
+    panel._boxes.happened(Drawn((5.0, 5.0, 30.0, 30.0)))
     unfinished = session.project
     session.visit(client, Project.open(session.projects_dir / "demo"), "")
     assert not client.view.canvas.is_open

@@ -14,8 +14,8 @@ def test_the_example_is_copied_with_its_photo_and_retained_as_edited(tmp_path: P
     assert scene.architecture.floor is not None
     assert scene.architecture.by_role("wall")
     assert (inputs.photo.width, inputs.photo.height) == (
-        scene.camera.intrinsics.width,  # type: ignore[union-attr]
-        scene.camera.intrinsics.height,  # type: ignore[union-attr]
+        scene.camera.intrinsics.width,
+        scene.camera.intrinsics.height,
     )
     project.scene_path.write_text(project.scene_path.read_text().replace('"label": "sofa"', '"label": "settee"'))
     again = example_project(tmp_path)

@@ -3,20 +3,23 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 
 from diorama_app.projects.report import build_report, write_arrangements
 from diorama_core.api import Reconstruction
-from diorama_core.artefacts import CameraEstimate, LayoutReport
+from diorama_core.artefacts import (
+    LayoutReport,
+)
+from diorama_core.pipeline.runner import StageRun
+from diorama_core.pipeline.stages import embedded_stages
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
-from diorama_core.provenance import AttitudeSource, CameraSource, DepthSource, FocalSource, HeadingSource
 from diorama_core.retrieval import appearance_similarity
 from diorama_core.scene.schema import scene_from_json
 from diorama_core.scene.types import Scene
 from tests.app.small_room import PlainLibrary, furnished_scene, make_project
+from tests.built import built_scene
 
 
 class CountingLayout:
@@ -25,8 +28,11 @@ class CountingLayout:
     def __init__(self, *pairs: int) -> None:
         self.pairs = list(pairs)
 
-    def optimise(self, scene: Scene, progress: Progress) -> tuple[Scene, LayoutReport]:
+    def optimise(self, scene: Scene, progress: Progress, preview: object = None) -> tuple[Scene, LayoutReport]:
         return scene, LayoutReport("feasible", {}, {"overlapping_pairs": float(self.pairs.pop(0))}, 0.1)
+
+
+RUNS = (StageRun("pose", "Fit", 1.25, cached=False), StageRun("layout", "Feasible", 0.5, cached=True))
 
 
 @pytest.fixture
@@ -42,24 +48,15 @@ def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     project: Project = make_project(tmp_path / "room")
 
     def made(*pairs: int):
-        runs = (
-            SimpleNamespace(stage="pose", seconds=1.25, cached=False),
-            SimpleNamespace(stage="layout", seconds=0.5, cached=True),
-        )
-        built = SimpleNamespace(
-            observed=furnished_scene(),
-            runs=runs,
-            notes=("a note",),
-            camera=CameraEstimate((), 0.5, CameraSource(FocalSource.GIVEN, AttitudeSource.GIVEN, HeadingSource.GIVEN)),
-            inputs=SimpleNamespace(depth_source=DepthSource.MEASURED),
-        )
-        return SimpleNamespace(
-            project=project,
-            built=built,
-            stages=SimpleNamespace(layout=CountingLayout(*pairs), detection=None),
-            library=PlainLibrary(),
+        built, library = replace(built_scene(furnished_scene()), runs=RUNS, notes=("a note",)), PlainLibrary()
+        return Reconstruction(
             scene=replace(furnished_scene(), metrics=(("structure", 1.0),)),
+            library=library,
+            textures={},
+            built=built,
+            stages=replace(embedded_stages(built.inputs, library), layout=CountingLayout(*pairs)),
             layout=LayoutReport("feasible", {}, {"overlapping_pairs": 1.0}, 0.1),
+            project=project,
         )
 
     return made
@@ -94,4 +91,3 @@ def test_the_report_is_json_and_says_what_was_built(room) -> None:
     assert report["metrics"] == {"structure": 1.0}
     assert report["notes"] == ["a note"]
     assert {"project", "scenes", "planes", "camera"} <= set(report)
-    assert Reconstruction.__dataclass_fields__.keys() >= {"project", "built", "stages", "layout"}

@@ -10,19 +10,18 @@ from pathlib import Path
 import pytest
 import torch
 
-from diorama_app.reconstruction.networks import NO_DETECTOR, find_furniture, get_networks
+from diorama_app.reconstruction import networks
+from diorama_app.reconstruction.networks import NO_DETECTOR, detect_with_networks, find_furniture, get_networks
 from diorama_app.reconstruction.text_to_scene import COMPOSED, describe_room, how_pictures_come
 from diorama_app.session.client import Client
-from diorama_app.session.session import EditorSession
-from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
 from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.errors import EditRefused, InputError, UnavailableError
 from diorama_core.models import own_weights
 from diorama_core.models.manifest import ModelFile, Network
 from diorama_core.models.store import ModelStore
 from diorama_core.project.storage import Project
-from tests.app.people import LocalClient, join
-from tests.app.small_room import PlainLibrary, make_project, plain_photo
+from tests.app.people import LocalClient
+from tests.app.small_room import plain_photo
 from tests.models import tiny_networks
 from tests.models.stub_hub import SHA, Hub, serving
 from tests.pipeline.test_presets import BOX, HEIGHT, WIDTH, _Yolox, install
@@ -52,16 +51,6 @@ def hub(monkeypatch: pytest.MonkeyPatch) -> Iterator[Hub]:
     with serving(Hub({"owner/name/model.onnx": GRAPH})) as running:
         monkeypatch.setenv("HF_ENDPOINT", running.address)
         yield running
-
-
-@pytest.fixture
-def client(tmp_path: Path) -> Iterator[Client]:
-    server = create_server(host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1"))
-    session = EditorSession(server, PlainLibrary(), tmp_path / "projects", Client)
-    session.open_project(make_project(tmp_path / "projects" / "demo"))
-    yield join(session)
-    session.close()
-    stop_server(server)
 
 
 def _told(client: Client) -> list[str]:
@@ -121,6 +110,29 @@ def begun(folder: Path, inputs: Inputs) -> Project:
     project = Project.create(folder)
     project.save_inputs(inputs)
     return project
+
+
+def test_networks_are_downloaded_and_detect_at_once(
+    store: ModelStore, client: Client, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    photo = plain_photo(WIDTH, HEIGHT)
+    client.session.open_project(begun(tmp_path / "projects" / "tiny", Inputs(photo)))
+    example = (torch.zeros(1, 3, 416, 416),)
+    graph = tiny_networks.export(_Yolox(), example, tmp_path / "y.onnx", ["images"], ["output"])
+    accepted: list[str] = []
+
+    def pulled(into: ModelStore, missing: tuple[Network, ...], *, accept, progress) -> tuple[Network, ...]:
+        assert accept(missing), "the licences shown beside the button are accepted"
+        accepted.extend(n.id for n in missing)
+        install(into, "yolox-nano", [graph])
+        return missing
+
+    monkeypatch.setattr(networks, "pull", pulled)
+    detect_with_networks(client)
+    assert _told(client) == []
+    assert "yolox-nano" in accepted
+    assert client.session.inputs is not None
+    assert "chair" in [b.label for b in client.session.inputs.boxes]
 
 
 def test_found_furniture_joins_the_boxes_drawn_by_hand(

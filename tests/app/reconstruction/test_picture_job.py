@@ -25,7 +25,7 @@ def test_sizes_follow_the_photo_the_view_and_what_films_need(client: Client) -> 
 @pytest.mark.parametrize(("view", "width"), [("here", 15), ("photo", MAX_WIDTH + 1), ("turntable", MAX_FILM_WIDTH + 1)])
 def test_widths_beyond_the_limits_are_refused_in_one_line(client: Client, view: str, width: int) -> None:
     with pytest.raises(InputError, match=f"{width} pixels wide"):
-        picture_size(client, view, width)  # type: ignore[arg-type]
+        picture_size(client, view, width)
 
 
 def test_nothing_to_draw_is_said(client: Client) -> None:

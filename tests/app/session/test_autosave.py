@@ -20,7 +20,8 @@ from diorama_app.projects import manage as project_care
 from diorama_app.reconstruction.photo_outlines import PhotoOutlines
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
-from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
+from diorama_app.web.viser_adapter import create_server, stop_server
+from diorama_app.web.visitors import Visitors
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
 from tests.app.people import join
@@ -51,7 +52,7 @@ def test_a_field_that_holds_no_number_says_so(session: EditorSession, x: float) 
     before = session.scene
     client.post(lambda: session.edit("move", moved_to(x), by=client))
     assert session.ui_thread.wait()
-    told = client.viser_client.told  # type: ignore[attr-defined]
+    told = client.viser_client.told
     assert len(told) == 1
     assert "Something went wrong" not in told[0]
     assert "value" in told[0]
@@ -92,7 +93,7 @@ def test_an_edit_is_saved_and_the_others_are_redrawn_when_a_panel_fails(session:
     edited(session, client)
     assert saved_label(session) == "throne"
     assert fine.count >= 2, "the panels after the broken one, of everybody"
-    told = client.viser_client.told  # type: ignore[attr-defined]
+    told = client.viser_client.told
     assert len(told) == 1, told
     assert "Broken" in told[0]
     assert "nothing was changed" not in told[0]
@@ -143,7 +144,7 @@ def test_another_projects_damaged_file_is_that_projects_matter(session: EditorSe
     client.panels = [projects_panel(session, client)]
     edited(session, client)
     assert saved_label(session) == "throne"
-    assert client.viser_client.told == []  # type: ignore[attr-defined]
+    assert client.viser_client.told == []
 
 
 @pytest.mark.parametrize("photo", [bomb_png(20_000, 12_000), b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 9 9\n"])
@@ -154,7 +155,7 @@ def test_another_projects_photo_that_cannot_be_shown_is_left_out(session: Editor
     client.panels = [projects_panel(session, client)]
     edited(session, client)
     assert saved_label(session) == "throne"
-    assert client.viser_client.told == []  # type: ignore[attr-defined]
+    assert client.viser_client.told == []
 
 
 def projects_panel(session: EditorSession, client: Client) -> Projects:

@@ -24,7 +24,7 @@ def reports(said):
         on_progress=lambda: said.append("progress"),
         on_end=said.append,
     )
-    made.wait = ui_thread.wait  # type: ignore[attr-defined]
+    made.wait = ui_thread.wait
     yield made
     ui_thread.stop()
 

@@ -37,9 +37,9 @@ def viser_client(drawer: object = None) -> LocalClient:
     class Server:
         scene = gui = None
 
-    made = LocalClient(Server(), 1)  # type: ignore[arg-type]
+    made = LocalClient(Server(), 1)
     if drawer is not None:
-        made.local_storage = drawer  # type: ignore[assignment]
+        made.local_storage = drawer
     return made
 
 

@@ -11,7 +11,8 @@ from diorama_app.commands.edit import rename
 from diorama_app.reconstruction import build_job as work
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
-from diorama_app.web.viser_adapter import Visitors, create_server, stop_server
+from diorama_app.web.viser_adapter import create_server, stop_server
+from diorama_app.web.visitors import Visitors
 from diorama_core.errors import DioramaError, EditRefused
 from diorama_core.project import storage
 from diorama_core.project.storage import Project
@@ -43,7 +44,7 @@ def test_the_second_server_only_looks_and_says_who_has_it(new_room: NewRoom, tmp
     first.open_project(project)
     client = join(second)
     second.open_project(Project.open(project.folder))
-    assert "open in the editor of" in client.viser_client.told[-1]  # type: ignore[attr-defined]
+    assert "open in the editor of" in client.viser_client.told[-1]
     for act in (
         lambda: rename(client, "chair_1", "throne"),
         lambda: second.undo(client),
@@ -89,7 +90,7 @@ def test_a_damaged_scene_opens_with_the_newest_version_that_can_be_read(
     client = join(session)
     session.open_project(project)
     assert session.scene == furnished_scene()
-    told = client.viser_client.told[-1]  # type: ignore[attr-defined]
+    told = client.viser_client.told[-1]
     assert "is shown, since the scene file is not valid JSON" in told
     assert len(told) < 400
 
@@ -101,4 +102,4 @@ def test_a_damaged_photo_does_not_keep_the_scene_shut(new_room: NewRoom, tmp_pat
     client = join(session)
     session.open_project(project)
     assert session.scene == furnished_scene()
-    assert "photo cannot be read back" in client.viser_client.told[-1]  # type: ignore[attr-defined]
+    assert "photo cannot be read back" in client.viser_client.told[-1]

@@ -40,7 +40,7 @@ def blocked(ui_thread: UiThread) -> threading.Event:
 def test_tasks_of_one_browser_run_in_order(ui_thread: UiThread) -> None:
     done: list[int] = []
     for i in range(50):
-        ui_thread.post(lambda i=i: done.append(i), client_id=1)  # type: ignore[misc]
+        ui_thread.post(lambda i=i: done.append(i), client_id=1)
     assert ui_thread.wait()
     assert done == list(range(50))
 
@@ -74,7 +74,7 @@ def test_what_a_departed_browser_asked_for_is_dropped(ui_thread: UiThread) -> No
 def test_a_newer_task_of_the_same_key_replaces_the_one_that_waits(ui_thread: UiThread) -> None:
     go, done = blocked(ui_thread), []
     for i in range(200):
-        ui_thread.post(lambda i=i: done.append(i), key="drag", client_id=1)  # type: ignore[misc]
+        ui_thread.post(lambda i=i: done.append(i), key="drag", client_id=1)
     ui_thread.post(lambda: done.append(-1), key="drag", client_id=2)
     go.set()
     assert ui_thread.wait()

@@ -4,17 +4,20 @@ import asyncio
 import threading
 
 import pytest
+from websockets.asyncio.server import ServerConnection
+from websockets.server import ServerProtocol
+from websockets.typing import Subprotocol
 
 from diorama_app.web.bridge import Bridge
 
 
-class Connection:
+class Connection(ServerConnection):
     """Works in one loop only, as websockets do."""
-
-    subprotocol = "viser-v1"
 
     def __init__(self) -> None:
         self.loop = asyncio.get_running_loop()
+        self.protocol = ServerProtocol()
+        self.protocol.subprotocol = Subprotocol("viser-v1")
         self.sent: list[bytes] = []
         self.coming: asyncio.Queue[bytes] = asyncio.Queue()
 
@@ -46,14 +49,14 @@ def test_messages_cross_from_one_loop_to_the_other_and_so_does_the_end(home: asy
         return Connection()
 
     connection = asyncio.run_coroutine_threadsafe(made(), home).result(5.0)
-    bridge = Bridge(connection, home)  # type: ignore[arg-type]
+    bridge = Bridge(connection, home)
     assert bridge.subprotocol == "viser-v1"
 
     async def talk() -> None:
         await bridge.send(b"hello")
         home.call_soon_threadsafe(connection.coming.put_nowait, b"hi")
         assert await bridge.recv() == b"hi"
-        waiting = asyncio.create_task(bridge.recv())  # type: ignore[arg-type]
+        waiting = asyncio.create_task(bridge.recv())
         await asyncio.sleep(0.05)
         waiting.cancel()
         with pytest.raises(asyncio.CancelledError):

@@ -1,9 +1,10 @@
 from __future__ import annotations
 
 import html
-from types import SimpleNamespace
+import json
 
 import pytest
+import viser
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -58,15 +59,26 @@ def test_clicks_arrive_and_what_others_write_is_ignored(page: Page) -> None:
     page.act("run", "there")
     assert told == [Action("run", "there", False)]
     hidden = next(h for kind, label, h in page.made if label == "·")
-    for junk in ("", "hello", "[1]", '{"do": "x"}', "null"):
+    for junk in ("", "hello", "[1]", '{"do": "x"}', '[{"do": "x"}]', "null"):
         hidden.value = junk
         page._told(hidden)
     assert len(told) == 1
-    hidden.value = '{"do": "run", "arg": "there", "add": false}'
+    hidden.value = '[{"do": "run", "arg": "there", "add": false, "number": 9}]'
     for callback in hidden._impl.update_cb:
         with pytest.raises(StopIteration):
-            callback(SimpleNamespace(client_id=None, target=hidden)).send(None)
+            callback(viser.GuiEvent(None, None, hidden)).send(None)
     assert len(told) == 1, "the program's own writing is no click"
+
+
+def test_actions_that_overtake_each_other_are_each_told_once(page: Page) -> None:
+    told: list[Action] = []
+    LiveHtml(page, told.append)
+    hidden = next(h for kind, label, h in page.made if label == "·")
+    said = [{"do": "run", "arg": name, "add": False, "number": k + 1} for k, name in enumerate("abc")]
+    for message in (said[:1], said, said[1:], said[:2]):
+        hidden.value = json.dumps(message)
+        page._told(hidden)
+    assert [action.arg for action in told] == ["a", "b", "c"]
 
 
 def test_floating_html_starts_over_each_time(page: Page) -> None:

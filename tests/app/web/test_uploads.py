@@ -33,8 +33,10 @@ def running(tmp_path: Path) -> Iterator[Running]:
 
 
 def in_flight(running: Running) -> dict[str, dict]:
-    guis = [running.server.gui, *(c.gui for c in running.server.get_clients().values())]
-    return {uuid: state for gui in guis for uuid, state in gui._current_file_upload_states.items()}  # type: ignore[misc]
+    """Uploads under way in all projects."""
+    servers = [e.server for e in running.workspace.editors]
+    guis = [gui for s in servers for gui in (s.gui, *(c.gui for c in s.get_clients().values()))]
+    return {uuid: state for gui in guis for uuid, state in gui._current_file_upload_states.items()}
 
 
 def settled(running: Running) -> dict[str, dict]:
@@ -78,6 +80,40 @@ def test_uploads_at_once_are_counted_over_all_pages(running: Running) -> None:
     assert len(states) == MAX_UPLOADS_IN_FLIGHT
     owners = [s["client_id"] for s in states.values()]
     assert max(owners.count(o) for o in owners) == MAX_UPLOADS_PER_CLIENT
+    for page in pages:
+        page.close()
+
+
+def test_uploads_are_counted_over_all_projects_of_the_server(running: Running, tmp_path: Path) -> None:
+    for name in ("second", "third"):
+        make_project(tmp_path / "projects" / name)
+    pages = [WirePage(running.port, query=f"?project={name}") for name in ("demo", "second", "third") for _ in range(2)]
+    for page in pages:
+        button = page.element("Upload a photo", "UploadButton")
+        for i in range(MAX_UPLOADS_PER_CLIENT + 1):
+            page.begin_upload(button, f"{i}.png", 1_000_000, 2)
+    states = settled(running)
+    assert len(running.workspace.editors) == 3
+    assert len(states) == MAX_UPLOADS_IN_FLIGHT
+    for page in pages:
+        page.close()
+    deadline = time.monotonic() + 10.0
+    while in_flight(running):
+        assert time.monotonic() < deadline, "uploads of pages that are gone are given up"
+        time.sleep(0.05)
+    page = WirePage(running.port, query="?project=third")
+    page.begin_upload(page.element("Upload a photo", "UploadButton"), "next.png", 1_000_000, 2)
+    assert [s["filename"] for s in settled(running).values()] == ["next.png"]
+    page.close()
+
+
+def test_what_is_announced_together_is_bounded_over_all_projects(running: Running, tmp_path: Path) -> None:
+    make_project(tmp_path / "projects" / "second")
+    pages = [WirePage(running.port, query=f"?project={name}") for name in ("demo", "second") for _ in range(2)]
+    for page in pages:
+        page.begin_upload(page.element("Upload a photo", "UploadButton"), "large.png", MAX_UPLOAD_BYTES, 256)
+    states = settled(running)
+    assert 0 < sum(s["total_bytes"] for s in states.values()) <= MAX_BYTES_IN_FLIGHT
     for page in pages:
         page.close()
 

@@ -1,25 +1,41 @@
 from __future__ import annotations
 
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from PIL import Image
 
+from diorama_core.artefacts import Inputs, Photo
 from diorama_core.errors import InputError
 from diorama_core.evaluation.benchmarks.case_pictures import SIZE, case_picture, case_writer, write_picture
+from diorama_core.pipeline.run import Built
 from diorama_core.scene.types import Scene
+from diorama_core.synthesis.truth import TruthView
+from tests.built import built_scene
 from tests.primitives import PrimitiveLibrary, box_room, place
 from tests.synthetic_rooms import look
 
 LIBRARY = PrimitiveLibrary()
-VIEW = SimpleNamespace(inputs=SimpleNamespace(photo=SimpleNamespace(rgb=np.full((60, 80, 3), 200, np.uint8))))
+GREY = np.full((60, 80, 3), 200, np.uint8)
+NOTHING = np.full(GREY.shape[:2], -1, np.int32)
+VIEW = TruthView(
+    inputs=Inputs(Photo(GREY, "grey.png", (80, 60))),
+    scene=Scene(),
+    normals_world=np.zeros(GREY.shape, np.float32),
+    plane_ids=NOTHING,
+    room_plane_ids=NOTHING,
+    room_depth_m=np.zeros(GREY.shape[:2], np.float32),
+    object_ids=NOTHING,
+    empty_room=GREY,
+    amodal_boxes=(),
+    visible_fraction=np.zeros(0),
+)
 
 
-def built(camera: bool = True):
+def built(camera: bool = True) -> Built:
     scene = Scene(look(size=(80, 60)) if camera else None, box_room(), (place(LIBRARY, "t", "table", (0, 2.5, 0.36)),))
-    return SimpleNamespace(scene=scene, textures={})
+    return built_scene(scene)
 
 
 def test_a_strip_is_the_photo_and_two_views_of_every_result() -> None:

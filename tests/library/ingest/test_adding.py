@@ -73,8 +73,8 @@ def folder(tmp_path: Path) -> Path:
 
 def added(folder: Path, library: StoredLibrary, given: Given | None = None, **options: object) -> Added:
     paths, skipped = model_files(folder)
-    found = sources(folder, paths, given or Given(), options.pop("table", {}))  # type: ignore[arg-type]
-    return add_models(found, library, options.pop("pool", Here()), skipped=skipped, **options)  # type: ignore[arg-type]
+    found = sources(folder, paths, given or Given(), options.pop("table", {}))
+    return add_models(found, library, options.pop("pool", Here()), skipped=skipped, **options)
 
 
 @pytest.fixture

@@ -99,7 +99,7 @@ def test_a_size_that_no_unit_explains_is_scaled(few: KnownShapes) -> None:
 )
 def test_what_makes_no_sense_is_refused(changes: dict[str, object], message: str) -> None:
     with pytest.raises(InputError, match=message):
-        Given(**changes)  # type: ignore[arg-type]
+        Given(**changes)
 
 
 def test_axes_and_their_names() -> None:

@@ -45,7 +45,7 @@ def ingested(name: str, category: str = "box", height: float = 0.5, **changes: o
         triangles=12,
         guess=Guess(sure, sure, sure, sure),
     )
-    record = dataclasses.replace(record, **changes)  # type: ignore[arg-type]
+    record = dataclasses.replace(record, **changes)
     glb = trimesh.Scene(box).export(file_type="glb")
     return Ingested(record, glb, b"png", f"key of {name} {height}", ("no normals; computed",))
 
@@ -135,7 +135,7 @@ def test_threads_share_a_library(library: StoredLibrary) -> None:
 
 @pytest.mark.unchecked
 def test_a_failed_batch_leaves_nothing(library: StoredLibrary) -> None:
-    broken = dataclasses.replace(ingested("b"), source_key=None)  # type: ignore[arg-type]
+    broken = dataclasses.replace(ingested("b"), source_key=None)
     with pytest.raises(LibraryError, match="NOT NULL"):
         library.add_all([ingested("a"), broken])
     assert len(library) == 0

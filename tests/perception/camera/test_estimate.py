@@ -22,7 +22,7 @@ NOTHING = CameraSource(FocalSource.ASSUMED, AttitudeSource.ASSUMED, HeadingSourc
 
 def inputs_of(rgb: np.ndarray, **more: object) -> Inputs:
     size = (rgb.shape[1], rgb.shape[0])
-    return Inputs(Photo(rgb=rgb, name="room.png", original_size=size), **more)  # type: ignore[arg-type]
+    return Inputs(Photo(rgb=rgb, name="room.png", original_size=size), **more)
 
 
 def estimate(inputs: Inputs) -> CameraEstimate:

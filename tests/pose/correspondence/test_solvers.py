@@ -21,7 +21,7 @@ GRID = TemplateGrid(elevations_deg=(15.0, 30.0), azimuths=18, size_px=160)
 
 @cache
 def solver(kind: str) -> CorrespondencePose:
-    return CorrespondencePose(LIBRARY, kind, grid=GRID)  # type: ignore[arg-type] # a parameter of the tests
+    return CorrespondencePose(LIBRARY, kind, grid=GRID)  # a parameter of the tests
 
 
 def posed(room: Room, kind: str) -> tuple[PosedCandidates, ...]:

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
-from diorama_core.appearance.photo_look import photo_look, texture_name
+from diorama_core.appearance.photo_appearance import photo_appearance, texture_name
 from diorama_core.artefacts import DetectedObject
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.render.picture import picture
@@ -54,7 +54,7 @@ def photo() -> np.ndarray:
 
 def test_a_picture_wears_the_photo(photo) -> None:
     scene = hung("picture-hills-oak", worn=False)
-    look = photo_look(photo, detected(scene), scene, LIBRARY)
+    look = photo_appearance(photo, detected(scene), scene, LIBRARY)
     (material,) = (m for m in look.materials["picture_1"] if m.slot == "picture")
     found = look.pictures[str(material.texture)]
     want = cv2.resize(art(), found.shape[1::-1], interpolation=cv2.INTER_AREA).astype(float)
@@ -69,7 +69,7 @@ def test_a_picture_wears_the_photo(photo) -> None:
 
 def test_another_shape_takes_the_look(photo) -> None:
     scene = hung("picture-hills-oak", worn=False)
-    look = photo_look(photo, detected(scene), scene, LIBRARY)
+    look = photo_appearance(photo, detected(scene), scene, LIBRARY)
     worn = look.applied(scene)
     other = LIBRARY.shape("picture-portrait")
     swapped = replace(worn.objects[0], shape_id=other.id, shape_size_m=other.size_m)
@@ -85,13 +85,13 @@ def test_what_stands_before_it_is_not_on_it(photo) -> None:
     mask[(y1 + y2) // 2 :, (x1 + x2) // 2 :] = True
     before = np.where(mask[..., None], (0, 255, 0), photo).astype(np.uint8)
     lamp = DetectedObject("lamp_1", "lamp", "lamp", (0.0, 0.0, 9.0, 9.0), mask & detected(scene)[0].mask, 2, 1.0)
-    look = photo_look(before, (*detected(scene), lamp), scene, LIBRARY)
+    look = photo_appearance(before, (*detected(scene), lamp), scene, LIBRARY)
     assert all(not (p == (0, 255, 0)).all(axis=-1).any() for p in look.pictures.values())
 
 
 def test_without_a_camera_nothing_is_taken(photo) -> None:
     scene = replace(hung("picture-hills-oak", worn=False), camera=None)
-    assert not photo_look(photo, detected(hung("picture-hills-oak", worn=False)), scene, LIBRARY).materials
+    assert not photo_appearance(photo, detected(hung("picture-hills-oak", worn=False)), scene, LIBRARY).materials
 
 
 def test_names_tell_pictures_apart() -> None:

@@ -30,7 +30,7 @@ Picture = UInt8[np.ndarray, "_ _ 3"]
 
 
 @dataclass(frozen=True, eq=False)
-class PhotoLook:
+class PhotoAppearance:
     """Materials by object id, and their pictures by name."""
 
     materials: Mapping[str, tuple[PhotoMaterial, ...]]
@@ -52,16 +52,15 @@ class _Seen:
     faces: tuple[Face, ...]
     view: SurfaceView | None
     pixels: tuple[SlotPixels, ...]
-    visible: Bool[np.ndarray, "h w"]
 
 
-def photo_look(
+def photo_appearance(
     rgb: UInt8[np.ndarray, "h w 3"],
     objects: tuple[DetectedObject, ...],
     scene: Scene,
     library: ShapeLibrary,
     illuminant_rgb: tuple[float, float, float] = (1.0, 1.0, 1.0),
-) -> PhotoLook:
+) -> PhotoAppearance:
     """What the photo shows of the scene's objects.
 
     Args:
@@ -72,7 +71,7 @@ def photo_look(
         illuminant_rgb: Linear colour of the light that the photo was freed of; that of the scene's light.
     """
     if scene.camera is None:
-        return PhotoLook({}, {})
+        return PhotoAppearance({}, {})
     found = {o.id: o for o in objects}
     seen = [
         _seen(item, _parts(library, item), rgb, found[item.id], objects, scene.camera)
@@ -89,7 +88,7 @@ def photo_look(
         made = [(_face_material(one.item, face), face.picture) for face in one.faces] + _surfaces(one, rgb, falls)
         materials[one.item.id] = tuple(material for material, _ in made)
         pictures |= {m.texture: picture for m, picture in made if m.texture is not None and picture is not None}
-    return PhotoLook({key: value for key, value in materials.items() if value}, pictures, light)
+    return PhotoAppearance({key: value for key, value in materials.items() if value}, pictures, light)
 
 
 def _parts(library: ShapeLibrary, item: SceneObject) -> trimesh.Scene:
@@ -108,10 +107,18 @@ def _seen(
     faces = faces_of(item, parts, rgb, hidden, found, camera)
     visible = cv2.erode(found.mask.astype(np.uint8), np.ones((5, 5), np.uint8)).astype(bool) & ~hidden
     slots = slots_of(parts)
-    view = surface_view(parts, slots, item.pose, camera, visible)
+    unhidden = visible if found.mask_confidence >= 1.0 else _in_box(found) & ~hidden
+    view = surface_view(parts, slots, item.pose, camera, visible | unhidden)
     taken = {face.slot.name for face in faces}
-    pixels = () if view is None else slot_pixels(view, slots, rgb, visible)
-    return _Seen(item, faces, view, tuple(p for p in pixels if p.slot.name not in taken), visible)
+    pixels = () if view is None else slot_pixels(view, slots, rgb, visible, unhidden)
+    return _Seen(item, faces, view, tuple(p for p in pixels if p.slot.name not in taken))
+
+
+def _in_box(found: DetectedObject) -> Bool[np.ndarray, "h w"]:
+    inside = np.zeros(found.mask.shape, dtype=bool)
+    x1, y1, x2, y2 = (max(round(v), 0) for v in found.box)
+    inside[y1:y2, x1:x2] = True
+    return inside
 
 
 def _surfaces(
@@ -121,7 +128,7 @@ def _surfaces(
     if seen.view is None:
         return made
     for pixels in seen.pixels:
-        found = appearance_of(seen.view, pixels, rgb, seen.visible, light)
+        found = appearance_of(seen.view, pixels, rgb, light)
         roughness, metallic = ROUGHNESS[found.slot.role]
         name = None if found.texture is None else texture_name(seen.item.id, found.slot.name, found.texture)
         material = PhotoMaterial(

@@ -1,0 +1,198 @@
+"""Marking what is in the photo: boxes that are drawn, clicked for, proposed, named and deleted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from diorama_app.reconstruction.suggestions import Suggestions
+from diorama_app.session.client import Client
+from diorama_app.viewport.annotation_canvas import (
+    Accepted,
+    Clicked,
+    Deleted,
+    Dismissed,
+    Drawn,
+    Event,
+    Finished,
+    Named,
+    Reshaped,
+    Selected,
+)
+from diorama_app.web.html import button, text
+from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
+from diorama_core.editing.input_corrections import labelled_box, same_object, with_box_at, without_box
+from diorama_core.errors import InputError
+from diorama_core.library.taxonomy import CATEGORIES
+
+COMMON = ("chair", "table", "sofa", "armchair", "bed", "desk", "coffee table", "lamp", "cabinet", "bookshelf")
+NAMES = (*COMMON, *sorted({c.name for c in CATEGORIES} - {*COMMON, "object"}))
+
+
+class PhotoBoxes:
+    """Boxes of the open photo, on the canvas and in the panel.
+
+    Args:
+        client: whose canvas and selection.
+        refresh: draws the panel anew.
+    """
+
+    def __init__(self, client: Client, refresh: Callable[[], None]) -> None:
+        self._client, self._session, self._refresh = client, client.session, refresh
+        self._next = COMMON[0]
+        """What the next box is called."""
+        self._suggestions: Suggestions | None = None
+        self._dismissed: set[Box] = set()
+        """Proposals that were turned down."""
+
+    def show(self, inputs: Inputs) -> None:
+        """Draw boxes and proposals on the canvas."""
+        index, canvas = self._client.selected_box, self._client.view.canvas
+        likely = () if index is None else self._suggested(inputs).names(inputs.boxes[index].box)
+        canvas.show_boxes(inputs.boxes, index, likely)
+        if canvas.is_open:
+            canvas.show_proposals(self._proposals(inputs))
+
+    def _suggested(self, inputs: Inputs) -> Suggestions:
+        if self._suggestions is None or self._suggestions.photo is not inputs.photo:
+            self._suggestions = Suggestions(inputs.photo, lambda: self._client.post(self._refresh, key="suggestions"))
+            self._dismissed = set()
+        return self._suggestions
+
+    def _proposals(self, inputs: Inputs) -> tuple[LabelledBox, ...]:
+        """Likely objects that nobody marked or turned down yet."""
+        likely = (b for b in self._suggested(inputs).boxes() if b.box not in self._dismissed)
+        return tuple(b for b in likely if same_object(inputs.boxes, b.box) is None)
+
+    def toggle(self) -> None:
+        """Put the photo on the canvas, or take it off."""
+        if self._client.view.canvas.is_open:
+            self._client.view.canvas.close()
+        else:
+            self.open()
+        self._client.refresh()
+
+    def open(self) -> None:
+        """Put the photo on the canvas, to be marked; raises `InputError` where there is none."""
+        inputs = self._session.inputs
+        if inputs is None:
+            raise InputError("there is no photo yet; upload one first")
+        client = self._client
+        client.view.canvas.open(
+            inputs.photo.rgb,
+            lambda event: client.post(lambda: self.happened(event)),
+            names=NAMES,
+            next_label=self._next,
+        )
+        self._refresh()
+
+    def happened(self, event: Event) -> None:
+        """Something was done on the photo."""
+        inputs, client = self._session.inputs, self._client
+        if inputs is None:
+            return
+        index = getattr(event, "index", None)
+        rows = self._proposals(inputs) if isinstance(event, Accepted | Dismissed) else inputs.boxes
+        if index is not None and not 0 <= index < len(rows):
+            return  # somebody else deleted it just now
+        match event:
+            case Drawn(box):
+                client.selected_box = None
+                made = labelled_box(box, self._next)
+                self._annotate(f"draw a box: {made.label}", replace(inputs, boxes=(*inputs.boxes, made)))
+            case Reshaped(i, box):
+                now = replace(inputs.boxes[i], box=box)
+                self._annotate(f"change the box of {now.label}", with_box_at(inputs, i, now))
+            case Named(i, label):
+                self._rename(i, label)
+            case Deleted(i):
+                client.selected_box = None
+                self._annotate(f"delete the box of {inputs.boxes[i].label}", without_box(inputs, i))
+            case Clicked(x, y):
+                client.selected_box = None
+                client.refresh()
+                photo = inputs.photo
+                self._suggested(inputs).at(x, y, lambda box: client.post(lambda: self._meant(photo, box)))
+            case Accepted(i, label):
+                self._mark(inputs, labelled_box(rows[i].box, label or rows[i].label))
+            case Dismissed(i):
+                self._dismissed.add(rows[i].box)
+                client.refresh()
+            case Selected(i):
+                client.selected_box = i
+                client.refresh()
+            case Finished():
+                client.view.canvas.close()
+                client.refresh()
+
+    def _meant(self, photo: Photo, box: LabelledBox | None) -> None:
+        """What was clicked on is known: it becomes a box, or the one that is there already is selected."""
+        inputs = self._session.inputs
+        if inputs is None or inputs.photo is not photo:
+            return  # another project was opened meanwhile
+        known = None if box is None else same_object(inputs.boxes, box.box)
+        if box is None:
+            self._client.notice("Nothing is recognised there; drag a box around the object.")
+        elif known is None:
+            self._mark(inputs, labelled_box(box.box, box.label))
+        else:
+            self._client.selected_box = known
+            self._client.refresh()
+
+    def _mark(self, inputs: Inputs, box: LabelledBox) -> None:
+        """Add a box and select it, so that it can be named and changed at once."""
+        self._annotate(f"mark: {box.label}", replace(inputs, boxes=(*inputs.boxes, box)))
+        self._client.selected_box = len(inputs.boxes)
+        self._client.refresh()
+
+    def _annotate(self, label: str, inputs: Inputs) -> None:
+        self._session.annotate(label, inputs, by=self._client)
+
+    def _rename(self, index: int, label: str) -> None:
+        inputs, words = self._session.inputs, " ".join(label.split())
+        if inputs is None or not words or inputs.boxes[index].label == words:
+            return
+        now = labelled_box(inputs.boxes[index].box, words)
+        self._annotate(f"{inputs.boxes[index].label} is a {words}", with_box_at(inputs, index, now))
+
+    def name(self, word: str) -> None:
+        """A name was chosen: of the selected box, or else of the next one."""
+        if self._client.selected_box is not None:
+            self._rename(self._client.selected_box, word)
+        elif word.strip():
+            self._next = " ".join(word.split())
+            if self._client.view.canvas.is_open:
+                self._client.view.canvas.next_label(self._next)
+            self._refresh()
+
+    def name_field(self, inputs: Inputs) -> str:
+        """The name of the selected box, or of the next one, with likely and frequent names to choose."""
+        index = self._client.selected_box
+        value = self._next if index is None else inputs.boxes[index].label
+        title = "Name of the next box" if index is None else "Name of the selected box"
+        likely = () if index is None else self._suggested(inputs).names(inputs.boxes[index].box)
+        names = (*likely, *(name for name in COMMON if name not in likely))[: len(COMMON)]
+        chips = "".join(button(text(name), "name", name, on=name == value) for name in names)
+        options = "".join(f'<option value="{text(name)}">' for name in NAMES)
+        return (
+            f'<h4><label for="dio-box-name">{title}</label></h4><input id="dio-box-name" list="dio-box-names" '
+            f'data-change="named" value="{text(value)}"><datalist id="dio-box-names">{options}</datalist>'
+            f'<div class="bar tight" style="margin-top:6px">{chips}</div>'
+        )
+
+
+def box_list(inputs: Inputs, selected: int | None) -> str:
+    """All boxes, to be selected and deleted."""
+    if not inputs.boxes:
+        return "<p class='dim'>Choose a name, press <b>Draw boxes</b> and drag a rectangle on the photo.</p>"
+    rows = []
+    for index, box in enumerate(inputs.boxes):
+        unknown = ' <span class="dim">as an object</span>' if box.category == "object" else ""
+        rows.append(
+            f'<div class="row {"on" if index == selected else ""}" data-do="mark" data-arg="{index}" role="treeitem" '
+            f'tabindex="0" aria-selected="{"true" if index == selected else "false"}">'
+            f'<span class="name">{text(box.label)}{unknown}</span>'
+            + button("✕", "drop", index, title=f"Delete the box of {box.label}")
+            + "</div>"
+        )
+    return f'<h4>Boxes</h4><div role="tree" aria-label="Boxes">{"".join(rows)}</div>'

@@ -1,0 +1,138 @@
+"""What all browsers of a session see: the scene, the photo's camera, and panels that follow the document.
+
+Used from the UI thread only, except where a method says otherwise.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+from functools import partial
+from typing import Any, Protocol, runtime_checkable
+
+import viser
+
+from diorama_app.session.connected_client import ConnectedClient
+from diorama_app.session.redraws import Redraws
+from diorama_app.session.shape_preparation import Preparer
+from diorama_app.session.textures import Textures
+from diorama_app.session.ui_thread import UiThread
+from diorama_app.viewport.client_view import NoticeKind
+from diorama_app.viewport.framing import DEFAULT_FOV_RAD, room_view
+from diorama_app.viewport.mesh_assets import ShapeBytes
+from diorama_app.viewport.scene_view import Viewport
+from diorama_core.artefacts import Photo
+from diorama_core.errors import DioramaError
+from diorama_core.scene.types import Scene
+
+log = logging.getLogger(__name__)
+
+MESH_OVERLAP_S = 0.45
+"""How long an old mesh stays while the browser parses its successor."""
+
+
+@runtime_checkable
+class Shown(Protocol):
+    """What a session says of what it shows; `EditorSession` has it."""
+
+    server: viser.ViserServer
+    ui_thread: UiThread
+    photo: Photo | None
+    textures: Textures
+    clients: dict[int, ConnectedClient]
+
+    @property
+    def scene(self) -> Scene:
+        """The scene as it is now."""
+        ...
+
+    def notice_all(self, message: str, kind: NoticeKind = "info") -> None:
+        """Tell every browser."""
+        ...
+
+
+class SharedView:
+    """Draws a session's scene on its server, and has its clients' panels drawn."""
+
+    def __init__(self, shown: Shown, shapes: ShapeBytes, preparer: Preparer) -> None:
+        """Draw nothing yet.
+
+        Args:
+            shown: the session.
+            shapes: what browsers draw of a shape.
+            preparer: readies the shapes of the scene for gestures.
+        """
+        self._shown = shown
+        self._preparer = preparer
+        self.viewport = Viewport(shown.server, shapes, pick=self._picked, drag=self._dragged, later=self._replace_later)
+        self.redraws = Redraws(shown.ui_thread, lambda client_id: client_id in shown.clients)
+        self.on_photo_camera: Callable[[Any], None] | None = None
+        self.on_pick: Callable[[str, viser.SceneNodePointerEvent], None] | None = None
+        self.on_drag: Callable[[str, viser.SceneNodeDragEvent], None] | None = None
+
+    def refresh(self, by: ConnectedClient | None = None) -> None:
+        """Bring every browser in line with the document: the scene at once, panels as often as can be followed.
+
+        Args:
+            by: who caused it; sees the panels follow before the others do.
+        """
+        scene, clients = self._shown.scene, list(self._shown.clients.values())
+        self._draw("the view", lambda: self.viewport.show(scene, self._shown.textures))
+        self._preparer.want(o.shape_id for o in scene.objects)
+        for client in clients:
+            client.drop_missing()
+            self._draw("the photo's camera", partial(self.show_photo_camera, client))
+        self.refresh_panels(by)
+
+    def refresh_panels(self, by: ConnectedClient | None = None) -> None:
+        """Redraw the panels, and what everyone sees of the others' selections."""
+        self.redraws.ask(self._shown.clients.values(), first=by)
+
+    def show_whole_room(self) -> None:
+        """New visitors and all who are here look at the whole room."""
+        scene, first_view = self._shown.scene, self._shown.server.initial_camera
+        first_view.position, first_view.look_at = room_view(scene)
+        first_view.fov = float(DEFAULT_FOV_RAD)
+        for client in self._shown.clients.values():
+            client.selection = ()
+            client.doing = None
+            client.view.photo.show_backdrop(None, None, 1.0)
+            client.view.photo.show_overlay(None, None, 0.0)
+            if not client.view.canvas.is_open:
+                client.view.camera.move(*room_view(scene, client.view.camera.aspect))
+
+    def show_photo_camera(self, client: ConnectedClient) -> None:
+        """Draw the photo's camera for one client; a click on it is told to `on_photo_camera`."""
+        photo = self._shown.photo
+
+        def through_it() -> None:
+            if self.on_photo_camera is not None:
+                ask = self.on_photo_camera
+                client.post(lambda: ask(client))
+
+        client.view.photo.show_camera(self._shown.scene.camera, None if photo is None else photo.rgb, through_it)
+
+    def _draw(self, what: str, draw: Callable[[], None]) -> None:
+        """Draw a part of the page; an unexpected error costs that part only."""
+        try:
+            draw()
+        except DioramaError as error:
+            self._shown.notice_all(str(error), "bad")
+        except Exception:  # whatever a part of the page does wrong, the work is saved and the other parts are drawn
+            log.exception("%s cannot be drawn", what)
+            self._shown.notice_all(f"{what} could not be drawn; your work is saved. See the server's log.", "bad")
+
+    def _picked(self, object_id: str, event: viser.SceneNodePointerEvent) -> None:
+        """Called from viser's event loop, as `_dragged` is."""
+        if self.on_pick is not None:
+            self.on_pick(object_id, event)
+
+    def _dragged(self, object_id: str, event: viser.SceneNodeDragEvent) -> None:
+        if self.on_drag is not None:
+            self.on_drag(object_id, event)
+
+    def _replace_later(self, task: Callable[[], None]) -> None:
+        timer = threading.Timer(MESH_OVERLAP_S, lambda: self._shown.ui_thread.post(task))
+        timer.daemon = True
+        timer.start()

@@ -1,0 +1,85 @@
+"""Who may talk to the server: names, origins and tokens of requests."""
+
+from __future__ import annotations
+
+import functools
+import hmac
+import ipaddress
+import secrets
+import socket
+from dataclasses import dataclass
+from http.cookies import CookieError, SimpleCookie
+from urllib.parse import parse_qs, urlsplit
+
+from websockets.http11 import Request
+
+from diorama_app.web.responses import TOKEN_COOKIE
+
+LOOPBACK_NAMES = frozenset({"127.0.0.1", "localhost", "::1"})
+ANY_HOST = frozenset({"", "0.0.0.0", "::"})
+
+
+@dataclass(frozen=True)
+class Visitors:
+    """Access rules of the server."""
+
+    host: str
+    """The address it listens on."""
+    token: str | None = None
+    """When set, the first page load must carry `?token=...`; a cookie remembers it."""
+
+    def refusal(self, request: Request) -> str | None:
+        """Why a request is not served, or None when it is. Headers that make no sense are a reason."""
+        try:
+            return self._refusal(request)
+        except (ValueError, LookupError, CookieError):  # headers given twice, half an IPv6 address, a broken cookie
+            return "the request headers are invalid"
+
+    def _refusal(self, request: Request) -> str | None:
+        host_header = request.headers.get("Host", "")
+        if not self._knows((urlsplit(f"//{host_header}").hostname or "").rstrip(".")):
+            return "this address is not served here"
+        origin = request.headers.get("Origin")
+        if origin is not None and urlsplit(origin).netloc != host_header:
+            return "pages of another origin are refused"
+        if self.token is not None and not self.brings_token(request) and not self._remembers_token(request):
+            return "the access token is missing or wrong; open the address that was printed at the start"
+        return None
+
+    def brings_token(self, request: Request) -> bool:
+        """Whether the address carries the token."""
+        given = parse_qs(urlsplit(request.path).query).get("token", [""])[0]
+        return self._matches(given)
+
+    def _remembers_token(self, request: Request) -> bool:
+        cookie = SimpleCookie(request.headers.get("Cookie", "")).get(TOKEN_COOKIE)
+        return cookie is not None and self._matches(cookie.value)
+
+    def _matches(self, given: str) -> bool:
+        return self.token is not None and hmac.compare_digest(given.encode(), self.token.encode())
+
+    def _knows(self, name: str) -> bool:
+        # A page elsewhere that resolves its own name to this machine (DNS rebinding) sends that name.
+        if self.host in ANY_HOST:
+            return name in LOOPBACK_NAMES or _is_address(name) or name in own_names()
+        return name == self.host.lower() or (self.host in LOOPBACK_NAMES and name in LOOPBACK_NAMES)
+
+
+def with_token(host: str, token: str | None) -> str | None:
+    """The token that clients must present: the given one, or a generated one when others can reach the server."""
+    return token or (None if host in LOOPBACK_NAMES else secrets.token_urlsafe(18))
+
+
+@functools.cache
+def own_names() -> frozenset[str]:
+    """Host names of this machine, in lower case."""
+    name = socket.gethostname().lower()
+    return frozenset({name, f"{name}.local", socket.getfqdn().lower()})
+
+
+def _is_address(name: str) -> bool:
+    try:
+        ipaddress.ip_address(name)
+    except ValueError:
+        return False
+    return True

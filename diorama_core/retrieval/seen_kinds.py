@@ -1,0 +1,43 @@
+"""What the picture of a thing looks like, as evidence for its kind beside its word, its size and its place."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from diorama_core.artefacts import DetectedObject, SeenKinds
+
+_TRUST, _TRUST_BESIDE_WORD = 0.5, 0.3
+"""Powers of the probabilities of a thing without a name, and of one whose word leaves a choice: the namer learnt from
+rendered rooms and is too sure of itself on photos, and a word has said some of what it says."""
+_FLOOR = 0.003
+"""Added to every probability: of a kind that the namer rules out not everything is known."""
+
+
+def with_seen_kinds(
+    objects: tuple[DetectedObject, ...], seen: Sequence[SeenKinds] | None
+) -> tuple[DetectedObject, ...]:
+    """The objects with what they look like; unchanged where nobody looked."""
+    of = {one.object_id: one for one in seen or ()}
+    return tuple(
+        replace(item, looks_like=tuple(zip(of[item.id].kinds, map(float, of[item.id].probabilities), strict=True)))
+        if item.id in of
+        else item
+        for item in objects
+    )
+
+
+def as_it_looks(shares: Mapping[str, float], looks_like: Sequence[tuple[str, float]], named: bool) -> dict[str, float]:
+    """How likely each kind is after a look at the thing.
+
+    Args:
+        shares: how likely each kind is before it, adding up to 1.
+        looks_like: kinds with probabilities where all are equally frequent; without any, nothing changes.
+        named: whether the shares come from a word.
+    """
+    if not looks_like:
+        return dict(shares)
+    seen, trust = dict(looks_like), _TRUST_BESIDE_WORD if named else _TRUST
+    likely = {kind: share * (seen.get(kind, 0.0) + _FLOOR) ** trust for kind, share in shares.items()}
+    whole = sum(likely.values())
+    return {kind: value / whole for kind, value in likely.items()}

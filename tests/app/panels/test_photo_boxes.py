@@ -1,0 +1,92 @@
+"""What a person clicks on in the photo becomes a box; proposals are accepted or dropped."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from diorama_app.panels.photo_boxes import PhotoBoxes, box_list
+from diorama_app.reconstruction import suggestions
+from diorama_app.session.client import Client
+from diorama_app.viewport.annotation_canvas import Accepted, Clicked, Dismissed, Named, Selected
+from diorama_core.artefacts import Inputs, LabelledBox, Photo
+from tests.app.small_room import plain_photo
+
+CHAIR = LabelledBox((40.0, 250.0, 160.0, 440.0), "chair", "chair")
+LAMP = LabelledBox((400.0, 50.0, 460.0, 200.0), "lamp", "lamp")
+
+
+class Known(suggestions.Suggestions):
+    """Knows a chair and a lamp at once."""
+
+    def __init__(self, photo: Photo, on_ready: Callable[[], None]) -> None:
+        self.photo = photo
+
+    def boxes(self) -> tuple[LabelledBox, ...]:
+        return CHAIR, LAMP
+
+    def names(self, box: tuple[float, float, float, float]) -> tuple[str, ...]:
+        return ("chair", "stool", "bench", "sofa")
+
+    def at(self, x: float, y: float, then: Callable[[LabelledBox | None], None]) -> None:
+        holding = (b for b in (CHAIR, LAMP) if b.box[0] <= x <= b.box[2] and b.box[1] <= y <= b.box[3])
+        then(next(holding, None))
+
+
+@pytest.fixture
+def marking(session, client: Client, monkeypatch: pytest.MonkeyPatch) -> PhotoBoxes:
+    monkeypatch.setattr("diorama_app.panels.photo_boxes.Suggestions", Known)
+    session.document.open(session.scene, Inputs(plain_photo()))
+    made = PhotoBoxes(client, lambda: None)
+    made.open()
+    return made
+
+
+def labels(session) -> list[str]:
+    return [b.label for b in session.inputs.boxes]
+
+
+def test_a_click_marks_what_is_there_and_selects_it(session, client: Client, marking: PhotoBoxes) -> None:
+    marking.happened(Clicked(100.0, 300.0))
+    session.ui_thread.wait()
+    assert [(b.box, b.label) for b in session.inputs.boxes] == [(CHAIR.box, "chair")]
+    assert client.selected_box == 0
+    marking.happened(Named(0, "stool"))
+    assert labels(session) == ["stool"]
+    session.undo(client)
+    session.undo(client)
+    assert labels(session) == []
+
+
+def test_a_click_beside_everything_says_so(session, client: Client, marking: PhotoBoxes) -> None:
+    said: list[str] = []
+    client.toast = lambda message, undo: said.append(message)
+    marking.happened(Clicked(600.0, 470.0))
+    session.ui_thread.wait()
+    assert session.inputs.boxes == ()
+    assert said == ["Nothing is recognised there; drag a box around the object."]
+
+
+def test_a_click_on_a_marked_object_selects_its_box(session, client: Client, marking: PhotoBoxes) -> None:
+    marking.happened(Accepted(0, ""))
+    marking.happened(Selected(None))
+    assert client.selected_box is None
+    marking.happened(Clicked(100.0, 300.0))
+    session.ui_thread.wait()
+    assert labels(session) == ["chair"]
+    assert client.selected_box == 0
+
+
+def test_proposals_are_accepted_under_another_name_or_dropped(session, client: Client, marking: PhotoBoxes) -> None:
+    marking.happened(Accepted(1, "floor lamp"))
+    assert labels(session) == ["floor lamp"]
+    marking.happened(Dismissed(0))
+    marking.happened(Accepted(0, ""))
+    assert labels(session) == ["floor lamp"], "none is left to accept"
+
+
+def test_the_list_escapes_names(session) -> None:
+    listed = box_list(Inputs(plain_photo(), boxes=(LabelledBox(CHAIR.box, "object", "<b>"),)), 0)
+    assert "<b>" not in listed
+    assert "Delete the box of &lt;b&gt;" in listed

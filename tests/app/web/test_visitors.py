@@ -1,0 +1,55 @@
+"""Who is let in, asked over real connections."""
+
+from __future__ import annotations
+
+import socket
+
+import pytest
+import viser
+
+from diorama_app.web.viser_adapter import create_server, stop_server
+from diorama_app.web.visitors import Visitors, with_token
+from tests.app.web.http_client import connects, fetch
+
+
+def test_foreign_origins_and_foreign_names_are_refused(server: viser.ViserServer) -> None:
+    assert not connects(server, Origin="https://evil.example")
+    assert not connects(server, Origin=f"http://127.0.0.1:{server.get_port() + 1}")
+    assert fetch(server, Host="evil.example")[0] == 403
+    assert fetch(server, Host=f"localhost:{server.get_port()}")[0] == 200
+
+
+def test_with_a_token_only_those_who_bring_it_get_in(guarded: viser.ViserServer) -> None:
+    origin = f"http://127.0.0.1:{guarded.get_port()}"
+    assert fetch(guarded)[0] == 403
+    assert fetch(guarded, "/?token=wrong")[0] == 403
+    status, headers = fetch(guarded, "/?token=s3cret")
+    assert status == 200
+    cookie = headers["Set-Cookie"].partition(";")[0]
+    assert "HttpOnly" in headers["Set-Cookie"]
+    assert not connects(guarded, Origin=origin)
+    assert not connects(guarded, Origin=origin, Cookie="diorama_token=wrong")
+    assert connects(guarded, Origin=origin, Cookie=cookie)
+
+
+@pytest.mark.parametrize("host", ["0.0.0.0", "::", "", "192.168.1.5"])
+def test_where_others_can_reach_it_there_is_a_token(host: str) -> None:
+    made = with_token(host, None)
+    assert made is not None
+    assert len(made) >= 20
+    assert made != with_token(host, None)
+    assert with_token(host, "mine") == "mine"
+    assert with_token("127.0.0.1", None) is None
+
+
+@pytest.mark.parametrize("host", ["0.0.0.0"])
+def test_a_server_for_everybody_still_knows_its_names(host: str) -> None:
+    made = create_server(host=host, port=0, label="test", visitors=Visitors(host, "s3cret"))
+    try:
+        assert fetch(made, "/?token=s3cret", Host="evil.example")[0] == 403
+        assert fetch(made, "/?token=s3cret", Host="rebound.example:80")[0] == 403
+        assert fetch(made, "/", Host=f"127.0.0.1:{made.get_port()}")[0] == 403, "no token"
+        for name in ("127.0.0.1", "192.168.7.7", "localhost", "[fe80::1]", socket.gethostname()):
+            assert fetch(made, "/?token=s3cret", Host=f"{name}:{made.get_port()}")[0] == 200, name
+    finally:
+        stop_server(made)

@@ -1,0 +1,92 @@
+"""From a photo to a scene by clicks: what the recogniser proposes is accepted, named by keys, dropped, and built."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from playwright.sync_api import expect
+
+from diorama_app.projects.example import EXAMPLE
+from diorama_core.artefacts import LabelledBox
+from diorama_core.models.own_weights import has_own_recogniser
+from tests.e2e.browser import EditorPage
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(not has_own_recogniser(), reason="no weights are shipped"),
+]
+BUILD_S = 300
+HELD = "([x, y]) => document.elementFromPoint(x, y).closest('.dio-canvas-proposal') !== null"
+
+
+@pytest.fixture
+def proposed(editor: EditorPage) -> EditorPage:
+    """The example's photo was uploaded and proposals lie on it."""
+    editor.tab("Photo")
+    editor.upload("Upload a photo", EXAMPLE / "photo.jpg")
+    editor.until(lambda: editor.session.unfinished, "a project of its own")
+    editor.at_board()
+    editor.dismiss_notices()
+    editor.page.wait_for_selector(".dio-canvas-proposal", timeout=60_000)
+    editor.settle()
+    return editor
+
+
+def boxes(editor: EditorPage) -> tuple[LabelledBox, ...]:
+    assert editor.session.inputs is not None
+    return editor.session.inputs.boxes
+
+
+def test_a_room_is_marked_by_clicks_and_keys_and_built(proposed: EditorPage) -> None:
+    editor, page = proposed, proposed.page
+    proposals, on = page.locator(".dio-canvas-proposal"), page.locator(".dio-canvas-box.on")
+    count = proposals.count()
+    assert 1 <= count <= 10
+
+    page.keyboard.press("Tab")
+    expect(page.locator(".dio-canvas-proposal.at")).to_have_count(1)
+    page.keyboard.press("Enter")
+    editor.until(lambda: len(boxes(editor)) == 1, "accepted")
+    expect(on).to_have_count(1)
+    expect(on.locator("button.likely")).to_have_count(4)
+    second = on.locator("button.likely").nth(1).inner_text().removeprefix("2").strip()
+    page.keyboard.press("2")
+    editor.until(lambda: boxes(editor)[0].label == second, "named by a key")
+
+    editor.settle()
+    left = proposals.count()
+    page.keyboard.press("Tab")
+    page.keyboard.press("Delete")
+    expect(proposals).to_have_count(left - 1)
+    assert len(boxes(editor)) == 1, "a proposal was dropped, not the box"
+
+    sofa = (875.0, 565.0)
+    page.mouse.click(*editor.on_photo(*sofa))
+    editor.until(lambda: len(boxes(editor)) == 2, "what was clicked is a box")
+    x1, y1, x2, y2 = boxes(editor)[1].box
+    assert x1 <= sofa[0] <= x2
+    assert y1 <= sofa[1] <= y2
+    expect(on.locator("input")).to_be_visible()
+    on.locator("input").fill("sofa")
+    page.keyboard.press("Enter")
+    editor.until(lambda: boxes(editor)[1].category == "sofa", "typing overrides")
+
+    editor.settle()
+    editor.button("Build scene").click()
+    editor.until(
+        lambda: editor.session.jobs.status is None and len(editor.session.scene.objects) == 2, "built", seconds=BUILD_S
+    )
+    assert all(np.isfinite(o.corners_world).all() for o in editor.session.scene.objects)
+
+
+def test_a_click_where_nothing_is_says_so(proposed: EditorPage, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("diorama_core.perception.foundation.proposals.clicked_box", lambda *_: None)
+    editor = proposed
+    free = next(
+        spot
+        for spot in ((5.0, 5.0), (1275.0, 5.0), (640.0, 955.0))
+        if not editor.page.evaluate(HELD, list(editor.on_photo(*spot)))
+    )
+    editor.page.mouse.click(*editor.on_photo(*free))
+    editor.notice("Nothing is recognised there")
+    assert not boxes(editor)

@@ -1,0 +1,22 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import onnxruntime
+import torch
+
+from diorama_core.models.onnx_export import write_graph
+
+
+def test_a_graph_answers_as_its_network_for_any_number_of_rows(tmp_path: Path) -> None:
+    network = torch.nn.Sequential(torch.nn.Linear(3, 4), torch.nn.Dropout(0.5))
+    axes = {"rows": {0: "n"}, "scores": {0: "n"}}
+    path = write_graph(
+        network, (torch.zeros(1, 3),), tmp_path / "a" / "b.onnx", inputs=["rows"], outputs=["scores"], dynamic=axes
+    )
+    assert not network.training
+    rows = np.random.default_rng(0).standard_normal((5, 3), dtype=np.float32)
+    (scores,) = onnxruntime.InferenceSession(str(path)).run(None, {"rows": rows})
+    with torch.no_grad():
+        np.testing.assert_allclose(scores, network(torch.tensor(rows)).numpy(), atol=1e-6)

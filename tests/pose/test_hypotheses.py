@@ -1,0 +1,53 @@
+"""Poses worth trying: turns of the shape in its cuboid, and of the cuboid itself."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diorama_core.artefacts import Cuboid
+from diorama_core.pose.hypotheses import Hypotheses, anchor_of, hypotheses_for, unlike_best
+from diorama_core.pose.limits import SizeLimits
+from diorama_core.scene.types import yaw_rotation
+
+PILLOW = np.array([0.24, 0.48, 0.44])
+
+
+def hypotheses(size_m: tuple[float, float, float], *, front_known: bool = False) -> Hypotheses:
+    """Of a pillow in a cuboid that is turned by ten degrees."""
+    cuboid = Cuboid("pillow_1", yaw_rotation(np.deg2rad(10.0)), np.array([1.0, 2.0, 0.6]), np.array(size_m), 1.0)
+    cuboid = replace(cuboid, front_known=front_known)
+    limits = SizeLimits.of(tuple(PILLOW), "pillow", cuboid.size_m)
+    return hypotheses_for(cuboid, "pillow", 1, limits, anchor_of(cuboid, False, np.array([0.0, -1.0])))
+
+
+def footprints(found: Hypotheses) -> set[tuple[int, float, float]]:
+    """Heading in whole degrees and sides, rounded."""
+    yaw = np.rad2deg(np.arctan2(found.poses.R[:, 1, 0], found.poses.R[:, 0, 0])) % 360
+    sizes = found.poses.scale * PILLOW
+    return {(round(a), round(float(x), 1), round(float(y), 1)) for a, (x, y, _) in zip(yaw, sizes, strict=True)}
+
+
+def test_the_cuboid_itself_may_be_turned_where_its_sides_differ() -> None:
+    found = hypotheses((0.24, 0.48, 0.44))
+    assert {(100, 0.2, 0.5), (280, 0.2, 0.5)} <= footprints(found)
+    assert (100, 0.2, 0.5) not in footprints(hypotheses((0.24, 0.48, 0.44), front_known=True))
+    whole = hypotheses((0.4, 0.4, 0.44))
+    assert len(found.poses) == len(whole.poses) + len(whole.poses) // 2
+
+
+def test_turning_the_cuboid_costs_something() -> None:
+    found = hypotheses((0.24, 0.48, 0.44))
+    as_measured, turned = found.misfit[0], found.misfit[-1]
+    assert turned > as_measured + 0.1
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_the_best_that_are_unlike_each_other_are_kept(count: int) -> None:
+    found = hypotheses((0.4, 0.4, 0.44))
+    scores = -np.arange(len(found.poses), dtype=float)
+    chosen = unlike_best(found.poses, scores, 1, PILLOW, count)
+    assert len(chosen) == count
+    assert chosen[0] == 0
