@@ -105,7 +105,10 @@ def build_scene(
     standing = {edge.child for edge in room.supports if edge.parent in floors}
     textures = plane_textures(balanced, found["objects"], geometry.camera, room.architecture, stages.filler, standing)
     noise = REASONED if inputs.depth_m is None else MEASURED
-    shaped, reshaped = holding_shapes(_observed({**found, "architecture": room}, balanced, library), library, noise)
+    shaped = _observed({**found, "architecture": room}, balanced, library)
+    reshaped: tuple[str, ...] = ()
+    if inputs.depth_m is not None:  # heights reasoned from a photo alone do not tell boards from one another
+        shaped, reshaped = holding_shapes(shaped, library, noise)
     checked, changed = checked_supports(shaped, library, noise)
     observed = _textured(containing_room(checked), textures)
     appearance = photo_appearance(balanced.photo.rgb, found["furniture_objects"], observed, library, illuminant.rgb)
