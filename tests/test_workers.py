@@ -13,6 +13,7 @@ import pytest
 from diorama_core.errors import InputError, LibraryError
 from diorama_core.workers import LocalWorkers, RayWorkers, WorkerDied, Workers, workers
 from tests.processes import runs
+from tests.waiting import until
 
 
 def power(number: int, exponent: int) -> int:
@@ -80,10 +81,7 @@ def test_processes_end_with_the_program_that_was_killed(tmp_path: Path) -> None:
     program.kill()
     program.wait()
     program.stdout.close()
-    until = time.monotonic() + 20.0
-    while runs(worker) and time.monotonic() < until:
-        time.sleep(0.05)
-    assert not runs(worker), "a process of the pool outlives the program"
+    until(lambda: not runs(worker), "a process of the pool ends with the program")
 
 
 def test_the_same_on_ray(local_ray: Workers) -> None:

@@ -104,12 +104,12 @@ def _add_recognition(tables: Any) -> None:
 
 def _bench_recognition(a: argparse.Namespace) -> None:
     from diorama_core.evaluation.benchmarks import recognition
-    from diorama_core.pipeline.presets import detection_routes, namers
+    from diorama_core.pipeline.presets import clickers, detection_routes, namers
 
     if not a.photos.is_dir():
         raise InputError(f"{a.photos}: there is no such folder; give the folder of the annotated pictures")
     with progress_bar() as progress:
-        bench = recognition.run(a.annotations, a.photos, detection_routes(), namers(), progress)
+        bench = recognition.run(a.annotations, a.photos, detection_routes(), namers(), clickers(), progress)
     _show(bench, a)
 
 

@@ -48,7 +48,7 @@ class PhotoBoxes:
     def show(self, inputs: Inputs) -> None:
         """Draw boxes and proposals on the canvas."""
         index, canvas = self._client.selected_box, self._client.view.canvas
-        likely = () if index is None else self._suggested(inputs).names(inputs.boxes[index].box)
+        likely = () if index is None else self._likely(inputs, index)
         canvas.show_boxes(inputs.boxes, index, likely)
         if canvas.is_open:
             canvas.show_proposals(self._proposals(inputs))
@@ -58,6 +58,9 @@ class PhotoBoxes:
             self._suggestions = Suggestions(inputs.photo, lambda: self._client.post(self._refresh, key="suggestions"))
             self._dismissed = set()
         return self._suggestions
+
+    def _likely(self, inputs: Inputs, index: int) -> tuple[str, ...]:
+        return self._suggested(inputs).names([b.box for b in inputs.boxes], index)
 
     def _proposals(self, inputs: Inputs) -> tuple[LabelledBox, ...]:
         """Likely objects that nobody marked or turned down yet."""
@@ -112,7 +115,8 @@ class PhotoBoxes:
                 client.selected_box = None
                 client.refresh()
                 photo = inputs.photo
-                self._suggested(inputs).at(x, y, lambda box: client.post(lambda: self._meant(photo, box)))
+                marked = [b.box for b in inputs.boxes]
+                self._suggested(inputs).at(x, y, marked, lambda box: client.post(lambda: self._meant(photo, box)))
             case Accepted(i, label):
                 self._mark(inputs, labelled_box(rows[i].box, label or rows[i].label))
             case Dismissed(i):
@@ -170,7 +174,7 @@ class PhotoBoxes:
         index = self._client.selected_box
         value = self._next if index is None else inputs.boxes[index].label
         title = "Name of the next box" if index is None else "Name of the selected box"
-        likely = () if index is None else self._suggested(inputs).names(inputs.boxes[index].box)
+        likely = () if index is None else self._likely(inputs, index)
         names = (*likely, *(name for name in COMMON if name not in likely))[: len(COMMON)]
         chips = "".join(button(text(name), "name", name, on=name == value) for name in names)
         options = "".join(f'<option value="{text(name)}">' for name in NAMES)

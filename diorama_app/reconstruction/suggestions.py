@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
+from jaxtyping import Float
 
 from diorama_core.artefacts import Box, LabelledBox, Photo
 from diorama_core.errors import UnavailableError
@@ -30,17 +31,19 @@ class Suggestions:
     def __init__(self, photo: Photo, on_ready: Callable[[], None]) -> None:
         self.photo = photo
         self._on_ready = on_ready
-        self._names: dict[Box, tuple[str, ...]] = {}
+        self._seen: dict[Box, Float[np.ndarray, "k"]] = {}
+        """Probabilities of the namer's categories."""
         self._boxes: tuple[LabelledBox, ...] | None = None
         self._faint: Detections | None = None
-        self._asked: set[Box | None] = set()
+        self._asked: set[object] = set()
         self._worker = ThreadPoolExecutor(1, "suggestions")
 
-    def names(self, box: Box) -> tuple[str, ...]:
-        """The likeliest names of a box, best first; nothing yet where they are still worked out."""
-        if box not in self._names:
-            self._ask(box, lambda: self._named(box))
-        return self._names.get(box, ())
+    def names(self, boxes: Sequence[Box], index: int) -> tuple[str, ...]:
+        """The likeliest names of one of the marked boxes, best first; nothing yet where they are still worked out."""
+        new = tuple(box for box in boxes if box not in self._seen)
+        if new:
+            self._ask(new, lambda: self._look_at(new))
+        return () if any(box not in self._seen for box in new) else self._ranked(boxes)[index]
 
     def boxes(self) -> tuple[LabelledBox, ...]:
         """Likely objects with their names, best first; nothing yet where they are still worked out."""
@@ -48,25 +51,26 @@ class Suggestions:
             self._ask(None, self._proposed)
         return self._boxes or ()
 
-    def at(self, x: float, y: float, then: Callable[[LabelledBox | None], None]) -> None:
+    def at(self, x: float, y: float, marked: Sequence[Box], then: Callable[[LabelledBox | None], None]) -> None:
         """Tell what somebody means who clicks on a pixel of the photo.
 
         Args:
             x: column of the pixel.
             y: row of the pixel.
+            marked: boxes that are there already.
             then: told the box, with its likeliest name, or None where nothing is recognised; called from a thread.
         """
 
         def tell() -> None:
             try:
-                then(self._clicked(x, y))
+                then(self._clicked(x, y, marked))
             except UnavailableError as error:
                 log.warning("nothing is suggested: %s", error)
                 then(None)
 
         self._worker.submit(tell)
 
-    def _ask(self, key: Box | None, work_out: Callable[[], object]) -> None:
+    def _ask(self, key: object, work_out: Callable[[], object]) -> None:
         """Work something out once; what cannot be had is not tried again at every redraw."""
         if key in self._asked or not has_own_recogniser():
             return
@@ -82,13 +86,18 @@ class Suggestions:
 
         self._worker.submit(work)
 
-    def _named(self, box: Box) -> tuple[str, ...]:
+    def _look_at(self, boxes: Sequence[Box]) -> None:
         from diorama_core.models.recogniser import own_recogniser
-        from diorama_core.perception.foundation.proposals import names_of
 
-        if box not in self._names:
-            self._names[box] = names_of(own_recogniser(), self.photo, np.array([box], dtype=float))[0][:COUNT]
-        return self._names[box]
+        rows = own_recogniser().name(self.photo.rgb, np.array(boxes, dtype=float).reshape(-1, 4))
+        self._seen.update(zip(boxes, rows, strict=True))
+
+    def _ranked(self, boxes: Sequence[Box]) -> list[tuple[str, ...]]:
+        from diorama_core.models.recogniser import own_recogniser
+        from diorama_core.perception.foundation.proposals import ranked_names
+
+        seen, corners = np.stack([self._seen[box] for box in boxes]), np.array(boxes, dtype=float)
+        return [names[:COUNT] for names in ranked_names(own_recogniser().categories, seen, corners)]
 
     def _proposed(self) -> None:
         from diorama_core.models.recogniser import own_recogniser
@@ -97,7 +106,7 @@ class Suggestions:
 
         self._boxes = OwnDetection(own_recogniser(), LIKELY).detect(self.photo, (), Progress())
 
-    def _clicked(self, x: float, y: float) -> LabelledBox | None:
+    def _clicked(self, x: float, y: float, marked: Sequence[Box]) -> LabelledBox | None:
         from diorama_core.models.recogniser import own_recogniser
         from diorama_core.perception.foundation.proposals import FAINT, MOST_FAINT, clicked_box
 
@@ -108,5 +117,7 @@ class Suggestions:
         box = clicked_box(self._faint, x, y)
         if box is None:
             return None
-        name = self._named(box)[0]
+        boxes = (*marked, box)
+        self._look_at(tuple(b for b in boxes if b not in self._seen))
+        name = self._ranked(boxes)[-1][0]
         return LabelledBox(box, name, name)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable
+from functools import partial
 from typing import TYPE_CHECKING
 
 from diorama_app.session.ui_thread import UiThread
@@ -50,7 +51,7 @@ class Redraws:
                 self._draw(client)
             else:
                 self._ui_thread.post(
-                    lambda client=client: self._draw(client),  # type: ignore[misc]
+                    partial(self._draw, client),
                     key="redraw",
                     client_id=("redraw", client.id),
                     after_s=max(0.0, due_s),

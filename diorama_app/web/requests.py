@@ -111,7 +111,7 @@ def paced(handler: Callable[[ServerConnection], Awaitable[None]]) -> Callable[[S
                 await asyncio.sleep(-credit / MESSAGES_PER_S)
             return await receive(*args, **kwargs)
 
-        connection.recv = recv  # type: ignore[method-assign]
+        connection.recv = recv  # type: ignore[method-assign]  # viser asks the connection itself for messages
         await handler(connection)
 
     return handle

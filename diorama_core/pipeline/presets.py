@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.architecture.from_depth import PlanarRoom
-from diorama_core.artefacts import Inputs, LabelledBox, Photo
+from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
 from diorama_core.errors import UnavailableError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.models.foreground import Foreground
@@ -32,7 +32,16 @@ from diorama_core.perception.foundation.depth_prediction import (
 from diorama_core.perception.foundation.detection import EverydayDetection, OpenVocabularyDetection
 from diorama_core.perception.foundation.empty_room import EmptyRoomArchitecture
 from diorama_core.perception.foundation.outlines import PromptedMasks
-from diorama_core.perception.foundation.proposals import CONFIDENT, LIKELY, JoinedDetection, OwnDetection, names_of
+from diorama_core.perception.foundation.proposals import (
+    CONFIDENT,
+    FAINT,
+    LIKELY,
+    MOST_FAINT,
+    JoinedDetection,
+    OwnDetection,
+    clicked_box,
+    names_of,
+)
 from diorama_core.perception.graph.geometric import GeometricGraph
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.perception.language.stages import LanguageGraph, LanguageRecognition
@@ -164,6 +173,18 @@ def namers() -> Mapping[str, Callable[[Photo, Float[np.ndarray, "n 4"]], Sequenc
     if not has_own_recogniser():
         return {}
     return {"own": partial(names_of, own_recogniser())}
+
+
+def clickers() -> Mapping[str, Callable[[Photo, Float[np.ndarray, "n 2"]], Sequence[Box | None]]]:
+    """Every way from clicks on a photo to boxes, by name."""
+    if not has_own_recogniser():
+        return {}
+
+    def own(photo: Photo, pixels: Float[np.ndarray, "n 2"]) -> Sequence[Box | None]:
+        found = own_recogniser().propose(photo.rgb, FAINT, MOST_FAINT)
+        return [clicked_box(found, float(x), float(y)) for x, y in pixels]
+
+    return {"own": own}
 
 
 def propose_boxes(

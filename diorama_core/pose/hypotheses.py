@@ -74,13 +74,19 @@ class Hypotheses:
 
 
 def hypotheses_for(
-    cuboid: Cuboid, category_name: str, symmetry: SymmetryFold, limits: SizeLimits, anchor: Anchor
+    cuboid: Cuboid,
+    category_name: str,
+    symmetry: SymmetryFold,
+    limits: SizeLimits,
+    anchor: Anchor,
+    *,
+    sides_known: bool,
 ) -> Hypotheses:
     """Turns of the shape about its up axis that its symmetry tells apart, each scaled toward the cuboid.
 
-    Quarter turns of the cuboid for all; finer ones for categories that often stand at odd angles. Where its front is
-    not known, the whole cuboid may be turned by a quarter: of a thing seen at an angle one picture hardly tells which
-    side is the long one.
+    Quarter turns of the cuboid for all; finer ones for categories that often stand at odd angles. The whole cuboid may
+    be turned by a quarter where its front is not known, and no measured depth says which side is the long one: of a
+    thing seen at an angle one picture hardly tells.
     """
     quarters = np.arange(4) * (np.pi / 2)
     fine = np.arange(-2, 4) * _FINE_STEP_RAD if category(category_name).quarter_turns_free else np.zeros(1)
@@ -93,7 +99,7 @@ def hypotheses_for(
         total, turns, off_axis = total[distinct], turns[distinct], off_axis[distinct]
     odd = np.round(turns / (np.pi / 2)).astype(int) % 2 == 1
     long = float(cuboid.size_m[:2].max()) > _LONG_RATIO * max(float(cuboid.size_m[:2].min()), 1e-6)
-    again = np.flatnonzero(odd) if long and not cuboid.front_known else np.zeros(0, dtype=int)
+    again = np.flatnonzero(odd) if long and not (sides_known or cuboid.front_known) else np.zeros(0, dtype=int)
     turned = np.concatenate([np.zeros(len(total), dtype=bool), np.ones(len(again), dtype=bool)])
     total, off_axis, odd = (np.concatenate([values, values[again]]) for values in (total, off_axis, odd))
     wanted = np.where((odd & ~turned)[:, None], cuboid.size_m[[1, 0, 2]], cuboid.size_m)

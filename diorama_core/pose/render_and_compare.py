@@ -245,7 +245,8 @@ class RenderAndCompare:
         appearance = self._compare(shape)
         name = task.item.category
         limits = SizeLimits.of(shape.size_m, name, task.cuboid.size_m)
-        tried = hypotheses_for(task.cuboid, name, shape.symmetry, limits, task.anchor)
+        depth_known = task.measured is not None
+        tried = hypotheses_for(task.cuboid, name, shape.symmetry, limits, task.anchor, sides_known=depth_known)
         if task.measured is not None:
             tried = tried.and_also(task.measured.hypotheses(shape.symmetry, limits))
         errors = task.coarse.errors(appearance.caster, tried.poses)

@@ -12,4 +12,4 @@ from diorama_core.perception.foundation.proposals import OwnDetection, names_of
 def score(annotations: Path, photos: Path, recogniser: Recogniser) -> RecognitionBench:
     """Boxes and names on every annotated photo."""
     routes = {"own": OwnDetection(recogniser, threshold=0.01, most=BEST)}
-    return run(annotations, photos, routes, {"own": lambda photo, boxes: names_of(recogniser, photo, boxes)})
+    return run(annotations, photos, routes, {"own": lambda photo, boxes: names_of(recogniser, photo, boxes)}, {})

@@ -36,7 +36,7 @@ def session(server: viser.ViserServer, tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(redraws, "EVERY_S", 0.0)  # panels are drawn at once
     monkeypatch.setattr(redraws, "SHARE", 1e9)
     made = EditorSession(server, PlainLibrary(), tmp_path / "projects", Client)
-    made.checker.look_at = lambda scene: None  # its thread would post to the desk
+    made.checker.look_at = lambda scene: None  # its thread would post to the UI thread
     made.open_project(make_project(tmp_path / "projects" / "demo"))
     yield made
     made.close()

@@ -19,6 +19,6 @@ def test_light_from_the_side_is_found() -> None:
     np.testing.assert_allclose(np.array(found.direction) * found.strength, true, atol=0.08)
 
 
-def test_flat_things_say_nothing_of_light() -> None:
+def test_flat_objects_say_nothing_of_light() -> None:
     one = shade(0.5, (0.4, 0, 0), NORMALS[:1])
     assert estimated_light([one] * 5) == RoomLight()

@@ -48,16 +48,16 @@ def test_without_the_plane_the_next_best_holds() -> None:
     ("x", "y", "yaw", "wall"),
     [(-1.95, 1.0, 0, "left"), (1.95, 1.0, 180, "right"), (0.0, 3.95, -90, "back"), (-1.6, 3.95, -90, "back")],
 )
-def test_things_hang_on_the_wall_behind_them(x: float, y: float, yaw: float, wall: str) -> None:
+def test_objects_hang_on_the_wall_behind_them(x: float, y: float, yaw: float, wall: str) -> None:
     assert nearest_wall(box("p", x, y, 1.5, (0.04, 0.6, 0.5), yaw), WALLS).id == wall
 
 
-def test_a_flat_thing_in_a_corner_hangs_with_its_thin_side_to_the_wall() -> None:
+def test_a_flat_object_in_a_corner_hangs_with_its_thin_side_to_the_wall() -> None:
     for yaw, wall in ((0, "left"), (-90, "back")):
         assert nearest_wall(box("p", -1.75, 3.75, 1.5, (0.04, 0.4, 0.5), yaw), WALLS).id == wall
 
 
-def test_things_stand_against_walls_that_a_face_nearly_touches() -> None:
+def test_objects_stand_against_walls_that_a_face_nearly_touches() -> None:
     inside = ADHERENCE_M - 0.01
     assert adhering_walls(box("s", -2.0 + 0.2 + inside, 1.0, 0.5), WALLS) == ("left",)
     assert adhering_walls(box("s", -2.0 + 0.2 + ADHERENCE_M + 0.01, 1.0, 0.5), WALLS) == ()
@@ -72,5 +72,5 @@ def test_a_known_front_lets_only_the_back_adhere() -> None:
     assert adhering_walls(turned, WALLS) == ()
 
 
-def test_a_wall_beside_the_thing_does_not_count() -> None:
+def test_a_wall_beside_the_object_does_not_count() -> None:
     assert adhering_walls(box("s", -1.75, 9.0, 0.5), WALLS) == ()

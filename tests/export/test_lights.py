@@ -44,5 +44,5 @@ def test_a_window_lets_daylight_into_the_room_whichever_way_it_was_made(yaw: flo
     assert light.T_world[1, 3] < picture.pose.position[1], "before its face"
 
 
-def test_other_things_give_no_light() -> None:
+def test_other_objects_give_no_light() -> None:
     assert lights_of(SCENE, [SCENE.object("table_1"), SCENE.object("chair_1")], {}) == ()

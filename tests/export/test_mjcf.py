@@ -49,7 +49,7 @@ def test_objects_stay_for_two_seconds(source: str) -> None:
     assert any(d.free for d in report.drifts)
 
 
-def test_a_object_in_the_air_is_reported_as_falling() -> None:
+def test_an_object_in_the_air_is_reported_as_falling() -> None:
     scene, library = scene_of("boxes")
     lifted = scene.objects[0]
     lifted = replace(lifted, pose=lifted.pose.moved(np.array([0.0, 0.0, 0.5])))

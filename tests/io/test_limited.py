@@ -17,6 +17,7 @@ from diorama_core.errors import Cancelled, InputError, LibraryError
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.progress import CancelToken, Progress, ProgressEvent
 from tests.processes import runs
+from tests.waiting import until
 
 
 def double(number: int) -> int:
@@ -130,13 +131,8 @@ def test_it_ends_with_the_program_whatever_it_does(tmp_path: Path) -> None:
     said = tmp_path / "pid"
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[2])}
     program = subprocess.Popen([sys.executable, "-c", PROGRAM, str(said)], env=environment)
-    until = time.monotonic() + 120.0
-    while not (said.exists() and said.read_text()) and time.monotonic() < until:
-        time.sleep(0.05)
+    until(lambda: said.exists() and said.read_text(), seconds=120.0)
     decoding = int(said.read_text())
     program.kill()
     program.wait()
-    until = time.monotonic() + 30.0
-    while runs(decoding) and time.monotonic() < until:
-        time.sleep(0.05)
-    assert not runs(decoding), "the decoding process outlives the program"
+    until(lambda: not runs(decoding), "the decoding process ends with the program", seconds=30.0)

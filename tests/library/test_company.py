@@ -21,7 +21,7 @@ def test_a_kind_is_a_carrier_once() -> None:
     assert len(carriers) == len(set(carriers))
 
 
-def test_what_lies_on_things_is_small_or_hangs_nowhere() -> None:
+def test_what_lies_on_objects_is_small_or_hangs_nowhere() -> None:
     lying = {kind for row in CARRIED for kind in row.kinds}
     assert {category(kind).mount for kind in lying} <= {"surface", "floor", "wall"}
     assert sum(category(kind).mount == "surface" for kind in lying) > 0.8 * len(lying)

@@ -40,7 +40,7 @@ def test_words_that_say_which_leave_little_to_others(label) -> None:
     assert meanings(label, category)[category] > 0.85
 
 
-def test_something_without_a_name_may_be_anything_common_things_first() -> None:
+def test_something_without_a_name_may_be_anything_common_objects_first() -> None:
     shares = meanings("object", UNKNOWN.name)
     assert set(shares) == NAMES - {UNKNOWN.name}
     assert next(iter(shares)) == "chair"

@@ -80,7 +80,7 @@ def test_doubles_go_and_the_best_stays() -> None:
     assert len(without_doubles(found, 0.8, across_classes=False)) == 3
 
 
-def test_parts_of_a_object_of_the_same_class_go() -> None:
+def test_parts_of_an_object_of_the_same_class_go() -> None:
     chair_with_part = _found((0, 0, 10, 10, 0.9, 0), (2, 2, 6, 6, 0.5, 0), (2, 2, 6, 6, 0.4, 1))
     assert list(without_parts_of_same(chair_with_part, 0.8).scores) == [0.9, 0.4]
     lumped = _found((0, 0, 20, 10, 0.3, 0), (0, 0, 10, 10, 0.9, 0), (10, 0, 20, 10, 0.8, 0))

@@ -86,7 +86,7 @@ def test_a_shape_lent_by_another_of_the_set_stands_where_the_object_stood() -> N
     assert np.allclose(changed.pose.position[:2], [1.0, 0.0])
 
 
-def test_what_is_locked_stays_and_what_stands_on_a_object_follows() -> None:
+def test_what_is_locked_stays_and_what_stands_on_an_object_follows() -> None:
     locked = replace(CHAIRS[0], locked=True)
     assert arrangement(room(locked, LAMP), 1).objects[0] == locked
     table = item("t", "table", 0.0, {"a": 0.9, "b": 0.8})

@@ -50,7 +50,7 @@ def test_every_object_is_its_best_candidate_with_all_it_came_from() -> None:
     assert scene.architecture.planes == SHOT.planes
 
 
-def test_an_unknown_thing_takes_the_category_of_its_shape() -> None:
+def test_an_unknown_object_takes_the_category_of_its_shape() -> None:
     scene = scene_of(posed("tray", "ball"))
     assert scene.object("tray").category == "toy"
 

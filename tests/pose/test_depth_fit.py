@@ -123,7 +123,7 @@ def test_outlines_reach_to_the_edges_of_the_pixels() -> None:
     assert Outline.of(measured(room).observations.seen, np.zeros_like(room.objects[0].mask)) is None
 
 
-def test_where_its_foot_is_hidden_a_object_may_stand_anywhere_below() -> None:
+def test_where_its_foot_is_hidden_an_object_may_stand_anywhere_below() -> None:
     seen_foot = Room(camera_at(), (standing("chair", 0.0, 3.0, 30.0),), (0,))
     hidden_foot = Room(camera_at(), (standing("chair", 0.0, 4.2, 30.0), standing("sofa", 0.0, 2.9, -90.0)), (0, 2))
     sure, unsure = measured(seen_foot).contact, measured(hidden_foot).contact

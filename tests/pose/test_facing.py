@@ -51,6 +51,6 @@ def test_a_pillow_on_a_sofa_looks_across_its_length() -> None:
 
 
 @pytest.mark.parametrize("turn_deg", [0.0, 90.0])
-def test_a_front_that_is_known_is_where_things_face(turn_deg: float) -> None:
+def test_a_front_that_is_known_is_where_objects_face(turn_deg: float) -> None:
     known = replace(cuboid("desk", 0.0, 3.0, turn_deg=turn_deg), front_known=True)
     assert best_deg("desk", known, {}) == int(turn_deg)

@@ -15,12 +15,15 @@ from diorama_core.scene.types import yaw_rotation
 PILLOW = np.array([0.24, 0.48, 0.44])
 
 
-def hypotheses(size_m: tuple[float, float, float], *, front_known: bool = False) -> Hypotheses:
+def hypotheses(
+    size_m: tuple[float, float, float], *, front_known: bool = False, sides_known: bool = False
+) -> Hypotheses:
     """Of a pillow in a cuboid that is turned by ten degrees."""
     cuboid = Cuboid("pillow_1", yaw_rotation(np.deg2rad(10.0)), np.array([1.0, 2.0, 0.6]), np.array(size_m), 1.0)
     cuboid = replace(cuboid, front_known=front_known)
     limits = SizeLimits.of(tuple(PILLOW), "pillow", cuboid.size_m)
-    return hypotheses_for(cuboid, "pillow", 1, limits, anchor_of(cuboid, False, np.array([0.0, -1.0])))
+    anchor = anchor_of(cuboid, False, np.array([0.0, -1.0]))
+    return hypotheses_for(cuboid, "pillow", 1, limits, anchor, sides_known=sides_known)
 
 
 def footprints(found: Hypotheses) -> set[tuple[int, float, float]]:
@@ -34,6 +37,7 @@ def test_the_cuboid_itself_may_be_turned_where_its_sides_differ() -> None:
     found = hypotheses((0.24, 0.48, 0.44))
     assert {(100, 0.2, 0.5), (280, 0.2, 0.5)} <= footprints(found)
     assert (100, 0.2, 0.5) not in footprints(hypotheses((0.24, 0.48, 0.44), front_known=True))
+    assert (100, 0.2, 0.5) not in footprints(hypotheses((0.24, 0.48, 0.44), sides_known=True))
     whole = hypotheses((0.4, 0.4, 0.44))
     assert len(found.poses) == len(whole.poses) + len(whole.poses) // 2
 

@@ -162,14 +162,14 @@ def test_chairs_of_a_set_are_equally_large_where_the_picture_allows_it() -> None
         assert best.pose.position[2] - 0.5 * best.pose.scale[2] * best.shape_size_m[2] == pytest.approx(0, abs=0.03)
 
 
-def test_a_object_twice_as_large_is_no_part_of_the_set() -> None:
+def test_an_object_twice_as_large_is_no_part_of_the_set() -> None:
     chairs = (standing("chair", -0.7, 3.0, 40.0), standing("chair", 0.7, 3.0, 40.0, (1.3, 1.3, 1.3)))
     room = Room(camera_at(), chairs, (0, 0))
     small, large = (f.candidates[0].pose.scale for f in posed(room, room.depth(True)))
     assert (large > 1.15 * small).all()
 
 
-def test_a_tiny_box_and_a_object_behind_the_camera_are_survived_with_low_confidence() -> None:
+def test_a_tiny_box_and_an_object_behind_the_camera_are_survived_with_low_confidence() -> None:
     room = Room(camera_at(), (standing("chair", 0.0, 3.0, 20.0),), (0,))
     tiny = (replace(room.objects[0], box=(100.0, 100.0, 101.0, 101.0), mask=np.zeros_like(room.objects[0].mask)),)
     behind = Cuboid("o0", np.eye(3), np.array([0.0, -3.0, 0.4]), np.array([0.5, 0.5, 0.8]), 0.1)
@@ -179,7 +179,7 @@ def test_a_tiny_box_and_a_object_behind_the_camera_are_survived_with_low_confide
     assert found[0].confidence < 0.1
 
 
-def test_a_object_cut_by_the_border_is_believed_less() -> None:
+def test_an_object_cut_by_the_border_is_believed_less() -> None:
     whole = Room(camera_at(), (standing("sofa", 0.0, 4.0, -90.0),), (0,))
     cut = Room(camera_at(), (standing("sofa", 2.4, 4.0, -90.0),), (0,))
     assert cut.objects[0].box[2] >= 479.0

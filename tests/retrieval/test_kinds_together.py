@@ -19,7 +19,7 @@ def test_the_smallest_larger_box_around_a_foot_is_the_carrier() -> None:
     assert carriers([room, table, cup, beside]) == [None, 0, 1, None]
 
 
-def test_a_thing_on_the_floor_before_another_has_no_carrier() -> None:
+def test_an_object_on_the_floor_before_another_has_no_carrier() -> None:
     assert carriers([(0, 0, 50, 50), (10, 30, 20, 52)]) == [None, None]
     assert carriers([]) == []
 
@@ -33,14 +33,14 @@ def test_what_lies_on_a_sofa_is_a_pillow_and_makes_it_one() -> None:
     assert kinds_together([unsure, {"bowl": 1.0}], [None, 0])[0]["sofa"] < 0.4
 
 
-def test_things_of_one_room_go_together() -> None:
+def test_objects_of_one_room_go_together() -> None:
     unsure = {"desk": 0.5, "vanity table": 0.5}
     office = kinds_together([unsure, {"office chair": 1.0}, {"printer": 1.0}], [None, None, None])
     bedroom = kinds_together([unsure, {"bed": 1.0}, {"night stand": 1.0}], [None, None, None])
     assert office[0]["desk"] > 0.5 > bedroom[0]["desk"]
 
 
-def test_a_thing_alone_keeps_what_is_known_of_it() -> None:
+def test_an_object_alone_keeps_what_is_known_of_it() -> None:
     (found,) = kinds_together([{"chair": 0.7, "office chair": 0.3}], [None])
     assert found["chair"] == pytest.approx(0.7, abs=0.15)
     assert sum(found.values()) == pytest.approx(1.0)

@@ -37,7 +37,7 @@ def test_kinds_that_a_word_may_mean_are_looked_at_the_likelier_the_more_they_cou
     assert sense_factor(0.1) < sense_factor(0.5) < 1.0
 
 
-def test_many_kinds_are_looked_at_where_no_word_says_what_a_thing_is() -> None:
+def test_many_kinds_are_looked_at_where_no_word_says_what_an_object_is() -> None:
     kinds = ("chair", "stool", "table", "bench", "sofa", "bed", "desk", "plant", "box", "basket")
     senses = {kind: 0.9 if kind == "chair" else 0.01 for kind in kinds}
     size = np.array((0.5, 0.5, 0.9))

@@ -44,7 +44,7 @@ def kind_of(*objects) -> list[str]:
     [("lamp", "floor lamp", 0.0), ("lamp", "ceiling lamp", 2.2), ("cabinet", "wall cabinet", 1.45),
      ("table", "table", 0.0), ("chair", "chair", 0.0)],
 )  # fmt: skip
-def test_where_a_thing_is_and_how_large_tells_which_it_is(word, kind, bottom_m) -> None:
+def test_where_an_object_is_and_how_large_tells_which_it_is(word, kind, bottom_m) -> None:
     assert kind_of(seen(word, kind, bottom_m), seen("sofa", "sofa", 0.0, (-1.5, 4.5), number=2))[0] == kind
 
 

@@ -24,7 +24,7 @@ def test_shapes_are_picked_by_category_and_condition(f) -> None:
     assert (np.abs(np.log(sizes)) <= 0.1 + 1e-9).all()
 
 
-def test_things_stand_on_the_floor_where_it_is_free(f) -> None:
+def test_objects_stand_on_the_floor_where_it_is_free(f) -> None:
     wardrobe = f.pick("wardrobe")
     first = f.stand(wardrobe, np.array([0.0, 0.0]), 0.0)
     assert f.object(first).pose.position == pytest.approx([0.0, 0.0, 1.0])
@@ -46,7 +46,7 @@ def test_floor_that_is_kept_free_stays_free_of_what_is_higher(f) -> None:
     assert f.object(on_rug).corners_world[:, 2].min() == pytest.approx(0.01, abs=1e-6)
 
 
-def test_the_floor_before_a_thing_is_kept_free(f) -> None:
+def test_the_floor_before_an_object_is_kept_free(f) -> None:
     f.stand(f.pick("wardrobe"), np.zeros(2), 0.0, free_front_m=0.8)
     assert f.stand(f.pick("box"), np.array([0.7, 0.0]), 0.0) is None
     assert f.stand(f.pick("box"), np.array([-0.7, 0.0]), 0.0) is not None
@@ -63,7 +63,7 @@ def test_against_a_wall_the_back_is_flush(f) -> None:
     sound(f)
 
 
-def test_things_hang_on_walls_and_from_the_ceiling(f) -> None:
+def test_objects_hang_on_walls_and_from_the_ceiling(f) -> None:
     wall = f.plan.walls[1]
     picture = f.hang(f.pick("picture"), wall, 1.5, 1.6)
     edge = f.supports[-1]
@@ -76,7 +76,7 @@ def test_things_hang_on_walls_and_from_the_ceiling(f) -> None:
     sound(f)
 
 
-def test_things_rest_on_surfaces_beside_each_other(f) -> None:
+def test_objects_rest_on_surfaces_beside_each_other(f) -> None:
     table = f.stand(f.pick("table", where=lambda s: s.size_m[2] > 0.7), np.zeros(2), 0.0)
     cup = f.pick("cup")
     first = f.rest(cup, table, 0, np.zeros(2))

@@ -12,7 +12,7 @@ def scene_of(*categories: str) -> Scene:
     return Scene(objects=tuple(replace(one, id=f"o{k}", category=c) for k, c in enumerate(categories)))
 
 
-def test_every_wish_that_is_not_met_is_named() -> None:
+def test_every_request_that_is_not_met_is_named() -> None:
     words = "a bedroom with two lamps, a wardrobe and an armchair"
     assert unmet(words, scene_of("lamp", "bed")) == ("1 of 2 lamps", "no wardrobe", "no armchair")
 
@@ -21,7 +21,7 @@ def test_nothing_is_said_where_all_is_there() -> None:
     assert unmet("a desk with a chair", scene_of("desk", "chair")) == ()
 
 
-def test_one_object_meets_one_wish() -> None:
+def test_one_object_meets_one_request() -> None:
     lines = unmet("a chair, and an armchair", scene_of("armchair"))
     assert len(lines) == 1
 

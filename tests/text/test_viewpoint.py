@@ -51,7 +51,7 @@ def test_weights_decide_where_one_looks() -> None:
         assert wanted not in unseen(scene, LIBRARY, camera)
 
 
-def test_what_is_behind_the_camera_or_another_thing_is_unseen() -> None:
+def test_what_is_behind_the_camera_or_another_object_is_unseen() -> None:
     camera = best_viewpoint(room(TABLE), LIBRARY, SIZE, {"table": 1.0})
     behind = place(LIBRARY, "behind", "ball", tuple(camera.position - camera.T_world_camera[:3, 2] * 0.8))
     assert unseen(room(TABLE, behind), LIBRARY, camera) == {"behind"}

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.artefacts import Inputs, LabelledBox, Photo
+from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
 from diorama_core.errors import InputError
 from diorama_core.evaluation.adapters.photo_annotations import AnnotatedPhoto, picture_of, read_annotations
 from diorama_core.evaluation.reports.tables import Column, Row, Table
@@ -25,8 +25,14 @@ BEST = 20
 LEVELS = (0.5, 0.3)
 """Intersection over union from which a box has found an object."""
 
+CLICK_SPREAD = 0.12
+"""How far from the middle of an object clicks fall, as a share of its box (standard deviation)."""
+CLICKS_SEED = 0
+
 Namer = Callable[[Photo, Float[np.ndarray, "n 4"]], Sequence[Sequence[str]]]
 """Names of what boxes hold, best first."""
+Clicker = Callable[[Photo, Float[np.ndarray, "n 2"]], Sequence[Box | None]]
+"""Boxes that clicks on pixels (x, y) of a photo mean."""
 
 
 @dataclass(frozen=True)
@@ -57,11 +63,24 @@ class Named:
 
 
 @dataclass(frozen=True)
+class Clicked:
+    """The boxes that one click on each annotated object of one photo gave."""
+
+    objects: int
+    hits: tuple[int, ...]
+    """Of these, right at each of `LEVELS`."""
+    none: int
+    """Clicks that gave no box."""
+    seconds: float
+
+
+@dataclass(frozen=True)
 class RecognitionBench:
     """Results of all routes, by photo."""
 
     found: Mapping[str, Mapping[str, Found]]
     named: Mapping[str, Mapping[str, Named]]
+    clicked: Mapping[str, Mapping[str, Clicked]]
 
     def tables(self) -> tuple[Table, ...]:
         """Routes to boxes, and ways to name given boxes."""
@@ -82,7 +101,24 @@ class RecognitionBench:
         return (
             Table(f"Objects found in photos alone, {BEST} best boxes", columns, tuple(rows)),
             Table("Names of boxes that a person drew", names, tuple(named)),
+            self._clicks(),
         )
+
+    def _clicks(self) -> Table:
+        columns = (
+            Column("objects", "d"),
+            *(Column(f"right at IoU {level}", ".3f", "↑") for level in LEVELS),
+            Column("no box", ".3f", "↓"),
+            Column("seconds a photo", ".2f", "↓"),
+        )
+        rows = []
+        for name, by_photo in self.clicked.items():
+            photos = tuple(by_photo.values())
+            objects = max(sum(p.objects for p in photos), 1)
+            hits = (sum(p.hits[k] for p in photos) / objects for k in range(len(LEVELS)))
+            none = sum(p.none for p in photos) / objects
+            rows.append(Row(name, (objects, *hits, none, sum(p.seconds for p in photos) / max(len(photos), 1))))
+        return Table("Boxes of objects that a person clicked once", columns, tuple(rows))
 
     def to_json(self) -> dict[str, object]:
         """Tables and every photo."""
@@ -90,6 +126,7 @@ class RecognitionBench:
             "bench": "recognition",
             "tables": [t.to_json() for t in self.tables()],
             "photos": {route: {name: p.__dict__ for name, p in ps.items()} for route, ps in self.found.items()},
+            "clicks": {way: {name: p.__dict__ for name, p in ps.items()} for way, ps in self.clicked.items()},
         }
 
 
@@ -98,6 +135,7 @@ def run(
     photos: Path,
     routes: Mapping[str, DetectionStage],
     namers: Mapping[str, Namer],
+    clickers: Mapping[str, Clicker],
     progress: Progress | None = None,
 ) -> RecognitionBench:
     """Let every route look at every annotated photo that the folder has.
@@ -107,6 +145,7 @@ def run(
         photos: folder of pictures named by id.
         routes: detectors by name.
         namers: ways to name given boxes, by name.
+        clickers: ways from a click to a box, by name.
         progress: reports and cancellation.
 
     Raises:
@@ -119,6 +158,8 @@ def run(
         raise InputError(f"{photos}: none of the {len(known)} annotated photos is there; name pictures by their ids")
     found: dict[str, dict[str, Found]] = {name: {} for name in routes}
     named: dict[str, dict[str, Named]] = {name: {} for name in namers}
+    clicked: dict[str, dict[str, Clicked]] = {name: {} for name in clickers}
+    rng = np.random.default_rng(CLICKS_SEED)
     for k, (name, path) in enumerate(present.items()):
         progress.report(k / len(present), name)
         inputs, boxes = _read(path, known[name])
@@ -126,7 +167,10 @@ def run(
             found[route][name] = _look(stage, inputs.photo, boxes, known[name])
         for way, namer in namers.items():
             named[way][name] = _name(namer, inputs.photo, boxes, known[name])
-    return RecognitionBench(found, named)
+        spots = boxes[:, :2] + (boxes[:, 2:] - boxes[:, :2]) * rng.normal(0.5, CLICK_SPREAD, (len(boxes), 2))
+        for way, clicker in clickers.items():
+            clicked[way][name] = _click(clicker, inputs.photo, spots, boxes)
+    return RecognitionBench(found, named, clicked)
 
 
 def _read(path: Path, photo: AnnotatedPhoto) -> tuple[Inputs, Float[np.ndarray, "n 4"]]:
@@ -167,6 +211,18 @@ def _name(namer: Namer, photo: Photo, boxes: Float[np.ndarray, "n 4"], about: An
     first = sum(r[0] == kind for r, kind in zip(ranked, kinds, strict=True))
     five = sum(kind in r[:5] for r, kind in zip(ranked, kinds, strict=True))
     return Named(len(asked), first, five, seconds)
+
+
+def _click(clicker: Clicker, photo: Photo, spots: Float[np.ndarray, "n 2"], boxes: Float[np.ndarray, "n 4"]) -> Clicked:
+    begun = time.perf_counter()
+    meant = clicker(photo, spots)
+    seconds = time.perf_counter() - begun
+    right = [
+        0.0 if box is None else float(overlaps(np.array([box]), true[None])[0, 0])
+        for box, true in zip(meant, boxes, strict=True)
+    ]
+    hits = tuple(sum(share >= level for share in right) for level in LEVELS)
+    return Clicked(len(boxes), hits, sum(box is None for box in meant), seconds)
 
 
 def _found_values(photos: Sequence[Found]) -> tuple[float | int, ...]:

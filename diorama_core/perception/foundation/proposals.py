@@ -15,6 +15,8 @@ from diorama_core.models.boxes import Detections, areas, overlaps
 from diorama_core.models.recogniser import Recogniser
 from diorama_core.progress import Progress
 from diorama_core.protocols import DetectionStage
+from diorama_core.retrieval.kinds_together import carriers, kinds_together
+from diorama_core.retrieval.seen_kinds import as_it_looks
 
 CONFIDENT, LIKELY = 0.62, 0.45
 """Scores from which a build uses a box unseen, and from which a person is shown one."""
@@ -93,10 +95,21 @@ def clicked_box(found: Detections, x: float, y: float) -> Box | None:
 
 
 def names_of(recogniser: Recogniser, photo: Photo, boxes: Float[np.ndarray, "n 4"]) -> Sequence[tuple[str, ...]]:
-    """For every box the likeliest categories, best first."""
-    frequent = meanings(UNKNOWN.name, UNKNOWN.name)
-    # The namer learnt from rooms in which every category is about equally often.
-    usual = np.array([frequent.get(name, min(frequent.values())) for name in recogniser.categories])
-    probabilities = recogniser.name(photo.rgb, boxes) * usual
-    order = np.argsort(-probabilities, axis=1, kind="stable")[:, :SUGGESTIONS]
-    return [tuple(recogniser.categories[k] for k in row) for row in order]
+    """For every box the likeliest categories, best first; all boxes of a photo are named together."""
+    return ranked_names(recogniser.categories, recogniser.name(photo.rgb, boxes), boxes)
+
+
+def ranked_names(
+    categories: Sequence[str], seen: Float[np.ndarray, "n k"], boxes: Float[np.ndarray, "n 4"]
+) -> Sequence[tuple[str, ...]]:
+    """For every box the likeliest categories, best first, given what all of them look like and what lies on what.
+
+    Args:
+        categories: names of the columns.
+        seen: probabilities of the namer, as if all categories were equally frequent.
+        boxes: in photo pixels.
+    """
+    usual = meanings(UNKNOWN.name, UNKNOWN.name)
+    alone = [as_it_looks(usual, list(zip(categories, map(float, row), strict=True)), named=False) for row in seen]
+    together = kinds_together(alone, carriers([(float(a), float(b), float(c), float(d)) for a, b, c, d in boxes]))
+    return [tuple(sorted(kinds, key=lambda name: -kinds[name])[:SUGGESTIONS]) for kinds in together]

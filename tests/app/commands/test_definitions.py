@@ -75,7 +75,7 @@ def test_lock_and_hide_go_back_and_forth_by_the_last_selected(session, client, c
         assert {session.scene.object(i).locked for i in client.selection} == {not before}
 
 
-def test_dropping_puts_a_thing_down_on_what_holds_it(session, client, commands) -> None:
+def test_dropping_puts_an_object_down_on_what_holds_it(session, client, commands) -> None:
     from diorama_core.scene import edits
 
     lamp = session.scene.object("lamp_1").pose
@@ -117,7 +117,7 @@ def test_saving_writes_the_project_and_needs_one(session, client, commands) -> N
         run(commands, client, "save")
 
 
-def test_escape_stops_one_thing_after_another(session, client, commands) -> None:
+def test_escape_stops_one_object_after_another(session, client, commands) -> None:
     closed = []
     client.dialog = lambda: closed.append(1) or setattr(client, "dialog", None)
     client.select(["chair_1"])

@@ -30,13 +30,14 @@ from diorama_core.scene import edits
 from diorama_core.scene.support import check_scene
 from tests.app.people import join
 from tests.app.small_room import PlainLibrary, furnished_scene, make_project
+from tests.waiting import until
 
 
 @pytest.fixture
 def session(tmp_path: Path) -> Iterator[EditorSession]:
     server = create_server(host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1"))
     made = EditorSession(server, PlainLibrary(), tmp_path / "projects", Client)
-    made.checker.look_at = lambda scene: None  # its thread would post to the desk
+    made.checker.look_at = lambda scene: None  # its thread would post to the UI thread
     made.open_project(make_project(tmp_path / "projects" / "demo"))
     yield made
     made.close()
@@ -171,12 +172,11 @@ def test_the_room_is_made_higher_and_a_wall_is_moved_with_what_hangs_on_it(
 
 def test_every_commit_is_on_disk_within_a_second(session: EditorSession, client: Client) -> None:
     editing.set_yaw(client, "chair_1", 77.0)
-    until = time.monotonic() + 1.5
-    while time.monotonic() < until:
-        if abs(np.degrees(session.project.load_scene().object("chair_1").pose.yaw_rad) - 77.0) < 1e-6:
-            return
-        time.sleep(0.05)
-    pytest.fail("not saved")
+
+    def saved() -> bool:
+        return abs(np.degrees(session.project.load_scene().object("chair_1").pose.yaw_rad) - 77.0) < 1e-6
+
+    until(saved, seconds=1.5)
 
 
 def test_names_are_escaped_and_supporters_are_named_apart() -> None:

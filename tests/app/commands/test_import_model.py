@@ -32,7 +32,7 @@ def session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[EditorS
     user_library.own().add(packed_shape(Shape("my-case", "box", "my case", (1.0, 1.0, 1.0)), [lying], None, "key", ()))
     server = create_server(host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1"))
     made = EditorSession(server, user_library, tmp_path / "projects", Client)
-    made.checker.look_at = lambda scene: None  # its thread would post to the desk
+    made.checker.look_at = lambda scene: None  # its thread would post to the UI thread
     made.open_project(make_project(tmp_path / "projects" / "demo"))
     yield made
     made.close()

@@ -180,7 +180,7 @@ def test_what_stands_on_it_goes_along(session, client, gestures) -> None:
     np.testing.assert_allclose(moved["lamp_1"], moved["table_1"], atol=1e-9)
 
 
-def test_selected_things_go_along_with_the_one_dragged(session, client, gestures) -> None:
+def test_selected_objects_go_along_with_the_one_dragged(session, client, gestures) -> None:
     client.select(["chair_2", "chair_1"])
     before = {i: session.scene.object(i).pose.position for i in ("chair_1", "chair_2")}
     drag(session, gestures, "chair_1", (0.1, 0.1, 0.0))
@@ -190,7 +190,7 @@ def test_selected_things_go_along_with_the_one_dragged(session, client, gestures
     assert np.linalg.norm(moved[0]) > 0.05
 
 
-def test_a_thing_lifted_onto_a_table_stands_on_it(session, client, gestures) -> None:
+def test_an_object_lifted_onto_a_table_stands_on_it(session, client, gestures) -> None:
     drag(session, gestures, "lamp_1", (-1.4, -0.6, 0.0))
     assert session.scene.support_of("lamp_1").parent == "floor"
     table = session.scene.object("table_1").pose.position
@@ -238,7 +238,7 @@ def test_esc_puts_everything_back(session, client, gestures) -> None:
     assert not gestures.cancel()
 
 
-def test_a_locked_thing_is_not_dragged_and_says_why(session, client, gestures) -> None:
+def test_a_locked_object_is_not_dragged_and_says_why(session, client, gestures) -> None:
     editing.set_locked(client, ["chair_1"], True)
     drag(session, gestures, "chair_1", (0.5, 0.0, 0.0))
     assert session.scene.object("chair_1").pose.position[0] == -0.9
@@ -257,7 +257,7 @@ def test_a_drag_ends_on_the_scene_as_it_is_by_then(session, client, gestures) ->
 # -- the gizmo --------------------------------------------------------------------------------------------------
 
 
-def test_the_gizmo_is_where_the_selected_thing_is_if_it_can_be_moved(session, client, gestures) -> None:
+def test_the_gizmo_is_where_the_selected_object_is_if_it_can_be_moved(session, client, gestures) -> None:
     assert gizmo(session) is None
     client.select(["table_1"])
     np.testing.assert_allclose(gizmo(session).position, session.scene.object("table_1").pose.position)

@@ -28,7 +28,7 @@ def test_a_frame_takes_in_what_has_its_middle_inside(x1, y1, x2, y2) -> None:
     assert not outside & set(found)
 
 
-def test_hidden_things_and_those_behind_are_left_out() -> None:
+def test_hidden_objects_and_those_behind_are_left_out() -> None:
     whole = ((-100.0, -100.0), (100.0, 100.0))
     assert set(objects_in(SCENE, *whole, *VIEW)) == {o.id for o in SCENE.objects}
     hidden = Scene(SCENE.camera, SCENE.architecture, tuple(replace(o, hidden=True) for o in SCENE.objects))

@@ -74,7 +74,7 @@ def test_every_face_has_a_handle_in_its_middle(session, handles) -> None:
     assert nodes(session) == {}
 
 
-def test_handles_follow_to_another_thing(session, handles) -> None:
+def test_handles_follow_to_another_object(session, handles) -> None:
     table = session.scene.object("table_1")
     handles.show(table)
     faces = [f"{NODE}/{name}" for name in ("front", "back", "left", "right")]
@@ -134,7 +134,7 @@ def test_a_pull_that_comes_back_is_no_step(session, handles) -> None:
     assert len(session.document.history.entries) == steps
 
 
-def test_a_thing_deleted_meanwhile_stays_deleted(session, client, handles) -> None:
+def test_an_object_deleted_meanwhile_stays_deleted(session, client, handles) -> None:
     pull(session, "top", 0.3, phases=("start", "update"))
     node = nodes(session)[f"{NODE}/top"]
     editing.delete_selected(client)

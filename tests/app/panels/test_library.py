@@ -39,6 +39,6 @@ def test_insert_puts_it_in_the_room_and_place_waits_for_a_click(session, client,
     assert len(session.scene.objects) == count + 1
 
 
-def test_the_selected_thing_is_offered_as_a_place(client, page, panel) -> None:
+def test_the_selected_object_is_offered_as_a_place(client, page, panel) -> None:
     client.select(["table_1"])
     assert "or on the selected dining table" in page.html

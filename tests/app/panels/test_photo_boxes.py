@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import pytest
 
@@ -10,7 +10,7 @@ from diorama_app.panels.photo_boxes import PhotoBoxes, box_list
 from diorama_app.reconstruction import suggestions
 from diorama_app.session.client import Client
 from diorama_app.viewport.annotation_canvas import Accepted, Clicked, Dismissed, Named, Selected
-from diorama_core.artefacts import Inputs, LabelledBox, Photo
+from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
 from tests.app.small_room import plain_photo
 
 CHAIR = LabelledBox((40.0, 250.0, 160.0, 440.0), "chair", "chair")
@@ -26,10 +26,10 @@ class Known(suggestions.Suggestions):
     def boxes(self) -> tuple[LabelledBox, ...]:
         return CHAIR, LAMP
 
-    def names(self, box: tuple[float, float, float, float]) -> tuple[str, ...]:
+    def names(self, boxes: Sequence[Box], index: int) -> tuple[str, ...]:
         return ("chair", "stool", "bench", "sofa")
 
-    def at(self, x: float, y: float, then: Callable[[LabelledBox | None], None]) -> None:
+    def at(self, x: float, y: float, marked: Sequence[Box], then: Callable[[LabelledBox | None], None]) -> None:
         holding = (b for b in (CHAIR, LAMP) if b.box[0] <= x <= b.box[2] and b.box[1] <= y <= b.box[3])
         then(next(holding, None))
 

@@ -31,7 +31,7 @@ def test_without_a_selection_the_panel_says_what_to_do(session, client, page, pa
     assert "The room is empty" in page.html
 
 
-def test_fields_show_the_selected_thing(session, client, page, panel) -> None:
+def test_fields_show_the_selected_object(session, client, page, panel) -> None:
     client.select(["chair_2"])
     item = session.scene.object("chair_2")
     assert page.field("Name").value == item.label
@@ -114,7 +114,7 @@ def test_materials_of_the_photo_are_put_on_and_taken_off(session, client, page, 
     assert chair(session).shown_photo_materials == (cloth,)
 
 
-def test_several_things_are_aligned_and_three_distributed(session, client, page, panel) -> None:
+def test_several_objects_are_aligned_and_three_distributed(session, client, page, panel) -> None:
     client.select(["chair_1", "chair_2"])
     assert "and 1 more" in page.html
     assert page.shows("run", "align_left")

@@ -82,7 +82,7 @@ def test_what_was_missed_is_added_and_selected(session, client, asked) -> None:
     assert len(session.document.inputs.boxes) == 1
 
 
-def test_another_class_stands_where_the_thing_stood(session, client, asked) -> None:
+def test_another_class_stands_where_the_object_stood(session, client, asked) -> None:
     before = session.scene.object("table_1")
     rename_class(client, "table_1", " chair ")
     finish(session)

@@ -22,12 +22,12 @@ shipped = pytest.mark.skipif(not own_weights.has_own_recogniser(), reason="no we
 def test_names_arrive_and_stay() -> None:
     ready = threading.Event()
     suggestions = Suggestions(PHOTO, ready.set)
-    assert suggestions.names(BOX) == ()
+    assert suggestions.names([BOX], 0) == ()
     assert ready.wait(60)
-    names = suggestions.names(BOX)
+    names = suggestions.names([BOX], 0)
     assert len(set(names)) == COUNT
     ready.clear()
-    assert suggestions.names(BOX) == names
+    assert suggestions.names([BOX], 0) == names
     assert not ready.is_set()
 
 
@@ -48,19 +48,19 @@ def test_a_click_tells_a_box_around_it_with_its_likeliest_name() -> None:
     told: queue.Queue[LabelledBox | None] = queue.Queue()
     photo = plain_photo()
     suggestions = Suggestions(photo, lambda: None)
-    suggestions.at(320.0, 300.0, told.put)
+    suggestions.at(320.0, 300.0, (), told.put)
     found = told.get(timeout=60)
     assert found is not None
     assert found.box[0] <= 320 <= found.box[2]
     assert found.box[1] <= 300 <= found.box[3]
-    assert found.label == suggestions.names(found.box)[0]
+    assert found.label == suggestions.names([found.box], 0)[0]
 
 
 def test_without_weights_nothing_is_suggested(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
     monkeypatch.setattr(own_weights, "FOLDER", tmp_path)
     suggestions = Suggestions(PHOTO, lambda: None)
-    assert suggestions.names(BOX) == ()
+    assert suggestions.names([BOX], 0) == ()
     assert suggestions.boxes() == ()
     told: queue.Queue[LabelledBox | None] = queue.Queue()
-    suggestions.at(20.0, 20.0, told.put)
+    suggestions.at(20.0, 20.0, (), told.put)
     assert told.get(timeout=20) is None

@@ -14,6 +14,7 @@ from diorama_core.project.storage import Project
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
 from tests.app.small_room import furnished_scene, make_project
+from tests.waiting import until
 
 
 @pytest.fixture
@@ -62,9 +63,7 @@ def test_the_saver_notes_at_once_and_forgets_when_it_has_saved(project: Project,
     told: list[str] = []
     autosave = Autosave(told.append, Recovery(tmp_path / "unsaved"))
     autosave.save_soon(project, renamed())
-    deadline = time.monotonic() + 10.0
-    while not list((tmp_path / "unsaved").glob("*.json")) and time.monotonic() < deadline:
-        time.sleep(0.01)
+    until(lambda: list((tmp_path / "unsaved").glob("*.json")))
     assert project.load_scene() == furnished_scene(), "noted before it is saved"
     autosave.stop()
     assert project.load_scene() == renamed()
@@ -102,13 +101,10 @@ def test_what_could_not_be_saved_is_saved_as_soon_as_there_is_space(
     told: list[str] = []
     autosave = Autosave(told.append, Recovery(tmp_path / "unsaved"), on_saved=told.append, retry_s=0.1)
     autosave.save_soon(project, renamed())
-    deadline = time.monotonic() + 10.0
-    while not autosave.trouble and time.monotonic() < deadline:
-        time.sleep(0.01)
+    until(lambda: autosave.trouble)
     assert "the disk is full" in autosave.trouble
     full[0] = False
-    while autosave.trouble and time.monotonic() < deadline:
-        time.sleep(0.01)
+    until(lambda: not autosave.trouble)
     assert project.load_scene() == renamed()
     assert [line.partition(":")[0] for line in told] == ["not saved", "All changes are saved now."], "once each"
     assert list((tmp_path / "unsaved").glob("*.json")) == []
@@ -149,10 +145,7 @@ def test_a_scene_that_cannot_be_written_does_not_end_the_thread(
     autosave.flush()
     assert "a bug" in told[0]
     autosave.save_soon(project, renamed())
-    deadline = time.monotonic() + 10.0
-    while project.load_scene() != renamed() and time.monotonic() < deadline:
-        time.sleep(0.02)
-    assert project.load_scene() == renamed()
+    until(lambda: project.load_scene() == renamed())
     autosave.stop()
 
 

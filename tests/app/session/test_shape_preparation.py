@@ -1,12 +1,11 @@
 from __future__ import annotations
 
-import time
-
 import pytest
 
 from diorama_app.session.shape_preparation import Preparer
 from diorama_core.errors import LibraryError
 from tests.app.small_room import PlainLibrary
+from tests.waiting import until
 
 
 class Counting(PlainLibrary):
@@ -22,13 +21,6 @@ class Counting(PlainLibrary):
         return super().shape(shape_id)
 
 
-def wait_for(preparer: Preparer, *ids: str) -> bool:
-    end = time.monotonic() + 20.0
-    while not preparer.ready(ids) and time.monotonic() < end:
-        time.sleep(0.01)
-    return preparer.ready(ids)
-
-
 @pytest.fixture
 def library() -> Counting:
     return Counting()
@@ -40,7 +32,7 @@ def test_shapes_become_ready_once_each_and_a_broken_one_stops_nothing(library: C
     assert not preparer.ready(["chair_a"])
     preparer.want(["broken", "chair_a", "chair_a"])
     preparer.want(["chair_a", "lamp_a"])
-    assert wait_for(preparer, "chair_a", "lamp_a")
+    until(lambda: preparer.ready(["chair_a", "lamp_a"]))
     assert not preparer.ready(["broken"])
     assert sorted(library.asked) == ["broken", "chair_a", "lamp_a"]
     preparer.stop()

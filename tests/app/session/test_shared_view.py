@@ -1,7 +1,5 @@
 from __future__ import annotations
 
-import time
-
 import numpy as np
 import pytest
 
@@ -10,6 +8,7 @@ from diorama_app.session.session import EditorSession
 from diorama_app.viewport.framing import room_view
 from diorama_core.errors import LibraryError
 from tests.app import pointer
+from tests.waiting import until
 
 
 def test_a_part_that_cannot_be_drawn_costs_that_part_only(
@@ -42,10 +41,7 @@ def test_the_shapes_of_the_scene_are_readied(session: EditorSession) -> None:
     assert session.ui_thread.wait(20.0)
     shapes = [o.shape_id for o in session.scene.objects]
     assert not session.preparer.ready(["chair_c"])
-    deadline = time.monotonic() + 20.0
-    while not session.preparer.ready(shapes):
-        assert time.monotonic() < deadline
-        time.sleep(0.01)
+    until(lambda: session.preparer.ready(shapes))
 
 
 def test_the_whole_room_is_seen_and_nothing_is_selected(session: EditorSession, client: Client) -> None:

@@ -57,7 +57,7 @@ def test_what_is_selected_is_outlined_and_named_boldest_last(server, marks) -> N
     assert drawn(server) == {}
 
 
-def test_locked_hidden_and_colliding_things_look_so(server, marks) -> None:
+def test_locked_hidden_and_colliding_objects_look_so(server, marks) -> None:
     scene = edits.set_locked(edits.set_hidden(SCENE, "lamp_1", True), "chair_1", True)
     show(marks, scene, selection=("chair_1", "lamp_1"))
     assert colour(server, "chair_1") == LOCKED_COLOUR
@@ -100,7 +100,7 @@ def test_unchanged_marks_are_not_drawn_again(server, marks) -> None:
     assert drawn(server)["chair_1/mark/outer"] is not before["chair_1/mark/outer"]
 
 
-def test_only_things_of_the_photo_can_be_unsure() -> None:
+def test_only_objects_of_the_photo_can_be_unsure() -> None:
     item = SCENE.object("chair_1")
     assert not is_unsure(replace(item, confidence=0.0))
     assert is_unsure(replace(item, confidence=0.0, box_px=(0.0, 0.0, 1.0, 1.0)))

@@ -68,7 +68,7 @@ def test_only_what_differs_is_sent(server, viewport, monkeypatch) -> None:
     np.testing.assert_allclose(frame.position, moved.object("chair_1").pose.position)
 
 
-def test_removed_things_go_and_their_names_are_used_again(server, viewport) -> None:
+def test_removed_objects_go_and_their_names_are_used_again(server, viewport) -> None:
     name = viewport.node_name("chair_1")
     without = edits.remove(SCENE, ["chair_1"])
     viewport.show(without, {})

@@ -94,7 +94,7 @@ def test_a_page_that_is_closed_while_its_picture_is_made_is_no_error(caplog: pyt
     )
     with socket.create_connection(("127.0.0.1", made.get_port())) as page:
         page.sendall(f"GET /pictures/chair.png HTTP/1.1\r\nHost: 127.0.0.1:{made.get_port()}\r\n\r\n".encode())
-        time.sleep(0.2)
+        time.sleep(0.2)  # the request arrives, and below the end of its connection; nothing tells of either
     time.sleep(0.2)
     asked.set_result(b"\x89PNG")
     assert fetch(made, "/pictures/table.png")[0] == 200

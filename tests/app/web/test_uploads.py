@@ -20,6 +20,7 @@ from diorama_core.artefacts import Photo
 from tests.app.small_room import PlainLibrary, make_project
 from tests.app.wire import WirePage
 from tests.io.test_bombs import png
+from tests.waiting import until
 
 BUTTONS = ("Upload a photo", "Add boxes (JSON)", "Add depth (PNG or NPY)", "Add masks (PNG)", "New from a photo")
 
@@ -97,10 +98,7 @@ def test_uploads_are_counted_over_all_projects_of_the_server(running: Running, t
     assert len(states) == MAX_UPLOADS_IN_FLIGHT
     for page in pages:
         page.close()
-    deadline = time.monotonic() + 10.0
-    while in_flight(running):
-        assert time.monotonic() < deadline, "uploads of pages that are gone are given up"
-        time.sleep(0.05)
+    until(lambda: not in_flight(running), "uploads of pages that are gone are given up")
     page = WirePage(running.port, query="?project=third")
     page.begin_upload(page.element("Upload a photo", "UploadButton"), "next.png", 1_000_000, 2)
     assert [s["filename"] for s in settled(running).values()] == ["next.png"]
@@ -169,8 +167,5 @@ def test_a_bomb_is_one_line_and_the_next_photo_is_read(running: Running) -> None
     page.upload(button, "bomb.png", png(12_000, 9_800, 8, 2, 3))
     page.wait_for(lambda: any("12000 x 9800 pixels are more than" in n for n in page.notices))
     page.upload(button, "room.png", png(640, 480, 8, 2, 3))
-    deadline = time.monotonic() + 30.0
-    while (photo := newest_photo(running)) is None or photo.name != "room.png":
-        assert time.monotonic() < deadline, page.notices
-        time.sleep(0.05)
+    until(lambda: (photo := newest_photo(running)) is not None and photo.name == "room.png", page.notices, seconds=30.0)
     page.close()

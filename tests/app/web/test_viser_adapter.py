@@ -52,7 +52,7 @@ def test_no_public_tunnel_is_ever_opened(server: viser.ViserServer) -> None:
     handlers = server._websock_server._incoming_handlers[_messages.ShareUrlRequest]
     for handler in handlers:
         handler(0, _messages.ShareUrlRequest())
-    time.sleep(0.2)
+    time.sleep(0.2)  # a tunnel would be opened by a thread of viser's, of which nothing tells
     assert server._share_tunnel is None
 
 

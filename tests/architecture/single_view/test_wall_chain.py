@@ -92,7 +92,7 @@ def test_objects_push_walls_away_in_the_headings_of_their_corners() -> None:
     np.testing.assert_allclose(extra[1], 0.0, atol=1e-12)
 
 
-def test_usual_heights_and_things_below_them_cost_nothing() -> None:
+def test_usual_heights_and_objects_below_them_cost_nothing() -> None:
     usual = float(PRIOR_MEDIAN_M[2])
     assert blank().ceiling_prior(usual) == pytest.approx(0.0)
     assert blank().ceiling_prior(usual * 1.2) == pytest.approx(blank().ceiling_prior(usual / 1.2))

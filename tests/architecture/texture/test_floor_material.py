@@ -36,7 +36,7 @@ def test_what_nobody_marked_is_rejected(colour):
     assert own[:50].mean() > 0.99
 
 
-def test_the_floor_is_what_shows_at_the_feet_of_things():
+def test_the_floor_is_what_shows_at_the_feet_of_objects():
     colours = floor((96, 108, 84))
     colours[:, 60:] = OAK  # more of another colour, as of a bed nobody marked
     contact = np.zeros((SIZE, SIZE), dtype=bool)

@@ -28,7 +28,7 @@ def test_the_walls_of_a_box_are_found_and_the_wardrobe_is_none(noise: float) -> 
     assert [w.area_m2 for w in walls] == sorted((w.area_m2 for w in walls), reverse=True)
 
 
-def test_a_screen_that_things_are_seen_over_is_no_wall() -> None:
+def test_a_screen_that_objects_are_seen_over_is_no_wall() -> None:
     screen = cuboid("screen", (0.0, 2.5, 0), (0.05, 2.0, 1.4), -90)
     shot = shoot(plain_shot().camera, box_room(-2.0, 2.0, 4.0, TOP_M), (screen,))
     nobody_pointed_at_it = surface_of(replace(shot, objects=()))

@@ -52,7 +52,7 @@ def annotated(tmp_path: Path) -> Path:
 def test_each_object_is_found_once(annotated: Path) -> None:
     twice = ((10.0, 10.0, 50.0, 60.0), "office chair"), ((11.0, 11.0, 50.0, 60.0), "chair")
     near = ((60.0, 20.0, 110.0, 46.0), "desk")  # half of the table
-    bench = run(annotated, annotated.parent, {"finder": Finder((*twice, near))}, {})
+    bench = run(annotated, annotated.parent, {"finder": Finder((*twice, near))}, {}, {})
     (found,) = bench.found["finder"].values()
     assert (found.objects, found.boxes) == (3, 3)
     assert found.hits == (2, 2)
@@ -65,14 +65,25 @@ def test_names_are_compared_where_the_library_has_the_kind(annotated: Path) -> N
     def namer(photo: Photo, boxes: np.ndarray) -> Sequence[Sequence[str]]:
         return [("chair", "office chair", "stool"), ("table",)][: len(boxes)]
 
-    named = run(annotated, annotated.parent, {}, {"own": namer}).named["own"]["made"]
+    named = run(annotated, annotated.parent, {}, {"own": namer}, {}).named["own"]["made"]
     assert (named.objects, named.first, named.among_five) == (2, 1, 2)
+
+
+def test_clicks_are_right_where_their_box_is_the_object_s(annotated: Path) -> None:
+    def clicker(photo: Photo, pixels: np.ndarray) -> list[tuple[float, float, float, float] | None]:
+        assert ((pixels >= 0) & (pixels <= (120, 80))).all()
+        return [(10.0, 10.0, 50.0, 60.0), None, (5.0, 70.0, 11.0, 78.0)]
+
+    clicked = run(annotated, annotated.parent, {}, {}, {"own": clicker})
+    found = clicked.clicked["own"]["made"]
+    assert (found.objects, found.hits, found.none) == (3, (1, 2), 1)
+    assert clicked.tables()[2].row("own")["no box"] == pytest.approx(1 / 3)
 
 
 def test_a_folder_without_the_photos_is_one_clear_line(annotated: Path, tmp_path: Path) -> None:
     (tmp_path / "made.png").unlink()
     with pytest.raises(InputError, match="none of the 1 annotated photos"):
-        run(annotated, tmp_path, {}, {})
+        run(annotated, tmp_path, {}, {}, {})
 
 
 def test_untrained_networks_can_be_scored(annotated: Path, tmp_path: Path) -> None:

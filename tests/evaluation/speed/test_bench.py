@@ -135,7 +135,7 @@ def test_words_are_searched_as_the_library_grows():
     assert all(seconds > 0 for _, seconds in find.points)
 
 
-def test_a_hall_holds_what_was_asked_for_side_by_side():
+def test_a_large_scene_has_what_was_asked_for_side_by_side():
     scene, camera = large_scene(built_in_library(), 30, 0)
     assert len(scene.objects) == 30
     centres = np.array([o.pose.position[:2] for o in scene.objects])

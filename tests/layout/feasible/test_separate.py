@@ -26,7 +26,7 @@ def solved(p: Program, rounds: int = 20) -> Separation:
     return separate(p, rounds=rounds, check=lambda y, depth: None)
 
 
-def test_free_things_do_not_move(room: Room) -> None:
+def test_free_objects_do_not_move(room: Room) -> None:
     room.put(BOX, (0, 0, 0.15))
     room.put(BOX, (1, 0, 0.15))
     p = program(room)
@@ -73,7 +73,7 @@ def test_the_heavier_of_two_moves_less(room: Room) -> None:
     assert b == pytest.approx(9.0 * a, rel=1e-3)
 
 
-def test_a_locked_thing_stays_and_the_other_gives_way(room: Room) -> None:
+def test_a_locked_object_stays_and_the_other_gives_way(room: Room) -> None:
     room.put(BOX, (0, 0, 0.15), locked=True)
     room.put(BOX, (0.2, 0, 0.15))
     p = program(room)
@@ -82,7 +82,7 @@ def test_a_locked_thing_stays_and_the_other_gives_way(room: Room) -> None:
     assert moves[1] == pytest.approx([0.15 + APART_M, 0.0, 0.0], abs=2e-4)
 
 
-def test_what_stands_on_a_thing_rides_along(room: Room) -> None:
+def test_what_stands_on_an_object_rides_along(room: Room) -> None:
     table = room.put("table_0", (0, 0, 0.37))
     cup = room.put("cup_21", (0.1, 0.0, 0.79), on=table)
     room.put("wardrobe_12", (0.7, 0, 1.0), locked=True)
@@ -92,7 +92,7 @@ def test_what_stands_on_a_thing_rides_along(room: Room) -> None:
     np.testing.assert_allclose(moves[cup], moves[table], atol=1e-6)
 
 
-def test_things_stay_before_walls_and_on_their_supports(room: Room) -> None:
+def test_objects_stay_before_walls_and_on_their_supports(room: Room) -> None:
     room.put(BOX, (-2.75, 0, 0.15))
     room.put(BOX, (-2.6, 0.05, 0.15))
     p = program(room)

@@ -132,7 +132,7 @@ def test_the_nearest_shelf_is_chosen_unless_the_edge_names_one(room: Room) -> No
         assert choose_surface(scene, scene.object(cup), beyond, shape).level == pytest.approx(level)
 
 
-def test_soft_things_spread_over_all_places_of_one_height(room: Room) -> None:
+def test_soft_objects_spread_over_all_places_of_one_height(room: Room) -> None:
     sofa = room.put("table_0", (0, 0, 0.37))
     halves = tuple(
         SupportSurface(np.array([[-0.3, a, 0.1], [0.3, a, 0.1], [0.3, b, 0.1], [-0.3, b, 0.1]]), np.inf, interior=False)
@@ -178,7 +178,7 @@ def test_the_bottom_touches_unless_another_face_looks_down_much_more(room: Room)
     assert contact(scene, item, None, floor) == contact(scene, item, edge, None) == [0, 0, -1]
 
 
-def test_wall_things_touch_walls_with_their_back(room: Room) -> None:
+def test_wall_objects_touch_walls_with_their_back(room: Room) -> None:
     scene = room.scene()
     wall = scene.architecture.by_role("wall")[0]
     surface = plane_surface(wall)

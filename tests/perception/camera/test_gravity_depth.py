@@ -43,7 +43,7 @@ def test_larger_surfaces_above_the_floor_are_not_taken_for_it(obstacle: tuple) -
 
 
 @pytest.mark.parametrize("height", [5.0, 12.6])
-def test_the_floor_of_a_hall_is_found_from_high_up(height: float, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_floor_of_a_large_room_is_found_from_high_up(height: float, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(boxroom, "ROOM", ((-14.0, -2.0, 0.0), (16.0, 30.0, 15.0)))
     v = view(pitch_deg=35, roll_deg=1, heading_deg=12, focal=0.7, height_m=height)
     crates = tuple(((x, y, 0.0), (x + 1.2, y + 1.0, 1.0)) for x in range(-8, 10, 4) for y in range(8, 24, 5))

@@ -88,7 +88,7 @@ def test_what_no_mask_covers_is_found_by_the_foreground_networks() -> None:
     ) == pytest.approx(4.2, abs=0.08)
 
 
-def test_a_foreground_that_takes_the_room_for_a_object_is_not_believed() -> None:
+def test_a_foreground_that_takes_the_room_for_an_object_is_not_believed() -> None:
     full, _ = _shots()
     everything: tuple[ForegroundNetwork, ...] = (_Finds(np.ones((240, 320), dtype=bool)),)
     stage = EmptyRoomArchitecture(

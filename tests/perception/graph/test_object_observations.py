@@ -22,7 +22,7 @@ def seen(shot: Shot = SHOT, depth: bool = True):
 
 
 @pytest.mark.parametrize("depth", [True, False])
-def test_what_is_seen_below_a_thing_carries_it(depth: bool) -> None:
+def test_what_is_seen_below_an_object_carries_it(depth: bool) -> None:
     found = seen(depth=depth)
     assert found["lamp"].below.get("table", 0.0) > 0.9
     assert found["lamp"].below_objects > 0.9

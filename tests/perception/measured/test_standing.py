@@ -33,7 +33,7 @@ def found(**changed: Extent) -> dict[str, Support]:
     return {s.child: s for s in supporters(EXTENTS | changed, CATEGORIES)}
 
 
-def test_every_thing_is_held_by_what_it_touches() -> None:
+def test_every_object_is_held_by_what_it_touches() -> None:
     edges = found()
     assert {k: (e.parent, e.relation) for k, e in edges.items()} == {
         "table": ("floor", "placed on"),
@@ -51,7 +51,7 @@ def test_beside_or_far_above_a_table_nothing_rests_on_it() -> None:
     assert found(lamp=at(0.2, 1.6, (0.3, 0.3, 0.5)))["lamp"].parent == "floor"
 
 
-def test_a_larger_thing_never_rests_on_a_smaller_one_so_there_is_no_cycle() -> None:
+def test_a_larger_object_never_rests_on_a_smaller_one_so_there_is_no_cycle() -> None:
     edges = found(table=at(0.2, 0.9, (0.9, 1.6, 0.75)))
     for key in edges:
         trail = [key]
@@ -64,7 +64,7 @@ def test_a_picture_that_stands_on_the_floor_is_still_the_walls() -> None:
     assert found(picture=at(-2.0, 0.0, (0.05, 0.6, 0.5)))["picture"].parent == "wall"
 
 
-def test_things_lie_on_tops_and_seats() -> None:
+def test_objects_lie_on_tops_and_seats() -> None:
     sofa = CATEGORIES["sofa"]
     assert resting_heights(EXTENTS["sofa"], sofa) == pytest.approx([0.9, sofa.seat_height_m])
     assert resting_heights(at(0, 0, (0.9, 2, 0.3)), sofa) == pytest.approx([0.3])

@@ -32,7 +32,7 @@ def test_at_most_five_readings_are_retained() -> None:
     assert distinct(many, np.linspace(1.0, 0.0, 9)) == [8, 7, 6, 5, 4]
 
 
-def test_two_things_do_not_stand_in_each_other() -> None:
+def test_two_objects_do_not_stand_in_each_other() -> None:
     sofa = boxes((0, 3, 0, 1, 2), (0, 5, 0, 1, 2))
     bed = boxes((0, 3, 0, 2, 1.6))
     kinds = [category("sofa"), category("bed")]
@@ -48,7 +48,7 @@ def test_chairs_may_be_tucked_under_tables() -> None:
     assert arrange([chair, table], costs, [category("chair"), category("sofa")]) == [1, 0]
 
 
-def test_flat_things_are_in_nobodys_way() -> None:
+def test_flat_objects_are_in_nobodys_way() -> None:
     rug = boxes((0, 3, 0, 2, 2), (4, 3, 0, 2, 2))
     flat = Cuboids(rug.centre, rug.yaw_rad, rug.size_m * [1, 1, 0.01])
     sofa = boxes((0, 3, 0, 1, 2))

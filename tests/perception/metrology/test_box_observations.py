@@ -25,14 +25,14 @@ def masked(box: tuple[int, int, int, int], share: float, confidence: float = 1.0
     return replace(item, mask=mask, mask_confidence=confidence)
 
 
-def test_a_thing_in_front_hides_the_edges_inside_its_box() -> None:
+def test_an_object_in_front_hides_the_edges_inside_its_box() -> None:
     seen = of(("sofa", (100, 100, 300, 250)), ("coffee table", (90, 200, 320, 400)))
     assert seen.hidden(0).tolist() == [False, False, False, True]
     assert not seen.hidden(1).any()
     assert seen.in_front.tolist() == [[False, True], [False, False]]
 
 
-def test_a_thing_that_ends_little_lower_or_covers_little_hides_nothing() -> None:
+def test_an_object_that_ends_little_lower_or_covers_little_hides_nothing() -> None:
     assert not of(("sofa", (100, 100, 300, 250)), ("chair", (90, 200, 320, 260))).hidden(0).any()
     assert not of(("sofa", (100, 100, 300, 250)), ("chair", (90, 200, 220, 400))).hidden(0).any()
 

@@ -25,17 +25,17 @@ def observed(items=ROOM[:4], height_m: float = 1.5) -> BoxObservations:
 
 
 @pytest.mark.parametrize("height_m", [1.2, 1.5, 1.8])
-def test_things_of_usual_size_tell_the_cameras_height(height_m: float) -> None:
+def test_objects_of_usual_size_tell_the_cameras_height(height_m: float) -> None:
     scan = scan_heights(observed(height_m=height_m), VIEW)
     assert scan.height_m == pytest.approx(height_m, rel=0.1)
     assert 0 < scan.log_sigma < 0.2
 
 
-def test_more_things_make_it_surer() -> None:
+def test_more_objects_make_it_surer() -> None:
     assert scan_heights(observed(ROOM[:4]), VIEW).log_sigma < scan_heights(observed(ROOM[:1]), VIEW).log_sigma
 
 
-def test_without_things_on_the_floor_the_prior_decides() -> None:
+def test_without_objects_on_the_floor_the_prior_decides() -> None:
     for observations in (gather((), 640, 480), observed(ROOM[6:])):
         scan = scan_heights(observations, VIEW)
         assert scan.height_m == pytest.approx(HEIGHT_PRIOR_M, abs=0.02)
@@ -43,19 +43,19 @@ def test_without_things_on_the_floor_the_prior_decides() -> None:
         assert HEIGHTS_M.min() < scan.height_m < HEIGHTS_M.max()
 
 
-def test_one_mislabelled_thing_is_outvoted() -> None:
+def test_one_mislabelled_object_is_outvoted() -> None:
     objects = seen(ROOM[:4], R, 1.5)
     wrong = (*objects[:3], detected("wrong", "wardrobe", objects[3].box))
     assert scan_heights(gather(wrong, 640, 480), VIEW).height_m == pytest.approx(1.5, rel=0.15)
 
 
-def test_things_on_the_floor_and_doors_vote() -> None:
+def test_objects_on_the_floor_and_doors_vote() -> None:
     assert stands_on_floor(category("sofa"))
     assert stands_on_floor(category("door"))
     assert not any(stands_on_floor(category(n)) for n in ("picture", "pillow", "ceiling lamp"))
 
 
-def test_things_that_stand_freely_may_stand_at_odd_angles() -> None:
+def test_objects_that_stand_freely_may_stand_at_odd_angles() -> None:
     observations = observed()
     headings = [{round(float(np.rad2deg(r.yaw_rad[0]))) for r in place_on_floor(observations, i, 1.5)} for i in (0, 1)]
     free = [c.quarter_turns_free for c in observations.categories[:2]]

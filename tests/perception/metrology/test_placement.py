@@ -25,7 +25,7 @@ def test_every_object_gets_its_supporter_and_place() -> None:
         assert len(placement.problem) == 1
 
 
-def test_what_supports_another_thing_stands_on_the_floor() -> None:
+def test_what_supports_another_object_stands_on_the_floor() -> None:
     found = placed(*ROOM)
     for placement in found:
         if placement.supporter >= 0:
@@ -51,7 +51,7 @@ def test_a_television_is_on_its_stand_when_there_is_one_and_on_the_wall_otherwis
     assert placed(ROOM[0], on_wall)[1].supporter == WALL
 
 
-def test_large_things_never_stand_on_others() -> None:
+def test_large_objects_never_stand_on_others() -> None:
     sofa, table = ROOM[0], RequestedObject("desk", (0.2, 3.6, 0.37), (0.7, 1.4, 0.74))
     assert [p.supporter for p in placed(sofa, table)] == [FLOOR, FLOOR]
 

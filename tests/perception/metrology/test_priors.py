@@ -64,7 +64,7 @@ def test_general_words_cover_more_at_a_price() -> None:
     assert len(size_modes("bed")) == len(own_modes(category("bed")))
 
 
-def test_unnamed_things_are_furniture_on_the_floor_small_on_top_flat_on_walls_and_lamps_above() -> None:
+def test_unnamed_objects_are_furniture_on_the_floor_small_on_top_flat_on_walls_and_lamps_above() -> None:
     floor = size_modes(UNKNOWN.name)
     assert len(floor) > 5
     assert floor[-1].cost == max(m.cost for m in floor)

@@ -16,7 +16,7 @@ def place(start: np.ndarray, of: Problems, view: View = VIEW) -> np.ndarray:
     return cuboids(start, of, view).centre[0]
 
 
-def test_a_row_is_a_thing_on_the_floor_unless_told_otherwise() -> None:
+def test_a_row_is_an_object_on_the_floor_unless_told_otherwise() -> None:
     observations = gather(
         (detected("a", "sofa", (100, 100, 300, 250)), detected("b", "table", (90, 200, 320, 400))), 640, 480
     )

@@ -38,7 +38,7 @@ def test_an_empty_floor_is_an_ordinary_room() -> None:
     assert room.footprint == pytest.approx([0.0, 1.75, 0.0, 2.0, 1.75])
 
 
-def test_the_room_reaches_past_the_farthest_thing_and_to_what_stands_at_walls() -> None:
+def test_the_room_reaches_past_the_farthest_object_and_to_what_stands_at_walls() -> None:
     chair = corners((2.0, 2.0, 0.4), (0.5, 0.5, 0.8))
     shelf = corners((0.0, 4.0, 0.9), (0.4, 0.8, 1.8), -np.pi / 2)
     room = extent_of(np.concatenate([chair, shelf]), ("chair", "bookshelf"))
@@ -66,7 +66,7 @@ def test_supporters_hold_most_of_the_width_and_the_bottom(x, width, bottom) -> N
     assert supporters_of(observations, 0, [0, 1]) == ([1] if expected else [])
 
 
-def test_things_lie_on_tops_within_the_parents_outline() -> None:
+def test_objects_lie_on_tops_within_the_parents_outline() -> None:
     rows = stacked(place_on(of("table", "books"), 1, 0, PARENT, 1.5, 0.7))
     assert set(rows.base_m.round(6)) == {0.8}
     np.testing.assert_allclose(rows.footprint, np.broadcast_to([0.5, 3.0, -np.pi / 2, 1.0, 0.8], rows.footprint.shape))
@@ -75,7 +75,7 @@ def test_things_lie_on_tops_within_the_parents_outline() -> None:
     assert turns <= {0.0, round(np.pi / 2, 6)}
 
 
-def test_things_lie_on_seats_before_backs_and_in_shelves() -> None:
+def test_objects_lie_on_seats_before_backs_and_in_shelves() -> None:
     sofa = stacked(place_on(of("sofa", "pillow"), 1, 0, PARENT, 1.5, 0.0))
     seat = category("sofa").seat_height_m
     levels = dict(zip(sofa.base_m.round(6), sofa.extra, strict=True))
