@@ -245,6 +245,17 @@ class PosedCandidates:
 
 
 @dataclass(frozen=True)
+class PhotoDisagreement:
+    """An object that a layout took clearly away from where the camera saw it."""
+
+    object_id: str
+    label: str
+    moved_m: float
+    outline_shared: float
+    """Of the bounds in the picture before and after, intersection over union."""
+
+
+@dataclass(frozen=True)
 class LayoutReport:
     """What an optimiser did: costs before and after, structure, collisions, distance moved."""
 
@@ -253,4 +264,7 @@ class LayoutReport:
     after: dict[str, float]
     seconds: float
     reasons: tuple[str, ...] = field(default=())
-    """Reasons why a constraint could not be met (an object larger than its support, a cycle)."""
+    """Reasons why a constraint could not be met (an object larger than its support, a cycle), and `disagreements` in
+    words."""
+    disagreements: tuple[PhotoDisagreement, ...] = ()
+    """What agrees less with the photo than before."""

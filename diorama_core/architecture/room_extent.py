@@ -13,17 +13,23 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.errors import EditRefused
-from diorama_core.geometry.planes import clip_polygon
-from diorama_core.scene.room_edits import move_plane
-from diorama_core.scene.types import Architecture, Plane, Scene, SceneObject
+from diorama_core.geometry.planes import clip_polygon, in_polygon
+from diorama_core.library import taxonomy
+from diorama_core.scene.room_edits import ceiling_height, move_plane, set_ceiling_height
+from diorama_core.scene.types import Architecture, Plane, Scene, SceneObject, Support
 
 _MARGIN_M = 0.01
 """Left around what stands on the floor."""
+LONGEST_CORD = 1.4
+"""A lamp's cord makes it at most so many times as high as it was seen."""
 _MIN_AREA_M2 = 1e-4
+_JOINED_M = 0.02
 
 
 def containing_room(scene: Scene) -> Scene:
-    """The scene with unseen walls moved behind what stands on the floor, and the floor drawn out under it."""
+    """The scene with unseen walls moved behind what stands on the floor, the floor drawn out under it, and a ceiling
+    above what hangs.
+    """
     floor = scene.architecture.floor
     if floor is None:
         return scene
@@ -31,8 +37,35 @@ def containing_room(scene: Scene) -> Scene:
     for wall in scene.architecture.by_role("wall"):
         if not wall.seen:
             scene = _given_way(scene, wall.id, standing)
+        scene = _drawn_out(scene, wall.id)
     prints = [_footprint(scene, o) for o in standing]
-    return _with_floor_under(scene, [p for p in prints if len(p) >= 3])
+    return _with_ceiling(_with_floor_under(scene, [p for p in prints if len(p) >= 3]))
+
+
+def _with_ceiling(scene: Scene) -> Scene:
+    """A ceiling that was not seen is where lamps hang from it: at the walls' top as far as the lamps reach there."""
+    hanging = [o for o in scene.objects if taxonomy.resolve(o.category).category.mount == "ceiling"]
+    floor, top_m = scene.architecture.floor, ceiling_height(scene)
+    if not hanging or floor is None or top_m is None or scene.architecture.by_role("ceiling"):
+        return scene
+    ends = [(float(o.corners_world[:, 2].min()), float(o.corners_world[:, 2].max())) for o in hanging]
+    ground = float(floor.centre[2])
+    reached = min(low + LONGEST_CORD * (high - low) for low, high in ends)
+    level = max(min(ground + top_m, reached), max(high for _, high in ends))
+    try:
+        scene = replace(set_ceiling_height(scene, level - ground), objects=scene.objects)
+    except EditRefused:
+        return scene
+    outline = floor.polygon[:, :2]
+    corners = np.vstack([o.corners_world[:, :2] for o in hanging])
+    if not in_polygon(corners, outline).all():
+        points = manifold3d.CrossSection.hull_points(np.vstack([outline, corners]))
+        outline = points.to_polygons()[0]
+    polygon = np.column_stack([outline[::-1], np.full(len(outline), level)])
+    ceiling = Plane("ceiling", "ceiling", polygon, confidence=0.0)
+    edges = {o.id: Support(o.id, ceiling.id, "mounted on") for o in hanging}
+    supports = (*(s for s in scene.supports if s.child not in edges), *edges.values())
+    return replace(scene, architecture=Architecture((*scene.architecture.planes, ceiling)), supports=supports)
 
 
 def _given_way(scene: Scene, wall_id: str, standing: list[SceneObject]) -> Scene:
@@ -46,6 +79,36 @@ def _given_way(scene: Scene, wall_id: str, standing: list[SceneObject]) -> Scene
     except EditRefused:
         return scene
     return replace(moved, objects=scene.objects)
+
+
+def _drawn_out(scene: Scene, wall_id: str) -> Scene:
+    """The wall long enough for what hangs on it: an end is known only where it meets another wall that was seen."""
+    wall = scene.plane(wall_id)
+    hanging = [scene.object(s.child) for s in scene.supports if s.parent == wall_id and s.relation == "mounted on"]
+    if not hanging:
+        return scene
+    level = np.cross([0.0, 0.0, 1.0], wall.normal)
+    along = wall.polygon @ level
+    needed = np.concatenate([o.corners_world @ level for o in hanging])
+    polygon = wall.polygon.copy()
+    for end, reach in ((along.min(), needed.min() - _MARGIN_M), (along.max(), needed.max() + _MARGIN_M)):
+        at_end = np.abs(along - end) < _JOINED_M
+        beyond = (reach - end) * np.sign(end - along.mean())
+        if beyond > 0.0 and not _meets_a_wall(scene, wall, wall.polygon[at_end]):
+            polygon[at_end] += (reach - end) * level
+    if np.array_equal(polygon, wall.polygon):
+        return scene
+    planes = tuple(replace(p, polygon=polygon) if p.id == wall_id else p for p in scene.architecture.planes)
+    return replace(scene, architecture=Architecture(planes))
+
+
+def _meets_a_wall(scene: Scene, wall: Plane, corners: Float[np.ndarray, "k 3"]) -> bool:
+    """Whether corners of a wall are on another wall that was seen."""
+    return any(
+        bool((np.linalg.norm(other.polygon[:, None] - corners[None], axis=2).min(axis=0) < _JOINED_M).all())
+        for other in scene.architecture.by_role("wall")
+        if other.id != wall.id and other.seen
+    )
 
 
 def _behind(item: SceneObject, wall: Plane) -> float:

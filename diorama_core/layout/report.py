@@ -8,6 +8,7 @@ from jaxtyping import Float
 from diorama_core.geometry.sat import pair_axes, place_bodies
 from diorama_core.layout import gradients
 from diorama_core.layout.gradients import BoxPairs, near_pairs
+from diorama_core.layout.problem.footing import reach_of
 from diorama_core.layout.problem.problem import Problem
 from diorama_core.layout.problem.volumes import Volumes, contact_templates
 
@@ -97,10 +98,8 @@ def _structure(
     centre = p[supported] + np.matmul(own, (contact * size / 2)[..., None])[..., 0]
     aligned = (outward * here.normal).sum(axis=1) <= -np.cos(ALIGNED_RAD)
     placed = np.abs((centre * here.normal).sum(axis=1) - here.level) <= PLACED_M
-    reach = (
-        np.abs(np.matmul(here.outward, own))
-        * (problem.firm[supported, None] * size * (1.0 - np.abs(contact)) / 2)[:, None, :]
-    ).sum(axis=2)
+    reach = np.array([reach_of(problem.footing[i], R[i], scale[i], m) for i, m in zip(supported, here.outward)])
+    reach = reach.reshape(here.offset.shape)
     past = np.matmul(here.outward, centre[..., None])[..., 0] + reach - here.offset
     half = 0.5 * (np.abs(np.matmul(here.normal[:, None, :], own)[:, 0]) * size).sum(axis=1)
     top = (p[supported] * here.normal).sum(axis=1) - here.level + half

@@ -63,10 +63,15 @@ def checked_supports(scene: Scene, library: ShapeLibrary, noise: ObservationNois
             scene = edits.attach(scene, Support(item.id, floor.id))
             continue
         better = _better(scene, library, item, edge, noise)
+        if better is None and floor is not None and _belongs_on_floor(scene, library, item, edge, noise):
+            better = Support(item.id, floor.id)
         if better is not None:
+            gap = _gap(scene, library, item, edge)
+            inside = _inside_m(scene, library, item, edge) > 0.0
+            where = "in something that is on" if inside else f"{100 * gap:.0f} cm from"
             reasons.append(
-                f"support changed: {item.label} is {100 * _gap(scene, library, item, edge):.0f} cm from "
-                f"{label_of(scene, edge.parent)} and rests on {label_of(scene, better.parent)}"
+                f"support changed: {item.label} is {where} {label_of(scene, edge.parent)} and rests on "
+                f"{label_of(scene, better.parent)}"
             )
             scene = edits.attach(scene, better)
         elif hangs and _is_set_down(item):
@@ -76,6 +81,15 @@ def checked_supports(scene: Scene, library: ShapeLibrary, noise: ObservationNois
         elif (walls := _touched(scene, item, edge, noise)) != edge.adheres_to:
             scene = edits.attach(scene, replace(edge, adheres_to=walls))
     return scene, tuple(reasons)
+
+
+def _belongs_on_floor(
+    scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support, noise: ObservationNoise
+) -> bool:
+    """Whether the measured gap contradicts the edge of furniture on an object, or of a door: their feet are hidden."""
+    on_object = scene.has_object(edge.parent) and edge.relation == "placed on" and item.category in _NEVER_HANGS
+    is_door = scene.has_plane(edge.parent) and edge.relation == "mounted on" and item.category == "door"
+    return (on_object or is_door) and _gap(scene, library, item, edge) > _tolerance(scene, item, edge, noise)
 
 
 def _is_set_down(item: SceneObject) -> bool:
@@ -90,8 +104,10 @@ def _better(
 
     What lies on the same supporter right under the object is there, too: a tray under a bottle.
     """
-    gap = _gap(scene, library, item, edge)
-    contradicted = gap > _tolerance(scene, item, edge, noise)
+    inside = _inside_m(scene, library, item, edge)
+    gap = _gap(scene, library, item, edge) + inside
+    unusual = _is_unusual(scene, item, edge)
+    contradicted = gap > _tolerance(scene, item, edge, noise) or unusual
     options = []
     for other in _candidates(scene, library, item):
         if other.parent == edge.parent or closes_cycle({s.child: s for s in scene.supports}, item.id, other.parent):
@@ -99,7 +115,9 @@ def _better(
         cost, limit = _gap(scene, library, item, other), _tolerance(scene, item, other, noise)
         beneath = scene.support_of(other.parent)
         between = beneath is not None and beneath.parent == edge.parent and _is_thin(scene, other.parent, limit)
-        if cost <= (min(CLEARLY * gap, limit) if contradicted else limit * between):
+        between = between and edge.relation == "placed on" and _carries(scene, other.parent)
+        most = min(CLEARLY * gap, max(limit, UNUSUAL_M * unusual)) if contradicted else limit * between
+        if cost <= max(most, inside):
             options.append((cost, other.parent, other))
     return min(options, key=lambda option: option[:2])[2] if options else None
 
@@ -118,10 +136,10 @@ def _candidates(scene: Scene, library: ShapeLibrary, item: SceneObject) -> list[
         for plane in scene.architecture.planes
         if plane.role in usual
     ]
-    if mount == "surface":
+    if mount in ("surface", "wall"):
         for other in scene.objects:
             edge, shape = Support(item.id, other.id), library.shape(other.shape_id)
-            if surfaces_below(item, other, shape) and is_wide_enough(item, edge, other, shape):
+            if surfaces_below(item, other, shape, under=1.0) and is_wide_enough(item, edge, other, shape):
                 found.append(edge)
     return found
 
@@ -130,14 +148,48 @@ def _gap(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support) 
     """How badly the observed pose agrees with an edge, metres."""
     if scene.has_plane(edge.parent):
         plane = scene.plane(edge.parent)
-        unusual = plane.role == "wall" and taxonomy.resolve(item.category).category.mount == "surface"
         # How far the floor reaches is a guess where it was not seen; how high it is, is not.
         beside = outside_m(plane_surface(plane), item.pose.position) if plane.role == "floor" else 0.0
-        return resting_cost(scene, item, edge, plane_surface(plane)) - beside + UNUSUAL_M * unusual
+        return (
+            resting_cost(scene, item, edge, plane_surface(plane)) - beside + UNUSUAL_M * _is_unusual(scene, item, edge)
+        )
     parent = scene.object(edge.parent)
     surface = choose_surface(scene, item, edge, library.shape(parent.shape_id))
     world = surface.in_world(parent.pose)
     return resting_cost(scene, item, edge, world) if edge.relation == "mounted on" else misfit(item, world)
+
+
+def _is_unusual(scene: Scene, item: SceneObject, edge: Support) -> bool:
+    """Whether an edge hangs on a wall what people put on surfaces."""
+    on_wall = scene.has_plane(edge.parent) and scene.plane(edge.parent).role == "wall"
+    return on_wall and taxonomy.resolve(item.category).category.mount == "surface"
+
+
+def _carries(scene: Scene, object_id: str) -> bool:
+    return taxonomy.resolve(scene.object(object_id).category).category.supports_objects
+
+
+def _inside_m(scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support) -> float:
+    """How far an object would have to go to stand on the floor beside the furniture that it was observed in."""
+    if not scene.has_plane(edge.parent) or scene.plane(edge.parent).role != "floor":
+        return 0.0
+    return max(
+        (
+            _overlap_m(item, other)
+            for other in scene.objects
+            if surfaces_below(item, other, library.shape(other.shape_id), under=1.0)
+            and is_wide_enough(item, Support(item.id, other.id), other, library.shape(other.shape_id))
+        ),
+        default=0.0,
+    )
+
+
+def _overlap_m(item: SceneObject, other: SceneObject) -> float:
+    """Depth in plan by which an object's box is in another's, along the other's axes."""
+    axes = other.pose.R_world_object[:, :2]
+    reach = 0.5 * (np.abs(axes.T @ item.pose.R_world_object) @ item.size_m + other.size_m[:2])
+    away = np.abs(axes.T @ (item.pose.position - other.pose.position))
+    return max(float((reach - away).min()), 0.0)
 
 
 def _tolerance(scene: Scene, item: SceneObject, edge: Support, noise: ObservationNoise) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from diorama_core.artefacts import LayoutReport
+from diorama_core.artefacts import LayoutReport, PhotoDisagreement
 
 Problems = Mapping[str, tuple[str, ...]]
 """By object id, what is wrong with it, in a word each."""
@@ -43,6 +43,14 @@ def in_words(report: LayoutReport, worse: Problems, labels: Mapping[str, str]) -
     if moved > FAR_M:
         lines.append(f"Objects moved by {100 * moved:.0f} cm on average; the photo shows them elsewhere.")
     return tuple(lines)
+
+
+def disagreement_in_words(found: PhotoDisagreement) -> str:
+    """One sentence for an object that agrees less with the photo than before."""
+    return (
+        f"agrees less with the photo: {found.label} moved {100 * found.moved_m:.0f} cm; its outline still covers "
+        f"{100 * found.outline_shared:.0f} % of where it was seen"
+    )
 
 
 def _verb(word: str, count: int) -> str:

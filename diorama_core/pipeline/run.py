@@ -22,6 +22,7 @@ from diorama_core.artefacts import (
     ObjectGeometry,
     SceneGraph,
 )
+from diorama_core.layout.holding_shapes import holding_shapes
 from diorama_core.layout.noise import MEASURED, REASONED
 from diorama_core.layout.support_check import checked_supports
 from diorama_core.library.record import ShapeLibrary
@@ -104,7 +105,11 @@ def build_scene(
     standing = {edge.child for edge in room.supports if edge.parent in floors}
     textures = plane_textures(balanced, found["objects"], geometry.camera, room.architecture, stages.filler, standing)
     noise = REASONED if inputs.depth_m is None else MEASURED
-    checked, changed = checked_supports(_observed({**found, "architecture": room}, balanced, library), library, noise)
+    shaped = _observed({**found, "architecture": room}, balanced, library)
+    reshaped: tuple[str, ...] = ()
+    if inputs.depth_m is not None:  # heights reasoned from a photo alone do not tell boards from one another
+        shaped, reshaped = holding_shapes(shaped, library, noise)
+    checked, changed = checked_supports(shaped, library, noise)
     observed = _textured(containing_room(checked), textures)
     appearance = photo_appearance(balanced.photo.rgb, found["furniture_objects"], observed, library, illuminant.rgb)
     observed, textures = appearance.applied(observed), {**textures, **appearance.pictures}
@@ -133,7 +138,7 @@ def build_scene(
         inputs=inputs,
         runs=tuple(runner.runs),
         stages=stages,
-        notes=(*_notes(found, changed, report), *runner.lost),
+        notes=(*_notes(found, reshaped + changed, report), *runner.lost),
     )
 
 

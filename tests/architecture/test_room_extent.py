@@ -3,12 +3,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from diorama_core.architecture.room_extent import containing_room
 from diorama_core.evaluation.metrics.scene import out_of_bounds_share
-from diorama_core.layout.feasible.recipe import FeasibleRecipe
+from diorama_core.layout.feasible.recipe import MEASURED_WEIGHT, FeasibleRecipe
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Architecture, Plane, Scene
 from diorama_core.synthesis.layout_rooms import box_library
@@ -64,3 +65,47 @@ def test_the_floor_reaches_under_everything(places: list[tuple[float, float, flo
         room.put("box_24", (x, y, 0.15), yaw=yaw)
     scene = room.scene(architecture=replace(sliver(), planes=sliver().planes[:1]))
     assert out_of_bounds_share(containing_room(scene)) == 0.0
+
+
+def test_lamps_hang_from_a_ceiling_that_was_not_seen() -> None:
+    room = Room(LIBRARY)
+    lamp = room.put("lamp_16", (0.0, 0.5, 1.9), on="wall_1", relation="mounted on")
+    room.objects[0] = replace(room.objects[0], category="ceiling lamp")
+    scene = containing_room(room.scene(architecture=sliver(), camera=looking_north(5.0)))
+    (ceiling,) = scene.architecture.by_role("ceiling")
+    assert not ceiling.seen
+    assert ceiling.normal[2] < -0.99
+    assert scene.support_of(lamp).parent == ceiling.id
+    level = float(ceiling.polygon[0, 2])
+    assert scene.object(lamp).corners_world[:, 2].max() <= level <= scene.plane("wall_1").polygon[:, 2].max() + 1e-9
+    settled = FeasibleRecipe(LIBRARY, depth_weight=MEASURED_WEIGHT).optimise(scene, Progress())[0]
+    moved = settled.object(lamp).pose.position - scene.object(lamp).pose.position
+    assert np.linalg.norm(moved[:2]) < 0.1
+    assert settled.object(lamp).corners_world[:, 2].max() == pytest.approx(level, abs=1e-6)
+
+
+def test_without_hanging_lamps_no_ceiling_is_made() -> None:
+    room = Room(LIBRARY)
+    room.put("lamp_16", (0.0, 0.5, 0.25))
+    scene = containing_room(room.scene(architecture=sliver(), camera=looking_north(5.0)))
+    assert not scene.architecture.by_role("ceiling")
+
+
+def test_a_wall_is_drawn_out_behind_what_hangs_on_it() -> None:
+    room = Room(LIBRARY)
+    picture = room.put("picture_13", (1.2, 2.48, 1.5), on="wall_1", relation="mounted on", yaw=-np.pi / 2)
+    scene = containing_room(room.scene(architecture=sliver(), camera=looking_north(5.0)))
+    wall = scene.plane("wall_1").polygon
+    assert wall[:, 0].max() >= scene.object(picture).corners_world[:, 0].max()
+    assert wall[:, 0].min() == -1.0
+    settled = FeasibleRecipe(LIBRARY).optimise(scene, Progress())[0]
+    assert np.linalg.norm(settled.object(picture).pose.position - scene.object(picture).pose.position) < 0.03
+
+
+def test_a_wall_ends_at_the_corner_with_another_that_was_seen() -> None:
+    room = Room(LIBRARY)
+    room.put("picture_13", (1.2, 2.48, 1.5), on="wall_1", relation="mounted on", yaw=-np.pi / 2)
+    corner = np.array([[1.0, 2.5, 0], [1.0, 0.0, 0], [1.0, 0.0, 2.5], [1.0, 2.5, 2.5]])
+    planes = (*sliver().planes, Plane("wall_2", "wall", corner))
+    scene = containing_room(room.scene(architecture=Architecture(planes), camera=looking_north(5.0)))
+    assert scene.plane("wall_1").polygon[:, 0].max() == 1.0

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from diorama_core.layout.feasible.recipe import FeasibleRecipe
@@ -65,3 +67,42 @@ def test_what_should_have_something_below_it_is_reported(room: Room) -> None:
     checked, reasons = checked_supports(room.scene(camera=looking_north()), LIBRARY, REASONED)
     assert checked.support_of(oven).parent == "wall_2"
     assert "please check: microwave" in reasons[0]
+
+
+def test_what_was_seen_inside_a_shelf_stands_on_its_lowest_board(room: Room) -> None:
+    shelf = room.put("bookshelf_7", (0.0, 1.0, 0.6))
+    books = room.put("books_18", (0.0, 1.0, 0.1), yaw=0.2)
+    beside = room.put("books_19", (1.5, 1.0, 0.02))
+    checked, reasons = checked_supports(room.scene(camera=looking_north()), LIBRARY, MEASURED)
+    assert checked.support_of(books).parent == shelf
+    assert checked.support_of(beside).parent == "floor"
+    assert len(reasons) == 1
+    assert "in something that is on the floor" in reasons[0]
+
+
+def test_what_is_under_a_table_stays_on_the_floor(room: Room) -> None:
+    room.put("table_0", (0.0, 1.0, 0.37))
+    box = room.put("box_24", (0.0, 1.0, 0.15))
+    assert checked_supports(room.scene(camera=looking_north()), LIBRARY, MEASURED)[0].support_of(box).parent == "floor"
+
+
+def test_a_chair_whose_foot_a_table_hides_is_not_on_the_table(room: Room) -> None:
+    table = room.put("table_0", (0.0, 1.0, 0.37))
+    chair = room.put("chair_4", (0.0, 1.5, 0.85), on=table)
+    checked, reasons = checked_supports(room.scene(camera=looking_north()), LIBRARY, MEASURED)
+    assert checked.support_of(chair).parent == "floor"
+    assert len(reasons) == 1
+
+
+def test_a_lamp_away_from_its_wall_stands_on_what_is_right_below_it(room: Room) -> None:
+    table = room.put("table_0", (0.0, 1.5, 0.37))
+    lamp = room.put("lamp_16", (0.0, 1.5, 1.0), on="wall_2", relation="mounted on")
+    checked, _ = checked_supports(room.scene(camera=looking_north()), LIBRARY, MEASURED)
+    assert checked.support_of(lamp).parent == table
+
+
+def test_a_door_far_from_its_wall_stands_on_the_floor(room: Room) -> None:
+    door = room.put("wardrobe_12", (0.0, 1.0, 1.1), on="wall_2", relation="mounted on")
+    room.objects[0] = replace(room.objects[0], category="door")
+    checked, _ = checked_supports(room.scene(camera=looking_north()), LIBRARY, MEASURED)
+    assert checked.support_of(door).parent == "floor"

@@ -10,29 +10,48 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
+from diorama_core.artefacts import PhotoDisagreement
 from diorama_core.geometry.projection import box_iou
 from diorama_core.layout.problem.problem import Problem
-from diorama_core.scene.types import Camera
+from diorama_core.layout.problem.supports import box_misfit
+from diorama_core.scene.types import Camera, box_corners
 
 MOVED_M = 2e-3
 """Objects that structure moved less than this already agree: a settled layout stays as it is, and so does what a person
 arranged."""
-MAX_STRETCH = 1.2
+MAX_STRETCH = 1.3
 """Sizes change by at most this factor either way."""
 FAR_M = 0.2
 """Objects that a layout moves farther are named,"""
 SHARED_OUTLINE = 0.6
 """and those whose outline shares less than this with the observed one (intersection over union of bounds)."""
+SAME_PLACE = 0.4
+"""A posed shape whose bounds share at least this with the object's box (intersection over union) is where it was
+seen."""
+BORDER_PX = 2.0
+"""Boxes that end nearer to the picture's border go on beyond it."""
+DIFFERENT = 0.08
+"""Posed bounds that differ from the photo's by less than this share of the box are as good: shapes are not what they
+stand for."""
+COVERED = 0.3
+"""A side of a box is hidden where a nearer object's box covers more than this share of it."""
+UPWARD = 0.98
+"""Normals with a larger z are of places on which things are put down."""
+LOAD_M = 0.12
+"""What was observed farther from its place says nothing about that place."""
+_OUTWARD = np.array([-1.0, -1.0, 1.0, 1.0])
 _NEAREST_M = 0.1
 _STEPS = 4
 _KEEP_PLACE = 0.1
 """Weight of staying where structure put an object, against one metre of disagreement with the picture."""
+_LOAD = 1.5
+"""Weight of a metre between a place and what was observed on it."""
 _KEEP_SIZE = 0.4
-"""Weight of a relative change of size, times the extent."""
+"""Weight of a relative change of size, times the largest extent."""
 _KEEP_SHAPE = 0.4
-"""Weight of a relative change of one extent against the others, times the extent."""
+"""Weight of a relative change of one extent against the others, times that extent."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +60,9 @@ class PhotoObservations:
 
     camera: Camera
     bounds_px: Float[np.ndarray, "n 4"]
-    """x1, y1, x2, y2 of each object's parts in the picture, not cut at its border; NaN for those behind the camera."""
+    """x1, y1, x2, y2 of each object in the picture, not cut at its border; NaN for those behind the camera."""
+    hidden: Bool[np.ndarray, "n 4"]
+    """Bounds beyond which the object may go on, because something hides the rest or the picture ends."""
     observed: Float[np.ndarray, "n 3"]
     """Observed centres, world."""
     least: Float[np.ndarray, "n 3"]
@@ -49,6 +70,8 @@ class PhotoObservations:
     """Limits of the scales."""
     depth_weight: float
     """How much a metre along the viewing ray counts against a metre across: high where depth was measured."""
+    loads: tuple[Float[np.ndarray, "_ 2"], ...]
+    """What was observed on each object: height of its place at scale 1 (object frame), and of its foot (world)."""
     size: Float[np.ndarray, "n 3"]
     """Extents at scale 1."""
     points: tuple[Float[np.ndarray, "_ 3"], ...]
@@ -108,6 +131,8 @@ class PhotoObservations:
         return ObjectFit(
             camera=self.camera,
             bounds_px=self.bounds_px[i],
+            hidden=self.hidden[i],
+            loads=self._grown_loads(i, grown),
             observed=observed,
             depth_weight=self.depth_weight,
             R=R,
@@ -117,8 +142,13 @@ class PhotoObservations:
             scale=scale,
             basis=basis,
             metres=float(self.camera.to_camera(observed)[2]) / self.camera.intrinsics.fx,
-            extent=float((self.size[i] * scale).max()),
+            extents=self.size[i] * scale,
         )
+
+    def _grown_loads(self, i: int, grown: float) -> Float[np.ndarray, "m 2"]:
+        level, foot = self.loads[i].T
+        eye = float(self.camera.position[2])
+        return np.column_stack([level, eye + grown * (foot - eye)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,6 +157,8 @@ class ObjectFit:
 
     camera: Camera
     bounds_px: Float[np.ndarray, "4"]
+    hidden: Bool[np.ndarray, "4"]
+    loads: Float[np.ndarray, "m 2"]
     observed: Float[np.ndarray, "3"]
     depth_weight: float
     R: Float[np.ndarray, "3 3"]
@@ -140,7 +172,8 @@ class ObjectFit:
     basis: Float[np.ndarray, "3 2"]
     metres: float
     """What a pixel is at the object's distance."""
-    extent: float
+    extents: Float[np.ndarray, "3"]
+    """The object's own, metres."""
 
     def centre(self, x: Float[np.ndarray, "5"]) -> Float[np.ndarray, "3"]:
         """Where the object's centre is."""
@@ -161,9 +194,11 @@ class ObjectFit:
         axis = np.array([0, 1, 0, 1])
         depth, focal = seen[extreme, 2], np.array([k.fx, k.fy])[axis]
         outline = (flat[extreme, axis] - self.bounds_px) * self.metres
+        counts = ~self.hidden | (outline * _OUTWARD < 0.0)
         pixel = np.zeros((4, 3))
         pixel[np.arange(4), axis] = focal / depth
         pixel[:, 2] = -focal * seen[extreme, axis] / depth**2
+        outline, pixel = np.where(counts, outline, 0.0), np.where(counts[:, None], pixel, 0.0)
         to_metres = pixel @ self.camera.T_camera_world[:3, :3] * self.metres
         J = np.column_stack([to_metres @ self.basis, (to_metres @ self.R) * arms[extreme]])
 
@@ -172,14 +207,24 @@ class ObjectFit:
         moved = -self.anchor_local * self.scale * np.exp(x[2:]) * (ray @ self.R)
         distance = np.concatenate([ray @ self.basis, moved])
         clamped = self._clamped()
-        residual = np.concatenate([outline, [float(ray @ (self.centre(x) - self.observed))], clamped @ x])
-        return np.vstack([J, distance, clamped]), residual
+        held, gaps = self._held(x)
+        residual = np.concatenate([outline, [float(ray @ (self.centre(x) - self.observed))], gaps, clamped @ x])
+        return np.vstack([J, distance, held, clamped]), residual
+
+    def _held(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "m 5"], Float[np.ndarray, " m"]]:
+        """How the places of an upright object miss what was observed on them."""
+        arm = (self.loads[:, 0] - self.anchor_local[2]) * self.scale[2] * np.exp(x[4])
+        rows = np.zeros((len(arm), 5))
+        rows[:, :2] = self.basis[2]
+        rows[:, 4] = arm
+        height = self.anchor[2] + self.basis[2] @ x[:2] + arm
+        return _LOAD * rows, _LOAD * (height - self.loads[:, 1])
 
     def _clamped(self) -> Float[np.ndarray, "6 5"]:
         clamped = np.zeros((6, 5))
         clamped[0, 0] = clamped[1, 1] = _KEEP_PLACE
-        clamped[2:5, 2:] = _KEEP_SHAPE * self.extent * (np.eye(3) - 1 / 3)
-        clamped[5, 2:] = _KEEP_SIZE * self.extent / 3
+        clamped[2:5, 2:] = _KEEP_SHAPE * self.extents[:, None] * (np.eye(3) - 1 / 3)
+        clamped[5, 2:] = _KEEP_SIZE * self.extents.max() / 3
         return clamped
 
 
@@ -199,24 +244,91 @@ def _bounded_step(J: np.ndarray, residual: np.ndarray, low: np.ndarray, high: np
 
 def photo_observations(problem: Problem, camera: Camera, *, depth_weight: float) -> PhotoObservations:
     """What the camera sees of the observed layout."""
-    packed = problem.packed
-    points = tuple(np.unique(packed.vertices[packed.owner == i].reshape(-1, 3), axis=0) for i in range(problem.count))
-    bounds = np.full((problem.count, 4), np.nan)
-    for i, own in enumerate(points):
-        world = (own * problem.scale[i]) @ problem.R[i].T + problem.p[i]
-        if camera.to_camera(world)[:, 2].min() >= _NEAREST_M:
-            flat = camera.project(world)
-            bounds[i] = [*flat.min(axis=0), *flat.max(axis=0)]
+    points = _outline_points(problem)
+    bounds, hidden = _pictured(problem, camera, _posed_bounds_px(problem, camera))
     return PhotoObservations(
         camera=camera,
         bounds_px=bounds,
+        hidden=hidden,
         observed=problem.p,
         least=problem.scale / MAX_STRETCH,
         most=problem.scale * MAX_STRETCH,
         depth_weight=depth_weight,
+        loads=tuple(_loads(problem, i) for i in range(problem.count)),
         size=problem.shape_size,
         points=points,
     )
+
+
+def _loads(problem: Problem, i: int) -> Float[np.ndarray, "m 2"]:
+    """Height of the place (at scale 1) and of the foot of everything that was observed on a place of an object."""
+    found = []
+    for k in np.flatnonzero(problem.parent == i):
+        size = problem.shape_size[k] * problem.scale[k]
+        corners = problem.p[k] + box_corners(size) @ problem.R[k].T
+        flat = [s for s in problem.levels[k] if float(s.normal[2]) > UPWARD]
+        posed = [s.at(problem.R[i], problem.p[i], problem.scale[i]) for s in flat]
+        if posed and problem.firm[k] == 1.0:
+            nearest = int(np.argmin([box_misfit(corners, size, s) for s in posed]))
+            foot = float(corners[:, 2].min())
+            if abs(foot - posed[nearest].level) <= LOAD_M:
+                found.append((flat[nearest].level, foot))
+    return np.array(found).reshape(-1, 2)
+
+
+def _outline_points(problem: Problem) -> tuple[Float[np.ndarray, "_ 3"], ...]:
+    packed = problem.packed
+    return tuple(np.unique(packed.vertices[packed.owner == i].reshape(-1, 3), axis=0) for i in range(problem.count))
+
+
+def _posed_bounds_px(problem: Problem, camera: Camera) -> Float[np.ndarray, "n 4"]:
+    """Bounds of each posed shape in the picture, not cut at its border; NaN for those behind the camera."""
+    bounds = np.full((problem.count, 4), np.nan)
+    for i, own in enumerate(_outline_points(problem)):
+        world = (own * problem.scale[i]) @ problem.R[i].T + problem.p[i]
+        if camera.to_camera(world)[:, 2].min() >= _NEAREST_M:
+            flat = camera.project(world)
+            bounds[i] = [*flat.min(axis=0), *flat.max(axis=0)]
+    return bounds
+
+
+def _pictured(
+    problem: Problem, camera: Camera, posed: Float[np.ndarray, "n 4"]
+) -> tuple[Float[np.ndarray, "n 4"], Bool[np.ndarray, "n 4"]]:
+    """The bounds of every object in the picture, and which of them are least bounds because the rest is hidden.
+
+    The photo's boxes count for poses that agree with them; elsewhere, where a person may have put the object, the posed
+    shape says where it is.
+    """
+    boxes = problem.box_px
+    agrees = np.array([bool(box_iou(a, b) >= SAME_PLACE) for a, b in zip(posed, boxes)], dtype=bool).reshape(-1)
+    hidden = _hidden_sides(problem, camera) & agrees[:, None]
+    extent = np.tile(boxes[:, 2:] - boxes[:, :2], (1, 2))
+    contradicted = np.abs(posed - boxes) > DIFFERENT * extent + BORDER_PX
+    return np.where(agrees[:, None] & contradicted & ~hidden, boxes, posed), hidden
+
+
+def _hidden_sides(problem: Problem, camera: Camera) -> Bool[np.ndarray, "n 4"]:
+    """Which sides of the photo's boxes are on its border or behind the boxes of nearer objects.
+
+    What an object stands on does not hide its foot, and a rug hides nothing.
+    """
+    k, boxes = camera.intrinsics, problem.box_px
+    border = np.array([BORDER_PX, BORDER_PX, k.width - BORDER_PX, k.height - BORDER_PX])
+    hidden = np.column_stack([boxes[:, :2] <= border[:2], boxes[:, 2:] >= border[2:]])
+    depth = camera.to_camera(problem.p)[:, 2]
+    for i in range(problem.count):
+        nearer = (depth < depth[i]) & ~problem.yielding[i]
+        nearer[problem.chain(i)] = False
+        ends = boxes[i].reshape(2, 2)
+        for side in range(4):
+            axis, along = side % 2, 1 - side % 2
+            across = (boxes[nearer, axis] <= boxes[i, side]) & (boxes[i, side] <= boxes[nearer, axis + 2])
+            low = np.maximum(boxes[nearer, along], ends[0, along])
+            high = np.minimum(boxes[nearer, along + 2], ends[1, along])
+            covered = np.where(across, np.maximum(high - low, 0.0), 0.0).max(initial=0.0)
+            hidden[i, side] |= bool(covered > COVERED * (ends[1, along] - ends[0, along]))
+    return hidden
 
 
 def disagreements(
@@ -225,17 +337,14 @@ def disagreements(
     R: Float[np.ndarray, "n 3 3"],
     p: Float[np.ndarray, "n 3"],
     scale: Float[np.ndarray, "n 3"],
-) -> tuple[str, ...]:
-    """A line for each free object that a layout took clearly away from where the camera saw it."""
-    seen = photo_observations(problem, camera, depth_weight=1.0).bounds_px
-    now = photo_observations(replace(problem, R=R, p=p, scale=scale), camera, depth_weight=1.0).bounds_px
-    lines = []
+) -> tuple[PhotoDisagreement, ...]:
+    """The free objects that a layout took clearly away from where the camera saw them."""
+    seen = _posed_bounds_px(problem, camera)
+    now = _posed_bounds_px(replace(problem, R=R, p=p, scale=scale), camera)
+    found = []
     for i in np.flatnonzero(problem.free):
         moved = float(np.linalg.norm(p[i] - problem.p[i]))
         shared = float(box_iou(seen[i], now[i])) if np.isfinite([seen[i], now[i]]).all() else 1.0
         if moved > FAR_M or shared < SHARED_OUTLINE:
-            lines.append(
-                f"agrees less with the photo: {problem.labels[i]} moved {100 * moved:.0f} cm; its outline still covers "
-                f"{100 * shared:.0f} % of where it was seen"
-            )
-    return tuple(lines)
+            found.append(PhotoDisagreement(problem.ids[i], problem.labels[i], moved, shared))
+    return tuple(found)

@@ -9,14 +9,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.artefacts import LayoutReport
+from diorama_core.artefacts import LayoutReport, PhotoDisagreement
 from diorama_core.layout.feasible.photo_observations import PhotoObservations, disagreements, photo_observations
 from diorama_core.layout.feasible.relocate import relocate
+from diorama_core.layout.feasible.resize import fitted_sizes
 from diorama_core.layout.feasible.separate import Program, Separation, base, build_program, relaxed, separate
 from diorama_core.layout.feasible.structure import Structure, exact_structure
 from diorama_core.layout.problem.problem import Problem, build_problem
 from diorama_core.layout.report import measure
 from diorama_core.layout.weights import AS_IT_IS, Weights
+from diorama_core.layout.what_got_worse import disagreement_in_words
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.protocols import Preview
@@ -26,7 +28,7 @@ from diorama_core.scene.types import Camera, Scene
 MEASURED_WEIGHT, REASONED_WEIGHT = 2.0, 0.3
 """What leaving the observed distance costs against leaving the observed outline: for a measured distance, and for one
 that was reasoned from a photo alone."""
-SHRINK = 0.95
+SHRINK = 0.9
 """What a stuck object's footprint is multiplied by, each attempt."""
 
 
@@ -48,7 +50,7 @@ class FeasibleRecipe:
     """Ids free to move (with what they hold up); all when None."""
     rounds: int = 12
     """Most rounds of choosing axes."""
-    attempts: int = 3
+    attempts: int = 5
     """How often stuck objects are made a little smaller before giving up."""
     observations: float = 4.0
     """Cost of moving across the viewing ray relative to along it, when the scene has a camera; 1 is indifferent."""
@@ -81,6 +83,9 @@ class FeasibleRecipe:
             eye = scene.camera.position if scene.camera is not None and self.sizes_reasoned else None
             structure = exact_structure(wanted, self._rays(wanted, scene.camera), seen, eye=eye)
             program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
+            if seen is not None:
+                structure = fitted_sizes(program, self._outline_cost(wanted))
+                program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
             found = _apart(program, self.rounds, self._watcher(scene, program, progress, preview))
             if not found.stuck or attempt == self.attempts - 1:
                 break
@@ -88,11 +93,16 @@ class FeasibleRecipe:
         p = structure.p + program.moves(found.y)
         after = measure(replace(problem, surface=structure.surface), structure.R, p, structure.scale)
         reasons = (
-            problem.reasons + structure.reasons + _shrunk_reasons(problem, wanted) + _stuck_reasons(problem, found)
+            problem.reasons
+            + structure.reasons
+            + _shrunk_reasons(problem, wanted, structure)
+            + _stuck_reasons(problem, found)
         )
+        apart: tuple[PhotoDisagreement, ...] = ()
         if scene.camera is not None:
-            reasons += disagreements(problem, scene.camera, structure.R, p, structure.scale)
-        report = LayoutReport("feasible", before, after, time.perf_counter() - begun, reasons)
+            apart = disagreements(problem, scene.camera, structure.R, p, structure.scale)
+        reasons += tuple(map(disagreement_in_words, apart))
+        report = LayoutReport("feasible", before, after, time.perf_counter() - begun, reasons, apart)
         settled = edits.place(scene, problem.poses(structure.R, p, structure.scale))
         return edits.set_metrics(settled, after), report
 
@@ -130,6 +140,10 @@ class FeasibleRecipe:
             return None
         return photo_observations(problem, camera, depth_weight=self.depth_weight * self.weights.distance)
 
+    def _outline_cost(self, problem: Problem) -> Float[np.ndarray, " n"]:
+        """What a metre of outline counts, by object: moving it across the viewing ray."""
+        return np.sqrt(self._across * _certainty(problem))
+
     def _costs(
         self, problem: Problem, camera: Camera | None
     ) -> tuple[Float[np.ndarray, "n 2 2"], Float[np.ndarray, "n 3 3"] | None]:
@@ -144,8 +158,15 @@ class FeasibleRecipe:
             return load[:, None, None] * np.eye(2), None
         along = rays[:, :, None] * rays[:, None, :]
         seen = self._across * np.eye(3) - (self._across - 1.0) * along
-        certainty = np.maximum(problem.certainty, MIN_CERTAINTY)
+        certainty = _certainty(problem)
         return np.tile(RIDING * np.eye(2), (problem.count, 1, 1)), certainty[:, None, None] * seen
+
+
+def _certainty(problem: Problem) -> Float[np.ndarray, " n"]:
+    """How surely it is known where each object is: by itself or by anything that was seen on it."""
+    doubt = 1.0 - np.clip(problem.certainty, 0.0, 1.0)
+    known = np.array([1.0 - np.prod(doubt[problem.rides(i)]) for i in range(problem.count)]).reshape(-1)
+    return np.maximum(known, MIN_CERTAINTY)
 
 
 def _apart(program: Program, rounds: int, check: Callable[[np.ndarray, float], None]) -> Separation:
@@ -173,9 +194,10 @@ def _smaller(problem: Problem, structure: Structure, found: Separation) -> Probl
     return replace(problem, scale=scale, adheres=tuple(a for a in problem.adheres if a[0] not in stuck))
 
 
-def _shrunk_reasons(problem: Problem, wanted: Problem) -> tuple[str, ...]:
+def _shrunk_reasons(problem: Problem, wanted: Problem, structure: Structure) -> tuple[str, ...]:
     shrunk = np.flatnonzero((wanted.scale < problem.scale - 1e-12).any(axis=1))
-    return tuple(f"tight: {problem.labels[i]} was made a little smaller to fit" for i in shrunk)
+    smaller = sorted({int(i) for i in shrunk} | set(structure.reduced))
+    return tuple(f"tight: {problem.labels[i]} was made a little smaller to fit" for i in smaller)
 
 
 def _stuck_reasons(problem: Problem, found: Separation) -> tuple[str, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +12,7 @@ from diorama_core.geometry.sat import PairAxes, pair_axes
 from diorama_core.layout.escape import exits, ring
 from diorama_core.layout.feasible.separate import APART_M, Program, Separation, overlaps
 
-_REACHES_M = (0.15, 0.6, 2.0)
+REACHES_M = (0.15, 0.6, 2.0)
 """Looked through in turn: most find a place close by, and then only close neighbours were compared."""
 
 
@@ -24,7 +25,7 @@ def relocate(program: Program, y: Float[np.ndarray, " v"]) -> Separation:
     depth, pairs = overlaps(program, y)
     refused: set[tuple[int, int]] = set()
     while left := [pair for pair in pairs if pair not in refused]:
-        found = [spot for k in _movable(program, left[0]) if (spot := _cheapest_spot(program, y, k)) is not None]
+        found = [spot for k in _movable(program, left[0]) if (spot := cheapest_spot(program, y, k)) is not None]
         if not found:
             refused.add(left[0])
             continue
@@ -35,7 +36,7 @@ def relocate(program: Program, y: Float[np.ndarray, " v"]) -> Separation:
 
 
 @dataclass(frozen=True, eq=False)
-class _Spot:
+class Spot:
     """A place that is free."""
 
     cost: float
@@ -49,7 +50,17 @@ def _movable(program: Program, pair: tuple[int, int]) -> list[int]:
     return [k for k in (*first, *second) if (k in first) != (k in second) and program.problem.free[k]]
 
 
-def _cheapest_spot(program: Program, y: Float[np.ndarray, " v"], i: int) -> _Spot | None:
+def cheapest_spot(
+    program: Program, y: Float[np.ndarray, " v"], i: int, reaches_m: Sequence[float] = REACHES_M
+) -> Spot | None:
+    """The cheapest place without overlap for an object and what it supports; None where none is within reach.
+
+    Args:
+        program: the moves that are possible, and what they cost.
+        y: the moves so far.
+        i: index of the object.
+        reaches_m: looked through in turn until a place is found.
+    """
     columns = np.flatnonzero(program.own[i])
     if not len(columns):
         return None
@@ -58,14 +69,14 @@ def _cheapest_spot(program: Program, y: Float[np.ndarray, " v"], i: int) -> _Spo
     steps = directions @ np.linalg.pinv(lever).T
     moving = np.abs(program.J[:, :, columns]).max(axis=(1, 2)) > 1e-9
     limit = _limits(program, y, columns, steps)
-    for reach in _REACHES_M:
+    for reach in reaches_m:
         far = _free_distances(program, y, moving, directions, reach)
         tried = y + np.zeros((len(far), 1))
         tried[:, columns] += np.where(np.isfinite(far), far, 0.0)[:, None] * steps
         cost = np.where(far <= np.minimum(limit, reach), program.cost(tried), np.inf)
         best = int(cost.argmin())
         if np.isfinite(cost[best]):
-            return _Spot(float(cost[best]), tried[best], moving)
+            return Spot(float(cost[best]), tried[best], moving)
     return None
 
 

@@ -16,6 +16,7 @@ from diorama_core.geometry.planes import plane_axes
 from diorama_core.layout.feasible.footprints import INSET_M, largest_share
 from diorama_core.layout.feasible.photo_observations import PhotoObservations
 from diorama_core.layout.feasible.quadratic import HARD, least_distance
+from diorama_core.layout.problem.footing import reach_of
 from diorama_core.layout.problem.problem import Problem
 from diorama_core.layout.problem.supports import Surface, box_misfit, is_wall_like
 from diorama_core.scene.types import box_corners
@@ -28,6 +29,8 @@ MAX_GROWTH = 1.7
 """An object's distance, with its size, is corrected by at most this factor."""
 MAX_DETOUR = 3.0
 """An object leaves its wall rather than move so many times as far along it to come back onto its support."""
+PARALLEL = 0.97
+"""Cosine within which a side of an object is along a wall."""
 MIN_SLANT = 0.1
 """A surface seen more edge-on than this says nothing about distance."""
 
@@ -55,6 +58,8 @@ class Structure:
     surface: tuple[Surface | None, ...]
     """Where each object came to rest."""
     reasons: tuple[str, ...]
+    reduced: tuple[int, ...] = ()
+    """Objects that were made smaller to fit between their neighbours."""
 
 
 @dataclass
@@ -137,6 +142,7 @@ def _settle(
     n = surface.normal
     walk.R[i] = _aligned(walk.R[i], problem.contact[i], surface, [(problem.walls[w].normal, f) for w, f in against])
     u, v = plane_axes(n)
+    _before_walls(problem, walk, i)
     grown = 1.0 if eye is None else _from_the_eye(problem, walk, i, surface, eye)
     _on_support(problem, walk, i, surface, None if ray is None else ray[i])
     grounded = problem.grounded[i] and is_wall_like(surface)
@@ -159,6 +165,19 @@ def _settle(
     walk.owners += [i] * len(m)
     walk.normals += list(m)
     walk.slacks += [max(float(s), 0.0) for s in slack]
+
+
+def _before_walls(problem: Problem, walk: _Walk, i: int) -> None:
+    """Shorten an object that reaches through a wall from behind: its front was seen where it is, its back was not."""
+    for wall in problem.walls_near(i):
+        axis = int(np.abs(wall.normal @ walk.R[i]).argmax())
+        half = 0.5 * _size(problem, walk, i)
+        through = wall.offset - float(wall.normal @ walk.p[i]) + float(np.abs(wall.normal @ walk.R[i]) @ half)
+        factor = 1.0 - through / (2.0 * float(half[axis]))
+        if abs(float(wall.normal @ walk.R[i][:, axis])) < PARALLEL or not SMALLEST_SHRINK <= factor < 1.0:
+            continue
+        walk.scale[i, axis] *= factor
+        walk.p[i] = walk.p[i] + 0.5 * through * wall.normal
 
 
 def _within_support(
@@ -357,7 +376,7 @@ def _fit(problem: Problem, walk: _Walk, i: int, surface: Surface, m: np.ndarray,
         for k in footprint:
             axis = walk.R[i][:, k]
             width = float(np.ptp(surface.polygon @ axis)) - 2 * INSET_M
-            factor = max(width, 1e-6) / float(_size(problem, walk, i)[k])
+            factor = max(width, 1e-6) / max(float(np.ptp(problem.footing[i][:, k]) * walk.scale[i, k]), 1e-6)
             if SMALLEST_SHRINK <= factor < 1.0:
                 walk.scale[i, k] *= factor
         room = largest_share(m, h - middle, _reach(problem, walk, i, m))
@@ -371,8 +390,7 @@ def _fit(problem: Problem, walk: _Walk, i: int, surface: Surface, m: np.ndarray,
 
 
 def _reach(problem: Problem, walk: _Walk, i: int, m: np.ndarray) -> np.ndarray:
-    half = problem.firm[i] * _size(problem, walk, i) * (1.0 - np.abs(problem.contact[i])) / 2
-    return np.abs((m @ walk.R[i]) * half).sum(axis=1)
+    return reach_of(problem.footing[i], walk.R[i], walk.scale[i], m)
 
 
 def _into(rows: np.ndarray, slack: np.ndarray) -> Float[np.ndarray, "2"]:

@@ -14,6 +14,7 @@ from jaxtyping import Bool, Float, Int
 
 from diorama_core.geometry.convex import ConvexPart
 from diorama_core.geometry.sat import PackedParts, pack_parts
+from diorama_core.layout.problem.footing import box_footing, footing_of
 from diorama_core.layout.problem.parts import parts_of_shape
 from diorama_core.layout.problem.supports import (
     Surface,
@@ -22,6 +23,7 @@ from diorama_core.layout.problem.supports import (
     complete_edges,
     is_soft,
     is_wall_like,
+    plane_surface,
     possible_surfaces,
     wall_faces,
 )
@@ -61,6 +63,10 @@ class Problem:
     """Where each object may rest on its supporter; which of these it is depends on where the supporter ends."""
     contact: Float[np.ndarray, "n 3"]
     """Outward normal of the touching face, in the object frame."""
+    footing: tuple[Float[np.ndarray, "_ 3"], ...]
+    """Points of each object at scale 1, in its frame, that touch its supporter, flattened onto the contact face."""
+    box_px: Float[np.ndarray, "n 4"]
+    """Where the photo shows each object: x1, y1, x2, y2; NaN where nothing says so."""
     free: Bool[np.ndarray, " n"]
     """False for constants: locked, or outside the selection."""
     adheres: tuple[tuple[int, int, Float[np.ndarray, "3"]], ...]
@@ -112,6 +118,18 @@ class Problem:
     def rides(self, index: int) -> list[int]:
         """The object and all objects it supports, directly or indirectly."""
         return list(self._riders[index])
+
+    def walls_near(self, index: int) -> tuple[Plane, ...]:
+        """The seen walls that an object could reach and before which it was observed; not the one it is on."""
+        found = []
+        radius = 0.5 * float(np.linalg.norm(self.shape_size[index] * self.scale[index]))
+        for wall in self.walls:
+            surface = plane_surface(wall)
+            beside = float((surface.outward @ self.p[index] - surface.offset).max())
+            ahead = float(wall.normal @ self.p[index]) - wall.offset
+            if wall.seen and self.on_plane[index] != wall.id and beside <= 0.0 <= ahead <= radius:
+                found.append(wall)
+        return tuple(found)
 
     def poses(
         self, R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]
@@ -171,6 +189,11 @@ def build_problem(
         surface=tuple(surfaces),
         levels=tuple(levels),
         contact=contacts,
+        footing=tuple(
+            footing_of(own, face) if share == 1.0 else box_footing(share * np.asarray(o.shape_size_m), face)
+            for o, own, share, face in zip(objects, parts, firm, contacts)
+        ),
+        box_px=np.array([o.box_px or (np.nan,) * 4 for o in objects], dtype=np.float64).reshape(-1, 4),
         free=free,
         adheres=_adherences(R, p, sizes, edges, surfaces, walls, adherence_m),
         grounded=np.array([o.category == "door" for o in objects], dtype=bool),

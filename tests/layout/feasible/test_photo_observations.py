@@ -140,3 +140,43 @@ def test_derivatives_are_the_slopes(x: float, y: float, yaw: float, state: list[
         one_sided = np.stack([(ahead[1] - system[1]) / step, (system[1] - behind[1]) / step])
         smooth = np.abs(one_sided[0] - one_sided[1]) < 1e-3
         assert np.allclose(system[0][smooth, k], slope[smooth], atol=1e-4)
+
+
+def test_a_side_behind_a_nearer_object_is_a_least_bound(room: Room) -> None:
+    cabinet = room.put("cabinet_10", (0.0, 1.5, 0.4), yaw=-np.pi / 2)
+    box = room.put("box_24", (0.0, 0.4, 0.15), scale=(1.0, 3.0, 1.0))
+    scene = room.scene(camera=looking_north(4.0))
+    seen = replace(scene, objects=tuple(replace(o, box_px=tuple(outline(scene, o.id))) for o in scene.objects))
+    problem = build_problem(seen, LIBRARY)
+    hidden = photo_observations(problem, looking_north(4.0), depth_weight=1.0).hidden
+    assert hidden[problem.ids.index(cabinet)].tolist() == [False, False, False, True]
+    assert not hidden[problem.ids.index(box)].any()
+    assert not observations_of(scene).hidden.any()
+
+
+def test_a_box_counts_only_for_poses_that_agree_with_it(room: Room) -> None:
+    cabinet = room.put("cabinet_10", (0.0, 1.5, 0.4), yaw=-np.pi / 2)
+    scene = room.scene(camera=looking_north())
+    x1, y1, x2, y2 = outline(scene, cabinet)
+    taller, elsewhere = (x1, y1 - 0.3 * (y2 - y1), x2, y2), (x1 + 200.0, y1, x2 + 200.0, y2)
+    for box, bound in ((taller, taller[1]), (elsewhere, y1)):
+        placed = replace(scene, objects=(replace(scene.object(cabinet), box_px=box),))
+        assert observations_of(placed).bounds_px[0, 1] == pytest.approx(bound, abs=1.5)
+
+
+def test_a_shelf_moved_by_its_wall_brings_its_boards_under_its_load(room: Room) -> None:
+    shelf = room.put("bookshelf_6", (0.6, 2.0, 0.9), yaw=-np.pi / 2, adheres_to=("wall_2",))
+    board = 0.9 + 0.45
+    room.put("books_18", (0.6, 2.0, board + 0.12 + 0.08), on=shelf)
+    scene = room.scene(camera=looking_north())
+    alone = replace(scene, objects=scene.objects[:1], supports=scene.supports[:1])
+    height = {len(s.objects): solve(s).object(shelf).pose.scale[2] for s in (scene, alone)}
+    assert height[2] > height[1] + 0.01
+
+
+def test_objects_that_left_the_picture_are_reported_as_data(room: Room) -> None:
+    scene, shelf = shelf_away_from_its_wall(room, gap_m=0.5)
+    _, report = FeasibleRecipe(LIBRARY, observations=0.0).optimise(scene, Progress())
+    (found,) = [d for d in report.disagreements if d.object_id == shelf]
+    assert found.moved_m > 0.2 or found.outline_shared < 0.6
+    assert any(reason.startswith(f"agrees less with the photo: {found.label}") for reason in report.reasons)

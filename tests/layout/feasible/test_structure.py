@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from diorama_core.layout.feasible.photo_observations import MAX_STRETCH
 from diorama_core.layout.feasible.recipe import FeasibleRecipe
 from diorama_core.layout.feasible.structure import MAX_GROWTH
 from diorama_core.progress import Progress
@@ -34,4 +35,4 @@ def test_sizes_stay_within_limits_where_they_were_not_reasoned(room: Room):
     vase = room.put("vase_20", (0.0, 0.5, 0.74 + 0.3 + 0.14), on=table)
     scene = room.scene(camera=looking_north())
     settled = FeasibleRecipe(LIBRARY).optimise(scene, Progress())[0]
-    assert (settled.object(vase).pose.scale <= 1.2 + 1e-9).all()
+    assert (settled.object(vase).pose.scale <= MAX_STRETCH + 1e-9).all()
