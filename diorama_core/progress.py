@@ -52,19 +52,18 @@ class Progress:
     token: CancelToken = field(default_factory=CancelToken)
     start: float = 0.0
     """Where this part of the job begins on the whole job's scale."""
-    span: float = 1.0
-    """How much of the whole job this part is."""
+    end: float = 1.0
+    """Where it ends there."""
 
     def report(self, fraction: float, message: str) -> None:
         """Report that `fraction` (0 to 1) of this part is done; raises `Cancelled` when asked to stop."""
         self.check()
-        done = self.start + self.span * min(max(fraction, 0.0), 1.0)
-        self.on_event(ProgressEvent(fraction=done, message=message))
+        self.on_event(ProgressEvent(fraction=self._at(min(max(fraction, 0.0), 1.0)), message=message))
 
     def found(self, words: str) -> None:
         """Report what this part of the job, which is done, found; nothing when there are no words."""
         if words:
-            self.on_event(ProgressEvent(fraction=self.start + self.span, message=words, found=words))
+            self.on_event(ProgressEvent(fraction=self.end, message=words, found=words))
 
     def check(self) -> None:
         """Raise `Cancelled` when the job was asked to stop."""
@@ -76,6 +75,10 @@ class Progress:
         return Progress(
             on_event=self.on_event,
             token=self.token,
-            start=self.start + self.span * start,
-            span=self.span * (end - start),
+            start=self._at(start),
+            end=self._at(end),
         )
+
+    def _at(self, fraction: float) -> float:
+        """On the whole job's scale; a part ends exactly where the next one begins."""
+        return self.start * (1.0 - fraction) + self.end * fraction

@@ -35,7 +35,7 @@ def write_arrangements(room: Reconstruction, count: int, progress: Progress) -> 
     for rank in range(1, different):
         if len(names) >= count:
             break
-        arranged, report = layout.optimise(arrangement(observed, rank, alike), replace(progress, start=0.0, span=1.0))
+        arranged, report = layout.optimise(arrangement(observed, rank, alike), replace(progress, start=0.0, end=1.0))
         if _overlaps(report) > _overlaps(room.layout):
             continue  # these shapes have no room beside one another here; the next may
         name = f"arrangements/scene_{len(names) + 1}.json"
