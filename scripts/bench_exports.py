@@ -21,7 +21,7 @@ from pathlib import Path
 
 import numpy as np
 
-from diorama_app.formats import EXPORT_FORMATS
+from diorama_app.projects.formats import EXPORT_FORMATS
 from diorama_core.export import export_scene
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary

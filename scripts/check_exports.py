@@ -24,7 +24,7 @@ from pathlib import Path
 
 import numpy as np
 
-from diorama_app.formats import EXPORT_FORMATS
+from diorama_app.projects.formats import EXPORT_FORMATS
 from diorama_core.editing.placing import free_spot, hits_along, insertion, places_of
 from diorama_core.export import export_scene
 from diorama_core.export.blender import blender_python, missing_blender

@@ -21,7 +21,7 @@ from diorama_app.cli.arguments import (
     size,
     view,
 )
-from diorama_app.formats import EXPORT_FORMATS
+from diorama_app.projects.formats import EXPORT_FORMATS
 from diorama_core.errors import InputError
 
 if TYPE_CHECKING:

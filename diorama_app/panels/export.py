@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import viser
 
-from diorama_app.formats import EXPORT_FORMATS, GUIDES, Choice
+from diorama_app.projects.formats import EXPORT_FORMATS, GUIDES, Choice
 from diorama_app.reconstruction.export_job import download_suffix, export
 from diorama_app.session.client import Client
 from diorama_app.web.html import Action, LiveHtml, button, text

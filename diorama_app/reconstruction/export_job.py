@@ -8,7 +8,7 @@ import zipfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from diorama_app.formats import EXPORT_FORMATS
+from diorama_app.projects.formats import EXPORT_FORMATS
 from diorama_app.session.client import Client
 from diorama_core.errors import EditRefused, ExportError
 from diorama_core.export import Format, export_scene

@@ -14,7 +14,7 @@ import trimesh
 from PIL import Image
 from playwright.sync_api import Download, expect
 
-from diorama_app import formats
+from diorama_app.projects import formats
 from diorama_app.serve import Running
 from diorama_core.project.storage import Project
 from diorama_core.scene.schema import scene_to_json

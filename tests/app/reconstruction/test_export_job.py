@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from diorama_app.formats import EXPORT_FORMATS
+from diorama_app.projects.formats import EXPORT_FORMATS
 from diorama_app.reconstruction.export_job import download_suffix, file_stem, packed, size_in_words
 
 

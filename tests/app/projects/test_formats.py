@@ -7,14 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from diorama_app.formats import EXPORT_FORMATS, GUIDES
+from diorama_app.projects.formats import EXPORT_FORMATS, GUIDES
 from diorama_app.reconstruction.export_job import download_suffix
 from diorama_core.export import export_scene
 from diorama_core.export.gathering import ExportOptions
 from diorama_core.progress import Progress
 from tests.export.scenes import gathered, scene_of
 
-DOCS = Path(__file__).resolve().parents[2] / "docs" / "export.md"
+DOCS = Path(__file__).resolve().parents[3] / "docs" / "export.md"
 
 
 def test_every_format_has_a_guide_and_every_guide_a_format() -> None:
