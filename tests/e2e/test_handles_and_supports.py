@@ -22,13 +22,25 @@ from tests.e2e.browser import EditorPage
 pytestmark = pytest.mark.browser
 
 
+def at_rest(editor: EditorPage, point: np.ndarray) -> None:
+    """Wait until the camera has come to rest and the handles have followed it."""
+    before = (0.0, 0.0)
+    for _ in range(50):
+        now = editor.place_of(point)
+        if np.allclose(now, before, atol=0.1):
+            return
+        before = now
+        editor.page.wait_for_timeout(400)
+    pytest.fail("the camera does not come to rest")
+
+
 def test_the_rotation_arc_turns_where_it_lies_over_the_body(editor: EditorPage) -> None:
     session = editor.session
     editor.row("dining table").click()
     editor.until(lambda: editor.selection == ("table_1",))
     editor.settle()
-    editor.page.wait_for_timeout(400)
     table = session.scene.object("table_1")
+    at_rest(editor, table.pose.position)
     gestures = next(p for p in editor.client.panels if type(p).__name__ == "Gestures")
     scale = gestures._gizmo_key[2]  # type: ignore[attr-defined]
     # The arc between the x and y arms, in the object's frame, two thirds out.
@@ -81,6 +93,7 @@ def test_a_table_on_a_lamp_is_refused_with_the_reason_and_done_anyway(editor: Ed
     session.ui_thread.post(lambda: session.edit("down", lambda s: edits.attach(s, Support("lamp_1", "floor"))))
     editor.until(lambda: session.scene.support_of("lamp_1").parent == "floor")
     editor.settle()
+    expect(editor.page.locator(".dio .row .chip", has_text="floats")).to_be_visible()  # its card moves the rows down
     row = editor.page.locator('.dio .row[data-grab="table_1"]')
     row.drag_to(editor.page.locator('.dio .row[data-drop="lamp_1"]'))
     editor.notice("much larger than lamp")
