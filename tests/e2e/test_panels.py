@@ -165,8 +165,9 @@ def test_the_photo_view_stands_where_the_photo_was_taken(editor: EditorPage) -> 
     slider.press("Tab")
     editor.until(lambda: view.photo.comparing, "the photo lies over the model")
     brown = camera.position + camera.rays(np.array([340.0, 310.0]))
-    editor.settle()
-    np.testing.assert_allclose(editor.mean_colour(brown), (120, 80, 50), atol=25)
+    editor.until(
+        lambda: np.allclose(editor.mean_colour(brown), (120, 80, 50), atol=25), "its picture is drawn", seconds=5
+    )
     editor.button("Room").click()
     editor.until(lambda: not view.photo.comparing and not view.camera.through_photo, "the model alone again")
 
