@@ -17,7 +17,6 @@ def write_graph(
     network: nn.Module,
     arguments: tuple[torch.Tensor, ...],
     path: Path,
-    *,
     inputs: Sequence[str],
     outputs: Sequence[str],
     dynamic: Mapping[str, Mapping[int, str]] | None = None,

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Locator, expect
 
 from tests.e2e.browser import EditorPage
 
@@ -30,13 +30,19 @@ def size(editor: EditorPage) -> np.ndarray:
     return np.asarray(editor.session.scene.object("table_1").size_m)
 
 
-def test_what_is_being_typed_stays_when_the_panel_is_drawn_anew(editor: EditorPage, busy: threading.Event) -> None:
+def width_then_depth(editor: EditorPage, words: str) -> tuple[Locator, Locator]:
+    """Write a width, and begin to type a depth; both fields."""
     width, depth = (editor.page.get_by_label(f"Size: {axis}") for axis in ("Width", "Depth"))
     width.fill("1.5")
     width.press("Enter")
     depth.focus()
     editor.page.keyboard.press("Control+a")
-    editor.page.keyboard.type("0.")
+    editor.page.keyboard.type(words)
+    return width, depth
+
+
+def test_what_is_being_typed_stays_when_the_panel_is_drawn_anew(editor: EditorPage, busy: threading.Event) -> None:
+    width, depth = width_then_depth(editor, "0.")
     busy.set()
     expect(width).to_have_value("1.5")
     editor.until(lambda: np.isclose(size(editor)[1], 1.5), "the width is written")
@@ -50,12 +56,7 @@ def test_what_is_being_typed_stays_when_the_panel_is_drawn_anew(editor: EditorPa
 
 @pytest.mark.parametrize("leave", ["Enter", "Tab", "press elsewhere"])
 def test_a_field_drawn_anew_is_written_when_it_is_left(editor: EditorPage, busy: threading.Event, leave: str) -> None:
-    width, depth = (editor.page.get_by_label(f"Size: {axis}") for axis in ("Width", "Depth"))
-    width.fill("1.5")
-    width.press("Enter")
-    depth.focus()
-    editor.page.keyboard.press("Control+a")
-    editor.page.keyboard.type("0.95")
+    width_then_depth(editor, "0.95")
     busy.set()
     editor.until(lambda: np.isclose(size(editor)[1], 1.5), "the width is written")
     editor.settle()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import torch
@@ -21,22 +21,10 @@ from transformers import (
 )
 
 from diorama_core.models.manifest import network
-from diorama_core.models.onnx_export import write_graph
+from diorama_core.models.onnx_export import write_graph as export
 from diorama_core.models.store import FileRecord, Installed, ModelStore, sha256_of, write_json
 
 START, END = "<|startoftext|>", "<|endoftext|>"
-
-
-def export(
-    network: torch.nn.Module,
-    arguments: tuple[torch.Tensor, ...],
-    path: Path,
-    inputs: Sequence[str],
-    outputs: Sequence[str],
-    dynamic: Mapping[str, Mapping[int, str]] | None = None,
-) -> Path:
-    """Write a graph as the published ones were written."""
-    return write_graph(network, arguments, path, inputs=inputs, outputs=outputs, dynamic=dynamic)
 
 
 def clip_tokenizer(path: Path) -> Path:
