@@ -15,17 +15,22 @@ from diorama_app.commands.definitions import build_commands
 from diorama_app.commands.import_model import import_model
 from diorama_app.commands.registry import Command
 from diorama_app.interaction.gestures import Gestures
+from diorama_app.interaction.wall_handle import WallHandle
 from diorama_app.panels.address import Address
 from diorama_app.panels.alternatives import Alternatives
 from diorama_app.panels.compare import Compare
 from diorama_app.panels.dropping import take_dropped_files
+from diorama_app.panels.edit_by_words import EditByWords
 from diorama_app.panels.export import ExportPanel
+from diorama_app.panels.ghost import PlacingGhost
 from diorama_app.panels.help import show_help
 from diorama_app.panels.in_place import InPlace
 from diorama_app.panels.job import JobStrip
 from diorama_app.panels.library import LibraryPanel
+from diorama_app.panels.light import LightPanel
 from diorama_app.panels.measure import Tape
 from diorama_app.panels.networks import Networks
+from diorama_app.panels.one_panel import OnePanel
 from diorama_app.panels.optimiser import Optimiser
 from diorama_app.panels.outliner import Outliner
 from diorama_app.panels.overlays import Overlays
@@ -34,10 +39,14 @@ from diorama_app.panels.photo import PhotoPanel
 from diorama_app.panels.photo_camera import PhotoCamera
 from diorama_app.panels.photo_correction import PhotoCorrection
 from diorama_app.panels.picture import show_picture
+from diorama_app.panels.plan import Plan
 from diorama_app.panels.projects import Projects
 from diorama_app.panels.properties import Properties
 from diorama_app.panels.room_size import RoomSize
+from diorama_app.panels.silhouettes import Silhouettes
+from diorama_app.panels.start_page import StartPage
 from diorama_app.panels.supports import Supports
+from diorama_app.panels.surfaces import Surfaces
 from diorama_app.panels.tabs import Tabs
 from diorama_app.panels.toast import Toasts
 from diorama_app.panels.toolbar import Toolbar
@@ -60,9 +69,13 @@ from diorama_core.project.storage import Project
 log = logging.getLogger(__name__)
 
 P = TypeVar("P", bound=Panel)
+Place = Callable[[str, Callable[[], Panel]], Panel]
+"""Puts a panel where the page is being made, with a line in its place when it fails."""
 
 LEFT_WIDTH_PX, RIGHT_WIDTH_PX = 246, 254
 """Together at most 40 % of a screen of 1280 pixels."""
+FITTED_AGAIN_S = 0.6
+"""After a phone's sheet took its place."""
 LEFT_TABS = ("Scene", "Photo", "Arrange", "Project")
 RIGHT_TABS = ("Object", "Library", "Export")
 
@@ -166,6 +179,10 @@ class Editor:
             Overlays(client, self._outlines),
             Toasts(gui, client),
             Walls(gui, client),
+            Silhouettes(gui, client),
+            WallHandle(client),
+            PlacingGhost(gui, client),
+            Plan(gui, client),
         ]
         client.open_tab = Tabs(gui, (LEFT_TABS, RIGHT_TABS)).open
         client.go_to = Address(gui).go_to
@@ -178,8 +195,10 @@ class Editor:
             return placed.panel
 
         with scene:
+            place("Edits by words", lambda: EditByWords(gui, client))
             place("The list of objects", lambda: Outliner(gui, client))
             place("The size of the room", lambda: RoomSize(gui, client))
+            place("The light", lambda: LightPanel(gui, client))
         with from_photo:
             photo = place("The photo", lambda: PhotoPanel(gui, client, self.commands))
             place("The photo's camera", lambda: PhotoCamera(gui, client, self.views))
@@ -189,9 +208,43 @@ class Editor:
             place("The list of projects", lambda: Projects(gui, client, self.commands, photo.take))
             place("The list of networks", lambda: Networks(gui, client))
         right = gui.add_panel()
-        about, library, exporting = (right.add_tab(name) for name in RIGHT_TABS)
+        count = len(panels)
+        self._right_side(client, place, right.add_tab)
+        on_the_right = panels[count:]
+        take_dropped_files(
+            gui,
+            client,
+            photo.take,
+            lambda name, content: import_model(client, name, content),
+            lambda name, content: open_file(client, name, content),
+        )
+        panels.append(StartPage(gui, client, photo.take))
+        right.dock_right()
+        right.set_width(RIGHT_WIDTH_PX)
+
+        def one_panel() -> None:
+            """A phone shows one panel: what is on the right goes into the tabs of the left."""
+            right.remove()
+            panels[:] = [p for p in panels if p not in on_the_right]
+            self._right_side(client, place, left.add_tab)
+            client.refresh()
+            # The view is smaller now than what the room was fitted into; by then it has told its shape.
+            self.session.ui_thread.post(lambda: self._fit_again(client), after_s=FITTED_AGAIN_S)
+
+        panels.append(OnePanel(gui, client, one_panel))
+        client.panels = panels
+
+    def _fit_again(self, client: Client) -> None:
+        if client.id in self.session.clients and not client.plan and not client.view.camera.through_photo:
+            self.views.room_view(client)
+
+    def _right_side(self, client: Client, place: Place, add_tab: Callable[[str], viser.GuiTabHandle]) -> None:
+        """Create what is about the selection, the library and the export, in tabs of their own."""
+        gui = client.viser_client.gui
+        about, library, exporting = (add_tab(name) for name in RIGHT_TABS)
         with about:
             place("The object", lambda: Properties(gui, client, self.commands))
+            place("The surface", lambda: Surfaces(gui, client))
             place("Your own model", lambda: OwnModel(gui, client))
             place("The alternatives", lambda: Alternatives(gui, client))
             place("What supports it", lambda: Supports(gui, client))
@@ -200,16 +253,6 @@ class Editor:
             place("The library", lambda: LibraryPanel(gui, client))
         with exporting:
             place("The export", lambda: ExportPanel(gui, client))
-        take_dropped_files(
-            gui,
-            client,
-            photo.take,
-            lambda name, content: import_model(client, name, content),
-            lambda name, content: open_file(client, name, content),
-        )
-        right.dock_right()
-        right.set_width(RIGHT_WIDTH_PX)
-        client.panels = panels
 
     async def _joined(self, viser_client: viser.ClientHandle) -> None:
         self.session.ui_thread.post(lambda: self.session.joined(viser_client))

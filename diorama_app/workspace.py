@@ -53,7 +53,9 @@ class Workspace:
         """Put the first editor on the server that has the port."""
         with self._lock:
             self._front = server
-            return self._add(server, project)
+            editor = self._add(server, project)
+            editor.session.greets = project is None
+            return editor
 
     @property
     def editors(self) -> tuple[Editor, ...]:

@@ -127,16 +127,20 @@ class DetectedObject(ArrayValue):
     """Agreement of segmentations, 0 to 1; 1 for a mask given by the user."""
     looks_like: tuple[tuple[str, float], ...] = ()
     """Kinds with the probabilities that its picture gives them; empty where it was not looked at."""
+    seen_form: tuple[float, ...] = ()
+    """`SeenKinds.form`; empty where it was not looked at."""
 
 
 @dataclass(frozen=True, eq=False)
 class SeenKinds(ArrayValue):
-    """Which kinds the picture of one object looks like."""
+    """Which kinds and forms the picture of one object looks like."""
 
     object_id: str
     kinds: tuple[str, ...]
     probabilities: Float[np.ndarray, "k"]
     """Of those kinds, all equally frequent."""
+    form: tuple[float, ...] = ()
+    """Probability of every value of every attribute of form, one attribute after another; empty where nobody looked."""
 
 
 @dataclass(frozen=True, eq=False)

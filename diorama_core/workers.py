@@ -80,42 +80,75 @@ def workers(ray_address: str | None = None, count: int | None = None) -> Workers
 
 @dataclass(frozen=True)
 class LocalWorkers:
-    """A pool of processes on this machine, made anew for each `map`."""
+    """Processes on this machine, started anew for each `map`. Each has a queue of its own: one that dies takes only the
+    piece it worked on with it."""
 
     count: int
 
     def map(self, function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Done[Item, Result]]:
         """See `Workers.map`."""
         waiting = iter(items)
-        pool, running = self._pool(self.count), dict[Future[Result], Item]()
+        processes = [_Process[Item, Result](function) for _ in range(self.count)]
         try:
             while True:
-                for item in islice(waiting, self.count * _AHEAD - len(running)):
-                    running[pool.submit(function, item)] = item
+                for _ in range(_AHEAD):
+                    for process in processes:
+                        if len(process.running) < _AHEAD:
+                            process.submit(*islice(waiting, 1))
+                running = [future for process in processes for future in process.running]
                 if not running:
                     return
-                finished, _ = wait(running, return_when=FIRST_COMPLETED)
-                if any(isinstance(f.exception(), BrokenProcessPool) for f in finished):
-                    suspects, running = list(running.values()), {}
-                    pool.shutdown(wait=False, cancel_futures=True)
-                    pool = self._pool(self.count)
-                    yield from (self._alone(function, item) for item in suspects)
-                for future in [f for f in running if f in finished]:  # in their own order
-                    yield _done(running.pop(future), future)
+                wait(running, return_when=FIRST_COMPLETED)
+                for process in processes:
+                    yield from process.finished()
         finally:
-            pool.shutdown(wait=False, cancel_futures=True)
+            for process in processes:
+                process.end()
 
-    def _alone(self, function: Callable[[Item], Result], item: Item) -> Done[Item, Result]:
-        """One piece in a process of its own, to find out which of several killed the pool."""
-        with self._pool(1) as pool:
-            future = pool.submit(function, item)
-            wait([future])
-            return _done(item, future)
 
-    @staticmethod
-    def _pool(count: int) -> ProcessPoolExecutor:
-        # Fresh processes: a fork would copy the locks of threads that do not exist in the child.
-        return ProcessPoolExecutor(count, mp_context=get_context("spawn"), initializer=_end_with_parent)
+class _Process(Generic[Item, Result]):
+    """One process, replaced when it dies, and the pieces that wait for it, the first of which it works on."""
+
+    def __init__(self, function: Callable[[Item], Result]) -> None:
+        self._function = function
+        self._pool: ProcessPoolExecutor | None = None
+        self.running: dict[Future[Result], Item] = {}
+
+    def submit(self, *items: Item) -> None:
+        """Queue pieces."""
+        for item in items:
+            # Fresh processes: a fork would copy the locks of threads that do not exist in the child.
+            self._pool = self._pool or ProcessPoolExecutor(
+                1, mp_context=get_context("spawn"), initializer=_end_with_parent
+            )
+            try:
+                future = self._pool.submit(self._function, item)
+            except BrokenProcessPool as error:  # it died just now: `finished` finds out what it worked on
+                future = Future()
+                future.set_exception(error)
+            self.running[future] = item
+
+    def finished(self) -> Iterator[Done[Item, Result]]:
+        """The pieces that are done, or that it died of."""
+        done = [future for future in self.running if future.done()]
+        broken = next((f for f in done if isinstance(f.exception(), BrokenProcessPool)), None)
+        for future in done:
+            if broken is None or not isinstance(future.exception(), BrokenProcessPool):
+                yield _done(self.running.pop(future), future)
+        if broken is not None:
+            yield _done(self.running.pop(broken), broken)
+            self._restart()
+
+    def _restart(self) -> None:
+        """A new process for the pieces that the dead one had not begun."""
+        self.end()
+        left, self.running, self._pool = list(self.running.values()), {}, None
+        self.submit(*left)
+
+    def end(self) -> None:
+        """Drop what has not begun, and let it go."""
+        if self._pool is not None:
+            self._pool.shutdown(wait=False, cancel_futures=True)
 
 
 def _end_with_parent() -> None:

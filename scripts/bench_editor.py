@@ -253,7 +253,7 @@ class Bench:
         """From a mouse move to the frame in which the object has followed."""
         page = self.page.page
         self._do(lambda: self.page.client.select(()))
-        self.page.client.view.move_camera(np.array([0.0, -7.0, 7.0]), np.array([0.0, 3.0, 0.0]))
+        self.page.client.view.camera.move(np.array([0.0, -7.0, 7.0]), np.array([0.0, 3.0, 0.0]))
         self.page.settle()
         others = [o for o in self.session.scene.objects if o.id.startswith("other")]
         item = min(others, key=lambda o: float(o.size_m[0] * o.size_m[1]))  # it stays free of its neighbours

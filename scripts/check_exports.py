@@ -1,6 +1,6 @@
 """Writes scenes of many sources in every format, opens each file with another program, and reports what is found.
 
-    PYTHONPATH=. python scripts/check_exports.py PROJECT... [--made SEED...] [--text] [--edited] [-o report.md]
+    PYTHONPATH=. python scripts/check_exports.py PROJECT... [--made SEED...] [--text] [--scan] [--edited] [-o report.md]
     PYTHONPATH=. python scripts/check_exports.py PROJECT... --drift-only
 
 Findings are: what validators say, objects that are missing or named otherwise, boxes that moved by more than a
@@ -10,6 +10,7 @@ millimetre. MuJoCo simulates two seconds; an object drifts when it moves by a ce
 from __future__ import annotations
 
 import argparse
+import io
 import json
 import subprocess
 import sys
@@ -19,89 +20,46 @@ import traceback
 import xml.etree.ElementTree as ET
 import zipfile
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from export_scenes import Source, from_scan, from_text, made, projects
+from PIL import Image
 
 from diorama_app.projects.formats import EXPORT_FORMATS
-from diorama_core.editing.placing import free_spot, hits_along, insertion, places_of
 from diorama_core.export import export_scene
 from diorama_core.export.blender import blender_python, missing_blender
 from diorama_core.export.gathering import ExportOptions, ExportScene, gather
-from diorama_core.export.pictures import Picture
 from diorama_core.export.stability import stability
+from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.importing.opening import marked_file, open_marked
 from diorama_core.importing.sweethome import parts_of_sweet_home
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.project.storage import Project
-from diorama_core.scene import edits
-from diorama_core.scene.types import Pose, Scene
-from diorama_core.synthesis import furnished_room, sample_cameras
-from diorama_core.synthesis.finishes import finish_textures
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.scene.schema import scene_to_json
+from diorama_core.scene.types import Scene
 from tests.export.validators import gltf_findings, usd_findings
 
-ROOMS = ("living", "bedroom", "office", "dining", "kitchen", "bathroom")
-PROMPT = "a bedroom with a wardrobe, a desk with a lamp and a laptop, and a rug"
 CLOSE_M = 1e-3
-
-
-@dataclass(frozen=True)
-class Source:
-    """One scene to export."""
-
-    name: str
-    scene: Scene
-    textures: Mapping[str, Picture] = field(default_factory=dict)
-    photo: Picture | None = None
+MAX_WHITE = 0.4
+"""Share of a page; more means that it is lit too brightly."""
+STEPS = (0.0, 0.1, 0.25, 0.5, 0.75, 1.0)
+"""Of a joint's travel, at which it is tried."""
+PATIENCE_MS = 240_000
+"""A page drawn by the processor of a busy machine takes this long at most."""
+MAX_DEPTH_M = 5e-3
+"""So much deeper than when closed may a part be in its own object: colliders are as exact as this."""
 
 
 def sources(a: argparse.Namespace, library: ShapeLibrary) -> Iterator[Source]:
     """The scenes that are asked for."""
-    for number, folder in enumerate(a.projects):
-        project = Project.open(folder)
-        scene = project.load_scene()
-        photo = project.photo()
-        source = Source(folder.name, scene, project.textures(scene), None if photo is None else photo.rgb)
-        yield source
-        if a.edited and number < 2:
-            yield replace(source, name=f"{folder.name}, edited", scene=edited(scene, library, number))
-    for seed in a.made:
-        kind = ROOMS[seed % len(ROOMS)]
-        scene = furnished_room(seed, kind, library)
-        camera = next(iter(sample_cameras(scene, library, seed)), None)
-        yield Source(f"{kind} room {seed}", replace(scene, camera=camera), finish_textures(scene.architecture))
+    yield from projects(a.projects, library, edited=2 if a.edited else 0)
+    yield from made(a.made, library)
     if a.text:
-        from diorama_core.text.compose import composed_room
-
-        yield Source("from text", composed_room(PROMPT, library).scene)
-
-
-def edited(scene: Scene, library: ShapeLibrary, seed: int) -> Scene:
-    """A scene after what a person does to one: turned, recoloured, inserted, put on another, copied, removed."""
-    rng = np.random.default_rng(seed)
-    standing = [o.id for o in scene.objects if (s := scene.support_of(o.id)) and s.parent == "floor" and not o.locked]
-    first = scene.object(standing[0])
-    scene = edits.move(
-        scene, first.id, Pose.upright(first.pose.position, first.pose.yaw_rad + 0.3, tuple(first.pose.scale))
-    )
-    scene = edits.recolour(scene, first.id, tuple(rng.uniform(0.2, 0.8, 3)))
-    loads = {s.parent for s in scene.supports}
-    scene = edits.remove(scene, [o.id for o in scene.objects if o.id not in loads and o.id != first.id][:1])
-    table = library.in_category("side table")[seed]
-    scene = _inserted(scene, library, table, *free_spot(scene, table, None))
-    x, y, _ = scene.objects[-1].pose.position
-    scene = _inserted(scene, library, library.in_category("vase")[seed], float(x), float(y))
-    stool = library.in_category("stool")[seed]
-    return _inserted(scene, library, stool, *free_spot(scene, stool, None))
-
-
-def _inserted(scene: Scene, library: ShapeLibrary, shape: Shape, x: float, y: float) -> Scene:
-    """A shape put down at the uppermost place there, as by a click into the view from above."""
-    places = [p for p in places_of(scene, library) if p.upward]
-    hit = hits_along(np.array([x, y, 10.0]), np.array([0.0, 0.0, -1.0]), places)[0]
-    return edits.insert(scene, *insertion(scene, shape, edits.fresh_id(scene, shape.category), hit, 0.0))
+        yield from_text(library)
+    if a.scan:
+        yield from_scan()
 
 
 def boxes(scene: Scene, gathered: ExportScene) -> dict[str, np.ndarray]:
@@ -127,7 +85,8 @@ def round_trip(path: Path, gathered: ExportScene) -> list[str]:
         return ["nothing of the scene is in the file"]
     opened = open_marked(marked)
     found = moved(gathered, boxes(opened.scene, gathered)) + list(opened.changes)
-    return found + ([] if opened.scene.supports == gathered.scene.supports else ["supports differ"])
+    before, after = scene_to_json(gathered.scene), scene_to_json(opened.scene)
+    return found + ([] if before == after else ["the scene differs"])
 
 
 def check_glb(path: Path, gathered: ExportScene) -> list[str]:
@@ -144,6 +103,53 @@ def check_mujoco(path: Path, gathered: ExportScene) -> list[str]:
     model = mujoco.MjModel.from_xml_path(str(path))
     names = {model.body(k).name for k in range(model.nbody)}
     return [f"{o.slug} is missing" for o in gathered.objects if o.slug not in names]
+
+
+def check_mjcf(path: Path, gathered: ExportScene) -> list[str]:
+    return check_mujoco(path, gathered) + stuck_joints(path)
+
+
+def stuck_joints(path: Path) -> list[str]:
+    """Joints whose part runs into the rest of its own object on its way, by more than it does when closed."""
+    import mujoco
+
+    root = ET.parse(path)
+    for contact in root.findall("contact"):  # a part and its case are told not to collide; here they are to
+        contact.clear()
+    option = root.find("option")
+    assert option is not None
+    ET.SubElement(option, "flag", filterparent="disable")
+    loose = path.with_stem("every_contact")
+    root.write(loose)
+    model = mujoco.MjModel.from_xml_path(str(loose))
+    data = mujoco.MjData(model)
+    found = []
+    for number in range(model.njnt):
+        joint = model.joint(number)
+        if joint.type[0] == mujoco.mjtJoint.mjJNT_FREE:
+            continue
+        depths = []
+        for share in STEPS:
+            mujoco.mj_resetData(model, data)
+            lower, upper = joint.range if joint.limited[0] else (0.0, 2 * np.pi)
+            data.qpos[joint.qposadr[0]] = lower + share * (upper - lower)
+            mujoco.mj_forward(model, data)
+            depths.append(_own_depth(model, data, int(joint.bodyid[0])))
+        if max(depths) > depths[0] + MAX_DEPTH_M:
+            found.append(f"{joint.name} runs {1000 * (max(depths) - depths[0]):.0f} mm into its own object")
+    return found
+
+
+def _own_depth(model: Any, data: Any, body: int) -> float:
+    """How deep a moving part is in the rest of its object."""
+    own = {int(model.body_parentid[body])}
+    own |= {k for k in range(model.nbody) if k != body and int(model.body_parentid[k]) in own and model.body_jntnum[k]}
+    depth = 0.0
+    for contact in data.contact:
+        pair = {int(model.geom_bodyid[g]) for g in contact.geom}
+        if body in pair and pair - {body} and pair - {body} <= own:
+            depth = max(depth, -float(contact.dist))
+    return depth
 
 
 def check_sdf(path: Path, gathered: ExportScene) -> list[str]:
@@ -218,8 +224,15 @@ def check_sh3d(path: Path, gathered: ExportScene) -> list[str]:
     parts = [p for p in parts_of_sweet_home(path) if p.name not in ("wall", "floor")]
     if len(parts) != len(gathered.objects):
         return [*found, f"{len(parts)} pieces"]
+    floor = gathered.scene.architecture.floor
+    level = np.array([0.0, 0.0, 0.0 if floor is None else float(floor.centre[2])])
     for part, item in zip(parts, gathered.objects, strict=True):
-        off = float(np.abs(part.M_world[:2, 3] - item.item.corners_world.mean(axis=0)[:2]).max())
+        points = np.concatenate([s.vertices for s in gathered.meshes[item.mesh].surfaces]) * item.scale
+        world = points @ item.T_world[:3, :3].T + item.T_world[:3, 3] - level
+        far = part.scene.bounds - [world.min(axis=0), world.max(axis=0)]
+        if item.item.category in OPENING_CATEGORIES:  # they reach through their wall, so that it is cut
+            far = far.mean(axis=0)
+        off = float(np.abs(far).max())
         found += [f"{item.id} is off by {1000 * off:.1f} mm"] if off > CLOSE_M else []
     return found
 
@@ -240,12 +253,16 @@ def check_html(path: Path, gathered: ExportScene) -> list[str]:
     with sync_playwright() as p:
         browser = p.chromium.launch(executable_path="/usr/bin/chromium", args=["--no-sandbox", "--use-gl=swiftshader"])
         page = browser.new_page(viewport={"width": 960, "height": 720})
+        page.set_default_timeout(PATIENCE_MS)
         page.on("pageerror", lambda error: errors.append(str(error)))
         page.goto(path.as_uri())
+        page.locator("canvas").first.wait_for()
         page.wait_for_timeout(12_000)
-        page.screenshot(path=str(path.with_suffix(".png")))
+        shown = np.asarray(Image.open(io.BytesIO(page.screenshot())).convert("RGB"))
         browser.close()
-    return errors
+    white = float((shown.min(axis=2) > 250).mean())
+    errors += ["nothing is seen"] if shown.reshape(-1, 3).std(axis=0).max() < 10 else []
+    return errors + ([f"{white:.0%} of it are white"] if white > MAX_WHITE else [])
 
 
 def check_blend(path: Path, gathered: ExportScene) -> list[str]:
@@ -265,7 +282,7 @@ CHECKS: dict[str, tuple[str, str, str, Callable[[Path, ExportScene], list[str]]]
     "usdc": (".usdc", "Isaac Sim, Blender, Unreal", "UsdValidation; opened again", check_usd),
     "usdz": (".usdz", "iPhone, iPad", "UsdValidation; opened again", check_usd),
     "blend": (".blend", "Blender", "opened in Blender 5.0: count, names, materials, boxes", check_blend),
-    "mjcf": (".xml", "MuJoCo", "loaded in MuJoCo", check_mujoco),
+    "mjcf": (".xml", "MuJoCo", "loaded in MuJoCo; every joint opened", check_mjcf),
     "urdf": (".urdf", "ROS, PyBullet", "loaded in MuJoCo", check_mujoco),
     "sdf": (".sdf", "Gazebo", "every file and link is there", check_sdf),
     "obj": (".zip", "any 3D program", "read by trimesh: names, triangles", check_obj),
@@ -275,9 +292,9 @@ CHECKS: dict[str, tuple[str, str, str, Callable[[Path, ExportScene], list[str]]]
     "svg": (".svg", "browsers", "parsed", check_svg),
     "pdf": (".pdf", "anything", "text read by poppler", check_pdf),
     "dxf": (".dxf", "AutoCAD, QCAD", "ezdxf's audit", check_dxf),
-    "sh3d": (".sh3d", "Sweet Home 3D", "models there; opened again: places", check_sh3d),
+    "sh3d": (".sh3d", "Sweet Home 3D", "models there; opened again: boxes", check_sh3d),
     "ifc": (".ifc", "Revit, viewers", "ifcopenshell.validate", check_ifc),
-    "html": (".html", "any browser", "opened in Chromium: no error", check_html),
+    "html": (".html", "any browser", "opened in Chromium: no error, something is seen", check_html),
 }
 
 
@@ -302,6 +319,7 @@ def main() -> int:
         "--made", type=int, nargs="*", default=[], metavar="SEED", help="furnished rooms of these seeds"
     )
     parser.add_argument("--text", action="store_true", help="a room from words")
+    parser.add_argument("--scan", action="store_true", help="a room as RoomPlan measures it")
     parser.add_argument("--edited", action="store_true", help="the first two projects after edits, too")
     parser.add_argument("--formats", nargs="*", default=list(CHECKS), choices=list(CHECKS))
     parser.add_argument("--drift-only", action="store_true")
@@ -310,6 +328,7 @@ def main() -> int:
     library = built_in_library()
     findings: dict[str, list[str]] = {name: [] for name in (() if a.drift_only else a.formats)}
     drifts: list[tuple[str, int, int, list[str]]] = []
+    text = ""
     for source in sources(a, library):
         begun = time.monotonic()
         if not a.drift_only:
@@ -324,10 +343,10 @@ def main() -> int:
             mine = [f for f in findings[name] if f.startswith(f"{source.name}: ")]
             if mine:
                 print(f"  {name}: {mine[:5]}", file=sys.stderr, flush=True)
-    text = table(findings, drifts, skipped=missing_blender() if "blend" in a.formats else "")
+        text = table(findings, drifts, skipped=missing_blender() if "blend" in a.formats else "")
+        if a.output:
+            a.output.write_text(text)
     print(text)
-    if a.output:
-        a.output.write_text(text)
     return 0 if not any(findings.values()) else 1
 
 

@@ -177,7 +177,7 @@ def edits(going: Going, chance: np.random.Generator) -> Figures:
                 scene = rename(scene, "chair_1", f"edit {at}")
                 saver.save_soon(project, scene)
                 say(f"{at} {time.time()}")
-                time.sleep(0.02)
+                time.sleep(0.02)  # faster than anybody edits
 
         while going(kills):
             ended, kills = killed(work, float(chance.uniform(0.0, 1.0)), from_first=True), kills + 1
@@ -390,7 +390,7 @@ def uploads(going: Going, chance: np.random.Generator) -> Figures:
         ended, kills = killed(work, float(chance.uniform(0.0, 2.0 * first_s))), kills + 1
         read, started, began = read + len(ended.lines), started + len(ended.children), time.monotonic()
         while any(map(runs, ended.children)) and time.monotonic() - began < GONE_S:
-            time.sleep(0.01)
+            time.sleep(0.01)  # the processes are not ours to wait for
         longest_s = max(longest_s, time.monotonic() - began)
         left += sum(map(runs, ended.children))
     said = f"{read} read, {started} decoding processes, {left} left running; the last ended after {longest_s:.1f} s"

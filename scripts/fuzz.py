@@ -35,7 +35,7 @@ def main() -> int:
     for name in options.only.split(","):
         done = Round(PARSERS[name], options.seed).run(seconds=options.seconds)
         wrong += len(done.findings)
-        print(f"{name:9} {done.summary}", flush=True)
+        print(f"{name:10} {done.summary}", flush=True)
         for kind, (data, error) in done.kinds.items():
             print(f"  {kind}", flush=True)
             traceback.print_exception(error, limit=-3)

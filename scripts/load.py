@@ -199,7 +199,7 @@ def run(options: argparse.Namespace, servers: list[tuple[subprocess.Popen, int]]
     print(f"server time: {1e3 * seconds / max(len(taken), 1):.1f} ms an edit; memory {after[0][1]:.0f} MB")
     for person in people:
         person.page.close()
-    time.sleep(2.0)
+    time.sleep(2.0)  # edits are saved within a second
     whole = sum(p.load_scene().has_object(ids[0]) for p in projects)
     print(f"projects that read back whole: {whole} of {len(projects)}")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -97,11 +98,24 @@ def photos(shared: Path) -> list[PhotoEntry]:
     return photo_entries(shared / "photos")
 
 
+def derived_files(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What is derived from shapes, by content: made once for all processes of a run, of several runs where one says so.
+
+    `scripts/test` names a folder (DIORAMA_TEST_CACHE) for the tests with and without a browser. The processes of
+    pytest-xdist have their temporary folders beside one another.
+    """
+    if given := os.environ.get("DIORAMA_TEST_CACHE"):
+        return Path(given)
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        return tmp_path_factory.getbasetemp().parent / "cache"
+    return tmp_path_factory.mktemp("cache")
+
+
 @pytest.fixture(scope="session", autouse=True)
 def _own_folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """Caches and libraries of this run go to temporary folders."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("DIORAMA_CACHE", str(tmp_path_factory.mktemp("cache")))
+        patch.setenv("DIORAMA_CACHE", str(derived_files(tmp_path_factory)))
         patch.setenv("DIORAMA_LIBRARIES", str(tmp_path_factory.mktemp("libraries")))
         yield
 

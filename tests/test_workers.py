@@ -107,3 +107,20 @@ def test_a_senseless_count_is_refused() -> None:
     with pytest.raises(InputError, match="at least one"):
         workers(count=0)
     assert workers(count=3).count == 3
+
+
+def kill_first_time(folder: Path, number: int) -> int:
+    """Number 1 kills its process; the others say how often they were begun."""
+    if number == 1:
+        time.sleep(0.5)  # the others are begun meanwhile
+        os._exit(9)
+    mark = folder / str(number)
+    mark.write_text(mark.read_text() + "." if mark.exists() else ".")
+    time.sleep(1.0)  # longer than number 1 lives
+    return len(mark.read_text())
+
+
+def test_a_process_that_dies_takes_nothing_of_the_others_with_it(tmp_path: Path) -> None:
+    done = {d.item: d for d in LocalWorkers(2).map(partial(kill_first_time, tmp_path), range(6))}
+    assert isinstance(done[1].error, WorkerDied)
+    assert [done[n].value for n in (0, 2, 3, 4, 5)] == [1] * 5, "each was begun once"

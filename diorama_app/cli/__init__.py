@@ -9,8 +9,10 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
+from diorama_app.cli.api import add_api
 from diorama_app.cli.bench import add_bench
 from diorama_app.cli.doctor import add_doctor
+from diorama_app.cli.edit import add_edit
 from diorama_app.cli.importing import add_import
 from diorama_app.cli.library import add_library
 from diorama_app.cli.models import add_models
@@ -72,9 +74,11 @@ def _parser() -> argparse.ArgumentParser:
         add_import,
         add_picture,
         add_text,
+        add_edit,
         add_library,
         add_models,
         add_bench,
+        add_api,
         add_doctor,
     ):
         add(commands)

@@ -29,6 +29,7 @@ TABLES = (
     ("pose", 6, "Poses with true and estimated depth, groups, ablations."),
     ("layout", 40, "The layout recipes compared with each other."),
     ("system", 20, "Images to scenes, end to end."),
+    ("text", 60, "Rooms composed from prompts: what was asked for, and whether people could use the room."),
     ("speed", 1, "Time and memory by scene size, compared with the committed figures."),
 )
 
@@ -40,6 +41,7 @@ def add_bench(commands: Any) -> None:
         dest="table", required=True, metavar="|".join([*(name for name, _, _ in TABLES), "photos", "recognition"])
     )
     runs = {"layout": _bench_layout, "speed": _bench_speed, "rooms": _bench_survey, "system": _bench_system}
+    runs["text"] = _bench_text
     for name, scenes, summary in TABLES:
         one = command(tables, name, runs.get(name, _bench_rooms), summary, f"diorama bench {name} --scenes {scenes}")
         one.add_argument("--scenes", type=int, default=scenes, metavar="N", help="rooms (default: %(default)s)")
@@ -48,7 +50,7 @@ def add_bench(commands: Any) -> None:
         one.add_argument(
             "--markdown", type=Path, metavar="FILE", help="write the tables as Markdown, or replace them in a document"
         )
-        if name == "rooms":
+        if name in ("rooms", "text"):
             one.add_argument("--sheet", type=Path, metavar="FILE", help="write a sheet of all pictures (PNG or JPEG)")
         if name in ("system", "architecture"):
             one.add_argument(
@@ -229,6 +231,22 @@ def _bench_survey(a: argparse.Namespace) -> None:
         print(f"{name}: {', '.join(faults)}")
 
 
+def _bench_text(a: argparse.Namespace) -> None:
+    from diorama_core.evaluation.benchmarks import text as text_bench
+    from diorama_core.evaluation.benchmarks.case_pictures import write_picture
+    from diorama_core.library.catalogue import built_in_library
+
+    _check(a)
+    with progress_bar() as progress:
+        bench, sheet = text_bench.run(built_in_library(), a.scenes, a.seed, progress, pictures=a.sheet is not None)
+    if sheet is not None:
+        write_picture(a.sheet, sheet)
+    _show(bench, a)
+    for prompt in bench.prompts:
+        if prompt.result.failures or prompt.notes:
+            print(f"{prompt.prompt}: {'; '.join((*prompt.result.failures, *prompt.notes))}")
+
+
 def _bench_speed(a: argparse.Namespace) -> int:
     from diorama_core.evaluation.speed.bench import FULL, QUICK, committed_figures, regression_bytes, run, slower
     from diorama_core.io.atomic import write_atomically
@@ -281,5 +299,6 @@ def _write_text(a: argparse.Namespace, text: str) -> None:
     there = a.markdown.read_text() if a.markdown.exists() else ""
     if begin in there and end in there:
         before, _, after = there.partition(begin)
-        text = f"{before}{begin}\n{text.strip()}\n{end}{after.partition(end)[2]}"
+        rest = f"\n{after}".partition(end)[2]  # an empty section has one line break for both marks
+        text = f"{before}{begin}\n{text.strip()}\n{end}{rest}"
     write_atomically(a.markdown, text.encode(), error=InputError)

@@ -20,19 +20,24 @@ def add_import(commands: Any) -> None:
         "Make a project from a file: one that Diorama exported comes back as it was.",
         "diorama import room.glb -o my-room",
     )
-    p.add_argument("file", type=Path, metavar="FILE", help="GLB, glTF, USD, USDZ or Sweet Home 3D (.sh3d)")
+    p.add_argument(
+        "file",
+        type=Path,
+        metavar="FILE",
+        help="GLB, glTF, USD, USDZ, Sweet Home 3D (.sh3d), or a RoomPlan scan (.usdz, .json)",
+    )
     p.add_argument("-o", "--output", type=Path, required=True, metavar="PROJECT", help="project folder to write")
     p.add_argument("--library", metavar="NAME", help="shape library (default: the one the file names, or built-in)")
 
 
 def _import(a: argparse.Namespace) -> None:
-    from diorama_core.importing.scene_import import import_scene
+    from diorama_core.importing.apart import imported_apart
     from diorama_core.project.storage import Project
 
     if (a.output / "scene.json").exists():
         raise InputError(f"{a.output} has a scene already; choose a new folder")
     with progress_bar() as progress:
-        imported = import_scene(a.file, library_name=a.library, progress=progress)
+        imported = imported_apart(a.file, a.library, progress)
     project = Project.create(a.output, name=a.file.stem)
     project.update_info(library=imported.library_name)
     project.save_textures(imported.opened.textures)

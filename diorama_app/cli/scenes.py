@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,18 +21,11 @@ from diorama_app.cli.arguments import (
     view,
 )
 from diorama_app.projects.formats import EXPORT_FORMATS
+from diorama_app.projects.options import POSES, ROOMS, BuildOptions, PhotoFiles, build_files
 from diorama_core.errors import InputError
 
 if TYPE_CHECKING:
     import numpy as np
-
-    from diorama_core.library.record import ShapeLibrary
-    from diorama_core.pipeline.choices import NetworkChoice
-    from diorama_core.pipeline.stages import Stages
-    from diorama_core.protocols import PoseStage
-
-ROOMS = ("closed", "plainrecon")
-POSES = ("render-and-compare", "correspondence", "zsp", "gigapose-like", "best-match")
 
 
 def add_serve(commands: Any) -> None:
@@ -73,8 +65,25 @@ def add_build(commands: Any) -> None:
     p = command(
         commands, "build", _build, "Build a scene from a photo.", "diorama build room.jpg --boxes boxes.json -o my-room"
     )
-    p.add_argument("image", type=Path, metavar="IMAGE", help="the photo")
-    p.add_argument("-o", "--output", type=Path, required=True, metavar="PROJECT", help="project folder to write")
+    p.add_argument("image", type=Path, metavar="IMAGE|DIR", help="the photo, or a folder of photos with their files")
+    p.add_argument(
+        "-o",
+        "--output",
+        "--out",
+        type=Path,
+        required=True,
+        metavar="PROJECT|DIR",
+        help="project folder to write; of a folder of photos, the folder of their projects and of report.html",
+    )
+    p.add_argument("--workers", type=int, metavar="N", help="photos built at once (default: half the cores)")
+    p.add_argument("--ray", metavar="ADDRESS", help="build a folder on a Ray cluster: auto, HOST:PORT, or local")
+    p.add_argument(
+        "--poses",
+        type=Path,
+        metavar="PATH|find",
+        help="cameras of a folder's photos, which then become one room: COLMAP model, transforms.json, ARKit frames; "
+        "'find' finds them by what the photos have in common",
+    )
     p.add_argument("--depth", type=Path, metavar="FILE", help="measured depth: 16-bit PNG, .npy in metres, or EXR")
     p.add_argument("--depth-scale", type=positive, default=1000.0, help="depth PNG units a metre (default: 1000)")
     p.add_argument("--depth-encoding", choices=("linear", "sunrgbd"), default="linear", help="how a PNG stores depth")
@@ -119,29 +128,39 @@ def add_build(commands: Any) -> None:
 
 
 def _build(a: argparse.Namespace) -> None:
+    from diorama_app.cli.folder import build_folder
+
+    options = BuildOptions(
+        depth_scale=a.depth_scale,
+        depth_encoding=a.depth_encoding,
+        profile=a.profile,
+        detector=a.detector,
+        depth_network=a.depth_network,
+        recipe=a.recipe,
+        library=a.library,
+        room=a.room,
+        pose=a.pose,
+    )
+    if a.poses is not None:
+        from diorama_app.cli.posed import build_posed
+
+        build_posed(a, options)
+    elif a.image.is_dir():
+        build_folder(a, options)
+    elif a.workers is not None or a.ray is not None:
+        raise InputError("--workers and --ray are for a folder of photos; leave them out for one photo")
+    else:
+        _build_photo(a, options)
+
+
+def _build_photo(a: argparse.Namespace, options: BuildOptions) -> None:
     from diorama_app.projects.report import build_report, write_arrangements
 
     if a.arrangements < 1:
         raise InputError(f"--arrangements {a.arrangements}: ask for at least one")
+    files = PhotoFiles(a.image, a.boxes, a.masks, a.depth, a.intrinsics, a.fov)
     with progress_bar() as progress:
-        room = diorama.build(
-            a.image,
-            boxes=a.boxes,
-            masks=a.masks,
-            depth=a.depth,
-            depth_scale=a.depth_scale,
-            depth_encoding=a.depth_encoding,
-            intrinsics=a.intrinsics,
-            fov_deg=a.fov,
-            profile=a.profile,
-            networks=_networks(a),
-            recipe=a.recipe,
-            library=a.library,
-            stages=lambda stages: _with_options(stages, a),
-            output=a.output,
-            progress=progress,
-            warn=print_note,
-        )
+        room = build_files(files, options, a.output, progress, print_note)
         scenes = write_arrangements(room, a.arrangements, progress)
     report = build_report(room, scenes)
     if a.json:
@@ -152,31 +171,6 @@ def _build(a: argparse.Namespace) -> None:
             print(_about_proposals(a.output, len(room.scene.objects), report["left_out"]))
         if not room.scene.objects:
             print(_invitation(a.output, detected=room.stages is not None and room.stages.detection is not None))
-
-
-def _networks(a: argparse.Namespace) -> NetworkChoice:
-    if a.profile == "embedded" and (a.detector or a.depth_network):
-        raise InputError("--profile embedded uses no network; leave out --detector and --depth-network")
-    if a.detector and (a.boxes or a.masks):
-        raise InputError("--detector finds what boxes or masks would say; give one of them")
-    if a.depth_network and a.depth:
-        raise InputError("--depth-network reads what --depth says; give one of them")
-    from diorama_core.pipeline.choices import NetworkChoice
-
-    return NetworkChoice(a.detector, a.depth_network)
-
-
-def _with_options(stages: Stages, a: argparse.Namespace) -> Stages:
-    """The profile's stages with those that options name."""
-    if a.room == "plainrecon":
-        from diorama_core.architecture.plainrecon.stage import PlainRecon
-
-        if a.depth is None and stages.depth_prediction is None:
-            raise InputError("--room plainrecon reads depth: add --depth FILE or a profile with a depth network")
-        stages = replace(stages, architecture=PlainRecon())
-    if a.pose is not None:
-        stages = replace(stages, pose=pose_solver(a.pose, diorama.open_library(a.library)))
-    return stages
 
 
 def _about_proposals(project: Path, used: int, left_out: int) -> str:
@@ -193,15 +187,6 @@ def _invitation(project: Path, *, detected: bool) -> str:
     if detected:
         return f"No furniture was found: {drawing}."
     return f"No boxes were given: get the small detector with 'diorama models pull yolox-nano', or {drawing}."
-
-
-def pose_solver(name: str, library: ShapeLibrary) -> PoseStage:
-    """The solver with this name, one of `POSES`."""
-    from diorama_core.pose.correspondence.solvers import HALF_GRID, KINDS, CorrespondencePose
-    from diorama_core.pose.render_and_compare import RenderAndCompare
-
-    kind = next((kind for kind in KINDS if kind == name), None)
-    return RenderAndCompare(library) if kind is None else CorrespondencePose(library, kind, grid=HALF_GRID)
 
 
 def add_optimise(commands: Any) -> None:
@@ -327,7 +312,7 @@ def add_picture(commands: Any) -> None:
         metavar="photo|planes|top|front|orbit:DEG|turntable",
         help="planes: floor, walls and ceiling drawn over the photo; turntable: a film, .mp4 or .gif (default: photo)",
     )
-    p.add_argument("--size", type=size, metavar="WxH", help="in pixels (default: the photo's, at most 1024 wide)")
+    p.add_argument("--size", type=size, metavar="WxH", help="in pixels (default: the photo's, at most 1280 wide)")
     p.add_argument("--cycles", action="store_true", help="path-traced by Blender's Cycles, where it is installed")
     p.add_argument("--samples", type=int, default=64, metavar="N", help="paths a pixel of --cycles (default: 64)")
 

@@ -48,5 +48,5 @@ def _text(a: argparse.Namespace) -> None:
         print(json.dumps(report))
         return
     print(f"{a.output}: {report['summary']}")
-    if not room.scene.objects:
+    if not room.scene.objects and room.built is not None:
         print("No furniture was found in the picture: run 'diorama models pull tiny', or draw boxes in the editor.")

@@ -46,7 +46,7 @@ class Views:
         photo, camera = self._session.photo, self._session.scene.camera
         if photo is None or camera is None:
             raise EditRefused("this scene has no photo to lay over the model; upload one in the Photo panel")
-        if not client.view.camera.through_photo and opacity > 0.0:
+        if opacity > 0.0 and (client.plan or not client.view.camera.through_photo):
             self.photo(client)
         client.view.photo.show_overlay(camera, photo.rgb, opacity)
         client.show_marks()
@@ -54,11 +54,20 @@ class Views:
     def focus(self, client: Client) -> None:
         """Move the camera close to the selection."""
         items = [self._session.scene.object(i) for i in client.need_selection()]
+        client.plan = False
         corners = np.concatenate([o.corners_world for o in items])
         middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
         client.view.camera.approach(middle, 1.5 * float(np.linalg.norm(np.ptp(corners, axis=0))) + 0.5)
 
+    def plan(self, client: Client) -> None:
+        """Show the plan, or the 3D view again."""
+        shown = client.plan
+        self._plain(client)
+        client.plan = not shown
+        client.refresh()
+
     def _plain(self, client: Client) -> None:
+        client.plan = False
         client.view.canvas.close()
         client.view.photo.show_backdrop(None, None, 1.0)
         client.view.photo.show_overlay(None, None, 0.0)

@@ -78,6 +78,10 @@ def build_commands(
         Command("measure", "Measure", start_measuring, "M", None, "Measure between two clicks; rescale by it"),
         Command("picture", "Picture", show_picture, "I", None, "Draw a picture or a film of the scene to download"),
         Command("find_furniture", "Find furniture", find_furniture, None, None, "Box the photo's furniture by network"),
+        Command(
+            "start_page", "Start page", lambda g: g.open_start(), None, None, "A photo, a description, an empty room"
+        ),
+        Command("tour", "Show me around", lambda g: g.start_tour(), None, None, "Six steps through the page"),
         Command("help", "What you can do", show_help, "?", "shift", "Every command with its key"),
         Command("escape", "Clear selection", escape, "escape", None, "Stop what is under way, or select nothing"),
     )
@@ -215,6 +219,7 @@ def _views(views: Views) -> tuple[Command, ...]:
         Command("view_room", "Room view", views.room_view, "R", None, "Show the whole room"),
         Command("view_photo", "Photo view", views.photo, "P", None, "View from the photo's camera"),
         Command("view_top", "Top view", lambda g: views.along(g, (0.0, -1e-3, 1.0)), "T", None, "From above"),
+        Command("view_plan", "Plan", views.plan, "7", None, "The plan: drag walls and corners, type lengths"),
         Command("view_front", "Front view", lambda g: views.along(g, (0.0, -1.0, 0.0)), "4", None, "From the front"),
         Command("view_left", "Left view", lambda g: views.along(g, (-1.0, 0.0, 0.0)), "5", None, "From the left"),
         Command("view_right", "Right view", lambda g: views.along(g, (1.0, 0.0, 0.0)), "6", None, "From the right"),

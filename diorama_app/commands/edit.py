@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_app.session.client import Client
+from diorama_core.editing.clearances import SIDES, moved_to_clearance
 from diorama_core.errors import EditRefused
 from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
@@ -82,6 +83,14 @@ def set_finish(client: Client, ids: Iterable[str], finish: Finish | None) -> Non
         lambda s: _fold(s, chosen, lambda scene, i: edits.refinish(scene, i, finish)),
         by=client,
     )
+
+
+def set_open(client: Client, object_id: str, open_share: float) -> None:
+    """Open the doors, drawers and lids of an object; quick changes are one step."""
+    item = client.session.scene.object(object_id)
+    session = client.session
+    label = f"close {item.label}" if open_share == 0.0 else f"open {item.label} by {100 * open_share:.0f} %"
+    session.edit(label, lambda s: edits.set_open(s, object_id, open_share), by=client, merge_key=f"open {object_id}")
 
 
 def set_material_source(client: Client, ids: Iterable[str], source: MaterialSource) -> None:
@@ -249,6 +258,15 @@ def set_adherence(client: Client, object_id: str, wall_id: str | None) -> None:
         return attached if wall_id is None else against_wall(attached, object_id, attached.plane(wall_id))
 
     client.session.edit(f"{label} against the wall" if wall_id else f"{label} off the wall", apply, by=client)
+
+
+def set_distance(client: Client, object_id: str, side: str, distance_m: float) -> None:
+    """Move an object along one of its axes until that side is so far from the nearest wall or neighbour."""
+    item = client.session.scene.object(object_id)
+    known = next((s for s in SIDES if s == side), None)
+    if known is None:
+        raise EditRefused("a distance is to the front, back, left or right")
+    client.session.edit(f"move {item.label}", lambda s: moved_to_clearance(s, object_id, known, distance_m), by=client)
 
 
 def supporter_name(scene: Scene, any_id: str) -> str:

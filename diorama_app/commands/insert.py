@@ -6,33 +6,102 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_app.session.client import Client, Placing
-from diorama_core.editing.placing import Hit, Place, facing, fits, free_spot, hits_along, insertion, places_of
+from diorama_core.editing.placing import (
+    Hit,
+    Place,
+    facing,
+    fits,
+    free_spot,
+    hits_along,
+    insertion,
+    places_of,
+    seated,
+    spot_in_view,
+)
+from diorama_core.editing.relations import SEATS
+from diorama_core.editing.sensible_support import why_not_on
 from diorama_core.errors import EditRefused
 from diorama_core.layout.problem.supports import Surface
-from diorama_core.library.taxonomy import resolve
+from diorama_core.library.record import Shape
+from diorama_core.library.taxonomy import broad, resolve
 from diorama_core.scene import edits
-from diorama_core.scene.types import Pose, SceneObject, Support
+from diorama_core.scene.types import Pose, Scene, SceneObject, Support
+
+MAX_RECENT = 24
+MAX_FAVOURITES = 200
+SMALL_SHARE, SMALL_HEIGHT_M = 0.25, 0.7
+"""What usually stands on the floor and is no larger may stand on furniture: share of its footprint, and height."""
+
+
+def toggle_favourite(client: Client, shape_id: str) -> None:
+    """Mark a shape of the library, or take the mark off."""
+    client.session.library.shape(shape_id)
+    before = client.preferences.favourites
+    rest = tuple(i for i in before if i != shape_id)
+    client.change_preferences(favourites=rest if shape_id in before else (shape_id, *rest)[:MAX_FAVOURITES])
+
+
+def _used(client: Client, shape_id: str) -> None:
+    """Remember that a shape was inserted."""
+    rest = (i for i in client.preferences.recent if i != shape_id)
+    client.change_preferences(recent=(shape_id, *rest)[:MAX_RECENT])
 
 
 def insert_shape(client: Client, shape_id: str) -> None:
-    """Insert a shape on the selected object, or else on the floor at the centre of the view."""
+    """Insert a shape on the selected object where such things stand on it, or else on the floor in view."""
     session = client.session
     shape, scene, parent = session.library.shape(shape_id), session.scene, client.selected
     mount = resolve(shape.category).category.mount
-    if parent is not None and session.library.shape(parent.shape_id).surfaces and mount in ("surface", "floor"):
-        base = parent.pose.position + parent.pose.R_world_object[:, 2] * parent.size_m[2] / 2
-        edge_parent: str | None = parent.id
-        yaw = parent.pose.yaw_rad
-    else:
-        floor = scene.architecture.floor
-        height = 0.0 if floor is None else float(floor.offset / max(floor.normal[2], 1e-6))
-        x, y = free_spot(scene, shape, client.view.camera.target_point)
-        base, edge_parent, yaw = np.array([x, y, height]), None if floor is None else floor.id, facing(scene, x, y)
+    if mount in ("wall", "ceiling") and _hang_in_view(client, shape_id):
+        return
     new_id = edits.fresh_id(scene, shape.category)
-    position = base + np.array([0.0, 0.0, shape.size_m[2] / 2])
-    item = SceneObject(new_id, shape.category, shape.category, shape.id, shape.size_m, Pose.upright(position, yaw))
-    edge = None if edge_parent is None else Support(new_id, edge_parent)
+    if parent is not None:
+        on_it = _on(client, shape, new_id, parent)
+        if on_it is not None:
+            session.edit(f"insert {shape.category}", lambda _: on_it, by=client, selection=(new_id,))
+            _used(client, shape_id)
+            return
+    floor = scene.architecture.floor
+    height = 0.0 if floor is None else float(floor.offset / max(floor.normal[2], 1e-6))
+    x, y = free_spot(scene, shape, client.view.camera.target_point)
+    pose = Pose.upright((x, y, height + shape.size_m[2] / 2), facing(scene, x, y))
+    item = SceneObject(new_id, shape.category, shape.category, shape.id, shape.size_m, pose)
+    edge = None if floor is None else Support(new_id, floor.id)
     session.edit(f"insert {shape.category}", lambda s: edits.insert(s, item, edge), by=client, selection=(new_id,))
+    _used(client, shape_id)
+
+
+def _on(client: Client, shape: Shape, new_id: str, parent: SceneObject) -> Scene | None:
+    """The scene with the shape on an object; None where such things do not stand on such an object."""
+    session, category = client.session, resolve(shape.category).category
+    if not session.library.shape(parent.shape_id).surfaces:
+        return None
+    size = shape.size_m
+    small = size[0] * size[1] <= SMALL_SHARE * parent.size_m[0] * parent.size_m[1] and size[2] <= SMALL_HEIGHT_M
+    if category.mount != "surface" and not (category.mount == "floor" and small):
+        return None
+    if broad(parent.category) in (*SEATS, "bed") and not category.soft:
+        return None
+    top = parent.pose.position + parent.pose.R_world_object[:, 2] * parent.size_m[2] / 2
+    pose = Pose.upright(top + np.array([0.0, 0.0, size[2] / 2]), parent.pose.yaw_rad)
+    item = SceneObject(new_id, shape.category, shape.category, shape.id, size, pose)
+    put = edits.insert(session.scene, item, Support(new_id, parent.id))
+    return None if why_not_on(put, new_id, parent.id) else seated(put, session.library, new_id)
+
+
+def _hang_in_view(client: Client, shape_id: str) -> bool:
+    """Hang a shape where the view meets a wall or the ceiling; False in a room without."""
+    session, camera = client.session, client.view.camera
+    shape, scene = session.library.shape(shape_id), session.scene
+    on_ceiling = resolve(shape.category).category.mount == "ceiling"
+    hit = spot_in_view(scene, shape, camera.position, camera.target_point - camera.position, on_ceiling=on_ceiling)
+    if hit is None:
+        return False
+    new_id = edits.fresh_id(scene, shape.category)
+    item, edge = insertion(scene, shape, new_id, hit, 0.0)
+    session.edit(f"insert {shape.category}", lambda s: edits.insert(s, item, edge), by=client, selection=(new_id,))
+    _used(client, shape_id)
+    return True
 
 
 def start_placing(client: Client, shape_id: str) -> None:
@@ -65,6 +134,7 @@ def place_at(client: Client, shape_id: str, origin: Float[np.ndarray, "3"], dire
         by=client,
         selection=(new_id,),
     )
+    _used(client, shape_id)
 
 
 def _on_ground(origin: np.ndarray, direction: np.ndarray) -> Hit | None:

@@ -14,10 +14,13 @@ import viser
 
 from diorama_app.commands.insert import place_at
 from diorama_app.commands.measure import measure_at
+from diorama_app.commands.surfaces import surface_under
 from diorama_app.interaction.marquee import objects_in
 from diorama_app.interaction.resize_handles import SizeHandles
 from diorama_app.session.client import Client, Measuring, Placing
 from diorama_app.session.preferences import GizmoMode
+from diorama_app.session.units import format_length
+from diorama_core.editing.clearances import clearances
 from diorama_core.editing.collisions import Collisions
 from diorama_core.editing.dragging import Slide, snapped_pose
 from diorama_core.editing.stretching import changed_poses
@@ -27,6 +30,8 @@ from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Pose, Scene
 
 NODE = "/gizmo"
+MIN_SHOWN_M = 0.005
+"""Shorter distances are contact."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +103,7 @@ class Gestures:
         elif isinstance(doing, Measuring):
             measure_at(self._client, doing, origin, direction)
         elif not on_object:
-            self._client.select(())
+            self._client.select_surface(surface_under(self._session.scene, origin, direction))
 
     def _framed(self, low: tuple[float, float], high: tuple[float, float]) -> None:
         client, camera = self._client, self._client.viser_client.camera
@@ -171,9 +176,25 @@ class Gestures:
     def _show(self, start: Scene, poses: Mapping[str, Pose], scene: Scene) -> None:
         self._session.preview(poses)
         moving = [i for i in poses if i in {*self._moving()}] or list(poses)
+        self._show_distances(scene)
         pairs = self._collisions.of(scene, moving)
         if self._client.marks.collide({i for pair in pairs for i in pair}):
             self._client.show_marks()
+
+    def _show_distances(self, scene: Scene) -> None:
+        """How far what is dragged is from walls and neighbours."""
+        client, drag = self._client, self._drag
+        if drag is None:
+            client.view.show_distances(())
+            return
+        dragged = drag.slide.item.id if isinstance(drag, _Drag) else drag.object_id
+        client.view.show_distances(
+            [
+                (c.start, c.end, format_length(c.distance_m, client.preferences.unit))
+                for c in clearances(scene, dragged)
+                if c.distance_m > MIN_SHOWN_M
+            ]
+        )
 
     def _resizing(self, start: Scene, now: Scene) -> None:
         poses = changed_poses(start, now)
@@ -189,6 +210,7 @@ class Gestures:
         return () if drag is None else (drag.object_id, *descendants(drag.scene, drag.object_id))
 
     def _end_collisions(self) -> None:
+        self._client.view.show_distances(())
         if self._client.marks.collide(()):
             self._client.show_marks()
 

@@ -1,27 +1,55 @@
-"""Opacity of the photo over the model: 0 shows the model, 100 the photo."""
+"""A slider at the foot of the view that fades between the model and the photo."""
 
 from __future__ import annotations
 
 import viser
 
 from diorama_app.commands.camera_presets import Views
-from diorama_app.panels.fields import on_change, show_if, show_value
 from diorama_app.session.client import Client
+from diorama_app.web.html import Action, LiveHtml
+
+STEP = 5
+_LIVE = "this.dispatchEvent(new Event('change',{bubbles:true}))"
+"""Tells every step while the slider is being pulled, not only where it is let go."""
 
 
 class Compare:
-    """A slider that looks through the photo's camera and lays the photo over the model."""
+    """Looks through the photo's camera and lays the photo over the model: 0 shows the model, 100 the photo."""
 
     def __init__(self, gui: viser.GuiApi, client: Client, views: Views) -> None:
-        self._client = client
-        self._slider = gui.add_slider(
-            "Photo over model", 0, 100, 5, 0, visible=False, hint="In the photo view: 0 is the model, 100 the photo"
-        )
-        on_change(self._slider, lambda v: client.post(lambda: views.overlay(client, v / 100), key="over"))
+        self._client, self._views = client, views
+        self._html = LiveHtml(gui, self._act, floating="dio-compare")
+        self._drawn: int | None = None
+        """What the slider was last drawn with; None: it is not there."""
 
     def refresh(self) -> None:
         """Offer it where there is a photo to compare with; show all or nothing where something else asked."""
-        show_if(self._client.session.photo is not None and self._client.session.scene.camera is not None, self._slider)
+        session, canvas = self._client.session, self._client.view.canvas
+        if session.photo is None or session.scene.camera is None or canvas.is_open or self._client.plan:
+            self._drawn = None
+            self._html.show("")
+            return
         shown = round(100 * self._client.view.photo.opacity)
-        if shown in (0, 100):
-            show_value(self._slider, shown)
+        if self._drawn is None or (shown in (0, 100) and shown != self._drawn):
+            self._drawn = shown
+            self._html.show(_slider(shown), again=True)
+
+    def _act(self, action: Action) -> None:
+        words = action.pair[1]
+        if action.do != "over" or not words.isdecimal():
+            return
+        share = min(int(words), 100)
+
+        def fade() -> None:
+            self._drawn = share  # a value in the hand is left alone
+            self._views.overlay(self._client, share / 100)
+
+        self._client.post(fade, key="over")
+
+
+def _slider(value: int) -> str:
+    return (
+        '<label title="In the photo view: fades between the model and the photo"><span>Model</span>'
+        f'<input type="range" min="0" max="100" step="{STEP}" value="{value}" data-change="over" oninput="{_LIVE}" '
+        'aria-label="Photo over model"><span>Photo</span></label>'
+    )

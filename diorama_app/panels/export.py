@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import groupby
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,7 @@ import viser
 from diorama_app.projects.formats import EXPORT_FORMATS, GUIDES, Choice
 from diorama_app.reconstruction.export_job import download_suffix, export
 from diorama_app.session.client import Client
-from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_app.web.html import Action, LiveHtml, button, switch, text
 from diorama_core.export import Format
 
 if TYPE_CHECKING:
@@ -20,15 +21,22 @@ TEXTURE_SIZES = (0, 2048, 1024, 512, 256)
 """Longest side in pixels; 0 leaves pictures as they are."""
 SWITCHES: dict[Choice, tuple[str, str]] = {
     "ceiling": ("Without ceiling", "To look into the room from above"),
-    "selection": ("Only selection", "Only the selected objects, without the room around them"),
-    "compressed": ("Meshopt", "Smaller file: for three.js and Babylon.js; Blender does not read it"),
-    "draco": ("Draco", "Smallest file: Blender, Unity, Unreal and three.js read it"),
-    "photo": ("With photo", "The photo is in the file and comes back when it is opened; who gets the file can see it"),
+    "selection": ("Only selection", "The selected objects without the room around them"),
+    "photo": ("With photo", "It comes back when the file is opened; who gets the file can see it"),
     "welded": ("Welded", "Nothing moves: every object is fixed where it stands"),
 }
 """What is switched on and off: name and explanation."""
-COMPRESSIONS: dict[str, Compression] = {"compressed": "meshopt", "draco": "draco"}
-"""Of which one is on at most."""
+IMPOSSIBLE: dict[Choice, str] = {
+    "selection": "Select objects first",
+    "photo": "There is no photo in this project",
+}
+"""What is said instead while a switch has no effect."""
+COMPRESSIONS: dict[Compression, tuple[str, str]] = {
+    "none": ("none", "Every program reads it"),
+    "meshopt": ("meshopt", "Smaller, for three.js and Babylon.js; Blender does not read it"),
+    "draco": ("Draco", "Smallest, for Blender, Unity, Unreal and three.js"),
+}
+"""Name and explanation."""
 
 
 class ExportPanel:
@@ -39,6 +47,7 @@ class ExportPanel:
         self._format = next(iter(GUIDES))
         self._on: set[str] = set()
         self._texture_px = 0
+        self._compression: Compression = "none"
         self._html = LiveHtml(gui, self._act)
 
     def refresh(self) -> None:
@@ -62,31 +71,32 @@ class ExportPanel:
     def _details(self, one: Format) -> str:
         """What the chosen format keeps, its options, and the button."""
         choices = GUIDES[one.name].choices
-        switches = "".join(
-            button(name, "switch", choice, title=hint, on=self._is_on(choice), disabled=not self._is_possible(choice))
-            for choice, (name, hint) in SWITCHES.items()
-            if choice in choices
-        )
-        bar = f'<div class="bar tight" style="margin-top:6px">{switches}</div>' if switches else ""
+        switches = "".join(self._switch(choice) for choice in SWITCHES if choice in choices)
+        packing = self._compression_field() if "compression" in choices else ""
         pictures = self._texture_field() if "textures" in choices else ""
         missing = f'<p class="bad">{text(one.missing)}</p>' if one.missing else ""
         ready = not one.missing and self._client.session.jobs.status is None
         go = button(f"Export {text(download_suffix(one))}", "export", one.name, on=ready, disabled=not ready)
         return (
             f'<div class="card" style="margin:2px 0 8px"><p><b>Keeps</b> {text(one.keeps)}.</p>'
-            f'{bar}{pictures}{missing}<div class="bar" style="margin:6px 0 0">{go}</div></div>'
+            f'{switches}{pictures}{packing}{missing}<div class="bar wide" style="margin:8px 0 0">{go}</div></div>'
+        )
+
+    def _switch(self, choice: Choice) -> str:
+        name, hint = SWITCHES[choice]
+        possible = self._is_possible(choice)
+        return switch(
+            name, hint if possible else IMPOSSIBLE[choice], choice, on=self._is_on(choice), disabled=not possible
         )
 
     def _texture_field(self) -> str:
-        options = "".join(
-            f'<option value="{px}" {"selected" if px == self._texture_px else ""}>'
-            f"{f'at most {px} pixels' if px else 'as they are'}</option>"
-            for px in TEXTURE_SIZES
-        )
-        return (
-            '<div style="display:flex;align-items:center;gap:6px"><span>Textures</span>'
-            f'<select data-change="textures" aria-label="Textures" style="flex:1">{options}</select></div>'
-        )
+        names = {str(px): f"at most {px} pixels" if px else "as they are" for px in TEXTURE_SIZES}
+        return _field("Textures", "textures", names, str(self._texture_px))
+
+    def _compression_field(self) -> str:
+        names = {str(one): name for one, (name, _) in COMPRESSIONS.items()}
+        hint = f'<p class="dim" style="margin:3px 0 0;font-size:11.5px">{text(COMPRESSIONS[self._compression][1])}</p>'
+        return _field("Compression", "compression", names, self._compression) + hint
 
     def _is_possible(self, choice: Choice) -> bool:
         if choice == "photo":
@@ -104,9 +114,10 @@ class ExportPanel:
             self._format = action.arg
         elif action.do == "switch" and action.arg in SWITCHES:
             self._on ^= {action.arg}
-            self._on -= {other for other in COMPRESSIONS if action.arg in COMPRESSIONS and other != action.arg}
         elif action.do == "textures" and action.pair[1] in map(str, TEXTURE_SIZES):
             self._texture_px = int(action.pair[1])
+        elif action.do == "compression":
+            self._compression = next((one for one in COMPRESSIONS if one == action.pair[1]), self._compression)
         elif action.do == "export":
             export(self._client, self._format, self._options())
         self.refresh()
@@ -121,7 +132,20 @@ class ExportPanel:
             ceiling="ceiling" not in on,
             only=frozenset(self._client.selection) if "selection" in on else None,
             max_texture_px=(self._texture_px or None) if "textures" in choices else None,
-            compression=next((name for choice, name in COMPRESSIONS.items() if choice in on), "none"),
+            compression=self._compression if "compression" in choices else "none",
             photo="photo" in on,
             bodies="welded" if "welded" in on else "free",
         )
+
+
+def _field(label: str, change: str, names: Mapping[str, str], chosen: str) -> str:
+    """A label and a list to choose from."""
+    options = "".join(
+        f'<option value="{text(value)}" {"selected" if value == chosen else ""}>{text(name)}</option>'
+        for value, name in names.items()
+    )
+    return (
+        '<label style="display:flex;align-items:center;gap:8px;margin-top:6px">'
+        f'<span style="flex:0 0 82px">{label}</span>'
+        f'<select data-change="{change}" aria-label="{label}" style="flex:1">{options}</select></label>'
+    )

@@ -7,6 +7,8 @@ from typing import Any
 
 QUIET_COLOUR = (84, 96, 114)
 """Colour of secondary buttons; viser's grey looks disabled."""
+GO_COLOUR = (24, 108, 66)
+"""Colour of buttons that begin something large; on viser's green the words are black."""
 
 
 def on_change(handle: Any, act: Callable[[Any], None]) -> None:

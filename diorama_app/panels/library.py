@@ -1,28 +1,56 @@
-"""The library panel: search by words, insert at the centre of the view, or place by a click."""
+"""The library panel: a catalogue by category, style and size, with favourites, recent ones and models of one's own."""
 
 from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+from typing import TYPE_CHECKING, get_args
 
 import viser
 
 from diorama_app.commands.import_model import import_model
-from diorama_app.commands.insert import insert_shape, start_placing
+from diorama_app.commands.insert import insert_shape, start_placing, toggle_favourite
 from diorama_app.panels.fields import on_change
-from diorama_app.session.client import Client
+from diorama_app.session.client import Client, Placing
 from diorama_app.session.units import format_size
 from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_core.library.browsing import Filters, Shelf, SizeClass, browsed, one_of_each
 from diorama_core.library.record import Shape
 from diorama_core.library.search import search
+from diorama_core.library.user_library import UserLibrary
+from diorama_core.scene.types import Scene
+
+if TYPE_CHECKING:
+    from diorama_core.editing.free_space import FreeSpace
 
 SHOWN = 24
+"""Tiles at first, and more with every press of the button below them."""
+SEARCHED = 240
+SHELVES: dict[Shelf, tuple[str, str]] = {
+    "all": ("All", "The whole library"),
+    "favourites": ("★", "Your favourites"),
+    "recent": ("Recent", "What you inserted lately"),
+    "own": ("Mine", "Models of your own"),
+}
+EMPTY: dict[Shelf, str] = {
+    "all": "Nothing in the library passes these filters.",
+    "favourites": "No favourites here yet: press ☆ on a tile.",
+    "recent": "Nothing here yet: what you insert is listed.",
+    "own": "No models of your own here yet: add a file above.",
+}
+SIZE_NAMES: dict[SizeClass, str] = {"small": "Up to 0.5 m", "medium": "0.5 to 1.5 m", "large": "Above 1.5 m"}
 
 
 class LibraryPanel:
-    """A search field and a grid of what was found."""
+    """A search field, filters, and a grid of what was found."""
 
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
+        self._filters = Filters()
+        self._most = SHOWN
         self._words = gui.add_text("Search", "", hint="For example: armchair, round table, blue")
-        on_change(self._words, lambda v: client.post(self.refresh, key="search"))
+        on_change(self._words, lambda v: client.post(self._searched, key="search"))
+        self._choices = LiveHtml(gui, self._act)
         upload = gui.add_upload_button(
             "Add a model file", hint="GLB, OBJ, PLY, STL or FBX; then click where to place it"
         )
@@ -35,48 +63,142 @@ class LibraryPanel:
         self._where = LiveHtml(gui)
         self._html = LiveHtml(gui, self._act)
         self._drawn: tuple[object, ...] = ()
+        self._drawn_of: Scene | None = None
+        """The scene whose free space the tiles tell of."""
+        self._free_of: Scene | None = None
+        self._free: FreeSpace | None = None
+        """Of that scene."""
+        self._without_place: dict[str, bool] = {}
 
     def refresh(self) -> None:
-        """Draw what was found."""
-        selected = self._client.selected
-        where = "on the floor in view" + (f", or on the selected {text(selected.label)}" if selected else "")
-        self._where.show(
-            f'<p class="dim"><b>Insert</b> puts it {where}; <b>Place</b> waits for your click in the view.</p>'
-        )
-        words = self._words.value.strip()
-        drawn = (words, self._client.preferences.unit, self._client.session.library.shapes())
-        if drawn == self._drawn:
+        """Draw the filters and what was found."""
+        selected, preferences = self._client.selected, self._client.preferences
+        where = "on the floor in view" + (f", small things on the selected {text(selected.label)}" if selected else "")
+        words_where = f"<b>Insert</b> puts it {where}; <b>Place</b> waits for your click in the view."
+        if isinstance(self._client.doing, Placing):
+            words_where = "<b>Click in the view</b> where it should be; Esc cancels."
+        self._where.show(f'<p class="dim">{words_where}</p>')
+        words, shapes = self._words.value.strip(), self._client.session.library.shapes()
+        scene = self._client.session.scene if self._filters.any or words else None
+        recent = preferences.recent if self._filters.shelf == "recent" else ()
+        drawn = (words, preferences.unit, shapes, self._filters, self._most, preferences.favourites, recent)
+        if drawn == self._drawn and scene is self._drawn_of:
             return  # a hundred tiles, the same as before
-        self._drawn = drawn
-        tiles = "".join(self._tile(shape) for shape in self._found(words))
-        nothing = f"<p class='dim'>Nothing in the library matches “{text(words)}”. Try another word.</p>"
-        self._html.show(f'<div class="grid">{tiles}</div>' if tiles else nothing)
+        self._drawn, self._drawn_of = drawn, scene
+        self._choices.show(self._drawn_choices(shapes))
+        found = self._found(words, shapes)
+        tiles = "".join(self._tile(shape, told=scene is not None) for shape in found[: self._most])
+        more = button(f"{len(found) - self._most} more", "more") if len(found) > self._most else ""
+        unknown = f"Nothing in the library matches “{text(words)}”. Try another word."
+        nothing = unknown if words and not self._filters.any else EMPTY[self._filters.shelf]
+        self._html.show(
+            f'<div class="grid two">{tiles}</div><div class="bar" style="margin-top:6px">{more}</div>'
+            if tiles
+            else f"<p class='dim'>{nothing}</p>"
+        )
 
-    def _found(self, words: str) -> list[Shape]:
-        library = self._client.session.library
-        if not words:
-            firsts: dict[str, Shape] = {}
-            for shape in library.shapes():
-                firsts.setdefault(shape.category, shape)
-            return list(firsts.values())
-        return list(search(library, words, k=SHOWN))
-
-    def _tile(self, shape: Shape) -> str:
-        size = shape.size_m
-        name = text(shape.caption or shape.category)
-        about = text(format_size(size[1], size[0], size[2], self._client.preferences.unit))
+    def _drawn_choices(self, shapes: tuple[Shape, ...]) -> str:
+        chosen = self._filters
+        shelves = "".join(button(n, "shelf", s, title=t, on=chosen.shelf == s) for s, (n, t) in SHELVES.items())
+        count = Counter(s.category for s in shapes)
+        categories = [("", "Every category"), *((c, f"{c.capitalize()} ({n})") for c, n in sorted(count.items()))]
+        styles = [("", "Every style"), *((s, s.capitalize()) for s in sorted({s.style for s in shapes if s.style}))]
+        sizes = [("", "Every size"), *SIZE_NAMES.items()]
+        fitting = button("Fits here", "fitting", title="Only what finds a place in this room", on=chosen.fitting)
         return (
-            f'<div class="tile" title="{name}&#10;{about}">'
-            f"{self._client.session.thumbnails.html(shape.id)}<b>{name}</b><small>{about}</small>"
+            f'<div class="bar tight">{shelves}{fitting}</div><div class="filters">'
+            + _select("category", "Category", categories, chosen.category)
+            + _select("style", "Style", styles, chosen.style)
+            + _select("size", "Size", sizes, chosen.size or "")
+            + "</div>"
+        )
+
+    def _found(self, words: str, shapes: tuple[Shape, ...]) -> tuple[Shape, ...]:
+        session, preferences = self._client.session, self._client.preferences
+        library = session.library
+        if words:
+            shapes = tuple(search(library, words, k=SEARCHED if self._filters.any else SHOWN))
+        elif not self._filters.any:
+            return one_of_each(shapes)
+        return browsed(
+            shapes,
+            self._filters,
+            favourites=preferences.favourites,
+            recent=preferences.recent,
+            own=library.has_own if isinstance(library, UserLibrary) else lambda shape_id: False,
+            has_place=self._has_place,
+        )
+
+    def _has_place(self, shape: Shape) -> bool:
+        """Whether a shape finds a place in the room as it is now."""
+        scene = self._client.session.scene
+        if scene is not self._free_of:
+            from diorama_core.editing.free_space import free_space  # OpenCV; opening a project does without it
+
+            self._free_of, self._free, self._without_place = scene, free_space(scene), {}
+        if shape.id not in self._without_place:
+            assert self._free is not None
+            self._without_place[shape.id] = not self._free.has_place_for(shape)
+        return not self._without_place[shape.id]
+
+    def _tile(self, shape: Shape, *, told: bool) -> str:
+        size, preferences = shape.size_m, self._client.preferences
+        name = text(shape.caption or shape.category)
+        about = text(format_size(size[1], size[0], size[2], preferences.unit))
+        too_large = told and not self._has_place(shape)
+        marked = shape.id in preferences.favourites
+        star = (
+            f'<button type="button" class="star" data-do="favourite" data-arg="{text(shape.id)}" '
+            f'aria-pressed="{"true" if marked else "false"}" aria-label="Favourite: {name}" '
+            f'title="{"No favourite any more" if marked else "Add to favourites"}">{"★" if marked else "☆"}</button>'
+        )
+        fit = '<span class="chip" title="No free place is large enough">too large</span>' if too_large else ""
+        return (
+            f'<div class="tile" title="{name}&#10;{about}">{star}'
+            f"{self._client.session.thumbnails.html(shape.id)}<b>{name}</b><small>{about}</small>{fit}"
             '<div class="bar" style="margin:4px 0 0 0">'
             + button("Insert", "insert", shape.id, title=f"Insert: {shape.caption}")
             + button("Place", "place", shape.id, title="Then click where to place it")
             + "</div></div>"
         )
 
+    def _searched(self) -> None:
+        self._most = SHOWN
+        self.refresh()
+
     def _act(self, action: Action) -> None:
-        client = self._client
+        self._client.post(lambda: self._do(action))
+
+    def _do(self, action: Action) -> None:
+        client, filters = self._client, self._filters
         if action.do == "insert":
-            client.post(lambda: insert_shape(client, action.arg))
+            insert_shape(client, action.arg)
         elif action.do == "place":
-            client.post(lambda: start_placing(client, action.arg))
+            start_placing(client, action.arg)
+        elif action.do == "favourite":
+            toggle_favourite(client, action.arg)
+        elif action.do == "more":
+            self._most += SHOWN
+            self.refresh()
+        else:
+            chosen = action.pair[1]
+            if action.do == "shelf":
+                filters = replace(filters, shelf=next((s for s in get_args(Shelf) if s == action.arg), "all"))
+            elif action.do == "fitting":
+                filters = replace(filters, fitting=not filters.fitting)
+            elif action.do == "category":
+                filters = replace(filters, category=chosen)
+            elif action.do == "style":
+                filters = replace(filters, style=chosen)
+            elif action.do == "size":
+                filters = replace(filters, size=next((s for s in get_args(SizeClass) if s == chosen), None))
+            self._filters, self._most = filters, SHOWN
+            self.refresh()
+
+
+def _select(do: str, name: str, options: list[tuple[str, str]], chosen: str) -> str:
+    rows = "".join(
+        f'<option value="{text(value)}" {"selected" if value == chosen else ""}>{text(label)}</option>'
+        for value, label in options
+    )
+    return f'<select data-change="{do}" aria-label="{name}">{rows}</select>'

@@ -89,6 +89,10 @@ class Outliner:
         if action.do == "start":
             client.open_tab("Photo")
             return
+        if action.do == "surface":
+            client.select_surface(action.arg)
+            client.open_tab("Object")
+            return
         if action.do == "wrong":
             client.select(client.session.badges)
             return
@@ -126,11 +130,8 @@ def tree_html(
         start = button("Start with a photo", "start", title="Upload one, or describe a room in words")
         return f'<div class="card">Nothing here yet.<div class="bar" style="margin:6px 0 0 0">{start}</div></div>'
     tree = _Tree(scene, selection, badges or {}, others)
-    parts = []
-    for plane in scene.architecture.planes:
-        children = scene.children_of(plane.id)
-        if children or plane.role == "floor":
-            parts.append(_plane_row(scene, plane) + _children(tree, children))
+    planes = sorted(scene.architecture.planes, key=lambda p: p.role != "floor" and not scene.children_of(p.id))
+    parts = [_plane_row(scene, p) + _children(tree, scene.children_of(p.id)) for p in planes]
     loose = [o.id for o in scene.objects if scene.support_of(o.id) is None]
     if loose:
         parts.append(_heading("Without support"))
@@ -159,12 +160,15 @@ def _children(tree: _Tree, ids: tuple[str, ...]) -> str:
 
 
 def _plane_row(scene: Scene, plane: Plane) -> str:
-    return _heading(plane_name(scene, plane), f'data-drop="{text(plane.id)}"')
+    key = text(plane.id)
+    return _heading(
+        plane_name(scene, plane), f'data-drop="{key}" data-do="surface" data-arg="{key}" title="Click to finish it"'
+    )
 
 
 def _heading(name: str, attributes: str = "") -> str:
     return (
-        f'<div class="row" role="treeitem" aria-expanded="true" tabindex="-1" style="cursor:default" {attributes}>'
+        f'<div class="row" role="treeitem" aria-expanded="true" tabindex="-1" {attributes}>'
         f'<span class="name dim">{text(name)}</span></div>'
     )
 

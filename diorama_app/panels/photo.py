@@ -13,9 +13,10 @@ from jaxtyping import UInt8
 from PIL import Image
 
 from diorama_app.commands.registry import CommandTable
-from diorama_app.panels.fields import enable, on_change, on_press, show_if, show_label
+from diorama_app.panels.fields import GO_COLOUR, enable, on_change, on_press, show_if, show_label
 from diorama_app.panels.photo_boxes import PhotoBoxes, box_list
 from diorama_app.projects.begin import begin_project
+from diorama_app.projects.uploads import Upload
 from diorama_app.reconstruction import build_job as work
 from diorama_app.reconstruction.networks import (
     NO_DETECTOR,
@@ -29,7 +30,6 @@ from diorama_app.reconstruction.networks import (
 from diorama_app.reconstruction.object_correction import add_from_photo
 from diorama_app.reconstruction.text_to_scene import describe_room, how_pictures_come
 from diorama_app.session.client import Client
-from diorama_app.session.reading import Upload
 from diorama_app.viewport.annotation_canvas import (
     Deleted,
     Selected,
@@ -63,7 +63,7 @@ class PhotoPanel:
         self._photo_button = self._upload(gui, "photo", "Upload a photo", "image/*")
         self._words = gui.add_text("Describe a room", "", hint="For example: a bedroom with a double bed and two lamps")
         self._describe = gui.add_button(
-            "Create room", color="green", hint="Creates a new project from this description"
+            "Create room", color=GO_COLOUR, hint="Creates a new project from this description"
         )
         on_change(self._words, lambda _: client.post(self.refresh, key="words"))
         on_press(self._describe, lambda: client.post(lambda: describe_room(client, self._words.value)))
@@ -89,7 +89,7 @@ class PhotoPanel:
             hint="Reconstructs only the selected box; everything else stays",
         )
         on_press(self._add, lambda: client.post(self._add_selected))
-        self._build = gui.add_button("Build scene", color="green", hint="Builds a scene from the photo and its boxes")
+        self._build = gui.add_button("Build scene", color=GO_COLOUR, hint="Builds a scene from the photo and its boxes")
         on_press(self._build, lambda: client.post(lambda: work.build(client)))
 
     def take(self, name: str, content: bytes) -> None:

@@ -48,7 +48,8 @@ class PhotoCorrection:
             )
         else:
             self._html.show(
-                '<h4>From the photo</h4><div style="display:flex;gap:4px;margin-bottom:4px">'
+                '<h4>From the photo</h4><div style="display:flex;gap:8px;align-items:center;margin-bottom:6px">'
+                '<span class="dim" style="white-space:nowrap">This is a</span>'
                 f'<input data-change="is" aria-label="Object category" value="{text(item.category)}" '
                 'title="Type a category and press Enter to retrieve matching shapes"></div>'
                 '<div class="bar tight">'

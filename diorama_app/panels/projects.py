@@ -13,7 +13,7 @@ import viser
 from PIL import Image
 
 from diorama_app.commands.registry import CommandTable
-from diorama_app.panels.fields import QUIET_COLOUR, enable, on_press
+from diorama_app.panels.fields import GO_COLOUR, QUIET_COLOUR, enable, on_press
 from diorama_app.projects import manage as project_care
 from diorama_app.reconstruction.opening_job import open_file
 from diorama_app.session.client import Client
@@ -44,9 +44,11 @@ class Projects:
         self._status = LiveHtml(gui, self._act)
         save = gui.add_button("Save now", color=QUIET_COLOUR, hint=commands["save"].tooltip)
         on_press(save, lambda: client.post(lambda: commands["save"].run(client)))
+        start = gui.add_button("Start page", color=QUIET_COLOUR, hint=commands["start_page"].tooltip)
+        on_press(start, lambda: client.post(client.open_start))
         new = gui.add_upload_button(
             "New from a photo",
-            color="green",
+            color=GO_COLOUR,
             mime_type="image/*",
             hint="Starts another project; this one is not changed",
         )

@@ -14,6 +14,7 @@ from diorama_app.panels.toolbar import run_command
 from diorama_app.session.client import Client
 from diorama_app.session.units import UNITS, Unit, format_length, in_unit, parse_length
 from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_core.editing.clearances import clearances
 from diorama_core.errors import InputError
 from diorama_core.scene.types import Finish, MaterialSource, SceneObject
 
@@ -31,9 +32,12 @@ FINISHES: dict[Finish | None, tuple[str, str]] = {
 
 MATERIAL_SOURCES: dict[MaterialSource, tuple[str, str]] = {
     "photo": ("As in the photo", "Pictures and materials taken from the photo"),
-    "library": ("Library's", "The shape's own materials, in the colour chosen above"),
+    "library": ("Shape's own", "The shape's own materials, in the colour chosen above"),
 }
 """Label and hint of every source of materials."""
+
+MADE_OPEN = frozenset(("laptop",))
+"""Kinds whose shapes stand open and are closed by their joint."""
 
 FIELDS: dict[str, tuple[str, str, tuple[str, str, str]]] = {
     "Position": ("place", "Of the centre of its base", ("x", "y", "Height")),
@@ -48,6 +52,15 @@ ALIGN = {
     "align_back": "Far",
     "align_depth": "Centre",
     "align_front": "Near",
+}
+
+DO_WITH_IT = {
+    "focus": "Focus",
+    "duplicate": "Duplicate",
+    "mirror": "Mirror",
+    "drop": "Drop",
+    "lock": "Lock",
+    "delete": "Delete",
 }
 
 
@@ -74,19 +87,23 @@ class Properties:
         """Show the selected object, or what to do when there is none."""
         item = self._client.selected
         show_if(item is not None, self._name, self._colour)
-        self._header.show(self._advice() if item is None else self._card(item))
+        empty = "" if self._client.surface is not None else self._advice()
+        self._header.show(empty if item is None else self._card(item))
         self._fields.show("" if item is None else self._lengths(item))
         if item is None:
             self._own.show("")
             return
         show_value(self._name, item.label)
         show_value(self._colour, self._shown_colour(item))
-        self._own.show(_surface(item))
+        opens = self._client.session.shapes.can_open(item.shape_id)
+        self._own.show((_opening(item) if opens else "") + _surface(item))
 
     def _shown_colour(self, item: SceneObject) -> tuple[int, int, int]:
-        """The paint of an object, or else the colour of its shape's main material."""
-        if item.colour is not None:
-            r, g, b = (round(255 * c) for c in item.colour)
+        """The paint of an object, or else the main material's colour from the photo, or else the shape's own."""
+        seen = next((m.colour for m in item.shown_photo_materials if m.main), None)
+        colour = item.colour if item.colour is not None else seen
+        if colour is not None:
+            r, g, b = (round(255 * c) for c in colour)
             return r, g, b
         return self._client.session.shapes.main_colour(item.shape_id)
 
@@ -102,6 +119,7 @@ class Properties:
                 for k, axis in enumerate(axes)
             )
             rows.append(f'<h4 title="{hint}">{name}{"" if unit == "ft-in" else f" ({unit})"}</h4>{_grid(cells)}')
+        rows.append(self._distances(item, unit))
         turn = round(float(np.degrees(item.pose.yaw_rad)), 1) + 0.0  # no minus before a zero
         units = "".join(f"<option {'selected' if u == unit else ''}>{u}</option>" for u in UNITS)
         cells = (
@@ -111,6 +129,19 @@ class Properties:
         )
         return "".join(rows) + _grid(cells)
 
+    def _distances(self, item: SceneObject, unit: Unit) -> str:
+        """Fields of the free length on each side, up to the nearest wall or neighbour."""
+        scene = self._client.session.scene
+        cells = "".join(
+            f'<label>{c.side.capitalize()}<input data-change="gap" data-arg="{c.side}" inputmode="decimal" '
+            f'aria-label="Distance: {c.side}" title="To {text(editing.supporter_name(scene, c.other))}" '
+            f'value="{text(_length(c.distance_m, unit))}"></label>'
+            for c in clearances(scene, item.id)
+        )
+        hint = "Free length on each side, to the nearest wall or neighbour; type to place it"
+        heading = f'<h4 title="{hint}">Distances{"" if unit == "ft-in" else f" ({unit})"}</h4>'
+        return heading + _grid(cells).replace('class="fields"', 'class="fields four"') if cells else ""
+
     def _typed(self, do: str, axis: str, words: str) -> None:
         """Something was written into one of the fields; what cannot be used goes back to what it was."""
         client = self._client
@@ -119,6 +150,8 @@ class Properties:
         try:
             if do == "turn":
                 editing.set_yaw(client, object_id, _degrees(words))
+            elif do == "gap":
+                editing.set_distance(client, object_id, axis, parse_length(words, client.preferences.unit))
             elif axis in ("0", "1", "2"):
                 place = do == "place"
                 values = np.array(editing.base_position(item) if place else item.size_m[SIZE_ORDER])
@@ -143,7 +176,8 @@ class Properties:
             return '<div class="card">The room is empty. Insert furniture from the <b>Library</b> tab.</div>'
         return (
             '<div class="card"><b>Click an object</b> in the view or in the list, or <b>drag it</b> to where it should '
-            "be.<br><span class='dim'>Shift-click selects several, Shift-drag selects by rectangle, Esc clears.</span>"
+            "be.<br><span class='dim'>Shift-click selects several, Shift-drag selects by rectangle, Esc clears. "
+            "Click a wall, the floor or the ceiling to finish it.</span>"
             "</div>"
         )
 
@@ -157,12 +191,8 @@ class Properties:
         return (
             f"<p><b>{text(item.label)}</b>{more}{problems}<br><span class='dim'>{text(item.category)}{photo_layer}"
             f"{' · locked' if item.locked else ''}{' · hidden' if item.hidden else ''}</span></p>"
-            '<div class="bar tight">'
-            + self._command("focus", "Focus")
-            + self._command("duplicate", "Duplicate")
-            + self._command("drop", "Drop")
-            + self._command("mirror", "Mirror")
-            + self._command("delete", "Delete")
+            '<div class="three">'
+            + "".join(self._command(command, label) for command, label in DO_WITH_IT.items())
             + "</div>"
             + (self._together(item, several) if several > 1 else "")
         )
@@ -170,7 +200,7 @@ class Properties:
     def _together(self, item: SceneObject, several: int) -> str:
         align = "".join(self._command(c, label) for c, label in ALIGN.items())
         spread = self._command("distribute", "Distribute evenly") if several > 2 else ""
-        return f'<h4>Align with {text(item.label)}</h4><div class="bar tight">{align}</div>' + (
+        return f'<h4>Align with {text(item.label)}</h4><div class="three">{align}</div>' + (
             f'<div class="bar tight">{spread}</div>' if spread else ""
         )
 
@@ -179,11 +209,13 @@ class Properties:
 
     def _act(self, action: Action) -> None:
         client = self._client
-        if action.do in ("place", "size", "turn"):
+        if action.do in ("place", "size", "turn", "gap"):
             client.post(lambda: self._typed(action.do, *action.pair))
         elif action.do == "unit":
             unit = next((u for u in UNITS if u == action.pair[1]), None)
             client.post(lambda: client.change_preferences(unit=unit or client.preferences.unit))
+        elif action.do == "open":
+            client.post(lambda: editing.set_open(client, client.need_selected(), _share(action.pair[1])), key="open")
         elif action.do == "own":
             client.post(lambda: editing.set_colour(client, client.need_selection(), None))
         elif action.do == "finish":
@@ -203,15 +235,32 @@ def _surface(item: SceneObject) -> str:
         for finish, (label, hint) in FINISHES.items()
     )
     own = button("Original colours", "own", title="Removes the paint") if item.colour is not None else ""
-    paint = f'<div class="bar tight">{own}</div>' if own else ""
+    paint = f'<div class="bar tight wide">{own}</div>' if own else ""
     sources = "".join(
         button(label, "materials", source, title=hint, on=item.material_source == source)
         for source, (label, hint) in MATERIAL_SOURCES.items()
     )
-    taken = f'<div class="bar tight"><span class="dim lead">Materials</span>{sources}</div>'
-    return f"{taken if item.photo_materials else ''}{paint}" + (
-        f'<div class="bar tight"><span class="dim lead">Finish</span>{finishes}</div>'
+    taken = f'<h4>Materials</h4><div class="bar tight">{sources}</div>'
+    return (
+        f'{taken if item.photo_materials else ""}{paint}<h4>Finish</h4><div class="bar tight one-row">{finishes}</div>'
     )
+
+
+def _opening(item: SceneObject) -> str:
+    """How far doors, drawers and lids stand open; how far those are closed that are made open."""
+    percent = round(100 * item.open_share)
+    word = "Close" if item.category in MADE_OPEN else "Open"
+    return (
+        f'<label class="dio-slider"><span>{word} <b>{percent} %</b></span><input type="range" data-change="open" '
+        f'min="0" max="100" step="5" value="{percent}" data-unit=" %" aria-label="{word}"></label>'
+    )
+
+
+def _share(words: str) -> float:
+    try:
+        return float(np.clip(float(words), 0.0, 100.0)) / 100.0
+    except ValueError as error:
+        raise InputError(f"'{words[:20]}' is no share; write for example 50") from error
 
 
 def _grid(cells: str) -> str:

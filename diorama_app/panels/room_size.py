@@ -1,4 +1,4 @@
-"""The size of the room: its height and the offsets of its walls; mounted objects follow."""
+"""The room: its surfaces to choose from, its height and the offsets of its walls; mounted objects follow."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import viser
 from diorama_app.commands.edit import supporter_name
 from diorama_app.session.client import Client
 from diorama_app.session.units import format_length, parse_length
-from diorama_app.web.html import Action, LiveHtml, text
+from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.scene.room_edits import ceiling_height, move_plane, set_ceiling_height
 
 
@@ -39,10 +39,27 @@ class RoomSize:
             )
             for w in walls
         )
-        self._html.show(f"<table>{rows}</table>")
+        surfaces = "".join(
+            button(
+                text(supporter_name(scene, p.id).capitalize()),
+                "surface",
+                p.id,
+                title="Paint, paper, tiles or boards",
+                on=p.id == self._client.surface,
+            )
+            for p in scene.architecture.planes
+        )
+        self._html.show(f'<h4>Surfaces</h4><div class="bar tight">{surfaces}</div><h4>Size</h4><table>{rows}</table>')
 
     def _act(self, action: Action) -> None:
-        self._client.post(lambda: self._do(action.do, *action.pair))
+        if action.do == "surface":
+            self._client.post(lambda: self._choose(action.arg))
+        else:
+            self._client.post(lambda: self._do(action.do, *action.pair))
+
+    def _choose(self, plane_id: str) -> None:
+        self._client.select_surface(plane_id)
+        self._client.open_tab("Object")
 
     def _do(self, what: str, plane_id: str, words: str) -> None:
         client = self._client

@@ -1,24 +1,33 @@
-"""The buttons over the view: undo, redo, views, handles, snapping. They stay whatever the panels show."""
+"""The tools over the view: one row of the frequent ones, the others in a menu. They stay whatever the panels show."""
 
 from __future__ import annotations
 
 import viser
 
 from diorama_app.commands.registry import CommandTable
-from diorama_app.session.client import Client
+from diorama_app.session.client import Client, Measuring
 from diorama_app.web.html import STYLE, Action, LiveHtml, button, text
 
-HALF_MOON = (
-    '<svg width="13" height="13" viewBox="0 0 24 24" style="display:block;margin:2px auto" aria-label="Dark or light">'
-    '<circle cx="12" cy="12" r="10" fill="none" stroke="currentColor" stroke-width="2.5"/>'
-    '<path d="M12 2a10 10 0 0 1 0 20z" fill="currentColor"/></svg>'
-)
+ICONS = {
+    "undo": '<path d="M9 5 4 10l5 5M4 10h10a6 6 0 0 1 0 12h-3"/>',
+    "redo": '<path d="m15 5 5 5-5 5m5-5H10a6 6 0 0 0 0 12h3"/>',
+    "measure": '<path d="m3 16 13-13 5 5L8 21zM8 11l2.5 2.5M12 7l2.5 2.5"/>',
+    "picture": '<path d="M3 7h4l2-3h6l2 3h4v13H3z"/><circle cx="12" cy="13" r="4"/>',
+    "more": '<path d="M5 12h.01M12 12h.01M19 12h.01" stroke-width="3"/>',
+}
 
-CAMERA = (
-    '<svg width="15" height="13" viewBox="0 0 26 22" style="display:block;margin:2px auto" aria-label="Picture" '
-    'fill="none" stroke="currentColor" stroke-width="2.4" stroke-linejoin="round">'
-    '<path d="M2 6h5l2-4h8l2 4h5v14H2z"/><circle cx="13" cy="12.5" r="4.3"/></svg>'
-)
+SPARE = (("gizmo_floor", "gizmo_free", "gizmo_size", "snap"), ("measure", "help"))
+"""Tools that are in the menu instead where the view is narrow."""
+
+MENU: dict[str, tuple[str, ...]] = {
+    "View": ("view_top", "view_front", "view_left", "view_right", "focus"),
+    "Show": ("names", "badges", "masks", "planes"),
+    "While moving": ("slide",),
+    "Page": ("theme",),
+}
+
+SWITCHES = ("snap", "slide", "names", "badges", "masks", "planes")
+"""Commands that switch the preference of the same name."""
 
 
 class Toolbar:
@@ -31,53 +40,90 @@ class Toolbar:
 
     def refresh(self) -> None:
         """Draw the buttons as the history allows and the settings say."""
-        session, preferences = self._client.session, self._client.preferences
-        history = session.document.history
+        history = self._client.session.document.history
         undo = f"Undo: {history.current.label}" if history.can_undo else "Nothing to undo"
+        spare_handles, spare_tools = (
+            "".join(self._tool(i, "?" if i == "help" else "", kind="spare ") for i in ids) for ids in SPARE
+        )
         self._html.show(
             '<div class="bars" role="toolbar" aria-label="Tools"><div class="bar">'
-            + self._button("undo", "&#8630; Undo", title=undo, disabled=not history.can_undo)
-            + self._button("redo", "&#8631; Redo", disabled=not history.can_redo)
-            + self._button("measure", on=self._client.doing is not None)
-            + self._button("picture", CAMERA)
-            + self._button("theme", HALF_MOON)
-            + self._button("help", "?")
-            + "</div><div class='bar'>"
-            + self._button("view_photo", "Photo view", disabled=session.scene.camera is None)
-            + self._button("view_room", "Room")
-            + self._button("view_top", "Top")
-            + self._button("view_front", "Front")
-            + self._button("view_left", "Side")
-            + "</div><div class='bar'>"
-            + self._button("gizmo_floor", on=preferences.gizmo == "floor")
-            + self._button("gizmo_free", on=preferences.gizmo == "free")
-            + self._button("gizmo_size", on=preferences.gizmo == "size")
-            + self._button("snap", on=preferences.snap)
-            + self._button("slide", on=preferences.slide)
-            + "</div><div class='bar'>"
-            + self._button("names", on=preferences.names)
-            + self._button("badges", on=preferences.badges)
-            + self._button("masks", on=preferences.masks, disabled=session.photo is None)
-            + self._button("planes", on=preferences.planes)
-            + "</div></div>"
+            + self._tool("undo", title=undo)
+            + self._tool("redo")
+            + f'</div><div class="bar spare">{spare_handles}</div><div class="bar">'
+            + self._tool("view_photo", "Photo")
+            + self._tool("view_room", "Room")
+            + self._tool("view_plan")
+            + f'</div><div class="bar">{self._tool("picture")}{spare_tools}'
+            + '<button type="button" data-menu="1" aria-haspopup="true" aria-expanded="false" aria-label="More tools" '
+            f'title="More tools">{_icon("more")}</button></div></div>{self._menu()}'
         )
 
-    def _button(
-        self, command_id: str, label: str = "", *, title: str = "", on: bool = False, disabled: bool = False
-    ) -> str:
+    def _menu(self) -> str:
+        moved = "".join(self._item(i) for ids in SPARE for i in ids)
+        groups = "".join(f"<h4>{name}</h4>{''.join(self._item(i) for i in ids)}" for name, ids in MENU.items())
+        return f'<div class="menu"><div class="elsewhere"><h4>Tools</h4>{moved}</div>{groups}</div>'
+
+    def _tool(self, command_id: str, label: str = "", *, title: str = "", kind: str = "") -> str:
+        """A button of the row: an icon with a name for readers, or words."""
         command = self._commands[command_id]
         keys = f" ({command.keys})" if command.keys else ""
-        return button(
-            label or command.label,
+        words = label or command.label
+        made = button(
+            _icon(command_id) if command_id in ICONS else words,
             "run",
             command_id,
             title=(title + keys) if title else command.tooltip,
-            on=on,
-            disabled=disabled,
+            on=self._is_on(command_id),
+            disabled=not self._is_possible(command_id),
         )
+        name = "" if words.isalpha() and command_id not in ICONS else f'aria-label="{text(command.label)}" '
+        return made.replace("<button ", f"<button {name}", 1).replace('class="', f'class="{kind}', 1)
+
+    def _item(self, command_id: str) -> str:
+        """A line of the menu: a switch that leaves it open, or something that closes it."""
+        command = self._commands[command_id]
+        keys = f"<kbd>{text(command.keys)}</kbd>" if command.keys else ""
+        made = button(
+            f"<span>{text(command.label)}</span>{keys}",
+            "run",
+            command_id,
+            title=command.tooltip,
+            on=self._is_on(command_id),
+            disabled=not self._is_possible(command_id),
+        )
+        switched = command_id in SWITCHES or command_id == "theme"
+        state = f'aria-pressed="{str(self._is_on(command_id)).lower()}"' if switched else 'data-closes="1"'
+        return made.replace("<button ", f'<button aria-label="{text(command.label)}" {state} ', 1)
+
+    def _is_on(self, command_id: str) -> bool:
+        preferences = self._client.preferences
+        if command_id.startswith("gizmo_"):
+            return preferences.gizmo == command_id.removeprefix("gizmo_")
+        if command_id == "measure":
+            return isinstance(self._client.doing, Measuring)
+        if command_id == "view_plan":
+            return self._client.plan
+        if command_id == "theme":
+            return preferences.dark
+        return command_id in SWITCHES and bool(getattr(preferences, command_id))
+
+    def _is_possible(self, command_id: str) -> bool:
+        session, history = self._client.session, self._client.session.document.history
+        needed = {
+            "undo": history.can_undo,
+            "redo": history.can_redo,
+            "view_photo": session.scene.camera is not None,
+            "masks": session.photo is not None,
+            "focus": bool(self._client.selection),
+        }
+        return needed.get(command_id, True)
 
     def _act(self, action: Action) -> None:
         run_command(self._client, self._commands, action)
+
+
+def _icon(name: str) -> str:
+    return f'<svg viewBox="0 0 24 24" aria-hidden="true">{ICONS[name]}</svg>'
 
 
 def run_command(client: Client, commands: CommandTable, action: Action) -> None:

@@ -9,7 +9,7 @@ from typing import Literal
 
 from diorama_core.export import FORMATS, Format
 
-Choice = Literal["ceiling", "selection", "textures", "compressed", "draco", "photo", "welded"]
+Choice = Literal["ceiling", "selection", "textures", "compression", "photo", "welded"]
 """An export option that means something in a format; see `ExportOptions`."""
 
 
@@ -43,7 +43,7 @@ GUIDES: Mapping[str, Guide] = {
     "glb": Guide(
         MODELS,
         "Blender, Unity, Unreal, Godot, three.js",
-        _TEXTURED | frozenset[Choice]({"compressed", "draco", "photo"}),
+        _TEXTURED | frozenset[Choice]({"compression", "photo"}),
     ),
     "blend": Guide(MODELS, "Blender, with the photo behind the camera", _TEXTURED),
     "usdz": Guide(MODELS, "iPhone and iPad (AR Quick Look)", _USD),

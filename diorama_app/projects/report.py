@@ -52,18 +52,23 @@ def _overlaps(report: LayoutReport | None) -> float:
 def build_report(room: Reconstruction, scenes: tuple[str, ...]) -> dict[str, Any]:
     """What `diorama build --json` prints about a room built in a project."""
     assert room.project is not None
-    assert room.built is not None
     scene, built = room.scene, room.built
     planes = scene.architecture.planes
     walls = len(scene.architecture.by_role("wall"))
-    seconds = sum(run.seconds for run in built.runs)
+    seconds = 0.0 if built is None else sum(run.seconds for run in built.runs)
+    took = "" if built is None else f", {seconds:.1f} s"
     detection = None if room.stages is None else room.stages.detection
-    unsure = {"left_out": left_out(detection, built.inputs.photo)} if isinstance(detection, OwnDetection) else {}
-    camera = camera_sentence(built.camera, built.inputs.depth_source)
+    unsure = {}
+    if built is not None and isinstance(detection, OwnDetection):
+        unsure = {"left_out": left_out(detection, built.inputs.photo)}
+    camera = None
+    if built is not None:
+        sentence = camera_sentence(built.camera, built.inputs.depth_source)
+        camera = {"confidence": built.camera.confidence, "source": sentence}
     return {
         "project": str(room.project.folder),
         "scenes": list(scenes),
-        "summary": f"{len(scene.objects)} objects, {walls} walls, {seconds:.1f} s",
+        "summary": f"{len(scene.objects)} objects, {walls} walls{took}",
         "objects": [
             {
                 "id": o.id,
@@ -76,9 +81,12 @@ def build_report(room: Reconstruction, scenes: tuple[str, ...]) -> dict[str, Any
             for o in scene.objects
         ],
         "planes": [{"id": p.id, "role": p.role} for p in planes],
-        "camera": {"confidence": built.camera.confidence, "source": camera},
-        "stages": [{"stage": r.stage, "seconds": round(r.seconds, 3), "cached": r.cached} for r in built.runs],
-        "notes": list(built.notes),
+        "camera": camera,
+        "stages": [
+            {"stage": r.stage, "seconds": round(r.seconds, 3), "cached": r.cached}
+            for r in (() if built is None else built.runs)
+        ],
+        "notes": list(room.warnings if built is None else built.notes),
         **unsure,
         "metrics": dict(scene.metrics),
     }

@@ -10,19 +10,15 @@ from diorama_app.projects.begin import fresh_folder
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_core.errors import InputError
+from diorama_core.importing.apart import read_apart
 from diorama_core.importing.opening import SUFFIXES, Opened
-from diorama_core.importing.scene_import import read_scene
 from diorama_core.io.atomic import write_atomically
-from diorama_core.io.limited import LimitedProcess
+from diorama_core.library.boards import base_id
 from diorama_core.library.user_library import OWN, UserLibrary
 from diorama_core.progress import Progress
 from diorama_core.project.lock import ProjectLock
 from diorama_core.project.storage import Project
 
-MAX_MEMORY = 4_000_000_000
-"""Address space of the process that reads a scene: models, pictures, and what they are compared with."""
-MAX_QUIET_S = 90.0
-"""How long it may work on one part of a file."""
 MAX_NOTES = 40
 
 
@@ -54,15 +50,11 @@ def open_file(client: Client, name: str, content: bytes) -> None:
 def _read(session: EditorSession, name: str, content: bytes, progress: Progress) -> Opened:
     """The scene in a file, read in a process of its own with limited memory."""
     known = frozenset(shape.id for shape in session.library.shapes())
-    process = LimitedProcess(memory=MAX_MEMORY, seconds=MAX_QUIET_S)
-    try:
-        with tempfile.TemporaryDirectory(prefix="upload-") as folder:
-            path = Path(folder) / name
-            write_atomically(path, content, error=InputError)
-            opened = process.work(name, read_scene, path, known, progress=progress)
-    finally:
-        process.close()
-    taken_in = not {o.shape_id for o in opened.scene.objects} <= known
+    with tempfile.TemporaryDirectory(prefix="upload-") as folder:
+        path = Path(folder) / name
+        write_atomically(path, content, error=InputError)
+        opened = read_apart(path, known, progress)
+    taken_in = not {base_id(o.shape_id) for o in opened.scene.objects} <= known
     if taken_in and isinstance(session.library, UserLibrary):
         session.library.own()  # from now on it lists what the other process took in
     return opened

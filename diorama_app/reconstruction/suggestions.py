@@ -113,7 +113,7 @@ class Suggestions:
         if not has_own_recogniser():
             return None
         if self._faint is None:
-            self._faint = own_recogniser().propose(self.photo.rgb, FAINT, MOST_FAINT)
+            self._faint = own_recogniser().alternatives(self.photo.rgb, FAINT, MOST_FAINT)
         box = clicked_box(self._faint, x, y)
         if box is None:
             return None

@@ -1,14 +1,22 @@
-"""A scene from words: a picture of what they describe, and the same build as for a photo."""
+"""A scene from words: composed from the library, or built from the picture that an image endpoint draws."""
 
 from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from diorama_app.projects.begin import fresh_folder
 from diorama_app.session.client import Client
 from diorama_core.errors import DioramaError, InputError
+from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
 
-COMPOSED = "No image endpoint is set up: the room is composed from the library, rendered and reconstructed."
+if TYPE_CHECKING:
+    from diorama_core.perception.language.client import LmmSettings
+    from diorama_core.text.pictures import ImageSettings
+
+COMPOSED = "No image endpoint is set up: the room is composed from the library."
 
 
 def how_pictures_come() -> str:
@@ -24,35 +32,60 @@ def how_pictures_come() -> str:
 
 def describe_room(client: Client, words: str) -> None:
     """Create a project from a description, in the background, and open it."""
-    from diorama_core.text.pictures import ImageSettings, picture_of
+    from diorama_core.perception.language.client import LmmSettings
+    from diorama_core.text.pictures import ImageSettings
 
     session = client.session
     said = " ".join(words.split())
     if not said:
         raise InputError("describe the room, for example: a reading corner with two armchairs")
-    endpoint = ImageSettings.from_environment()
+    endpoint, model = ImageSettings.from_environment(), LmmSettings.from_environment()
 
     def work(progress: Progress) -> None:
-        from diorama_core.project.build import build_project
-        from diorama_core.text.unmet import unmet
-
-        made = picture_of(said, session.library, endpoint=endpoint, progress=progress.part(0.0, 0.2))
         name = said[:1].upper() + said[1:60]
-        project = Project.create(fresh_folder(session.projects_dir, said.replace(".", " ")), name=name)
         session.autosave.flush()
-        built = build_project(
-            project, made.inputs, session.library, warnings=made.notes, progress=progress.part(0.2, 1.0)
-        )
-        how = (
-            "its picture was composed from the library, not drawn" if endpoint is None else f"drawn by {endpoint.model}"
-        )
-        count = len(built.scene.objects)
-        what = f"The scene has {count} objects" if count else "No furniture was found; draw boxes"
-        lacking = unmet(said, built.scene)
-        if lacking:
-            missing = f"of the description is missing: {', '.join(lacking)}"
-            project.update_info(notes=[missing, *project.info().get("notes", ())])
-            what += f"; {missing}"
-        client.post(lambda: session.visit(client, project, f"{what}; {how}."))
+        folder = fresh_folder(session.projects_dir, said.replace(".", " "))
+        if endpoint is None:
+            what = _compose(said, folder, name, session.library, model, progress)
+        else:
+            what = _draw_and_build(said, folder, name, session.library, endpoint, progress)
+        client.post(lambda: session.visit(client, Project.open(folder), what))
 
     session.jobs.start("text", "Creating the room you described", work)
+
+
+def _compose(
+    said: str, folder: Path, name: str, library: ShapeLibrary, model: LmmSettings | None, progress: Progress
+) -> str:
+    """Compose the room in a new project; what to tell the user."""
+    from diorama_core.text.scene_from_text import scene_from_text
+
+    made = scene_from_text(said, library, language_model=model, progress=progress)
+    project = Project.create(folder, name=name)
+    project.save_textures(made.textures)
+    project.save_scene(made.scene)
+    project.update_info(notes=list(made.notes))
+    unmet = [note for note in made.notes[1:] if not note.startswith(("added", "mended"))]
+    what = f"The scene has {len(made.scene.objects)} objects, composed from the library"
+    return f"{what}; {'; '.join(unmet)}." if unmet else f"{what}; everything that you asked for is there."
+
+
+def _draw_and_build(
+    said: str, folder: Path, name: str, library: ShapeLibrary, endpoint: ImageSettings, progress: Progress
+) -> str:
+    """Build the endpoint's picture in a new project; what to tell the user."""
+    from diorama_core.project.build import build_project
+    from diorama_core.text.pictures import picture_of
+    from diorama_core.text.unmet import unmet
+
+    made = picture_of(said, endpoint, progress.part(0.0, 0.2))
+    project = Project.create(folder, name=name)
+    built = build_project(project, made.inputs, library, warnings=made.notes, progress=progress.part(0.2, 1.0))
+    count = len(built.scene.objects)
+    what = f"The scene has {count} objects" if count else "No furniture was found; draw boxes"
+    lacking = unmet(said, built.scene)
+    if lacking:
+        missing = f"of the description is missing: {', '.join(lacking)}"
+        project.update_info(notes=[missing, *project.info().get("notes", ())])
+        what += f"; {missing}"
+    return f"{what}; drawn by {endpoint.model}."

@@ -47,6 +47,7 @@ class Autosave:
         recovery: Recovery | None = None,
         *,
         on_saved: Told = lambda message: None,
+        on_version: Callable[[], None] = lambda: None,
         retry_s: float = RETRY_S,
     ) -> None:
         """Start the thread.
@@ -55,9 +56,10 @@ class Autosave:
             on_error: told in one line why something was not saved, once until it is.
             recovery: where changes lie until they are saved.
             on_saved: told in one line when something that could not be saved has been.
+            on_version: told when a scene that was overwritten became an earlier version.
             retry_s: how often that is tried.
         """
-        self._on_error, self._on_saved, self._retry_s = on_error, on_saved, retry_s
+        self._on_error, self._on_saved, self._on_version, self._retry_s = on_error, on_saved, on_version, retry_s
         self.recovery = recovery or Recovery()
         self.trouble = ""
         """Why saving fails at the moment; empty when it succeeds."""
@@ -123,12 +125,12 @@ class Autosave:
             self.flush()
 
     def _write(self, project: Project, unwritten: Unwritten) -> bool:
-        scene = unwritten.scene
+        scene, new_version = unwritten.scene, False
         try:
             if unwritten.inputs is not None:
                 project.save_inputs(unwritten.inputs, project.info().get("warnings", ()))
             if scene is not None:
-                project.save_scene(scene)
+                new_version = project.save_scene(scene)
         except Exception as error:  # whatever it is, the work must be retained and tried again
             if not isinstance(error, DioramaError):
                 log.exception("the scene of %s cannot be written", project.folder)
@@ -137,6 +139,8 @@ class Autosave:
             return False
         self.saved_at = time.time()
         self.recovery.forget(project)
+        if new_version:
+            self._on_version()
         if self.trouble:
             self.trouble = ""
             self._on_saved("All changes are saved now.")

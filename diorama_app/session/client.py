@@ -57,7 +57,11 @@ class Client:
         self.view: ClientView = ClientView(viser_client)
         self.marks = Decorations(viser_client)
         self.selection: tuple[str, ...] = ()
+        self.surface: str | None = None
+        """Id of the plane that is chosen to be finished; while objects are selected, none is."""
         self.preferences = Preferences()
+        self.plan = False
+        """Whether the plan is shown in place of the 3D view."""
         self.doing: Doing = None
         self.panels: list[Panel] = []
         self.failing: dict[str, str] = {}
@@ -75,6 +79,10 @@ class Client:
         """Shows a line that stays, with a button that does something."""
         self.to_say: tuple[str, bool] | None = None
         """What is shown there with the next redraw."""
+        self.open_start: Callable[[], None] = lambda: None
+        """Lays the start page over the page."""
+        self.start_tour: Callable[[], None] = lambda: None
+        """Shows a newcomer around."""
         self.open_tab: Callable[[str], None] = lambda name: None
         """Brings a tab of the panels to the front."""
         self.go_to: Callable[[str], None] = lambda name: None
@@ -104,8 +112,15 @@ class Client:
     def select(self, ids: Iterable[str]) -> None:
         """Select exactly these objects, in this order."""
         self.selection = tuple(i for i in dict.fromkeys(ids) if self.session.scene.has_object(i))
+        self.surface = None
         if len(self.session.clients) == 1:  # where several work, undo must not select what another one had selected
             self.session.document.note_selection(self.selection)
+        self.session.refresh_panels(self)
+
+    def select_surface(self, plane_id: str | None) -> None:
+        """Choose a wall, the floor or the ceiling in place of objects."""
+        self.select(())
+        self.surface = plane_id if plane_id is not None and self.session.scene.has_plane(plane_id) else None
         self.session.refresh_panels(self)
 
     def toggle(self, object_id: str) -> None:
@@ -116,6 +131,8 @@ class Client:
     def drop_missing(self) -> None:
         """Deselect objects that no longer exist."""
         self.selection = tuple(i for i in self.selection if self.session.scene.has_object(i))
+        if self.surface is not None and not self.session.scene.has_plane(self.surface):
+            self.surface = None
 
     # -- page -------------------------------------------------------------------------------------------------
 

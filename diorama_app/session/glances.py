@@ -1,4 +1,4 @@
-"""What the page shows of the disk, looked up at most once a second for everybody.
+"""What the page shows of the disk, looked up at most every few seconds for everybody.
 
 Every look-up lets other threads run first. Some in each redraw of twenty browsers took more time than the drawing.
 """
@@ -13,7 +13,7 @@ from cachetools import TTLCache
 
 T = TypeVar("T")
 
-FRESH_S = 1.0
+FRESH_S = 3.0
 """What was seen counts for so long; another program's changes are shown with the next redraw after that."""
 
 
@@ -24,7 +24,7 @@ class Glances:
         self._seen: TTLCache[Hashable, Any] = TTLCache(maxsize=64, ttl=FRESH_S, timer=clock)
 
     def of(self, what: Hashable, look: Callable[[], T]) -> T:
-        """What `look` gives, or gave within the last second for the same `what`; what it raises is raised each time."""
+        """What `look` gives, or gave a moment ago for the same `what`; what it raises is raised each time."""
         seen = self._seen.get(what)  # it may grow old between two questions
         if seen is None:
             seen = self._seen[what] = (look(),)

@@ -15,7 +15,9 @@ from diorama_core.progress import CancelToken, Progress, ProgressEvent
 
 log = logging.getLogger(__name__)
 
-JobKind = Literal["build", "optimise", "export", "outline", "import", "text", "pull", "find", "picture"]
+JobKind = Literal[
+    "build", "optimise", "export", "outline", "import", "text", "pull", "find", "picture", "words", "example"
+]
 PERCEIVING: frozenset[JobKind] = frozenset({"build", "outline", "text"})
 """Kinds that run the pipeline, which needs Open3D."""
 

@@ -52,6 +52,10 @@ class Preferences:
     """Whether a swapped shape takes the colour of what it replaces."""
     all_alike: bool = False
     """Whether a swap goes to every object of the same shape."""
+    favourites: tuple[str, ...] = ()
+    """Ids of the library's shapes that the person marked."""
+    recent: tuple[str, ...] = ()
+    """Ids of the shapes inserted lately, the last first."""
 
 
 _JSON = TypeAdapter(Preferences)

@@ -5,43 +5,17 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from typing import Any
 
+from diorama_app.projects.uploads import Upload, decoded
 from diorama_core.errors import EditRefused
 from diorama_core.io.limited import LimitedProcess
-from diorama_core.perception.inputs import ReadInputs, read_inputs
-from diorama_core.pipeline import codec
+from diorama_core.perception.inputs import ReadInputs
 
 MAX_WAITING = 2
 """Uploads of one person that are read or wait for it."""
 
 Post = Callable[[Callable[[], None]], None]
-
-
-@dataclass(frozen=True)
-class Upload:
-    """What `read_inputs` takes, as it was uploaded."""
-
-    photo: bytes
-    name: str
-    depth: bytes | None = None
-    boxes: bytes | None = None
-    masks: bytes | None = None
-    intrinsics: tuple[float, float, float, float] | None = None
-
-
-def read_packed(upload: Upload) -> tuple[bytes, tuple[str, ...]]:
-    """Checked inputs, packed, and warnings. Runs in the decoding process."""
-    read = read_inputs(
-        upload.photo,
-        name=upload.name,
-        depth=upload.depth,
-        boxes=upload.boxes,
-        masks=upload.masks,
-        intrinsics=upload.intrinsics,
-    )
-    return codec.dump(read.inputs), read.warnings
 
 
 class Reader:
@@ -84,8 +58,7 @@ class Reader:
 
     def _read(self, upload: Upload, client_id: int, post: Post, then: Callable[[ReadInputs], None]) -> None:
         try:
-            packed, warnings = self._process.call(upload.name, read_packed, upload)
-            read = ReadInputs(codec.load(packed), warnings)
+            read = decoded(upload, self._process)
             post(lambda: then(read))
         except Exception as error:  # raised again on the UI thread, for whoever uploaded
             post(_raising(error))

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 EVERY_S = 0.1
 """Between two redraws of one browser."""
+WATCHING_S = 0.15
+"""After somebody's edit the others' panels wait so long: what moved is on their screens first."""
 SHARE = 0.4
 """Of the time at most is spent on drawing; with many browsers the redraws of those who only watch come less often."""
 
@@ -47,6 +49,8 @@ class Redraws:
         now = time.monotonic()
         for client in sorted(all_of_them, key=lambda g: g is not first):
             due_s = self._drawn_at.get(client.id, -every_s) + (EVERY_S if client is first else every_s) - now
+            if first is not None and client is not first:
+                due_s = max(due_s, WATCHING_S)
             if due_s <= 0 and (client is first or len(all_of_them) == 1):
                 self._draw(client)
             else:

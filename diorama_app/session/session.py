@@ -110,9 +110,15 @@ class EditorSession:
             self.ui_thread, on_start=self.refresh_panels, on_progress=self._refresh_job, on_end=self._job_ended
         )
         self.jobs = Jobs(reports.changed, reports.ended)
+        self.greets = False
+        """Whether browsers that come here see the start page first."""
         self.interrupted = False
         """Whether a build of this project was under way when the program ended."""
-        self.autosave = Autosave(on_error=lambda line: self._saver_says(line, "bad"), on_saved=self._saver_says)
+        self.autosave = Autosave(
+            on_error=lambda line: self._saver_says(line, "bad"),
+            on_saved=self._saver_says,
+            on_version=lambda: self.ui_thread.post(self._look_again),
+        )
         self._access = ProjectAccess()
         self.reader = Reader()
         self.checker = Checker(library, lambda found: self.ui_thread.post(lambda: self._badged(found)))
@@ -332,11 +338,15 @@ class EditorSession:
 
     def _saver_says(self, message: str, kind: NoticeKind = "good") -> None:
         def tell() -> None:
-            self.glances.forget()
             self.notice_all(message, kind)
-            self.refresh_panels()
+            self._look_again()
 
         self.ui_thread.post(tell)
+
+    def _look_again(self) -> None:
+        """What is on disk changed: the panels show it."""
+        self.glances.forget()
+        self.refresh_panels()
 
     def read_notes(self) -> None:
         """Learn what the project's build had to say."""

@@ -14,9 +14,15 @@ Textures = Mapping[str, UInt8[np.ndarray, "_ _ 3"]]
 
 
 def refitted(before: Scene, after: Scene, textures: Textures) -> tuple[Scene, Textures]:
-    """The edited scene with the pictures of resized planes cut and continued, not stretched, and the new pictures."""
-    if not textures or after.architecture is before.architecture:
-        return after, {}
-    from diorama_core.architecture.texture.refit import refitted_textures  # OpenCV; opening a project does without it
+    """The edited scene and its new pictures.
 
-    return refitted_textures(before, after, textures)
+    Those of resized planes are cut and continued, not stretched; those of finishes are made."""
+    if after.architecture is before.architecture:
+        return after, {}
+    # OpenCV; opening a project does without it
+    from diorama_core.appearance.surface_finish import with_finish_pictures
+    from diorama_core.architecture.texture.refit import refitted_textures
+
+    after, made = refitted_textures(before, after, textures)
+    after, finishes = with_finish_pictures(after, {**textures, **made})
+    return after, {**made, **finishes}

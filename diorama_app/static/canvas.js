@@ -154,7 +154,11 @@
       const field = element("input", "", { value: row.label, ariaLabel: "Name of the selected box" });
       field.setAttribute("list", "dio-canvas-names");
       field.size = Math.max(8, row.label.length + 1);
-      field.onchange = () => send("name", [i, field.value]);
+      field.dataset.box = i;
+      const told = () => { if (field.value !== row.label) send("name", [i, field.value]); };
+      field.onchange = told;
+      field.onblur = () => { if (field.isConnected) told(); };
+      field.onkeydown = (event) => { if (event.key === "Enter") field.blur(); };
       const remove = element("button", "", { type: "button", textContent: "✕", title: "Delete this box (Delete)" });
       remove.setAttribute("aria-label", `Delete the box ${row.label}`);
       remove.onclick = () => send("delete", i);
@@ -193,8 +197,11 @@
   };
   const draw = () => {
     if (!root) return;
-    const typing = layer.contains(document.activeElement) && document.activeElement.tagName === "INPUT";
-    if (typing && !drag && document.activeElement.closest(".on")) document.activeElement.blur();
+    const field = layer.contains(document.activeElement) && document.activeElement.matches(".on input") ? document.activeElement : null;
+    const typed = field && !drag && field.dataset.box === String(state.selected)
+      ? { value: field.value, from: field.selectionStart, to: field.selectionEnd } : null;
+    if (typed) field.onchange = null; // it goes on in the field that comes instead
+    else if (field && !drag) field.blur();
     const proposals = state.photo.mode === "boxes" ? state.proposals.map(proposalElement) : [];
     const nodes = [...proposals, ...state.boxes.map(boxElement)];
     if (drag?.kind === "new" && drag.box) {
@@ -202,6 +209,11 @@
     }
     if (state.mask) nodes.unshift(element("img", "dio-canvas-mask", { src: state.mask, alt: "Outline" }));
     layer.replaceChildren(...nodes);
+    const again = typed && layer.querySelector(".on input");
+    if (!again) return;
+    again.value = typed.value;
+    again.focus();
+    again.setSelectionRange(typed.from, typed.to);
   };
 
   // Tab goes from proposal to proposal, and on to the rest of the page after the last one.

@@ -3,6 +3,7 @@
 (() => {
   const root = document.documentElement;
   const SHEET = '#root .mantine-Paper-root[style*="position: fixed"][style*="bottom: 0px"]';
+  const NARROW_PX = 565; // a view in which the tools have no room in one row
   const LOST_MS = 1500; // a connection that comes back sooner is not worth a word
 
   const visible = () => {
@@ -19,6 +20,7 @@
     root.style.setProperty("--dio-sheet", `${sheet?.getBoundingClientRect().height ?? 0}px`);
     const seen = visible();
     if (!seen) return;
+    root.classList.toggle("dio-narrow", seen.width < NARROW_PX);
     root.style.setProperty("--dio-left", `${seen.left}px`);
     root.style.setProperty("--dio-width", `${seen.width}px`);
     root.style.setProperty("--dio-view-top", `${seen.above}px`);
@@ -61,7 +63,9 @@
       }
     }
   };
-  setInterval(() => { watch(); name(); nameButtons(); }, 200);
+  // The sheet of a phone holds one panel: the server is asked to put all tabs into it.
+  const onePanel = () => root.classList.contains("dio-phone") && document.getElementById("dio-one-panel")?.click();
+  setInterval(() => { watch(); name(); nameButtons(); onePanel(); }, 200);
 
   let lost;
   window.__dioConnection = (there) => {

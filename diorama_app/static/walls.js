@@ -17,7 +17,15 @@
     o.userData.own = faded ? own : null;
     o.material = faded ? glass(m, share) : own;
   });
-  const paint = (node, share, plane) => node.traverse((o) => {
+  const paint = (node, share, plane) => {
+    node.userData.dioFaded = share < 1;
+    node.traverse((o) => paintOne(o, share, plane));
+  };
+  const paintOne = (o, share, plane) => {
+    if (o.material?.uniforms?.screenspace) {  // its outline: what is faded is not pointed at
+      if (share < 1) o.raycast = () => {}; else delete o.raycast;
+      return;
+    }
     if (o.material && o.material.type === 'ShadowMaterial') { o.visible = share === 1; return; }
     if (!plain(o)) return;
     const k = o.material, faded = share < 1;
@@ -37,10 +45,12 @@
     }
     if (faded) k.opacity = share * k.userData.before[3];
     o.visible = share > 0;
-  });
+  };
   const meshes = (m, name, versions) =>
     [...Array(versions).keys()].map((v) => m.nodeRefFromName[name + '/v' + v]).filter((node) => node);
   const frame = (m) => {
+    window.__dioSun?.frame(m);
+    window.__dioSilhouettes?.frame(m);
     const d = W.room, root = m.nodeRefFromName[''];
     if (!d || !root) return;
     const now = performance.now(), step = Math.min(now - (W.last || 0), 60) / d.ms;

@@ -7,17 +7,21 @@ from typing import Literal
 
 import numpy as np
 import viser
+from jaxtyping import Float
 
 from diorama_app.viewport.annotation_canvas import AnnotationCanvas
 from diorama_app.viewport.camera import ViewCamera
+from diorama_app.viewport.decorations import SELECTED_COLOUR
 from diorama_app.viewport.photo_overlay import PhotoOverlay
 from diorama_core.scene.types import Plane
 
 PLANE_COLOURS = {"floor": (190, 120, 30), "wall": (30, 110, 220), "ceiling": (120, 80, 190)}
 PLANE_LIFT_M = 0.01
+DISTANCE_COLOUR = (47, 111, 214)
 TAPE_COLOUR = (200, 60, 110)
 BRAND_COLOUR = (47, 111, 214)
 
+Vector = Float[np.ndarray, "3"]
 NoticeKind = Literal["info", "good", "bad"]
 
 
@@ -31,6 +35,8 @@ class ClientView:
         self.canvas = AnnotationCanvas(viser_client.gui)
         self._planes: list[viser.SceneNodeHandle] = []
         self._tape: list[viser.SceneNodeHandle] = []
+        self._surface: viser.SceneNodeHandle | None = None
+        self._distances: list[tuple[viser.LineSegmentsHandle, viser.LabelHandle]] = []
 
     def notice(self, message: str, kind: NoticeKind = "info", seconds: float | None = None) -> None:
         """A short notice at the edge of the view; what went wrong stays longer."""
@@ -63,6 +69,44 @@ class ClientView:
                 ),
                 scene.add_label("/tape/length", words, position=ends.mean(axis=0), anchor="bottom-center"),
             ]
+
+    def show_distances(self, distances: Sequence[tuple[Vector, Vector, str]]) -> None:
+        """Lines between two points each, with words at their middle; none without. Nodes are used again."""
+        scene = self._viser_client.scene
+        with self._viser_client.atomic():
+            for number, (start, end, words) in enumerate(distances):
+                points, middle = np.stack([start, end])[None], 0.5 * (np.asarray(start) + np.asarray(end))
+                if number == len(self._distances):
+                    line = scene.add_line_segments(
+                        f"/distances/{number}/line",
+                        points=points,
+                        colors=DISTANCE_COLOUR,
+                        thickness=2.5,
+                        thickness_units="screen",
+                    )
+                    label = scene.add_label(f"/distances/{number}/length", words, position=middle)
+                    self._distances.append((line, label))
+                line, label = self._distances[number]
+                line.points, label.position, label.text = points, middle, words
+                line.visible = label.visible = True
+            for line, label in self._distances[len(distances) :]:
+                if line.visible:
+                    line.visible = label.visible = False
+
+    def show_surface(self, plane: Plane | None) -> None:
+        """The outline of the surface that is chosen; none without."""
+        if self._surface is not None:
+            self._surface.remove()
+            self._surface = None
+        if plane is not None:
+            ends = plane.polygon + PLANE_LIFT_M * plane.normal
+            self._surface = self._viser_client.scene.add_line_segments(
+                "/surface",
+                points=np.stack([ends, np.roll(ends, -1, axis=0)], axis=1),
+                colors=SELECTED_COLOUR,
+                thickness=4.0,
+                thickness_units="screen",
+            )
 
     def show_planes(self, planes: Sequence[tuple[str, Plane]]) -> None:
         """The edges of planes, each with its name; none without planes."""

@@ -1,4 +1,7 @@
-"""Decorations of one browser: selection outlines, name tags, other clients' selections, collisions."""
+"""Decorations of one browser: selection outlines, name tags, other clients' selections, collisions.
+
+Outlines are drawn by the page (`static/silhouettes.js`), which is told of them; tags are nodes of the scene.
+"""
 
 from __future__ import annotations
 
@@ -7,23 +10,28 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import viser
 
-from diorama_core.scene.types import Scene, SceneObject, box_corners
+from diorama_core.scene.types import Scene, SceneObject
 
 SELECTED_COLOUR = (255, 122, 26)
 LOCKED_COLOUR = (120, 130, 150)
 COLLIDING_COLOUR = (224, 44, 44)
-OUTLINE_MARGIN_M = 0.012
 UNSURE = 0.35
 """Poses below this confidence are marked as uncertain."""
-SECOND_LINE_M = 0.006
-"""A dark line just inside the bright one keeps the outline visible on any colour."""
-BOX_EDGES = [(a, a | bit) for bit in (1, 2, 4) for a in range(8) if not a & bit]
 
 Colour = tuple[int, int, int]
 NodeName = Callable[[str], str | None]
+
+
+@dataclass(frozen=True)
+class Outline:
+    """The line around what is seen of an object."""
+
+    node: str
+    """The shared frame of the object."""
+    colour: Colour
+    thickness_px: float
 
 
 @dataclass(frozen=True)
@@ -44,6 +52,9 @@ class Decorations:
         self._viser_client = viser_client
         self._shown: dict[str, tuple[_Mark, list[viser.SceneNodeHandle]]] = {}
         self._colliding: frozenset[str] = frozenset()
+        self.outlines: tuple[Outline, ...] = ()
+        self.on_outlines: Callable[[tuple[Outline, ...]], None] = lambda _: None
+        """Told of the outlines when they change."""
 
     def show(
         self,
@@ -83,6 +94,10 @@ class Decorations:
             for object_id, mark in wanted.items():
                 if object_id not in self._shown:
                     self._shown[object_id] = (mark, self._draw(mark))
+        outlines = tuple(Outline(m.node, m.colour, m.thickness) for m in wanted.values() if m.colour is not None)
+        if outlines != self.outlines:
+            self.outlines = outlines
+            self.on_outlines(outlines)
 
     def collide(self, ids: Iterable[str]) -> bool:
         """Set the colliding objects; returns whether they changed (then `show` again)."""
@@ -105,33 +120,22 @@ class Decorations:
         size = (x, y, z)
         name = item.label[:40] + (" (locked)" if item.locked else "")
         problems = "".join(f" ⚠ {badge}" for badge in badges) + doubt
+        short = ("⚠" if badges else "") + doubt
         if item.id in self._colliding:
-            return _Mark(node, size, COLLIDING_COLOUR, 3.5, name if item.id in selection else "")
+            return _Mark(node, size, COLLIDING_COLOUR, 3.5, name if names else "")
         if item.id in selection:
             colour = LOCKED_COLOUR if item.locked else SELECTED_COLOUR
-            return _Mark(node, size, colour, 3.0 if selection[-1] == item.id else 2.0, name + problems)
+            thickness = 3.5 if selection[-1] == item.id else 2.5
+            return _Mark(node, size, colour, thickness, name + problems if names else short)
         for who, colour, theirs in others:
             if item.id in theirs:
-                return _Mark(node, size, colour, 2.0, who)
+                return _Mark(node, size, colour, 2.5, who)
         if names or problems:
-            short = ("⚠" if badges else "") + doubt
             return _Mark(node, size, None, 0.0, name + problems if names else short)
         return None
 
     def _draw(self, mark: _Mark) -> list[viser.SceneNodeHandle]:
         scene, made = self._viser_client.scene, []
-        if mark.colour is not None:
-            for margin, colour in ((OUTLINE_MARGIN_M, mark.colour), (SECOND_LINE_M, (40, 24, 12))):
-                corners = box_corners(np.asarray(mark.size_m) + 2 * margin)
-                made.append(
-                    scene.add_line_segments(
-                        f"{mark.node}/mark/{'outer' if colour is mark.colour else 'inner'}",
-                        points=np.array([[corners[a], corners[b]] for a, b in BOX_EDGES]),
-                        colors=colour,
-                        thickness=mark.thickness if colour is mark.colour else 1.0,
-                        thickness_units="screen",
-                    )
-                )
         if mark.tag:
             made.append(
                 scene.add_label(

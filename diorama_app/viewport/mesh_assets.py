@@ -5,23 +5,24 @@ from __future__ import annotations
 import manifold3d
 import numpy as np
 import trimesh
-from jaxtyping import Int32, UInt8
+from jaxtyping import Float, Int32, UInt8
 from PIL import Image
 from trimesh.visual.material import PBRMaterial
 
 from diorama_core.errors import LibraryError
 from diorama_core.geometry.planes import plane_axes, plane_uv
 from diorama_core.io.cache import LruCache
+from diorama_core.library.opening import can_open, opened_parts
 from diorama_core.library.paint import main_rgb, painted
 from diorama_core.library.photo_materials import Pictures, with_photo_materials
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.simplify import simplified_glb
 from diorama_core.library.stretch import EVEN, Scale, stretched_parts
-from diorama_core.scene.types import Finish, PhotoMaterial, Plane
+from diorama_core.scene.types import Finish, PhotoMaterial, Plane, SceneObject
 
 Colour = tuple[float, float, float]
 NO_PICTURES: Pictures = {}
-_Key = tuple[str, Colour | None, Finish | None, tuple[PhotoMaterial, ...], Scale, frozenset[str], int | None]
+_Key = tuple[str, Colour | None, Finish | None, tuple[PhotoMaterial, ...], Scale, float, frozenset[str], int | None]
 MAX_PICTURE_PX = 1024
 """Of one picture from the photo on the page; exports have the whole one."""
 GREY = (200, 200, 200)
@@ -56,6 +57,7 @@ class ShapeBytes:
         finish: Finish | None = None,
         materials: tuple[PhotoMaterial, ...] = (),
         scale: Scale = EVEN,
+        open_share: float = 0.0,
         pictures: Pictures = NO_PICTURES,
     ) -> bytes:
         """The shape's GLB; with `colour` (sRGB 0 to 1) and `finish` on its main material, and the photo's on others.
@@ -66,21 +68,51 @@ class ShapeBytes:
             finish: of its main material.
             materials: from the photo, over both where they match a slot.
             scale: by which it will be scaled, relative to an even scale: thin parts are made to keep their thickness.
-            pictures: their textures by name.
+            open_share: how far its doors and drawers stand open, 0 to 1.
+            pictures: the textures of materials by name.
         """
         most = self._max_triangles
         shown = {m.texture: pictures[m.texture] for m in materials if m.texture is not None and m.texture in pictures}
 
         def made() -> bytes:
-            own = colour is None and finish is None and not materials and scale == EVEN
+            own = colour is None and finish is None and not materials and scale == EVEN and not open_share
             if own:
                 data = self._library.glb(shape_id)
             else:
-                parts = stretched_parts(self._library.parts(shape_id), scale)
+                parts = stretched_parts(opened_parts(self._library, shape_id, open_share, scale), scale)
                 data = _painted_glb(parts, colour, finish, materials, shown)
             return data if most is None else simplified_glb(data, most)
 
-        return self._cached.get((shape_id, colour, finish, materials, scale, frozenset(shown), most), made)
+        return self._cached.get((shape_id, colour, finish, materials, scale, open_share, frozenset(shown), most), made)
+
+    def can_open(self, shape_id: str) -> bool:
+        """Whether a shape has doors, drawers or lids."""
+        try:
+            return can_open(self._library, shape_id)
+        except LibraryError:
+            return False
+
+    def lamp_place(self, item: SceneObject) -> Float[np.ndarray, "3"]:
+        """Where the light of a lamp comes from, in the world; its middle where its shape is missing."""
+        from diorama_core.render.appearance import shape_surfaces  # the ray-caster; opening a project does without it
+        from diorama_core.render.lamps import lamp_place
+
+        try:
+            surfaces = shape_surfaces(self._library, item.shape_id)
+        except LibraryError:
+            return item.pose.position
+        return lamp_place(item, surfaces)[0]
+
+    def lamp_shade(self, item: SceneObject) -> str | None:
+        """Name of the material of a lamp's shade; None where it has none."""
+        from diorama_core.render.appearance import shape_surfaces
+        from diorama_core.render.lamps import shade_of
+
+        try:
+            shade = shade_of(shape_surfaces(self._library, item.shape_id))
+        except LibraryError:
+            return None
+        return None if shade is None else shade.material.name
 
     def main_colour(self, shape_id: str) -> tuple[int, int, int]:
         """The colour of the shape's main material (sRGB, 0 to 255); grey where the shape is missing."""

@@ -16,10 +16,12 @@ from jaxtyping import UInt8
 
 from diorama_app.viewport.decorations import remove_quietly
 from diorama_app.viewport.mesh_assets import NO_PICTURES, ShapeBytes, plane_glb, plane_triangles, reduced
+from diorama_app.viewport.room_light import RoomLightView
+from diorama_core.geometry.openings import with_openings
 from diorama_core.geometry.rotations import quaternion_wxyz
 from diorama_core.library.photo_materials import Pictures
 from diorama_core.library.stretch import Scale, relative_scale
-from diorama_core.scene.types import Finish, PhotoMaterial, Plane, Pose, RoomLight, Scene, SceneObject
+from diorama_core.scene.types import Finish, PhotoMaterial, Plane, Pose, Scene, SceneObject
 
 MESH_NAMES = 8
 """An object's meshes take turns among so many names, so that what is on its way out keeps its own."""
@@ -27,11 +29,7 @@ MESH_NAMES = 8
 SHADOW_ON_PLANES = 0.25
 """How dark."""
 
-MAIN_LIGHT_AWAY_M = 12.0
-MAIN_LIGHT_EVEN, MAIN_LIGHT_STRENGTH = 0.6, 2.2
-"""Its intensity where light comes from everywhere, and how much that grows up to light from one side alone."""
-
-Appearance = tuple[str, tuple[float, float, float] | None, Finish | None, tuple[PhotoMaterial, ...], Scale]
+Appearance = tuple[str, tuple[float, float, float] | None, Finish | None, tuple[PhotoMaterial, ...], Scale, float]
 Pick = Callable[[str, Any], None]
 Later = Callable[[Callable[[], None]], None]
 
@@ -70,62 +68,32 @@ class Viewport:
         self._drag = drag
         self._later = later
         self._objects: dict[str, _Shown] = {}
-        self._planes: dict[str, tuple[Plane, viser.SceneNodeHandle]] = {}
-        self._main_light: RoomLight | None = None
-        self._main_light_node: viser.DirectionalLightHandle | None = None
+        self._planes: dict[str, tuple[Plane, viser.MeshHandle | viser.GlbHandle]] = {}
+        self._ground: viser.GlbHandle | None = None
+        self._ground_of: Plane | None = None
+        self.room_light = RoomLightView(server, shapes)
         self._pictures: Pictures = NO_PICTURES
         """Of planes and objects, as shown last."""
         self._shadow_on_planes: float | bool = SHADOW_ON_PLANES
 
     def light(self, *, low_graphics: bool) -> None:
         """Soft light from all sides; shadows and an environment where the browser can afford them."""
-        scene = self._server.scene
-        scene.configure_default_lights(enabled=True, cast_shadow=not low_graphics)
+        self.room_light.begin(low_graphics=low_graphics)
         if low_graphics:
             self._shadow_on_planes = False  # even without shadows, every plane would be drawn twice for them
-            scene.configure_environment_map(None)
-            scene.add_light_hemisphere(
-                "/lights/sky", sky_color=(255, 252, 246), ground_color=(176, 170, 162), intensity=1.0
-            )
-            scene.add_light_ambient("/lights/around", color=(255, 250, 244), intensity=0.9)
-        else:
-            scene.configure_environment_map("apartment", environment_intensity=0.35)
-            scene.add_light_hemisphere(
-                "/lights/sky", sky_color=(255, 252, 246), ground_color=(176, 170, 162), intensity=0.75
-            )
-            scene.add_light_ambient("/lights/around", color=(255, 250, 244), intensity=0.55)
-
-    def _show_main_light(self, light: RoomLight | None) -> None:
-        """The photo's main light in place of the usual ones, as far as it is stronger from one side."""
-        if light == self._main_light:
-            return
-        self._main_light = light
-        scene, shadows = self._server.scene, self._shadow_on_planes is not False
-        scene.configure_default_lights(enabled=light is None, cast_shadow=shadows)
-        if self._main_light_node is not None:
-            self._main_light_node.remove()
-            self._main_light_node = None
-        if light is not None:
-            red, green, blue = (round(255 * c) for c in light.colour)
-            away = MAIN_LIGHT_AWAY_M * np.array(light.direction)
-            self._main_light_node = scene.add_light_directional(
-                "/lights/main",
-                color=(red, green, blue),
-                intensity=MAIN_LIGHT_EVEN + MAIN_LIGHT_STRENGTH * light.strength,
-                cast_shadow=shadows,
-                position=(float(away[0]), float(away[1]), float(max(away[2], 1.0))),
-            )
 
     def show(self, scene: Scene, textures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]]) -> None:
         """Make the page show this scene, changing only what differs."""
         self._pictures = textures
         with self._server.atomic():
-            self._show_main_light(scene.light)
             self._show_planes(scene, textures)
+            self._show_ground(scene.architecture.floor)
             for gone in [i for i in self._objects if not scene.has_object(i)]:
                 self._objects.pop(gone).frame.remove()
             for item in scene.objects:
                 self._show_object(item)
+            self.room_light.show(scene, self.node_name)
+            self._receive_shadows()
         self._server.flush()  # ahead of the panels, which take longer
 
     def preview(self, poses: Mapping[str, Pose]) -> None:
@@ -160,7 +128,7 @@ class Viewport:
         return None if shown is None else shown[1].name
 
     def _show_planes(self, scene: Scene, textures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]]) -> None:
-        wanted = {p.id: p for p in scene.architecture.planes}
+        wanted = {p.id: p for p in with_openings(scene).architecture.planes}
         for plane_id, (plane, handle) in list(self._planes.items()):
             if wanted.get(plane_id) != plane:
                 handle.remove()
@@ -170,7 +138,31 @@ class Viewport:
                 picture = textures.get(plane.texture) if plane.texture is not None else None
                 self._planes[plane_id] = (plane, self._add_plane(plane, picture))
 
-    def _add_plane(self, plane: Plane, texture: UInt8[np.ndarray, "h w 3"] | None) -> viser.SceneNodeHandle:
+    def _show_ground(self, floor: Plane | None) -> None:
+        """The room's soft shadow, where the browser can afford it."""
+        if self._shadow_on_planes is False or floor is self._ground_of or floor == self._ground_of:
+            return
+        if self._ground is not None:
+            self._ground.remove()
+            self._ground = None
+        self._ground_of = floor
+        if floor is not None:
+            from diorama_app.viewport.ground import ground_glb  # OpenCV; opening a project does without it
+
+            self._ground = self._server.scene.add_glb(
+                "/ground", ground_glb(floor), cast_shadow=False, receive_shadow=False
+            )
+
+    def _receive_shadows(self) -> None:
+        """Planes are darkened a little by soft light that is held off; the sun they receive in full or not at all."""
+        wanted = True if self.room_light.casts_sun else self._shadow_on_planes
+        for _, handle in self._planes.values():
+            if handle.receive_shadow is not wanted:
+                handle.receive_shadow = wanted
+
+    def _add_plane(
+        self, plane: Plane, texture: UInt8[np.ndarray, "h w 3"] | None
+    ) -> viser.MeshHandle | viser.GlbHandle:
         name = self._fresh_name("/room")
         if texture is not None:
             return self._server.scene.add_glb(
@@ -247,4 +239,4 @@ class Viewport:
 
 def _appearance(item: SceneObject) -> Appearance:
     scale = relative_scale(item.pose.scale)
-    return (item.shape_id, item.colour, item.finish, item.shown_photo_materials, scale)
+    return (item.shape_id, item.colour, item.finish, item.shown_photo_materials, scale, item.open_share)

@@ -47,10 +47,25 @@ STYLE = """
 .dio .fields { display: grid; grid-template-columns: repeat(3, 1fr); gap: 4px 6px; margin-bottom: 4px; }
 .dio .fields label { font-size: 11px; color: var(--dim); min-width: 0; }
 .dio .fields input, .dio .fields select { display: block; width: 100%; font-size: 13px; padding: 4px 6px; }
+.dio .fields.four { grid-template-columns: repeat(4, 1fr); }
 .dio .bar { display: flex; gap: 4px; flex-wrap: wrap; margin-bottom: 6px; }
 .dio .bar button { flex: 1 1 auto; white-space: nowrap; padding: 5px 8px; }
 .dio .bar button:only-child { flex: 0 1 auto; }
+.dio .three { display: grid; grid-template-columns: repeat(3, 1fr); gap: 4px; margin-bottom: 6px; }
+.dio .three button { padding: 4px 5px; font-size: 12px; }
 .dio .tight button { padding: 4px 5px; font-size: 12px; }
+.dio .one-row { flex-wrap: nowrap; gap: 3px; }
+.dio .one-row button { padding: 4px 2px; }
+.dio .wide button { flex: 1 1 100% !important; padding: 7px 8px; }
+.dio .switch { display: flex; gap: 9px; width: 100%; border-color: transparent; background: transparent;
+  padding: 3px 2px; text-align: left; line-height: 1.25; }
+.dio .switch i { flex: none; width: 26px; height: 16px; margin-top: 1px; border-radius: 8px; background: #8a94a3;
+  position: relative; }
+.dio .switch i::after { content: ""; position: absolute; left: 2px; top: 2px; width: 12px; height: 12px;
+  border-radius: 50%; background: #fff; transition: left .12s; }
+.dio .switch[aria-checked=true] i { background: var(--accent); }
+.dio .switch[aria-checked=true] i::after { left: 12px; }
+.dio .switch small { display: block; font-size: 11.5px; color: var(--dim); }
 .dio .lead { align-self: center; margin-right: 4px; }
 .dio .row { display: flex; align-items: center; gap: 4px; border-radius: 6px; padding: 2px 4px; cursor: pointer; }
 .dio .row:hover { background: var(--hover); }
@@ -67,16 +82,29 @@ STYLE = """
 .dio .chip.bad { background: transparent; border-color: currentColor; }
 .dio .tree { border-left: 1px solid var(--line); margin-left: 9px; padding-left: 4px; }
 .dio .grid { display: grid; grid-template-columns: repeat(3, 1fr); gap: 6px; }
-.dio .tile { display: block; text-align: left; padding: 4px; border-radius: 8px; overflow: hidden; }
+.dio .grid.two { grid-template-columns: repeat(2, 1fr); }
+.dio .tile { display: block; text-align: left; padding: 4px; border-radius: 8px; overflow: clip; min-width: 0; }
 .dio div.tile { border: 1px solid var(--line); }
 .dio .tile.on { background: var(--on); border-color: #ff7a1a; color: inherit; }
 .dio .tile img, .dio .tile .blank { width: 100%; aspect-ratio: 1; object-fit: contain; display: block;
   border-radius: 5px; background: var(--tile); }
+.dio div.tile { position: relative; }
+.dio .tile .star { position: absolute; top: 5px; right: 5px; padding: 1px 5px; line-height: 1.2; border-radius: 6px; }
+.dio .tile .star[aria-pressed=true] { color: #b45309; }
+:root[data-mantine-color-scheme="dark"] .dio .tile .star[aria-pressed=true] { color: #ffb35c; }
+.dio .filters { display: grid; gap: 4px; grid-template-columns: 1fr 1fr; margin-bottom: 6px; }
+.dio .filters select:first-child { grid-column: 1 / 3; }
 .dio .tile .bar { flex-wrap: nowrap; gap: 3px; }
 .dio .tile .bar button { padding: 2px 3px; font-size: 11.5px; }
 .dio .tile b { display: block; font-size: 12px; font-weight: 500; line-height: 1.25; height: 2.5em; overflow: hidden;
   margin-top: 4px; }
 .dio .tile small { display: block; font-size: 11px; color: var(--dim); white-space: nowrap; overflow: hidden; }
+.dio .sample { display: block; width: 100%; aspect-ratio: 4 / 3; border-radius: 5px; background-size: cover; }
+.dio .swatches { display: flex; flex-wrap: wrap; gap: 4px; margin-bottom: 6px; }
+.dio .swatches button { padding: 2px; border-radius: 50%; line-height: 0; }
+.dio .swatches button.on { background: transparent; border-color: #ff7a1a; box-shadow: 0 0 0 1px #ff7a1a; }
+.dio .swatch { display: block; width: 22px; height: 22px; border-radius: 50%; box-shadow: inset 0 0 0 1px #0002; }
+.dio input[type=color] { height: 29px; padding: 2px 3px; }
 .dio table { width: 100%; border-collapse: collapse; font-size: 12px; }
 .dio td { padding: 2px 0; vertical-align: top; } .dio td:last-child { text-align: right; }
 .dio kbd { font: inherit; font-size: 11px; border: 1px solid var(--line); border-bottom-width: 2px; border-radius: 4px;
@@ -104,8 +132,6 @@ STYLE = """
 .mantine-Paper-root:has(> .mantine-Paper-root + [aria-hidden=true]) { border-color: transparent;
   border-top-color: var(--mantine-color-default-border); margin-bottom: 0 !important; }
 .mantine-Paper-root:has(> .mantine-Paper-root + [aria-hidden=true]) > :last-child > div { padding: 2px; }
-canvas[data-engine] { background: linear-gradient(#f3f5f8, #dfe4eb); }
-:root[data-mantine-color-scheme="dark"] canvas[data-engine] { background: linear-gradient(#2a2f37, #1c2026); }
 </style>
 """
 
@@ -191,7 +217,8 @@ class LiveHtml:
             on_action: told what is done to it, from viser's event loop.
             floating: a name of its own lets it float over the page instead of standing in the panel.
         """
-        self._body = ""
+        self._body: str | None = None if floating else ""
+        """None: nothing was drawn yet, and what an earlier connection left floating over the page goes."""
         self._floating = floating
         self._count = 0
         self._done = 0
@@ -247,13 +274,16 @@ class LiveHtml:
             if "data-change" in body or "treeitem" in body
             else ""
         )
-        self._handle.content = self._frame.replace("%s", body + back, 1) if body else ""
+        if again:
+            self._count += 1  # the page draws only what differs
+        mark = f"<!--{self._count}-->" if self._count else ""
+        self._handle.content = mark + self._frame.replace("%s", body + back, 1) if body else ""
         self._handle.visible = bool(body)
 
     @property
     def body(self) -> str:
         """What is drawn now."""
-        return self._body
+        return self._body or ""
 
 
 def run_once(script: str) -> str:
@@ -271,6 +301,13 @@ def button(label: str, do: str, arg: object = "", *, title: str = "", on: bool =
     """A button whose click is the action `do` with `arg`; the label is HTML already (icons), the rest is escaped."""
     attributes = f'type="button" data-do="{text(do)}" data-arg="{text(arg)}" title="{text(title)}"'
     return f'<button class="{"on" if on else ""}" {attributes} {"disabled" if disabled else ""}>{label}</button>'
+
+
+def switch(name: str, hint: str, arg: object, *, on: bool = False, disabled: bool = False) -> str:
+    """A name with its explanation that is switched on and off; a click is the action `switch` with `arg`."""
+    attributes = f'type="button" role="switch" aria-checked="{str(on).lower()}" aria-label="{text(name)}"'
+    attributes += f' title="{text(hint)}" data-do="switch" data-arg="{text(arg)}" {"disabled" if disabled else ""}'
+    return f'<button class="switch" {attributes}><i></i><span>{text(name)}<small>{text(hint)}</small></span></button>'
 
 
 def _read_actions(value: str) -> list[tuple[int, Action]]:

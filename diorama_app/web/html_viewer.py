@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 import viser
 
+from diorama_app.web.lights import add_even_light, add_main_light
 from diorama_app.web.viser_adapter import stop_server
 from diorama_core.errors import UnavailableError
 from diorama_core.export.files import write_whole
@@ -30,6 +31,8 @@ from diorama_core.scene.types import Camera
 Y_UP_TO_WORLD = (float(np.sqrt(0.5)), float(np.sqrt(0.5)), 0.0, 0.0)
 """Turns a GLB (+Y up) into the world (+Z up), as a quaternion w, x, y, z."""
 NOTICE = "<!-- Viewer: viser (https://viser.studio), Apache License 2.0. Scene: Diorama. -->"
+BACKGROUND = "<style>canvas[data-engine] { background: linear-gradient(#f3f5f8, #dfe4eb); }</style>"
+"""As in the editor: a white room stands out from it."""
 OVERVIEW = np.array([0.45, 0.75, -0.48])
 """Direction of view where there is no photo camera."""
 
@@ -56,22 +59,22 @@ def write_html(scene: ExportScene, path: Path, progress: Progress | None = None)
 def _seen_from_outside(scene: ExportScene) -> ExportScene:
     """The scene with the inner faces of its planes only, so that one looks into the room from every side.
 
-    Its lamps and windows are left to the viewer's own even light: photos on the walls hold theirs already.
+    It is lit by the viewer, as in the editor: lights of the file are in physical units, which would be far too bright.
     """
     keys = {p.mesh for p in scene.planes}
     meshes = {k: replace(m, surfaces=m.surfaces[:1]) if k in keys else m for k, m in scene.meshes.items()}
-    return replace(scene, meshes=meshes, lights=())
+    return replace(scene, meshes=meshes, lights=(), scene=replace(scene.scene, light=None))
 
 
 def _page(glb: bytes, scene: ExportScene) -> str:
     with _quiet_server() as server:
         server.scene.set_up_direction("+z")
         server.scene.world_axes.visible = False
-        server.scene.configure_default_lights(enabled=True, cast_shadow=False)
-        server.scene.add_light_hemisphere(
-            "/lights/sky", sky_color=(255, 252, 246), ground_color=(176, 170, 162), intensity=1.0
-        )
-        server.scene.add_light_ambient("/lights/around", color=(255, 250, 244), intensity=0.9)
+        light = scene.scene.light
+        server.scene.configure_default_lights(enabled=light is None, cast_shadow=False)
+        add_even_light(server.scene, sky=1.0, around=0.9)
+        if light is not None:
+            add_main_light(server.scene, light, cast_shadow=False)
         server.scene.add_glb("/scene", glb, wxyz=Y_UP_TO_WORLD, cast_shadow=False, receive_shadow=False)
         camera = scene.camera or _overview(scene)
         T = camera.T_world_camera
@@ -85,7 +88,7 @@ def _page(glb: bytes, scene: ExportScene) -> str:
             raise UnavailableError("viser's web client is missing; install viser again from its wheel") from error
     title = html.escape(scene.name)
     page = re.sub(r"<title>.*?</title>", f"<title>{title}</title>", page, count=1, flags=re.DOTALL)
-    return page.replace("<head>", f"<head>{NOTICE}", 1)
+    return page.replace("<head>", f"<head>{NOTICE}{BACKGROUND}", 1)
 
 
 @contextlib.contextmanager

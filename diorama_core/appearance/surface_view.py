@@ -8,9 +8,10 @@ import numpy as np
 import trimesh
 from jaxtyping import Bool, Float, Float32, Int8, Int32
 
+from diorama_core.geometry.vectors import face_normals, facing
 from diorama_core.library.photo_materials import metric_uv, with_own_corners
 from diorama_core.library.slots import Slot, placed_vertices
-from diorama_core.render.raycast import Caster, PinholeView, face_normals, facing
+from diorama_core.render.raycast import Caster, PinholeView
 from diorama_core.scene.types import Camera, Pose
 
 MAX_PIXELS = 90_000

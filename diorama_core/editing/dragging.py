@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.editing.placing import Place, fits, hits_along, inside, places_of, to_wall
+from diorama_core.editing.placing import Place, fits, hits_along, inside, places_of, to_wall, within_wall
 from diorama_core.errors import EditRefused
 from diorama_core.layout.feasible.local import DragSolver
 from diorama_core.layout.problem.supports import Surface, plane_surface
@@ -159,7 +159,9 @@ class Slide:
         position = point + offset
         outward = hit.place.surface
         position = _clamped_to(outward, position, item)
-        return Pose(turn @ item.pose.R_world_object, position, item.pose.scale), hit.place
+        pose = Pose(turn @ item.pose.R_world_object, position, item.pose.scale)
+        wall = self.scene.plane(hit.place.parent) if self.scene.has_plane(hit.place.parent) else None
+        return (pose if wall is None else within_wall(replace(item, pose=pose), wall)), hit.place
 
     def _start_surface(self) -> Surface:
         edge = self.scene.support_of(self.item.id)

@@ -21,6 +21,9 @@ UPWARD = 0.7
 """A surface is a place to stand on when its normal's z is at least this."""
 FITS_SHARE = 0.5
 """At least this share of a footprint's corners must be over a surface for an object to be put there."""
+DOOR = "door"
+HANGING_HEIGHT_M = 1.5
+"""Of the middle of what is hung on a wall, above the floor."""
 TALLER_M = 0.01
 WALL_MAGNET_M = 0.09
 WALL_MAGNET_RAD = float(np.radians(12.0))
@@ -206,7 +209,58 @@ def insertion(scene: Scene, shape: Shape, object_id: str, hit: Hit, yaw_rad: flo
         pose = Pose.upright(hit.point + np.array([0.0, 0.0, shape.size_m[2] / 2]), yaw_rad)
     else:
         pose = _hung(replace(item, pose=Pose.upright(hit.point + n * 0.01, yaw_rad)), hit.place.surface)
+        if scene.has_plane(hit.place.parent):
+            pose = within_wall(replace(item, pose=pose), scene.plane(hit.place.parent))
     return replace(item, pose=pose), hit.place.edge(object_id)
+
+
+def within_wall(item: SceneObject, wall: Plane) -> Pose:
+    """The pose of what hangs on a wall, inside the wall's height; doors stand at its foot. Ceilings change nothing."""
+    if abs(float(wall.normal[2])) > UPWARD:
+        return item.pose
+    low, high = (float(e) for e in (wall.polygon[:, 2].min(), wall.polygon[:, 2].max()))
+    half, z = float(item.size_m[2]) / 2, float(item.pose.position[2])
+    level = low + half if item.category == DOOR or high - low < 2 * half else float(np.clip(z, low + half, high - half))
+    return item.pose.moved((0.0, 0.0, level - z))
+
+
+def spot_in_view(
+    scene: Scene, shape: Shape, eye: Float[np.ndarray, "3"], ahead: Float[np.ndarray, "3"], *, on_ceiling: bool
+) -> Hit | None:
+    """Where something that hangs is meant when only a view is given: the wall or ceiling in the middle of it.
+
+    Things on walls hang at eye height. Where the view meets no such plane, the widest one that faces the eye is taken.
+
+    Args:
+        scene: the room.
+        shape: what is hung.
+        eye: where one looks from.
+        ahead: direction of the view.
+        on_ceiling: whether it hangs from the ceiling rather than on a wall.
+    """
+    planes = [p for p in scene.architecture.by_role("ceiling" if on_ceiling else "wall") if float(p.normal @ ahead) < 0]
+    planes = planes or list(scene.architecture.by_role("ceiling" if on_ceiling else "wall"))
+    if not planes:
+        return None
+    places = [Place(plane_surface(p), p.id, of_object=False) for p in planes]
+    hits = hits_along(eye, ahead, places)
+    if hits:
+        place, point = hits[0].place, hits[0].point
+    else:
+        place = max(zip(places, planes, strict=True), key=lambda pair: _width(pair[1]))[0]
+        point = scene.plane(place.parent).centre
+    if not on_ceiling:
+        foot = float(scene.plane(place.parent).polygon[:, 2].min())
+        point = np.array([point[0], point[1], foot + max(HANGING_HEIGHT_M, shape.size_m[2] / 2)])
+    return Hit(place, inside(place.surface, point), float(np.linalg.norm(point - eye)))
+
+
+def _width(plane: Plane) -> float:
+    return float(np.ptp(plane.polygon[:, :2], axis=0).max())
+
+
+FARTHEST_M = 5.0
+"""A free place is looked for so far around the place in view."""
 
 
 def free_spot(scene: Scene, shape: Shape, target_point: Float[np.ndarray, "3"] | None) -> tuple[float, float]:
@@ -214,15 +268,17 @@ def free_spot(scene: Scene, shape: Shape, target_point: Float[np.ndarray, "3"] |
     floor = scene.architecture.floor
     middle = np.zeros(2) if floor is None else floor.centre[:2]
     wanted = middle if target_point is None else np.asarray(target_point[:2], dtype=np.float64)
-    if floor is not None:
-        low, high = floor.polygon[:, :2].min(axis=0) + 0.3, floor.polygon[:, :2].max(axis=0) - 0.3
-        wanted = np.where(low < high, np.clip(wanted, low, high), middle)
     radius = max(shape.size_m[:2]) / 2
+    low, high = np.full(2, -np.inf), np.full(2, np.inf)
+    if floor is not None:
+        low, high = floor.polygon[:, :2].min(axis=0) + radius, floor.polygon[:, :2].max(axis=0) - radius
+        wanted = np.where(low < high, np.clip(wanted, low, high), middle)
     taken = [(o.pose.position[:2], float(max(o.size_m[:2])) / 2) for o in scene.objects if o.category != "rug"]
-    for reach in np.arange(0.0, 3.0, 0.25):
+    for reach in np.arange(0.0, FARTHEST_M, 0.25):
         for angle in np.arange(0.0, 2 * np.pi, np.pi / 6):
             spot = wanted + reach * np.array([np.cos(angle), np.sin(angle)])
-            if all(np.linalg.norm(spot - place) > radius + other for place, other in taken):
+            inside = reach == 0.0 or bool(((spot >= low) & (spot <= high)).all())
+            if inside and all(np.linalg.norm(spot - place) > radius + other for place, other in taken):
                 return float(spot[0]), float(spot[1])
     return float(wanted[0]), float(wanted[1])
 

@@ -10,12 +10,16 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from diorama_core.errors import ExportError
 from diorama_core.export.blender import run_in_blender
 from diorama_core.export.cycles import room_lights
 from diorama_core.export.files import whole_file
 from diorama_core.export.gathering import ExportScene
 from diorama_core.export.gltf import write_gathered
 from diorama_core.progress import Progress
+
+SEEK_TABLE_END = bytes.fromhex("b1ea928f")
+"""Last four bytes of the seekable Zstandard files that Blender writes."""
 
 
 def write_blend(scene: ExportScene, path: Path, progress: Progress | None = None) -> None:
@@ -44,4 +48,15 @@ def write_blend(scene: ExportScene, path: Path, progress: Progress | None = None
             job["photo"] = str(folder / "photo.png")
         progress.report(0.3, "opening the scene in Blender")
         run_in_blender(worker, job, name="Blender", progress=progress.part(0.3, 1.0))
+        check_whole(folder / "room.blend", path)
         shutil.copyfile(folder / "room.blend", temporary)
+
+
+def check_whole(blend: Path, path: Path) -> None:
+    """Blender says nothing where a disk is too full for its file: the table at the end of a compressed one is missing.
+
+    Raises:
+        ExportError: the file, which was to become `path`, is not whole.
+    """
+    if not blend.is_file() or not blend.read_bytes().endswith(SEEK_TABLE_END):
+        raise ExportError(f"cannot write {path}: Blender's file is not whole; free some space or choose another disk")

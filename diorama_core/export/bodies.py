@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.export.gathering import ExportObject
 from diorama_core.export.limbs import ExportLimb
 from diorama_core.export.physics import Inertia
+from diorama_core.geometry.cross import cross
 from diorama_core.library import taxonomy
 from diorama_core.scene.types import Plane
 
@@ -23,9 +27,11 @@ class MovingPart:
 
     limb: ExportLimb
     parts: tuple[Points, ...]
-    """Corners of convex bodies in the object's rigid frame, scale applied, metres."""
+    """Corners of convex bodies in the limb's frame, scale applied, metres."""
     inertia: Inertia
-    """In the object's rigid frame."""
+    """In the limb's frame."""
+    friction: float
+    """Of its joint, in newtons or newton metres."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +83,17 @@ class PhysicalScene:
     notes: tuple[str, ...] = ()
     """What was decided that a reader of the file should know."""
 
+    def loose_pairs(self, name: Callable[[RigidBody, ExportLimb | None], str]) -> Iterator[tuple[str, str]]:
+        """Names of the bodies that may interpenetrate: every part of both objects against every part of the other.
+
+        Args:
+            name: What a file calls an object (None), or a moving part of it.
+        """
+        by_id = {b.node.id: b for b in self.bodies}
+        for pair in self.without_contact:
+            bodies = (by_id[i] for i in pair)
+            yield from itertools.product(*([name(b, k) for k in (None, *(m.limb for m in b.moving))] for b in bodies))
+
 
 def is_soft(node: ExportObject) -> bool:
     """Whether an object gives way where it lies."""
@@ -89,3 +106,31 @@ def hull_volume(points: Points) -> float:
         return float(ConvexHull(points).volume)
     except (QhullError, ValueError):
         return 0.0
+
+
+def hull_faces(points: Points) -> tuple[Points, Int[np.ndarray, "m 3"]]:
+    """Vertices and outward triangles of a convex body.
+
+    Which corners a triangle joins does not change when a body is moved or scaled along the axes, so bodies that are
+    alike but for that (all boxes, and a shape's parts in each of its objects) share one hull.
+    """
+    low, size = points.min(axis=0), np.ptp(points, axis=0)
+    form = np.round((points - low) / np.where(size > 0, size, 1.0), 7) + 0.0
+    used, faces = _hull_of_form(form.tobytes())
+    return points[used], faces
+
+
+@lru_cache(maxsize=65536)
+def _hull_of_form(form: bytes) -> tuple[Int[np.ndarray, " n"], Int[np.ndarray, "m 3"]]:
+    """Rows that are corners of the hull of the points in these bytes, and its outward triangles among them."""
+    points = np.frombuffer(form, dtype=np.float64).reshape(-1, 3)
+    try:
+        hull = ConvexHull(points)
+    except (QhullError, ValueError):
+        return np.arange(len(points)), np.array([[0, 1, 2]])
+    faces = np.array(hull.simplices)
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    inward = np.einsum("ij,ij->i", cross(b - a, c - a), hull.equations[:, :3]) < 0
+    faces[inward] = faces[inward][:, ::-1]
+    used = np.unique(faces)
+    return used, np.searchsorted(used, faces)

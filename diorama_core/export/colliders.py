@@ -17,9 +17,9 @@ from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.export.bodies import MovingPart, PhysicalScene, Points, RigidBody, StaticSlab, is_soft
 from diorama_core.export.gathering import ExportObject, ExportScene
-from diorama_core.export.limbs import limb_parts
+from diorama_core.export.limbs import ExportLimb, limb_parts
 from diorama_core.export.overlaps import Cuts, cut
-from diorama_core.export.physics import Inertia, friction_of, inertia_of, plausible_mass_kg
+from diorama_core.export.physics import GRAVITY, Inertia, friction_of, inertia_of, plausible_mass_kg
 from diorama_core.geometry.convex import ConvexPart
 from diorama_core.geometry.planes import plane_axes
 from diorama_core.layout.problem.parts import parts_of_shape
@@ -36,6 +36,10 @@ FOOT_M = 0.006
 NEAR_TOP_M = 0.012
 """Corners of a carrier this near to the level of a foot belong to the face that holds it up."""
 MIN_HOLD_M2 = 1e-5
+LEAST_JOINT_FRICTION = 0.5
+"""Newtons or newton metres."""
+HOLD = 1.5
+"""Joints that stand open hold this many times the weight on them."""
 BALANCE_SHARE = 0.7
 """Centres of mass lie within the foot's outline shrunk to this."""
 
@@ -75,7 +79,7 @@ def balanced(body: RigidBody, carrier: RigidBody | None = None) -> RigidBody:
     total = body.mass_kg + sum(m.inertia.mass_kg for m in body.moving)
     weighed = [
         (body.inertia.mass_kg, body.inertia.centre),
-        *((m.inertia.mass_kg, m.inertia.centre) for m in body.moving),
+        *((m.inertia.mass_kg, _placed(m.limb.T_object_limb, m.inertia.centre)) for m in body.moving),
     ]
     T = body.node.T_world
     centre = T[:3, :3] @ sum((m * c for m, c in weighed), np.zeros(3)) / total + T[:3, 3]
@@ -86,7 +90,12 @@ def balanced(body: RigidBody, carrier: RigidBody | None = None) -> RigidBody:
 
 def _world_parts(body: RigidBody) -> list[Points]:
     T = body.node.T_world
-    return [p @ T[:3, :3].T + T[:3, 3] for p in (*body.parts, *(q for m in body.moving for q in m.parts))]
+    moving = [_placed(T @ m.limb.T_object_limb, q) for m in body.moving for q in m.parts]
+    return [*(_placed(T, p) for p in body.parts), *moving]
+
+
+def _placed(T: Float[np.ndarray, "4 4"], points: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
+    return np.asarray(points @ T[:3, :3].T + T[:3, 3])
 
 
 def _shared_outline(foot: Float[np.ndarray, "n 2"], top: Float[np.ndarray, "k 2"]) -> Float[np.ndarray, "m 2"]:
@@ -145,7 +154,13 @@ def _body(gathered: ExportScene, node: ExportObject) -> RigidBody:
     weights = _weights(gathered, node, record)
     half = np.asarray(item.size_m) / 2
     moving = tuple(
-        MovingPart(limb, _scaled(limb_parts(shape.id, limb.number), node), weights[limb.number]) for limb in node.limbs
+        MovingPart(
+            limb,
+            _scaled(limb_parts(shape.id, limb.number), node),
+            weights[limb.number],
+            joint_friction(limb, weights[limb.number], node.T_world),
+        )
+        for limb in node.limbs
     )
     if node.limbs:
         parts = tuple(_boxed(p, half) for p in _scaled(limb_parts(shape.id, None), node))
@@ -156,6 +171,17 @@ def _body(gathered: ExportScene, node: ExportObject) -> RigidBody:
     body = RigidBody(node, parts, weights[None], friction_of(surfaces), True, moving=moving)
     carrier = _carrier(gathered, node)
     return body if carrier is _STANDING else _welded(body, carrier)
+
+
+def joint_friction(limb: ExportLimb, inertia: Inertia, T_world: Float[np.ndarray, "4 4"]) -> float:
+    """What a joint resists with, newtons or newton metres: what stands open is held there against its weight."""
+    if limb.opened == 0.0:
+        return LEAST_JOINT_FRICTION
+    axis, R = T_world[:3, :3] @ limb.axis, T_world[:3, :3]
+    weight = np.array([0.0, 0.0, -GRAVITY * inertia.mass_kg])
+    lever = R @ (_placed(limb.T_object_limb, inertia.centre) - limb.origin)
+    load = weight if limb.kind == "slide" else np.cross(lever, weight)
+    return max(LEAST_JOINT_FRICTION, HOLD * abs(float(axis @ load)))
 
 
 def _scaled(parts: Iterable[ConvexPart], node: ExportObject) -> tuple[Points, ...]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import os
+import secrets
 import shutil
 import tempfile
 import time
@@ -17,6 +19,7 @@ from diorama_core.io.atomic import LEFTOVER_S
 PART = ".diorama-export-"
 """How the names of temporary files begin; what a program that was killed left is removed by a later one."""
 
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 FAST_DEFLATE = 1
 """Level of compression: higher ones take several times as long for files a tenth smaller."""
 Entry = tuple[str, bytes]
@@ -38,9 +41,9 @@ def whole_file(path: Path, suffix: str | None = None) -> Iterator[Path]:
     temporary: Path | None = None
     _remove_leftovers(path.parent)
     try:
-        handle, name = tempfile.mkstemp(prefix=PART, suffix=suffix or path.suffix, dir=path.parent)
-        os.close(handle)
-        temporary = Path(name)
+        beside = path.parent / f"{PART}{secrets.token_hex(8)}{suffix or path.suffix}"
+        os.close(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))  # the umask decides
+        temporary = beside
         yield temporary
         _settle(temporary)
         os.replace(temporary, path)
@@ -116,9 +119,11 @@ def _remove_leftovers(folder: Path) -> None:
 def _settle(path: Path) -> None:
     with path.open("rb") as file:
         os.fsync(file.fileno())
-    os.chmod(path, 0o644)
 
 
 def _cannot_write(path: Path, error: OSError) -> ExportError:
     reason = error.strerror or str(error)
-    return ExportError(f"cannot write {path}: {reason}; choose a folder that exists and is writable")
+    remedy = (
+        "free some space or choose another disk" if error.errno in _FULL else "choose a writable folder that exists"
+    )
+    return ExportError(f"cannot write {path}: {reason}; {remedy}")

@@ -81,7 +81,8 @@ def _function(place: str) -> Callable[..., Any]:
     return cast("Callable[..., Any]", getattr(importlib.import_module(full), function))
 
 
-_USD_KEEPS = "materials, textures, camera, lights, supports, colliders, masses, joints, the scene itself"
+_WHOLE = "and the whole scene: it opens here again"
+_USD_KEEPS = f"materials, textures, camera, lights, supports, colliders, masses, joints, {_WHOLE}"
 _SIM_KEEPS = "visual meshes with materials, convex colliders, masses, friction, joints"
 _PLAN_KEEPS = "walls, openings, footprints, names, lengths"
 
@@ -90,7 +91,7 @@ _TABLE = (
         "glb",
         "glTF binary",
         (".glb",),
-        "materials, textures, camera, lights, supports, the scene itself",
+        f"materials, textures, camera, lights, supports, {_WHOLE}",
         "gltf:write_gathered",
     ),
     Format("usda", "USD text", (".usda",), _USD_KEEPS, "usd:write_usda", "usd", "pxr", joints=True),

@@ -21,6 +21,8 @@ from diorama_core.export.names import Labels
 from diorama_core.export.photo_textures import MAX_PHOTO_TEXTURES_PX, bounded_pictures
 from diorama_core.export.pictures import Picture, photo_text
 from diorama_core.export.sharing import SharedAppearance
+from diorama_core.geometry.openings import with_openings
+from diorama_core.library.opening import OpenedShapes
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.stretch import relative_scale
 from diorama_core.progress import Progress
@@ -209,7 +211,7 @@ def gather(
         if progress is not None:
             progress.report(number / len(order), f"reading {item.label}")
         scale = relative_scale(item.pose.scale)
-        paint = (item.shape_id, item.colour, item.finish, item.shown_photo_materials, scale)
+        paint = (item.shape_id, item.colour, item.finish, item.shown_photo_materials, scale, item.open_share)
         if paint not in painted:
             made = _shape_meshes(library, item, options, textures, shared, labels)
             painted[paint] = {number: mesh.key for number, mesh in made.items()}
@@ -243,7 +245,7 @@ def _planes(
     scene: Scene, options: ExportOptions, textures: Mapping[str, Picture], shared: SharedAppearance, labels: Labels
 ) -> tuple[list[ExportPlane], dict[str, ExportMesh]]:
     found, meshes = [], {}
-    for plane in scene.architecture.planes if options.only is None else ():
+    for plane in with_openings(scene).architecture.planes if options.only is None else ():
         if plane.role == "ceiling" and not options.ceiling:
             continue
         picture = textures.get(plane.texture) if plane.texture else None
@@ -265,9 +267,11 @@ def _shape_meshes(
 ) -> dict[int | None, ExportMesh]:
     """The shape's mesh under None; with joints, what each of them moves under its number."""
     pieces = articulation_of(library, item.shape_id) if options.joints else None
-    shown: PartsSource = library if pieces is None else OneShape(pieces)
+    scale = relative_scale(item.pose.scale)
+    as_it_stands: PartsSource = library if item.open_share == 0.0 else OpenedShapes(library, item.open_share, scale)
+    shown = as_it_stands if pieces is None else OneShape(pieces)
     paint = (item.colour, item.finish, item.shown_photo_materials)
-    surfaces = shape_surfaces(shown, item.shape_id, *paint, textures, relative_scale(item.pose.scale))
+    surfaces = shape_surfaces(shown, item.shape_id, *paint, textures, scale)
     grouped = {None: surfaces} if pieces is None else by_joint(surfaces)
     made = {}
     for number, surfaces in grouped.items():

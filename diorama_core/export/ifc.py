@@ -6,12 +6,12 @@ id, category, shape and supporter.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from diorama_core.export.files import whole_file
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene
@@ -37,6 +37,8 @@ CLASSES = {
 """Classes of categories; all others are furniture."""
 THROUGH_M = 0.05
 """Openings reach this far through their wall on both sides."""
+ONE_POINT, ONE_TRIANGLE = "((0.,0.,0.))", "((1,2,3))"
+"""What IfcOpenShell is told of long lists, and writes: it takes a microsecond and more for every number."""
 
 
 def write_ifc(scene: ExportScene, path: Path, progress: Progress | None = None) -> None:
@@ -46,9 +48,9 @@ def write_ifc(scene: ExportScene, path: Path, progress: Progress | None = None) 
         ExportError: when it cannot be written.
         Cancelled: when asked to stop; what was there stays.
     """
-    model = _Builder(scene, progress or Progress()).built()
-    with whole_file(Path(path)) as temporary:
-        model.write(str(temporary))
+    builder = _Builder(scene, progress or Progress())
+    with whole_file(Path(path)) as temporary, temporary.open("w", encoding="ascii", newline="\n") as stream:
+        stream.writelines(builder.lines())
 
 
 class _Builder:
@@ -64,10 +66,20 @@ class _Builder:
         self._origin = self._frame(np.eye(4))
         self._context, self._body = self._contexts()
         self._maps: dict[str, Any] = {}
+        self._lists: dict[str, Float[np.ndarray, "n 3"] | Int[np.ndarray, "m 3"]] = {}
         self._styles: dict[int, Any] = {}
 
-    def built(self) -> Any:
-        """The whole model."""
+    def lines(self) -> Iterator[str]:
+        """The whole model as text, its long lists written here."""
+        for line in self._built().to_string().splitlines(keepends=True):
+            rows = self._lists.get(line.partition("=")[0])
+            if rows is None:
+                yield line
+            else:
+                whole = np.issubdtype(rows.dtype, np.integer)
+                yield line.replace(ONE_TRIANGLE if whole else ONE_POINT, _list_text(rows, "%d" if whole else "%.6f"))
+
+    def _built(self) -> Any:
         storey = self._storey()
         walls = wall_lines([p.plane for p in self._scene.planes], self._items, self._scene.scene)
         elements: list[Any] = []
@@ -229,9 +241,9 @@ class _Builder:
         if mesh.key not in self._maps:
             sets = []
             for surface in mesh.surfaces:
-                points = self._add("IfcCartesianPointList3D", surface.vertices.astype(float).tolist())
-                corners = (surface.faces.astype(int) + 1).tolist()
-                faces = self._add("IfcTriangulatedFaceSet", Coordinates=points, CoordIndex=corners)
+                points = self._add("IfcCartesianPointList3D", [[0.0, 0.0, 0.0]])
+                faces = self._add("IfcTriangulatedFaceSet", Coordinates=points, CoordIndex=[[1, 2, 3]])
+                self._lists[f"#{points.id()}"], self._lists[f"#{faces.id()}"] = surface.vertices, surface.faces + 1
                 self._style(faces, surface.material)
                 sets.append(faces)
             body = self._add("IfcShapeRepresentation", self._body, "Body", "Tessellation", sets)
@@ -268,6 +280,12 @@ class _Builder:
             self._add("IfcPropertySingleValue", name, None, self._add("IfcLabel", value[:255]), None)
             for name, value in said.items()
         ]
+
+
+def _list_text(rows: Float[np.ndarray, "n 3"] | Int[np.ndarray, "n 3"], number: str) -> str:
+    """Rows of three as ISO 10303-21 writes them."""
+    row = f"({number},{number},{number})"
+    return "(" + ",".join([row] * len(rows)) % tuple(rows.ravel().tolist()) + ")"
 
 
 def _plain(colour_srgb: tuple[float, float, float]) -> Material:

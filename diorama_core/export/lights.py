@@ -1,6 +1,6 @@
 """Light that the objects of a scene give: lamps shine from their bulbs and shades, windows let daylight in.
 
-A photo does not tell how bright a lamp is, so each category has the luminous flux of a usual one.
+Where a person set the time of day, the sun shines too, and of the lamps those that are switched on.
 """
 
 from __future__ import annotations
@@ -12,24 +12,17 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.geometry.sun import daylight
 from diorama_core.render.appearance import Surface
+from diorama_core.render.lamps import LAMP_LUMENS, WARM, lamp_place
 from diorama_core.scene.types import Scene, SceneObject
 
-LAMP_LUMENS: Mapping[str, float] = {
-    "lamp": 450.0,
-    "floor lamp": 800.0,
-    "wall lamp": 400.0,
-    "ceiling lamp": 1100.0,
-    "chandelier": 1600.0,
-    "candle": 12.0,
-}
-"""Luminous flux of a usual lamp of each category; categories that are not listed give no light."""
 WINDOW_LUX = 2000.0
 """Daylight that falls through a window, in lumens per square metre of it."""
 MAIN_LUX = 600.0
 """Of a room's main light at strength 1: that of a bright room."""
-WARM: tuple[float, float, float] = (1.0, 0.78, 0.54)
-"""Linear colour of a bulb of about 3000 K."""
+SUN_LUX = 110_000.0
+"""Of the sun outside the atmosphere, where the time of day is set."""
 DAYLIGHT: tuple[float, float, float] = (0.92, 0.96, 1.0)
 """Linear colour of light from the sky."""
 
@@ -68,10 +61,11 @@ def lights_of(
         objects: The objects that are shown.
         surfaces: What each looks like, by id, in its shape's frame.
     """
-    found = []
+    found, on = [], scene.light_settings.lamps_on
     for item in objects:
         if item.category in LAMP_LUMENS:
-            found.append(_lamp(item, surfaces[item.id]))
+            if on is None or item.id in on:
+                found.append(_lamp(item, surfaces[item.id]))
         elif item.category == "window":
             found.append(_window(scene, item))
     return tuple(found)
@@ -79,7 +73,7 @@ def lights_of(
 
 @dataclass(frozen=True, eq=False)
 class MainLight:
-    """The photo's main light, as a light infinitely far away."""
+    """The sun as a person set it, or else the photo's main light, as a light infinitely far away."""
 
     T_world: Float[np.ndarray, "4 4"]
     """Rigid, in the room's middle; the light shines along its -Z."""
@@ -89,27 +83,33 @@ class MainLight:
 
 
 def main_light_of(scene: Scene) -> MainLight | None:
-    """The room's main light where the photo tells one."""
+    """The sun where a person set the time of day and it is up, else the room's main light where the photo tells one."""
+    settings = scene.light_settings
+    if settings.hour is not None:
+        outside = daylight(settings.hour, settings.north_rad)
+        strongest = float(outside.sun.max())
+        if strongest <= 0.0:
+            return None
+        red, green, blue = (float(c) for c in outside.sun / strongest)
+        return MainLight(_shining_from(outside.direction, scene), SUN_LUX * strongest, (red, green, blue))
     if scene.light is None or scene.light.strength <= 0.0:
         return None
-    z = np.array(scene.light.direction)
+    T = _shining_from(np.array(scene.light.direction), scene)
+    return MainLight(T, MAIN_LUX * scene.light.strength, scene.light.colour)
+
+
+def _shining_from(z: Float[np.ndarray, "3"], scene: Scene) -> Float[np.ndarray, "4 4"]:
     across = np.cross([0.0, 1.0, 0.0] if abs(z[1]) < 0.9 else [1.0, 0.0, 0.0], z)
     T = np.eye(4)
     T[:3, 2], T[:3, 0] = z, across / np.linalg.norm(across)
     T[:3, 1] = np.cross(T[:3, 2], T[:3, 0])
     T[:3, 3] = _middle(scene)
-    return MainLight(T, MAIN_LUX * scene.light.strength, scene.light.colour)
+    return T
 
 
 def _lamp(item: SceneObject, surfaces: tuple[Surface, ...]) -> ExportLight:
-    """Centre of the emissive parts, or of the object without any."""
-    glowing = [s for s in surfaces if any(s.material.emissive)]
-    points = np.concatenate([s.vertices for s in glowing]) if glowing else item.corners_world
-    world = item.pose.apply(points) if glowing else points
-    low, high = world.min(axis=0), world.max(axis=0)
     T = np.eye(4)
-    T[:3, 3] = (low + high) / 2
-    radius = float(np.clip(0.25 * (high - low).min(), 0.005, 0.08))
+    T[:3, 3], radius = lamp_place(item, surfaces)
     return ExportLight("lamp", item.id, T, LAMP_LUMENS[item.category], WARM, radius)
 
 
@@ -122,7 +122,9 @@ def _window(scene: Scene, item: SceneObject) -> ExportLight:
     T[:3, 2], T[:3, 1] = -inward, R[:, 2]
     T[:3, 0] = np.cross(T[:3, 1], T[:3, 2])
     T[:3, 3] = item.pose.position + inward * (depth / 2 + 0.01)
-    return ExportLight("window", item.id, T, WINDOW_LUX * width * height, DAYLIGHT, 0.0, (width, height))
+    settings = scene.light_settings
+    share = 1.0 if settings.hour is None else float(daylight(settings.hour, settings.north_rad).sky.max())
+    return ExportLight("window", item.id, T, share * WINDOW_LUX * width * height, DAYLIGHT, 0.0, (width, height))
 
 
 def _middle(scene: Scene) -> Float[np.ndarray, "3"]:

@@ -9,12 +9,14 @@ from functools import lru_cache
 import numpy as np
 import trimesh
 from jaxtyping import Float
+from scipy.spatial.transform import Rotation
 
 from diorama_core.geometry.convex import ConvexPart
 from diorama_core.layout.problem.parts import parts_of_solids
 from diorama_core.library.furniture.articulation import Articulation, articulation, joint_of
 from diorama_core.library.furniture.joints import Joint, JointKind
 from diorama_core.library.furniture.model import joined
+from diorama_core.library.opening import travel_at
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.render.appearance import Surface
 from diorama_core.scene.types import SceneObject
@@ -24,7 +26,10 @@ BUILT_IN = "built in"
 
 @dataclass(frozen=True, eq=False)
 class ExportLimb:
-    """One moving part of an object, in the object's rigid frame with its scale applied."""
+    """One moving part of an object, in the object's rigid frame with its scale applied.
+
+    Its own frame is that of its object when it is closed. Origin and axis are the same in both.
+    """
 
     name: str
     """"drawer 1", unique within the object."""
@@ -40,6 +45,19 @@ class ExportLimb:
     """Key of its mesh, in the shape's canonical frame at scale 1 like that of its object."""
     number: int
     """Which joint of the shape's articulation it is."""
+    opened: float = 0.0
+    """Where it stands between `lower` and `upper`: radians or metres."""
+
+    @property
+    def T_object_limb(self) -> Float[np.ndarray, "4 4"]:
+        """Its frame in that of its object, as it stands."""
+        out = np.eye(4)
+        if self.kind == "slide":
+            out[:3, 3] = self.opened * self.axis
+            return out
+        out[:3, :3] = Rotation.from_rotvec(self.opened * self.axis).as_matrix()
+        out[:3, 3] = self.origin - out[:3, :3] @ self.origin
+        return out
 
 
 def articulation_of(library: ShapeLibrary, shape_id: str) -> Articulation | None:
@@ -71,6 +89,7 @@ def limb_of(item: SceneObject, joint: Joint, number: int, mesh: str) -> ExportLi
         upper=joint.upper * stretch,
         mesh=mesh,
         number=number,
+        opened=travel_at(joint, item.open_share) * stretch,
     )
 
 

@@ -1,7 +1,8 @@
 """A scene as a list of links with joints, which URDF and SDF both write.
 
 Every object is a link, every moving part of it another; files of meshes are named once. Link frames are the objects'
-rigid frames, moving parts share theirs.
+rigid frames, moving parts share theirs when they are closed. Neither format says how far a joint is open at the start:
+what stands open is placed open, its joint is at zero there, and the limits are what is left on both sides.
 """
 
 from __future__ import annotations
@@ -13,9 +14,8 @@ from typing import Literal
 
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial import ConvexHull, QhullError
 
-from diorama_core.export.bodies import PhysicalScene, Points, RigidBody
+from diorama_core.export.bodies import PhysicalScene, Points, RigidBody, hull_faces
 from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import Entry, companion_folder, write_package
 from diorama_core.export.gathering import ExportMesh, ExportScene, rigid_inverse
@@ -46,6 +46,15 @@ class Link:
     friction: float
     limb: ExportLimb | None = None
     """What moves, for hinges, slides and swivels."""
+    joint_friction: float = 0.0
+    """Newtons or newton metres."""
+
+    @property
+    def limits(self) -> tuple[float, float] | None:
+        """How far the joint goes back and on from where it stands, radians or metres; None without limits."""
+        if self.limb is None or self.limb.kind == "swivel":
+            return None
+        return self.limb.lower - self.limb.opened, self.limb.upper - self.limb.opened
 
 
 def links_of(gathered: ExportScene, physical: PhysicalScene) -> tuple[Link, ...]:
@@ -75,13 +84,14 @@ def links_of(gathered: ExportScene, physical: PhysicalScene) -> tuple[Link, ...]
                     name=f"{node.slug}__{moving.limb.slug}",
                     parent=node.slug,
                     joint=moving.limb.kind,
-                    T_parent=np.eye(4),
+                    T_parent=moving.limb.T_object_limb,
                     mesh=gathered.meshes[moving.limb.mesh],
                     scale=node.scale,
                     parts=moving.parts,
                     inertia=moving.inertia,
                     friction=body.friction,
                     limb=moving.limb,
+                    joint_friction=moving.friction,
                 )
             )
     return tuple(found)
@@ -154,17 +164,3 @@ def mesh_files(
     for owner, parts in owners:
         for number, part in enumerate(parts):
             yield collider_file(folder, owner, number), hull_file(*hull_faces(part))
-
-
-def hull_faces(points: Points) -> tuple[Points, np.ndarray]:
-    """Vertices and outward triangles of a convex body."""
-    try:
-        hull = ConvexHull(points)
-    except (QhullError, ValueError):
-        return points, np.array([[0, 1, 2]])
-    faces = np.array(hull.simplices)
-    a, b, c = (points[faces[:, k]] for k in range(3))
-    inward = np.linalg.det(np.stack([b - a, c - a, hull.equations[:, :3]], axis=1)) < 0
-    faces[inward] = faces[inward][:, ::-1]
-    used = np.unique(faces)
-    return points[used], np.searchsorted(used, faces)

@@ -19,6 +19,7 @@ from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import Entry, companion_folder, write_package
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene, rigid_inverse
 from diorama_core.export.lights import ExportLight, MainLight
+from diorama_core.export.limbs import ExportLimb
 from diorama_core.export.physics import FLOOR_FRICTION, Inertia
 from diorama_core.export.pictures import png_bytes
 from diorama_core.export.wavefront import obj_file
@@ -83,15 +84,19 @@ def mjcf_text(gathered: ExportScene, physical: PhysicalScene, folder: str | None
     writer = _BodyWriter(gathered, assets, below, lights, folder)
     for body in below.get(None, ()):
         writer.write(world, body, np.eye(4))
-    slugs = {b.node.id: b.node.slug for b in physical.bodies}
-    pairs = [(slugs[a], slugs[b]) for a, b in physical.without_contact]
+    pairs = list(physical.loose_pairs(_body_name))
     # A part and the case it sits in touch; MuJoCo knows that by itself only where the case can move.
-    pairs += [(b.node.slug, f"{b.node.slug}__{m.limb.slug}") for b in physical.bodies for m in b.moving]
+    pairs += [(b.node.slug, _body_name(b, m.limb)) for b in physical.bodies for m in b.moving]
     contact = SubElement(root, "contact")
     for first, second in pairs:
         SubElement(contact, "exclude", body1=first, body2=second)
     indent(root)
     return tostring(root, encoding="unicode", xml_declaration=False) + "\n"
+
+
+def _body_name(body: RigidBody, limb: ExportLimb | None) -> str:
+    """What an object, or a moving part of it, is called."""
+    return body.node.slug if limb is None else f"{body.node.slug}__{limb.slug}"
 
 
 class _BodyWriter:
@@ -129,14 +134,18 @@ class _BodyWriter:
             self.write(element, child, node.T_world)
 
     def _limb(self, parent: Element, body: RigidBody, moving: MovingPart) -> None:
-        """A body at the object's own frame, so that its geometry needs no other."""
+        """A body that coincides with its object's frame when closed, so that its geometry needs no other."""
         limb = moving.limb
-        name = f"{body.node.slug}__{limb.slug}"
-        element = SubElement(parent, "body", name=name)
+        name = _body_name(body, limb)
+        opened = _placement(limb.T_object_limb) if limb.opened else {}
+        element = SubElement(parent, "body", {"name": name, **opened})
         kind = "slide" if limb.kind == "slide" else "hinge"
         joint = {"name": name, "class": kind, "pos": numbers(limb.origin), "axis": numbers(limb.axis)}
+        joint["frictionloss"] = f"{moving.friction:.4g}"
         if limb.kind != "swivel":
             joint["range"] = f"{limb.lower:.8g} {limb.upper:.8g}"
+        if limb.opened:
+            joint["ref"] = f"{limb.opened:.8g}"
         SubElement(element, "joint", joint)
         _inertial(element, moving.inertia)
         self._colliders(element, body, moving.parts, name)
@@ -167,7 +176,7 @@ def _defaults(root: Element) -> None:
     SubElement(visual, "geom", group="1", contype="0", conaffinity="0", mass="0")
     for kind in ("hinge", "slide"):
         moving = SubElement(root, "default", {"class": kind})
-        SubElement(moving, "joint", type=kind, damping="1", frictionloss="0.5")
+        SubElement(moving, "joint", type=kind, damping="1", solimpfriction="0.999 0.9999 0.001")
 
 
 def _room(

@@ -33,13 +33,16 @@ class Cuts:
         self._owners: list[str | None] = []
         self._limbs: list[int | None] = []
         self._world: list[Points] = []
+        self._frames: dict[tuple[str, int | None], Float[np.ndarray, "4 4"]] = {}
         for body in bodies.values():
-            T = body.node.T_world
-            own = [(None, p) for p in body.parts] + [(m.limb.number, p) for m in body.moving for p in m.parts]
-            for limb, part in own:
-                self._owners.append(body.node.id)
-                self._limbs.append(limb)
-                self._world.append(part @ T[:3, :3].T + T[:3, 3])
+            rest = (None, body.node.T_world, body.parts)
+            moving = [(m.limb.number, body.node.T_world @ m.limb.T_object_limb, m.parts) for m in body.moving]
+            for limb, T, parts in (rest, *moving):
+                self._frames[body.node.id, limb] = T
+                for part in parts:
+                    self._owners.append(body.node.id)
+                    self._limbs.append(limb)
+                    self._world.append(part @ T[:3, :3].T + T[:3, 3])
         for slab in slabs:
             for piece in slab.pieces:
                 self._owners.append(None)
@@ -52,8 +55,8 @@ class Cuts:
         self.sunk: dict[str, str | None] = {}
 
     def parts(self, object_id: str, limb: int | None = None) -> tuple[Points, ...]:
-        """The parts of an object, or of one of its limbs, that are left, in the object's rigid frame."""
-        T = self._bodies[object_id].node.T_world
+        """The parts of an object, or of one of its limbs, that are left, in the frame of either."""
+        T = self._frames[object_id, limb]
         return tuple((self._world[row] - T[:3, 3]) @ T[:3, :3] for row in self._rows.get((object_id, limb), ()))
 
     def moving(self, body: RigidBody) -> tuple[MovingPart, ...]:
@@ -80,7 +83,8 @@ class Cuts:
         high = np.array([w.max(axis=0) for w in self._world]).reshape(-1, 3)
         numbers = {name: k for k, name in enumerate(dict.fromkeys(self._owners))}
         owner = np.array([numbers[name] for name in self._owners])
-        moves = np.array([name is not None and self._bodies[name].free for name in self._owners])
+        rows_owners = zip(self._owners, self._limbs, strict=True)
+        moves = np.array([limb is not None or self._free(name) for name, limb in rows_owners])
         pairs = []
         for i in range(len(low)):
             later = slice(i + 1, None)
@@ -90,6 +94,9 @@ class Cuts:
             pairs += [(i, int(j)) for j in rows if self._collide(i, int(j))]
         found = np.array(pairs, dtype=int).reshape(-1, 2)
         return found[:, 0], found[:, 1]
+
+    def _free(self, owner: str | None) -> bool:
+        return owner is not None and self._bodies[owner].free
 
     def _collide(self, i: int, j: int) -> bool:
         """Whether parts of two owners may not overlap."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import cv2
 import numpy as np
 from jaxtyping import UInt8
 
@@ -32,5 +31,7 @@ def bounded_pictures(scene: Scene, pictures: Pictures, side_px: int) -> Pictures
 
 
 def _scaled(picture: UInt8[np.ndarray, "h w c"], factor: float) -> UInt8[np.ndarray, "h2 w2 c"]:
+    import cv2  # the editor opens without it
+
     width, height = (max(1, int(n * factor)) for n in (picture.shape[1], picture.shape[0]))
     return np.asarray(cv2.resize(picture, (width, height), interpolation=cv2.INTER_AREA))

@@ -70,6 +70,8 @@ SUBSTANCES: tuple[Substance, ...] = (
 OTHER = Substance("other", 600.0, 0.01, 0.5, ())
 """What a material that no word names is taken to be."""
 FLOOR_FRICTION = 0.7
+GRAVITY = 9.81
+"""Metres per second squared."""
 
 
 def substance_of(material: Material) -> Substance:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import io
 
-import cv2
 import numpy as np
 from jaxtyping import UInt8
 from PIL import Image
@@ -52,6 +51,8 @@ def limited(picture: Picture, max_px: int | None) -> Picture:
     if max_px is None or longest <= max_px:
         return picture
     width, height = (max(1, round(n * max_px / longest)) for n in (picture.shape[1], picture.shape[0]))
+    import cv2  # the editor opens without it
+
     return np.asarray(cv2.resize(picture, (width, height), interpolation=cv2.INTER_AREA))
 
 
@@ -63,6 +64,8 @@ def power_of_two(picture: Picture) -> Picture:
     height, width = (2 ** max(int(np.ceil(np.log2(n / 1.1))), 0) for n in picture.shape[:2])
     if (height, width) == picture.shape[:2]:
         return picture
+    import cv2  # the editor opens without it
+
     return np.asarray(cv2.resize(picture, (width, height), interpolation=cv2.INTER_LINEAR)).reshape(height, width, -1)
 
 

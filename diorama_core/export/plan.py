@@ -12,7 +12,9 @@ from jaxtyping import Float
 
 from diorama_core.export.footprints import Outline, footprints
 from diorama_core.export.gathering import ExportObject, ExportScene
-from diorama_core.export.wall_lines import OPENING_CATEGORIES, Opening, WallLine, wall_lines
+from diorama_core.export.wall_lines import Opening, WallLine, wall_lines
+from diorama_core.geometry.openings import OPENING_CATEGORIES
+from diorama_core.scene.types import Plane, Scene, SceneObject
 
 UNNAMED = ("rug",)
 CORNER_M = 0.15
@@ -87,21 +89,50 @@ class FloorPlan:
         return np.stack([every.min(axis=0), every.max(axis=0)])
 
 
+@dataclass(frozen=True, eq=False)
+class RoomLines:
+    """What a plan shows of the room itself; see `FloorPlan`."""
+
+    floors: tuple[Outline, ...]
+    walls: tuple[Outline, ...]
+    door_leaves: tuple[Outline, ...]
+    window_panes: tuple[Outline, ...]
+    lines: tuple[WallLine, ...]
+
+
+def room_lines(planes: Sequence[Plane], items: Sequence[SceneObject], scene: Scene) -> RoomLines:
+    """Floors, cut walls, doors and windows.
+
+    Args:
+        planes: Of the room, whole.
+        items: Objects; doors and windows among them cut their walls.
+        scene: Says what hangs on what.
+    """
+    floors = tuple(p.polygon[:, :2] for p in planes if p.role == "floor")
+    walls = wall_lines(planes, items, scene)
+    openings = [(w, o) for w in walls for o in w.openings]
+    return RoomLines(
+        floors,
+        _cut_walls(walls, floors),
+        tuple(line for w, o in openings if o.is_door and o.object_id for line in _door(w, o)),
+        tuple(line for w, o in openings if not o.is_door for line in _window(w, o)),
+        walls,
+    )
+
+
 def floor_plan(scene: ExportScene) -> FloorPlan:
     """The plan of a gathered scene."""
-    floors = tuple(p.plane.polygon[:, :2] for p in scene.planes if p.plane.role == "floor")
-    walls = wall_lines([p.plane for p in scene.planes], [o.item for o in scene.objects], scene.scene)
-    openings = [(w, o) for w in walls for o in w.openings]
+    room = room_lines([p.plane for p in scene.planes], [o.item for o in scene.objects], scene.scene)
     covered = footprints(scene)
     pieces = [_piece(scene, o, covered[o.id]) for o in scene.objects if o.item.category not in OPENING_CATEGORIES]
     return FloorPlan(
         name=scene.name,
-        floors=floors,
-        walls=_cut_walls(walls, floors),
-        door_leaves=tuple(line for w, o in openings if o.is_door and o.object_id for line in _door(w, o)),
-        window_panes=tuple(line for w, o in openings if not o.is_door for line in _window(w, o)),
+        floors=room.floors,
+        walls=room.walls,
+        door_leaves=room.door_leaves,
+        window_panes=room.window_panes,
         pieces=tuple(sorted(pieces, key=lambda p: p.bottom_m)),
-        dimensions=_dimensions(walls, floors),
+        dimensions=_dimensions(room.lines, room.floors),
     )
 
 

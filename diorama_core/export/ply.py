@@ -1,7 +1,8 @@
 """A scene as one binary PLY mesh with normals and vertex colours: metres, +Z up.
 
-PLY has no materials: a vertex takes the colour of its material and of the picture at its place. Planes with a picture
-are cut into small triangles first, so that a photo on a wall stays recognisable.
+PLY has no materials: a vertex takes the colour of its material and of the picture around its place. Surfaces whose
+picture shows something are cut into small triangles first, so that a photo on a wall or a painting stays recognisable;
+the grain of wood and the weave of cloth are finer than that, and the vertices take their average.
 """
 
 from __future__ import annotations
@@ -10,9 +11,10 @@ import tempfile
 from pathlib import Path
 from typing import BinaryIO
 
+import cv2
 import numpy as np
 import trimesh
-from jaxtyping import Float32, UInt8
+from jaxtyping import Float, Float32, UInt8
 
 from diorama_core.export.files import whole_file
 from diorama_core.export.gathering import ExportScene
@@ -25,6 +27,8 @@ PICTURE_EDGE_M = 0.05
 """Longest edge of triangles that carry a picture."""
 MAX_PIECES = 60_000
 """Triangles that a surface is cut into at most."""
+SHOWN_STEPS = 64
+"""A picture shows something where places of that size differ by more than this, of 255; less is grain."""
 VERTEX = np.dtype([("place", "<f4", 3), ("normal", "<f4", 3), ("colour", "u1", 4)])
 FACE = np.dtype([("count", "u1"), ("corners", "<i4", 3)])
 
@@ -74,8 +78,11 @@ def _header(vertices: int, faces: int) -> bytes:
 
 
 def finely_cut(surface: Surface) -> Surface:
-    """The surface with its large triangles cut where it carries a picture; without one it stays as it is."""
+    """The surface with its large triangles cut where its picture shows something; otherwise it stays as it is."""
     if surface.uv is None or surface.material.texture is None:
+        return surface
+    seen = _averaged(surface.material.texture, surface, PICTURE_EDGE_M)
+    if np.ptp(seen.reshape(-1, seen.shape[2]), axis=0).max() <= SHOWN_STEPS:
         return surface
     a, b, c = (surface.vertices[surface.faces[:, k]] for k in range(3))
     longest = float(max(np.linalg.norm(x - y, axis=1).max() for x, y in ((a, b), (b, c), (c, a))))
@@ -100,12 +107,26 @@ def vertex_colours(surface: Surface) -> UInt8[np.ndarray, "n 4"]:
     if surface.colours is not None:
         linear *= surface.colours
     if surface.uv is not None and material.texture is not None:
-        linear *= srgb_to_linear(_texels(material.texture, surface.uv)[:, :3] / 255.0)
+        spacing_m = float(np.sqrt(2.0 * surface.area_m2 / len(surface.faces)))
+        around = srgb_to_linear(_averaged(material.texture, surface, spacing_m)[:, :, :3] / 255.0)
+        linear *= _texels(around, surface.uv)
     rgb = np.rint(255 * np.clip(linear_to_srgb(np.clip(linear, 0, 1)), 0, 1)).astype(np.uint8)
     return np.hstack([rgb, np.full((len(rgb), 1), round(255 * material.alpha), np.uint8)])
 
 
-def _texels(picture: UInt8[np.ndarray, "h w c"], uv: Float32[np.ndarray, "n 2"]) -> UInt8[np.ndarray, "n c"]:
+def _averaged(picture: UInt8[np.ndarray, "h w c"], surface: Surface, edge_m: float) -> UInt8[np.ndarray, "_ _ c"]:
+    """The picture with one texel for each square of an edge on the surface, or as it is where it is coarser."""
+    assert surface.uv is not None
+    height, width, channels = picture.shape
+    a, b, c = (surface.uv[surface.faces[:, k]].astype(np.float64) * (width, height) for k in range(3))
+    (x1, y1), (x2, y2) = (b - a).T, (c - a).T
+    covered_px = 0.5 * float(np.abs(x1 * y2 - x2 * y1).sum())
+    texels = max(1.0, edge_m * float(np.sqrt(covered_px / surface.area_m2)))
+    size = (max(1, round(width / texels)), max(1, round(height / texels)))
+    return np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA)).reshape(size[1], size[0], channels)
+
+
+def _texels(picture: Float[np.ndarray, "h w c"], uv: Float32[np.ndarray, "n 2"]) -> Float[np.ndarray, "n c"]:
     """The nearest texel of each coordinate; 1 is the far border, not the near one again."""
     height, width = picture.shape[:2]
     wrapped = np.where((uv < 0) | (uv > 1), uv % 1.0, uv)

@@ -114,13 +114,13 @@ def _joint(model: Element, link: Link) -> None:
         return
     axis = SubElement(joint, "axis")
     SubElement(axis, "xyz").text = numbers(limb.axis)
-    if limb.kind != "swivel":
+    if link.limits is not None:
         limit = SubElement(axis, "limit")
-        SubElement(limit, "lower").text = f"{limb.lower:.8g}"
-        SubElement(limit, "upper").text = f"{limb.upper:.8g}"
+        SubElement(limit, "lower").text = f"{link.limits[0]:.8g}"
+        SubElement(limit, "upper").text = f"{link.limits[1]:.8g}"
     dynamics = SubElement(axis, "dynamics")
     SubElement(dynamics, "damping").text = "1.0"
-    SubElement(dynamics, "friction").text = "0.5"
+    SubElement(dynamics, "friction").text = f"{link.joint_friction:.4g}"
 
 
 def _visuals(element: Element, mesh: ExportMesh, scale: Float[np.ndarray, "3"], folder: str) -> None:

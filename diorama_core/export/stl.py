@@ -10,8 +10,8 @@ import numpy as np
 from diorama_core.export.files import whole_file
 from diorama_core.export.gathering import ExportScene
 from diorama_core.export.world_meshes import world_meshes
+from diorama_core.geometry.vectors import unit
 from diorama_core.progress import Progress
-from diorama_core.render.raycast import unit
 
 MM_PER_M = 1000.0
 TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])

@@ -18,10 +18,11 @@ from jaxtyping import Float
 from diorama_core.export.files import FAST_DEFLATE, whole_file
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportPlane, ExportScene
 from diorama_core.export.scene_state import R_SHAPE_FILE
-from diorama_core.export.wall_lines import OPENING_CATEGORIES, WallLine, wall_lines
+from diorama_core.export.wall_lines import WallLine, wall_lines
 from diorama_core.export.wavefront import MaterialFile, ObjText
+from diorama_core.geometry.openings import OPENING_CATEGORIES
+from diorama_core.geometry.vectors import unit
 from diorama_core.progress import Progress
-from diorama_core.render.raycast import unit
 from diorama_core.scene.types import Camera
 
 CM_PER_M = 100.0

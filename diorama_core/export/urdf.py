@@ -69,12 +69,14 @@ def _link(robot: Element, link: Link, folder: str, materials: dict[int, str]) ->
         SubElement(joint, "origin", _origin(link.T_parent))
         return
     # A moving link's frame lies on its axis: its geometry is shifted back by as much.
-    SubElement(joint, "origin", xyz=numbers(limb.origin), rpy="0 0 0")
+    on_axis = np.eye(4)
+    on_axis[:3, 3] = limb.origin
+    SubElement(joint, "origin", _origin(link.T_parent @ on_axis))
     SubElement(joint, "axis", xyz=numbers(limb.axis))
-    SubElement(joint, "dynamics", damping="1.0")
+    SubElement(joint, "dynamics", damping="1.0", friction=f"{link.joint_friction:.4g}")
     limits = {"effort": EFFORT_N, "velocity": VELOCITY}
-    if limb.kind != "swivel":
-        limits |= {"lower": f"{limb.lower:.8g}", "upper": f"{limb.upper:.8g}"}
+    if link.limits is not None:
+        limits |= {"lower": f"{link.limits[0]:.8g}", "upper": f"{link.limits[1]:.8g}"}
     SubElement(joint, "limit", limits)
     for origin in element.iter("origin"):
         origin.set("xyz", numbers(np.array(origin.get("xyz", "").split(), dtype=float) - limb.origin))

@@ -10,10 +10,12 @@ from __future__ import annotations
 import json
 import tempfile
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-from pxr import Gf, Kind, Sdf, Usd, UsdGeom
+from pxr import Gf, Kind, Sdf, Tf, Usd, UsdGeom
 
+from diorama_core.errors import ExportError
 from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import Entry, companion_folder, whole_file, write_package
 from diorama_core.export.gathering import ExportObject, ExportScene, rigid_inverse
@@ -41,7 +43,7 @@ def write_usdc(gathered: ExportScene, path: Path, progress: Progress | None = No
 def write_usdz(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
     """Write one package: +Y up, binary, aligned and uncompressed, as AR Quick Look asks; raises `ExportError`."""
     progress = progress or Progress()
-    with tempfile.TemporaryDirectory() as folder:
+    with _told_as_export_error(path), tempfile.TemporaryDirectory() as folder:
         stage, pictures = build_stage(gathered, "textures", progress, up_axis="Y")
         layer = Path(folder) / "scene.usdc"
         stage.GetRootLayer().Export(str(layer))
@@ -56,7 +58,7 @@ def write_usdz(gathered: ExportScene, path: Path, progress: Progress | None = No
 def _write_layer(gathered: ExportScene, path: Path, progress: Progress) -> None:
     path = Path(path)
     stage, pictures = build_stage(gathered, f"{companion_folder(path, 'usd')}/textures", progress, up_axis="Z")
-    with tempfile.TemporaryDirectory() as folder:
+    with _told_as_export_error(path), tempfile.TemporaryDirectory() as folder:
         layer = Path(folder) / path.name
         stage.GetRootLayer().Export(str(layer))
 
@@ -65,6 +67,16 @@ def _write_layer(gathered: ExportScene, path: Path, progress: Progress) -> None:
             yield path.name, layer.read_bytes()
 
         write_package(path, path.name, entries())
+
+
+@contextmanager
+def _told_as_export_error(path: Path) -> Iterator[None]:
+    """USD's own errors, such as a full disk, in one line."""
+    try:
+        yield
+    except Tf.ErrorException as error:
+        reasons = dict.fromkeys(str(one.commentary) for one in error.args)
+        raise ExportError(f"cannot write {path}: {'; '.join(reasons)}") from error
 
 
 def build_stage(
@@ -168,7 +180,7 @@ def _objects(stage: Usd.Stage, gathered: ExportScene) -> None:
         _shape(stage, path, item.mesh, item)
         for limb in item.limbs:
             beside = UsdGeom.Xform.Define(stage, limb_path(path, limb))
-            place(beside, item.T_world)
+            place(beside, item.T_world @ limb.T_object_limb)
             Usd.ModelAPI(beside).SetKind(Kind.Tokens.component)
             beside.GetPrim().SetDisplayName(f"{item.name} {limb.name}")
             beside.GetPrim().SetCustomDataByKey("diorama_limb", item.id)

@@ -6,15 +6,14 @@ import numpy as np
 from jaxtyping import Float
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade
 
-from diorama_core.export.bodies import MovingPart, PhysicalScene, Points, RigidBody
+from diorama_core.export.bodies import MovingPart, PhysicalScene, Points, RigidBody, hull_faces
 from diorama_core.export.gathering import ExportScene, rigid_inverse
 from diorama_core.export.limbs import ExportLimb
-from diorama_core.export.links import hull_faces
-from diorama_core.export.physics import FLOOR_FRICTION, Inertia
+from diorama_core.export.physics import FLOOR_FRICTION, GRAVITY, Inertia
 from diorama_core.export.usd_values import extent, integers, quaternion, vectors
 
 ROOT = "/Scene"
-GRAVITY = 9.81
+_FIXED, _VARYING = Sdf.VariabilityUniform, Sdf.VariabilityVarying
 _COLLIDER_SCHEMAS = ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI", "MaterialBindingAPI"]
 
 
@@ -24,14 +23,13 @@ def add_physics(stage: Usd.Stage, gathered: ExportScene, physical: PhysicalScene
     up = -1.0 if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z else 0.0
     scene.CreateGravityDirectionAttr(Gf.Vec3f(0.0, 0.0 if up else -1.0, up))
     scene.CreateGravityMagnitudeAttr(GRAVITY)
-    grips = _Grips(stage)
+    grips, colliders = _Grips(stage), _Colliders()
     paths = {b.node.id: f"{ROOT}/Objects/{b.node.slug}" for b in physical.bodies}
     for slab in physical.slabs:
-        path = f"{ROOT}/Architecture/{slab.slug}"
-        _colliders(stage, path, slab.pieces, grips.material(FLOOR_FRICTION))
+        colliders.add(f"{ROOT}/Architecture/{slab.slug}", slab.pieces, grips.material(FLOOR_FRICTION))
     for body in physical.bodies:
-        path = paths[body.node.id]
-        _colliders(stage, path, body.parts, grips.material(body.friction))
+        path, grip = paths[body.node.id], grips.material(body.friction)
+        colliders.add(path, body.parts, grip)
         moves = body.free or _moves(physical, body)
         if moves:
             UsdPhysics.RigidBodyAPI.Apply(stage.GetPrimAtPath(path))
@@ -39,10 +37,16 @@ def add_physics(stage: Usd.Stage, gathered: ExportScene, physical: PhysicalScene
         if moves and not body.free and body.carrier is not None:
             _weld(stage, paths[body.carrier], path, gathered, body)
         for moving in body.moving:
-            _limb(stage, path, moving, grips.material(body.friction))
-    for a, b in physical.without_contact:
-        pairs = UsdPhysics.FilteredPairsAPI.Apply(stage.GetPrimAtPath(paths[a]))
-        pairs.CreateFilteredPairsRel().AddTarget(paths[b])
+            _limb(stage, path, moving)
+            colliders.add(limb_path(path, moving.limb), moving.parts, grip)
+
+    def path_of(body: RigidBody, limb: ExportLimb | None) -> str:
+        return paths[body.node.id] if limb is None else limb_path(paths[body.node.id], limb)
+
+    for a, b in physical.loose_pairs(path_of):
+        pairs = UsdPhysics.FilteredPairsAPI.Apply(stage.GetPrimAtPath(a))
+        pairs.CreateFilteredPairsRel().AddTarget(b)
+    colliders.write(stage.GetRootLayer())
 
 
 def _moves(physical: PhysicalScene, body: RigidBody) -> bool:
@@ -73,32 +77,43 @@ class _Grips:
         return self._made[friction]
 
 
-def _colliders(stage: Usd.Stage, path: str, parts: tuple[Points, ...], grip: UsdShade.Material) -> None:
-    """Convex meshes that are not drawn, written into the layer itself: a scene has thousands of them."""
-    scope = UsdGeom.Scope.Define(stage, f"{path}/Colliders")
-    scope.CreatePurposeAttr(UsdGeom.Tokens.guide)
-    layer = stage.GetRootLayer()
-    with Sdf.ChangeBlock():
-        for number, points in enumerate(parts):
-            _collider(layer, f"{path}/Colliders/Part_{number}", points, grip.GetPath())
+class _Colliders:
+    """Convex meshes that are not drawn. A scene has thousands of them, so they are written into the layer itself, in
+    one change: a stage composes all its instances anew after each."""
+
+    def __init__(self) -> None:
+        self._of: dict[str, tuple[tuple[Points, ...], Sdf.Path]] = {}
+
+    def add(self, path: str, parts: tuple[Points, ...], grip: UsdShade.Material) -> None:
+        """Those of one prim."""
+        self._of[path] = parts, grip.GetPath()
+
+    def write(self, layer: Sdf.Layer) -> None:
+        """All of them."""
+        with Sdf.ChangeBlock():
+            for path, (parts, grip) in self._of.items():
+                scope = Sdf.CreatePrimInLayer(layer, f"{path}/Colliders")
+                scope.specifier, scope.typeName = Sdf.SpecifierDef, "Scope"
+                Sdf.AttributeSpec(scope, "purpose", Sdf.ValueTypeNames.Token, _FIXED).default = UsdGeom.Tokens.guide
+                for number, points in enumerate(parts):
+                    _collider(scope, f"Part_{number}", points, grip)
 
 
-def _collider(layer: Sdf.Layer, path: str, points: Points, grip: Sdf.Path) -> None:
+def _collider(scope: Sdf.PrimSpec, name: str, points: Points, grip: Sdf.Path) -> None:
     """One convex mesh with its collision and the material it grips with."""
     vertices, faces = hull_faces(points)
-    prim = Sdf.CreatePrimInLayer(layer, path)
-    prim.specifier, prim.typeName = Sdf.SpecifierDef, "Mesh"
+    prim = Sdf.PrimSpec(scope, name, Sdf.SpecifierDef, "Mesh")
     prim.SetInfo("apiSchemas", Sdf.TokenListOp.Create(prependedItems=_COLLIDER_SCHEMAS))
-    types, fixed, varying = Sdf.ValueTypeNames, Sdf.VariabilityUniform, Sdf.VariabilityVarying
-    for name, kind, variability, value in (
-        ("subdivisionScheme", types.Token, fixed, UsdGeom.Tokens.none),
-        ("points", types.Point3fArray, varying, vectors(vertices)),
-        ("extent", types.Float3Array, varying, extent(vertices)),
-        ("faceVertexCounts", types.IntArray, varying, integers(np.full(len(faces), 3))),
-        ("faceVertexIndices", types.IntArray, varying, integers(faces.reshape(-1))),
-        ("physics:approximation", types.Token, fixed, UsdPhysics.Tokens.convexHull),
+    types = Sdf.ValueTypeNames
+    for attribute, kind, variability, value in (
+        ("subdivisionScheme", types.Token, _FIXED, UsdGeom.Tokens.none),
+        ("points", types.Point3fArray, _VARYING, vectors(vertices)),
+        ("extent", types.Float3Array, _VARYING, extent(vertices)),
+        ("faceVertexCounts", types.IntArray, _VARYING, integers(np.full(len(faces), 3))),
+        ("faceVertexIndices", types.IntArray, _VARYING, integers(faces.reshape(-1))),
+        ("physics:approximation", types.Token, _FIXED, UsdPhysics.Tokens.convexHull),
     ):
-        Sdf.AttributeSpec(prim, name, kind, variability).default = value
+        Sdf.AttributeSpec(prim, attribute, kind, variability).default = value
     binding = Sdf.RelationshipSpec(prim, "material:binding:physics", custom=False)
     binding.targetPathList.explicitItems = [grip]
 
@@ -112,11 +127,13 @@ def _mass(prim: Usd.Prim, inertia: Inertia) -> None:
     mass.CreatePrincipalAxesAttr(Gf.Quatf(quaternion(axes)))
 
 
-def _limb(stage: Usd.Stage, owner: str, moving: MovingPart, grip: UsdShade.Material) -> None:
-    """A body of its own beside its object, whose frame it shares, on a joint with limits."""
+def _limb(stage: Usd.Stage, owner: str, moving: MovingPart) -> None:
+    """A body of its own beside its object, on a joint with limits.
+
+    Its frame is the object's when closed, so the joint is in one place of both; their poses tell how far it is open.
+    """
     path = limb_path(owner, moving.limb)
     prim = stage.GetPrimAtPath(path)
-    _colliders(stage, path, moving.parts, grip)
     UsdPhysics.RigidBodyAPI.Apply(prim)
     _mass(prim, moving.inertia)
     limb = moving.limb

@@ -9,14 +9,12 @@ import manifold3d
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.geometry.openings import OPENING_CATEGORIES, wall_of
 from diorama_core.geometry.planes import plane_rectangle
 from diorama_core.scene.types import Plane, Scene, SceneObject
 
-OPENING_CATEGORIES = ("door", "window")
 MIN_OPENING_M = 0.15
 """Gaps in a wall's polygon that are narrower or lower than this are no opening."""
-REACH_M = 0.3
-"""A door or window whose middle is no farther than this from a wall's face belongs to it."""
 
 
 @dataclass(frozen=True)
@@ -77,8 +75,8 @@ def wall_lines(planes: Iterable[Plane], items: Sequence[SceneObject], scene: Sce
     """
     walls = [_bare(p) for p in planes if p.role == "wall"]
     fills = [o for o in items if o.category in OPENING_CATEGORIES]
-    supporter = {o.id: _wall_of(o, walls, scene) for o in fills}
-    return tuple(_with_openings(w, [o for o in fills if supporter[o.id] == w.plane.id]) for w in walls)
+    walls_of = {o.id: wall_of(o, [w.plane for w in walls], scene) for o in fills}
+    return tuple(_with_openings(w, [o for o in fills if walls_of[o.id] is w.plane]) for w in walls)
 
 
 def _bare(plane: Plane) -> WallLine:
@@ -86,23 +84,6 @@ def _bare(plane: Plane) -> WallLine:
     start = origin[:2]
     heights = plane.polygon[:, 2]
     return WallLine(plane, start, start + axes[:2, 0] * extents[0], float(heights.min()), float(heights.max()))
-
-
-def _wall_of(item: SceneObject, walls: Sequence[WallLine], scene: Scene) -> str | None:
-    edge = scene.support_of(item.id)
-    named = () if edge is None else (edge.parent, *edge.adheres_to)
-    for wall in walls:
-        if wall.plane.id in named:
-            return wall.plane.id
-    near = [(abs(float(w.plane.normal @ item.pose.position) - w.plane.offset), w) for w in walls]
-    near = [(d, w) for d, w in near if d <= REACH_M and _beside(item, w)]
-    return min(near, key=lambda pair: pair[0])[1].plane.id if near else None
-
-
-def _beside(item: SceneObject, wall: WallLine) -> bool:
-    distance = float((item.pose.position[:2] - wall.start) @ wall.along)
-    turned = abs(float(item.pose.R_world_object[:3, 0] @ wall.plane.normal)) > 0.8
-    return turned and 0 <= distance <= wall.length_m
 
 
 def _with_openings(wall: WallLine, fills: Sequence[SceneObject]) -> WallLine:

@@ -9,9 +9,9 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.export.gathering import ExportScene
+from diorama_core.geometry.vectors import unit
 from diorama_core.progress import Progress
 from diorama_core.render.appearance import Surface
-from diorama_core.render.raycast import unit
 
 Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 """Turns the world (+Z up) to +Y up."""

@@ -18,6 +18,7 @@ from scipy.spatial.transform import Rotation
 
 from diorama_core.errors import InputError, LibraryError
 from diorama_core.importing.marked import MarkedFile, ObjectNode, as_bytes, as_ids, as_mapping
+from diorama_core.io.bounded import shortened
 from diorama_core.library.ingest.gltf import container
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.references import References, read_bytes
@@ -51,10 +52,15 @@ def read_marked_gltf(path: Path) -> MarkedFile | None:
         InputError: when the file cannot be read.
     """
     try:
-        document, binary = container(read_bytes(path, DEFAULT_LIMITS), DEFAULT_LIMITS)
-        nodes = tuple(_walk(document))
-    except (LibraryError, KeyError, IndexError, TypeError, ValueError) as error:
-        raise InputError(f"{path.name} cannot be read as glTF ({error}); export it again") from error
+        return _marked(path)
+    except (LibraryError, LookupError, TypeError, ValueError, AttributeError, ArithmeticError, OSError) as error:
+        reason = shortened(str(error))
+        raise InputError(f"{path.name} cannot be read as glTF ({reason}); export it again") from error
+
+
+def _marked(path: Path) -> MarkedFile | None:
+    document, binary = container(read_bytes(path, DEFAULT_LIMITS), DEFAULT_LIMITS)
+    nodes = tuple(_walk(document))
     root = next((n for n in nodes if "objects" in (as_mapping(n.extras.get(MARK)) or {})), None)
     if root is None:
         return None

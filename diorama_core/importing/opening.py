@@ -19,7 +19,7 @@ from diorama_core.scene.types import Architecture, Scene
 
 GLTF_SUFFIXES = (".glb", ".gltf")
 USD_SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
-SUFFIXES = (*GLTF_SUFFIXES, *USD_SUFFIXES, ".sh3d")
+SUFFIXES = (*GLTF_SUFFIXES, *USD_SUFFIXES, ".sh3d", ".json")
 """Endings of files that can be opened as scenes."""
 
 
@@ -59,7 +59,7 @@ def marked_file(path: Path) -> MarkedFile | None:
     """
     path = Path(path)
     if not path.is_file():
-        raise InputError(f"{path} does not exist; name a GLB, USD or Sweet Home 3D file")
+        raise InputError(f"{path} does not exist; name a GLB, USD, Sweet Home 3D or RoomPlan file")
     reader = _readers().get(path.suffix.lower())
     if reader is None:
         raise InputError(f"{path}: scenes are read from {', '.join(SUFFIXES)}; export one of these")
@@ -106,4 +106,5 @@ def _readers() -> dict[str, Callable[[Path], MarkedFile | None]]:
         **dict.fromkeys(GLTF_SUFFIXES, read_marked_gltf),
         **dict.fromkeys(USD_SUFFIXES, read_marked_usd),
         ".sh3d": lambda path: None,
+        ".json": lambda path: None,
     }

@@ -12,14 +12,15 @@ from typing import Any
 
 import numpy as np
 import trimesh
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from trimesh.visual.material import PBRMaterial
 from trimesh.visual.texture import TextureVisuals
 
 from diorama_core.errors import InputError, LibraryError
 from diorama_core.importing.gltf import Z_UP
 from diorama_core.importing.marked import MarkedFile
-from diorama_core.importing.usd import matrix_of, opened_stage, world_of
+from diorama_core.importing.usd import matrix_of, opened_stage, usd_errors, world_of
+from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.models import read_model
 from diorama_core.scene.types import SceneObject
 
@@ -29,6 +30,8 @@ TOUCH_M = 0.03
 """Parts of one object are no farther apart than this."""
 UPRIGHT = 0.999
 HUGE_M, USUAL_M = 100.0, 60.0
+REACH = 1e8
+"""Coordinates in the file's unit are smaller than this."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,8 +96,8 @@ def shape_parts(path: Path, marked: MarkedFile, item: SceneObject) -> Part | Non
 def parts_of_usd(path: Path) -> tuple[Part, ...]:
     """Objects of a USD or USDZ file; raises `InputError` when it cannot be read."""
     stage = opened_stage(path)
-    scene = _usd_scene(stage)
-    return _split(scene, world_of(stage))
+    with usd_errors(path):
+        return _split(_usd_scene(stage), world_of(stage))
 
 
 def _model(path: Path) -> trimesh.Scene:
@@ -210,7 +213,7 @@ def _usd_scene(stage: Any) -> trimesh.Scene:
     """Meshes of a stage with one plain material each, as a scene in the stage's frame."""
     from pxr import Usd, UsdGeom
 
-    scene = trimesh.Scene()
+    scene, triangles = trimesh.Scene(), 0
     scope = Usd.TraverseInstanceProxies(Usd.PrimDefaultPredicate)
     for prim in Usd.PrimRange(stage.GetPseudoRoot(), scope):
         imaged = UsdGeom.Imageable(prim)
@@ -219,6 +222,12 @@ def _usd_scene(stage: Any) -> trimesh.Scene:
         if imaged.ComputeVisibility() == UsdGeom.Tokens.invisible:
             continue
         mesh = _usd_mesh(UsdGeom.Mesh(prim))
+        triangles += 0 if mesh is None else len(mesh.faces)
+        if triangles > DEFAULT_LIMITS.triangles or len(scene.geometry) > DEFAULT_LIMITS.nodes:
+            raise InputError(
+                f"the file has more than {DEFAULT_LIMITS.triangles:,} triangles or {DEFAULT_LIMITS.nodes:,} meshes; "
+                "export a part of it"
+            )
         if mesh is not None:
             parent = _chain(scene, prim)
             scene.add_geometry(
@@ -246,16 +255,9 @@ def _usd_mesh(mesh: Any) -> trimesh.Trimesh | None:
     corners = np.array(mesh.GetFaceVertexIndicesAttr().Get() or [], dtype=int)
     if not len(points) or not len(counts):
         return None
-    starts = np.cumsum(counts) - counts
-    fans = (
-        [
-            np.stack([corners[starts], corners[starts + k], corners[starts + k + 1]], axis=1)[counts > k + 1]
-            for k in range(1, int(counts.max()) - 1)
-        ]
-        if counts.min() == counts.max()
-        else [_fans(corners, starts, counts)]
-    )
-    faces = np.concatenate(fans)
+    faces = _fans(counts, corners)
+    if len(faces) and not 0 <= faces.min() <= faces.max() < len(points):
+        raise ValueError("a mesh names points that it does not have")
     world = matrix_of(UsdGeom.XformCache().GetLocalToWorldTransform(mesh.GetPrim()))
     if (np.linalg.det(world[:3, :3]) < 0) != (mesh.GetOrientationAttr().Get() == "leftHanded"):
         faces = faces[:, ::-1]
@@ -263,18 +265,29 @@ def _usd_mesh(mesh: Any) -> trimesh.Trimesh | None:
         name="material", baseColorFactor=[*_usd_colour(mesh), 1.0], roughnessFactor=0.7, metallicFactor=0.0
     )
     placed = trimesh.transform_points(points, world)
+    if not (np.abs(placed) < REACH).all():
+        raise ValueError("a mesh is not anywhere near")
     return trimesh.Trimesh(
         placed, faces, visual=TextureVisuals(uv=np.zeros((len(points), 2)), material=material), process=False
     )
 
 
-def _fans(corners: np.ndarray, starts: np.ndarray, counts: np.ndarray) -> np.ndarray:
-    rows = [
-        [corners[s], corners[s + k], corners[s + k + 1]]
-        for s, c in zip(starts, counts, strict=True)
-        for k in range(1, c - 1)
-    ]
-    return np.array(rows, dtype=int).reshape(-1, 3)
+def _fans(counts: Int[np.ndarray, " n"], corners: Int[np.ndarray, " k"]) -> Int[np.ndarray, "m 3"]:
+    """Polygons as triangles around their first corners.
+
+    Args:
+        counts: Corners of each polygon.
+        corners: Vertices of all corners, one polygon after the other.
+
+    Raises:
+        ValueError: When there are not as many corners as counted.
+    """
+    if counts.min() < 0 or counts.sum() != len(corners):
+        raise ValueError("a mesh does not have the corners that it counts")
+    starts, triangles = np.cumsum(counts) - counts, np.maximum(counts - 2, 0)
+    first = np.repeat(starts, triangles)
+    nth = np.arange(len(first)) - np.repeat(np.cumsum(triangles) - triangles, triangles)
+    return np.stack([corners[first], corners[first + nth + 1], corners[first + nth + 2]], axis=1)
 
 
 def _usd_colour(mesh: Any) -> tuple[float, float, float]:

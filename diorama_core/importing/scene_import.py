@@ -5,10 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from diorama_core.errors import LibraryError
+from diorama_core.errors import InputError, LibraryError
 from diorama_core.importing.foreign import open_foreign, take_missing_shapes
 from diorama_core.importing.marked import MarkedFile
-from diorama_core.importing.opening import Opened, marked_file, open_marked
+from diorama_core.importing.measured_room import MeasuredRoom, opened_room
+from diorama_core.importing.opening import USD_SUFFIXES, Opened, marked_file, open_marked
+from diorama_core.importing.roomplan import read_room_plan
+from diorama_core.library.boards import base_id
 from diorama_core.library.store import create_library, open_library, stored_libraries
 from diorama_core.library.user_library import OWN
 from diorama_core.progress import Progress
@@ -40,13 +43,16 @@ def import_scene(path: Path, *, library_name: str | None = None, progress: Progr
     marked = marked_file(path)
     if marked is None:
         name = library_name or "built-in"
-        open_library(name)
+        library = open_library(name)
+        measured = measured_room(path)
+        if measured is not None:
+            return Imported(opened_room(measured, library), name)
         return Imported(open_foreign(path, create_library(OWN), progress), _with_own(name))
     name = library_name or _known(str(marked.provenance.get("library", "built-in")))
     library = open_library(_with_own(name) if OWN in stored_libraries() else name)
     known = frozenset(s.id for s in library.shapes())
     opened = _with_shapes(path, marked, known, progress)
-    complete = {o.shape_id for o in opened.scene.objects} <= known
+    complete = {base_id(o.shape_id) for o in opened.scene.objects} <= known
     return Imported(opened, name if complete else _with_own(name))
 
 
@@ -66,14 +72,30 @@ def read_scene(path: Path, known: frozenset[str], progress: Progress) -> Opened:
     progress.report(0.0, f"reading {path.name}")
     marked = marked_file(path)
     if marked is None:
+        measured = measured_room(path)
+        if measured is not None:
+            return opened_room(measured, open_library("built-in"))
         return open_foreign(path, create_library(OWN), progress)
     return _with_shapes(path, marked, known, progress)
+
+
+def measured_room(path: Path) -> MeasuredRoom | None:
+    """The room in a file that holds measurements; None for a file with models.
+
+    Raises:
+        InputError: the file cannot be read.
+    """
+    suffix = path.suffix.lower()
+    room = read_room_plan(path) if suffix in (*USD_SUFFIXES, ".json") else None
+    if room is None and suffix == ".json":
+        raise InputError(f"{path.name} is no scan of RoomPlan (there are no walls in it); export the scan again")
+    return room
 
 
 def _with_shapes(path: Path, marked: MarkedFile, known: frozenset[str], progress: Progress) -> Opened:
     """What Diorama wrote; the shapes that are not known are taken out of the file."""
     opened = open_marked(marked)
-    missing = {o.shape_id for o in opened.scene.objects} - known
+    missing = {o.shape_id for o in opened.scene.objects if base_id(o.shape_id) not in known}
     if missing:
         take_missing_shapes(path, marked, opened.scene, missing, create_library(OWN), progress)
     return opened

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import lzma
 import math
 import tempfile
 import xml.etree.ElementTree as ET
@@ -15,6 +16,7 @@ from jaxtyping import Float
 
 from diorama_core.errors import DioramaError, InputError
 from diorama_core.importing.parts import Part
+from diorama_core.io.bounded import shortened
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.models import SUFFIXES, read_model
 
@@ -36,9 +38,17 @@ def parts_of_sweet_home(path: Path) -> tuple[Part, ...]:
                 raise InputError(f"{path.name} unpacks to {size / 2**20:.0f} MB; the limit is 512 MB")
             archive.extractall(folder)  # zipfile keeps names inside the folder
             pieces = [_piece(p, Path(folder)) for p in home.iter() if p.tag in FURNITURE and _visible(p)]
-    except (zipfile.BadZipFile, zlib.error, OSError, RuntimeError, NotImplementedError) as error:
+    except (
+        zipfile.BadZipFile,
+        zlib.error,
+        OSError,
+        RuntimeError,
+        NotImplementedError,
+        EOFError,
+        lzma.LZMAError,
+    ) as error:
         # Damaged, encrypted, compressed in an unknown way, or with names that cannot be files beside each other.
-        raise InputError(f"{path.name} is no Sweet Home 3D file ({error}); save it again") from error
+        raise InputError(f"{path.name} is no Sweet Home 3D file ({shortened(str(error))}); save it again") from error
     height = _number(home, "wallHeight", 250.0)
     walls = [_wall(w, height) for w in home.iter("wall")]
     rooms = [_room(r) for r in home.iter("room") if len(r.findall("point")) >= 3]

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import itertools
+from functools import cache, partial
 
 import manifold3d
 import numpy as np
 import trimesh
-from jaxtyping import Float
 
 from diorama_core.errors import UnavailableError
 from diorama_core.geometry.rotations import quaternion_wxyz
 from diorama_core.geometry.sat import place_bodies
+from diorama_core.io.cache import LruCache
 from diorama_core.layout.problem.problem import Problem, build_problem
 from diorama_core.layout.problem.supports import is_wall_like
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.types import Scene
+
+_CLOSED: LruCache[str, manifold3d.Manifold | None] = LruCache(1024)
+"""The closed solid of each shape, by its content."""
 
 
 def mesh_overlap_m3(scene: Scene, library: ShapeLibrary, *, skip_supporters: bool = True) -> float:
@@ -29,34 +33,37 @@ def mesh_overlap_m3(scene: Scene, library: ShapeLibrary, *, skip_supporters: boo
         skip_supporters: leave out pairs of an object and what holds it up, which touch on purpose.
     """
     problem = build_problem(scene, library)
-    solids = [_solid(scene, library, problem, k) for k in range(problem.count)]
-    bounds = [np.array(s.bounding_box()) for s in solids]
+    corners = [scene.object(name).corners_world for name in problem.ids]
+    bounds = [(c.min(axis=0), c.max(axis=0)) for c in corners]
+    solid = cache(partial(_solid, scene, library, problem))
     total = 0.0
     for i, j in itertools.combinations(range(problem.count), 2):
         if skip_supporters and problem.kin[i, j]:
             continue
-        if (bounds[i][:3] < bounds[j][3:]).all() and (bounds[j][:3] < bounds[i][3:]).all():
-            total += max(float((solids[i] ^ solids[j]).volume()), 0.0)
+        if (bounds[i][0] < bounds[j][1]).all() and (bounds[j][0] < bounds[i][1]).all():
+            total += max(float((solid(i) ^ solid(j)).volume()), 0.0)
     return total
 
 
 def _solid(scene: Scene, library: ShapeLibrary, problem: Problem, index: int) -> manifold3d.Manifold:
     item = scene.object(problem.ids[index])
-    closed = []
-    for body in library.mesh(item.shape_id).split(only_watertight=False):
-        if body.is_watertight and body.volume > 0:
-            closed.append(_manifold(body, item.pose.matrix))
-    solid = manifold3d.Manifold.batch_boolean(closed, manifold3d.OpType.Add) if closed else None
-    if solid is None or solid.status() != manifold3d.Error.NoError or solid.is_empty():
-        hulls = [_manifold(trimesh.convex.convex_hull(q.vertices), item.pose.matrix) for q in problem.parts[index]]
+    solid = _CLOSED.get(library.shape(item.shape_id).content_hash, lambda: _closed(library.mesh(item.shape_id)))
+    if solid is None:
+        hulls = [_manifold(trimesh.convex.convex_hull(q.vertices)) for q in problem.parts[index]]
         solid = manifold3d.Manifold.batch_boolean(hulls, manifold3d.OpType.Add)
-    return solid
+    return solid.transform(item.pose.matrix[:3])
 
 
-def _manifold(mesh: trimesh.Trimesh, matrix: Float[np.ndarray, "4 4"]) -> manifold3d.Manifold:
+def _closed(mesh: trimesh.Trimesh) -> manifold3d.Manifold | None:
+    """The union of a mesh's closed bodies; None where it has none, or they make no solid."""
+    closed = [_manifold(b) for b in mesh.split(only_watertight=False) if b.is_watertight and b.volume > 0]
+    solid = manifold3d.Manifold.batch_boolean(closed, manifold3d.OpType.Add) if closed else None
+    return None if solid is None or solid.status() != manifold3d.Error.NoError or solid.is_empty() else solid
+
+
+def _manifold(mesh: trimesh.Trimesh) -> manifold3d.Manifold:
     merged = mesh.copy()
     merged.merge_vertices(merge_tex=True, merge_norm=True)
-    merged.apply_transform(matrix)
     return manifold3d.Manifold(
         manifold3d.Mesh(np.asarray(merged.vertices, np.float32), np.asarray(merged.faces, np.uint32))
     )
@@ -117,7 +124,17 @@ def _model_xml(scene: Scene, problem: Problem, step_s: float) -> str:
     return (
         f'<mujoco><option timestep="{step_s}" integrator="implicitfast" cone="elliptic"/>'
         '<default><geom friction="1 0.02 0.001" solref="0.01 1" margin="0.0005"/></default>'
-        f"<asset>{''.join(assets)}</asset><worldbody>{''.join(room)}{''.join(bodies)}</worldbody></mujoco>"
+        f"<asset>{''.join(assets)}</asset><worldbody>{''.join(room)}{''.join(bodies)}</worldbody>"
+        f"<contact>{_rugs_give_way(problem)}</contact></mujoco>"
+    )
+
+
+def _rugs_give_way(problem: Problem) -> str:
+    """Rugs do not lift what stands on the floor over their edge; what the graph puts on a rug rests on it."""
+    return "".join(
+        f'<exclude body1="{problem.ids[i]}" body2="{problem.ids[j]}"/>'
+        for i, j in itertools.combinations(range(problem.count), 2)
+        if problem.yielding[i, j] and i not in problem.chain(j) and j not in problem.chain(i)
     )
 
 

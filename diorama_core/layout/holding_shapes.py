@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from diorama_core.layout.fitted_boards import is_adjustable
 from diorama_core.layout.noise import ObservationNoise
 from diorama_core.layout.problem.supports import is_soft, misfit, object_surfaces
 from diorama_core.library.record import ShapeLibrary
@@ -38,6 +39,8 @@ def holding_shapes(scene: Scene, library: ShapeLibrary, noise: ObservationNoise)
     """
     reasons = []
     for members in _of_one_shape(scene):
+        if any(is_adjustable(o, library.shape(o.shape_id)) for o in members):  # their boards follow the loads
+            continue
         loads = {o.id: _loads(scene, o.id) for o in members}
         if not any(loads.values()) or any(o.locked for o in members) or _agree(members, loads, library, scene, noise):
             continue

@@ -62,6 +62,11 @@ def checked_supports(scene: Scene, library: ShapeLibrary, noise: ObservationNois
             reasons.append(f"support changed: {item.label} stands on the floor; nothing of its kind hangs")
             scene = edits.attach(scene, Support(item.id, floor.id))
             continue
+        wall = _wall_in_sight(scene, item, edge, noise) if hangs else None
+        if wall is not None:
+            reasons.append(f"support changed: {item.label} was seen on another wall than its own")
+            scene = edits.attach(scene, replace(edge, parent=wall, adheres_to=()))
+            continue
         better = _better(scene, library, item, edge, noise)
         if better is None and floor is not None and _belongs_on_floor(scene, library, item, edge, noise):
             better = Support(item.id, floor.id)
@@ -81,6 +86,26 @@ def checked_supports(scene: Scene, library: ShapeLibrary, noise: ObservationNois
         elif (walls := _touched(scene, item, edge, noise)) != edge.adheres_to:
             scene = edits.attach(scene, replace(edge, adheres_to=walls))
     return scene, tuple(reasons)
+
+
+def _wall_in_sight(scene: Scene, item: SceneObject, edge: Support, noise: ObservationNoise) -> str | None:
+    """The wall that the line of sight through an object meets, where it passes its own wall by; else None."""
+    own = scene.plane(edge.parent)
+    if own.role != "wall" or scene.camera is None:
+        return None
+    eye, sight = scene.camera.position, item.pose.position - scene.camera.position
+    met: list[tuple[float, str]] = []
+    for wall in scene.architecture.by_role("wall"):
+        closing = float(wall.normal @ sight)
+        if not wall.seen or closing >= 0.0:
+            continue
+        share = (wall.offset - float(wall.normal @ eye)) / closing
+        beside = outside_m(plane_surface(wall), eye + share * sight)
+        if wall.id == own.id and beside <= 2.0 * noise.across_m:
+            return None
+        if share > 0.0 and beside == 0.0:
+            met.append((share, wall.id))
+    return min(met)[1] if met else None
 
 
 def _belongs_on_floor(

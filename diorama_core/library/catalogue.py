@@ -17,6 +17,7 @@ from diorama_core.io.cache import LruCache
 from diorama_core.io.derived import derived
 from diorama_core.io.glb import whole_glb
 from diorama_core.library import furniture, taxonomy
+from diorama_core.library.boards import Boards, base_id
 from diorama_core.library.furniture.geometry_key import geometry_key
 from diorama_core.library.furniture.latest import built_once
 from diorama_core.library.furniture.materials import Material
@@ -90,6 +91,7 @@ class BuiltInLibrary:
         self._scenes: LruCache[str, trimesh.Scene] = LruCache(SCENE_BYTES, _bytes_of)
         self._meshes: LruCache[str, trimesh.Trimesh] = LruCache(256)
         self._glbs: LruCache[str, bytes] = LruCache(256)
+        self._boards: LruCache[str, tuple[Boards, Shape]] = LruCache(256)
         self._surfaces: LruCache[str, tuple[SupportSurface, ...]] = LruCache(4096)
 
     def __repr__(self) -> str:
@@ -106,16 +108,22 @@ class BuiltInLibrary:
     def shape(self, shape_id: str) -> Shape:
         """One record with its support surfaces; raises `LibraryError` when unknown."""
         record = self._known(shape_id)
+        if base_id(shape_id) != shape_id:
+            return record
         return replace(record, surfaces=self._surfaces.get(shape_id, lambda: self._measured(record)))
 
     def mesh(self, shape_id: str) -> trimesh.Trimesh:
         """Geometry only, one mesh in the canonical frame. Shared: do not change it."""
         self._known(shape_id)
+        if (base := base_id(shape_id)) != shape_id:
+            return self._meshes.get(shape_id, lambda: self._derived(shape_id)[0].mesh(self.mesh(base)))
         return self._meshes.get(shape_id, lambda: mesh_of(self._built(shape_id)))
 
     def parts(self, shape_id: str) -> trimesh.Scene:
         """Geometry with materials, in the canonical frame. Shared: do not change it."""
         self._known(shape_id)
+        if (base := base_id(shape_id)) != shape_id:
+            return self._scenes.get(shape_id, lambda: self._derived(shape_id)[0].parts(self.parts(base)))
         return self._scenes.get(shape_id, lambda: _scene(self._built(shape_id)))
 
     def glb(self, shape_id: str) -> bytes:
@@ -141,7 +149,19 @@ class BuiltInLibrary:
         """The latest solids, cached because a request for the mesh is usually followed by one for the materials."""
         return self._solids.get(shape_id, lambda: built_once(self._designs[shape_id]))
 
+    def _derived(self, shape_id: str) -> tuple[Boards, Shape]:
+        """A shape whose boards are elsewhere (`boards`), and its record."""
+
+        def derive() -> tuple[Boards, Shape]:
+            base = self.shape(base_id(shape_id))
+            boards = Boards.of(shape_id, base)
+            return boards, boards.record(base)
+
+        return self._boards.get(shape_id, derive)
+
     def _known(self, shape_id: str) -> Shape:
+        if base_id(shape_id) != shape_id:
+            return self._derived(shape_id)[1]
         record = self._records.get(shape_id)
         if record is None:
             raise LibraryError(f"no shape is called '{shape_id}' in the built-in library; list them to see the names")

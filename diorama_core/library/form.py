@@ -11,13 +11,21 @@ from collections.abc import Mapping
 import cv2
 import numpy as np
 import trimesh
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int8
 
 from diorama_core.library.furniture.articulation import articulation
 from diorama_core.library.taxonomy import broad, with_kin
 
 MEASURED = ("top", "base", "arms", "doors", "drawers")
 """Attributes that a shape's design can tell; others of an annotation are not compared."""
+VALUES: Mapping[str, tuple[str | int, ...]] = {
+    "top": ("rectangular", "square", "round", "oval"),
+    "base": ("four legs", "pedestal", "plinth", "panel", "sled", "five-star"),
+    "arms": ("no", "yes"),
+    "doors": (0, 1, 2, 3, 4),
+    "drawers": (0, 1, 2, 3, 4, 5, 6),
+}
+"""What each may be; the last count stands for more, too."""
 _TABLES = with_kin("table", "coffee table", "side table", "desk", "console table", "night stand", "stool", "ottoman")
 _SEATS = with_kin("chair", "office chair", "armchair", "sofa", "bench")
 _SAMPLES = 6000
@@ -28,6 +36,8 @@ FULL_RECTANGLE = 0.92
 """Share of its bounding rectangle that a rectangular top fills; a round one fills 0.785."""
 _FOOT, _SLABS = (0.0, 0.06), ((0.03, 0.1), (0.1, 0.2), (0.2, 0.3), (0.3, 0.42))
 """Slabs of the height in which bases are told apart: a shelf or a stretcher between legs is in one of them only."""
+_BODY = 2
+"""So many of the uppermost slabs closed all around are a body on low feet, where the shape is a table."""
 _DIRECTIONS = 24
 _CENTRAL, _WIDE_FOOT = 0.45, 0.6
 """Radius, as a share of the footprint's: a pedestal is within the one, a star's foot beyond the other."""
@@ -57,7 +67,7 @@ def form_of(
     if broad(category) in _TABLES or category in _TABLES:
         found["top"] = _top(points, size_m)
     if category in _TABLES | _SEATS:
-        found["base"] = _base(points, size_m, castors=category in _SEATS)
+        found["base"] = _base(points, size_m, seat=category in _SEATS)
     if category in _SEATS:
         found["arms"] = _arms(points, size_m)
     moving = articulation(shape_id)
@@ -65,6 +75,18 @@ def form_of(
         names = [] if moving is None else [joint.name for joint in moving.joints]
         found["doors"] = sum(name.startswith("door") for name in names)
         found["drawers"] = sum(name.startswith("drawer") for name in names)
+    return found
+
+
+def value_indices(form: Mapping[str, str | int]) -> Int8[np.ndarray, "5"]:
+    """Place of each attribute's value in `VALUES`, in the order of `MEASURED`; -1 where it has none."""
+    found = np.full(len(MEASURED), -1, np.int8)
+    for k, name in enumerate(MEASURED):
+        value, values = form.get(name), VALUES[name]
+        if isinstance(value, int):
+            value = min(value, len(values) - 1)
+        if value in values:
+            found[k] = values.index(value)
     return found
 
 
@@ -103,7 +125,7 @@ def _top(points: Float[np.ndarray, "n 3"], size_m: Float[np.ndarray, "3"]) -> st
     return "round" if even else "oval"
 
 
-def _base(points: Float[np.ndarray, "n 3"], size_m: Float[np.ndarray, "3"], castors: bool) -> str:
+def _base(points: Float[np.ndarray, "n 3"], size_m: Float[np.ndarray, "3"], seat: bool) -> str:
     half = np.maximum(np.asarray(size_m[:2]) / 2, 1e-9)
     foot = _slab(points, _FOOT) / half
     slabs = [slab / half for slab in (_slab(points, heights) for heights in _SLABS) if len(slab)]
@@ -111,9 +133,10 @@ def _base(points: Float[np.ndarray, "n 3"], size_m: Float[np.ndarray, "3"], cast
         return "none"
     if min(float(np.quantile(np.linalg.norm(slab, axis=1), 0.9)) for slab in slabs) < _CENTRAL:
         wide = np.quantile(np.linalg.norm(foot, axis=1), 0.9) > _WIDE_FOOT
-        return "five-star" if castors and wide and _arms_of_star(foot) else "pedestal"
-    around, below = min(_directions_filled(slab) for slab in slabs), _directions_filled(foot)
-    if around >= _CLOSED:
+        return "five-star" if seat and wide and _arms_of_star(foot) else "pedestal"
+    filled, below = [_directions_filled(slab) for slab in slabs], _directions_filled(foot)
+    around = min(filled)
+    if around >= _CLOSED or (not seat and min(filled[-_BODY:]) >= _CLOSED):
         return "plinth"
     if around >= _TWO_SIDES:
         return "panel"

@@ -16,6 +16,8 @@ from diorama_core.io.bounded import parse_json, shortened
 from diorama_core.scene.types import FaceName
 from diorama_core.scene.values import ArrayValue, frozen_array
 
+BUILT_IN = "built in"
+"""Source of the shapes that come with Diorama."""
 SymmetryFold = Literal[1, 2, 3, 4, 5, 6, 8, 36]
 ROUND: SymmetryFold = 36
 
@@ -77,7 +79,7 @@ class Shape:
     size_m: tuple[float, float, float]
     """Extents along x (front-back), y (left-right), z (height)."""
     style: str = ""
-    source: str = "built in"
+    source: str = BUILT_IN
     licence: str = "MIT"
     symmetry: SymmetryFold = 1
     """Turns about up that leave its geometry and colours the same; 36 means round."""

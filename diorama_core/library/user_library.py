@@ -7,6 +7,7 @@ import threading
 import trimesh
 
 from diorama_core.errors import LibraryError
+from diorama_core.library.boards import base_id
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.store import CombinedLibrary, StoredLibrary, create_library, open_library, stored_libraries
 
@@ -89,6 +90,8 @@ class ShapeRecords:
         if shapes is not listed and shapes != listed:
             by_id = {s.id: s for s in shapes}
             self._known = (shapes, by_id)
+        if shape_id not in by_id and base_id(shape_id) in by_id:
+            return self._library.shape(shape_id)
         if shape_id not in by_id:
             raise LibraryError(f"no shape is called '{shape_id}'")
         return by_id[shape_id]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -70,6 +71,39 @@ def without_doubles(found: Detections, iou: float, *, across_classes: bool) -> D
         if not (shared > iou * np.maximum(union, 1e-9)).any():
             retained.append(int(i))
     return found.rows(np.array(retained, dtype=int))
+
+
+def joined(parts: Sequence[Detections]) -> Detections:
+    """All boxes of all parts, one part after another."""
+    return Detections(
+        np.concatenate([p.boxes for p in parts]),
+        np.concatenate([p.scores for p in parts]),
+        np.concatenate([p.labels for p in parts]),
+    )
+
+
+def fused(views: Sequence[Detections], iou: float) -> Detections:
+    """One set of boxes from several looks at a picture (weighted boxes fusion, Solovyev et al. 2021).
+
+    A box becomes the mean of those that show the same thing, weighted by their scores; its score is the mean over the
+    looks of each one's best, so that what only one of them sees counts less. Labels are those of the best boxes.
+
+    Args:
+        views: what each look found, in pixels of the same picture.
+        iou: intersection over union above which two boxes are the same thing.
+    """
+    found = joined(views)
+    view = np.repeat(np.arange(len(views)), [len(v) for v in views])
+    best = without_doubles(found, iou, across_classes=True)
+    boxes, scores = np.zeros_like(best.boxes), np.zeros_like(best.scores)
+    for k, same in enumerate(overlaps(best.boxes, found.boxes) > iou):
+        if not same.any():  # a box without an area overlaps nothing, not even itself
+            continue
+        boxes[k] = np.average(found.boxes[same], axis=0, weights=found.scores[same])
+        best_of_view = np.zeros(len(views))
+        np.maximum.at(best_of_view, view[same], found.scores[same])
+        scores[k] = best_of_view.mean()
+    return without_doubles(Detections(boxes, scores, best.labels).rows(scores > 0), iou, across_classes=True)
 
 
 def without_parts_of_same(found: Detections, share: float) -> Detections:

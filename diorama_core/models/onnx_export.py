@@ -6,11 +6,14 @@ import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+import numpy as np
 import onnx
 import torch
 from torch import nn
 
 OPSET = 17
+_LARGE = 64
+"""Numbers in a weight that is worth storing in half precision."""
 
 
 def write_graph(
@@ -20,6 +23,8 @@ def write_graph(
     inputs: Sequence[str],
     outputs: Sequence[str],
     dynamic: Mapping[str, Mapping[int, str]] | None = None,
+    *,
+    half_weights: bool = False,
 ) -> Path:
     """Trace a network and write its graph.
 
@@ -30,6 +35,7 @@ def write_graph(
         inputs: names of the arguments.
         outputs: names of the results.
         dynamic: axes that may have any length, by name of an input or output: number and name.
+        half_weights: store weights in half precision, which halves the file; the graph still calculates in single.
 
     Returns:
         The path.
@@ -47,5 +53,24 @@ def write_graph(
             opset_version=OPSET,
             dynamo=False,
         )
+    if half_weights:
+        onnx.save(with_half_weights(onnx.load(str(path))), str(path))
     onnx.checker.check_model(str(path))
     return path
+
+
+def with_half_weights(model: onnx.ModelProto) -> onnx.ModelProto:
+    """The model with its large weights in half precision, each cast to single where the graph begins."""
+    found = onnx.ModelProto()
+    found.CopyFrom(model)
+    casts = []
+    for weight in found.graph.initializer:
+        values = onnx.numpy_helper.to_array(weight)
+        if values.dtype == np.float32 and values.size >= _LARGE:
+            name = f"{weight.name}.half"
+            casts.append(onnx.helper.make_node("Cast", [name], [weight.name], to=onnx.TensorProto.FLOAT))
+            weight.CopyFrom(onnx.numpy_helper.from_array(values.astype(np.float16), name))
+    nodes = [*casts, *found.graph.node]
+    del found.graph.node[:]
+    found.graph.node.extend(nodes)
+    return found

@@ -6,6 +6,7 @@ from pathlib import Path
 
 FOLDER = Path(__file__).resolve().parents[2] / "assets" / "models"
 DETECTOR, NAMER, CARD = "room-detector.onnx", "room-namer.onnx", "recogniser.json"
+OUTLINER = "room-outliner.onnx"
 
 
 def has_own_recogniser() -> bool:

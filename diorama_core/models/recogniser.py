@@ -18,19 +18,35 @@ from scipy.special import expit, softmax
 
 from diorama_core.errors import UnavailableError
 from diorama_core.models import own_weights
-from diorama_core.models.boxes import Detections, clipped, without_doubles
+from diorama_core.models.boxes import Detections, clipped, fused, joined, without_doubles
 from diorama_core.models.own_weights import CARD, DETECTOR, NAMER
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
 from diorama_core.models.store import sha256_of
+from diorama_core.scene.values import ArrayValue
 
 STRIDES = (8, 16, 32)
-CROP_SIDE = 80
+CROP_SIDE = 96
 MARGIN = 0.12
 """Of the box's size, on every side of a crop: what a thing stands on tells what it is."""
+SEEN_MARGINS = (0.06, 0.12, 0.2)
+"""A box is looked at with each of these, as it is and mirrored: boxes are drawn more or less close."""
 FILL = 114
 AREAS_PX = (320 * 256, 512 * 384)
 """The photo is looked at in each of these sizes: large things are found in the first, small ones in the second."""
-DOUBLE_IOU = 0.6
+DOUBLE_IOU, ALIKE_IOU = 0.5, 0.7
+"""Overlap of two boxes of one object, and of two that are no choice."""
+LEAST_SCORE, MOST_OF_LOOK = 0.06, 400
+"""Boxes of one look at a picture that are compared with those of the others."""
+
+
+@dataclass(frozen=True, eq=False)
+class Looks(ArrayValue):
+    """What is in some boxes, as far as their pictures tell."""
+
+    kinds: Float[np.ndarray, "n k"]
+    """Probability of every category, all equally frequent."""
+    forms: Float[np.ndarray, "n f"]
+    """Probability of every value of every attribute of form (`library.form.VALUES`), one attribute after another."""
 
 
 @dataclass(frozen=True)
@@ -41,12 +57,14 @@ class Recogniser:
         detector: graph from pictures to rows of score, sides and kinds.
         namer: graph from crops and box geometry to logits.
         categories: what the outputs stand for.
+        form_values: number of values of each attribute of form.
         weights: identity of both, for cache keys.
     """
 
     detector: Path = field(repr=False)
     namer: Path = field(repr=False)
     categories: tuple[str, ...] = field(repr=False)
+    form_values: tuple[int, ...] = field(repr=False)
     weights: str = "recogniser"
     areas_px: tuple[int, ...] = AREAS_PX
     pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
@@ -63,58 +81,86 @@ class Recogniser:
         if absent:
             raise UnavailableError(f"{folder}: {', '.join(absent)} is missing; restore it from the repository")
         try:
-            categories = tuple(str(c) for c in json.loads(paths[2].read_text())["categories"])
-        except (ValueError, KeyError, TypeError) as error:
+            card = json.loads(paths[2].read_text())
+            categories = tuple(str(c) for c in card["categories"])
+            form_values = tuple(len(values) for values in card["forms"].values())
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
             raise UnavailableError(f"{paths[2]}: cannot be read; restore it from the repository") from error
-        return cls(paths[0], paths[1], categories, "".join(sha256_of(p)[:8] for p in paths[:2]))
+        return cls(paths[0], paths[1], categories, form_values, "".join(sha256_of(p)[:8] for p in paths[:2]))
 
     def propose(self, rgb: UInt8[np.ndarray, "h w 3"], threshold: float, most: int = 100) -> Detections:
         """Boxes that may hold an object, best first, labels into `categories`; two alike never overlap much."""
-        parts = [self._proposed(rgb, area, threshold) for area in self.areas_px]
-        joined = Detections(
-            np.concatenate([p.boxes for p in parts]),
-            np.concatenate([p.scores for p in parts]),
-            np.concatenate([p.labels for p in parts]),
-        )
-        found = without_doubles(joined, DOUBLE_IOU, across_classes=True)
+        found = fused(self._looks(rgb), DOUBLE_IOU)
+        best = np.flatnonzero(found.scores >= threshold)
+        return found.rows(best[:most])
+
+    def alternatives(self, rgb: UInt8[np.ndarray, "h w 3"], threshold: float, most: int) -> Detections:
+        """Boxes to choose from where somebody points: several of one object, each as one look at the picture saw it."""
+        every = joined(self._looks(rgb))
+        found = without_doubles(every.rows(every.scores >= threshold), ALIKE_IOU, across_classes=True)
         return found.rows(np.arange(min(most, len(found))))
 
-    def _proposed(self, rgb: UInt8[np.ndarray, "h w 3"], area_px: int, threshold: float) -> Detections:
+    def _looks(self, rgb: UInt8[np.ndarray, "h w 3"]) -> list[Detections]:
+        return [look for area in self.areas_px for look in self._proposed(rgb, area)]
+
+    def _proposed(self, rgb: UInt8[np.ndarray, "h w 3"], area_px: int) -> list[Detections]:
+        """What is seen in the picture at a size, as it is and mirrored."""
         pixels, scale = fitted(rgb, area_px)
-        rows = (
-            self.pool.get(self.detector)
-            .run({"pictures": pixels}, {"rows": (1, None, None)})["rows"][0]
-            .astype(np.float64)
-        )
         height, width = pixels.shape[2:]
-        centres, strides = places(width, height)
-        scores = expit(rows[:, 0])
-        best = np.flatnonzero(scores >= threshold)
-        best = best[np.argsort(-scores[best], kind="stable")][:400]
-        reach = np.exp(np.minimum(rows[best, 1:5], 5.0)) * strides[best, None]
-        boxes = np.concatenate([centres[best] - reach[:, :2], centres[best] + reach[:, 2:]], axis=1) / scale
-        return Detections(clipped(boxes, rgb.shape[1], rgb.shape[0]), scores[best], rows[best, 5:].argmax(axis=1))
+        end = round(rgb.shape[1] * scale)
+        mirrored = np.concatenate([pixels[..., :end][..., ::-1], pixels[..., end:]], axis=3)
+        both = np.ascontiguousarray(np.concatenate([pixels, mirrored]))
+        rows = self.pool.get(self.detector).run({"pictures": both}, {"rows": (2, None, None)})["rows"]
+        looks = []
+        for k, seen in enumerate(rows.astype(np.float64)):
+            centres, strides = places(width, height)
+            scores = expit(seen[:, 0])
+            best = np.flatnonzero(scores >= LEAST_SCORE)
+            best = best[np.argsort(-scores[best], kind="stable")][:MOST_OF_LOOK]
+            reach = np.exp(np.minimum(seen[best, 1:5], 5.0)) * strides[best, None]
+            boxes = np.concatenate([centres[best] - reach[:, :2], centres[best] + reach[:, 2:]], axis=1)
+            if k == 1:
+                boxes[:, [0, 2]] = end - boxes[:, [2, 0]]
+            inside = clipped(boxes / scale, rgb.shape[1], rgb.shape[0])
+            looks.append(Detections(inside, scores[best], seen[best, 5:].argmax(axis=1)))
+        return looks
 
     def name(self, rgb: UInt8[np.ndarray, "h w 3"], boxes: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n k"]:
-        """Probability of every category for every box; each crop is looked at as it is and mirrored."""
+        """Probability of every category for every box."""
+        return self.look(rgb, boxes).kinds
+
+    def look(self, rgb: UInt8[np.ndarray, "h w 3"], boxes: Float[np.ndarray, "n 4"]) -> Looks:
+        """What is in every box: the mean of what closer and wider crops tell, as they are and mirrored."""
         if not len(boxes):
-            return np.zeros((0, len(self.categories)))
+            return Looks(np.zeros((0, len(self.categories))), np.zeros((0, sum(self.form_values))))
         height, width = rgb.shape[:2]
-        crops = np.stack([box_crop(rgb, box) for box in boxes]).transpose(0, 3, 1, 2).astype(np.float32) / 255.0
         where = np.stack([box_geometry(box, width, height) for box in boxes])
+        looks = [look for margin in SEEN_MARGINS for look in self._look(rgb, boxes, where, margin)]
+        return Looks(np.mean([k.kinds for k in looks], axis=0), np.mean([k.forms for k in looks], axis=0))
+
+    def _look(
+        self,
+        rgb: UInt8[np.ndarray, "h w 3"],
+        boxes: Float[np.ndarray, "n 4"],
+        where: Float32[np.ndarray, "n 6"],
+        margin: float,
+    ) -> list[Looks]:
+        crops = np.stack([box_crop(rgb, box, margin) for box in boxes]).transpose(0, 3, 1, 2).astype(np.float32) / 255.0
         turned = where * np.array([-1, 1, 1, 1, 1, 1], np.float32)
-        session = self.pool.get(self.namer)
-        both = [
-            softmax(
-                session.run({"crops": np.ascontiguousarray(c), "geometry": g}, {"logits": (len(g), None)})[
-                    "logits"
-                ].astype(np.float64),
-                axis=1,
+        session, looks = self.pool.get(self.namer), []
+        for c, g in ((crops, where), (crops[..., ::-1], turned)):
+            side = session.run(
+                {"crops": np.ascontiguousarray(c), "geometry": g}, {"kinds": (len(g), None), "forms": (len(g), None)}
             )
-            for c, g in ((crops, where), (crops[..., ::-1], turned))
-        ]
-        mean: Float[np.ndarray, "n k"] = (both[0] + both[1]) / 2
-        return mean
+            forms = _form_probabilities(side["forms"].astype(np.float64), self.form_values)
+            looks.append(Looks(softmax(side["kinds"].astype(np.float64), axis=1), forms))
+        return looks
+
+
+def _form_probabilities(logits: Float[np.ndarray, "n f"], form_values: tuple[int, ...]) -> Float[np.ndarray, "n f"]:
+    """Each attribute's values add up to 1."""
+    ends = np.cumsum(form_values)[:-1]
+    return np.concatenate([softmax(values, axis=1) for values in np.split(logits, ends, axis=1)], axis=1)
 
 
 @cache
@@ -147,10 +193,12 @@ def places(width: int, height: int) -> tuple[Float32[np.ndarray, "n 2"], Float32
     return np.concatenate(centres).astype(np.float32), np.concatenate(strides).astype(np.float32)
 
 
-def box_crop(rgb: UInt8[np.ndarray, "h w 3"], box: Float[np.ndarray, "4"]) -> UInt8[np.ndarray, "side side 3"]:
-    """The box with its margin as a square picture, its proportions kept, grey outside the photo."""
+def box_crop(
+    rgb: UInt8[np.ndarray, "h w 3"], box: Float[np.ndarray, "4"], margin: float = MARGIN
+) -> UInt8[np.ndarray, "side side 3"]:
+    """The box with a margin as a square picture, its proportions kept, grey outside the photo."""
     x1, y1, x2, y2 = (float(v) for v in box)
-    scale = CROP_SIDE / max(max(x2 - x1, y2 - y1) * (1 + 2 * MARGIN), 1e-3)
+    scale = CROP_SIDE / max(max(x2 - x1, y2 - y1) * (1 + 2 * margin), 1e-3)
     cx, cy = (x1 + x2) / 2, (y1 + y2) / 2
     reach = 0.5 * CROP_SIDE / scale + 2
     left, top = (max(0, int(v - reach)) for v in (cx, cy))

@@ -19,12 +19,14 @@ class OwnNaming:
     recogniser: Recogniser
 
     def name(self, photo: Photo, objects: tuple[DetectedObject, ...], progress: Progress) -> tuple[SeenKinds, ...]:
-        """Probabilities of all categories for every object, as if all were equally frequent."""
+        """Probabilities of all categories, as if all were equally frequent, and of all forms, for every object."""
         progress.report(0.0, f"Looking at {len(objects)} objects")
         boxes = np.array([item.box for item in objects], dtype=float).reshape(-1, 4)
-        found = self.recogniser.name(photo.rgb, boxes)
-        kinds = self.recogniser.categories
-        return tuple(SeenKinds(item.id, kinds, row) for item, row in zip(objects, found, strict=True))
+        found, names = self.recogniser.look(photo.rgb, boxes), self.recogniser.categories
+        return tuple(
+            SeenKinds(item.id, names, kinds, tuple(map(float, form)))
+            for item, kinds, form in zip(objects, found.kinds, found.forms, strict=True)
+        )
 
 
 def own_naming() -> OwnNaming | None:

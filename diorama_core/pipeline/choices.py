@@ -83,7 +83,7 @@ def profile_status(*, store: ModelStore | None = None, lmm: LmmSettings | None =
     lmm = lmm or LmmSettings.from_environment()
     return (
         _status(store, "detection", DETECTORS, "boxes drawn by you, proposals to correct"),
-        _status(store, "outlines", SEGMENTERS, "outlines by colour (GrabCut)"),
+        _status(store, "outlines", SEGMENTERS, "outlines by the network that comes along, and by colour"),
         _status(store, "depth and camera", DEPTH_NETWORKS, "lines, known sizes and the floor"),
         StageStatus(
             "support graph",

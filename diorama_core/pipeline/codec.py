@@ -22,7 +22,7 @@ from diorama_core.geometry import camera_attitude
 from diorama_core.io.arrays import array_of, entry
 from diorama_core.io.bounded import parse_json, shortened
 from diorama_core.io.typed import as_member, field_types, fits
-from diorama_core.scene import types
+from diorama_core.scene import light_settings, types
 
 MAX_BYTES = 400_000_000
 """Unpacked: two hundred masks of a photo of 1600 x 1200."""
@@ -56,6 +56,8 @@ _CLASSES: dict[str, type] = {
         types.Intrinsics,
         types.Camera,
         types.Pose,
+        types.SurfaceFinish,
+        light_settings.LightSettings,
         types.Plane,
         types.Architecture,
         types.Candidate,

@@ -9,7 +9,7 @@ from diorama_core.models.manifest import network
 from diorama_core.models.store import ModelStore
 from diorama_core.pipeline import network_stages
 from diorama_core.pipeline.stages import Stages
-from diorama_core.retrieval import HierarchicalRetrieval
+from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
 from diorama_core.retrieval.joint import ClipEmbedding, JointSimilarity
 
 

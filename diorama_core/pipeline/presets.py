@@ -181,7 +181,7 @@ def clickers() -> Mapping[str, Callable[[Photo, Float[np.ndarray, "n 2"]], Seque
         return {}
 
     def own(photo: Photo, pixels: Float[np.ndarray, "n 2"]) -> Sequence[Box | None]:
-        found = own_recogniser().propose(photo.rgb, FAINT, MOST_FAINT)
+        found = own_recogniser().alternatives(photo.rgb, FAINT, MOST_FAINT)
         return [clicked_box(found, float(x), float(y)) for x, y in pixels]
 
     return {"own": own}

@@ -22,6 +22,7 @@ from diorama_core.artefacts import (
     ObjectGeometry,
     SceneGraph,
 )
+from diorama_core.layout.fitted_boards import fitted_boards
 from diorama_core.layout.holding_shapes import holding_shapes
 from diorama_core.layout.noise import MEASURED, REASONED
 from diorama_core.layout.support_check import checked_supports
@@ -110,7 +111,8 @@ def build_scene(
     if inputs.depth_m is not None:  # heights reasoned from a photo alone do not tell boards from one another
         shaped, reshaped = holding_shapes(shaped, library, noise)
     checked, changed = checked_supports(shaped, library, noise)
-    observed = _textured(containing_room(checked), textures)
+    fitted, moved = fitted_boards(checked, library, reasoned=inputs.depth_m is None)
+    observed = _textured(containing_room(fitted), textures)
     appearance = photo_appearance(balanced.photo.rgb, found["furniture_objects"], observed, library, illuminant.rgb)
     observed, textures = appearance.applied(observed), {**textures, **appearance.pictures}
 
@@ -138,7 +140,7 @@ def build_scene(
         inputs=inputs,
         runs=tuple(runner.runs),
         stages=stages,
-        notes=(*_notes(found, reshaped + changed, report), *runner.lost),
+        notes=(*_notes(found, reshaped + changed + moved, report), *runner.lost),
     )
 
 

@@ -34,7 +34,7 @@ from diorama_core.protocols import (
     RecognitionStage,
     RetrievalStage,
 )
-from diorama_core.retrieval import HierarchicalRetrieval
+from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
 
 DEFAULT_RECIPE = "feasible"
 

@@ -30,6 +30,7 @@ from diorama_core.pose.agree import MAX_LOSS_WITH_DEPTH, agreed_ranks
 from diorama_core.pose.appearance_likelihood import AppearanceLikelihood, cells_for
 from diorama_core.pose.facing import facing_of, wall_samples
 from diorama_core.pose.hypotheses import Anchor, Hypotheses, anchor_of, hypotheses_for, unlike_best
+from diorama_core.pose.levels import level_cost
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.measured import MeasuredObject
@@ -59,6 +60,8 @@ class _Task:
     item: DetectedObject
     cuboid: Cuboid
     anchor: Anchor
+    carried: tuple[Cuboid, ...]
+    """What lies on it."""
     coarse: Evidence
     fine: Evidence
     measured: MeasuredObject | None
@@ -206,6 +209,7 @@ class RenderAndCompare:
             if item.id not in wanted:
                 continue
             on_wall = parent_of.get(item.id) == "wall" and category(item.category).mount != "floor"
+            carried = tuple(cuboids[j] for j, parent in enumerate(parents) if parent == i)
             lying = [cuboids[j] for j, parent in enumerate(parents) if parent == i and items[j].category == "pillow"]
             anchor = anchor_of(cuboids[i], on_wall, geometry.camera.position[:2] - cuboids[i].centre[:2])
             out_of_wall = anchor.axis_world[:2] if on_wall else None
@@ -224,7 +228,7 @@ class RenderAndCompare:
             close = None
             if measured is not None and surfaces[2] is not None:
                 close = AppearanceLikelihood.of(inputs.photo.rgb, item.mask, windows[2], surfaces[2], cuboids[i].size_m)
-            tasks.append(_Task(item, cuboids[i], anchor, coarse, fine, measured, close))
+            tasks.append(_Task(item, cuboids[i], anchor, carried, coarse, fine, measured, close))
         return tasks
 
     def _pose_object(
@@ -233,13 +237,24 @@ class RenderAndCompare:
         best = max(max(score for _, score in ranked), 1e-9)
         tried = [self._try_shape(task, records[i], float(np.log(max(score / best, 1e-6)))) for i, score in ranked]
         if task.measured is None:
-            return tuple(self._pose_by_outline(task, one) for one in tried)
+            return tuple(self._with_levels(task, self._pose_by_outline(task, one)) for one in tried)
         order = sorted(range(len(tried)), key=lambda k: -float(tried[k].scores.max()))
         promising = set(order[: self.promising])
-        posed = [self._pose_by_depth(task, task.measured, one, k in promising) for k, one in enumerate(tried)]
+        posed = [
+            self._with_levels(task, self._pose_by_depth(task, task.measured, one, k in promising))
+            for k, one in enumerate(tried)
+        ]
         first = max(range(len(posed)), key=lambda k: posed[k].rank)
-        posed[first] = self._turned_all_around(task, task.measured, tried[first], posed[first])
+        turned = self._turned_all_around(task, task.measured, tried[first], posed[first])
+        posed[first] = turned if turned is posed[first] else self._with_levels(task, turned)
         return tuple(posed)
+
+    def _with_levels(self, task: _Task, posed: _Posed) -> _Posed:
+        """Ranked by the levels of what it carries, too."""
+        if not task.carried:
+            return posed
+        cost = level_cost(self.library.shape(posed.shape.id), posed.pose, task.carried)
+        return replace(posed, rank=posed.rank - cost)
 
     def _try_shape(self, task: _Task, shape: Shape, liked: float) -> _Tried:
         appearance = self._compare(shape)

@@ -163,11 +163,12 @@ class Project:
         inputs = self.load_inputs()
         return None if inputs is None else inputs.photo
 
-    def save_scene(self, scene: Scene) -> None:
-        """Write `scene.json`; the previous one is kept among the backups (at most one a minute)."""
+    def save_scene(self, scene: Scene) -> bool:
+        """Write `scene.json`; the previous one is kept among the backups (at most one a minute): True when it is."""
         text = scene_to_json(scene)
-        self._back_up(emptied=not scene.objects)
+        new_version = self._back_up(emptied=not scene.objects)
         write_atomically(self.scene_path, text.encode(), error=ProjectError)
+        return new_version
 
     def load_scene(self) -> Scene:
         """Read `scene.json`; raises `ProjectError` when there is none yet, `SceneError` when it is wrong."""
@@ -214,6 +215,7 @@ class Project:
     def textures(self, scene: Scene) -> dict[str, UInt8[np.ndarray, "_ _ 3"]]:
         """All pictures that the scene's planes name, and its objects' materials from the photo."""
         names = {p.texture for p in scene.architecture.planes if p.texture is not None}
+        names |= {p.photo_texture for p in scene.architecture.planes if p.photo_texture is not None}
         names |= {m.texture for o in scene.objects for m in o.photo_materials if m.texture is not None}
         found: dict[str, UInt8[np.ndarray, "h w 3"]] = {}
         pixels = 0
@@ -240,19 +242,20 @@ class Project:
         }
         write_atomically(self._info_path, json.dumps(document, indent=1).encode(), error=ProjectError)
 
-    def _back_up(self, *, emptied: bool) -> None:
+    def _back_up(self, *, emptied: bool) -> bool:
         if not self.scene_path.exists():
-            return
+            return False
         known = self.backups()
         recent = bool(known) and time.time() - known[0].stat().st_mtime < BACKUP_EVERY_S
         if recent and not emptied:
-            return
+            return False
         stamp = time.strftime("%Y%m%d-%H%M%S") + f"-{time.time_ns() % 1_000_000_000:09d}"
         backup = self.folder / "backups" / f"scene-{stamp}.json"
         content = read_bytes(self.scene_path, MAX_JSON_BYTES, ProjectError)
         write_atomically(backup, content, error=ProjectError)
         for old in self.backups()[MAX_BACKUPS:]:
             old.unlink(missing_ok=True)
+        return True
 
 
 def read_scene(path: Path) -> Scene:

@@ -11,17 +11,18 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 import trimesh
-from jaxtyping import Float, Float32, Int32, UInt8
+from jaxtyping import Float, Float32, Int, Int32, UInt8
 from PIL import Image
 from trimesh.visual.color import ColorVisuals
 from trimesh.visual.material import PBRMaterial
 
+from diorama_core.geometry.cross import cross
 from diorama_core.geometry.rows import unique_rows
+from diorama_core.geometry.vectors import dot, unit
 from diorama_core.io.cache import LruCache
 from diorama_core.library.paint import painted
 from diorama_core.library.photo_materials import PhotographedMaterial, Pictures, with_photo_materials
 from diorama_core.library.stretch import EVEN, Scale, stretched_parts
-from diorama_core.render.raycast import face_normals, unit
 from diorama_core.scene.types import Finish, PhotoMaterial
 
 Colour = tuple[float, float, float]
@@ -227,18 +228,48 @@ def _picture(image: Image.Image | None) -> UInt8[np.ndarray, "h w c"] | None:
 def smooth_corner_normals(
     vertices: Float32[np.ndarray, "n 3"], faces: Int32[np.ndarray, "m 3"], crease_rad: float = CREASE_RAD
 ) -> Float32[np.ndarray, "m*3 3"]:
-    """A normal for every corner of every face: the area-weighted mean of the neighbours within the crease angle."""
-    a, b, c = (vertices[faces[:, k]].astype(np.float64) for k in range(3))
-    weighted = np.cross(b - a, c - a)
-    normals = face_normals(vertices, faces).astype(np.float64)
-    owner = unique_rows(np.round(vertices, 5))[1][faces.reshape(-1)]
-    first, second = _pairs_of_equal(owner)
-    near = np.einsum("ij,ij->i", normals[first // 3], normals[second // 3]) > np.cos(crease_rad)
-    first, second = first[near], second[near]
-    sums = np.stack([np.bincount(first, weighted[second // 3, k], minlength=len(owner)) for k in range(3)], axis=1)
-    lost = np.linalg.norm(sums, axis=1) < 1e-15
+    """A normal for every corner of every face: the area-weighted mean of the neighbours within the crease angle.
+
+    Faces that lie within half that angle of their vertex's mean normal lie within it of each other, so where all do,
+    the mean is the normal, and only at other vertices are faces compared pair by pair.
+    """
+    a, b, c = (vertices.take(faces[:, k], axis=0).astype(np.float64) for k in range(3))
+    weighted = cross(b - a, c - a)
+    normals = unit(weighted)
+    owner = unique_rows(np.round(vertices, 5))[1].take(faces.reshape(-1))
+    of_vertex = _sums(owner, np.repeat(weighted, 3, axis=0), int(owner.max(initial=-1)) + 1)
+    from_mean = dot(np.repeat(normals, 3, axis=0), unit(of_vertex).take(owner, axis=0))
+    creased = np.zeros(len(of_vertex), dtype=bool)
+    creased[owner[from_mean <= np.cos(crease_rad / 2)]] = True
+    sums = of_vertex.take(owner, axis=0)
+    rest = np.flatnonzero(creased.take(owner))
+    sums[rest] = _within_crease(owner[rest], rest // 3, weighted, normals, crease_rad)
+    lost = dot(sums, sums) < 1e-30
     sums[lost] = np.repeat(normals, 3, axis=0)[lost]
     return unit(sums).astype(np.float32)
+
+
+def _within_crease(
+    owner: Int[np.ndarray, " n"],
+    face: Int[np.ndarray, " n"],
+    weighted: Float[np.ndarray, "m 3"],
+    normals: Float[np.ndarray, "m 3"],
+    crease_rad: float,
+) -> Float[np.ndarray, "n 3"]:
+    """For corners of given vertices and faces the sum of the faces at the vertex that meet theirs within the angle."""
+    first, second = _pairs_of_equal(owner)
+    first_face, second_face = face.take(first), face.take(second)
+    near = dot(normals.take(first_face, axis=0), normals.take(second_face, axis=0)) > np.cos(crease_rad)
+    first, second_face = first[near], second_face[near]
+    return _sums(first, weighted.take(second_face, axis=0), len(owner))
+
+
+def _sums(labels: Int[np.ndarray, " n"], vectors: Float[np.ndarray, "n 3"], count: int) -> Float[np.ndarray, "k 3"]:
+    """Sum of the vectors of each label below `count`."""
+    found = np.empty((count, 3))
+    for k in range(3):
+        found[:, k] = np.bincount(labels, vectors[:, k], minlength=count)
+    return found
 
 
 def _pairs_of_equal(labels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

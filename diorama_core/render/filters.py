@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
+from diorama_core.geometry.vectors import dot
 from diorama_core.io.srgb import linear_to_srgb
 from diorama_core.render.lighting import TILE
-from diorama_core.render.raycast import dot
 
 
 @dataclass(frozen=True, eq=False)

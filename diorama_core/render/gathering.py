@@ -9,11 +9,12 @@ from __future__ import annotations
 import numpy as np
 from jaxtyping import Bool, Float32, Int
 
+from diorama_core.geometry.vectors import dot
 from diorama_core.progress import Progress
 from diorama_core.render.filters import Neighbours
 from diorama_core.render.grid import Grid, bands, each
 from diorama_core.render.lighting import TILE, Effort, Lighting, Spots, irradiance
-from diorama_core.render.raycast import Caster, dot
+from diorama_core.render.raycast import Caster
 from diorama_core.render.world import World
 
 Light = Float32[np.ndarray, "h w 3"]

@@ -13,7 +13,9 @@ from functools import cache
 import numpy as np
 from jaxtyping import Float, Float32, Int
 
-from diorama_core.render.raycast import Caster, dot, facing, unit
+from diorama_core.geometry.vectors import dot, facing, unit
+from diorama_core.render.direct_light import DirectLight
+from diorama_core.render.raycast import Caster
 from diorama_core.render.world import World
 from diorama_core.scene.types import RoomLight
 
@@ -40,6 +42,10 @@ class Lighting:
     """Within this distance surfaces shade and colour one another."""
     inward: Float[np.ndarray, "3"] | None = None
     """Where a window in a wall sends its light, most straight ahead and none along the wall; None all around."""
+    direct: tuple[DirectLight, ...] = ()
+    """The sun and lamps, with their shadows."""
+    relights: bool = False
+    """Whether photographed surfaces are lit like all others: the light is not that of their photo."""
 
 
 @dataclass(frozen=True)
@@ -87,6 +93,8 @@ def studio(bounds: Float[np.ndarray, "2 3"], toward_camera: Float[np.ndarray, "3
     )
 
 
+MAX_BOUNCED = 0.8
+"""Of the light that one ray brings from a near surface: a bright spot met by a few rays would make specks of light."""
 MEAN_IRRADIANCE = 0.885
 """Of the studio's light, averaged over all directions: pictures are about as bright under any room's light."""
 MIN_ELEVATION = 0.15
@@ -145,7 +153,10 @@ def irradiance(
     frames = _tangent_frames(spots.normals)
     window, around = (np.zeros((len(lane), 3), np.float32) for _ in range(2))
     for samples in _sample_sets(effort.window_rays, sharing):
-        window += _from_window(blockers, origins, spots.normals, samples.take(lane, axis=0), light)
+        sample = samples.take(lane, axis=0)
+        window += _from_window(blockers, origins, spots.normals, sample, light)
+        for source in light.direct:
+            window += source.falling(origins, spots.normals, sample)
     for samples in _sample_sets(effort.sky_rays, sharing):
         local = _cosine_directions(samples).take(lane, axis=0)
         direction = frames[0] * local[:, :1] + frames[1] * local[:, 1:2] + spots.normals * local[:, 2:]
@@ -156,11 +167,15 @@ def irradiance(
 def unshadowed(
     points: Float32[np.ndarray, "n 3"], normals: Float32[np.ndarray, "n 3"], light: Lighting
 ) -> Float32[np.ndarray, "n 3"]:
-    """Light on places as if nothing were in the way: what bounced light is reckoned from."""
+    """Light on places as if nothing stood in the way but of the sun and lamps: what bounced light is reckoned from."""
     to_window = light.window_centre.astype(np.float32) - points
     squared = dot(to_window, to_window)
     key = np.maximum(dot(normals, to_window), 0) * _key_strength(to_window, squared, light)
-    return key[:, None] * (0.6 * light.window_irradiance).astype(np.float32) + ambient(normals, light)
+    fallen = key[:, None] * (0.6 * light.window_irradiance).astype(np.float32) + ambient(normals, light)
+    middle = np.full((len(points), 2), 0.5, np.float32)
+    for source in light.direct:
+        fallen += source.falling(points, normals, middle)
+    return fallen
 
 
 def ambient(directions: Float[np.ndarray, "n 3"], light: Lighting) -> Float32[np.ndarray, "n 3"]:
@@ -206,7 +221,7 @@ def _from_around(
         normals = facing(normals, toward)
         points = origins.take(near, axis=0) + toward * chosen.distance[:, None]
         fade = (chosen.distance[:, None] / np.float32(light.reach_m)) ** 2
-        bounced = np.float32(0.8) * colour * unshadowed(points, normals, light)
+        bounced = np.minimum(np.float32(0.8) * colour * unshadowed(points, normals, light), MAX_BOUNCED)
         radiance[near] += (1 - fade) * (bounced - radiance[near])
     return radiance
 

@@ -9,11 +9,14 @@ import numpy as np
 from jaxtyping import Float, UInt8
 
 from diorama_core.errors import InputError, SceneError
+from diorama_core.geometry.openings import with_openings
+from diorama_core.geometry.vectors import unit
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.render.filters import as_bytes, tone_mapped
 from diorama_core.render.lighting import Effort, Lighting, room_lighting, studio
-from diorama_core.render.raycast import OrthographicView, PinholeView, View, unit
+from diorama_core.render.raycast import OrthographicView, PinholeView, View
+from diorama_core.render.scene_light import with_settings
 from diorama_core.render.shading import shoot
 from diorama_core.render.world import World, scene_world
 from diorama_core.scene.frames import UP_WORLD
@@ -64,13 +67,15 @@ def picture(
     progress.report(0.0, "gathering meshes and materials")
     source = scene_view(scene, view, size)
     without = _behind(scene, source)
-    world = scene_world(scene, library, textures=textures, photographed=photographed, without=without)
+    opened = with_openings(scene)
+    world = scene_world(opened, library, textures=textures, photographed=photographed, without=without)
     count = len(scene.objects)
     blockers = world.shadow_caster(without=range(count, count + len(scene.architecture.planes)))
-    light = light or scene_lighting(scene, world, source)
+    light = light or with_settings(scene_lighting(scene, world, source), opened, library, _room_bounds(scene, world))
     shot = shoot(world, blockers, source, light, effort, progress.part(0.1, 1.0))
     background = np.asarray(BACKGROUND_SRGB) * (1 - shot.coverage[..., None])
-    return as_bytes(tone_mapped(_uncovered(shot.radiance, shot.coverage)) * shot.coverage[..., None] + background)
+    radiance = _uncovered(shot.radiance, shot.coverage) * np.float32(scene.light_settings.exposure)
+    return as_bytes(tone_mapped(radiance) * shot.coverage[..., None] + background)
 
 
 def scene_lighting(scene: Scene, world: World, view: View) -> Lighting:

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Float32, Int
 
+from diorama_core.geometry.vectors import dot, unit
 from diorama_core.progress import Progress
 from diorama_core.render.filters import tone_mapped
 from diorama_core.render.gathering import fallen_light
 from diorama_core.render.grid import Grid, bands, each, pixel_footprint
 from diorama_core.render.lighting import Effort, Lighting, ambient, unshadowed
-from diorama_core.render.raycast import Caster, RayArray, View, dot, pixel_centres, unit
+from diorama_core.render.raycast import Caster, RayArray, View, pixel_centres
 from diorama_core.render.world import Places, World
 
 BRIGHTEST = 2.0
@@ -110,14 +111,16 @@ def _seen(
 
 
 def _relit(places: Places, fallen: Float32[np.ndarray, "n 3"], light: Lighting) -> Float32[np.ndarray, "n 3"]:
-    """The light to multiply colours with: on photographed places only how much of it is held off."""
+    """The light to multiply colours with: on photographed places only how much of it is held off, and lamps' light."""
     known = np.flatnonzero(places.photographed)
-    if not len(known):
+    if light.relights or not len(known):
         return fallen
-    free = unshadowed(places.points[known], places.normals[known], light)
-    share = np.clip(fallen[known].mean(axis=1) / free.mean(axis=1), 0.0, 1.0)
+    free = unshadowed(places.points[known], places.normals[known], replace(light, direct=()))
     relit = fallen.copy()
-    relit[known] = share[:, None]
+    if light.direct:
+        relit[known] = fallen[known] / free.mean(axis=1, keepdims=True)
+    else:
+        relit[known] = np.clip(fallen[known].mean(axis=1) / free.mean(axis=1), 0.0, 1.0)[:, None]
     return relit
 
 

@@ -26,7 +26,7 @@ def plane_surfaces(
     inner = _triangles(plane)
     behind = polygon - plane.normal * plane.thickness
     plain = _plain_material(plane)
-    face = plain if texture is None else _textured(plane, texture, photographed)
+    face = plain if texture is None else _textured(plane, texture, photographed and plane.finish is None)
     front = _surface(polygon, inner, plane.normal, face, plane_uv(plane))
     ring = np.arange(count)
     after = np.roll(ring, -1)

@@ -8,11 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int, Int32, UInt8
 
+from diorama_core.geometry.vectors import face_normals, facing, unit
 from diorama_core.io.srgb import srgb_to_linear
+from diorama_core.library.opening import OpenedShapes
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.stretch import relative_scale
 from diorama_core.render.appearance import Surface, shape_surfaces
-from diorama_core.render.raycast import Caster, Hits, RayArray, face_normals, facing, unit
+from diorama_core.render.lamps import as_lit
+from diorama_core.render.raycast import Caster, Hits, RayArray
 from diorama_core.render.slabs import plane_surfaces
 from diorama_core.scene.types import Scene
 
@@ -140,18 +143,31 @@ def scene_world(
         photographed: Whether the planes' pictures hold the light of the room, as rectified photos do.
         without: Ids of objects and planes to leave out.
     """
+    return World(placed_surfaces(scene, library, textures=textures, photographed=photographed, without=without))
+
+
+def placed_surfaces(
+    scene: Scene,
+    library: ShapeLibrary,
+    *,
+    textures: Mapping[str, UInt8[np.ndarray, "_ _ _"]] | None = None,
+    photographed: bool = True,
+    without: frozenset[str] = frozenset(),
+) -> list[Placed]:
+    """What `scene_world` is made of; arguments as there."""
     placed: list[Placed] = []
     for index, item in enumerate(scene.objects):
         if not item.hidden and item.id not in without:
             paint = (item.colour, item.finish, item.shown_photo_materials)
             scale = relative_scale(item.pose.scale)
-            surfaces = shape_surfaces(library, item.shape_id, *paint, textures or {}, scale)
-            placed.append(Placed(surfaces, item.pose.matrix, index))
+            shapes = library if item.open_share == 0.0 else OpenedShapes(library, item.open_share, scale)
+            surfaces = shape_surfaces(shapes, item.shape_id, *paint, textures or {}, scale)
+            placed.append(Placed(as_lit(item, surfaces, scene), item.pose.matrix, index))
     for index, plane in enumerate(scene.architecture.planes, start=len(scene.objects)):
         if plane.id not in without:
             picture = (textures or {}).get(plane.texture) if plane.texture else None
             placed.append(Placed(plane_surfaces(plane, picture, photographed=photographed), np.eye(4), index))
-    return World(placed)
+    return placed
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,6 +28,7 @@ from diorama_core.retrieval.appearance_similarity import (
 from diorama_core.retrieval.neighbours import neighbour_factors
 from diorama_core.retrieval.outlines import outline_agreement
 from diorama_core.retrieval.pools import Pool, RetrievalQuery, pool_for, size_cost
+from diorama_core.retrieval.seen_forms import seen_form_factor, shape_form
 from diorama_core.retrieval.usual_forms import usual_form_factor
 from diorama_core.retrieval.word_senses import sense_probabilities
 from diorama_core.retrieval.words import described_share
@@ -108,7 +109,7 @@ class HierarchicalRetrieval:
             alike = similarity.of(object_crop, [m.shape for m in members])
             said = described_share(self.library, item.label, item.category, [m.shape for m in members])
             factors = [
-                m.kind_factor * (1 - _OF_WORDS * (1 - w)) * self._usual(m.shape, item)
+                m.kind_factor * (1 - _OF_WORDS * (1 - w)) * self._of_form(m.shape, item)
                 for m, w in zip(members, said, strict=True)
             ]
             sight.append(visible)
@@ -168,9 +169,11 @@ class HierarchicalRetrieval:
         folder = default_cache_dir() / "appearance"
         return SHARED_APPEARANCES.get(shape.content_hash, folder, lambda: self.library.parts(shape.id))
 
-    def _usual(self, shape: Shape, item: DetectedObject) -> float:
-        """How usual the shape's form is, where the mask was not drawn and can hardly tell."""
-        return 1.0 if item.mask_confidence >= 1.0 else usual_form_factor(shape, self._appearance(shape))
+    def _of_form(self, shape: Shape, item: DetectedObject) -> float:
+        """How well the shape's form agrees with what was seen; how usual it is, where the mask can hardly tell."""
+        appearance = self._appearance(shape)
+        seen = seen_form_factor(shape_form(shape, appearance), item.seen_form) if item.seen_form else 1.0
+        return seen if item.mask_confidence >= 1.0 else seen * usual_form_factor(shape, appearance)
 
     def _weights(self, seen: Observed, visible: float, named: bool) -> tuple[float, float, float]:
         """Weights of size, outline and appearance for an object with this visibility."""

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 from diorama_core.artefacts import DetectedObject, SeenKinds
 
-_TRUST, _TRUST_BESIDE_WORD = 0.5, 0.3
+_TRUST, _TRUST_BESIDE_WORD = 0.8, 0.5
 """Powers of the probabilities of a thing without a name, and of one whose word leaves a choice: the namer learnt from
 rendered rooms and is too sure of itself on photos, and a word has said some of what it says."""
-_FLOOR = 0.003
+_FLOOR = 0.001
 """Added to every probability: of a kind that the namer rules out not everything is known."""
 
 
@@ -20,7 +20,11 @@ def with_seen_kinds(
     """The objects with what they look like; unchanged where nobody looked."""
     of = {one.object_id: one for one in seen or ()}
     return tuple(
-        replace(item, looks_like=tuple(zip(of[item.id].kinds, map(float, of[item.id].probabilities), strict=True)))
+        replace(
+            item,
+            looks_like=tuple(zip(of[item.id].kinds, map(float, of[item.id].probabilities), strict=True)),
+            seen_form=of[item.id].form,
+        )
         if item.id in of
         else item
         for item in objects

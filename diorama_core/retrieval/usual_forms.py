@@ -11,13 +11,13 @@ from collections.abc import Mapping
 
 import cv2
 import numpy as np
-import trimesh
 
 from diorama_core.geometry.shape_appearance import ShapeAppearance
 from diorama_core.io.cache import LruCache
-from diorama_core.library.form import FULL_RECTANGLE, form_of
+from diorama_core.library.form import FULL_RECTANGLE
 from diorama_core.library.record import Shape
 from diorama_core.library.taxonomy import with_kin
+from diorama_core.retrieval.seen_forms import shape_form
 
 _SEAT = {"four legs": 0.75, "sled": 0.08, "five-star": 0.07, "pedestal": 0.06, "plinth": 0.02}
 _OFFICE_SEAT = {"five-star": 0.8, "four legs": 0.1, "pedestal": 0.05, "sled": 0.05}
@@ -42,7 +42,6 @@ _RARE = 0.02
 _SAYS = 0.08
 """Power of the share that multiplies a retrieval score: scores of shapes that fit well and badly differ little."""
 
-_FORM_OF: LruCache[str, tuple[str, str]] = LruCache(4096)
 _OUTLINE_OF: LruCache[str, str] = LruCache(4096)
 
 
@@ -61,13 +60,8 @@ def usual_form_factor(shape: Shape, appearance: ShapeAppearance) -> float:
 
 def _form(shape: Shape, appearance: ShapeAppearance) -> tuple[str, str]:
     """Base and top."""
-
-    def found() -> tuple[str, str]:
-        mesh = trimesh.Trimesh(appearance.vertices, appearance.faces, process=False)
-        form = form_of("", shape.category, mesh, np.asarray(shape.size_m))
-        return str(form.get("base", "none")), str(form.get("top", "none"))
-
-    return _FORM_OF.get(shape.content_hash, found)
+    form = shape_form(shape, appearance)
+    return str(form.get("base", "none")), str(form.get("top", "none"))
 
 
 def _outline(shape: Shape, appearance: ShapeAppearance) -> str:

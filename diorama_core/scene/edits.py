@@ -24,7 +24,6 @@ from diorama_core.scene.room_edits import (
     rescale_by_edge,
     rescale_to_length,
     set_ceiling_height,
-    set_plane_material,
 )
 from diorama_core.scene.support import check_edge, descendants
 from diorama_core.scene.types import Candidate, Finish, MaterialSource, Plane, Pose, Scene, SceneObject, Support
@@ -34,7 +33,7 @@ __all__ = [
     "attach", "ceiling_height", "detach", "duplicate", "edge_length_m", "floor_height", "fresh_id", "insert", "move",
     "move_plane", "place", "recolour", "refinish", "remove", "rename", "rescale", "rescale_by_edge",
     "rescale_to_length", "set_ceiling_height", "set_hidden", "set_locked", "set_material_source", "set_metrics",
-    "set_plane_material", "set_planes", "swap",
+    "set_open", "set_planes", "swap",
 ]  # fmt: skip
 
 SMALLEST_SIZE_M = 1e-3
@@ -178,6 +177,14 @@ def set_material_source(scene: Scene, object_id: str, source: MaterialSource) ->
     if source == "photo" and not item.photo_materials:
         raise EditRefused(f"the photo shows no material of {item.label}; build it from the photo first")
     return _with(scene, object_id, material_source=source)
+
+
+def set_open(scene: Scene, object_id: str, open_share: float) -> Scene:
+    """Open the doors, drawers and lids of an object: 0 closed to 1 as far as they go."""
+    _unlocked(scene, object_id)
+    if not 0.0 <= open_share <= 1.0:
+        raise EditRefused(f"something stands open by 0 to 100 %, not by {100 * open_share:g} %")
+    return _with(scene, object_id, open_share=float(open_share))
 
 
 def refinish(scene: Scene, object_id: str, finish: Finish | None) -> Scene:

@@ -7,7 +7,7 @@ stretched or cut so that the room stays closed.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -15,13 +15,14 @@ from jaxtyping import Bool, Float
 
 from diorama_core.errors import EditRefused
 from diorama_core.scene.support import descendants
-from diorama_core.scene.types import Camera, Plane, Pose, Scene, SceneObject
+from diorama_core.scene.types import Camera, Plane, Pose, Scene, SceneObject, SurfaceFinish
 
 JOINED_M = 0.01
 """Corners of two planes nearer than this are one corner of the room."""
 LARGEST_MOVE_M = 30.0
 LOWEST_CEILING_M, HIGHEST_CEILING_M = 1.0, 30.0
 SMALLEST_FACTOR, LARGEST_FACTOR = 0.02, 50.0
+SMALLEST_PATTERN, LARGEST_PATTERN = 0.1, 10.0
 PARALLEL = 0.985
 """Planes turned by less than about ten degrees cannot be kept joined by sliding along one another."""
 
@@ -137,13 +138,39 @@ def ceiling_height(scene: Scene) -> float | None:
     return max(float(p.polygon[:, 2].max()) for p in upper) - floor_height(scene) if upper else None
 
 
-def set_plane_material(
-    scene: Scene, plane_id: str, *, colour: tuple[float, float, float] | None = None, texture: str | None = None
-) -> Scene:
-    """A plane's picture by name, or its plain material with None; the colour is kept when none is given."""
-    plane = _plane(scene, plane_id)
-    changed = replace(plane, texture=texture, colour=plane.colour if colour is None else colour)
-    return _with_planes(scene, tuple(changed if p.id == plane_id else p for p in scene.architecture.planes))
+def set_surface_finish(scene: Scene, plane_ids: Collection[str], finish: SurfaceFinish | None) -> Scene:
+    """Finish planes alike, or with None let them look as they did before, in the photo.
+
+    The pictures of finishes are made by `diorama_core.appearance.surface_finish`; until then planes are plain.
+
+    Raises:
+        EditRefused: when there is no such plane, or the pattern's size is no usable number.
+    """
+    if finish is not None and not SMALLEST_PATTERN <= finish.scale <= LARGEST_PATTERN:
+        raise EditRefused(
+            f"a pattern cannot be {finish.scale:g} times as large; give {SMALLEST_PATTERN:g} to {LARGEST_PATTERN:g}"
+        )
+    chosen = {_plane(scene, i).id for i in plane_ids}
+    return _with_planes(scene, tuple(_finished(p, finish) if p.id in chosen else p for p in scene.architecture.planes))
+
+
+def _finished(plane: Plane, finish: SurfaceFinish | None) -> Plane:
+    if finish == plane.finish:
+        return plane
+    bare_colour = plane.colour if plane.photo_colour is None else plane.photo_colour
+    bare_texture = plane.texture if plane.finish is None else plane.photo_texture
+    if finish is None:
+        return replace(
+            plane, finish=None, colour=bare_colour, texture=bare_texture, photo_colour=None, photo_texture=None
+        )
+    return replace(
+        plane,
+        finish=finish,
+        colour=finish.colour,
+        texture=None,
+        photo_colour=bare_colour,
+        photo_texture=bare_texture,
+    )
 
 
 def _with_plane_moved(planes: tuple[Plane, ...], moved: Plane, distance_m: float) -> tuple[Plane, ...]:

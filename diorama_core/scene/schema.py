@@ -17,6 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
 
 from diorama_core.errors import SceneError
 from diorama_core.io.bounded import parse_json, shortened
+from diorama_core.scene.light_settings import MAX_EXPOSURE_EV, PHOTO_LIGHT, LightSettings
 from diorama_core.scene.support import check_scene
 from diorama_core.scene.types import (
     Architecture,
@@ -35,6 +36,8 @@ from diorama_core.scene.types import (
     Scene,
     SceneObject,
     Support,
+    SurfaceFinish,
+    SurfacePattern,
     TextureLayout,
 )
 
@@ -86,6 +89,13 @@ class _CameraFile(_Model):
     T_world_camera: Matrix4
 
 
+class _SurfaceFinishFile(_Model):
+    pattern: SurfacePattern
+    colour: Colour
+    scale: Size
+    direction_rad: Number
+
+
 class _PlaneFile(_Model):
     id: Id
     role: PlaneRole
@@ -94,6 +104,9 @@ class _PlaneFile(_Model):
     colour: Colour
     texture: Id | None
     confidence: Number
+    finish: _SurfaceFinishFile | None = None
+    photo_colour: Colour | None = None
+    photo_texture: Id | None = None
 
 
 class _ArchitectureFile(_Model):
@@ -147,12 +160,20 @@ class _ObjectFile(_Model):
     finish: Finish | None = None
     photo_materials: Annotated[list[_PhotoMaterialFile], Field(max_length=100)] = []
     material_source: MaterialSource = "photo"
+    open_share: Unit = 0.0
 
 
 class _LightFile(_Model):
     direction: tuple[Number, Number, Number]
     strength: Unit
     colour: Colour
+
+
+class _LightSettingsFile(_Model):
+    hour: Annotated[float, Field(ge=0.0, le=24.0)] | None = None
+    north_rad: Number
+    exposure_ev: Annotated[float, Field(ge=-MAX_EXPOSURE_EV, le=MAX_EXPOSURE_EV)] = 0.0
+    lamps_on: Annotated[list[Words], Field(max_length=MAX_ITEMS)] | None = None
 
 
 class _SceneFile(_Model):
@@ -165,6 +186,7 @@ class _SceneFile(_Model):
     objects: Annotated[list[_ObjectFile], Field(max_length=MAX_ITEMS)]
     metrics: Annotated[dict[Words, FiniteFloat], Field(max_length=200)]
     light: _LightFile | None = None
+    light_settings: _LightSettingsFile | None = None
 
 
 def scene_to_json(scene: Scene) -> str:
@@ -179,6 +201,7 @@ def scene_to_json(scene: Scene) -> str:
         "objects": [_object_to_file(o, scene.support_of(o.id)) for o in scene.objects],
         "metrics": dict(scene.metrics),
         "light": None if scene.light is None else asdict(scene.light),
+        "light_settings": asdict(scene.light_settings),
     }
     return json.dumps(document, indent=1, allow_nan=False)
 
@@ -275,6 +298,9 @@ def _plane_to_file(plane: Plane) -> dict[str, Any]:
         "colour": _numbers(plane.colour),
         "texture": plane.texture,
         "confidence": plane.confidence,
+        "finish": None if plane.finish is None else asdict(plane.finish),
+        "photo_colour": None if plane.photo_colour is None else _numbers(plane.photo_colour),
+        "photo_texture": plane.photo_texture,
     }
 
 
@@ -302,6 +328,7 @@ def _object_to_file(item: SceneObject, support: Support | None) -> dict[str, Any
         "finish": item.finish,
         "photo_materials": [asdict(m) for m in item.photo_materials],
         "material_source": item.material_source,
+        "open_share": item.open_share,
     }
 
 
@@ -332,7 +359,13 @@ def _scene_from_file(file: _SceneFile) -> Scene:
         supports=tuple(_support_from_file(o.id, o.support) for o in file.objects if o.support is not None),
         metrics=tuple(file.metrics.items()),
         light=None if file.light is None else RoomLight(**file.light.model_dump()),
+        light_settings=PHOTO_LIGHT if file.light_settings is None else _light_settings(file.light_settings),
     )
+
+
+def _light_settings(file: _LightSettingsFile) -> LightSettings:
+    lamps = None if file.lamps_on is None else tuple(file.lamps_on)
+    return LightSettings(file.hour, file.north_rad, file.exposure_ev, lamps)
 
 
 def _camera_from_file(file: _CameraFile | None) -> Camera | None:
@@ -354,6 +387,9 @@ def _plane_from_file(file: _PlaneFile) -> Plane:
         colour=file.colour,
         texture=file.texture,
         confidence=file.confidence,
+        finish=None if file.finish is None else SurfaceFinish(**file.finish.model_dump()),
+        photo_colour=file.photo_colour,
+        photo_texture=file.photo_texture,
     )
 
 
@@ -384,6 +420,7 @@ def _object_from_file(file: _ObjectFile) -> SceneObject:
         finish=file.finish,
         photo_materials=tuple(PhotoMaterial(**m.model_dump()) for m in file.photo_materials),
         material_source=file.material_source,
+        open_share=file.open_share,
     )
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.scene.frames import UP_WORLD
+from diorama_core.scene.light_settings import PHOTO_LIGHT, LightSettings
 from diorama_core.scene.values import ArrayValue, Vector3, frozen_array
 
 PlaneRole = Literal["floor", "ceiling", "wall"]
@@ -22,6 +23,11 @@ FaceName = Literal["bottom", "top", "front", "back", "left", "right"]
 Finish = Literal["matt", "satin", "gloss", "metal"]
 TextureLayout = Literal["front", "top", "tiled"]
 """A picture over the whole slot, seen from the front or from above, or one that repeats."""
+SurfacePattern = Literal[
+    "paint", "plaster", "stripes", "dots", "leaves", "panelling", "tiles", "metro", "checker", "brick", "boards",
+    "parquet", "herringbone", "carpet",
+]  # fmt: skip
+"""What a plane can be finished with (`diorama_core.appearance.surface_finish`)."""
 MaterialSource = Literal["photo", "library"]
 SEEN_CONFIDENCE = 0.35
 """Planes of at least this confidence were observed."""
@@ -173,6 +179,19 @@ def yaw_rotation(yaw_rad: float) -> Float[np.ndarray, "3 3"]:
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
+@dataclass(frozen=True)
+class SurfaceFinish:
+    """What a person finished a wall, the floor or the ceiling with."""
+
+    pattern: SurfacePattern
+    colour: tuple[float, float, float]
+    """sRGB, 0 to 1."""
+    scale: float = 1.0
+    """Size of the pattern relative to its usual one."""
+    direction_rad: float = 0.0
+    """Turn of the pattern about the plane's normal, counter-clockwise seen from inside the room."""
+
+
 @dataclass(frozen=True, eq=False)
 class Plane(ArrayValue):
     """One bounded flat piece of the room: a polygon with a thickness behind it."""
@@ -189,6 +208,12 @@ class Plane(ArrayValue):
     """Name of the plane's rectified picture among the project's files, if it has one."""
     confidence: float = 1.0
     """How far the evidence supports it, 0 (a guess) to 1 (measured)."""
+    finish: SurfaceFinish | None = None
+    """What a person finished it with; `colour` and `texture` are then the finish's."""
+    photo_colour: tuple[float, float, float] | None = None
+    """Its colour without the finish; None where there is no finish."""
+    photo_texture: str | None = None
+    """Name of its picture without the finish."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "polygon", frozen_array(self.polygon, (-1, 3)))
@@ -297,6 +322,8 @@ class SceneObject:
     """Materials taken from the photo; slots that none of them matches keep the shape's own."""
     material_source: MaterialSource = "photo"
     """Whether the object shows them or the shape's own materials."""
+    open_share: float = 0.0
+    """How far its doors, drawers and lids stand open, 0 to 1; nothing for shapes that have none."""
 
     @property
     def shown_photo_materials(self) -> tuple[PhotoMaterial, ...]:
@@ -314,10 +341,12 @@ class SceneObject:
         return self.pose.apply(box_corners(self.shape_size_m))
 
 
+_HALF_SIGNS = np.array([[(i >> axis) & 1 for axis in range(3)] for i in range(8)]) - 0.5
+
+
 def box_corners(size_m: Vector3) -> Float[np.ndarray, "8 3"]:
     """Corners of a centred box; index bits 0, 1, 2 are the signs of x, y, z."""
-    signs = np.array([[(i >> axis) & 1 for axis in range(3)] for i in range(8)]) * 2.0 - 1.0
-    return 0.5 * signs * np.asarray(size_m, dtype=np.float64)
+    return _HALF_SIGNS * np.asarray(size_m, dtype=np.float64)
 
 
 @dataclass(frozen=True)
@@ -361,6 +390,8 @@ class Scene:
     """The optimiser's last report, as (name, value) pairs."""
     light: RoomLight | None = None
     """As the photo's shades tell it; None where nothing is known."""
+    light_settings: LightSettings = PHOTO_LIGHT
+    """As a person set it."""
 
     def __post_init__(self) -> None:
         # One order for equal graphs, so that equality and the file do not depend on the order of edits.

@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.geometry.wall_line import WallLine
 from diorama_core.library.record import Shape, ShapeLibrary, SupportSurface
 from diorama_core.scene.types import Pose, SceneObject, Support
 from diorama_core.synthesis.bodies import Bodies, Item, heights_below
-from diorama_core.synthesis.plan import RoomPlan, Wall, footprint, quads_overlap
+from diorama_core.synthesis.plan import RoomPlan, footprint, quads_overlap
 
 WALL_GAP_M = 0.012
 """Skirting boards keep furniture this far from walls."""
@@ -150,7 +151,7 @@ class Furnisher:
         self,
         item: Item,
         *,
-        walls: Sequence[Wall] | None = None,
+        walls: Sequence[WallLine] | None = None,
         t_m: float | None = None,
         free_front_m: float = 0.45,
         gap_m: float = WALL_GAP_M,
@@ -171,7 +172,7 @@ class Furnisher:
             placed = self.stand(
                 item,
                 wall.point(t, depth / 2 + gap_m),
-                wall.inward_yaw_rad,
+                wall.yaw_rad,
                 free_front_m=free_front_m,
                 adheres_to=(wall.id,),
                 beside=beside,
@@ -195,7 +196,7 @@ class Furnisher:
 
     # on walls and ceiling
 
-    def hang(self, item: Item, wall: Wall, t_m: float, centre_z_m: float, *, off_m: float = 0.0) -> str | None:
+    def hang(self, item: Item, wall: WallLine, t_m: float, centre_z_m: float, *, off_m: float = 0.0) -> str | None:
         """Back against a wall, centred `t_m` from its left end and `centre_z_m` above the floor."""
         half = item.size_m[1] / 2
         low, high = centre_z_m - item.size_m[2] / 2, centre_z_m + item.size_m[2] / 2
@@ -205,7 +206,7 @@ class Furnisher:
         if any(_rectangles_overlap(rectangle, other) for other in self._hung.get(wall.id, [])):
             return None
         xy = wall.point(t_m, item.size_m[0] / 2 + off_m)
-        pose = Pose.upright([*xy, centre_z_m], wall.inward_yaw_rad, item.scale)
+        pose = Pose.upright([*xy, centre_z_m], wall.yaw_rad, item.scale)
         outward = np.array([*wall.inward, 0.0]) * 1e-3
         if not self._under_roof(item, pose) or self.bodies.hit_by(item, pose, lift=outward):
             return None

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.geometry.wall_line import WallLine
 from diorama_core.synthesis.bodies import Item
 from diorama_core.synthesis.furnisher import WALL_GAP_M, Furnisher
-from diorama_core.synthesis.plan import Wall
 
 EYE_M = 1.55
 
@@ -24,12 +24,12 @@ def local_xy(f: Furnisher, object_id: str, ahead_m: float, left_m: float) -> Flo
     return pose.position[:2] + heading(yaw) * ahead_m + heading(yaw + np.pi / 2) * left_m
 
 
-def long_walls(f: Furnisher, min_m: float = 0.0) -> list[Wall]:
+def long_walls(f: Furnisher, min_m: float = 0.0) -> list[WallLine]:
     """Walls from longest to shortest."""
     return [w for w in sorted(f.plan.walls, key=lambda w: -w.length_m) if w.length_m >= min_m]
 
 
-def wall_at_back(f: Furnisher, object_id: str) -> tuple[Wall, float] | None:
+def wall_at_back(f: Furnisher, object_id: str) -> tuple[WallLine, float] | None:
     """The wall a placed object stands against, and where along it."""
     edge = next(s for s in f.supports if s.child == object_id)
     if not edge.adheres_to:
@@ -73,7 +73,7 @@ def pictures(f: Furnisher, count: int, *categories: str) -> None:
                 break
 
 
-def _hidden(f: Furnisher, wall: Wall, t: float, item: Item, centre_z: float) -> bool:
+def _hidden(f: Furnisher, wall: WallLine, t: float, item: Item, centre_z: float) -> bool:
     """Whether something tall stands before that stretch of wall."""
     for other in f.objects:
         top = float(other.pose.position[2] + other.size_m[2] / 2)
@@ -191,7 +191,7 @@ def _screen_opposite(f: Furnisher, sofa: str) -> str | None:
     return None
 
 
-def _television(f: Furnisher, stand: str, wall: Wall, t: float) -> None:
+def _television(f: Furnisher, stand: str, wall: WallLine, t: float) -> None:
     width = float(f.object(stand).size_m[1])
     flat = f.pick("television", where=lambda s: s.size_m[0] < 0.08 and s.size_m[1] < width + 0.3)
     if flat and f.chance(0.35):
@@ -248,7 +248,7 @@ def _beside_sofa(f: Furnisher, sofa: str) -> None:
         f.against_wall(item, walls=[at[0]], t_m=t, free_front_m=0.0, gap_m=0.1) if _within(t, item, at[0]) else None
 
 
-def _within(t: float, item: Item, wall: Wall) -> bool:
+def _within(t: float, item: Item, wall: WallLine) -> bool:
     return bool(item.size_m[1] / 2 + WALL_GAP_M < t < wall.length_m - item.size_m[1] / 2 - WALL_GAP_M)
 
 
@@ -330,7 +330,7 @@ def _places(f: Furnisher, size: np.ndarray, chair: Item, round_table: bool) -> l
     return [*sides[:keep], *ends]
 
 
-def workplace(f: Furnisher, *, wall: Wall | None = None) -> str | None:
+def workplace(f: Furnisher, *, wall: WallLine | None = None) -> str | None:
     """A desk at a wall, turned so that one sits facing it, with a chair, a screen and what belongs to it."""
     item = f.pick("desk")
     if item is None:
@@ -403,7 +403,7 @@ def _night_stands(f: Furnisher, bed: str) -> list[str]:
     return placed
 
 
-def row_along_wall(f: Furnisher, wall: Wall, categories: tuple[str, ...], start_m: float = 0.02) -> list[str]:
+def row_along_wall(f: Furnisher, wall: WallLine, categories: tuple[str, ...], start_m: float = 0.02) -> list[str]:
     """Units side by side along a wall, as in a kitchen."""
     placed, t = [], start_m
     for category in categories:
@@ -420,7 +420,7 @@ def row_along_wall(f: Furnisher, wall: Wall, categories: tuple[str, ...], start_
     return placed
 
 
-def wall_shelf(f: Furnisher, wall: Wall, t_m: float, bottom_m: float) -> str | None:
+def wall_shelf(f: Furnisher, wall: WallLine, t_m: float, bottom_m: float) -> str | None:
     """A shelf on a wall."""
     item = f.pick("shelves", where=lambda s: s.size_m[2] < 0.8)
     return f.hang(item, wall, t_m, bottom_m + item.size_m[2] / 2) if item else None

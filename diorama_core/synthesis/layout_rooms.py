@@ -90,6 +90,7 @@ def _record(number: int, compound: BoxShape) -> tuple[Shape, trimesh.Trimesh]:
         id=f"{compound.word}_{number}",
         category=compound.category,
         caption=f"{compound.category} of boxes",
+        source="boxes",
         size_m=(float(depth), float(width), float(height)),
         surfaces=surfaces,
         content_hash=f"boxes-{digest}",

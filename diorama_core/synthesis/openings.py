@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from diorama_core.geometry.wall_line import WallLine
 from diorama_core.synthesis.bodies import Item
 from diorama_core.synthesis.furnisher import Furnisher
-from diorama_core.synthesis.plan import Wall, footprint
+from diorama_core.synthesis.plan import footprint
 
 DOOR_SWING_M = 0.95
 WINDOW_REACH_M = 0.45
@@ -14,7 +15,7 @@ DEEPEST_FRAME_M = 0.06
 """Frames are set into the wall; only this much of them stands out into the room."""
 
 
-def add_door(f: Furnisher, wall: Wall | None = None) -> str | None:
+def add_door(f: Furnisher, wall: WallLine | None = None) -> str | None:
     """A door in a wall near one of its ends, with floor to walk through it."""
     item = f.pick("door")
     if item is None:
@@ -29,12 +30,12 @@ def add_door(f: Furnisher, wall: Wall | None = None) -> str | None:
         placed = f.hang(item, candidate, t, item.size_m[2] / 2)
         if placed:
             size = np.array([DOOR_SWING_M, item.size_m[1], 0.0])
-            f.keep_free(footprint(size, candidate.point(t, DOOR_SWING_M / 2), candidate.inward_yaw_rad))
+            f.keep_free(footprint(size, candidate.point(t, DOOR_SWING_M / 2), candidate.yaw_rad))
             return placed
     return None
 
 
-def add_window(f: Furnisher, wall: Wall, t_m: float | None = None, *, dressed: float = 0.6) -> str | None:
+def add_window(f: Furnisher, wall: WallLine, t_m: float | None = None, *, dressed: float = 0.6) -> str | None:
     """A window in a wall, perhaps with curtains and a radiator below; tall furniture keeps clear of it."""
     item = f.pick("window", where=lambda s: s.size_m[1] < wall.length_m - 0.5)
     if item is None:
@@ -47,7 +48,7 @@ def add_window(f: Furnisher, wall: Wall, t_m: float | None = None, *, dressed: f
         return None
     sill = top - item.size_m[2]
     size = np.array([WINDOW_REACH_M, item.size_m[1], 0.0])
-    f.keep_free(footprint(size, wall.point(t, WINDOW_REACH_M / 2), wall.inward_yaw_rad), above_m=sill - 0.02)
+    f.keep_free(footprint(size, wall.point(t, WINDOW_REACH_M / 2), wall.yaw_rad), above_m=sill - 0.02)
     if f.chance(dressed):
         _dress(f, wall, t, item)
     if sill > 0.75 and f.chance(0.5):
@@ -57,7 +58,7 @@ def add_window(f: Furnisher, wall: Wall, t_m: float | None = None, *, dressed: f
     return placed
 
 
-def _dress(f: Furnisher, wall: Wall, t: float, window: Item) -> None:
+def _dress(f: Furnisher, wall: WallLine, t: float, window: Item) -> None:
     """One curtain on each side of a window, hung from near the ceiling."""
     curtain = f.pick("curtain", where=lambda s: 1.9 < s.size_m[2] < f.plan.height_m - 0.1 and s.size_m[1] < 1.3)
     if curtain is None:
@@ -74,5 +75,5 @@ def _sunk(item: Item) -> Item:
     return Item(item.shape, (min(1.0, DEEPEST_FRAME_M / depth), item.scale[1], item.scale[2]))
 
 
-def _shuffled(f: Furnisher) -> list[Wall]:
+def _shuffled(f: Furnisher) -> list[WallLine]:
     return [f.plan.walls[int(k)] for k in f.rng.permutation(len(f.plan.walls))]

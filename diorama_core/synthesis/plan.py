@@ -14,43 +14,11 @@ import manifold3d
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.geometry.wall_line import WallLine
 from diorama_core.scene.types import Architecture, Plane
 from diorama_core.scene.values import ArrayValue
 
 Outline = Literal["box", "L-shape", "slanted wall", "attic"]
-
-
-@dataclass(frozen=True, eq=False)
-class Wall(ArrayValue):
-    """One wall, from its left to its right end as seen from inside the room."""
-
-    id: str
-    start: Float[np.ndarray, "2"]
-    end: Float[np.ndarray, "2"]
-
-    @property
-    def length_m(self) -> float:
-        """From end to end."""
-        return float(np.linalg.norm(self.end - self.start))
-
-    @property
-    def along(self) -> Float[np.ndarray, "2"]:
-        """Unit, from left to right."""
-        return (self.end - self.start) / self.length_m
-
-    @property
-    def inward(self) -> Float[np.ndarray, "2"]:
-        """Unit normal toward the room."""
-        return np.array([self.along[1], -self.along[0]])
-
-    @property
-    def inward_yaw_rad(self) -> float:
-        """Heading of something that stands with its back to the wall."""
-        return float(np.arctan2(self.inward[1], self.inward[0]))
-
-    def point(self, t_m: float, off_m: float = 0.0) -> Float[np.ndarray, "2"]:
-        """The place `t_m` from the left end and `off_m` into the room."""
-        return self.start + self.along * t_m + self.inward * off_m
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,10 +43,10 @@ class RoomPlan(ArrayValue):
     slope: Slope | None = None
 
     @cached_property
-    def walls(self) -> tuple[Wall, ...]:
+    def walls(self) -> tuple[WallLine, ...]:
         """One wall per edge of the outline: `wall_0` from corner 1 to corner 0 and so on."""
         count = len(self.outline)
-        return tuple(Wall(f"wall_{k}", self.outline[(k + 1) % count], self.outline[k]) for k in range(count))
+        return tuple(WallLine(f"wall_{k}", self.outline[(k + 1) % count], self.outline[k]) for k in range(count))
 
     @cached_property
     def _section(self) -> manifold3d.CrossSection:
@@ -90,7 +58,7 @@ class RoomPlan(ArrayValue):
         level = self._ceilings()[0]
         return np.asarray(0.5 * (level.min(axis=0) + level.max(axis=0)))
 
-    def wall(self, wall_id: str) -> Wall:
+    def wall(self, wall_id: str) -> WallLine:
         """The wall with this id."""
         return self.walls[int(wall_id.removeprefix("wall_"))]
 
@@ -131,7 +99,7 @@ class RoomPlan(ArrayValue):
         ]  # fmt: skip
         return Architecture(tuple(planes))
 
-    def _top_of(self, wall: Wall) -> Float[np.ndarray, "n 2"]:
+    def _top_of(self, wall: WallLine) -> Float[np.ndarray, "n 2"]:
         """Places on the floor below the upper corners of a wall, from its right to its left end."""
         ends = np.stack([wall.end, wall.start])
         if self.slope is None:

@@ -14,6 +14,7 @@ from typing import Literal
 import trimesh
 
 from diorama_core.errors import LibraryError
+from diorama_core.library.boards import base_id
 from diorama_core.library.record import Shape, ShapeLibrary
 
 Split = Literal["train", "validation", "test"]
@@ -57,7 +58,7 @@ class Subset:
         return self.library.glb(self._known(shape_id))
 
     def _known(self, shape_id: str) -> str:
-        if shape_id not in self.ids:
+        if base_id(shape_id) not in self.ids:
             raise LibraryError(f"shape '{shape_id}' is not in the subset {self.name or 'of the library'}")
         return shape_id
 

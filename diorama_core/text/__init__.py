@@ -1,1 +1,1 @@
-"""From words to a picture of a room: by an image endpoint, or composed from the library by a room grammar."""
+"""From words to rooms and edits: a grammar, a language model where one is set up, and a composer of rooms."""

@@ -1,18 +1,15 @@
-"""What a prompt asks for: a kind of room, objects with counts and attributes, and where they go."""
+"""What a prompt asks for: a kind of room, objects with counts and attributes, and how they stand to one another."""
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
-from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN, resolve
+from diorama_core.editing.relations import OF_ROOM, RelationKind
+from diorama_core.library.taxonomy import broad, resolve
 from diorama_core.synthesis import RoomKind
+from diorama_core.text.phrases import MAX_OF_A_KIND, NounPhrase, Placing, noun_phrase, split_places
 
-MAX_OF_A_KIND = 12
-_NUMBERS = {
-    "a": 1, "an": 1, "the": 1, "one": 1, "single": 1, "another": 1, "two": 2, "pair": 2, "couple": 2, "both": 2,
-    "three": 3, "few": 3, "some": 3, "several": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8,
-}  # fmt: skip
 _ROOMS: tuple[tuple[str, RoomKind], ...] = (
     ("living room", "living"), ("sitting room", "living"), ("lounge", "living"), ("family room", "living"),
     ("reading corner", "living"), ("reading nook", "living"), ("bedroom", "bedroom"), ("guest room", "bedroom"),
@@ -21,26 +18,54 @@ _ROOMS: tuple[tuple[str, RoomKind], ...] = (
     ("restroom", "bathroom"), ("laboratory", "lab"), ("lab", "lab"), ("workshop", "lab"), ("corridor", "corridor"),
     ("hallway", "corridor"), ("hall", "corridor"), ("apartment", "living"), ("room", "living"),
 )  # fmt: skip
-_PLACES: tuple[tuple[str, str], ...] = (
-    ("on top of", "on"), ("next to", "beside"), ("in front of", "before"), ("on the wall above", "above"),
-    ("on either side of", "beside"), ("on both sides of", "beside"), ("on each side of", "beside"),
-    ("beside", "beside"), ("near", "beside"), ("by", "beside"), ("above", "above"), ("over", "above"),
-    ("around", "around"), ("facing", "before"), ("opposite", "before"), ("under", "under"), ("below", "under"),
-    ("in", "in"), ("on", "on"),
-)  # fmt: skip
-_JOINTS = re.compile(r",|;|\.|\band\b|\bwith\b|\bplus\b|\bcontaining\b|\bfeaturing\b|\bthat has\b|\bhas\b|\bhaving\b")
-_FILLER = frozenset(
-    {"of", "there", "is", "are", "it", "its", "which", "that", "this", "at", "to", "for", "each", "every"}
+_COMPOUNDS = (
+    "chair|desk|table|cabinet|counter|island|sink|stool|scale|mat|lamp|shel(?:f|ve)|unit|mirror|bench|cart|tree|rug"
 )
-_APPEARANCES = (
-    "red,orange,yellow,green,blue,purple,pink,brown,black,white,grey,gray,beige,cream,navy,teal,golden,silver,dark,"
-    "light,bright,wooden,wood,oak,walnut,pine,birch,teak,bamboo,metal,steel,iron,brass,chrome,glass,marble,stone,leather,"
-    "fabric,velvet,linen,wicker,rattan,plastic,upholstered,modern,scandinavian,rustic,vintage,classic,industrial,"
-    "minimalist,traditional,mid-century,farmhouse,round,square,rectangular,oval,large,big,small,tiny,tall,low,long,wide,"
-    "narrow,short,old,new,comfortable,cosy,cozy,elegant,beautiful,nice,simple,high,empty,open,matching"
+"""After the name of a room, these name a piece of furniture."""
+_JOINTS = re.compile(
+    r",|;|\.|\band\b|\bwith\b(?! (?:its|their) backs?)|\bplus\b|\bcontaining\b|\bfeaturing\b|\bthat has\b|\bhas\b|\bhaving\b"
+    r"|\bwhile\b|\bincluding\b|\bfurnished\b|\bwhere\b|\bholding\b|\bcarrying\b"
 )
-APPEARANCES = frozenset(_APPEARANCES.split(","))
-"""Words that say how an object looks, not what it is."""
+_REWRITES = (
+    (r"\b(?:flanked|bordered) by ([^,;.]*?)(?=,|;|\.| and a| and an| and the| with |$)", r", \1 beside it"),
+    (r"\bsurrounded by ([^,;.]*?)(?=,|;|\.| and a| and an| and the| with |$)", r", \1 around it"),
+    (
+        r"\b(?:that |which )?(?:is |are )?(?:faces|face|facing|looks? (?:at|out of|towards?)|(?:turned|oriented) towards?)\b",
+        "facing",
+    ),
+    (r"\bopposite (?:each other|one another)\b", "facing each other"),
+    (r"\b(?:that|which|who)\b", " "),
+    (
+        r"\b(?:is|are|(?<!night )(?<!tv )(?<!television )(?<!coat )(?<!umbrella )(?<!hat )stands?|sits?|hangs?|lies|placed|positioned|located|standing|hanging|leaning|lying|arranged|mounted|set)\b",
+        " ",
+    ),
+    (
+        r"\bbetween (?!them\b|it\b|these\b|both\b|(?:the |two |both )?[a-z]+s\b)(.+?) and (?=(?:the |a |an )?\w)",
+        r"between \1 & ",
+    ),
+)
+"""Phrases that say the same in other words, brought to one form."""
+_NOT_PLACES = re.compile(
+    r"^(?:the |a |an |this )?(?:[a-z]+ )?(?:room|bedroom|kitchen|office|floor|ground|space|house|home|apartment|style|corner of .*)$"
+)
+
+
+@dataclass(frozen=True)
+class Wish:
+    """How an object stands to others or to the room."""
+
+    kind: RelationKind
+    targets: tuple[str, ...] = ()
+    """Categories; none for relations to the room and for objects of its own kind."""
+    each_other: bool = False
+    """Whether the objects of one request stand so to one another: "facing each other"."""
+
+    @property
+    def words(self) -> str:
+        """As people say it."""
+        if self.kind in OF_ROOM:
+            return {"against wall": "against a wall", "in corner": "in a corner"}.get(self.kind, "in the middle")
+        return f"{self.kind} {'each other' if self.each_other else ' and '.join(f'the {t}' for t in self.targets)}"
 
 
 @dataclass(frozen=True)
@@ -53,10 +78,7 @@ class RequestedObject:
     count: int = 1
     appearance: tuple[str, ...] = ()
     """Adjectives: colours, materials, styles."""
-    place: str = ""
-    """"on", "beside", "before", "above", "around", "under"; empty where it does not matter."""
-    target: str = ""
-    """Category of what the place refers to."""
+    wishes: tuple[Wish, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -69,29 +91,163 @@ class RoomRequest:
     """Words that named nothing known, for a note to the user."""
     size: float = 1.0
     """How large the room should be beside a usual one."""
+    named: bool = False
+    """Whether the prompt names the kind of room."""
+
+
+@dataclass
+class _Reading:
+    """What was read so far."""
+
+    objects: list[RequestedObject] = field(default_factory=list)
+    ignored: list[str] = field(default_factory=list)
+    last: int = -1
+    """The request that "it" means."""
 
 
 def understood_prompt(prompt: str) -> RoomRequest:
     """Read a prompt in plain English; whatever is not understood is listed, never fatal."""
     text = " ".join(re.sub(r"[^a-z0-9' ,;.-]+", " ", prompt.lower()).split())
     room, rest = _room(text)
-    objects: list[RequestedObject] = []
-    ignored: list[str] = []
+    named = rest != text
+    for pattern, form in _REWRITES:
+        rest = re.sub(pattern, form, rest)
+    reading = _Reading()
     for clause in _JOINTS.split(rest):
-        found, unknown = _clause(clause.strip(), objects)
-        objects += found
-        ignored += unknown
+        _read(reading, clause.strip())
     size = 1.25 if re.search(r"\b(large|big|spacious|huge)\b.{0,20}\broom\b", text) else 1.0
-    size = 0.85 if re.search(r"\b(small|tiny|cosy|cozy|little|corner|nook)\b", text) else size
-    return RoomRequest(room, tuple(objects), tuple(dict.fromkeys(ignored)), size)
+    size = (
+        0.85
+        if re.search(
+            r"\b(small|tiny|cosy|cozy|little|corner|nook)\b.{0,12}\b(room|bedroom|office|corner|nook|kitchen|study)\b",
+            text,
+        )
+        else size
+    )
+    return RoomRequest(room, tuple(reading.objects), tuple(dict.fromkeys(reading.ignored)), size, named)
+
+
+def _read(reading: _Reading, clause: str) -> None:
+    """Take in one clause: "two red chairs beside the table" names chairs, and a table unless it is known."""
+    if not clause:
+        return
+    head, places = split_places(clause)
+    phrase, unknown = noun_phrase(head) if head else (None, "")
+    index = _subject(reading, phrase)
+    if (
+        index is None
+        and unknown
+        and not re.fullmatch(r"(?:there|i|we|want|need|would|like|please|room|one|two|three|some)(?: .*)?", unknown)
+    ):
+        reading.ignored.append(unknown)
+    subject = index
+    for place in places:
+        before = len(reading.objects)
+        if place.kind != "on":
+            subject = index
+        _place(reading, subject, place, clause)
+        # "facing a television on a tv stand": what is named anew is what is on the next.
+        subject = len(reading.objects) - 1 if len(reading.objects) == before + 1 else index
+    if index is not None:
+        reading.last = index
+
+
+def _subject(reading: _Reading, phrase: NounPhrase | None) -> int | None:
+    """The request that a phrase is about: a new one, one before, or the last for "it" and for no noun at all."""
+    if phrase is None or phrase.pronoun or not phrase.label:
+        return reading.last if reading.last >= 0 and (phrase is None or phrase.pronoun) else None
+    if phrase.definite:
+        known = next((k for k, o in enumerate(reading.objects) if o.category == phrase.category), None)
+        if known is not None:
+            return known
+    reading.objects.append(RequestedObject(phrase.category, phrase.label, phrase.count, phrase.appearance))
+    return len(reading.objects) - 1
+
+
+def _place(reading: _Reading, index: int | None, place: Placing, clause: str) -> None:
+    """Add a wish to a request; what it refers to is asked for, too, where it was not named before."""
+    if place.kind in OF_ROOM:
+        _wish(reading, index, Wish(place.kind))
+        return
+    if re.search(r"\b(?:each other|one another)\b", place.words):
+        _wish(reading, index, Wish(place.kind, each_other=True))
+        return
+    if _NOT_PLACES.match(place.words) or not place.words:
+        return
+    targets: list[str] = []
+    for words in re.split(r"&|\bor\b", place.words):
+        target = _target(reading, words, index)
+        if target is not None:
+            targets.append(target)
+        elif (unknown := noun_phrase(words)[1]) and place.kind not in ("on", "near"):
+            reading.ignored.append(unknown)
+    if not targets or index is None or targets == [reading.objects[index].category]:
+        return
+    request = reading.objects[index]
+    hosts = sum(o.count for o in reading.objects if o.category == targets[0])
+    if re.match(r"\s*(?:each|every|both)\b", place.words) or re.search(r"\bon (?:each|either|both) sides?\b", clause):
+        if not re.search(r"\bsides?\b", clause):
+            reading.objects[index] = replace(request, count=min(request.count * max(hosts, 1), MAX_OF_A_KIND))
+        elif request.count == 1:
+            reading.objects[index] = replace(request, count=2)
+    kind: RelationKind = place.kind
+    if kind in ("under", "beside") and set(targets) <= {"window", "door"}:
+        kind = "near"
+    if (
+        kind in ("beside", "in front of")
+        and broad(request.category) in ("chair", "office chair", "stool", "bench")
+        and _sat_at(targets[0])
+    ):
+        kind = "around"
+    _wish(reading, index, Wish(kind, tuple(targets)))
+
+
+def _sat_at(category: str) -> bool:
+    return broad(category) in ("table", "desk", "kitchen counter")
+
+
+def _wish(reading: _Reading, index: int | None, wish: Wish) -> None:
+    if index is not None and wish not in reading.objects[index].wishes:
+        request = reading.objects[index]
+        reading.objects[index] = replace(request, wishes=(*request.wishes, wish))
+
+
+def _target(reading: _Reading, words: str, own: int | None) -> str | None:
+    """Category of what a place refers to; asked for as well where it is new, but for windows and doors."""
+    phrase, _ = noun_phrase(words)
+    if phrase is None:
+        return None
+    if phrase.pronoun:
+        before = (
+            own - 1 if own is not None and own == len(reading.objects) - 1 and reading.last != own else reading.last
+        )
+        known = (
+            reading.objects[reading.last if before < 0 else before] if reading.objects and reading.last >= 0 else None
+        )
+        return None if known is None else known.category
+    if not phrase.label:
+        return None
+    kin = next((o.category for o in reading.objects if o.category == phrase.category), None)
+    kin = kin or next(
+        (o.category for o in reading.objects if o.category.endswith(f" {phrase.category}") and phrase.definite), None
+    )
+    if kin is None and phrase.category not in ("window", "door"):
+        reading.objects.append(RequestedObject(phrase.category, phrase.label, phrase.count, phrase.appearance))
+    return kin or phrase.category
 
 
 def _room(text: str) -> tuple[RoomKind, str]:
     """The kind of room that is named first, and the prompt without its name."""
+    begins = re.match(r"(?:an? |the )?(?:[a-z'-]+ ){1,2}(?:corner|nook|area|den)\b", text)
+    if begins and noun_phrase(begins.group().rpartition(" ")[0])[0] is None and "reading" not in begins.group():
+        return _guessed_room(text), f" , {text[begins.end() :]}"
     for words, kind in _ROOMS:
-        match = re.search(rf"\b(?:a |an |the )?(?:[a-z-]+ ){{0,2}}?{words}\b", text)
+        match = re.search(rf"\b(?:a |an |the )?(?:[a-z'-]+ ){{0,2}}?{words}\b(?! (?:{_COMPOUNDS})s?\b)", text)
         if match and not resolve(match.group()).exact:
             start = text.index(words, match.start())
+            if noun_phrase(text[match.start() : start])[0] is None and not re.match(r"(?:in|for|of)\b", match.group()):
+                start_of_name = match.start()
+                return kind, f"{text[:start_of_name]} , {text[start + len(words) :]}"
             before = re.sub(
                 r"\b(?:a|an|the|small|large|big|cosy|cozy|tiny|spacious|modern|bright)\s*$", "", text[:start]
             )
@@ -108,59 +264,3 @@ def _guessed_room(text: str) -> RoomKind:
         (r"dining", "dining"),
     )
     return next((kind for pattern, kind in hints if re.search(pattern, text)), "living")
-
-
-def _clause(clause: str, before: list[RequestedObject]) -> tuple[list[RequestedObject], list[str]]:
-    """The objects of one clause: "two red chairs beside the table" names chairs, and a table unless it is known."""
-    for words, place in _PLACES:
-        parts = re.split(rf"\b{words}\b", clause, maxsplit=1)
-        if len(parts) < 2:
-            continue
-        requested, unknown = _phrase(parts[0])
-        target, more = _phrase(parts[1])
-        if requested is not None and target is not None and re.match(r"\s*(each|every|both)\b", parts[1]):
-            hosts = sum(t.count for t in before if t.category == target.category)
-            requested = replace(requested, count=requested.count * max(hosts, 1))
-        if target is None and before and re.match(r"\s*(it|them|top)\b", parts[1]):
-            target = before[-1]  # "a sideboard with a vase on it"
-        if place == "in" or target is None:
-            return ([requested] if requested else []) + ([target] if target else []), unknown + more
-        known = any(t.category == target.category for t in before)
-        host = [] if known else [target]
-        if requested is None and before and not parts[0].strip():
-            before[-1] = _placed(before[-1], place, target.category)
-            return host, unknown + more
-        return [*host, *([_placed(requested, place, target.category)] if requested else [])], unknown + more
-    requested, unknown = _phrase(clause)
-    return ([requested] if requested else []), unknown
-
-
-def _placed(requested: RequestedObject, place: str, target: str) -> RequestedObject:
-    return replace(requested, place=place, target=target)
-
-
-def _phrase(phrase: str) -> tuple[RequestedObject | None, list[str]]:
-    """A noun phrase: count, attributes, noun."""
-    left, of, _ = phrase.partition(" of ")
-    if of and (head := _phrase(left))[0] is not None:
-        return head  # "a vase of flowers" is a vase; "a pair of chairs" goes on below
-    words = [w for w in re.findall(r"[a-z0-9'-]+", phrase) if w not in _FILLER]
-    count = 1
-    while words and (words[0] in _NUMBERS or words[0].isdigit()):
-        count = max(count, int(words[0]) if words[0].isdigit() else _NUMBERS[words[0]])
-        words = words[1:]
-    if not words:
-        return None, []
-    appearance = tuple(w for w in words if w in APPEARANCES)
-    words = [w for w in words if w not in APPEARANCES] or words
-    for start in range(len(words)):
-        for end in range(len(words), start, -1):
-            noun = " ".join(words[start:end])
-            found = resolve(noun)
-            if noun in ARCHITECTURE_WORDS:
-                return None, []
-            if found.exact and found.category is not UNKNOWN:
-                plural = count == 1 and noun.endswith("s") and not found.category.name.endswith("s")
-                many = 2 if plural else count
-                return RequestedObject(found.category.name, noun, min(many, MAX_OF_A_KIND), appearance), []
-    return None, [" ".join(words)]

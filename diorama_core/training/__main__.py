@@ -1,4 +1,4 @@
-"""`python -m diorama_core.training pictures | train | export | score`."""
+"""`python -m diorama_core.training pictures | shapes | windows | train | export | score`."""
 
 from __future__ import annotations
 
@@ -10,24 +10,27 @@ import torch
 
 from diorama_core.errors import DioramaError
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.models.own_weights import CARD, DETECTOR, NAMER
+from diorama_core.models.own_weights import CARD, DETECTOR, NAMER, OUTLINER
 from diorama_core.models.recogniser import Recogniser
 from diorama_core.progress import Progress
-from diorama_core.training.export import export_detector, export_namer, write_card
+from diorama_core.training.export import export_detector, export_namer, export_outliner, write_card
+from diorama_core.training.picture_files import PictureFiles
 from diorama_core.training.pictures import category_names, make_pictures
 from diorama_core.training.score import score
+from diorama_core.training.shape_views import ShapeViewFiles, make_shape_views
 from diorama_core.training.train import (
-    PictureFiles,
     Schedule,
     Trainer,
-    category_counts,
     detector_trainer,
     namer_trainer,
+    outliner_trainer,
 )
+from diorama_core.training.windows import WindowFiles, make_windows
 
-NETWORKS = ("detector", "namer")
+NETWORKS = ("detector", "namer", "outliner")
 DETECTOR_SCHEDULE = Schedule(steps=6000, batch=16)
 NAMER_SCHEDULE = Schedule(steps=8000, batch=64)
+OUTLINER_SCHEDULE = Schedule(steps=4000, batch=32)
 
 
 def main() -> int:
@@ -49,16 +52,25 @@ def _parser() -> argparse.ArgumentParser:
     pictures.add_argument("folder", type=Path)
     pictures.add_argument("--rooms", type=int, default=1000)
     pictures.add_argument("--first", type=int, default=0, help="seed of the first room")
+    windows = steps.add_parser("windows", help="render rooms for the outliner; goes on where it stopped")
+    windows.set_defaults(run=_windows)
+    windows.add_argument("folder", type=Path)
+    windows.add_argument("--rooms", type=int, default=400)
+    windows.add_argument("--first", type=int, default=500_000, help="seed of the first room")
+    shapes = steps.add_parser("shapes", help="render single shapes for the namer; goes on where it stopped")
+    shapes.set_defaults(run=_shapes)
+    shapes.add_argument("folder", type=Path)
     train = steps.add_parser("train", help="train one network; goes on from its checkpoint")
     train.set_defaults(run=_train)
     train.add_argument("network", choices=NETWORKS)
-    train.add_argument("--pictures", type=Path, required=True)
+    train.add_argument("--pictures", type=Path, required=True, help="of the outliner: the folder of windows")
     train.add_argument("--checkpoints", type=Path, required=True)
     train.add_argument("--steps", type=int)
     train.add_argument("--threads", type=int, default=2)
     export = steps.add_parser("export", help="write the trained networks as ONNX graphs")
     export.set_defaults(run=_export)
-    export.add_argument("--pictures", type=Path, required=True)
+    export.add_argument("networks", choices=("recogniser", "outliner"))
+    export.add_argument("--pictures", type=Path, required=True, help="of the outliner: the folder of windows")
     export.add_argument("--checkpoints", type=Path, required=True)
     export.add_argument("-o", "--output", type=Path, required=True)
     scores = steps.add_parser("score", help="measure exported networks on annotated photos")
@@ -74,6 +86,16 @@ def _pictures(a: argparse.Namespace) -> None:
     print(f"{made} rooms rendered, {a.rooms - made} were there: {a.folder}")
 
 
+def _windows(a: argparse.Namespace) -> None:
+    made = make_windows(a.folder, built_in_library(), range(a.first, a.first + a.rooms), _told())
+    print(f"{made} rooms rendered, {a.rooms - made} were there: {a.folder}")
+
+
+def _shapes(a: argparse.Namespace) -> None:
+    made = make_shape_views(a.folder, built_in_library(), _told())
+    print(f"{made} shapes rendered: {a.folder}")
+
+
 def _train(a: argparse.Namespace) -> None:
     torch.set_num_threads(a.threads)
     trainer = _trainer(a.network, a.pictures, a.checkpoints, a.steps)
@@ -82,27 +104,37 @@ def _train(a: argparse.Namespace) -> None:
 
 
 def _trainer(network: str, pictures: Path, checkpoints: Path, steps: int | None) -> Trainer:
-    files, kinds = PictureFiles.of(pictures), len(category_names(built_in_library()))
     checkpoints.mkdir(parents=True, exist_ok=True)
     path = checkpoints / f"{network}.pt"
+    if network == "outliner":
+        return outliner_trainer(WindowFiles.of(pictures), OUTLINER_SCHEDULE.lasting(steps), path)
+    files, kinds = PictureFiles.of(pictures), len(category_names(built_in_library()))
     if network == "detector":
         return detector_trainer(files, kinds, DETECTOR_SCHEDULE.lasting(steps), path)
-    return namer_trainer(files, kinds, NAMER_SCHEDULE.lasting(steps), path, category_counts(files, kinds))
+    return namer_trainer(files, ShapeViewFiles.of(pictures), kinds, NAMER_SCHEDULE.lasting(steps), path)
 
 
 def _export(a: argparse.Namespace) -> None:
-    detector, namer = (_trainer(n, a.pictures, a.checkpoints, None) for n in NETWORKS)
+    a.output.mkdir(parents=True, exist_ok=True)
+    if a.networks == "outliner":
+        export_outliner(_trainer("outliner", a.pictures, a.checkpoints, None).averaged, a.output / OUTLINER)
+    else:
+        _export_recogniser(a)
+    print(f"networks written: {a.output}")
+
+
+def _export_recogniser(a: argparse.Namespace) -> None:
+    detector, namer = (_trainer(n, a.pictures, a.checkpoints, None) for n in ("detector", "namer"))
     export_detector(detector.averaged, a.output / DETECTOR)
     export_namer(namer.averaged, a.output / NAMER)
     files = PictureFiles.of(a.pictures)
     write_card(
         a.output / CARD,
         category_names(built_in_library()),
-        rooms=len(files.paths),
+        rooms=len(files.rooms),
         detector={"steps": detector.step, "batch": detector.schedule.batch, "seed": detector.schedule.seed},
         namer={"steps": namer.step, "batch": namer.schedule.batch, "seed": namer.schedule.seed},
     )
-    print(f"networks written: {a.output}")
 
 
 def _score(a: argparse.Namespace) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -31,7 +32,7 @@ def training_picture(
         return _relit(_cropped(pictures[0], size, rng), rng)
     half = (size[0] // 2, size[1] // 2)
     canvas = np.zeros((size[1], size[0], 3), np.uint8)
-    boxes, categories, pixels = [], [], []
+    boxes, categories, pixels, forms = [], [], [], []
     for k, picture in enumerate(pictures):
         part = _relit(_cropped(picture, half, rng), rng)
         x, y = (k % 2) * half[0], (k // 2) * half[1]
@@ -39,7 +40,9 @@ def training_picture(
         boxes.append(part.boxes + np.array([x, y, x, y], np.float32))
         categories.append(part.categories)
         pixels.append(part.pixels)
-    return LabelledPicture(canvas, np.concatenate(boxes), np.concatenate(categories), np.concatenate(pixels))
+        forms.append(part.forms)
+    joined = (np.concatenate(rows) for rows in (boxes, categories, pixels, forms))
+    return LabelledPicture(canvas, *joined)
 
 
 def _cropped(picture: LabelledPicture, size: tuple[int, int], rng: np.random.Generator) -> LabelledPicture:
@@ -64,11 +67,12 @@ def _cropped(picture: LabelledPicture, size: tuple[int, int], rng: np.random.Gen
     left = np.prod(inside[:, 2:] - inside[:, :2], axis=1)
     large = (inside[:, 2:] - inside[:, :2]).min(axis=1, initial=np.inf) >= MIN_SIDE_PX
     keep = large & (left >= MIN_VISIBLE * area)
-    return LabelledPicture(rgb, inside[keep].astype(np.float32), picture.categories[keep], picture.pixels[keep])
+    left_in = (picture.categories[keep], picture.pixels[keep], picture.forms[keep])
+    return LabelledPicture(rgb, inside[keep].astype(np.float32), *left_in)
 
 
 def _relit(picture: LabelledPicture, rng: np.random.Generator) -> LabelledPicture:
-    return LabelledPicture(photographed(picture.rgb, rng), picture.boxes, picture.categories, picture.pixels)
+    return replace(picture, rgb=photographed(picture.rgb, rng))
 
 
 def photographed(rgb: UInt8[np.ndarray, "h w 3"], rng: np.random.Generator) -> UInt8[np.ndarray, "h w 3"]:

@@ -114,6 +114,7 @@ def detector_loss(
         centres: of the places, pixels.
         strides: of the places, pixels.
     """
+    rows = rows.float()
     positive = target_kinds >= 0
     count = positive.sum().clamp(min=1)
     boxes = decoded(rows[..., 1:5], centres, strides)[positive]

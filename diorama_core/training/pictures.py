@@ -8,25 +8,28 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from jaxtyping import Float32, Int, Int32, UInt8
+from jaxtyping import Float32, Int, Int8, Int32, UInt8
+from PIL import Image
 
 from diorama_core.errors import InputError, LibraryError, SceneError
-from diorama_core.io.atomic import write_atomically
+from diorama_core.library.form import MEASURED, form_of, value_indices
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
+from diorama_core.scene.types import SceneObject
 from diorama_core.scene.values import ArrayValue
 from diorama_core.synthesis import sample_cameras
 from diorama_core.synthesis.cameras import CameraRanges
 from diorama_core.synthesis.truth import Studio
+from diorama_core.training.made_files import make_files
 from diorama_core.training.rooms import varied_room
 
-SIZE = (352, 264)
+SIZE = (512, 384)
 """Width and height of the pictures."""
 VIEWS = 6
 CAMERAS = CameraRanges(height_m=(0.9, 1.9), pitch_rad=(-0.05, 0.5), roll_rad=0.03, fov_rad=(0.75, 1.45))
-MIN_PIXELS = 40
-MIN_SIDE_PX = 6
-"""Of 352 x 264: what is smaller is background."""
+MIN_PIXELS = 85
+MIN_SIDE_PX = 8
+"""Of 512 x 384: what is smaller is background."""
 JPEG_QUALITY = 90
 
 
@@ -41,6 +44,8 @@ class LabelledPicture(ArrayValue):
     """Index into `category_names`."""
     pixels: Int[np.ndarray, "n"]
     """Visible pixels of each object."""
+    forms: Int8[np.ndarray, "n 5"]
+    """Each object's form (`library.form.value_indices`); -1 where it has none or nobody noted it."""
 
 
 def category_names(library: ShapeLibrary) -> tuple[str, ...]:
@@ -60,29 +65,35 @@ def make_pictures(folder: Path, library: ShapeLibrary, seeds: range, progress: P
     Returns:
         The number of rooms rendered now.
     """
-    progress, names, made = progress or Progress(), category_names(library), 0
-    folder.mkdir(parents=True, exist_ok=True)
-    for k, seed in enumerate(seeds):
-        target = folder / f"room_{seed:06d}.npz"
-        progress.report(k / len(seeds), f"room {seed}")
-        if not target.exists():
-            write_atomically(target, _packed(_photographed(seed, library, names)))
-            made += 1
-    return made
+    names = category_names(library)
+    return make_files(
+        folder, seeds, "room_{:06d}.npz".format, lambda seed: _packed(_photographed(seed, library, names)), progress
+    )
 
 
-def read_room(path: Path) -> tuple[LabelledPicture, ...]:
-    """The pictures of one room's file."""
+def count_pictures(path: Path) -> int:
+    """How many pictures a room's file has."""
     with np.load(path, allow_pickle=False) as saved:
-        return tuple(
-            LabelledPicture(
-                _decoded(saved[f"jpeg_{k}"], path),
-                saved[f"boxes_{k}"],
-                saved[f"categories_{k}"],
-                saved[f"pixels_{k}"],
-            )
-            for k in range(int(saved["count"]))
+        return int(saved["count"])
+
+
+def read_picture(path: Path, k: int) -> LabelledPicture:
+    """One picture of a room's file."""
+    with np.load(path, allow_pickle=False) as saved:
+        categories = saved[f"categories_{k}"]
+        unknown = np.full((len(categories), len(MEASURED)), -1, np.int8)
+        forms = saved.get(f"forms_{k}", unknown)
+        return LabelledPicture(
+            _decoded(saved[f"jpeg_{k}"], path), saved[f"boxes_{k}"], categories, saved[f"pixels_{k}"], forms
         )
+
+
+def read_boxes(path: Path, k: int) -> tuple[Float32[np.ndarray, "n 4"], Int[np.ndarray, "n"], tuple[int, int]]:
+    """Boxes and categories of one picture of a room's file, and the picture's width and height."""
+    with np.load(path, allow_pickle=False) as saved:
+        boxes, categories, data = saved[f"boxes_{k}"], saved[f"categories_{k}"], saved[f"jpeg_{k}"]
+    with Image.open(io.BytesIO(data.tobytes()), formats=["JPEG"]) as picture:
+        return boxes, categories, picture.size
 
 
 def _decoded(data: UInt8[np.ndarray, "n"], path: Path) -> UInt8[np.ndarray, "h w 3"]:
@@ -101,12 +112,18 @@ def _photographed(seed: int, library: ShapeLibrary, names: tuple[str, ...]) -> t
         return ()
     index = {name: k for k, name in enumerate(names)}
     kinds = np.array([index[o.category] for o in scene.objects], dtype=np.int64)
+    forms = np.array([_form(o, library) for o in scene.objects], np.int8).reshape(-1, len(MEASURED))
     studio, pictures = Studio(scene, library), []
     for camera in cameras:
         rgb, ids = studio.photograph(camera, SIZE)
         boxes, visible, pixels = visible_boxes(ids, len(kinds))
-        pictures.append(LabelledPicture(rgb, boxes, kinds[visible], pixels))
+        pictures.append(LabelledPicture(rgb, boxes, kinds[visible], pixels, forms[visible]))
     return tuple(pictures)
+
+
+def _form(item: SceneObject, library: ShapeLibrary) -> Int8[np.ndarray, "5"]:
+    shape = library.shape(item.shape_id)
+    return value_indices(form_of(shape.id, shape.category, library.mesh(shape.id), item.size_m))
 
 
 def visible_boxes(
@@ -140,6 +157,7 @@ def _packed(pictures: tuple[LabelledPicture, ...]) -> bytes:
             f"boxes_{k}": picture.boxes,
             f"categories_{k}": picture.categories,
             f"pixels_{k}": picture.pixels,
+            f"forms_{k}": picture.forms,
         }
     buffer = io.BytesIO()
     np.savez(buffer, **arrays)  # type: ignore[arg-type]  # the keywords are names of arrays

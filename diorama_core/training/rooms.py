@@ -30,7 +30,8 @@ def varied_room(seed: int, library: ShapeLibrary) -> Scene:
     scene = furnished_room(
         seed, kind, library, clutter=int(rng.integers(4, 20)), split="train", extra=lambda f: _extras(f, rng)
     )
-    return replace(scene, objects=tuple(replace(o, colour=_colour(rng)) for o in scene.objects))
+    coloured = (replace(o, colour=any_colour(rng) if rng.random() <= RECOLOURED else None) for o in scene.objects)
+    return replace(scene, objects=tuple(coloured))
 
 
 def _extras(f: Furnisher, rng: np.random.Generator) -> None:
@@ -73,10 +74,8 @@ def _on_something(f: Furnisher, item: Item, rng: np.random.Generator) -> str | N
     return None
 
 
-def _colour(rng: np.random.Generator) -> tuple[float, float, float] | None:
-    """A colour of furniture: mostly little saturated, from near black to white; None leaves the shape's own."""
-    if rng.random() > RECOLOURED:
-        return None
+def any_colour(rng: np.random.Generator) -> tuple[float, float, float]:
+    """A colour of furniture: mostly little saturated, from near black to white."""
     hue, saturation, value = rng.random(), rng.beta(1.2, 3.0), rng.beta(1.6, 1.2)
     red, green, blue = colorsys.hsv_to_rgb(float(hue), float(saturation), float(0.04 + 0.96 * value))
     return (red, green, blue)

@@ -6,23 +6,24 @@ import copy
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import torch
-from jaxtyping import Float32
+from jaxtyping import Float32, UInt8
 from torch import Tensor, nn
-from torch.nn import functional
 
-from diorama_core.errors import InputError
 from diorama_core.models.recogniser import box_crop, box_geometry, places
 from diorama_core.progress import Progress
 from diorama_core.training.augment import MOSAIC_SHARE, photographed, training_picture
 from diorama_core.training.detector import Detector, assigned, detector_loss
-from diorama_core.training.naming import Namer
-from diorama_core.training.pictures import LabelledPicture, read_room
+from diorama_core.training.naming import Namer, naming_loss
+from diorama_core.training.outlining import OutlineNetwork, outline_loss
+from diorama_core.training.picture_files import BoxStatistics, PictureFiles
+from diorama_core.training.pictures import LabelledPicture
+from diorama_core.training.shape_views import ShapeViewFiles, crop_before
+from diorama_core.training.windows import WindowFiles
 
 SIZE = (320, 256)
 """Width and height of the detector's training pictures; 32 divides both."""
@@ -53,39 +54,6 @@ class Schedule:
         return self.rate * rise * max(fall, 0.0)
 
 
-@dataclass(frozen=True)
-class PictureFiles:
-    """The files of a folder of rendered rooms."""
-
-    paths: tuple[Path, ...]
-
-    @classmethod
-    def of(cls, folder: Path) -> PictureFiles:
-        """All rooms of a folder that have pictures.
-
-        Raises:
-            InputError: where there is none.
-        """
-        paths = tuple(p for p in sorted(folder.glob("room_*.npz")) if p.stat().st_size > 2_000)
-        if not paths:
-            raise InputError(
-                f"{folder}: no pictures are there; make some: python -m diorama_core.training pictures {folder}"
-            )
-        return cls(paths)
-
-    def draw(self, rng: np.random.Generator) -> LabelledPicture:
-        """A picture of chance."""
-        while True:
-            pictures = _room(self.paths[int(rng.integers(len(self.paths)))])
-            if pictures:
-                return pictures[int(rng.integers(len(pictures)))]
-
-
-@lru_cache(maxsize=1500)
-def _room(path: Path) -> tuple[LabelledPicture, ...]:
-    return read_room(path)
-
-
 @dataclass
 class Trainer:
     """One network, its optimiser and its averaged weights.
@@ -107,6 +75,9 @@ class Trainer:
     step: int = field(init=False, default=0)
 
     def __post_init__(self) -> None:
+        for value in self.network.parameters():
+            if value.dim() == 4:  # convolutions are faster with the channels last
+                value.data = value.data.contiguous(memory_format=torch.channels_last)
         self.averaged = copy.deepcopy(self.network).eval()
         self._optimiser = torch.optim.AdamW(self.network.parameters(), lr=self.schedule.rate, weight_decay=0.02)
         if self.checkpoint.exists():
@@ -143,7 +114,8 @@ class Trainer:
         torch.manual_seed(self.schedule.seed + self.step)  # dropout goes on as if the run had not stopped
         for group in self._optimiser.param_groups:
             group["lr"] = self.schedule.rate_at(self.step)
-        total, words = self.loss(self.network, batch)
+        with torch.autocast("cpu", torch.bfloat16):
+            total, words = self.loss(self.network, batch)
         self._optimiser.zero_grad(set_to_none=True)
         total.backward()  # type: ignore[no-untyped-call]  # torch annotates its result only
         nn.utils.clip_grad_norm_(self.network.parameters(), 10.0)
@@ -203,50 +175,74 @@ def detector_batch(files: PictureFiles, count: int, rng: np.random.Generator) ->
 
 
 def namer_trainer(
-    files: PictureFiles, kinds: int, schedule: Schedule, checkpoint: Path, frequencies: Float32[np.ndarray, "k"]
+    files: PictureFiles, shapes: ShapeViewFiles, kinds: int, schedule: Schedule, checkpoint: Path
 ) -> Trainer:
     """Everything needed to train the namer.
 
     Args:
-        files: the pictures.
+        files: rendered rooms.
+        shapes: rendered shapes.
         kinds: number of categories.
         schedule: how long.
         checkpoint: where the state goes.
-        frequencies: how often each category appears; rare ones are drawn more often.
     """
     torch.manual_seed(schedule.seed + 1)
+    statistics, of_forms = BoxStatistics.of(files, kinds), shapes.form_statistics(kinds)
+    asked, weights = torch.from_numpy(of_forms.asked), [torch.from_numpy(w) for w in of_forms.weights]
 
     def batch_of(rng: np.random.Generator) -> tuple[Tensor, ...]:
-        return namer_batch(files, schedule.batch, rng, frequencies)
+        crops, geometry, right, forms = namer_batch(files, shapes, statistics, schedule.batch, rng)
+        return crops, geometry, right, torch.where(asked[right], forms, -1)
 
     def loss(network: nn.Module, batch: tuple[Tensor, ...]) -> tuple[Tensor, str]:
-        logits = network(batch[0], batch[1])
-        right = (logits.argmax(dim=1) == batch[2]).float().mean()
-        value = functional.cross_entropy(logits, batch[2], label_smoothing=0.05)
-        return value, f"loss {value:.3f}, right {right:.2f}"
+        found = naming_loss(network(batch[0], batch[1]), batch[2], batch[3], weights)
+        return found.total, f"loss {found.total.detach():.3f}, kind right {found.kind:.2f}, form {found.form:.2f}"
 
     return Trainer(Namer(kinds), loss, batch_of, schedule, checkpoint)
 
 
 def namer_batch(
-    files: PictureFiles, count: int, rng: np.random.Generator, frequencies: Float32[np.ndarray, "k"]
-) -> tuple[Tensor, Tensor, Tensor]:
-    """Crops of boxes drawn a little wrong, their geometry, and what they show."""
-    crops: list[np.ndarray] = []
-    geometry: list[np.ndarray] = []
-    kinds: list[int] = []
-    weight = 1.0 / np.sqrt(np.maximum(frequencies, frequencies[frequencies > 0].min()))
-    while len(crops) < count:
+    files: PictureFiles, shapes: ShapeViewFiles, statistics: BoxStatistics, count: int, rng: np.random.Generator
+) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+    """Crops of boxes drawn a little wrong, half of rooms and half of single shapes; geometry, kinds and forms."""
+    drawn: list[tuple[np.ndarray, np.ndarray, int, np.ndarray]] = []
+    counts = statistics.counts
+    weight = 1.0 / np.sqrt(np.maximum(counts, counts[counts > 0].min()))
+    while len(drawn) < count // 2:
         picture = files.draw(rng)
         if not len(picture.boxes):
             continue
         p = weight[picture.categories]
-        for k in rng.choice(len(p), size=min(4, len(p), count - len(crops)), replace=False, p=p / p.sum()):
+        for k in rng.choice(len(p), size=min(4, len(p), count // 2 - len(drawn)), replace=False, p=p / p.sum()):
             crop, where = _crop(picture, int(k), rng)
-            crops.append(crop)
-            geometry.append(where)
-            kinds.append(int(picture.categories[k]))
-    return _pictures_tensor(crops), torch.from_numpy(np.stack(geometry)), torch.tensor(kinds)
+            drawn.append((crop, where, int(picture.categories[k]), picture.forms[k]))
+    while len(drawn) < count:
+        background = files.draw(rng).rgb
+        for _ in range(min(4, count - len(drawn))):
+            crop, sides, views = crop_before(background, shapes, rng)
+            where = statistics.draw(views.category, sides, rng)
+            drawn.append((*_as_photographed(crop, where, rng), views.category, views.form))
+    crops, geometry, kinds, forms = zip(*drawn, strict=True)
+    return (
+        _pictures_tensor(crops),
+        torch.from_numpy(np.stack(geometry)),
+        torch.tensor(kinds),
+        torch.from_numpy(np.stack(forms).astype(np.int64)),
+    )
+
+
+def outliner_trainer(files: WindowFiles, schedule: Schedule, checkpoint: Path) -> Trainer:
+    """Everything needed to train the outliner."""
+    torch.manual_seed(schedule.seed + 2)
+
+    def batch_of(rng: np.random.Generator) -> tuple[Tensor, ...]:
+        return files.batch(schedule.batch, rng)
+
+    def loss(network: nn.Module, batch: tuple[Tensor, ...]) -> tuple[Tensor, str]:
+        value = outline_loss(network(batch[0]), batch[1])
+        return value, f"loss {float(value.detach()):.3f}"
+
+    return Trainer(OutlineNetwork(), loss, batch_of, schedule, checkpoint)
 
 
 def _crop(picture: LabelledPicture, k: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
@@ -256,6 +252,14 @@ def _crop(picture: LabelledPicture, k: int, rng: np.random.Generator) -> tuple[n
     box += np.tile(size, 2) * rng.normal(0.0, 0.05, 4).astype(np.float32)
     box = np.array([*np.minimum(box[:2], box[2:] - 1), *np.maximum(box[2:], box[:2] + 1)], np.float32)
     crop, where = box_crop(picture.rgb, box), box_geometry(box, w, h)
+    return _as_photographed(crop, where, rng)
+
+
+def _as_photographed(
+    crop: UInt8[np.ndarray, "s s 3"], where: Float32[np.ndarray, "6"], rng: np.random.Generator
+) -> tuple[UInt8[np.ndarray, "s s 3"], Float32[np.ndarray, "6"]]:
+    """Either way round, in other light, the place a little wrong."""
+    where = where.copy()
     if rng.random() < 0.5:
         crop, where[0] = np.ascontiguousarray(crop[:, ::-1]), -where[0]
     # Photos are framed otherwise: the place in the picture and the size say a little, not all.
@@ -266,12 +270,3 @@ def _crop(picture: LabelledPicture, k: int, rng: np.random.Generator) -> tuple[n
 def _pictures_tensor(pictures: Sequence[np.ndarray]) -> Tensor:
     stacked = np.stack(pictures).transpose(0, 3, 1, 2)
     return torch.from_numpy(np.ascontiguousarray(stacked)).float() / 255.0
-
-
-def category_counts(files: PictureFiles, kinds: int) -> Float32[np.ndarray, "k"]:
-    """How often each category is seen."""
-    counts = np.zeros(kinds, np.float32)
-    for path in files.paths:
-        for picture in _room(path):
-            counts += np.bincount(picture.categories, minlength=kinds).astype(np.float32)
-    return counts

@@ -105,7 +105,7 @@ def test_what_the_first_upload_needs_is_learnt_beside_and_ends_with_the_server(m
     stopped = threading.Event()
     beside = threading.Thread(target=preload.learn_shapes, args=(stopped,), daemon=True)
     beside.start()
-    time.sleep(0.3)
+    time.sleep(0.3)  # the process is started meanwhile, of which nothing tells
     assert beside.is_alive()
     stopped.set()
     beside.join(timeout=10.0)

@@ -11,7 +11,7 @@ import trimesh
 from PIL import Image
 
 from diorama_app.cli import main
-from diorama_app.cli.scenes import POSES, pose_solver
+from diorama_app.projects.options import POSES, pose_solver
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.models import own_weights
 from diorama_core.pose.correspondence.solvers import CorrespondencePose

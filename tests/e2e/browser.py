@@ -56,6 +56,11 @@ ON_PHOTO = """([x, y, width, height]) => {
     return [box.left + x / width * box.width, box.top + y / height * box.height];
 }"""
 
+BEEN_HERE = (
+    "if (location.protocol.startsWith('http')) "
+    "{ sessionStorage.setItem('diorama-begun', 'yes'); localStorage.setItem('diorama-tour', 'seen'); }"
+)
+
 ON_CANVAS = "([x, y]) => (document.elementFromPoint(x, y) || {}).tagName === 'CANVAS'"
 
 
@@ -97,9 +102,17 @@ class EditorPage:
 
     @classmethod
     def open(
-        cls, context: BrowserContext, running: Running, patience_ms: int = PATIENCE_MS, *, query: str = query
+        cls,
+        context: BrowserContext,
+        running: Running,
+        patience_ms: int = PATIENCE_MS,
+        *,
+        query: str = query,
+        newcomer: bool = False,
     ) -> EditorPage:
         page = context.new_page()
+        if not newcomer:  # who has been here sees neither the start page nor the tour
+            page.add_init_script(BEEN_HERE)
         page.set_default_timeout(patience_ms)
         made = cls(page, running, query=query)
         page.on("pageerror", lambda error: made.errors.append(str(error)))
@@ -166,6 +179,16 @@ class EditorPage:
     def button(self, name: str) -> Locator:
         return self.page.get_by_role("button", name=name, exact=True)
 
+    def tool(self, name: str) -> Locator:
+        """A button of the toolbar: what is drawn anew is in its panel for a moment before it takes the bar's place."""
+        return self.page.locator("#dio-toolbar").get_by_role("button", name=name, exact=True)
+
+    def menu_tool(self, name: str) -> Locator:
+        """A line of the toolbar's menu, which is opened for it."""
+        if self.page.locator("html.dio-menu").count() == 0:
+            self.tool("More tools").click()
+        return self.page.locator("#dio-toolbar .menu").get_by_role("button", name=name, exact=True)
+
     def tab(self, name: str) -> None:
         self.page.get_by_role("tab", name=name, exact=True).click()
 
@@ -205,6 +228,15 @@ class EditorPage:
             self.page.wait_for_timeout(30)
         self.settle()
         self.page.mouse.up()
+
+    def pull(self, start: tuple[float, float], end: tuple[float, float]) -> None:
+        """Drag as `drag` does, without letting go."""
+        self.page.mouse.move(*start)
+        self.settle()
+        self.page.mouse.down()
+        for share in (0.3, 0.6, 1.0):
+            self.page.mouse.move(*(a + share * (b - a) for a, b in zip(start, end, strict=True)))
+            self.page.wait_for_timeout(80)
 
     def upload(self, button: str, path: Path) -> None:
         with self.page.expect_file_chooser() as chosen:

@@ -1,4 +1,4 @@
-"""One Chromium per run, one server and tab per module; pictures of every test's end are kept in `test-artefacts`."""
+"""One Chromium a process, one server and tab per module; pictures of every test's end are kept in `test-artefacts`."""
 
 from __future__ import annotations
 
@@ -22,24 +22,44 @@ StartServer = Callable[..., Running]
 
 
 @pytest.fixture(scope="session")
-def context(tmp_path_factory: pytest.TempPathFactory) -> Iterator:
-    executable = chromium()
-    if executable is None:
+def program() -> str:
+    """Where Chromium is."""
+    found = chromium()
+    if found is None:
         reason = "NO BROWSER TESTS: there is no Chromium on this machine; install it (apt install chromium)"
         warnings.warn(reason, stacklevel=1)
         pytest.skip(reason)
-    with playwright.sync_playwright() as driver:
-        context = driver.chromium.launch_persistent_context(
-            str(tmp_path_factory.mktemp("browser")),
-            executable_path=executable,
-            headless=True,
-            viewport={"width": SIZE[0], "height": SIZE[1]},
-            device_scale_factor=1,
-            accept_downloads=True,
-            args=FLAGS,
-        )
-        yield context
-        context.close()
+    return found
+
+
+@pytest.fixture(scope="session")
+def driver() -> Iterator:
+    """Playwright, of which a process has one at a time."""
+    with playwright.sync_playwright() as started:
+        yield started
+
+
+@pytest.fixture(scope="session")
+def context(driver, program: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator:
+    context = driver.chromium.launch_persistent_context(
+        str(tmp_path_factory.mktemp("browser")),
+        executable_path=program,
+        headless=True,
+        viewport={"width": SIZE[0], "height": SIZE[1]},
+        device_scale_factor=1,
+        accept_downloads=True,
+        args=FLAGS,
+    )
+    yield context
+    context.close()
+
+
+@pytest.fixture(scope="module", autouse=True)
+def own_models(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Models that the tests of a module add are not there for those of another."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("DIORAMA_LIBRARIES", str(tmp_path_factory.mktemp("libraries")))
+        yield
 
 
 @pytest.fixture
@@ -47,14 +67,8 @@ def serve(tmp_path: Path) -> Iterator[StartServer]:
     """Starts servers that end with the test."""
     running: list[Running] = []
 
-    def begin(project: Path | None = None, library: str | ShapeLibrary = "built-in", **options: object) -> Running:
-        made = start(
-            project=project,
-            projects_dir=tmp_path / "projects",
-            low_graphics=True,
-            library=library,
-            **options,  # type: ignore[arg-type]
-        )
+    def begin(project: Path | None = None, library: str | ShapeLibrary = "built-in", port: int = 0) -> Running:
+        made = start(project=project, projects_dir=tmp_path / "projects", low_graphics=True, library=library, port=port)
         running.append(made)
         return made
 

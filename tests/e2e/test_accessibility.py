@@ -34,7 +34,7 @@ def findings(editor: EditorPage) -> list[str]:
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
 def test_axe_finds_nothing_serious_in_any_panel(editor: EditorPage, dark: bool) -> None:
     if dark:
-        editor.page.locator("#dio-toolbar [data-arg=theme]").click()
+        editor.menu_tool("Dark or light").click()
         editor.page.wait_for_function("document.documentElement.dataset.mantineColorScheme === 'dark'")
     editor.page.add_script_tag(path=str(AXE))
     editor.row("lamp").click()
@@ -43,12 +43,32 @@ def test_axe_finds_nothing_serious_in_any_panel(editor: EditorPage, dark: bool) 
     for tab in TABS:
         editor.tab(tab)
         found |= {f"{tab}: {line}" for line in findings(editor)}
+    for tab in ("Scene", "Object"):
+        editor.tab(tab)
+    editor.page.locator(".dio .row:visible", has_text="Wall 3").first.click()
+    editor.page.locator(".dio .tile:visible", has_text="Stripes").click()
+    editor.until(lambda: editor.session.scene.plane("wall_3").finish is not None)
+    found |= {f"surface: {line}" for line in findings(editor)}
+    editor.tab("Project")
+    editor.button("Start page").click()
+    expect(editor.page.locator("#dio-start")).to_be_visible()
+    found |= {f"start page: {line}" for line in findings(editor)}
+    editor.page.locator("#dio-start [data-do=tour]").click()
+    expect(editor.page.locator("#dio-tour")).to_be_visible()
+    found |= {f"tour: {line}" for line in findings(editor)}
+    editor.page.locator("#dio-tour .skip").click()
+    editor.tool("Plan").click()
+    expect(editor.page.locator("#dio-plan svg")).to_be_visible()
+    editor.tool("More tools").click()
+    found |= {f"plan and menu: {line}" for line in findings(editor)}
+    editor.page.keyboard.press("Escape")
+    editor.tool("Room").click()
     editor.tab("Photo")
     editor.button("Draw boxes").click()
     editor.at_board()
     found |= {f"photo: {line}" for line in findings(editor)}
     if dark:
-        editor.page.locator("#dio-toolbar [data-arg=theme]").click()
+        editor.menu_tool("Dark or light").click()
     assert not found, "\n".join(sorted(found))
 
 

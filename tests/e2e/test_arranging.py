@@ -65,7 +65,7 @@ def test_swap_moves_undo_and_redo(editor: EditorPage) -> None:
     assert after.corners_world[:, 2].min() == pytest.approx(before.corners_world[:, 2].min(), abs=1e-9)
     editor.page.keyboard.press("Control+z")
     editor.until(lambda: scene(editor).object("chair_2").shape_id == "chair_b", "undone")
-    editor.button("↷ Redo").click()
+    editor.tool("Redo").click()
     editor.until(lambda: scene(editor).object("chair_2").shape_id == "chair_c", "redone")
 
 

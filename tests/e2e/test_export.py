@@ -5,14 +5,15 @@ from __future__ import annotations
 import io
 import zipfile
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import trimesh
 from PIL import Image
-from playwright.sync_api import Download, expect
+from playwright.sync_api import Download, Locator, expect
 
 from diorama_app.projects import formats
 from diorama_app.serve import Running
@@ -20,11 +21,47 @@ from diorama_core.project.storage import Project
 from diorama_core.scene.schema import scene_to_json
 from tests.e2e.browser import LEARN_MS, PATIENCE_MS, EditorPage
 from tests.e2e.conftest import keep_picture
+from tests.export import gltf_reader
 
 pytestmark = pytest.mark.browser
 
 JOB_MS = 120_000
 """Seconds on two free cores; test machines are often busy."""
+
+
+@dataclass(frozen=True)
+class GlbFile:
+    """What the switches change in a GLB."""
+
+    size: int
+    document: dict[str, Any]
+    picture_sizes: list[int]
+    """Longest sides, in pixels."""
+
+    @classmethod
+    def read(cls, path: Path) -> GlbFile:
+        content = path.read_bytes()
+        document, binary = gltf_reader.read(content)
+        longest = []
+        for image in document.get("images", ()):
+            view = document["bufferViews"][image["bufferView"]]
+            start = view.get("byteOffset", 0)
+            longest.append(max(Image.open(io.BytesIO(binary[start : start + view["byteLength"]])).size))
+        return cls(len(content), document, longest)
+
+    @property
+    def nodes(self) -> list[dict[str, Any]]:
+        return list(self.document["nodes"])
+
+    @property
+    def roles(self) -> set[str]:
+        """Of the planes."""
+        extras = [n.get("extras", {}) for n in self.nodes]
+        return {e["role"] for e in extras if "diorama_plane" in e}
+
+    @property
+    def has_photo(self) -> bool:
+        return any("diorama_photo" in n.get("extras", {}) for n in self.nodes)
 
 
 @pytest.fixture
@@ -39,6 +76,26 @@ def example(serve: Callable[..., Running], visit: Callable[[Running], EditorPage
 def choose(editor: EditorPage, format_name: str) -> None:
     editor.tab("Export")
     editor.page.locator(f'.dio .row[data-do=choose][data-arg="{format_name}"]').click()
+
+
+def switch(editor: EditorPage, name: str) -> Locator:
+    return editor.page.get_by_role("switch", name=name, exact=True)
+
+
+def turn_on(editor: EditorPage, name: str) -> None:
+    switch(editor, name).click()
+    expect(switch(editor, name)).to_have_attribute("aria-checked", "true")
+
+
+def turn_off(editor: EditorPage, name: str) -> None:
+    switch(editor, name).click()
+    expect(switch(editor, name)).to_have_attribute("aria-checked", "false")
+
+
+def glb_of(editor: EditorPage, path: Path) -> GlbFile:
+    """The chosen GLB as it is downloaded."""
+    editor.running.session.jobs.wait(30.0)
+    return GlbFile.read(download(editor, "Export .glb", path))
 
 
 def download(editor: EditorPage, button: str, path: Path) -> Path:
@@ -59,14 +116,15 @@ def test_every_format_is_offered_with_what_it_keeps_and_where_it_opens(editor: E
         expect(row).to_contain_text(formats.GUIDES[name].opens_in)
         row.click()
         expect(editor.page.locator(".dio .card", has_text=f"Keeps {one.keeps}.")).to_be_visible()
-        expect(editor.button("Welded")).to_have_count(int("welded" in formats.GUIDES[name].choices))
+        expect(switch(editor, "Welded")).to_have_count(int("welded" in formats.GUIDES[name].choices))
 
 
 def test_a_format_whose_library_is_missing_says_what_to_install(
     editor: EditorPage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     absent = replace(formats.EXPORT_FORMATS["pdf"], needs="a_library_that_nobody_has")
-    monkeypatch.setitem(formats.EXPORT_FORMATS, "pdf", absent)  # type: ignore[arg-type]
+    assert isinstance(formats.EXPORT_FORMATS, dict)
+    monkeypatch.setitem(formats.EXPORT_FORMATS, "pdf", absent)
     choose(editor, "pdf")
     expect(editor.page.get_by_text("pip install 'diorama[plan]'")).to_be_visible()
     expect(editor.button("Export .pdf")).to_be_disabled()
@@ -74,17 +132,65 @@ def test_a_format_whose_library_is_missing_says_what_to_install(
 
 def test_options_change_what_is_written(editor: EditorPage, tmp_path: Path) -> None:
     choose(editor, "glb")
-    expect(editor.button("Only selection")).to_be_disabled()
+    expect(switch(editor, "Only selection")).to_be_disabled()
+    expect(switch(editor, "Only selection")).to_contain_text("Select objects first")
     editor.row("dining table").click()
     editor.until(lambda: editor.selection == ("table_1",))
-    editor.button("Only selection").click()
-    expect(editor.button("Only selection")).to_have_class("on")
+    turn_on(editor, "Only selection")
     model = trimesh.load_scene(download(editor, "Export .glb", tmp_path / "table.glb"))
     np.testing.assert_allclose(np.sort(model.extents), (0.74, 0.8, 1.4), atol=1e-3)
     choose(editor, "mjcf")
     package = zipfile.ZipFile(download(editor, "Export .zip", tmp_path / "table.zip"))
     assert any(name.endswith(".xml") for name in package.namelist())
     editor.running.session.jobs.wait(10.0)
+
+
+def test_every_switch_of_a_model_is_in_its_file(example: EditorPage, tmp_path: Path) -> None:
+    pytest.importorskip("DracoPy", reason="needs the extra 'draco'")
+    choose(example, "glb")
+    plain = glb_of(example, tmp_path / "plain.glb")
+    assert plain.roles == {"floor", "wall", "ceiling"}
+    assert "extensionsRequired" not in plain.document
+    assert not plain.has_photo
+    assert max(plain.picture_sizes) > 256
+
+    turn_on(example, "Without ceiling")
+    assert glb_of(example, tmp_path / "open.glb").roles == {"floor", "wall"}
+    turn_off(example, "Without ceiling")
+
+    example.page.get_by_label("Textures").select_option("256")
+    small = glb_of(example, tmp_path / "small.glb")
+    assert max(small.picture_sizes) == 256
+    assert len(small.picture_sizes) == len(plain.picture_sizes)
+    assert small.size < plain.size
+
+    sizes = [small.size]
+    for name, extension in (("meshopt", "EXT_meshopt_compression"), ("draco", "KHR_draco_mesh_compression")):
+        example.page.get_by_label("Compression").select_option(name)
+        packed = glb_of(example, tmp_path / f"{name}.glb")
+        assert extension in packed.document["extensionsRequired"]
+        assert len(packed.nodes) == len(plain.nodes)
+        sizes.append(packed.size)
+    assert sizes == sorted(sizes, reverse=True)
+    example.page.get_by_label("Compression").select_option("none")
+
+    turn_on(example, "With photo")
+    assert glb_of(example, tmp_path / "photo.glb").has_photo
+
+
+def test_simulators_get_objects_that_move_or_not(editor: EditorPage, tmp_path: Path) -> None:
+    choose(editor, "mjcf")
+    assert b"freejoint" in model_in(download(editor, "Export .zip", tmp_path / "free.zip"))
+    editor.running.session.jobs.wait(10.0)
+    turn_on(editor, "Welded")
+    assert b"freejoint" not in model_in(download(editor, "Export .zip", tmp_path / "welded.zip"))
+    editor.running.session.jobs.wait(10.0)
+
+
+def model_in(package: Path) -> bytes:
+    """The MuJoCo model in a zip."""
+    with zipfile.ZipFile(package) as archive:
+        return archive.read(next(n for n in archive.namelist() if n.endswith(".xml")))
 
 
 def test_an_exported_glb_is_opened_again_with_the_same_scene(example: EditorPage, tmp_path: Path) -> None:
@@ -178,7 +284,7 @@ def test_a_picture_of_this_view_and_of_the_photos(editor: EditorPage, tmp_path: 
     table = editor.running.session.scene.object("table_1").pose.position + np.array([0.3, 0.0, 0.36])
     left, top, width, _ = editor.canvas_box()
     x, y = ((np.array(editor.place_of(table)) - (left, top)) * 640 / width).astype(int)
-    r, g, b = here.getpixel((int(x), int(y)))  # type: ignore[misc]
+    r, g, b = np.asarray(here, dtype=int)[y, x]
     assert r > g > b, "the table's wood, where it is seen on the page"
     assert r - b > 25
 

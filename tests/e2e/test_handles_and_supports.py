@@ -10,6 +10,7 @@ import pytest
 from playwright.sync_api import expect
 
 from diorama_app.commands import optimise as commands
+from diorama_app.interaction.gestures import Gestures
 from diorama_app.serve import Running
 from diorama_app.session.layout_run import LayoutRun
 from diorama_core.artefacts import LayoutReport
@@ -41,8 +42,9 @@ def test_the_rotation_arc_turns_where_it_lies_over_the_body(editor: EditorPage) 
     editor.settle()
     table = session.scene.object("table_1")
     at_rest(editor, table.pose.position)
-    gestures = next(p for p in editor.client.panels if type(p).__name__ == "Gestures")
-    scale = gestures._gizmo_key[2]  # type: ignore[attr-defined]
+    gestures = next(p for p in editor.client.panels if isinstance(p, Gestures))
+    assert gestures._gizmo_key is not None
+    scale = gestures._gizmo_key[2]
     # The arc between the x and y arms, in the object's frame, two thirds out.
     at = 0.6 * scale
     start, end = (

@@ -61,12 +61,7 @@ def test_an_object_is_dragged_over_the_floor_stopped_by_the_table_and_undone(edi
         editor.place_of(seat(editor) + np.array([0.13, 0.13, 0.0])),
         editor.place_of(table + np.array([0.1, -0.3, 0.1])),
     )
-    editor.page.mouse.move(*start)
-    editor.settle()
-    editor.page.mouse.down()
-    for share in (0.3, 0.6, 1.0):
-        editor.page.mouse.move(*(a + share * (b - a) for a, b in zip(start, into, strict=True)))
-        editor.page.wait_for_timeout(80)
+    editor.pull(start, into)
     editor.until(lambda: bool(editor.client.marks._colliding), "the collision is shown while dragging")
     editor.page.keyboard.press("Escape")
     editor.page.mouse.up()
@@ -150,17 +145,21 @@ def test_a_shape_is_clicked_onto_the_table_and_lengths_are_measured_and_rescaled
     expect(editor.page.get_by_text("Click where to place it")).to_have_count(0)
     editor.page.keyboard.press("m")
     expect(editor.page.get_by_text("Click the first point")).to_be_visible()
-    floor = scene(editor).architecture.floor
-    assert floor is not None
     for x in (-1.0, 0.9):
         editor.click_world(np.array([x, 0.5, 0.0]))
         editor.settle()
     expect(editor.page.get_by_text("between the two points")).to_be_visible()
-    width = float(np.ptp(floor.polygon[:, 0]))
+    width = _floor_width(editor)
     field = editor.page.get_by_label("True length")
     field.fill("3.8 m")
     field.press("Enter")
-    editor.until(lambda: abs(np.ptp(scene(editor).architecture.floor.polygon[:, 0]) / width - 2.0) < 0.05, "rescaled")  # type: ignore[union-attr]
+    editor.until(lambda: abs(_floor_width(editor) / width - 2.0) < 0.05, "rescaled")
+
+
+def _floor_width(editor: EditorPage) -> float:
+    floor = scene(editor).architecture.floor
+    assert floor is not None
+    return float(np.ptp(floor.polygon[:, 0]))
 
 
 def test_supports_are_dragged_in_the_list_and_refused_with_the_reason(editor: EditorPage) -> None:
@@ -308,7 +307,10 @@ def test_what_was_missed_is_added_from_the_photo_and_renamed(editor: EditorPage)
     assert new.box_px == pytest.approx((240.0, 200.0, 440.0, 420.0))
     assert new.corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-6)
     field = editor.page.get_by_label("Object category")
-    field.fill("chair")
+    field.click()
+    editor.settle()
+    editor.page.keyboard.type("chair")  # what is clicked is selected whole, so that typing replaces it
+    expect(field).to_have_value("chair")
     field.press("Enter")
     editor.until(
         lambda: session.jobs.status is None and session.scene.object(new.id).category == "chair", "renamed", seconds=90

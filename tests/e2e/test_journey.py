@@ -49,7 +49,7 @@ def test_the_example_is_there_and_is_swapped_moved_undone_optimised_and_download
     editor.page.get_by_label("Position: x").fill(f"{goal:.2f}")
     editor.page.keyboard.press("Enter")
     editor.until(lambda: abs(session.scene.object(chair.id).pose.position[0] - goal) < 1e-3, "moved")
-    editor.button("↶ Undo").click()
+    editor.tool("Undo").click()
     editor.until(lambda: session.scene.object(chair.id).pose == swapped.pose, "undone")
 
     editor.tab("Arrange")
@@ -91,7 +91,7 @@ def test_a_photo_with_boxes_becomes_a_scene(with_example: Running, visit: Callab
     assert session.scene.architecture.floor is not None
     assert session.scene.architecture.by_role("wall")
     editor.tab("Scene")
-    expect(editor.page.locator(".dio .row[data-arg]:visible")).to_have_count(len(session.scene.objects))
+    expect(editor.page.locator(".dio .row[data-grab]:visible")).to_have_count(len(session.scene.objects))
 
 
 def _photo_with_boxes() -> tuple[Path, Path]:

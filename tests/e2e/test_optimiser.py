@@ -101,3 +101,21 @@ def test_arrangements_are_mixed_by_what_is_selected(editor: EditorPage) -> None:
     assert session.document.history.current.label == "arrangement 1 for dining table"
     editor.page.keyboard.press("Control+z")
     editor.until(lambda: session.scene.object("table_1").shape_id == "table_b", "one undo step")
+
+
+def test_a_run_of_several_stages_updates_nothing_that_is_gone(editor: EditorPage) -> None:
+    """Every stage has costs of its own, and with them a chart of its own."""
+    session = editor.running.session
+    said: list[str] = []
+    editor.page.on("console", lambda message: said.append(message.text))
+    editor.tab("Arrange")
+    before = lift_chair(editor)
+    for name in ("All in one", "As in the paper"):
+        choose_recipe(editor, name)
+        editor.button("Optimise layout").click()
+        editor.until(lambda: session.jobs.status is None and session.scene is not before, "arranged", seconds=90)
+        editor.settle()
+        editor.button("Revert").click()
+        editor.until(lambda: session.scene == before, "put back")
+    editor.settle()
+    assert not [line for line in said if "non-existent" in line]

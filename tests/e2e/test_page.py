@@ -12,7 +12,7 @@ from playwright.sync_api import Page, expect
 from diorama_app.serve import Running
 from diorama_core.progress import Progress
 from tests.app.small_room import PlainLibrary, make_project
-from tests.e2e.browser import SIZE, EditorPage
+from tests.e2e.browser import PROJECT, SIZE, EditorPage
 
 pytestmark = pytest.mark.browser
 
@@ -62,8 +62,9 @@ def test_panels_leave_the_room_and_the_tools_stay(editor: EditorPage, resized: P
         assert box["x"] >= left - 1
         assert box["x"] + box["width"] <= left + across + 1
         assert box["y"] < 40
+        assert box["height"] <= 44, "the tools are one row"
     corners = np.concatenate([p.polygon for p in editor.session.scene.architecture.planes])
-    editor.button("Room").click()
+    editor.tool("Room").click()
     editor.settle()
     left, top, across, down = editor.canvas_box()
     bar = resized.locator("#dio-toolbar").bounding_box()
@@ -93,7 +94,40 @@ def test_on_a_phone_the_panel_is_a_sheet_and_the_room_above_it(
     assert sheet[2] == 390
     assert abs(canvas[1] - sheet[1]) <= 2, "nothing of the room is under the sheet"
     assert canvas[1] > 300
+    for name in ("Scene", "Photo", "Arrange", "Project", "Object", "Library", "Export"):
+        expect(page.get_by_role("tab", name=name, exact=True)).to_have_count(1)
+    page.get_by_role("tab", name="Library", exact=True).click()
+    expect(page.get_by_label("Category")).to_be_visible()
+    bar = page.locator("#dio-toolbar").bounding_box()
+    assert bar is not None
+    assert bar["x"] >= 0
+    assert bar["x"] + bar["width"] <= 390, "every tool is on the screen"
+    corners = np.concatenate([p.polygon for p in running.session.scene.architecture.planes])
+    spread = (
+        f"(points) => {{ const x = points.map({PROJECT}).map((p) => p[0]); return Math.max(...x) - Math.min(...x); }}"
+    )
+    page.wait_for_function(f"(points) => ({spread})(points) > 0.75 * 390", arg=corners.tolist())
     page.close()
+
+
+def test_what_is_rarely_used_is_in_a_menu_that_stays_for_its_switches(editor: EditorPage) -> None:
+    client = editor.client
+    menu = editor.page.locator("#dio-toolbar .menu")
+    expect(menu).to_be_hidden()
+    names = client.preferences.names
+    editor.menu_tool("Names").click()
+    editor.until(lambda: client.preferences.names is not names, "names are switched")
+    expect(menu).to_be_visible()
+    expect(menu.get_by_role("button", name="Names")).to_have_attribute("aria-pressed", str(not names).lower())
+    expect(editor.tool("More tools")).to_have_attribute("aria-expanded", "true")
+    editor.page.keyboard.press("Escape")
+    expect(menu).to_be_hidden()
+    editor.menu_tool("Front view").click()
+    expect(menu).to_be_hidden()
+    editor.tool("More tools").click()
+    left, top, _, down = editor.canvas_box()
+    editor.page.mouse.click(left + 30, top + down - 30)
+    expect(menu).to_be_hidden()
 
 
 def test_the_running_job_is_in_view_in_every_tab_with_what_it_found(editor: EditorPage) -> None:

@@ -149,7 +149,7 @@ def test_the_photo_view_stands_where_the_photo_was_taken(editor: EditorPage) -> 
     session = editor.running.session
     camera = session.scene.camera
     assert camera is not None
-    editor.button("Photo view").click()
+    editor.tool("Photo").click()
     view = editor.client.view
     editor.until(lambda: view.camera.through_photo)
     editor.settle()
@@ -160,15 +160,13 @@ def test_the_photo_view_stands_where_the_photo_was_taken(editor: EditorPage) -> 
         scale = (box[3] / 2) / np.tan(view.camera.fov_rad / 2) / camera.intrinsics.fy
         assert x - (box[0] + box[2] / 2) == pytest.approx(u * scale, abs=2.5)
         assert y - (box[1] + box[3] / 2) == pytest.approx(v * scale, abs=2.5)
-    slider = editor.page.locator(".mantine-Flex-root", has_text="Photo over model").locator("input[type=text]")
-    slider.fill("100")
-    slider.press("Tab")
+    editor.page.get_by_role("slider", name="Photo over model").fill("100")
     editor.until(lambda: view.photo.comparing, "the photo lies over the model")
     brown = camera.position + camera.rays(np.array([340.0, 310.0]))
     editor.until(
         lambda: np.allclose(editor.mean_colour(brown), (120, 80, 50), atol=25), "its picture is drawn", seconds=5
     )
-    editor.button("Room").click()
+    editor.tool("Room").click()
     editor.until(lambda: not view.photo.comparing and not view.camera.through_photo, "the model alone again")
 
 

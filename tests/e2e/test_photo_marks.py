@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -15,9 +14,11 @@ import pytest
 from PIL import Image
 from playwright.sync_api import expect
 
+from diorama_core.artefacts import LabelledBox
 from diorama_core.project.storage import Project
 from tests.app.small_room import make_project, plain_photo
 from tests.e2e.browser import EditorPage
+from tests.waiting import until
 
 pytestmark = pytest.mark.browser
 
@@ -75,6 +76,23 @@ def test_a_name_is_of_the_next_box_or_of_the_selected_one(started: EditorPage) -
     expect(editor.button("Build scene")).to_be_enabled()
 
 
+def test_a_name_goes_on_being_typed_when_the_boxes_are_drawn_anew(started: EditorPage) -> None:
+    editor, page = started, started.page
+    editor.draw_box(CHAIR)
+    editor.until(lambda: len(boxes(editor)) == 1, "drawn")
+    page.mouse.click(*editor.on_photo(*np.mean([CHAIR[:2], CHAIR[2:]], axis=0)))
+    field = page.locator(".dio-canvas-box.on input")
+    field.click()
+    field.press("Control+a")
+    page.keyboard.type("r")
+    page.evaluate("window.__dioCanvas.told({})")
+    page.keyboard.type("ug")
+    expect(field).to_have_value("rug")
+    assert editor.client.view.canvas.is_open, "the letter is no command"
+    page.keyboard.press("Enter")
+    editor.until(lambda: boxes(editor)[0][0] == "rug", "named")
+
+
 def test_corners_drag_delete_deletes_and_every_step_is_undone(started: EditorPage) -> None:
     editor = started
     editor.draw_box(TABLE)
@@ -128,6 +146,12 @@ def serve_apart(tmp_path: Path) -> Iterator[Callable[[int], subprocess.Popen[str
         process.wait()
 
 
+def saved_boxes(folder: Path) -> tuple[LabelledBox, ...]:
+    inputs = Project.open(folder).load_inputs()
+    assert inputs is not None
+    return inputs.boxes
+
+
 def test_what_was_drawn_outlives_a_killed_server(context, serve_apart, photo: Path, tmp_path: Path) -> None:
     server = serve_apart(0)
     assert server.stdout is not None
@@ -148,13 +172,12 @@ def test_what_was_drawn_outlives_a_killed_server(context, serve_apart, photo: Pa
     page.mouse.up()
     expect(page.locator(".dio-canvas-box")).to_have_count(1)
     folder = tmp_path / "projects" / "my-room"
-    deadline = time.monotonic() + 20.0
-    while not Project.open(folder).load_inputs().boxes:  # type: ignore[union-attr]
-        assert time.monotonic() < deadline, "not saved"
-        time.sleep(0.05)
+    until(lambda: saved_boxes(folder), "the box is saved")
     os.kill(server.pid, signal.SIGKILL)
     server.wait()
-    serve_apart(port).stdout.readline()  # type: ignore[union-attr]
+    again = serve_apart(port)
+    assert again.stdout is not None
+    again.stdout.readline()
     page.goto(f"http://127.0.0.1:{port}/?fixedDpr=1")
     page.get_by_role("tab", name="Project", exact=True).click()
     page.locator(".dio .row", has_text="my room").get_by_role("button", name="Open").click()

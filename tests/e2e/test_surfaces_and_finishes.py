@@ -72,12 +72,7 @@ def test_esc_puts_a_pulled_handle_back_and_snapping_keeps_to_the_grid(editor: Ed
     end = editor.place_of(handle_at(editor, "table_1", "corner", 0.15))
     node = editor.running.session.viewport.node_name("table_1")
     height = f"window.__viserMutable.nodeRefFromName['{node}'].position.z"
-    editor.page.mouse.move(*start)
-    editor.settle()
-    editor.page.mouse.down()
-    for share in (0.4, 0.7, 1.0):
-        editor.page.mouse.move(*(a + share * (b - a) for a, b in zip(start, end, strict=True)))
-        editor.page.wait_for_timeout(60)
+    editor.pull(start, end)
     editor.page.wait_for_function(f"{height} > {before.object('table_1').pose.position[2] + 0.03}")
     editor.page.keyboard.press("Escape")
     editor.page.mouse.up()

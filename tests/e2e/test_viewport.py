@@ -36,7 +36,7 @@ def test_outlines_lie_over_the_photo_and_the_selected_one_is_orange(editor: Edit
     session = editor.running.session
     session.ui_thread.post(lambda: session.edit("found", seen_in_photo))
     editor.until(lambda: session.scene.object("table_1").box_px == BOX)
-    editor.button("Outlines").click()
+    editor.menu_tool("Outlines").click()
     editor.until(lambda: session.jobs.status is None and editor.client.preferences.masks, "outlined", seconds=60)
     assert editor.client.view.camera.through_photo, "outlines are seen through the photo's camera"
     editor.page.wait_for_function(THERE)
@@ -61,7 +61,7 @@ def test_outlines_lie_over_the_photo_and_the_selected_one_is_orange(editor: Edit
 
 
 def test_planes_show_their_edges_and_follow_a_moved_wall(editor: EditorPage) -> None:
-    editor.button("Planes").click()
+    editor.menu_tool("Planes").click()
     count = len(editor.running.session.scene.architecture.planes)
     editor.page.wait_for_function(f"{EDGES} == {count}")
     editor.page.keyboard.press("p")
@@ -84,7 +84,7 @@ def test_what_floats_and_what_is_unsure_is_marked_in_the_view_and_in_the_list(ed
     over = session.scene.object("table_1").pose.position + np.array([0.0, 0.0, 0.37 + 0.06])
     editor.settle()
     marked = editor.mean_colour(over, radius=8)
-    editor.button("Warnings").click()
+    editor.menu_tool("Warnings").click()
     editor.until(lambda: not editor.client.preferences.badges)
     editor.settle()
     assert f"{table}/mark/tag" not in editor.client.viser_client.scene._handle_from_node_name
@@ -153,3 +153,36 @@ def test_a_fade_takes_a_few_frames_where_there_is_a_graphics_card(editor: Editor
         assert between == sorted(between, reverse=True)
     finally:
         session.low_graphics = True
+
+
+LINES = """() => Object.fromEntries(Object.entries(window.__viserMutable.nodeRefFromName)
+    .filter(([name, node]) => /^\\/objects\\/\\d+\\/v\\d+$/.test(name) && node)
+    .map(([name, node]) => [name, node.children.find((c) => c.children[0]?.material?.uniforms?.screenspace)])
+    .filter(([name, group]) => group?.visible)
+    .map(([name, group]) => { const k = group.children[0].material;
+        return [name, [k.transparent, k.thickness, '#' + k.color.getHexString(), group.children[0].renderOrder]]; }))"""
+"""What is outlined: whether the line is drawn before its object, how wide, in which colour, and when."""
+
+
+def test_selection_and_hover_are_one_line_behind_the_object_and_the_name_is_shown_on_hover(editor: EditorPage) -> None:
+    session = editor.session
+    editor.row("lamp").click()
+    editor.until(lambda: editor.selection == ("lamp_1",))
+    lamp = session.viewport.mesh_name("lamp_1")
+    editor.page.wait_for_function(f"'{lamp}' in ({LINES})()")
+    assert editor.page.evaluate(LINES) == {lamp: [False, 3.5, "#ff7a1a", 1]}
+    tags = [n for n in editor.client.viser_client.scene._handle_from_node_name if n.endswith("/mark/tag")]
+    assert not tags, "names are not in the way"
+    table = session.scene.object("table_1")
+    x, y = editor.place_of(table.pose.apply(np.array([0.2, 0.3, 0.37])))
+    assert editor.on_canvas(x, y)
+    editor.page.mouse.move(x - 3, y)
+    editor.page.mouse.move(x, y)
+    mesh = session.viewport.mesh_name("table_1")
+    editor.page.wait_for_function(f"'{mesh}' in ({LINES})()")
+    expect(editor.page.locator("#dio-tag")).to_have_text("dining table")
+    assert editor.page.evaluate(LINES)[mesh][2] == "#4c8dff"
+    editor.page.keyboard.press("Escape")
+    editor.page.wait_for_function(f"!('{lamp}' in ({LINES})())")
+    editor.page.get_by_text("Scene", exact=True).first.hover()
+    expect(editor.page.locator("#dio-tag")).to_be_hidden()

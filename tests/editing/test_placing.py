@@ -13,8 +13,10 @@ from diorama_core.editing import aligning as arranging
 from diorama_core.editing.clipboard import copied, pasted
 from diorama_core.editing.collisions import Collisions
 from diorama_core.editing.dragging import GRID_M, Slide, snapped_pose
-from diorama_core.editing.placing import against_wall, seated
+from diorama_core.editing.placing import against_wall, hits_along, insertion, places_of, seated, spot_in_view
 from diorama_core.errors import EditRefused
+from diorama_core.geometry.openings import with_openings
+from diorama_core.library.record import Shape
 from diorama_core.scene import edits
 from diorama_core.scene.support import check_scene
 from diorama_core.scene.types import Pose, Scene, Support
@@ -172,3 +174,33 @@ def test_a_frame_takes_in_what_is_seen_inside_it() -> None:
     assert set(everything) == {o.id for o in scene.objects}
     u, v = camera.project(scene.object("chair_2").pose.position) / (camera.intrinsics.width, camera.intrinsics.height)
     assert objects_in(scene, (u - 0.02, v - 0.02), (u + 0.02, v + 0.02), *seen) == ("chair_2",)
+
+
+def test_doors_stand_at_the_foot_of_their_wall_and_windows_stay_within_it() -> None:
+    scene = furnished_scene()
+    for category, size, clicked, expected in (
+        ("door", (0.1, 0.9, 2.0), 1.6, 1.0),
+        ("window", (0.1, 1.2, 1.2), 2.3, 1.9),
+        ("window", (0.1, 1.2, 1.2), 1.2, 1.2),
+    ):
+        shape = Shape(id="s", category=category, caption="", size_m=size, surfaces=(), content_hash="s")
+        hits = hits_along(EYE, np.array([0.5, 3.4, clicked]) - EYE, places_of(scene, LIBRARY))
+        item, edge = insertion(scene, shape, "new", hits[0], 0.0)
+        assert edge.parent == "wall_3"
+        assert item.pose.position[2] == pytest.approx(expected)
+        opened = with_openings(edits.insert(scene, item, edge)).plane("wall_3")
+        assert len(opened.polygon) > 4, "and cut it"
+
+
+def test_what_hangs_is_put_on_the_wall_or_the_ceiling_in_the_middle_of_the_view() -> None:
+    scene = furnished_scene()
+    shape = Shape(id="s", category="mirror", caption="", size_m=(0.03, 0.6, 0.9), surfaces=(), content_hash="s")
+    eye, ahead = np.array([0.0, 0.0, 1.6]), np.array([0.3, 1.0, -0.1])
+    hit = spot_in_view(scene, shape, eye, ahead, on_ceiling=False)
+    assert hit.place.parent == "wall_3"
+    assert hit.point[2] == pytest.approx(1.5)
+    above = spot_in_view(scene, shape, eye, np.array([0.0, 0.2, 1.0]), on_ceiling=True)
+    assert above.place.parent == "ceiling"
+    from_above = spot_in_view(scene, shape, np.array([0.0, 1.0, 9.0]), np.array([0.0, 0.0, -1.0]), on_ceiling=False)
+    assert scene.plane(from_above.place.parent).role == "wall"
+    assert spot_in_view(Scene(), shape, eye, ahead, on_ceiling=False) is None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from diorama_core.export.gathering import ExportOptions, ExportScene, gather
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.project.storage import Project
+from diorama_core.scene import edits
 from diorama_core.scene.types import Architecture, Pose, Scene, SceneObject, Support
 from diorama_core.synthesis.layout_rooms import box_library, generate_room
 from tests.app.small_room import photo_camera, room_planes
@@ -25,6 +27,14 @@ def gathered(source: str, **options: object) -> ExportScene:
     scene, library = scene_of(source)
     textures = Project(_EXAMPLE).textures(scene) if source == "example" else {}
     return gather(scene, library, textures=textures, options=ExportOptions(**options), name=source)
+
+
+def desk_in_dresser() -> ExportScene:
+    """The room with fittings, its desk in the midst of its dresser."""
+    scene, library = scene_of("fittings")
+    desk, dresser = scene.object("desk_1"), scene.object("dresser_1")
+    inside = replace(desk.pose, position=np.array([*dresser.pose.position[:2], desk.pose.position[2]]))
+    return gather(edits.move(scene, desk.id, inside), library, options=ExportOptions(joints=True))
 
 
 @cache

@@ -51,3 +51,17 @@ def test_a_failure_leaves_the_older_file_and_no_part(tmp_path: Path) -> None:
         write_package(tmp_path / "room.obj", "room.obj", entries())
     assert path.read_bytes() == b"older"
     assert [p.name for p in tmp_path.iterdir()] == ["room.glb"]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="modes are those of POSIX")
+@pytest.mark.parametrize("umask", [0o022, 0o077])
+def test_the_mode_is_what_the_umask_says(umask: int, tmp_path: Path) -> None:
+    before = os.umask(umask)
+    try:
+        write_whole(tmp_path / "room.glb", b"whole")
+        write_package(tmp_path / "room.obj", "room.obj", [("room_files/a.bin", b"a"), ("room.obj", b"main")])
+    finally:
+        os.umask(before)
+    files = [p for p in tmp_path.rglob("*") if p.is_file()]
+    assert {p.stat().st_mode & 0o777 for p in files} == {0o666 & ~umask}
+    assert len(files) == 3

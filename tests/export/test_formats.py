@@ -45,6 +45,30 @@ def test_cancelling_leaves_the_older_file(name: str, tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [path]
 
 
+@pytest.mark.parametrize(("name", "suffix"), [(n, s) for n, f in FORMATS.items() for s in f.suffixes])
+def test_a_full_disk_is_one_clear_line_and_leaves_what_was_there(name: str, suffix: str, tmp_path: Path) -> None:
+    """No file may grow as large as it must, which fails in the midst of writing as a full disk does."""
+    resource = pytest.importorskip("resource", reason="limits of processes are POSIX")
+    if FORMATS[name].missing:
+        pytest.skip(FORMATS[name].missing)
+    path = tmp_path / f"room{suffix}"
+    export_scene(furnished_room(LIBRARY), LIBRARY, path, name)
+    before = contents(tmp_path)
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (max(map(len, before.values())) * 2 // 3, hard))
+    try:
+        with pytest.raises(ExportError, match="cannot write") as error:
+            export_scene(furnished_room(LIBRARY), LIBRARY, path, name)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert "\n" not in str(error.value)
+    assert contents(tmp_path) == before
+
+
+def contents(folder: Path) -> dict[Path, bytes]:
+    return {p.relative_to(folder): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+
+
 def test_unknown_formats_and_endings_are_one_clear_line(tmp_path: Path) -> None:
     with pytest.raises(ExportError, match="choose one of: glb"):
         format_named("docx")

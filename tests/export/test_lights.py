@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.export.lights import LAMP_LUMENS, WINDOW_LUX, lights_of
+from diorama_core.export.lights import WINDOW_LUX, lights_of
 from diorama_core.render.appearance import Material
+from diorama_core.render.lamps import LAMP_LUMENS
+from diorama_core.scene.light_settings import LightSettings
 from diorama_core.scene.types import Pose
 from tests.app.small_room import furnished_scene
 from tests.export.surfaces import ball
@@ -46,3 +48,17 @@ def test_a_window_lets_daylight_into_the_room_whichever_way_it_was_made(yaw: flo
 
 def test_other_objects_give_no_light() -> None:
     assert lights_of(SCENE, [SCENE.object("table_1"), SCENE.object("chair_1")], {}) == ()
+
+
+def test_a_person_says_which_lamps_shine_and_windows_follow_the_time_of_day() -> None:
+    def light(settings: LightSettings) -> list[float]:
+        window = replace(SCENE.object("picture_1"), category="window")
+        scene = replace(SCENE, light_settings=settings)
+        return [found.lumens for found in lights_of(scene, [LAMP, window], {"lamp_1": (ball(),)})]
+
+    usual = light(LightSettings())
+    assert len(usual) == 2
+    assert light(LightSettings(lamps_on=())) == usual[1:]
+    at_night = light(LightSettings(hour=0.0, lamps_on=("lamp_1",)))
+    assert at_night[0] == usual[0]
+    assert at_night[1] < 0.1 * usual[1]

@@ -6,8 +6,9 @@ import numpy as np
 
 from diorama_core.export.gathering import ExportOptions, gather
 from diorama_core.export.gltf import write_gathered
-from diorama_core.export.lights import main_light_of
+from diorama_core.export.lights import SUN_LUX, main_light_of
 from diorama_core.io.glb import read_glb
+from diorama_core.scene.light_settings import LightSettings
 from diorama_core.scene.types import RoomLight, Scene
 from tests.export.validators import gltf_findings, needs_gltf_validator
 from tests.primitives import PrimitiveLibrary, furnished_room
@@ -44,3 +45,11 @@ def test_the_khronos_validator_finds_nothing(tmp_path) -> None:
     path = tmp_path / "scene.glb"
     write_gathered(gather(lit(), LIBRARY), path)
     assert gltf_findings(path) == []
+
+
+def test_the_sun_takes_its_place_by_day_and_there_is_none_at_night() -> None:
+    noon = main_light_of(replace(lit(), light_settings=LightSettings(12.0, np.pi / 2)))
+    assert noon is not None
+    np.testing.assert_allclose(noon.T_world[:3, 2], [0.0, -np.sqrt(0.5), np.sqrt(0.5)], atol=1e-9)
+    assert 50_000 < noon.lux < SUN_LUX
+    assert main_light_of(replace(lit(), light_settings=LightSettings(23.0))) is None

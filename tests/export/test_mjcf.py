@@ -11,13 +11,13 @@ import pytest
 
 from diorama_core.export.bodies import hull_volume
 from diorama_core.export.colliders import physical_scene
-from diorama_core.export.gathering import gather
-from diorama_core.export.mjcf import write_mjcf
+from diorama_core.export.gathering import ExportOptions, gather
+from diorama_core.export.mjcf import mjcf_text, write_mjcf
 from diorama_core.export.overlaps import cut
 from diorama_core.export.stability import stability
 from diorama_core.layout.problem.parts import parts_of_shape
 from diorama_core.scene.types import box_corners
-from tests.export.scenes import gathered, scene_of
+from tests.export.scenes import desk_in_dresser, gathered, scene_of
 
 mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed (optional extra 'sim')")
 
@@ -91,3 +91,33 @@ def test_a_cut_leaves_the_part_on_one_side() -> None:
     assert hull_volume(rest) == pytest.approx(0.8)
     assert rest[:, 2].min() == pytest.approx(-0.3)
     assert cut(cube, np.array([0.0, 0.0, 1.0]), 0.2, 0.4) is None
+
+
+def test_what_overlaps_deeply_is_not_shot_out_by_its_drawers() -> None:
+    """The pair does not collide, and neither do the moving parts of either with the other."""
+    overlapping = desk_in_dresser()
+    pair = ("desk_1", "dresser_1")
+    physical = physical_scene(overlapping)
+    assert pair in physical.without_contact
+    moving = {b.node.id: len(b.moving) for b in physical.bodies}
+    named = physical.loose_pairs(lambda body, limb: f"{body.node.id} {limb}")
+    with_dresser = [p for p in named if "desk" in p[0] and "dresser" in p[1]]
+    assert len(with_dresser) == (1 + moving["desk_1"]) * (1 + moving["dresser_1"]) > 6
+    assert not {d.object_id for d in stability(overlapping).unstable} & set(pair)
+
+
+def test_the_leaves_of_two_doors_in_one_place_stay_closed() -> None:
+    """Doors are welded to their walls, but their leaves move: they must not push each other open."""
+    scene, library = scene_of("fittings")
+    door = scene.object("door_1")
+    aside = replace(door.pose, position=door.pose.position + np.array([0.05, 0.02, 0.0]))
+    twin, held = replace(door, id="door_2", pose=aside), replace(scene.support_of("door_1"), child="door_2")
+    both = replace(scene, objects=(*scene.objects, twin), supports=(*scene.supports, held))
+    doubled = gather(both, library, options=ExportOptions(joints=True))
+    physical = physical_scene(doubled)
+    assert ("door_1", "door_2") in physical.without_contact
+    model = mujoco.MjModel.from_xml_string(mjcf_text(doubled, physical))
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data, 500)
+    for name in ("door_1__door", "door_2__door"):
+        assert abs(data.qpos[model.joint(name).qposadr[0]]) < 0.02

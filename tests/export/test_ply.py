@@ -40,17 +40,38 @@ def test_triangle_count_is_the_scenes(tmp_path) -> None:
     assert len(mesh.faces) == sum(m.triangles for m in plain) + extra
 
 
+def flat(width_m: float, depth_m: float, picture: np.ndarray, repeats: float = 1.0) -> Surface:
+    corners = np.array([[0, 0, 0], [width_m, 0, 0], [width_m, depth_m, 0], [0, depth_m, 0]], np.float32)
+    up = np.tile(np.array([0, 0, 1], np.float32), (4, 1))
+    faces = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
+    uv = repeats * corners[:, :2] / np.array([width_m, depth_m], np.float32)
+    return Surface(corners, up, faces, Material(colour=(1.0, 1.0, 1.0), texture=picture), uv=uv)
+
+
+def half_dark() -> np.ndarray:
+    picture = np.full((4, 4, 3), 220, np.uint8)
+    picture[:, :2] = 30
+    return picture
+
+
 def test_cutting_keeps_the_area_and_is_bounded() -> None:
-    corners = np.array([[0, 0, 0], [40, 0, 0], [40, 30, 0], [0, 30, 0]], np.float32)
-    picture = np.full((4, 4, 3), 128, np.uint8)
-    quad = Surface(
-        corners,
-        np.tile(np.array([0, 0, 1], np.float32), (4, 1)),
-        np.array([[0, 1, 2], [0, 2, 3]], np.int32),
-        Material(texture=picture),
-        uv=corners[:, :2] / np.array([40, 30], np.float32),
-    )
+    quad = flat(40, 30, half_dark())
     cut = finely_cut(quad)
     assert len(quad.faces) < len(cut.faces) <= 4 * MAX_PIECES
     assert cut.area_m2 == pytest.approx(1200.0, rel=1e-4)
     assert (vertex_colours(cut)[:, 3] == 255).all()
+
+
+def test_what_a_picture_shows_is_seen_where_it_is() -> None:
+    cut = finely_cut(flat(1.0, 1.0, half_dark()))
+    red = vertex_colours(cut)[:, 0]
+    assert (red[cut.vertices[:, 0] < 0.45] == 30).all()
+    assert (red[cut.vertices[:, 0] > 0.55] == 220).all()
+
+
+def test_grain_is_averaged_and_costs_no_triangles() -> None:
+    grain = np.where(np.indices((64, 64)).sum(axis=0)[..., None] % 2, 200, 100).astype(np.uint8).repeat(3, axis=2)
+    quad = flat(1.0, 1.0, grain)
+    assert finely_cut(quad) is quad
+    assert np.ptp(vertex_colours(quad)[:, :3]) == 0
+    assert vertex_colours(quad)[0, 0] == pytest.approx(150, abs=1)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import struct
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,9 +16,10 @@ pytest.importorskip("pxr", reason="usd-core is not installed (optional extra 'us
 from pxr import Sdf, Usd, UsdGeom, UsdLux, UsdPhysics, UsdShade
 
 from diorama_core.export.colliders import physical_scene
+from diorama_core.export.gathering import gather
 from diorama_core.export.usd import write_usda, write_usdc, write_usdz
 from diorama_core.scene.schema import scene_from_json
-from tests.export.scenes import SOURCES, gathered
+from tests.export.scenes import SOURCES, desk_in_dresser, gathered, scene_of
 from tests.export.validators import usd_findings
 
 WRITERS = {"usda": write_usda, "usdc": write_usdc, "usdz": write_usdz}
@@ -90,8 +92,13 @@ def test_the_package_is_aligned_stored_and_starts_with_its_layer(tmp_path: Path)
     assert UsdGeom.GetStageUpAxis(Usd.Stage.Open(str(tmp_path / "room.usdz"))) == "Y"
 
 
-def test_shapes_are_instances_of_shared_prototypes(example: Usd.Stage) -> None:
-    chairs = [example.GetPrimAtPath(f"/Scene/Objects/chair_{k}/Shape") for k in (1, 2, 3)]
+def test_shapes_are_instances_of_shared_prototypes(example: Usd.Stage, tmp_path: Path) -> None:
+    """Chairs of one shape share one, where the photo's materials do not tell them apart."""
+    scene, library = scene_of("example")
+    plain = replace(scene, objects=tuple(replace(o, colour=None, material_source="library") for o in scene.objects))
+    write_usda(gather(plain, library), tmp_path / "room.usda")
+    stage = Usd.Stage.Open(str(tmp_path / "room.usda"))
+    chairs = [stage.GetPrimAtPath(f"/Scene/Objects/chair_{k}/Shape") for k in (1, 2, 3)]
     assert all(c.IsInstance() for c in chairs)
     assert len({str(c.GetPrototype().GetPath()) for c in chairs}) == 1
     for prim in Usd.PrimRange.Stage(example, Usd.TraverseInstanceProxies()):
@@ -114,7 +121,7 @@ def test_bodies_masses_and_lights_are_those_of_the_scene(example: Usd.Stage) -> 
     physical = physical_scene(gathered("example"))
     for body in physical.bodies:
         prim = example.GetPrimAtPath(f"/Scene/Objects/{body.node.slug}")
-        assert prim.HasAPI(UsdPhysics.RigidBodyAPI) == body.free
+        assert prim.HasAPI(UsdPhysics.RigidBodyAPI) == (body.free or body.carrier is not None)
         if body.free:
             assert UsdPhysics.MassAPI(prim).GetMassAttr().Get() == pytest.approx(body.mass_kg, rel=1e-5)
         colliders = [c for c in Usd.PrimRange(prim) if c.HasAPI(UsdPhysics.CollisionAPI)]
@@ -140,6 +147,19 @@ def test_joints_have_limits_and_validate(suffix: str, tmp_path: Path) -> None:
     assert drawer.HasAPI(UsdPhysics.RigidBodyAPI)
     dresser = stage.GetPrimAtPath("/Scene/Objects/dresser_1")
     assert not np.allclose(_world_points(drawer).max(axis=0), _world_points(dresser).max(axis=0))
+
+
+def test_what_overlaps_deeply_does_not_collide_nor_do_its_moving_parts(tmp_path: Path) -> None:
+    write_usdc(desk_in_dresser(), tmp_path / "room.usdc")
+    stage = Usd.Stage.Open(str(tmp_path / "room.usdc"))
+    loose = {
+        (prim.GetName(), path.name)
+        for prim in stage.Traverse()
+        if prim.HasAPI(UsdPhysics.FilteredPairsAPI)
+        for path in UsdPhysics.FilteredPairsAPI(prim).GetFilteredPairsRel().GetTargets()
+    }
+    assert {("desk_1", "dresser_1"), ("desk_1", "dresser_1__drawer_1"), ("desk_1__drawer_1", "dresser_1")} <= loose
+    assert usd_findings(tmp_path / "room.usdc") == []
 
 
 def test_the_scene_comes_along(example: Usd.Stage) -> None:

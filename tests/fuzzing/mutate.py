@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import zipfile
 from collections.abc import Callable
 from typing import Any
@@ -148,3 +149,21 @@ def strange_glb(data: bytes, random: Random) -> bytes:
         + document
         + rest
     )
+
+
+NUMBERS = (b"-1", b"0", b"1e308", b"-1e308", b"5e-324", b"nan", b"inf", b"9223372036854775807", b"1e9", b"0.000001")
+WORDS = (b'""', b'"\\ud800"', b'"' + b"x" * 5000 + b'"', b"@../../outside.usda@", b"None", b"[]", b"</Scene>")
+
+
+def strange_usd(data: bytes, random: Random) -> bytes:
+    """USD that is damaged, or text of it with other numbers and words in it."""
+    if random.integers(0, 3) == 0 or data[:5] != b"#usda":
+        return damaged(data, random)
+    for _ in range(int(random.integers(1, 4))):
+        number = bool(random.integers(0, 2))
+        found = list(re.finditer(rb"-?\d+(?:\.\d+)?(?:e-?\d+)?" if number else rb'"[^"\n]*"|@[^@\n]*@|<[^>\n]*>', data))
+        if found:
+            place = found[int(random.integers(0, len(found)))]
+            choices = NUMBERS if number else WORDS
+            data = data[: place.start()] + choices[int(random.integers(0, len(choices)))] + data[place.end() :]
+    return data

@@ -18,17 +18,20 @@ from diorama_core.artefacts import Inputs
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.library.ingest.limits import Limits
 from diorama_core.perception import exr
-from diorama_core.perception.inputs import read_inputs
 from diorama_core.pipeline import codec
 from diorama_core.project.storage import Project
 from diorama_core.scene.schema import scene_from_json, scene_to_json
 from tests.app.small_room import PlainLibrary, furnished_scene, make_project, plain_photo
-from tests.fuzzing.mutate import Mutate, damaged, strange_glb, strange_json, strange_zip
+from tests.fuzzing import scene_files as files
+from tests.fuzzing.mutate import Mutate, damaged, strange_glb, strange_json, strange_usd, strange_zip
+from tests.fuzzing.photo_readers import as_photo, with_boxes, with_depth, with_masks
 
 CORPUS = Path(__file__).parent / "corpus"
 """Small files that once broke a reader; a case is named after its parser."""
 
 limited = LimitedProcess(seconds=20.0)
+roomy = LimitedProcess(memory=4_000_000_000, seconds=60.0)
+"""As the editor opens scenes: OpenUSD alone reserves more than a picture needs."""
 
 
 @dataclass(frozen=True)
@@ -101,30 +104,21 @@ def _stage(data: bytes) -> object:
     return codec.load(data, Inputs)
 
 
-@cache
-def _photo_bytes() -> bytes:
-    return _picture("PNG")
-
-
-def _with_depth(data: bytes) -> object:
-    return read_inputs(_photo_bytes(), name="p.png", depth=data)
-
-
-def _with_boxes(data: bytes) -> object:
-    return read_inputs(_photo_bytes(), name="p.png", boxes=data)
-
-
-def _with_masks(data: bytes) -> object:
-    return read_inputs(_photo_bytes(), name="p.png", masks=data)
-
-
-def _as_photo(data: bytes) -> object:
-    return read_inputs(data, name="photo.jpg")
-
-
 def _inside(read: Callable[[bytes], object]) -> Callable[[bytes], object]:
     """In the decoding process, so that a crash is a line there too."""
     return lambda data: limited.call("the file", read, data)
+
+
+def _in_process(read: Callable[[bytes], object]) -> Callable[[bytes], object]:
+    """As `_inside`, for readers whose own leaks are told apart from the process's lines."""
+
+    def through(data: bytes) -> object:
+        value = roomy.call("the file", read, data)
+        if isinstance(value, files.Leaked):
+            raise RuntimeError(f"{value.what}\n{value.where}")
+        return value
+
+    return through
 
 
 @cache
@@ -279,11 +273,11 @@ def _metadata(data: bytes) -> object:
 
 
 PARSERS: dict[str, Parser] = {
-    "photo": Parser(_photos, _inside(_as_photo), damaged),
-    "depth": Parser(_depths, _inside(_with_depth), damaged),
+    "photo": Parser(_photos, _inside(as_photo), damaged),
+    "depth": Parser(_depths, _inside(with_depth), damaged),
     "exr": Parser(_exrs, exr.read_depth_channel, damaged),
-    "masks": Parser(_masks, _inside(_with_masks), damaged),
-    "boxes": Parser(_boxes, _with_boxes, strange_json),
+    "masks": Parser(_masks, _inside(with_masks), damaged),
+    "boxes": Parser(_boxes, with_boxes, strange_json),
     "scene": Parser(_scenes, _used_scene, strange_json),
     "stage": Parser(_stages, _stage, strange_zip),
     "project": Parser(_infos, _as_info, strange_json),
@@ -300,4 +294,14 @@ PARSERS: dict[str, Parser] = {
     "cached": Parser(_archives, _cached, strange_zip),
     "record": Parser(_records, _record, strange_json),
     "metadata": Parser(lambda: (b'[{"id": "a", "category": "chair", "size": [1, 2.5]}]',), _metadata, strange_json),
+    "nerfstudio": Parser(files.nerfstudio_samples, files.read_nerfstudio, strange_json),
+    "colmap": Parser(lambda: files.colmap_samples(".txt"), files.colmap_reader(".txt"), files.one_damaged),
+    "colmapbin": Parser(lambda: files.colmap_samples(".bin"), files.colmap_reader(".bin"), files.one_damaged),
+    "arkit": Parser(files.arkit_samples, files.read_arkit, strange_json),
+    "roomplan": Parser(files.roomplan_samples, files.read_roomplan, strange_json),
+    "camera": Parser(files.side_camera_samples, files.read_side_camera, strange_json),
+    "marked": Parser(files.marked_samples, files.read_marked, strange_glb),
+    "usd": Parser(files.usd_samples, _in_process(files.read_usd), strange_usd),
+    "home": Parser(files.home_samples, files.read_home, strange_zip),
+    "edits": Parser(files.edit_samples, files.read_edits, strange_json),
 }

@@ -43,7 +43,7 @@ def test_pictures_of_planes_come_back_too(tmp_path: Path) -> None:
     export_scene(scene, library, tmp_path / "room.glb", "glb", textures=textures)
     opened = read_scene(tmp_path / "room.glb", frozenset(s.id for s in library.shapes()), Progress())
     assert opened.scene == scene
-    assert opened.textures.keys() == textures.keys()
+    assert textures.keys() <= opened.textures.keys()
 
 
 def test_a_cancel_before_it_begins_reads_nothing(room: Path) -> None:

@@ -74,6 +74,75 @@ def test_foreign_and_broken_files(tmp_path) -> None:
     assert read_marked_usd(tmp_path / "foreign.usda") is None
     (tmp_path / "broken.usda").write_text("no usd")
     with pytest.raises(
-        InputError, match=r"^broken\.usda cannot be read as USD \(Failed to open layer\); export it again$"
+        InputError, match=r"^broken\.usda cannot be read as USD \(<broken\.usda> is not a valid usda layer\); export it"
     ):
         read_marked_usd(tmp_path / "broken.usda")
+
+
+def test_layers_are_read_beside_the_file_only(tmp_path) -> None:
+    from pxr import Sdf
+
+    folder = tmp_path / "received"
+    folder.mkdir()
+    for place in (tmp_path / "secret.usda", folder / "chair.usda"):
+        Sdf.Layer.CreateNew(str(place)).Save()
+    layer = Sdf.Layer.CreateNew(str(folder / "room.usda"))
+    layer.subLayerPaths = ["./chair.usda", "./missing.usda"]
+    layer.Save()
+    assert read_marked_usd(folder / "room.usda") is None
+    layer.subLayerPaths = ["../secret.usda"]
+    layer.Save()
+    with pytest.raises(InputError, match=r"^room\.usda refers to a file outside its folder \(\.\./secret\.usda\)"):
+        read_marked_usd(folder / "room.usda")
+
+
+def test_values_that_make_no_sense_are_one_line(tmp_path) -> None:
+    from pxr import Usd, UsdGeom
+
+    from diorama_core.importing.parts import parts_of_usd
+
+    for number, (points, corners) in enumerate(
+        [
+            ([(0, 0, 0), (1, 0, 0), (0, 1, float("inf"))], [0, 1, 2]),
+            ([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [0, 1, 7]),
+            ([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [0, 1]),
+        ]
+    ):
+        path = tmp_path / f"{number}.usda"
+        stage = Usd.Stage.CreateNew(str(path))
+        mesh = UsdGeom.Mesh.Define(stage, "/chair")
+        mesh.CreatePointsAttr(points)
+        mesh.CreateFaceVertexCountsAttr([3])
+        mesh.CreateFaceVertexIndicesAttr(corners)
+        stage.Save()
+        with pytest.raises(InputError, match=rf"^{number}\.usda: something in it makes no sense"):
+            parts_of_usd(path)
+
+
+def test_polygons_become_fans() -> None:
+    from diorama_core.importing.parts import _fans
+
+    found = _fans(np.array([3, 5, 2, 4]), np.arange(14))
+    assert found.tolist() == [[0, 1, 2], [3, 4, 5], [3, 5, 6], [3, 6, 7], [10, 11, 12], [10, 12, 13]]
+
+
+def test_copies_of_copies_are_counted_before_they_fill_the_memory(tmp_path) -> None:
+    """A small file whose instances hold instances: ten to the seventh meshes."""
+    from pxr import Usd, UsdGeom
+
+    from diorama_core.importing.parts import parts_of_usd
+
+    path = tmp_path / "bomb.usda"
+    stage = Usd.Stage.CreateNew(str(path))
+    mesh = UsdGeom.Mesh.Define(stage, "/Level0/mesh")
+    mesh.CreatePointsAttr([(0, 0, 0), (1, 0, 0), (0, 1, 0)])
+    mesh.CreateFaceVertexCountsAttr([3] * 20_000)
+    mesh.CreateFaceVertexIndicesAttr([0, 1, 2] * 20_000)
+    for level in range(1, 8):
+        for copy in range(10):
+            prim = UsdGeom.Xform.Define(stage, f"/Level{level}/copy{copy}").GetPrim()
+            prim.GetReferences().AddInternalReference(f"/Level{level - 1}")
+            prim.SetInstanceable(True)
+    stage.Save()
+    with pytest.raises(InputError, match="has more than"):
+        parts_of_usd(path)

@@ -57,7 +57,7 @@ def test_a_key_is_made_once_by_many_threads() -> None:
 
         def make() -> int:
             made.append(key)
-            time.sleep(0.02)
+            time.sleep(0.02)  # the others ask meanwhile
             return number % 4
 
         start.wait()
@@ -93,7 +93,7 @@ def test_who_waited_for_a_failure_tries_again() -> None:
 
     def make() -> int:
         attempts.append(1)
-        time.sleep(0.01)
+        time.sleep(0.01)  # as above
         if len(attempts) == 1:
             raise OSError("the first attempt fails")
         return 7

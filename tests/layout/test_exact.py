@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import importlib
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -65,3 +66,12 @@ def test_without_mujoco_the_reason_is_said(room: Room, monkeypatch: pytest.Monke
 def test_shares() -> None:
     assert stable_share({}) == 1.0
     assert stable_share({"a": (0.0, 0.0), "b": (0.5, 0.0), "c": (0.0, 1.0), "d": (0.009, np.deg2rad(1.9))}) == 0.5
+
+
+def test_a_rug_does_not_lift_what_stands_over_its_edge(room: Room) -> None:
+    table = room.put("table_0", (0.0, 0.0, 0.37))
+    room.put("box_24", (0.0, 0.0, 0.025), scale=(8.0, 8.0, 0.05 / 0.3), id="rug")
+    scene = room.scene()
+    objects = tuple(replace(o, category="rug") if o.id == "rug" else o for o in scene.objects)
+    assert drift(scene, room.library, seconds=1.0)[table][0] > 0.002
+    assert drift(replace(scene, objects=objects), room.library, seconds=1.0)[table][0] < 0.002

@@ -106,3 +106,12 @@ def test_a_door_far_from_its_wall_stands_on_the_floor(room: Room) -> None:
     room.objects[0] = replace(room.objects[0], category="door")
     checked, _ = checked_supports(room.scene(camera=looking_north()), LIBRARY, MEASURED)
     assert checked.support_of(door).parent == "floor"
+
+
+def test_what_is_seen_beside_its_wall_hangs_on_the_wall_in_sight(room: Room) -> None:
+    picture = room.put("picture_13", (3.4, 2.3, 1.5), on="wall_2", relation="mounted on", yaw=-np.pi / 2)
+    scene = room.scene(camera=looking_north())
+    checked, reasons = checked_supports(scene, LIBRARY, REASONED)
+    (wall,) = (w.id for w in scene.architecture.by_role("wall") if w.normal[0] < -0.9)
+    assert checked.support_of(picture).parent == wall
+    assert "another wall" in reasons[0]

@@ -26,6 +26,7 @@ def form(shape_id: str, stretch=(1.0, 1.0, 1.0)):
         ("table-oval-walnut", "oval", "four legs"),
         ("coffee-table-round-drum", "round", "plinth"),
         ("coffee-table-oak-shelf", "rectangular", "four legs"),
+        ("coffee-table-tray-linen", "rectangular", "plinth"),
     ],
 )
 def test_tops_and_bases_of_tables(shape_id, top, base) -> None:
@@ -44,6 +45,11 @@ def test_a_round_table_stretched_is_oval() -> None:
 )  # fmt: skip
 def test_arms(shape_id, arms) -> None:
     assert form(shape_id)["arms"] == arms
+
+
+@pytest.mark.parametrize("shape_id", ["chair-tub-pedestal-blush", "chair-shell-tulip-white"])
+def test_dining_chairs_on_pedestals(shape_id) -> None:
+    assert form(shape_id)["base"] == "pedestal"
 
 
 def test_an_office_chair_stands_on_a_star() -> None:

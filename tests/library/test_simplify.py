@@ -39,6 +39,18 @@ def test_a_bed_keeps_its_size_materials_and_pictures(library: BuiltInLibrary) ->
         assert mesh.visual.material.baseColorTexture is not None
 
 
+def test_thin_rods_of_metal_beds_stay(library: BuiltInLibrary) -> None:
+    """Every part keeps most of its surface, at the fewest triangles that a crowded room leaves a bed."""
+    beds = [s.id for s in library.in_category("bed") if "metal" in s.caption or "iron" in s.caption]
+    assert beds, "the library has beds with frames of metal"
+    for shape in beds:
+        heavy = library.glb(shape)
+        before, after = scene_of(heavy), scene_of(simplified_glb(heavy, 400))
+        assert set(before.geometry) == set(after.geometry)
+        for name, part in after.geometry.items():
+            assert part.area > 0.75 * before.geometry[name].area, f"{shape}: {name}"
+
+
 def test_what_is_light_enough_stays_as_it_is(library: BuiltInLibrary) -> None:
     light = library.glb("bed-channel-green")
     assert simplified_glb(light, 50_000) is light

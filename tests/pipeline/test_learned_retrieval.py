@@ -11,7 +11,7 @@ from diorama_core.models.store import ModelStore
 from diorama_core.pipeline.learned_retrieval import with_joint_retrieval
 from diorama_core.pipeline.presets import stages_for
 from diorama_core.pipeline.stages import Stages
-from diorama_core.retrieval import HierarchicalRetrieval
+from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
 from diorama_core.retrieval.joint import JointSimilarity
 from tests.primitives import PrimitiveLibrary
 

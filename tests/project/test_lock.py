@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -12,6 +11,7 @@ import pytest
 from diorama_core.errors import ProjectError
 from diorama_core.project.lock import ProjectLock, ProjectLockedError
 from diorama_core.project.storage import Project
+from tests.waiting import until
 
 TAKE = """
 import sys, time
@@ -32,6 +32,14 @@ def test_the_second_is_told_who_has_it(tmp_path: Path) -> None:
     ProjectLock(folder).release()
 
 
+def can_be_locked(folder: Path) -> bool:
+    try:
+        ProjectLock(folder).release()
+    except ProjectLockedError:
+        return False
+    return True
+
+
 def test_a_lock_ends_with_the_program_that_has_it(tmp_path: Path) -> None:
     folder = Project.create(tmp_path / "room").folder
     other = subprocess.Popen([sys.executable, "-c", TAKE, str(folder)], stdout=subprocess.PIPE, text=True)
@@ -45,14 +53,7 @@ def test_a_lock_ends_with_the_program_that_has_it(tmp_path: Path) -> None:
         other.wait()
         assert other.stdout is not None
         other.stdout.close()
-    deadline = time.monotonic() + 10.0
-    while True:
-        try:
-            ProjectLock(folder).release()
-            return
-        except ProjectLockedError:
-            assert time.monotonic() < deadline
-            time.sleep(0.05)
+    until(lambda: can_be_locked(folder), "the lock ends with its holder")
 
 
 def test_who_has_it_may_say_anything_of_itself(tmp_path: Path) -> None:

@@ -13,9 +13,9 @@ from diorama_core.models.clip import DuoduoClip, OpenClip
 from diorama_core.models.runtime import SessionPool
 from diorama_core.progress import Progress
 from diorama_core.render.views import StudioView, render_shape
-from diorama_core.retrieval import HierarchicalRetrieval
 from diorama_core.retrieval.appearance_similarity import NEUTRAL, EmbeddedSimilarity, ObjectCrop
 from diorama_core.retrieval.feature_cache import cached_features
+from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
 from diorama_core.retrieval.joint import ClipEmbedding, JointSimilarity
 from tests.models import tiny_networks
 from tests.pose.rooms import LIBRARY, Room, camera_at, standing

@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from diorama_core.progress import Progress
-from diorama_core.retrieval import HierarchicalRetrieval
-from diorama_core.retrieval.hierarchical import _best
+from diorama_core.retrieval.hierarchical import HierarchicalRetrieval, _best
 from tests.pose.rooms import LIBRARY, Room, camera_at, random_room, standing
 
 STAGE = HierarchicalRetrieval(LIBRARY)

@@ -19,7 +19,7 @@ from diorama_core.library.record import Shape
 from diorama_core.perception.inputs import read_inputs
 from diorama_core.pipeline.stages import embedded_stages
 from diorama_core.progress import Progress
-from diorama_core.retrieval import HierarchicalRetrieval
+from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
 from diorama_core.synthesis.splits import Subset
 
 ROOT = Path(__file__).resolve().parents[2]

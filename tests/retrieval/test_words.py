@@ -10,7 +10,7 @@ import pytest
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import Shape
 from diorama_core.progress import Progress
-from diorama_core.retrieval import HierarchicalRetrieval
+from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
 from diorama_core.retrieval.words import described_share
 from tests.pose.rooms import BlockLibrary, Room, camera_at, standing
 

@@ -17,6 +17,7 @@ from diorama_core.scene.types import (
     Scene,
     SceneObject,
     Support,
+    SurfaceFinish,
 )
 
 numbers = st.floats(-5, 5, allow_nan=False)
@@ -88,7 +89,14 @@ def photo_materials() -> st.SearchStrategy[PhotoMaterial]:
     )
 
 
-FLOOR = Plane("floor", "floor", np.array([[-2.0, 0, 0], [2, 0, 0], [2, 4, 0], [-2, 4, 0]]))
+FLOOR = Plane(
+    "floor",
+    "floor",
+    np.array([[-2.0, 0, 0], [2, 0, 0], [2, 4, 0], [-2, 4, 0]]),
+    finish=SurfaceFinish("boards", (0.7, 0.5, 0.3), 1.5, 0.3),
+    photo_colour=(0.4, 0.4, 0.4),
+    photo_texture="floor",
+)
 WALL = Plane("wall_1", "wall", np.array([[-2.0, 4, 0], [2, 4, 0], [2, 4, 2.5], [-2, 4, 2.5]]))
 CAMERA = Camera(
     Intrinsics(640, 480, 520.5, 521.25, 320.0, 240.0),

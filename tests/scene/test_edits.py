@@ -126,3 +126,13 @@ def test_a_duplicate_has_its_own_id_and_the_same_supporter() -> None:
 def test_absurd_sizes_are_refused() -> None:
     with pytest.raises(EditRefused, match="keep every side between"):
         edits.move(_stack(), "cup_1", Pose.upright((0, 0, 0), scale=(1e6, 1, 1)))
+
+
+def test_a_door_stands_open_by_a_share() -> None:
+    door = SceneObject("door_1", "door", "door", "d", (0.1, 0.9, 2.0), Pose.upright((0.0, 0.0, 1.0)))
+    before = Scene(objects=(door,))
+    scene = edits.set_open(before, "door_1", 0.4)
+    assert scene.objects[0].open_share == 0.4
+    for wrong in (-0.1, 1.5, float("nan")):
+        with pytest.raises(EditRefused, match="100 %"):
+            edits.set_open(before, "door_1", wrong)

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from diorama_core.errors import EditRefused
 from diorama_core.scene import edits
-from diorama_core.scene.types import Architecture, Plane, Pose, Scene, SceneObject, Support
+from diorama_core.scene.room_edits import set_surface_finish
+from diorama_core.scene.types import Architecture, Plane, Pose, Scene, SceneObject, Support, SurfaceFinish
 from tests.synthetic_rooms import box_room, look
 
 
@@ -150,8 +151,21 @@ def test_lengths_that_cannot_be_are_refused(scene, length):
         edits.rescale_by_edge(scene, "back", 0, length)
 
 
-def test_photo_texture_or_plain_material(scene):
-    shown = edits.set_plane_material(scene, "back", texture="back")
-    assert shown.plane("back").texture == "back"
-    plain = edits.set_plane_material(shown, "back", colour=(0.2, 0.3, 0.4))
-    assert (plain.plane("back").texture, plain.plane("back").colour) == (None, (0.2, 0.3, 0.4))
+def test_a_finish_is_put_on_changed_and_taken_off_again(scene) -> None:
+    before = scene.plane("floor")
+    boards = SurfaceFinish("boards", (0.7, 0.5, 0.4))
+    finished = set_surface_finish(scene, ("floor",), boards)
+    again = set_surface_finish(finished, ("floor",), replace(boards, scale=2.0))
+    assert again.plane("floor").finish.scale == 2.0
+    assert again.plane("floor").colour == boards.colour
+    assert (again.plane("floor").photo_colour, again.plane("floor").photo_texture) == (before.colour, before.texture)
+    assert set_surface_finish(again, ("floor",), None).plane("floor") == before
+    assert set_surface_finish(scene, ("floor",), None) == scene
+
+
+@pytest.mark.parametrize("scale", [0.0, -1.0, float("nan"), 1e6])
+def test_a_pattern_of_no_size_is_refused(scene, scale) -> None:
+    with pytest.raises(EditRefused, match="times as large"):
+        set_surface_finish(scene, ("floor",), SurfaceFinish("boards", (0.7, 0.5, 0.4), scale))
+    with pytest.raises(EditRefused, match="there is no plane"):
+        set_surface_finish(scene, ("roof",), None)

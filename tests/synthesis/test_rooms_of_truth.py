@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from diorama_core.errors import LibraryError
+from diorama_core.geometry.wall_line import WallLine
 from diorama_core.layout.exact import mesh_overlap_m3
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Plane
@@ -15,7 +16,7 @@ from diorama_core.synthesis import ROOM_KINDS, furnished_room, render_truth, sam
 from diorama_core.synthesis.artefacts import photo_only, true_geometry, true_objects, true_supports
 from diorama_core.synthesis.finishes import FLOORS, WALLS, finish_picture
 from diorama_core.synthesis.furnisher import WALL_GAP_M, Furnisher
-from diorama_core.synthesis.plan import Wall, footprint, quads_overlap, room_plan
+from diorama_core.synthesis.plan import footprint, quads_overlap, room_plan
 from diorama_core.synthesis.splits import split_library, split_of
 from diorama_core.synthesis.truth import Studio
 
@@ -204,5 +205,5 @@ def test_a_wall_hardly_longer_than_a_piece_takes_none(library):
     furnisher = Furnisher(room_plan(np.random.default_rng(0), (4, 5), (4, 5)), library, np.random.default_rng(0))
     item = furnisher.pick("bookshelf")
     for spare_m in (0.021, 0.0239, 0.0241):
-        wall = Wall("short", np.zeros(2), np.array([item.size_m[1] + spare_m, 0.0]))
+        wall = WallLine("short", np.zeros(2), np.array([item.size_m[1] + spare_m, 0.0]))
         assert furnisher.against_wall(item, walls=(wall,)) is None or spare_m > 2 * WALL_GAP_M

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import base64
 import io
+import json
 from collections import Counter
 
 import numpy as np
@@ -10,12 +11,20 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from PIL import Image
 
+from diorama_core.editing.relations import Relation, is_met
+from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.errors import InputError, UnavailableError
 from diorama_core.library.catalogue import built_in_library
+from diorama_core.library.taxonomy import category
+from diorama_core.perception.language.client import LmmSettings
 from diorama_core.scene.support import check_scene
 from diorama_core.text.compose import composed_room
+from diorama_core.text.customs import ESSENTIALS, HOSTS, USUAL, stands_in_for
+from diorama_core.text.finish import finished
+from diorama_core.text.language import LOOKS
 from diorama_core.text.pictures import ImageSettings, picture_of
-from diorama_core.text.prompt import understood_prompt
+from diorama_core.text.prompt import RequestedObject, RoomRequest, Wish, understood_prompt
+from diorama_core.text.scene_from_text import scene_from_text
 from tests.perception.language.stub_lmm import StubLmm, answering
 
 READINGS = {
@@ -46,10 +55,10 @@ def test_prompts_are_understood(prompt: str) -> None:
 def test_places_and_appearance_are_read() -> None:
     objects = {t.category: t for t in understood_prompt("a blue sofa, a picture above the sofa").objects}
     assert objects["sofa"].appearance == ("blue",)
-    assert (objects["picture"].place, objects["picture"].target) == ("above", "sofa")
+    assert objects["picture"].wishes == (Wish("above", ("sofa",)),)
     assert understood_prompt("an elephant beside a piano").ignored == ("elephant",)
     vase = next(t for t in understood_prompt("a table and a sideboard with a vase on it").objects if t.label == "vase")
-    assert (vase.place, vase.target) == ("on", "sideboard")
+    assert vase.wishes == (Wish("on", ("sideboard",)),)
 
 
 @given(st.text(max_size=120))
@@ -82,33 +91,99 @@ def test_lamps_stand_on_their_night_stands() -> None:
     assert all(h.startswith("night_stand") for h in holders)
 
 
-def test_a_composed_picture_carries_its_truth_and_says_so() -> None:
-    made = picture_of("a reading corner with two armchairs", built_in_library(), size=(160, 120))
-    assert made.inputs.depth_m is not None
-    assert made.inputs.instances is not None
-    assert [b.category for b in made.inputs.boxes].count("armchair") == 2
-    assert "composed from the library" in made.notes[0]
+WISHES = {
+    "two desks facing each other": ("desk", Wish("facing", each_other=True)),
+    "a desk by the window": ("desk", Wish("near", ("window",))),
+    "a bed flanked by two night stands": ("night stand", Wish("beside", ("bed",))),
+    "a coffee table between the sofa and the armchair": ("coffee table", Wish("between", ("sofa", "armchair"))),
+    "two sofas with a coffee table between them": ("coffee table", Wish("between", ("sofa",))),
+    "an armchair in the corner": ("armchair", Wish("in corner")),
+    "a table in the middle of the room": ("table", Wish("in middle")),
+    "a sofa facing a television on a tv stand": ("television", Wish("on", ("tv stand",))),
+    "a chair at the desk": ("chair", Wish("around", ("desk",))),
+    "bookshelves along the wall": ("bookshelf", Wish("against wall")),
+}
 
 
-@pytest.mark.parametrize(
-    ("prompt", "wanted"),
-    [
-        ("two armchairs and a round table", {"armchair": 2, "table": 1}),
-        (
-            "a modern home office with a wooden desk, an office chair, a bookshelf, a floor lamp and three plants",
-            {"desk": 1, "office chair": 1, "bookshelf": 1, "floor lamp": 1, "plant": 3},
-        ),
-        (
-            "a small bedroom with a double bed, two night stands, a wardrobe and a rug",
-            {"bed": 1, "night stand": 2, "wardrobe": 1, "rug": 1},
-        ),
-    ],
-    ids=["two armchairs", "home office", "bedroom"],
-)
-def test_the_picture_shows_what_was_asked_for(prompt: str, wanted: dict[str, int]) -> None:
-    made = picture_of(prompt, built_in_library(), size=(320, 240))
-    shown = Counter(b.category for b in made.inputs.boxes)
-    assert {name: shown[name] for name in wanted} == wanted, (shown, made.notes)
+@pytest.mark.parametrize("prompt", list(WISHES))
+def test_relations_are_read(prompt: str) -> None:
+    name, wish = WISHES[prompt]
+    request = understood_prompt(prompt)
+    assert request.ignored == ()
+    assert next(o for o in request.objects if o.category == name).wishes == (wish,)
+
+
+@pytest.mark.parametrize("prompt", list(WISHES))
+def test_relations_are_met_or_named(prompt: str) -> None:
+    room = composed_room(prompt, built_in_library())
+    check_scene(room.scene)
+    frame = RoomFrame.of(room.scene)
+    name, wish = WISHES[prompt]
+    if wish.kind == "between" or wish.each_other or room.notes:
+        assert not room.notes
+        return
+    item = next(o for o in room.scene.objects if o.category == name)
+    targets = tuple(o.id for o in room.scene.objects if o.category in wish.targets)[:1]
+    assert is_met(room.scene, item.id, Relation(wish.kind, targets), frame)
+
+
+def test_what_has_no_place_is_named() -> None:
+    wardrobes = (RequestedObject("wardrobe", "wardrobe", 1, (), (Wish("on", ("cup",)),)), RequestedObject("cup", "cup"))
+    room = composed_room("x", built_in_library(), request=RoomRequest("living", wardrobes))
+    assert any("wardrobe" in note for note in room.notes)
+
+
+def test_customs_name_known_categories() -> None:
+    named = {n for rows in USUAL.values() for _, names in rows for n in names}
+    named |= {*USUAL, *HOSTS, *HOSTS.values(), *(n for rows in ESSENTIALS.values() for n, _ in rows)}
+    assert all(category(n).name == n for n in named)
+    assert stands_in_for("office chair", frozenset({"stool"}))
+    assert not stands_in_for("stove", frozenset({"table"}))
+
+
+def test_rooms_of_a_kind_have_what_they_need() -> None:
+    kitchen = composed_room("a kitchen with a round table", built_in_library())
+    assert {"stove", "refrigerator", "kitchen counter"} <= {o.category for o in kitchen.scene.objects}
+    assert set(kitchen.added) == {"stove", "refrigerator", "kitchen counter"}
+
+
+def test_a_scene_from_text_is_the_composed_room_with_a_camera() -> None:
+    made = scene_from_text("two armchairs and a round table", built_in_library())
+    composed = composed_room("two armchairs and a round table", built_in_library())
+    assert finished(composed.scene, built_in_library())[0] == made.scene
+    assert made.scene.camera is not None
+    assert {p.texture for p in made.scene.architecture.planes} <= set(made.textures)
+    assert Counter(o.category for o in made.scene.objects)["armchair"] == 2
+    assert made.notes == ("the room was composed from the library by rules",)
+
+
+def test_a_language_model_lists_and_mends() -> None:
+    facing, between = {"relation": "facing", "each_other": True}, {"relation": "between", "targets": ["armchair"]}
+    listed = {
+        "room": "living",
+        "size": 1.0,
+        "objects": [
+            {"what": "armchair", "count": 2, "places": [facing]},
+            {"what": "side table", "count": 1, "places": [between]},
+        ],
+    }
+    vase = {"do": "insert", "what": "vase", "count": 1, "places": [{"relation": "on", "targets": ["side_table_1"]}]}
+    with answering(StubLmm([json.dumps(listed), json.dumps({"edits": [vase]}), json.dumps({"edits": []})])) as stub:
+        settings_ = LmmSettings(stub.address, "stub", timeout_s=5.0)
+        made = scene_from_text("a place to talk", built_in_library(), language_model=settings_)
+    counts = Counter(o.category for o in made.scene.objects)
+    assert (counts["armchair"], counts["side table"], counts["vase"]) == (2, 1, 1)
+    assert any(note.startswith("mended by stub") for note in made.notes)
+    assert len(stub.requests) == 1 + LOOKS
+
+
+@pytest.mark.parametrize("answer", ["nonsense", 500, json.dumps({"room": "moon", "objects": []})])
+def test_bad_replies_leave_the_room_to_the_grammar(answer: str | int) -> None:
+    with answering(StubLmm([answer])) as stub:
+        settings_ = LmmSettings(stub.address, "stub", timeout_s=5.0, re_asks=0)
+        made = scene_from_text("a sofa", built_in_library(), language_model=settings_)
+    assert any(o.category == "sofa" for o in made.scene.objects)
+    assert any("was not used" in note for note in made.notes)
 
 
 def test_armchairs_gather_around_a_table() -> None:
@@ -129,7 +204,7 @@ def _png() -> str:
 
 def test_an_image_endpoint_makes_the_picture() -> None:
     with answering(StubLmm(["yes"], picture=_png())) as stub:
-        made = picture_of("a kitchen", built_in_library(), endpoint=ImageSettings(stub.address, "painter"))
+        made = picture_of("a kitchen", ImageSettings(stub.address, "painter"))
     assert made.inputs.photo.rgb.shape == (90, 120, 3)
     assert "painter" in made.notes[0]
     assert "a kitchen" in stub.images[0]["prompt"]
@@ -141,11 +216,11 @@ def test_a_bad_image_endpoint_is_one_clear_line(case: str) -> None:
     with answering(StubLmm([400 if case == "refuses" else "yes"], picture=picture)) as stub:
         settings_ = ImageSettings(stub.address, "painter", timeout_s=5.0)
         with pytest.raises((UnavailableError, InputError)) as error:
-            picture_of("a kitchen", built_in_library(), endpoint=settings_)
+            picture_of("a kitchen", settings_)
     assert "\n" not in str(error.value)
 
 
 @pytest.mark.parametrize("prompt", ["", "   ", "x" * 3000], ids=["empty", "blank", "endless"])
 def test_unusable_prompts_are_one_clear_line(prompt: str) -> None:
     with pytest.raises(InputError):
-        picture_of(prompt, built_in_library())
+        scene_from_text(prompt, built_in_library())

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.training.augment import MIN_SIDE_PX, photographed, training_picture
-from diorama_core.training.pictures import LabelledPicture, visible_boxes
+from diorama_core.training.pictures import LabelledPicture
 
 SIZE = (96, 64)
 
@@ -20,7 +19,7 @@ def picture(seed: int) -> LabelledPicture:
     x, y = (int(v) for v in rng.integers(5, 30, 2))
     rgb[y : y + 20, x : x + 30] = 240
     box = np.array([[x, y, x + 30, y + 20]], np.float32)
-    return LabelledPicture(rgb, box, np.array([3]), np.array([600]))
+    return LabelledPicture(rgb, box, np.array([3]), np.array([600]), np.full((1, 5), -1, np.int8))
 
 
 @given(seed=st.integers(0, 10_000), mosaic=st.booleans())
@@ -40,14 +39,3 @@ def test_the_same_seed_gives_the_same_picture() -> None:
     first, again = (photographed(picture(0).rgb, np.random.default_rng(5)) for _ in range(2))
     assert np.array_equal(first, again)
     assert not np.array_equal(first, photographed(picture(0).rgb, np.random.default_rng(6)))
-
-
-@pytest.mark.parametrize(("pixels", "seen"), [(3, False), (9, True)])
-def test_what_is_hardly_seen_has_no_box(pixels: int, seen: bool) -> None:
-    ids = np.full((40, 40), -1, np.int32)
-    ids[5 : 5 + pixels, 7 : 7 + pixels] = 1
-    boxes, visible, counted = visible_boxes(ids, 3)
-    assert list(visible) == ([1] if seen else [])
-    if seen:
-        assert boxes[0].tolist() == [7, 5, 7 + pixels, 5 + pixels]
-        assert counted[0] == pixels**2

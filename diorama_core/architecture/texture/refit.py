@@ -41,14 +41,18 @@ def refitted_textures(
     made: dict[str, UInt8[np.ndarray, "_ _ 3"]] = {}
     planes = []
     for plane in after.architecture.planes:
-        name = plane.texture
+        # Below a finish is the photo's picture, which follows; the finish itself is made anew for its new rectangle.
+        name = plane.texture if plane.finish is None else plane.photo_texture
         old = before.plane(plane.id) if before.has_plane(plane.id) else None
-        if name is None or old is None or old.texture != name or name not in textures or not _resized(old, plane):
+        if name is None or old is None or name not in textures or not _resized(old, plane):
+            planes.append(plane)
+            continue
+        if name != (old.texture if old.finish is None else old.photo_texture):
             planes.append(plane)
             continue
         new = _name(name, plane)
         made[new] = refitted(textures[name], old, plane)
-        planes.append(replace(plane, texture=new))
+        planes.append(replace(plane, texture=new) if plane.finish is None else replace(plane, photo_texture=new))
     if not made:
         return after, {}
     return replace(after, architecture=replace(after.architecture, planes=tuple(planes))), made

@@ -31,7 +31,7 @@ from diorama_core.pose import RenderAndCompare
 from diorama_core.pose.correspondence.solvers import HALF_GRID, CorrespondencePose, Kind
 from diorama_core.progress import Progress
 from diorama_core.protocols import PoseStage
-from diorama_core.retrieval import HierarchicalRetrieval
+from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis.artefacts import TrueShapes
 from diorama_core.synthesis.truth import TruthView

@@ -20,7 +20,7 @@ from diorama_core.evaluation.reports.tables import Column, Row, Table, paper_row
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import broad
 from diorama_core.progress import Progress
-from diorama_core.retrieval import HierarchicalRetrieval
+from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
 from diorama_core.synthesis.artefacts import true_geometry, true_objects
 from diorama_core.synthesis.splits import split_library
 from diorama_core.synthesis.truth import TruthView

@@ -44,6 +44,8 @@ LOAD_M = 0.12
 _OUTWARD = np.array([-1.0, -1.0, 1.0, 1.0])
 _NEAREST_M = 0.1
 _STEPS = 4
+_CORNERS = 1.0
+"""Weight of a metre by which the corners of a box leave their lines of sight, against one of its outline."""
 _KEEP_PLACE = 0.1
 """Weight of staying where structure put an object, against one metre of disagreement with the picture."""
 _LOAD = 1.5
@@ -76,6 +78,10 @@ class PhotoObservations:
     """Extents at scale 1."""
     points: tuple[Float[np.ndarray, "_ 3"], ...]
     """Outline points of each shape at scale 1, object frame."""
+    corners_px: Float[np.ndarray, "n 8 2"]
+    """Where the camera saw the corners of each object's box; NaN for those behind the camera."""
+    contradicted: Bool[np.ndarray, " n"]
+    """Objects whose posed shape is not where the photo's box is."""
 
     def limited(self, scale: Float[np.ndarray, "n 3"]) -> PhotoObservations:
         """The same with nothing larger than it is now where it has been made smaller."""
@@ -103,7 +109,8 @@ class PhotoObservations:
             pinned: point of its box, in half extents, that touches supports and walls and stays put when it is resized.
             grown: what its distance and its size were multiplied by already.
         """
-        if not np.isfinite(self.bounds_px[i]).all() or np.linalg.norm(p - self.observed[i]) < MOVED_M:
+        settled = not self.contradicted[i] and np.linalg.norm(p - self.observed[i]) < MOVED_M
+        if settled or not np.isfinite(self.corners_px[i]).all():
             return p, scale
         fit = self.fit(i, R, p, scale, basis, pinned, grown)
         low, high = np.log(grown * self.least[i] / scale), np.log(grown * self.most[i] / scale)
@@ -139,6 +146,8 @@ class PhotoObservations:
             anchor=p + R @ (local * scale),
             anchor_local=local,
             arms=self.points[i] - local,
+            corner_arms=box_corners(self.size[i]) - local,
+            corners_px=self.corners_px[i],
             scale=scale,
             basis=basis,
             metres=float(self.camera.to_camera(observed)[2]) / self.camera.intrinsics.fx,
@@ -168,6 +177,10 @@ class ObjectFit:
     """The same at scale 1, object frame."""
     arms: Float[np.ndarray, "v 3"]
     """Outline points from the anchor, at scale 1."""
+    corner_arms: Float[np.ndarray, "8 3"]
+    """Corners of the box from the anchor, at scale 1."""
+    corners_px: Float[np.ndarray, "8 2"]
+    """Where the camera saw them."""
     scale: Float[np.ndarray, "3"]
     basis: Float[np.ndarray, "3 2"]
     metres: float
@@ -201,6 +214,9 @@ class ObjectFit:
         outline, pixel = np.where(counts, outline, 0.0), np.where(counts[:, None], pixel, 0.0)
         to_metres = pixel @ self.camera.T_camera_world[:3, :3] * self.metres
         J = np.column_stack([to_metres @ self.basis, (to_metres @ self.R) * arms[extreme]])
+        corners = self._corners(x)
+        if corners is None:
+            return None
 
         ray = self.observed - self.camera.position
         ray = self.depth_weight * ray / np.linalg.norm(ray)
@@ -208,8 +224,25 @@ class ObjectFit:
         distance = np.concatenate([ray @ self.basis, moved])
         clamped = self._clamped()
         held, gaps = self._held(x)
-        residual = np.concatenate([outline, [float(ray @ (self.centre(x) - self.observed))], gaps, clamped @ x])
-        return np.vstack([J, distance, held, clamped]), residual
+        along = [float(ray @ (self.centre(x) - self.observed))]
+        residual = np.concatenate([outline, corners[1], along, gaps, clamped @ x])
+        return np.vstack([J, corners[0], distance, held, clamped]), residual
+
+    def _corners(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "16 5"], Float[np.ndarray, "16"]] | None:
+        """How the corners of the box leave where they were seen, in metres at their distance."""
+        arms = self.corner_arms * (self.scale * np.exp(x[2:]))
+        seen = self.camera.to_camera(self.anchor + self.basis @ x[:2] + arms @ self.R.T)
+        if seen[:, 2].min() < _NEAREST_M:
+            return None
+        k = self.camera.intrinsics
+        sight = (self.corners_px - [k.cx, k.cy]) / [k.fx, k.fy]
+        # What is left of the corner across its observed line of sight: linear in the corner.
+        residual = seen[:, :2] - sight * seen[:, 2:]
+        pixel = np.concatenate([np.tile(np.eye(2), (8, 1, 1)), -sight[..., None]], axis=2).reshape(16, 3)
+        across = pixel @ self.camera.T_camera_world[:3, :3]
+        J = np.column_stack([across @ self.basis, (across @ self.R) * np.repeat(arms, 2, axis=0)])
+        weight = _CORNERS / np.sqrt(len(arms))
+        return weight * J, weight * residual.ravel()
 
     def _held(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "m 5"], Float[np.ndarray, " m"]]:
         """How the places of an upright object miss what was observed on them."""
@@ -245,7 +278,8 @@ def _bounded_step(J: np.ndarray, residual: np.ndarray, low: np.ndarray, high: np
 def photo_observations(problem: Problem, camera: Camera, *, depth_weight: float) -> PhotoObservations:
     """What the camera sees of the observed layout."""
     points = _outline_points(problem)
-    bounds, hidden = _pictured(problem, camera, _posed_bounds_px(problem, camera))
+    posed = _posed_bounds_px(problem, camera)
+    bounds, hidden = _pictured(problem, camera, posed)
     return PhotoObservations(
         camera=camera,
         bounds_px=bounds,
@@ -257,6 +291,8 @@ def photo_observations(problem: Problem, camera: Camera, *, depth_weight: float)
         loads=tuple(_loads(problem, i) for i in range(problem.count)),
         size=problem.shape_size,
         points=points,
+        corners_px=_corners_px(problem, camera, posed, bounds),
+        contradicted=(np.abs(posed - bounds) > 0.0).any(axis=1),
     )
 
 
@@ -290,6 +326,20 @@ def _posed_bounds_px(problem: Problem, camera: Camera) -> Float[np.ndarray, "n 4
             flat = camera.project(world)
             bounds[i] = [*flat.min(axis=0), *flat.max(axis=0)]
     return bounds
+
+
+def _corners_px(
+    problem: Problem, camera: Camera, posed: Float[np.ndarray, "n 4"], bounds: Float[np.ndarray, "n 4"]
+) -> Float[np.ndarray, "n 8 2"]:
+    """Where the corners of every box were seen: as posed, and stretched as the bounds in the picture are."""
+    found = np.full((problem.count, 8, 2), np.nan)
+    for i in np.flatnonzero(np.isfinite(posed).all(axis=1)):
+        world = problem.p[i] + box_corners(problem.shape_size[i] * problem.scale[i]) @ problem.R[i].T
+        if camera.to_camera(world)[:, 2].min() < _NEAREST_M:
+            continue
+        stretch = (bounds[i, 2:] - bounds[i, :2]) / np.maximum(posed[i, 2:] - posed[i, :2], 1.0)
+        found[i] = bounds[i, :2] + (camera.project(world) - posed[i, :2]) * stretch
+    return found
 
 
 def _pictured(

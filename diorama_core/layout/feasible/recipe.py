@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import LayoutReport, PhotoDisagreement
+from diorama_core.layout.feasible.hidden_extents import ending_before_neighbours
 from diorama_core.layout.feasible.photo_observations import PhotoObservations, disagreements, photo_observations
 from diorama_core.layout.feasible.relocate import relocate
 from diorama_core.layout.feasible.resize import fitted_sizes
@@ -25,7 +26,7 @@ from diorama_core.protocols import Preview
 from diorama_core.scene import edits
 from diorama_core.scene.types import Camera, Scene
 
-MEASURED_WEIGHT, REASONED_WEIGHT = 2.0, 0.3
+MEASURED_WEIGHT, REASONED_WEIGHT = 1.0, 0.3
 """What leaving the observed distance costs against leaving the observed outline: for a measured distance, and for one
 that was reasoned from a photo alone."""
 SHRINK = 0.9
@@ -78,6 +79,9 @@ class FeasibleRecipe:
         before = measure(problem, problem.R, problem.p, problem.scale)
         observations = self._observations(problem, scene.camera)
         wanted = problem
+        if observations is not None and not self.sizes_reasoned:  # reasoned distances overlap for other reasons
+            wanted = ending_before_neighbours(problem, observations)
+            observations = self._observations(wanted, scene.camera)
         for attempt in range(self.attempts):
             seen = None if observations is None else observations.limited(wanted.scale)
             eye = scene.camera.position if scene.camera is not None and self.sizes_reasoned else None

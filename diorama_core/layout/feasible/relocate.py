@@ -100,11 +100,11 @@ def _free_distances(
 
 
 def _pairs_around(program: Program, w: Float[np.ndarray, "b 3"], moving: np.ndarray, reach: float) -> list[PairAxes]:
-    bodies, problem = program.bodies, program.problem
+    bodies = program.bodies
     low, high = bodies.low + w, bodies.high + w
     ours = np.flatnonzero(moving[bodies.owner])
     theirs = np.flatnonzero(~moving[bodies.owner])
     near = ((low[ours, None] - reach < high[None, theirs]) & (low[None, theirs] < high[ours, None] + reach)).all(axis=2)
-    near &= ~problem.kin[bodies.owner[ours][:, None], bodies.owner[theirs][None]]
+    near &= program.may_meet[np.ix_(ours, theirs)]
     a, b = np.nonzero(near)
     return pair_axes(bodies, ours[a], theirs[b], faces_only=True)

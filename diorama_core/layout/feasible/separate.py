@@ -18,8 +18,9 @@ from diorama_core.geometry.sat import Bodies, PairAxes, pair_axes, place_bodies
 from diorama_core.layout.escape import exits, ring
 from diorama_core.layout.feasible.quadratic import HARD, SOFT, least_distance
 from diorama_core.layout.feasible.structure import Structure
+from diorama_core.layout.problem.enclosure import may_meet
 from diorama_core.layout.problem.problem import Problem
-from diorama_core.layout.problem.supports import plane_surface
+from diorama_core.layout.problem.supports import Surface, plane_surface
 
 APART_M = 5e-4
 """Separation asked for once two parts touched."""
@@ -43,6 +44,8 @@ class Program:
     problem: Problem
     structure: Structure
     bodies: Bodies
+    may_meet: Bool[np.ndarray, "b b"]
+    """Which pairs of parts must not overlap."""
     J: Float[np.ndarray, "n 3 v"]
     """World move of object i: w_i = J_i @ y."""
     own: Bool[np.ndarray, "n v"]
@@ -114,12 +117,19 @@ def build_program(
         problem,
         structure,
         bodies,
+        may_meet(problem, bodies, [_placed(structure, problem, i) for i in range(n)]),
         J,
         np.abs(own).max(axis=1, initial=0.0) > 1e-12,
         rows[alive],
         need[alive],
         np.linalg.inv(np.linalg.cholesky(cost)).T,
     )
+
+
+def _placed(structure: Structure, problem: Problem, i: int) -> Surface | None:
+    """Where an object rests, in the world."""
+    place, j = structure.surface[i], int(problem.parent[i])
+    return place if place is None or j < 0 else place.at(structure.R[j], structure.p[j], structure.scale[j])
 
 
 def _wall_rows(problem: Problem, structure: Structure, bodies: Bodies, J: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -213,7 +223,7 @@ def _owners(program: Program, pair: tuple[int, int]) -> tuple[int, int]:
 def _solve(program: Program, yielding: float) -> Float[np.ndarray, " v"]:
     owner, J = program.bodies.owner, program.J
     pairs = np.array(list(program.chosen), dtype=int).reshape(-1, 2)
-    axes = np.array([axis for axis, _ in program.chosen.values()])
+    axes = np.array([axis for axis, _ in program.chosen.values()]).reshape(-1, 3)
     gaps = np.array([gap for _, gap in program.chosen.values()])
     rows = np.einsum("mc,mcv->mv", axes, J[owner[pairs[:, 0]]] - J[owner[pairs[:, 1]]])
     compliance = np.concatenate([np.full(len(program.need), HARD), np.full(len(gaps), yielding)])
@@ -253,12 +263,14 @@ def _near_parts(program: Program, w: Float[np.ndarray, "n 3"]) -> list[tuple[int
         return []
     object_low, object_high = np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts)
     near = ((object_low[:, None] <= object_high[None]) & (object_low[None] <= object_high[:, None])).all(axis=2)
-    near &= ~problem.kin & (problem.free[:, None] | problem.free[None])
+    near &= problem.free[:, None] | problem.free[None]
+    np.fill_diagonal(near, val=False)
     ends = np.append(starts[1:], len(bodies.owner))
     found = []
     for i, j in zip(*np.nonzero(np.triu(near, 1))):
         a, b = slice(starts[i], ends[i]), slice(starts[j], ends[j])
         meet = ((low[a, None] <= high[None, b]) & (low[None, b] <= high[a, None])).all(axis=2)
+        meet &= program.may_meet[a, b]
         found += [(int(starts[i] + k), int(starts[j] + m)) for k, m in zip(*np.nonzero(meet))]
     return found
 

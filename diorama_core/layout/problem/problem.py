@@ -113,10 +113,10 @@ class Problem:
         for k in range(self.count):
             for i in self.chain(k):
                 riders[i].append(k)
-        return tuple(tuple(r) for r in riders)
+        return tuple((i, *(k for k in r if k != i)) for i, r in enumerate(riders))
 
     def rides(self, index: int) -> list[int]:
-        """The object and all objects it supports, directly or indirectly."""
+        """The object, first, and all objects it supports, directly or indirectly."""
         return list(self._riders[index])
 
     def walls_near(self, index: int) -> tuple[Plane, ...]:
@@ -170,7 +170,10 @@ def build_problem(
     floor = scene.architecture.floor
     yielding = _yielding_pairs(objects)
     firm = np.array([FIRM_SHARE if is_soft(o) else 1.0 for o in objects]).reshape(-1)
-    parts = tuple(_scaled(parts_of_shape(library, s), share) for s, share in zip(shapes, firm))
+    parts = tuple(
+        _firm_parts(parts_of_shape(library, s), share, face * np.asarray(o.shape_size_m) / 2)
+        for o, s, share, face in zip(objects, shapes, firm, contacts)
+    )
     on_plane = tuple(e.parent if e is not None and e.parent not in index else None for e in edges)
     p = np.array([o.pose.position for o in objects]).reshape(-1, 3)
     R = np.array([o.pose.R_world_object for o in objects]).reshape(-1, 3, 3)
@@ -209,8 +212,11 @@ def build_problem(
     )
 
 
-def _scaled(parts: tuple[ConvexPart, ...], share: float) -> tuple[ConvexPart, ...]:
-    return parts if share == 1.0 else tuple(replace(part, vertices=part.vertices * share) for part in parts)
+def _firm_parts(parts: tuple[ConvexPart, ...], share: float, contact: Float[np.ndarray, "3"]) -> tuple[ConvexPart, ...]:
+    """Parts reduced about the centre of their contact face: what is soft still rests on what holds it up."""
+    if share == 1.0:
+        return parts
+    return tuple(replace(part, vertices=contact + share * (part.vertices - contact)) for part in parts)
 
 
 def _free(scene: Scene, objects: Sequence[SceneObject], only: frozenset[str] | None) -> Bool[np.ndarray, " n"]:

@@ -16,7 +16,7 @@ from diorama_core.library.furniture.frames import frame, stand_up, wall_outline
 from diorama_core.library.furniture.hollow_ware import hollow
 from diorama_core.library.furniture.joints import Joint, door_hinge, drawer_slide
 from diorama_core.library.furniture.keys import keypad, keys_of, piano_keys, spread
-from diorama_core.library.furniture.legs import Leg, leg
+from diorama_core.library.furniture.legs import Leg, leg, trumpet
 from diorama_core.library.furniture.materials import Material
 from diorama_core.library.furniture.model import (
     Design,
@@ -66,7 +66,7 @@ __all__ = [  # noqa: RUF022
     "Cavity", "drop_front", "hinged_lid", "on_front",
     "Solid", "Profile", "ball", "beam", "bend", "box", "cushion", "cylinder", "lathe", "loft", "pillow", "prism",
     "ring_path", "rod", "rounded_rectangle", "shell", "slab", "smooth_profile", "superellipse", "taper", "tube", "unit",
-    "Leg", "leg", "Base", "Cell", "case", "feet", "door_front", "drawer_front", "open_case", "plinth", "pull",
+    "Leg", "leg", "trumpet", "Base", "Cell", "case", "feet", "door_front", "drawer_front", "open_case", "plinth", "pull",
     "bar_handle", "knob", "tap", "frame", "stand_up", "wall_outline", "hollow", "keypad", "keys_of",
     "piano_keys", "spread",
 ]  # fmt: skip

@@ -60,5 +60,17 @@ def leg(kind: Leg, x: float, y: float, h: float, thick: float, lean: float = 0.0
     return box((width, width, h), 0.008 if kind == "square" else 0.003).moved(x, y)
 
 
+def trumpet(h: float, foot_r: float, stem_r: float) -> Solid:
+    """A round foot that runs up into a stem, as under tulip chairs.
+
+    Args:
+        h: Its height, metres.
+        foot_r: Radius on the floor, metres.
+        stem_r: Radius under the seat, metres.
+    """
+    bell = [(foot_r, 0.0), (foot_r, 0.008), (0.8 * foot_r, 0.02), (0.4 * foot_r, 0.055), (1.15 * stem_r, 0.15)]
+    return lathe([*bell, (stem_r, 0.5 * h), (1.25 * stem_r, h)], 28)
+
+
 _CABRIOLE = [0.48, 0.52, 0.27, 0.24, 0.34]
 """Radii along a cabriole leg, as shares of its width at the head."""

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import trimesh
 
 from diorama_core.errors import LibraryError
+from diorama_core.library.boards import base_id
 from diorama_core.library.record import Shape, ShapeLibrary
 
 log = logging.getLogger(__name__)
@@ -72,7 +73,7 @@ class CombinedLibrary:
 
     def _of(self, shape_id: str) -> ShapeLibrary:
         self._refresh()
-        owner = self._owner.get(shape_id)
+        owner = self._owner.get(base_id(shape_id))
         if owner is None:
             raise LibraryError(f"no shape is called '{shape_id}' in {self!r}; list them to see the names")
         return owner

@@ -18,7 +18,7 @@ from diorama_core.protocols import DetectionStage
 from diorama_core.retrieval.kinds_together import carriers, kinds_together
 from diorama_core.retrieval.seen_kinds import as_it_looks
 
-CONFIDENT, LIKELY = 0.62, 0.45
+CONFIDENT, LIKELY = 0.55, 0.45
 """Scores from which a build uses a box unseen, and from which a person is shown one."""
 MOST = 10
 MIN_SIDE_PX = 8.0

@@ -168,6 +168,8 @@ class LmmClient:
     """Asks one model. Remembers which kind of JSON the endpoint understands."""
 
     settings: LmmSettings
+    system: str = SYSTEM
+    """What the model is told of its task beforehand."""
     _format: int = 0
 
     def ask(
@@ -189,7 +191,7 @@ class LmmClient:
             except (ValidationError, UnavailableError):
                 retained.unlink(missing_ok=True)
         messages: list[dict[str, Any]] = [
-            {"role": "system", "content": SYSTEM},
+            {"role": "system", "content": self.system},
             {"role": "user", "content": [{"type": "text", "text": prompt}, *map(_picture, pictures)]},
         ]
         usage, problem = Usage(), ""

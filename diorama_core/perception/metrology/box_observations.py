@@ -17,6 +17,8 @@ _PIXEL_SIGMA = 3.0
 _MIN_BOX_PX = 2.0
 _COVERED = 0.65
 """Share of an edge that something in front must cover to hide it."""
+_STRIP, _LOWER_END = 0.15, 0.25
+"""Width of the strips beside a box, and the part of its height along which they lie, as shares of the box."""
 _CLEARLY_LOWER = 0.03
 """How much lower, as a share of the picture, a thing's box must end to be in front."""
 
@@ -45,6 +47,8 @@ class BoxObservations:
     """Trust in that, 0 where a corner is hidden or cut."""
     mask_exact: Bool[np.ndarray, "n"]
     """Whether the mask is the user's own."""
+    before: Float[np.ndarray, "n n"]
+    """How much of both sides of object i's lower end is object j, 0 to 1: then i is on j or in front of it."""
     fill: Float[np.ndarray, "n"]
     """Share of the box that the user's own mask fills; 1 where there is only a guess."""
 
@@ -81,8 +85,22 @@ def gather(objects: tuple[DetectedObject, ...], width: int, height: int) -> BoxO
     reach = np.array([mask_reach(o, b) for o, b in zip(objects, boxes, strict=True)]).reshape(-1, 4)
     area = np.array([float(o.mask.sum()) for o in objects]) / (boxes[:, 2:] - boxes[:, :2]).prod(axis=1)
     fill = np.where(exact, np.minimum(area, 1.0), 1.0)
-    in_front = _bottom_lower(boxes, height)
-    return BoxObservations(categories, boxes, sigma, covered, in_front, truncated, reach, weight, exact, fill)
+    in_front, before = _bottom_lower(boxes, height), _before(objects, boxes)
+    return BoxObservations(categories, boxes, sigma, covered, in_front, truncated, reach, weight, exact, before, fill)
+
+
+def _before(objects: tuple[DetectedObject, ...], boxes: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n n"]:
+    """For objects i and j the share of j's mask in the strips left and right of i's lower end, the emptier side's."""
+    n, found = len(boxes), np.zeros((len(boxes), len(boxes)))
+    for i in range(n):
+        x1, y1, x2, y2 = boxes[i]
+        wide = max(_STRIP * (x2 - x1), _MIN_BOX_PX)
+        rows = slice(round(y2 - _LOWER_END * (y2 - y1)), max(round(y2), round(y2 - _LOWER_END * (y2 - y1)) + 1))
+        sides = [slice(max(round(x1 - wide), 0), round(x1)), slice(round(x2), round(x2 + wide))]
+        for j in range(n):
+            shares = [float(objects[j].mask[rows, side].mean()) for side in sides if objects[j].mask[rows, side].size]
+            found[i, j] = min(shares) if i != j and len(shares) == 2 else 0.0
+    return found
 
 
 def _proper(box: tuple[float, float, float, float], width: int, height: int) -> tuple[float, float, float, float]:

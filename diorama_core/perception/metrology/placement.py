@@ -13,7 +13,7 @@ from diorama_core.library.taxonomy import UNKNOWN, Category, with_kin
 from diorama_core.perception.metrology.arrangement import arrange, distinct
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.floor import place_on_floor, solve_all
-from diorama_core.perception.metrology.priors import SizeMode, plain_mode
+from diorama_core.perception.metrology.priors import PORTABLE, SizeMode, plain_mode
 from diorama_core.perception.metrology.problem import Cuboids, Problems, View, cuboids
 from diorama_core.perception.metrology.silhouette import corner_costs
 from diorama_core.perception.metrology.solver import Solutions, joined
@@ -44,11 +44,17 @@ _SCREENS = frozenset({"television", "monitor"})
 _SCREEN_ON_WALL_COST, _SCREEN_ON_FLOOR_COST = 3.0, 12.0
 _BESIDE_ITS_SUPPORTER_COST = 20.0
 """For a thing on the floor, or on a wall, that belongs on something its box rests in."""
+_BEFORE_COST = 10.0
+"""Of a thing on the floor that ends before another whose lower end is nearer: it would stand in the other's place."""
 _FIXED_TO_WALLS = frozenset({"door", "window", "curtain", "radiator"})
-_LARGE = _FIXED_TO_WALLS | with_kin(
-    *("sofa", "bed", "wardrobe", "table", "desk", "bathtub", "piano", "dresser", "bookshelf", "refrigerator", "rug")
-)
+_LARGE = (
+    _FIXED_TO_WALLS
+    | with_kin("sofa", "bed", "wardrobe", "table", "desk", "bathtub", "piano", "dresser", "bookshelf", "refrigerator")
+    | with_kin("rug")
+) - PORTABLE
 """Things that never stand on others."""
+_HUNG_CARRIERS = frozenset({"shelves"})
+"""What hangs on walls and carries things."""
 _SURE_COST = 12.0
 """Things on the floor that cost less than this tell how far the room reaches."""
 _CHILD_CAP = 12.0
@@ -93,21 +99,30 @@ class _Readings:
 
 
 def place_all(observations: BoxObservations, view: View, height_m: float) -> tuple[Placement, ...]:
-    """Place every object: first on the floor, then on others, on walls and below the ceiling, the cheapest way each."""
+    """Place every object: first on the floor, then on others, on walls and below the ceiling, the cheapest way each.
+
+    Shelves that hang on walls come before the things that may lie on them.
+    """
     floor = _on_floor(observations, view, height_m)
     standing = [p for p in floor.values() if _tells_the_room(p, observations)]
     doors = [i for i, category in enumerate(observations.categories) if category.name == "door"]
-    others = [i for i in range(len(observations)) if i not in doors]
+    hung = [i for i, category in enumerate(observations.categories) if category.name in _HUNG_CARRIERS]
+    others = [i for i in range(len(observations)) if i not in doors and i not in hung]
     best = dict(floor)
     best.update(_supported(observations, view, height_m, floor, _room(standing, observations), doors))
     telling = standing + [best[i] for i in doors if best[i].cost < _SURE_COST]
-    for index, challenger in _supported(
-        observations, view, height_m, floor, _room(telling, observations), others
-    ).items():
-        if index not in best or challenger.cost < best[index].cost:
-            best[index] = challenger
+    room = _room(telling, observations)
+    best = _cheaper(best, _supported(observations, view, height_m, floor, room, hung))
+    carriers = {**floor, **{i: best[i] for i in hung if i in best}}
+    best = _cheaper(best, _supported(observations, view, height_m, carriers, room, others))
     needed = {p.supporter for p in best.values() if p.supporter >= 0}
-    return tuple(floor[i] if i in needed else best[i] for i in range(len(observations)))
+    return tuple(carriers[i] if i in needed else best[i] for i in range(len(observations)))
+
+
+def _cheaper(best: Mapping[int, Placement], challengers: Mapping[int, Placement]) -> dict[int, Placement]:
+    """For every object the cheaper of both."""
+    better = {i: c for i, c in challengers.items() if i not in best or c.cost < best[i].cost}
+    return {**best, **better}
 
 
 def _on_floor(observations: BoxObservations, view: View, height_m: float) -> dict[int, Placement]:
@@ -178,7 +193,7 @@ def _supported(
     observations: BoxObservations,
     view: View,
     height_m: float,
-    floor: dict[int, Placement],
+    carriers: Mapping[int, Placement],
     room: Extent,
     indices: list[int],
 ) -> dict[int, Placement]:
@@ -186,7 +201,7 @@ def _supported(
     best: dict[int, Placement] = {}
     groups: dict[int, list[Problems]] = {}
     for index in indices:
-        for supporter, rows in _supported_rows(observations, index, floor, room, height_m):
+        for supporter, rows in _supported_rows(observations, index, carriers, room, height_m):
             groups.setdefault(supporter, []).extend(rows)
     for supporter, rows in groups.items():
         for index, readings in _readings(solve_all(rows, view), observations, view).items():
@@ -197,7 +212,7 @@ def _supported(
 
 
 def _supported_rows(
-    observations: BoxObservations, index: int, floor: dict[int, Placement], room: Extent, height_m: float
+    observations: BoxObservations, index: int, carriers: Mapping[int, Placement], room: Extent, height_m: float
 ) -> list[tuple[int, list[Problems]]]:
     """Rows for everything but the floor that may hold an object, by supporter."""
     category = observations.categories[index]
@@ -207,7 +222,7 @@ def _supported_rows(
     if np.isfinite(on_top) and category.name not in _LARGE:
         for parent in parents:
             cost = on_top + _unlikely_parent_cost(observations.categories[parent])
-            options.append((parent, place_on(observations, index, parent, floor[parent].cuboid, height_m, cost)))
+            options.append((parent, place_on(observations, index, parent, carriers[parent].cuboid, height_m, cost)))
     on_wall = _SCREEN_ON_WALL_COST if category.name in _SCREENS else _cost(category, "wall", _WALL_COST)
     if category is UNKNOWN and observations.fill[index] < _MIN_FLAT_FILL:
         on_wall += _NOT_FLAT_COST
@@ -249,13 +264,18 @@ def _averted_costs(problems: Problems, boxes: Cuboids, observations: BoxObservat
 def _floor_cost(observations: BoxObservations, index: int) -> float:
     category = observations.categories[index]
     cost = _SCREEN_ON_FLOOR_COST if category.name in _SCREENS else _cost(category, "floor", _FLOOR_COST)
-    misplaced = category.mount == "surface" and bool(_possible_parents(observations, index))
-    return cost + _BESIDE_ITS_SUPPORTER_COST if misplaced else cost
+    parents = _possible_parents(observations, index)
+    if category.mount == "surface" and parents:
+        cost += _BESIDE_ITS_SUPPORTER_COST
+    before = max(
+        (float(observations.before[index, j]) for j in parents if not observations.in_front[j, index]), default=0.0
+    )
+    return cost + _BEFORE_COST * before
 
 
 def _possible_parents(observations: BoxObservations, index: int) -> list[int]:
-    standing = [i for i, c in enumerate(observations.categories) if c.mount == "floor"]
-    return supporters_of(observations, index, standing)
+    carriers = [i for i, c in enumerate(observations.categories) if c.mount == "floor" or c.name in _HUNG_CARRIERS]
+    return supporters_of(observations, index, carriers)
 
 
 def _cost(category: Category, where: str, table: dict[str, float]) -> float:

@@ -82,7 +82,7 @@ def size_modes(name: str) -> tuple[SizeMode, ...]:
 
 SMALL_M, SMALL_SIGMA_M = 0.55, 0.12
 """Portable things lower than this are more often found on furniture than on the floor."""
-PORTABLE = with_kin("plant", "box", "basket", "speaker", "fan", "heater") - {"hanging plant", "suitcase"}
+PORTABLE = with_kin("plant", "box", "basket", "speaker", "fan", "heater", "wine rack") - {"hanging plant", "suitcase"}
 
 
 def standing_costs(name: str, mode: SizeMode) -> tuple[float, float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,7 +47,7 @@ class SingleViewMetrology:
         return ObjectGeometry(
             camera=_camera(hypothesis, scan.height_m),
             cuboids=tuple(_cuboid(o, p, observations, scan) for o, p in zip(objects, placements, strict=True)),
-            supports=tuple(_support(p, objects) for p in placements),
+            supports=supports_of(placements, objects),
             source=ScaleSource.OBJECT_SIZES if objects else ScaleSource.CAMERA_HEIGHT,
             confidence=_overall(camera, scan, len(objects)),
         )
@@ -80,6 +81,11 @@ def _cuboid(item: DetectedObject, placement: Placement, observations: BoxObserva
         size_m=size,
         confidence=confidence_of(placement, observations, scan.log_sigma),
     )
+
+
+def supports_of(placements: Sequence[Placement], objects: tuple[DetectedObject, ...]) -> tuple[Support, ...]:
+    """One support edge per object, in the order given."""
+    return tuple(_support(p, objects) for p in placements)
 
 
 def _support(placement: Placement, objects: tuple[DetectedObject, ...]) -> Support:

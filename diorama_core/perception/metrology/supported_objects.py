@@ -28,8 +28,8 @@ _TOP_SIGMA_M = 0.04
 _SEAT_SIGMA_M = 0.08
 _FOOTPRINT_SIGMA_M = 0.06
 _INNER_LEVEL_COST = 1.5
-_BACK_COST = 2.5
-"""Of lying on a backrest or headboard."""
+_BACK_COST, _ODD_ON_BACK_COST = 2.5, 10.0
+"""Of a pillow or toy that lies on a backrest or headboard, and of anything else there."""
 _ABOVE_PARENT = 0.5
 """Share of a thing's width that must lie within its supporter's box."""
 AGAINST_WALLS = with_kin(
@@ -43,8 +43,8 @@ _FLAT_M = 0.2
 _BACK_SHARE = {("bed", "pillow"): 0.45}
 """Pillows lie at the head of a bed: in this share of its depth."""
 _SEATS = frozenset({"pillow", "toy", "books", "laptop", "basket", "box"})
-_ODD_ON_SEAT_COST = 2.0
-"""Of anything else lying on a seat or a bed."""
+_ODD_ON_SEAT_COST = 6.0
+"""Of anything else lying on a seat or a bed: one in twenty."""
 _SHELVED = with_kin("bookshelf", "shelves", "tv stand", "cabinet", "desk")
 _USUAL_MIDDLE_M = {
     "picture": 1.5,
@@ -122,7 +122,7 @@ def place_on(
     soft = (
         observations.categories[parent].seat_height_m is not None and observations.categories[index].name not in _SEATS
     )
-    for base, sigma, level_cost in _levels(observations, parent, tall):
+    for base, sigma, level_cost in _levels(observations, parent, tall, soft):
         for mode in supported_modes(names[1]):
             raised = standing_costs(names[1], mode)[1] - (FLOOR_OBJECT_COST if names[1] in PORTABLE else 0.0)
             for turn in (0.0,) if mode.square else (0.0, np.pi / 2):
@@ -154,15 +154,26 @@ def _resting_place(parent_cuboid: Cuboids, back_share: float) -> Float[np.ndarra
     return np.array([*moved, yaw, depth * back_share / 2, width / 2])
 
 
-def _levels(observations: BoxObservations, parent: int, tall: float) -> list[tuple[float, float, float]]:
-    """Heights above the supporter's base at which things lie on it: (height, sigma, cost)."""
+def _levels(observations: BoxObservations, parent: int, tall: float, odd: bool) -> list[tuple[float, float, float]]:
+    """Heights above the supporter's base at which things lie on it: (height, sigma, cost).
+
+    Args:
+        observations: of all objects.
+        parent: the supporter.
+        tall: its height in metres.
+        odd: whether the thing is of a kind that seldom lies on seats.
+    """
     category = observations.categories[parent]
     top = (tall, _TOP_SIGMA_M, 0.0)
     if category.seat_height_m is not None:
         seat = min(category.seat_height_m, 0.95 * tall)
         cost = 0.0 if category.supports_objects else _SEATS_WITHOUT_SUPPORT_FLAG_COST
         leaning = (seat + 0.15, _SEAT_SIGMA_M, cost + _INNER_LEVEL_COST)
-        return [(seat, _SEAT_SIGMA_M, cost), leaning, (tall, _SEAT_SIGMA_M, cost + _BACK_COST)]
+        return [
+            (seat, _SEAT_SIGMA_M, cost),
+            leaning,
+            (tall, _SEAT_SIGMA_M, cost + (_ODD_ON_BACK_COST if odd else _BACK_COST)),
+        ]
     if category.name in _SHELVED:
         inner = [(share * tall, 0.06 * tall, _INNER_LEVEL_COST) for share in (0.15, 0.4, 0.65)]
         return [top, *inner]

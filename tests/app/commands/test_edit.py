@@ -224,7 +224,7 @@ def test_one_job_at_a_time_and_cancel_ends_it() -> None:
     def work(progress: Progress) -> None:
         while True:
             progress.report(0.5, "working")
-            time.sleep(0.005)
+            time.sleep(0.005)  # the work
 
     jobs.start("build", "Building", work)
     with pytest.raises(EditRefused, match="still running"):

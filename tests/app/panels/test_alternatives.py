@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from diorama_app.commands import edit as editing
+from diorama_app.commands.insert import insert_shape
 from diorama_app.panels.alternatives import Alternatives, shape_caption
 from tests.app.page import Page
 
@@ -29,6 +30,18 @@ def test_its_own_alternatives_swap_by_a_click(session, client, page, panel) -> N
     assert session.scene.object("chair_1").shape_id == "chair_b"
     session.undo(client)
     assert session.scene.object("chair_1").shape_id == "chair_a"
+
+
+def test_what_was_inserted_by_hand_has_alternatives_of_its_kind(session, client, page, panel) -> None:
+    insert_shape(client, "chair_a")
+    session.ui_thread.wait()
+    (inserted,) = client.selection
+    assert session.scene.object(inserted).candidates == ()
+    for shape in ("chair_b", "chair_c"):
+        assert page.shows("swap", shape)
+    assert not page.shows("swap", "table_a")
+    page.act("swap", "chair_c")
+    assert session.scene.object(inserted).shape_id == "chair_c"
 
 
 def test_words_search_the_whole_library_and_another_object_starts_anew(client, page, panel) -> None:

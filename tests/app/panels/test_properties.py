@@ -80,6 +80,14 @@ def test_the_colour_field_shows_the_colour_of_what_is_selected(session, client, 
     assert page.field("Colour").value == (205, 173, 139), "sRGB of what glTF says in linear light"
     client.select(["table_1"])
     assert page.field("Colour").value == (224, 208, 182)
+    cloth = PhotoMaterial("fabric", (0.6, 0.2, 0.4), main=True)
+    scene = session.scene
+    worn = tuple(replace(o, photo_materials=(cloth,)) if o.id == "table_1" else o for o in scene.objects)
+    session.commit("build", replace(scene, objects=worn), by=client)
+    session.ui_thread.wait()
+    assert page.field("Colour").value == (153, 51, 102), "what the photo shows of it"
+    page.act("materials", "library")
+    assert page.field("Colour").value == (224, 208, 182)
 
 
 def test_a_zero_has_no_minus(session, client, page, panel) -> None:
@@ -135,3 +143,15 @@ def test_a_refused_value_is_said_and_the_field_goes_back(session, client, page, 
     assert any("locked" in told for told in client.viser_client.told)
     assert f'value="{np.degrees(0.4):.3g}" aria-label="Direction' in page.html
     assert " · locked" in page.html
+
+
+@pytest.mark.parametrize(("category", "word"), [("laptop", "Close"), ("door", "Open")])
+def test_moving_parts_have_a_slider_that_says_what_it_does(
+    session, client, page, panel, monkeypatch: pytest.MonkeyPatch, category: str, word: str
+) -> None:
+    monkeypatch.setattr(session.shapes, "can_open", lambda shape_id: True)
+    item = replace(chair(session), category=category)
+    others = tuple(o for o in session.scene.objects if o.id != item.id)
+    session.document.open(replace(session.scene, objects=(*others, item)))
+    client.select([item.id])
+    assert f'aria-label="{word}"' in page.html

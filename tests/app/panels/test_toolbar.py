@@ -1,9 +1,11 @@
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from diorama_app.commands import edit as editing
-from diorama_app.panels.toolbar import Toolbar, title_bar
+from diorama_app.panels.toolbar import SPARE, Toolbar, title_bar
 from tests.app.page import Page
 from tests.app.people import join
 
@@ -30,7 +32,7 @@ def test_undo_and_redo_can_be_pressed_when_there_is_something(session, client, p
 def test_switches_show_their_state(client, page, toolbar) -> None:
     def is_on(command: str) -> bool:
         at = page.html.index(f'data-arg="{command}"')
-        return 'class="on"' in page.html[page.html.rindex("<button", 0, at) : at]
+        return re.search(r'class="[a-z ]*\bon"', page.html[page.html.rindex("<button", 0, at) : at]) is not None
 
     for name in ("snap", "slide", "names", "planes"):
         before = is_on(name)
@@ -63,3 +65,10 @@ def test_the_title_says_what_is_open_and_who_is_here(session, client) -> None:
     assert "also has this open" not in title_bar(client)
     other = join(session, 1)
     assert other.name in title_bar(client)
+
+
+def test_every_tool_of_the_row_that_may_be_left_out_is_in_the_menu(page: Page, toolbar) -> None:
+    menu = page.html[page.html.index('<div class="menu">') :]
+    for command in (c for group in SPARE for c in group):
+        assert page.html.count(f'data-arg="{command}"') == 2
+        assert f'data-arg="{command}"' in menu

@@ -43,7 +43,7 @@ def test_every_format_is_written_with_the_choices_it_offers(
         ceiling="ceiling" not in choices,
         only=only if "selection" in choices else None,
         max_texture_px=64 if "textures" in choices else None,
-        compression="meshopt" if "compressed" in choices else "none",
+        compression="meshopt" if "compression" in choices else "none",
         bodies="welded" if "welded" in choices else "free",
     )
     scene, library = scene_of("primitives")

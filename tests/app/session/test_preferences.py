@@ -30,6 +30,8 @@ CHANGED = Preferences(
     size_mode="catalogue",
     keep_colour=False,
     all_alike=True,
+    favourites=("chair_a",),
+    recent=("lamp_a", "chair_a"),
 )
 
 

@@ -92,10 +92,10 @@ def test_what_could_not_be_saved_is_saved_as_soon_as_there_is_space(
 ) -> None:
     full, really_save = [True], Project.save_scene
 
-    def save(self: Project, scene: Scene) -> None:
+    def save(self: Project, scene: Scene) -> bool:
         if full[0]:
             raise ProjectError("the disk is full")
-        really_save(self, scene)
+        return really_save(self, scene)
 
     monkeypatch.setattr(Project, "save_scene", save)
     told: list[str] = []
@@ -109,6 +109,18 @@ def test_what_could_not_be_saved_is_saved_as_soon_as_there_is_space(
     assert [line.partition(":")[0] for line in told] == ["not saved", "All changes are saved now."], "once each"
     assert list((tmp_path / "unsaved").glob("*.json")) == []
     autosave.stop()
+
+
+def test_the_page_is_told_when_there_is_an_earlier_version(project: Project, tmp_path: Path) -> None:
+    versions: list[int] = []
+    autosave = Autosave(
+        pytest.fail, Recovery(tmp_path / "unsaved"), on_version=lambda: versions.append(len(project.backups()))
+    )
+    for _ in range(2):  # at most one version a minute
+        autosave.save_soon(project, renamed())
+        autosave.flush()
+    autosave.stop()
+    assert versions == [1]
 
 
 def test_nothing_is_promised_when_nothing_can_be_retained(

@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from diorama_app.session.textures import refitted
+from diorama_core.appearance.surface_finish import usual_finish
 from diorama_core.scene import edits
+from diorama_core.scene.room_edits import move_plane, set_surface_finish
 from tests.app.small_room import furnished_scene
 
 SCENE = furnished_scene()
@@ -34,3 +36,21 @@ def test_a_longer_floor_gets_a_larger_picture_of_the_same_scale(rng) -> None:
     assert next(p for p in scene.architecture.planes if p.role == "floor").texture == name
     grown = np.array(made[name].shape[:2]) / picture.shape[:2]
     np.testing.assert_allclose(sorted(grown), (1.0, 1.5), atol=0.03)
+
+
+def test_a_moved_wall_has_its_finish_made_anew_and_the_photo_below_it_fitted(rng) -> None:
+    photo = rng.integers(0, 256, (80, 120, 3), dtype=np.uint8)
+    bare = replace(SCENE.plane("wall_2"), texture="wall.png")
+    planes = tuple(bare if p.id == "wall_2" else p for p in SCENE.architecture.planes)
+    before = replace(SCENE, architecture=replace(SCENE.architecture, planes=planes))
+    finished, made = refitted(
+        before, set_surface_finish(before, ("wall_2",), usual_finish("dots")), {"wall.png": photo}
+    )
+    known = {"wall.png": photo, **made}
+    moved, more = refitted(finished, move_plane(finished, "wall_3", 1.0), known)
+    wall = moved.plane("wall_2")
+    assert {wall.texture, wall.photo_texture} == set(more)
+    assert wall.texture != finished.plane("wall_2").texture
+    back = set_surface_finish(moved, ("wall_2",), None).plane("wall_2")
+    assert back.texture == wall.photo_texture
+    assert more[str(back.texture)].shape[1] > photo.shape[1]

@@ -37,45 +37,49 @@ def drawn(server) -> dict:
     return {n.removeprefix("/objects/"): h for n, h in server.scene._handle_from_node_name.items() if "/mark/" in n}
 
 
-def colour(server, object_id: str) -> tuple:
-    return tuple(np.unique(drawn(server)[f"{object_id}/mark/outer"].colors.reshape(-1, 3), axis=0)[0].tolist())
+def outlined(marks) -> dict[str, tuple]:
+    return {o.node.removeprefix("/objects/"): (o.colour, o.thickness_px) for o in marks.outlines}
 
 
 def tag(server, object_id: str) -> str:
     return drawn(server)[f"{object_id}/mark/tag"].text
 
 
-def test_what_is_selected_is_outlined_and_named_boldest_last(server, marks) -> None:
+def test_what_is_selected_is_outlined_boldest_last_and_its_page_is_told_once(server, marks) -> None:
+    told = []
+    marks.on_outlines = told.append
     show(marks, selection=("chair_1", "lamp_1"))
-    assert {n.split("/")[0] for n in drawn(server)} == {"chair_1", "lamp_1"}
-    assert colour(server, "lamp_1") == SELECTED_COLOUR
+    assert set(outlined(marks)) == {"chair_1", "lamp_1"}
+    assert outlined(marks)["lamp_1"][0] == SELECTED_COLOUR
+    assert outlined(marks)["lamp_1"][1] > outlined(marks)["chair_1"][1]
+    assert drawn(server) == {}, "names are shown to those who ask"
+    show(marks, selection=("chair_1", "lamp_1"))
+    assert len(told) == 1
+    show(marks, selection=("lamp_1",), names=True)
     assert tag(server, "lamp_1") == "lamp"
-    assert drawn(server)["lamp_1/mark/outer"].thickness > drawn(server)["chair_1/mark/outer"].thickness
-    points = drawn(server)["lamp_1/mark/outer"].points.reshape(-1, 3)
-    np.testing.assert_allclose(np.ptp(points, axis=0), SCENE.object("lamp_1").size_m + 0.024, atol=1e-5)
     show(marks)
+    assert marks.outlines == ()
     assert drawn(server) == {}
 
 
 def test_locked_hidden_and_colliding_objects_look_so(server, marks) -> None:
     scene = edits.set_locked(edits.set_hidden(SCENE, "lamp_1", True), "chair_1", True)
-    show(marks, scene, selection=("chair_1", "lamp_1"))
-    assert colour(server, "chair_1") == LOCKED_COLOUR
+    show(marks, scene, selection=("chair_1", "lamp_1"), names=True)
+    assert outlined(marks) == {"chair_1": (LOCKED_COLOUR, 2.5)}
     assert tag(server, "chair_1").endswith("(locked)")
-    assert not any(n.startswith("lamp_1") for n in drawn(server))
     assert marks.collide(["chair_1", "table_1"])
     assert not marks.collide(["table_1", "chair_1"])
     show(marks, scene, selection=("chair_1",))
-    assert colour(server, "chair_1") == colour(server, "table_1") == COLLIDING_COLOUR
+    assert outlined(marks)["chair_1"][0] == outlined(marks)["table_1"][0] == COLLIDING_COLOUR
     assert "table_1/mark/tag" not in drawn(server)
 
 
 def test_others_selections_carry_their_name_and_colour_under_ones_own(server, marks) -> None:
     others = [("Guest 2", (1, 2, 3), ("lamp_1", "chair_1"))]
     show(marks, selection=("chair_1",), others=others)
-    assert colour(server, "lamp_1") == (1, 2, 3)
+    assert outlined(marks)["lamp_1"][0] == (1, 2, 3)
     assert tag(server, "lamp_1") == "Guest 2"
-    assert colour(server, "chair_1") == SELECTED_COLOUR
+    assert outlined(marks)["chair_1"][0] == SELECTED_COLOUR
 
 
 def test_names_warnings_and_doubt(server, marks) -> None:
@@ -91,13 +95,15 @@ def test_names_warnings_and_doubt(server, marks) -> None:
 
 
 def test_unchanged_marks_are_not_drawn_again(server, marks) -> None:
-    show(marks, selection=("chair_1",))
+    show(marks, names=True)
     before = drawn(server)
-    show(marks, selection=("chair_1",))
+    assert before
+    show(marks, names=True)
     assert all(drawn(server)[n] is h for n, h in before.items())
     wider = edits.move(SCENE, "chair_1", replace(SCENE.object("chair_1").pose, scale=np.array([2.0, 1, 1])))
-    show(marks, wider, selection=("chair_1",))
-    assert drawn(server)["chair_1/mark/outer"] is not before["chair_1/mark/outer"]
+    taller = edits.move(wider, "chair_1", replace(SCENE.object("chair_1").pose, scale=np.array([1.0, 1, 2])))
+    show(marks, taller, names=True)
+    assert drawn(server)["chair_1/mark/tag"] is not before["chair_1/mark/tag"]
 
 
 def test_only_objects_of_the_photo_can_be_unsure() -> None:

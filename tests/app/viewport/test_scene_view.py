@@ -139,3 +139,12 @@ def test_planes_with_pictures_are_drawn_with_them(server, viewport) -> None:
 def test_pictures_are_made_no_larger_than_asked() -> None:
     assert reduced(np.zeros((200, 400, 3), np.uint8), 100).shape == (50, 100, 3)
     assert reduced(np.zeros((20, 40, 3), np.uint8), 100).shape == (20, 40, 3)
+
+
+def test_the_room_stands_on_its_ground_where_graphics_are_not_low(server, viewport) -> None:
+    assert "/ground" in nodes(server)
+    low = Viewport(server, ShapeBytes(PlainLibrary()), pick=lambda *_: None, drag=lambda *_: None, later=lambda _: None)
+    server.scene.reset()
+    low.light(low_graphics=True)
+    low.show(SCENE, {})
+    assert "/ground" not in nodes(server)

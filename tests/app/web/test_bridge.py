@@ -57,7 +57,7 @@ def test_messages_cross_from_one_loop_to_the_other_and_so_does_the_end(home: asy
         home.call_soon_threadsafe(connection.coming.put_nowait, b"hi")
         assert await bridge.recv() == b"hi"
         waiting = asyncio.create_task(bridge.recv())
-        await asyncio.sleep(0.05)
+        await asyncio.sleep(0.05)  # it waits by now
         waiting.cancel()
         with pytest.raises(asyncio.CancelledError):
             await waiting

@@ -9,13 +9,15 @@ import pytest
 
 from diorama_core.architecture.texture.refit import refitted, refitted_textures
 from diorama_core.geometry.planes import plane_rectangle
-from diorama_core.scene.edits import move_plane, rescale, set_ceiling_height, set_plane_material
-from diorama_core.scene.types import Architecture, Plane, Scene
+from diorama_core.scene.edits import move_plane, rescale, set_ceiling_height
+from diorama_core.scene.room_edits import set_surface_finish
+from diorama_core.scene.types import Architecture, Plane, Scene, SurfaceFinish
 from tests.synthetic_rooms import box_room, look
 
 STRIPES = np.repeat(np.where(np.arange(200) // 10 % 2, 155, 135).astype(np.uint8)[None, :, None], 125, axis=0)
 PICTURE = np.ascontiguousarray(np.broadcast_to(STRIPES, (125, 200, 3)))
 """A wall 4 m wide and 2.5 m high, striped every 20 cm."""
+PAINT = SurfaceFinish("paint", (0.5, 0.6, 0.7))
 
 
 def room():
@@ -70,8 +72,10 @@ def test_there_and_back_has_the_old_size_and_names_are_repeatable():
 def test_other_edits_make_no_pictures(edit):
     before = room()
     after = {
-        "rescale": lambda s: rescale(s, 1.2), "plain": lambda s: set_plane_material(s, "back"), "nothing": lambda s: s,
-    }[edit](before)  # fmt: skip
+        "rescale": lambda s: rescale(s, 1.2),
+        "plain": lambda s: set_surface_finish(s, ["back"], PAINT),
+        "nothing": lambda s: s,
+    }[edit](before)
     assert refitted_textures(before, after, TEXTURES) == (after, {})
 
 

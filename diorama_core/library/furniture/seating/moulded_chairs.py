@@ -17,7 +17,7 @@ def eased(v: Float[np.ndarray, "m 1"], at: Sequence[float], values: Sequence[flo
 
 
 def shell_chair(size: Size, shell: Material, legs: Material, base: str) -> Parts:
-    """A moulded one-piece shell on wooden dowels or steel tube."""
+    """A moulded one-piece shell on wooden dowels, steel tube or a round pedestal."""
     d, w, h = size
     path = bend(
         [
@@ -39,6 +39,8 @@ def shell_chair(size: Size, shell: Material, legs: Material, base: str) -> Parts
     z = path[:, 2:] + curl * np.interp(s, [0, 0.4, 0.7, 1], [0.6, 0.4, 0.0, 0.0]) * u**2
     surface = np.stack([x, half * u, z], axis=-1)
     parts = of(shell, slab(surface, 0.012))
+    if base == "pedestal":
+        return parts + of(legs, trumpet(0.438, 0.46 * w, 0.024))
     hub = 0.405 if base == "wood" else 0.375
     if base == "wood":
         leg = rod((0.38 * d, 0.40 * w, 0), (0.16 * d, 0.2 * w, hub), 0.011, 0.017)
@@ -72,4 +74,5 @@ def shell_chair(size: Size, shell: Material, legs: Material, base: str) -> Parts
 DESIGNS: tuple[Design, ...] = (
     design("chair", "shell-white", "white shell chair on beech dowels", (0.53, 0.47, 0.82), "modern", shell_chair, shell=m.WHITE, legs=m.BIRCH, base="wood"),
     design("chair", "shell-sage", "sage moulded chair on steel tube", (0.54, 0.48, 0.80), "modern", shell_chair, shell=m.SAGE, legs=m.BLACK_STEEL, base="steel"),
+    design("chair", "shell-tulip-white", "white tulip chair on a round pedestal", (0.53, 0.50, 0.81), "modern", shell_chair, shell=m.WHITE, legs=m.WHITE, base="pedestal"),
 )  # fmt: skip

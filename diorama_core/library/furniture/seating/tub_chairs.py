@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 
 from diorama_core.library.furniture.kit import *
 
 
-def tub_chair(size: Size, cloth: Material, legs: Material, profile: Leg = "taper", channels: int = 0) -> Parts:
+def tub_chair(
+    size: Size, cloth: Material, legs: Material, profile: Leg | Literal["trumpet"] = "taper", channels: int = 0
+) -> Parts:
     """A dining chair whose padded back wraps round the sitter; `channels` stitches it upright."""
     d, w, h = size
     seat_z, low = 0.48, 0.40
@@ -27,8 +31,11 @@ def tub_chair(size: Size, cloth: Material, legs: Material, profile: Leg = "taper
     fronts = [tube(np.stack([x[:, k], y[:, k], z[:, 0]], axis=1), 0.028, 8) for k in (0, -1)]
     seat = cushion((d * 0.84, w * 0.86, 0.12), 3.2, 3.4, 12).moved(0.035, 0, seat_z - 0.095)
     deck = cushion((d * 0.80, w * 0.84, 0.07), 3.2, 5, 8).moved(0.02, 0, low - 0.025)
+    padded = of(cloth, wall, rim, *ends, *fronts, seat, deck)
+    if profile == "trumpet":
+        return padded + of(legs, trumpet(low - 0.01, 0.44 * min(d, w), 0.026))
     feet = four(leg(profile, 0.30 * d, 0.33 * w, low - 0.01, 0.036, 0.14)) if profile != "slim" else _sled(d, w, low)
-    return of(cloth, wall, rim, *ends, *fronts, seat, deck) + of(legs, *feet)
+    return padded + of(legs, *feet)
 
 
 def _sled(d: float, w: float, z: float) -> tuple[Solid, ...]:
@@ -103,6 +110,8 @@ DESIGNS: tuple[Design, ...] = (
     design("chair", "tub-emerald", "emerald velvet tub dining chair on brass legs", (0.58, 0.57, 0.80), "modern", tub_chair, cloth=s.EMERALD_VELVET, legs=m.BRASS, profile="taper", channels=9),
     design("chair", "tub-boucle", "ivory bouclé dining chair", (0.57, 0.58, 0.76), "minimal", tub_chair, cloth=s.IVORY_BOUCLE, legs=m.LIGHT_OAK, profile="splay"),
     design("chair", "tub-cognac", "cognac leather tub chair on a steel sled", (0.59, 0.58, 0.79), "industrial", tub_chair, cloth=s.COGNAC_LEATHER, legs=m.BLACK_STEEL, profile="slim"),
+    design("chair", "tub-pedestal-blush", "blush tub chair on a brass pedestal", (0.58, 0.58, 0.77), "modern", tub_chair, cloth=m.ROSE_FABRIC, legs=m.BRASS, profile="trumpet"),
+    design("chair", "tub-pedestal-graphite", "graphite tub chair on a black pedestal", (0.60, 0.60, 0.79), "minimal", tub_chair, cloth=m.CHARCOAL_FABRIC, legs=m.BLACK_STEEL, profile="trumpet"),
     design("chair", "slipcover-linen", "dining chair under a linen slipcover", (0.60, 0.49, 0.98), "rustic", slipcover_chair, cloth=m.LINEN, piping=m.TAUPE_FABRIC),
     design("chair", "slipcover-grey", "dining chair under a grey slipcover", (0.58, 0.47, 0.94), "minimal", slipcover_chair, cloth=m.LIGHT_FABRIC, piping=m.LIGHT_FABRIC),
     design("chair", "high-back-oxblood", "oxblood leather dining chair with a buttoned high back", (0.60, 0.50, 1.08), "classic", high_back_chair, cloth=s.OXBLOOD_LEATHER, legs=m.DARK_WALNUT, profile="turned", buttons=True),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from diorama_core.library.furniture.kit import *
+from diorama_core.library.furniture.legs import Leg
 from diorama_core.library.furniture.storage.chests import trunk
 from diorama_core.library.furniture.tables.tops import frame_table, table_top
 
@@ -201,7 +202,7 @@ def tray_ottoman_table(size: Size, cloth: Material, tray: Material, wood: Materi
     )
 
 
-def demilune_table(size: Size, wood: Material, profile: str, drawer: bool = False, metal: Material = m.BRASS) -> Parts:
+def demilune_table(size: Size, wood: Material, profile: Leg, drawer: bool = False, metal: Material = m.BRASS) -> Parts:
     """A half-round console against a wall."""
     d, w, h = size
     t = 0.024
@@ -214,7 +215,7 @@ def demilune_table(size: Size, wood: Material, profile: str, drawer: bool = Fals
         (-d / 2 + 0.78 * d, 0.2 * w),
         (-d / 2 + 0.78 * d, -0.2 * w),
     ]
-    legs = [leg(profile, x, y, h - t - 0.02, 0.036) for x, y in spots]  # type: ignore[arg-type]
+    legs = [leg(profile, x, y, h - t - 0.02, 0.036) for x, y in spots]
     parts = of(wood, prism(half, t, 0.008).moved(z=h - t), prism(inner, 0.09, 0.003).moved(z=h - t - 0.09), *legs)
     if drawer:
         knob = cylinder(0.012, 0.024, 0.004, 14).turned("y", 90).moved(d / 2 - 0.036, 0, h - t - 0.045)

@@ -1,0 +1,55 @@
+"""`diorama build DIR --poses PATH|find -o PROJECT`: several photos of one room, with known cameras or without."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import TYPE_CHECKING
+
+from diorama_app.cli.arguments import print_note, progress_bar
+from diorama_core.errors import InputError
+
+FIND = "find"
+"""Instead of a path: the photos themselves tell where they were taken."""
+
+if TYPE_CHECKING:
+    from diorama_app.projects.options import BuildOptions
+
+
+def build_posed(a: argparse.Namespace, options: BuildOptions) -> None:
+    """Build one project of the photos in the folder `a.image`.
+
+    Raises:
+        InputError: no folder is named, or a photo or the poses cannot be used.
+        UnavailableError: cameras are to be found and pycolmap is not installed.
+    """
+    from diorama_app.cli.folder import check_options_of_one_photo
+    from diorama_app.projects.photo_folder import photos_of
+    from diorama_app.projects.posed_build import build_posed_photos, poses_from_photos
+    from diorama_core.multiview.posed_photos import read_poses
+
+    if not a.image.is_dir():
+        raise InputError(f"--poses is for a folder of photos of one room; {a.image} is none")
+    if a.workers is not None or a.ray is not None:
+        raise InputError("--workers and --ray build photos one by one; leave them out with --poses")
+    check_options_of_one_photo(a)
+    photos, remarks = photos_of(a.image)
+    for remark in remarks:
+        print_note(remark)
+    with progress_bar() as progress:
+        find = str(a.poses) == FIND
+        poses = poses_from_photos(photos, progress.part(0.0, 0.1)) if find else read_poses(a.poses)
+        built = build_posed_photos(photos, poses, options, a.output, progress.part(0.1 if find else 0.0, 1.0))
+    scene = built.room.scene
+    several = sum(len(track.boxes) > 1 for track in built.room.tracks)
+    if a.json:
+        objects = [
+            {"id": o.id, "category": o.category, "shape": o.shape_id, "size_m": [round(float(v), 4) for v in o.size_m]}
+            for o in scene.objects
+        ]
+        found = {"project": str(a.output), "photos": list(built.photos), "objects": objects, "in_several": several}
+        print(json.dumps({**found, "notes": list(built.notes)}))
+        return
+    for note in built.notes:
+        print_note(note)
+    print(f"{a.output}: {len(scene.objects)} objects of {len(built.photos)} photos, {several} in more than one")

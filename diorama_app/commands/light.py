@@ -1,0 +1,72 @@
+"""What people do to the light: the sun, the lamps, the exposure; each is one undo step."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from diorama_app.session.client import Client
+from diorama_core.editing.sunlight import first_daylight, set_light, switch_lamp, with_sun_from
+from diorama_core.errors import EditRefused
+from diorama_core.render.lamps import lamps_of
+from diorama_core.scene.light_settings import PHOTO_LIGHT, LightSettings
+
+
+def clock(hour: float) -> str:
+    """A time of day as a clock shows it."""
+    minutes = round(hour * 60)
+    return f"{minutes // 60:02d}:{minutes % 60:02d}"
+
+
+def light_as_photo(client: Client) -> None:
+    """Take back everything that was set: the light of the photo."""
+    _set(client, "light as in the photo", PHOTO_LIGHT)
+
+
+def use_daylight(client: Client) -> None:
+    """Daylight that shines into the room, unless a time of day is set already."""
+    scene = client.session.scene
+    if scene.light_settings.hour is None:
+        settings = first_daylight(scene)
+        _set(client, f"daylight at {clock(settings.hour or 0.0)}", settings)
+
+
+def set_hour(client: Client, hour: float) -> None:
+    """Set the time of day; quick changes are one step."""
+    scene = client.session.scene
+    settings = scene.light_settings if scene.light_settings.hour is not None else first_daylight(scene)
+    _set(client, f"time of day {clock(hour)}", replace(settings, hour=hour), merge="hour")
+
+
+def set_sun_from(client: Client, azimuth_rad: float) -> None:
+    """Turn the compass so that the sun shines from a direction; quick changes are one step."""
+    settings = with_sun_from(client.session.scene.light_settings, azimuth_rad)
+    _set(client, "direction of the sun", settings, merge="sun")
+
+
+def set_exposure(client: Client, exposure_ev: float) -> None:
+    """Make the view and pictures brighter or darker, in stops."""
+    settings = replace(client.session.scene.light_settings, exposure_ev=exposure_ev)
+    _set(client, f"exposure {exposure_ev:+.1f}", settings, merge="exposure")
+
+
+def switch(client: Client, lamp_id: str) -> None:
+    """Switch one lamp on or off."""
+    scene = client.session.scene
+    if not scene.has_object(lamp_id):
+        raise EditRefused("this lamp is gone")
+    on = lamp_id not in (scene.light_settings.lamps_on or ())
+    label = f"{scene.object(lamp_id).label} {'on' if on else 'off'}"
+    _set(client, label, switch_lamp(scene, lamp_id, on=on))
+
+
+def switch_all(client: Client, *, on: bool) -> None:
+    """Switch all lamps on or off."""
+    scene = client.session.scene
+    lamps = tuple(o.id for o in lamps_of(scene)) if on else ()
+    _set(client, f"all lamps {'on' if on else 'off'}", replace(scene.light_settings, lamps_on=lamps))
+
+
+def _set(client: Client, label: str, settings: LightSettings, merge: str = "") -> None:
+    client.session.edit(
+        label, lambda scene: set_light(scene, settings), by=client, merge_key=f"light {merge}" if merge else None
+    )

@@ -1,0 +1,69 @@
+"""The process of `diorama api`."""
+
+from __future__ import annotations
+
+import socket
+from pathlib import Path
+
+import uvicorn
+
+import diorama_core as diorama
+from diorama_app.http_api.jobs import JobQueue
+from diorama_app.http_api.routes import create_app
+from diorama_app.web.visitors import LOOPBACK_NAMES, Visitors, with_token
+from diorama_core.errors import InputError
+
+MAX_CONNECTIONS = 64
+IDLE_S = 15
+
+
+def serve_api(*, projects_dir: Path, host: str, port: int, token: str | None, library: str) -> None:
+    """Answer requests until Ctrl+C.
+
+    Args:
+        projects_dir: where jobs become projects; those that an earlier server left unfinished are taken up again.
+        host: address to listen on.
+        port: 0 lets the system choose.
+        token: what requests must bring; generated where other machines can ask and none is given.
+        library: name of the shape library.
+
+    Raises:
+        InputError: the port is taken.
+        LibraryError: there is no library of that name.
+        ProjectError: the folder of projects cannot be made.
+    """
+    host = host or "0.0.0.0"
+    token = with_token(host, token)
+    listening = _listen(host, port)
+    queue = JobQueue(projects_dir, diorama.open_library(library), library)
+    app = create_app(queue, Visitors(host, token))
+    config = uvicorn.Config(
+        app,
+        log_level="warning",
+        limit_concurrency=MAX_CONNECTIONS,
+        timeout_keep_alive=IDLE_S,
+        server_header=False,
+        ws="none",
+    )
+    shown = "127.0.0.1" if host == "0.0.0.0" else f"[{host}]" if ":" in host else host
+    print(f"Diorama answers at http://{shown}:{listening.getsockname()[1]}/ (Ctrl+C stops it)", flush=True)
+    print(f"Its OpenAPI document is at http://{shown}:{listening.getsockname()[1]}/openapi.json", flush=True)
+    if token is not None and host not in LOOPBACK_NAMES:
+        print(f"Requests must bring the header 'Authorization: Bearer {token}'", flush=True)
+    queue.start()
+    try:
+        uvicorn.Server(config).run(sockets=[listening])
+    except KeyboardInterrupt:
+        print("Stopping.", flush=True)
+    finally:
+        queue.close()
+        listening.close()
+
+
+def _listen(host: str, port: int) -> socket.socket:
+    try:
+        return socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET)
+    except OSError as error:
+        raise InputError(
+            f"port {port} of {host} cannot be used ({error.strerror}); choose another with --port"
+        ) from error

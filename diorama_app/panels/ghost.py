@@ -1,0 +1,81 @@
+"""What is being placed, as a ghost under the pointer.
+
+The page moves it by itself (`static/ghost.js`): it is told the model's node and the surfaces of the room.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import viser
+
+from diorama_app.session.client import Client, Placing
+from diorama_app.web.html import run_once
+from diorama_core.editing.placing import DOOR, places_of
+from diorama_core.library.record import Shape, ShapeLibrary
+from diorama_core.library.taxonomy import resolve
+from diorama_core.scene.types import Scene
+
+NODE = "/ghost"
+FAR_M = (0.0, 0.0, -1000.0)
+"""Where it is until the pointer moves."""
+
+
+class PlacingGhost:
+    """Shown while a click is awaited that places a shape."""
+
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self._client = client
+        self._html = gui.add_html("")
+        self._node: viser.GlbHandle | None = None
+        self._shape_id: str | None = None
+        self._told: str = ""
+
+    def refresh(self) -> None:
+        """Show what is being placed, and tell the page where it may be put."""
+        doing, session = self._client.doing, self._client.session
+        wanted = doing.shape_id if isinstance(doing, Placing) else None
+        if wanted != self._shape_id:
+            self._shape_id = wanted
+            if self._node is not None:
+                self._node.remove()
+                self._node = None
+            if wanted is not None:
+                scene = self._client.viser_client.scene
+                self._node = scene.add_glb(NODE, session.shapes.glb(wanted), position=FAR_M, cast_shadow=False)
+        about = None if wanted is None else where_it_goes(session.scene, session.library, session.library.shape(wanted))
+        told = json.dumps(about, separators=(",", ":"))
+        if told != (self._told or "null"):
+            self._told = told
+            self._html.content = run_once(f"window.__dioGhost({told});")
+
+
+def where_it_goes(scene: Scene, library: ShapeLibrary, shape: Shape) -> dict[str, Any]:
+    """What a page needs to know to show a shape where a click would put it.
+
+    Returns:
+        The node, the shape's size, whether it may hang, whether it is a door, where the photo's camera is seen from
+        above, and the surfaces: normal, level (`normal . p = level`), half-planes of the outline (`outward . p <=
+        offset`), whether things stand on it, and the height of its foot.
+    """
+    hung = resolve(shape.category).category.mount in ("wall", "ceiling")
+    surfaces = [
+        {
+            "normal": _rounded(place.surface.normal),
+            "level": round(float(place.surface.level), 4),
+            "outward": [_rounded(side) for side in place.surface.outward],
+            "offset": _rounded(place.surface.offset),
+            "up": place.upward,
+            "foot": round(float(place.surface.polygon[:, 2].min()), 4),
+        }
+        for place in places_of(scene, library)
+    ]
+    camera = None if scene.camera is None else _rounded(scene.camera.position[:2])
+    door = shape.category == DOOR
+    size = _rounded(shape.size_m)
+    return {"node": NODE, "size": size, "hung": hung, "door": door, "camera": camera, "surfaces": surfaces}
+
+
+def _rounded(values: Any) -> list[float]:
+    return [round(float(v), 4) for v in values]

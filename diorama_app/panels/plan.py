@@ -1,0 +1,212 @@
+"""The plan: the room from above, drawn in the page (`static/plan.js`), edited through the same document as the 3D view.
+
+Walls and corners are dragged, lengths are typed, furniture is moved; doors and windows slide along their wall.
+"""
+
+from __future__ import annotations
+
+import json
+import threading
+from typing import Any
+
+import numpy as np
+import viser
+
+from diorama_app.commands import edit as editing
+from diorama_app.session.client import Client
+from diorama_app.session.units import Unit, format_length, parse_length
+from diorama_app.web.html import Action, LiveHtml, run_once
+from diorama_core.editing.plan_edits import corners, move_corner, set_wall_length, wall_feet
+from diorama_core.errors import EditRefused
+from diorama_core.export.footprints import Outline, outline
+from diorama_core.export.plan import OVERHEAD_M, UNNAMED, RoomLines, room_lines
+from diorama_core.geometry.openings import OPENING_CATEGORIES, wall_of
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.scene.room_edits import floor_height, move_plane
+from diorama_core.scene.types import Scene, SceneObject
+
+SEND = '<button type="button" id="dio-plan-send" style="display:none" tabindex="-1"></button>'
+HANDLED_M = 0.2
+"""A door or window is taken hold of in at least this depth."""
+
+
+class ShapeOutlines:
+    """What shapes cover, seen from above: found in the background, by their boxes until then."""
+
+    def __init__(self, library: ShapeLibrary) -> None:
+        self._library = library
+        self._found: dict[str, tuple[Outline, ...]] = {}
+        self._looking = False
+
+    def of(self, item: SceneObject) -> tuple[Outline, ...]:
+        """Outlines of an object in the world's x and y; the rectangle of its box while its shape's is unknown."""
+        R, scale = item.pose.R_world_object[:2, :2], np.asarray(item.pose.scale)[:2]
+        known = self._found.get(item.shape_id)
+        if known is None:
+            half = np.asarray(item.size_m[:2]) / 2
+            return (
+                np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]) * half @ R.T + item.pose.position[:2],
+            )
+        return tuple((o * scale) @ R.T + item.pose.position[:2] for o in known)
+
+    def look_for(self, scene: Scene, then: Any) -> None:
+        """Find the outlines of a scene's shapes that are not known yet; `then()` is called when there are new ones."""
+        missing = {o.shape_id for o in scene.objects} - self._found.keys()
+        if not missing or self._looking:
+            return
+        self._looking = True
+
+        def look() -> None:
+            try:
+                for shape_id in sorted(missing):
+                    mesh = self._library.mesh(shape_id)
+                    triangles = np.asarray(mesh.vertices, dtype=np.float64)[:, :2][np.asarray(mesh.faces)]
+                    self._found[shape_id] = outline(triangles)
+            finally:
+                self._looking = False
+            then()
+
+        threading.Thread(target=look, daemon=True, name="plan outlines").start()
+
+
+class Plan:
+    """Drawn while the client looks at the plan."""
+
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self._client = client
+        self._told = ""
+        self._outlines = ShapeOutlines(client.session.library)
+        self._sender = LiveHtml(gui, lambda action: client.post(lambda: self._do(action)))
+        self._sender.show(SEND)
+        self._teller = gui.add_html("")
+        self._tell("null")
+
+    def refresh(self) -> None:
+        """Tell the page what differs from what it knows; nothing is computed while the plan is not seen."""
+        client = self._client
+        if not client.plan:
+            self._tell("null")
+            return
+        scene = client.session.scene
+        self._outlines.look_for(scene, lambda: client.post(self.refresh, key="plan"))
+        self._tell(json.dumps(self._about(scene), separators=(",", ":")))
+
+    def _tell(self, told: str) -> None:
+        if told != self._told:
+            self._told = told
+            self._teller.content = run_once(f"window.__dioPlan.told({told})")
+
+    def _about(self, scene: Scene) -> dict[str, Any]:
+        client = self._client
+        visible = [o for o in scene.objects if not o.hidden]
+        room = room_lines(scene.architecture.planes, visible, scene)
+        unit = client.preferences.unit
+        pieces = [self._piece(scene, o) for o in sorted(visible, key=lambda o: float(o.corners_world[:, 2].min()))]
+        return {
+            "bounds": _bounds(room, [o for p in pieces for o in p["outlines"]]),
+            "snap": client.preferences.snap,
+            "feet": unit == "ft-in",
+            "floors": [_flat(o) for o in room.floors],
+            "solid": [_flat(o) for o in room.walls],
+            "swings": [_flat(o) for o in room.door_leaves],
+            "panes": [_flat(o) for o in room.window_panes],
+            "walls": _walls(scene, client.surface, unit),
+            "corners": [{"walls": [c.first, c.second], "at": _flat(c.at)} for c in corners(scene)],
+            "pieces": pieces,
+        }
+
+    def _piece(self, scene: Scene, item: SceneObject) -> dict[str, Any]:
+        outlines, along = self._outlines.of(item), None
+        if item.category in OPENING_CATEGORIES:
+            wall = wall_of(item, scene.architecture.by_role("wall"), scene)
+            along = None if wall is None else [-float(wall.normal[1]), float(wall.normal[0])]
+            half = np.maximum(np.asarray(item.size_m[:2]) / 2, (HANDLED_M / 2, 0.0))
+            outlines = (_rectangle(item, half),)
+        size = np.ptp(np.concatenate(outlines), axis=0) if outlines else np.zeros(2)
+        bottom = float(item.corners_world[:, 2].min()) - floor_height(scene)
+        named = item.category not in (*UNNAMED, *OPENING_CATEGORIES)
+        return {
+            "id": item.id,
+            "label": item.label,
+            "outlines": [_flat(o) for o in outlines],
+            "at": _flat(item.pose.position[:2]),
+            "room": _flat(size) if named else [0.0, 0.0],
+            "on": item.id in self._client.selection,
+            "overhead": bottom > OVERHEAD_M,
+            "flat": item.category in UNNAMED,
+            "along": along,
+        }
+
+    def _do(self, action: Action) -> None:
+        client, session = self._client, self._client.session
+        try:
+            arg = json.loads(action.arg)
+            match action.do:
+                case "select":
+                    self._select(arg[0], add=bool(arg[1]))
+                case "surface":
+                    client.select_surface(str(arg))
+                    client.open_tab("Object")
+                case "move":
+                    item = session.scene.object(str(arg[0]))
+                    shift = np.array([float(arg[1]), float(arg[2]), 0.0])
+                    editing.set_base_position(client, item.id, editing.base_position(item) + shift)
+                case "wall":
+                    wall, outward = str(arg[0]), float(arg[1])
+                    name = editing.supporter_name(session.scene, wall)
+                    session.edit(f"move {name}", lambda s: move_plane(s, wall, outward), by=client)
+                case "corner":
+                    first, second, shift = str(arg[0]), str(arg[1]), np.array([float(arg[2]), float(arg[3])])
+                    session.edit("move a corner", lambda s: move_corner(s, first, second, shift), by=client)
+                case "length":
+                    wall, metres = str(arg[0]), parse_length(str(arg[1]), client.preferences.unit)
+                    name = editing.supporter_name(session.scene, wall)
+                    session.edit(f"set the length of {name}", lambda s: set_wall_length(s, wall, metres), by=client)
+        except (KeyError, TypeError, IndexError, json.JSONDecodeError) as error:
+            raise EditRefused("that is not in the plan any more") from error
+        finally:
+            self._told = ""  # what was dragged goes where the document says
+            self.refresh()
+
+    def _select(self, object_id: str | None, *, add: bool) -> None:
+        client = self._client
+        if object_id is None or not client.session.scene.has_object(object_id):
+            client.select(())
+        elif add:
+            client.toggle(object_id)
+        else:
+            client.select((object_id,))
+
+
+def _rectangle(item: SceneObject, half: np.ndarray) -> Outline:
+    """A rectangle around an object, turned as it is."""
+    signs = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    return np.asarray((signs * half) @ item.pose.R_world_object[:2, :2].T + item.pose.position[:2])
+
+
+def _walls(scene: Scene, chosen: str | None, unit: Unit) -> list[dict[str, Any]]:
+    return [
+        {
+            "id": f.id,
+            "name": editing.supporter_name(scene, f.id),
+            "start": _flat(f.start),
+            "end": _flat(f.end),
+            "outward": [round(float(v), 6) for v in f.outward],
+            "thickness": scene.plane(f.id).thickness,
+            "length": format_length(f.length_m, unit),
+            "on": f.id == chosen,
+        }
+        for f in wall_feet(scene)
+    ]
+
+
+def _bounds(room: RoomLines, outlines: list[Any]) -> list[list[float]]:
+    """Least and largest x and y of everything; two metres where there is nothing."""
+    known = [*room.floors, *room.walls, *(np.asarray(o) for o in outlines)]
+    every = np.concatenate(known) if known else np.array([[-1.0, -1.0], [1.0, 1.0]])
+    return [_flat(every.min(axis=0)), _flat(every.max(axis=0))]
+
+
+def _flat(points: Any) -> Any:
+    """Rounded to millimetres, as lists."""
+    return (np.round(np.asarray(points, dtype=np.float64), 3) + 0.0).tolist()

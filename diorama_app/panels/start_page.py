@@ -1,0 +1,201 @@
+"""The start page: a photo, a description, an empty room, a file or an earlier project, or an example.
+
+It lies over the page when the program was started without a project, once in every tab of the browser, and whenever it
+is asked for. `static/start_page.js` asks for it, `static/tour.js` shows newcomers around afterwards.
+"""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+import viser
+
+from diorama_app.projects.manage import name_of, recent_projects
+from diorama_app.reconstruction.opening_job import open_file
+from diorama_app.reconstruction.starting_rooms import LIVING_ROOM, open_example, start_empty_room
+from diorama_app.reconstruction.text_to_scene import describe_room
+from diorama_app.session.client import Client
+from diorama_app.session.units import format_length, parse_length
+from diorama_app.web.html import Action, LiveHtml, button, run_once, text
+from diorama_app.web.viser_adapter import component_uuid
+from diorama_core.errors import EditRefused, InputError
+from diorama_core.project.storage import Project
+
+PICTURES = Path(__file__).resolve().parents[2] / "assets" / "start"
+EXAMPLES = {LIVING_ROOM: "Living room", "bedroom": "Bedroom", "study": "Study", "kitchen": "Kitchen"}
+USUAL_ROOM_M = (4.0, 5.0, 2.5)
+LENGTHS = ("Width", "Depth", "Height")
+RECENT = 4
+REMOVE = "document.getElementById('dio-start')?.remove()"
+"""What an earlier connection of the page left."""
+
+
+class StartPage:
+    """Drawn while it is open."""
+
+    def __init__(self, gui: viser.GuiApi, client: Client, take_photo: Callable[[str, bytes], None]) -> None:
+        """Put the start page behind a hidden button that the page presses by itself.
+
+        Args:
+            gui: the page.
+            client: the owner.
+            take_photo: begins a project with a photo (its file's name and content).
+        """
+        self._client = client
+        self._open = False
+        self._words = ""
+        self._lengths_m = USUAL_ROOM_M
+        gui.add_html(run_once(REMOVE))
+        self._photo_field = _hidden_upload(gui, client, self._left_by(take_photo))
+        self._file_field = _hidden_upload(gui, client, self._left_by(lambda n, c: open_file(client, n, c)))
+        hidden = ", ".join(f"div:has(> #file_upload_{uuid})" for uuid in (self._photo_field, self._file_field))
+        gui.add_html(f"<style>{hidden} {{ display: none; }}</style>")
+        self._opener = LiveHtml(gui, self._act)
+        self._tour = gui.add_html("")
+        self._tours = 0
+        self._html = LiveHtml(gui, self._act, floating="dio-start")
+        client.open_start = self.open
+        client.start_tour = self.start_tour
+
+    def refresh(self) -> None:
+        """Draw it while it is open, and what lets the page open it."""
+        by_itself = "data-auto" if self._client.session.greets else ""
+        self._opener.show(f'<button type="button" id="dio-start-open" {by_itself} data-do="begin" hidden></button>')
+        self._html.show(self._drawn() if self._open else "")
+
+    def open(self) -> None:
+        """Show it over the page; Esc closes it."""
+        if self._client.dialog is not None:
+            self._client.dialog()
+        self._open = True
+        self._client.dialog = self.close
+        self.refresh()
+
+    def close(self) -> None:
+        """Back to the room behind it."""
+        self._open = False
+        self._client.dialog = None
+        self.refresh()
+
+    def start_tour(self) -> None:
+        """Show the page's parts one by one."""
+        self._tours += 1
+        self._tour.content = run_once(f"window.__dioTour(); /* {self._tours} */")
+
+    def _left_by(self, take: Callable[[str, bytes], None]) -> Callable[[str, bytes], None]:
+        def taken(name: str, content: bytes) -> None:
+            self.close()
+            take(name, content)
+
+        return taken
+
+    def _act(self, action: Action) -> None:
+        self._client.post(lambda: self._do(action))
+
+    def _do(self, action: Action) -> None:
+        client = self._client
+        if action.do == "begin":
+            if not self._open:
+                self.open()
+        elif action.do == "close":
+            self.close()
+        elif action.do == "tour":
+            self.close()
+            self.start_tour()
+        elif action.do == "words":
+            self._words = action.pair[1]
+        elif action.do == "length":
+            self._typed(*action.pair)
+        elif action.do == "describe":
+            describe_room(client, self._words)
+            self.close()
+        elif action.do == "empty":
+            start_empty_room(client, *self._lengths_m)
+            self.close()
+        elif action.do == "example" and action.arg in EXAMPLES:
+            self.close()
+            open_example(client, action.arg)
+        elif action.do == "project":
+            self._visit(action.arg)
+
+    def _typed(self, which: str, words: str) -> None:
+        try:
+            length = parse_length(words, self._client.preferences.unit)
+            if which in LENGTHS:
+                width, depth, height = (
+                    length if name == which else old for name, old in zip(LENGTHS, self._lengths_m, strict=True)
+                )
+                self._lengths_m = (width, depth, height)
+        except InputError:
+            self._html.show(self._drawn(), again=True)
+            raise
+
+    def _visit(self, name: str) -> None:
+        session = self._client.session
+        # Only a name that is listed: the page must not reach outside the projects' folder.
+        folder = next((f for f in recent_projects(session.projects_dir) if f.name == name), None)
+        if folder is None:
+            raise EditRefused("that project no longer exists")
+        self.close()
+        project = Project.open(folder)
+        session.visit(self._client, project, f"Opened {project.name}.")
+
+    def _drawn(self) -> str:
+        unit = self._client.preferences.unit
+        fields = "".join(
+            f'<label>{name}<input data-change="length" data-arg="{name}" value="{text(format_length(length, unit))}" '
+            f'aria-label="{name} of the room"></label>'
+            for name, length in zip(LENGTHS, self._lengths_m, strict=True)
+        )
+        photo, file = self._photo_field, self._file_field
+        examples = "".join(
+            f'<button type="button" class="tile" data-do="example" data-arg="{kind}">'
+            f'<img alt="" src="{_picture(kind)}"><b>{name}</b></button>'
+            for kind, name in EXAMPLES.items()
+        )
+        earlier = self._client.session.glances.of("start", self._earlier)
+        return (
+            '<div class="page" role="dialog" aria-modal="true" aria-label="Start"><header><h1>Diorama</h1>'
+            "<p>One photo of a room becomes a 3D scene you can edit.</p>"
+            + button("✕", "close", title="Close and look at the room behind")
+            + '</header><div class="ways">'
+            f'<section class="first drop" data-file="{photo}"><h2>A photo</h2><p>Drop one here, or choose a file. You '
+            "mark the furniture, Diorama builds the room.</p>"
+            f'<label class="choose main" for="file_upload_{photo}" tabindex="0">Choose a photo</label></section>'
+            "<section><h2>A description</h2><p>Say what is in the room.</p>"
+            f'<textarea data-change="words" rows="3" aria-label="Description of the room" '
+            f'placeholder="a bedroom with a double bed and two lamps">{text(self._words)}</textarea>'
+            + button("Create room", "describe")
+            + "</section><section><h2>An empty room</h2><p>Give its lengths and furnish it.</p>"
+            f'<div class="fields">{fields}</div>' + button("Create empty room", "empty") + "</section>"
+            f"<section><h2>Go on</h2>{earlier}"
+            f'<label class="choose" for="file_upload_{file}" tabindex="0">Open a file</label>'
+            '<p class="dim">GLB, USD, USDZ or Sweet Home 3D</p></section></div>'
+            f'<h2>Or try an example</h2><div class="examples">{examples}</div>'
+            f"<footer>{button('Show me around', 'tour', title='Six steps')}</footer></div>"
+        )
+
+    def _earlier(self) -> str:
+        folders = recent_projects(self._client.session.projects_dir)[:RECENT]
+        rows = "".join(button(text(name_of(f)), "project", f.name, title="Open this project") for f in folders)
+        return f'<div class="earlier">{rows}</div>' if rows else '<p class="dim">No projects yet.</p>'
+
+
+@cache
+def _picture(kind: str) -> str:
+    """A small picture of an example, as it lies beside the program."""
+    return "data:image/jpeg;base64," + base64.b64encode((PICTURES / f"{kind}.jpg").read_bytes()).decode()
+
+
+def _hidden_upload(gui: viser.GuiApi, client: Client, take: Callable[[str, bytes], None]) -> str:
+    field = gui.add_upload_button("Start with a file")
+
+    async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
+        file = event.target.value
+        client.post(lambda: take(file.name, file.content))
+
+    field.on_upload(uploaded)
+    return component_uuid(field)

@@ -1,0 +1,202 @@
+"""The surface that is chosen: paint, paper, tiles or boards, in a colour, a size and a direction."""
+
+from __future__ import annotations
+
+import base64
+import io
+from dataclasses import replace
+from functools import cache
+from typing import get_args
+
+import numpy as np
+import viser
+
+from diorama_app.commands.edit import supporter_name
+from diorama_app.commands.surfaces import finish_surfaces
+from diorama_app.session.client import Client
+from diorama_app.session.units import format_length
+from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_core.errors import EditRefused, InputError
+from diorama_core.scene.types import Plane, SurfaceFinish, SurfacePattern
+
+SAMPLE_M = (0.9, 0.68)
+"""Width and height of the sample of a pattern."""
+SAMPLE_PX = (108, 82)
+DIRECTIONS_DEG = (0, 45, 90)
+
+
+class Surfaces:
+    """Shown while a surface is chosen."""
+
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self._client = client
+        self._samples = gui.add_html("")
+        self._html = LiveHtml(gui, self._act)
+        self._all_walls = False
+        self._outlined: Plane | None = None
+
+    def refresh(self) -> None:
+        """Draw what the chosen surface can be finished with, and its outline in the view."""
+        plane = self._plane()
+        if plane is not self._outlined:
+            self._outlined = plane
+            self._client.view.show_surface(plane)
+        if plane is not None and not self._samples.content:
+            self._samples.content = _sample_styles()
+        self._html.show("" if plane is None else self._drawn(plane))
+
+    def _plane(self) -> Plane | None:
+        chosen, scene = self._client.surface, self._client.session.scene
+        return scene.plane(chosen) if chosen is not None and scene.has_plane(chosen) else None
+
+    def _drawn(self, plane: Plane) -> str:
+        from diorama_core.appearance.surface_finish import KINDS, USUAL  # OpenCV; opening a project does without it
+        from diorama_core.geometry.planes import plane_rectangle
+
+        scene, unit = self._client.session.scene, self._client.preferences.unit
+        wide, high = (format_length(float(e), unit) for e in plane_rectangle(plane)[2])
+        name = supporter_name(scene, plane.id).capitalize()
+        parts = [f'<p><b>{text(name)}</b><br><span class="dim">{text(wide)} × {text(high)}</span></p>']
+        if plane.role == "wall" and len(scene.architecture.by_role("wall")) > 1:
+            parts.append(
+                '<div class="bar tight">'
+                + button("This wall", "one", title="Finish only this wall", on=not self._all_walls)
+                + button("All walls", "all", title="Finish all walls alike", on=self._all_walls)
+                + "</div>"
+            )
+        finish = plane.finish
+        before = "As in the photo" if scene.camera is not None else "Plain"
+        parts.append('<div class="bar">' + button(before, "before", title="No finish", on=finish is None) + "</div>")
+        offered = dict.fromkeys((*USUAL[plane.role], *([finish.pattern] if finish is not None else [])))
+        parts.append('<div class="grid">' + "".join(_tile(p, KINDS[p].name, finish) for p in offered) + "</div>")
+        if finish is not None:
+            parts.append(_details(finish))
+        return "".join(parts)
+
+    def _act(self, action: Action) -> None:
+        self._client.post(lambda: self._do(action), key="finish" if action.do == "own" else None)
+
+    def _do(self, action: Action) -> None:
+        from diorama_core.appearance.patterns import COLOURS
+        from diorama_core.appearance.surface_finish import usual_finish
+
+        plane = self._plane()
+        if plane is None:
+            raise EditRefused("no surface is chosen; click a wall, the floor or the ceiling")
+        finish = plane.finish
+        if action.do in ("one", "all"):
+            self._all_walls = action.do == "all"
+            self.refresh()
+        elif action.do == "before":
+            self._set(None)
+        elif action.do == "pattern" and action.arg in get_args(SurfacePattern):
+            self._set(usual_finish(next(p for p in get_args(SurfacePattern) if p == action.arg)))
+        elif finish is None:
+            raise EditRefused("choose a pattern first")
+        elif action.do == "colour" and action.arg in COLOURS:
+            self._set(replace(finish, colour=COLOURS[action.arg]))
+        elif action.do == "own":
+            self._set(replace(finish, colour=_colour(action.pair[1])), merge="colour")
+        elif action.do == "turn":
+            self._set(replace(finish, direction_rad=float(np.radians(float(action.arg)))))
+        elif action.do in ("scale", "direction"):
+            self._typed(finish, action)
+
+    def _typed(self, finish: SurfaceFinish, action: Action) -> None:
+        """A number was written; what cannot be used goes back to what it was."""
+        try:
+            number = _number(action.pair[1])
+            if action.do == "scale":
+                self._set(replace(finish, scale=number / 100.0))
+            else:
+                self._set(replace(finish, direction_rad=float(np.radians(number % 360.0))))
+        finally:
+            plane = self._plane()
+            self._html.show("" if plane is None else self._drawn(plane), again=True)
+
+    def _set(self, finish: SurfaceFinish | None, merge: str = "") -> None:
+        finish_surfaces(self._client, finish, all_walls=self._all_walls, merge=merge)
+
+
+def _tile(pattern: SurfacePattern, name: str, finish: SurfaceFinish | None) -> str:
+    on = finish is not None and finish.pattern == pattern
+    return (
+        f'<button type="button" class="tile {"on" if on else ""}" data-do="pattern" data-arg="{pattern}" '
+        f'aria-pressed="{"true" if on else "false"}"><span class="sample {pattern}"></span>'
+        f'<b style="height:auto">{text(name)}</b></button>'
+    )
+
+
+def _details(finish: SurfaceFinish) -> str:
+    """Colour, size and direction of a finish."""
+    from diorama_core.appearance.patterns import COLOURS
+    from diorama_core.appearance.surface_finish import KINDS
+
+    kind = KINDS[finish.pattern]
+    swatches = "".join(
+        button(
+            f'<span class="swatch" style="background:{_hex(COLOURS[name])}"></span>',
+            "colour",
+            name,
+            title=name.capitalize(),
+            on=COLOURS[name] == finish.colour,
+        )
+        for name in kind.colours
+    )
+    own = f'<label>Any colour<input type="color" data-change="own" value="{_hex(finish.colour)}"></label>'
+    size = (
+        f'<label>Size (%)<input data-change="scale" value="{100 * finish.scale:g}" inputmode="decimal" '
+        'aria-label="Size (%)" title="Of the pattern, relative to its usual size"></label>'
+    )
+    degrees = round(float(np.degrees(finish.direction_rad)), 1) + 0.0
+    turn = (
+        f'<label>Direction (°)<input data-change="direction" value="{degrees:g}" inputmode="decimal" '
+        'aria-label="Direction (°)" title="Turn of the pattern, counter-clockwise"></label>'
+        if kind.directed
+        else ""
+    )
+    quick = "".join(button(f"{d}°", "turn", d, title=f"Turn to {d}°", on=degrees == d) for d in DIRECTIONS_DEG)
+    bar = f'<div class="bar tight">{quick}</div>' if kind.directed else ""
+    return f'<h4>Colour</h4><div class="swatches">{swatches}</div><div class="fields">{own}{size}{turn}</div>{bar}'
+
+
+@cache
+def _sample_styles() -> str:
+    """A style sheet with a picture of every pattern, sent to a page once."""
+    from PIL import Image
+
+    from diorama_core.appearance.surface_finish import KINDS, finish_picture, usual_finish
+
+    rules = []
+    for pattern in KINDS:
+        picture = Image.fromarray(finish_picture(usual_finish(pattern), "floor", SAMPLE_M)).resize(SAMPLE_PX)
+        buffer = io.BytesIO()
+        picture.save(buffer, "JPEG", quality=80)
+        uri = base64.b64encode(buffer.getvalue()).decode()
+        rules.append(f".dio .sample.{pattern} {{ background-image: url(data:image/jpeg;base64,{uri}) }}")
+    return f"<style>{''.join(rules)}</style>"
+
+
+def _hex(colour: tuple[float, float, float]) -> str:
+    return "#" + "".join(f"{round(255 * c):02x}" for c in colour)
+
+
+def _colour(words: str) -> tuple[float, float, float]:
+    digits = words.strip().removeprefix("#")
+    try:
+        if len(digits) != 6:
+            raise ValueError(words)
+        red, green, blue = (int(digits[i : i + 2], 16) / 255 for i in (0, 2, 4))
+    except ValueError as error:
+        raise InputError(f"“{words[:20]}” is no colour; write it like #c08040") from error
+    return red, green, blue
+
+
+def _number(words: str) -> float:
+    try:
+        number = float(words.replace(",", ".").strip().rstrip("%°"))
+    except ValueError as error:
+        raise InputError(f"“{words[:20]}” is no number; write it like 100") from error
+    if not np.isfinite(number):
+        raise InputError("the number is not finite; write it like 100")
+    return number

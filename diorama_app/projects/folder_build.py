@@ -1,0 +1,137 @@
+"""Many photos, unattended: each becomes a project; what is finished is kept, what fails is listed."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from PIL import Image
+
+from diorama_app.projects.options import BuildOptions, build_files
+from diorama_app.projects.photo_folder import FolderPhoto
+from diorama_app.projects.report import build_report
+from diorama_core.errors import DioramaError, ProjectError
+from diorama_core.io.atomic import write_atomically
+from diorama_core.io.bounded import read_json
+from diorama_core.progress import Progress
+from diorama_core.workers import Done, WorkerDied, Workers
+
+RECORD = "build.json"
+"""In a project: what it was built from and what came of it. Its presence means that the build was finished."""
+PICTURE = "exports/scene.jpg"
+PICTURE_WIDTH_PX = 640
+MAX_RECORD_BYTES = 8_000_000
+
+
+@dataclass(frozen=True)
+class PhotoResult:
+    """What became of one photo."""
+
+    photo: Path
+    project: Path
+    report: dict[str, Any] | None = None
+    """As `diorama build --json` prints it; None where it failed."""
+    error: str = ""
+    """Why it failed, in one line; empty where it did not."""
+    kept: bool = False
+    """Whether it was finished by an earlier run."""
+    seconds: float = 0.0
+    tries: int = 1
+
+    @property
+    def picture(self) -> Path:
+        """The picture of its scene."""
+        return self.project / PICTURE
+
+
+def build_photos(
+    photos: Sequence[FolderPhoto], options: BuildOptions, output: Path, workers: Workers, progress: Progress
+) -> tuple[PhotoResult, ...]:
+    """A project for each photo in the folder `output`, in the order of the photos.
+
+    What an earlier run finished with the same files and options is kept as it is, edits included. A photo whose process
+    died (memory, a crash in native code) is tried once more when the others are done; stage results that it had are
+    read from its project. On cancellation the photos that are done are kept.
+
+    Raises:
+        ProjectError: `output` cannot be written.
+        Cancelled: on request.
+    """
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ProjectError(f"{output}: the folder cannot be made ({error.strerror}); choose another place") from error
+    results: dict[FolderPhoto, PhotoResult] = {}
+    died: list[FolderPhoto] = []
+
+    def take(done: Iterable[Done[FolderPhoto, PhotoResult]], *, again: bool) -> None:
+        for piece in done:
+            if isinstance(piece.error, WorkerDied) and not again:
+                died.append(piece.item)
+                progress.check()
+                continue
+            result = piece.value or PhotoResult(piece.item.photo, output / piece.item.project, error=_reason(piece))
+            results[piece.item] = replace(result, tries=2 if again else 1)
+            progress.report(len(results) / len(photos), f"{len(results)} of {len(photos)}: {piece.item.photo.name}")
+
+    build = partial(build_photo, options=options, output=output)
+    take(workers.map(build, photos), again=False)
+    take(workers.map(build, died), again=True)
+    return tuple(results[photo] for photo in photos)
+
+
+def build_photo(photo: FolderPhoto, options: BuildOptions, output: Path) -> PhotoResult:
+    """One photo's project, kept where it is finished."""
+    began, project = time.perf_counter(), output / photo.project
+    key = photo.key(options)
+    finished = finished_report(project, key)
+    if finished is not None:
+        return PhotoResult(photo.photo, project, finished, kept=True)
+    (project / RECORD).unlink(missing_ok=True)
+    warnings: list[str] = []
+    room = build_files(photo.files(), options, project, Progress(), warnings.append)
+    report = build_report(room, ("scene.json",))
+    report["notes"] = [*warnings, *report["notes"]]
+    _draw(room, project / PICTURE)
+    seconds = time.perf_counter() - began
+    report["seconds"] = round(seconds, 2)
+    write_atomically(project / RECORD, json.dumps({"key": key, "report": report}).encode(), error=ProjectError)
+    return PhotoResult(photo.photo, project, report, seconds=seconds)
+
+
+def finished_report(project: Path, key: str) -> dict[str, Any] | None:
+    """What a finished build with this key reported; None where there is none."""
+    if not ((project / RECORD).exists() and (project / "scene.json").exists()):
+        return None
+    try:
+        record = read_json(project / RECORD, ProjectError, most=MAX_RECORD_BYTES)
+    except ProjectError:
+        return None  # a damaged record is no record: the photo is built again
+    same = isinstance(record, dict) and record.get("key") == key and isinstance(record.get("report"), dict)
+    return record["report"] if same else None
+
+
+def _draw(room: Any, path: Path) -> None:
+    import io
+
+    import diorama_core as diorama
+
+    width, height = room.inputs.photo.width, room.inputs.photo.height
+    scale = min(1.0, PICTURE_WIDTH_PX / width)
+    rgb = diorama.render(room, view="photo", size=(max(round(width * scale), 16), max(round(height * scale), 16)))
+    content = io.BytesIO()
+    Image.fromarray(rgb).save(content, "JPEG", quality=88)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_atomically(path, content.getvalue(), error=ProjectError)
+
+
+def _reason(piece: Done[FolderPhoto, PhotoResult]) -> str:
+    error = piece.error
+    if isinstance(error, DioramaError):
+        return " ".join(str(error).split())
+    return f"internal error ({type(error).__name__}: {' '.join(str(error).split())[:200]})"

@@ -1,0 +1,114 @@
+"""What a build is asked for besides the photo: one value for a command, a folder of photos and a program's request."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import diorama_core as diorama
+from diorama_core.errors import InputError
+
+if TYPE_CHECKING:
+    from diorama_core.api import Reconstruction
+    from diorama_core.library.record import ShapeLibrary
+    from diorama_core.pipeline.choices import NetworkChoice
+    from diorama_core.pipeline.stages import Stages
+    from diorama_core.progress import Progress
+    from diorama_core.protocols import PoseStage
+
+Room = Literal["closed", "plainrecon"]
+ROOMS: tuple[Room, ...] = ("closed", "plainrecon")
+POSES = ("render-and-compare", "correspondence", "zsp", "gigapose-like", "best-match")
+
+
+@dataclass(frozen=True)
+class PhotoFiles:
+    """A photo and what is known of it."""
+
+    photo: Path
+    boxes: Path | None = None
+    masks: Path | None = None
+    depth: Path | None = None
+    intrinsics: tuple[float, float, float, float] | None = None
+    """fx, fy, cx, cy in pixels of the upright original photo."""
+    fov_deg: float | None = None
+
+
+@dataclass(frozen=True)
+class BuildOptions:
+    """How scenes are built; the same for all photos of a folder."""
+
+    depth_scale: float = 1000.0
+    depth_encoding: Literal["linear", "sunrgbd"] = "linear"
+    profile: Literal["auto", "embedded", "foundation"] = "auto"
+    detector: str | None = None
+    depth_network: str | None = None
+    recipe: Literal["feasible", "paper", "all-in-one"] = "feasible"
+    library: str = "built-in"
+    room: Room = "closed"
+    pose: str | None = None
+    """One of `POSES`; None for the profile's."""
+
+    def networks(self, files: PhotoFiles) -> NetworkChoice:
+        """The networks that these options name.
+
+        Raises:
+            InputError: a network is named for what was given, or where none is to be used.
+        """
+        if self.profile == "embedded" and (self.detector or self.depth_network):
+            raise InputError("--profile embedded uses no network; leave out --detector and --depth-network")
+        if self.detector and (files.boxes or files.masks):
+            raise InputError("--detector finds what boxes or masks would say; give one of them")
+        if self.depth_network and files.depth:
+            raise InputError("--depth-network reads what --depth says; give one of them")
+        from diorama_core.pipeline.choices import NetworkChoice
+
+        return NetworkChoice(self.detector, self.depth_network)
+
+
+def build_files(
+    files: PhotoFiles, options: BuildOptions, output: Path, progress: Progress, warn: Callable[[str], None]
+) -> Reconstruction:
+    """Build the scene of a photo in a project folder; raises what `diorama_core.build` raises."""
+    return diorama.build(
+        files.photo,
+        boxes=files.boxes,
+        masks=files.masks,
+        depth=files.depth,
+        depth_scale=options.depth_scale,
+        depth_encoding=options.depth_encoding,
+        intrinsics=files.intrinsics,
+        fov_deg=files.fov_deg,
+        profile=options.profile,
+        networks=options.networks(files),
+        recipe=options.recipe,
+        library=options.library,
+        stages=lambda stages: _with_options(stages, files, options),
+        output=output,
+        progress=progress,
+        warn=warn,
+    )
+
+
+def _with_options(stages: Stages, files: PhotoFiles, options: BuildOptions) -> Stages:
+    """The profile's stages with those that options name."""
+    if options.room == "plainrecon":
+        from diorama_core.architecture.plainrecon.stage import PlainRecon
+
+        if files.depth is None and stages.depth_prediction is None:
+            raise InputError("--room plainrecon reads depth: add --depth FILE or a profile with a depth network")
+        stages = replace(stages, architecture=PlainRecon())
+    if options.pose is not None:
+        stages = replace(stages, pose=pose_solver(options.pose, diorama.open_library(options.library)))
+    return stages
+
+
+def pose_solver(name: str, library: ShapeLibrary) -> PoseStage:
+    """The solver with this name, one of `POSES`."""
+    from diorama_core.pose.correspondence.solvers import HALF_GRID, KINDS, CorrespondencePose
+    from diorama_core.pose.render_and_compare import RenderAndCompare
+
+    kind = next((kind for kind in KINDS if kind == name), None)
+    return RenderAndCompare(library) if kind is None else CorrespondencePose(library, kind, grid=HALF_GRID)

@@ -1,0 +1,155 @@
+"""Several photos of one room become one project."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import diorama_core as diorama
+from diorama_app.projects.options import BuildOptions
+from diorama_app.projects.photo_folder import FolderPhoto
+from diorama_core.artefacts import Inputs
+from diorama_core.errors import InputError
+from diorama_core.layout.recipes import recipe
+from diorama_core.multiview.found_poses import UnposedPhoto, find_poses
+from diorama_core.multiview.posed_photos import PosedPhoto, Poses
+from diorama_core.multiview.rooms import JoinedRoom, PosedInputs, build_room, in_room
+from diorama_core.perception.inputs import read_inputs
+from diorama_core.pipeline.presets import stages_for
+from diorama_core.pipeline.stages import Stages
+from diorama_core.progress import Progress
+from diorama_core.project.lock import ProjectLock
+from diorama_core.project.storage import Project
+from diorama_core.scene.types import Camera
+
+MAX_ASPECT_OFF = 0.02
+"""Of a photo's aspect ratio from its camera's: more is another picture, or one that was cut or turned."""
+
+
+@dataclass(frozen=True, eq=False)
+class PosedBuild:
+    """What was built."""
+
+    room: JoinedRoom
+    project: Project
+    photos: tuple[str, ...]
+    """Names of the photos that were used, the main one first."""
+    notes: tuple[str, ...]
+
+
+def poses_from_photos(photos: Sequence[FolderPhoto], progress: Progress) -> Poses:
+    """Cameras that the photos themselves tell, by what they have in common.
+
+    Raises:
+        UnavailableError: pycolmap is not installed.
+        InputError: fewer than two photos join, or one cannot be used.
+        Cancelled: on request.
+    """
+    unposed = []
+    for number, photo in enumerate(photos):
+        progress.report(0.1 * number / len(photos), f"Reading {photo.photo.name}")
+        files = photo.files()
+        given = read_inputs(files.photo, intrinsics=files.intrinsics, fov_deg=files.fov_deg).inputs
+        focal_px = given.photo.exif_focal_px if given.intrinsics is None else given.intrinsics.fx
+        unposed.append(UnposedPhoto(photo.photo.name, given.photo.rgb, focal_px))
+    return find_poses(unposed, progress.part(0.1, 1.0))
+
+
+def build_posed_photos(
+    photos: Sequence[FolderPhoto], poses: Poses, options: BuildOptions, output: Path, progress: Progress
+) -> PosedBuild:
+    """One project of all photos whose cameras are known; the photo with most boxes is the one it opens with.
+
+    Raises:
+        InputError: no photo has a camera, or a photo cannot be used.
+        ProjectError: `output` cannot be written, or holds something else.
+        LibraryError: there is no such library.
+        Cancelled: on request.
+    """
+    library = diorama.open_library(options.library)
+    pairs, notes = _paired(photos, poses)
+    read: list[tuple[str, Path, PosedInputs]] = []
+    for photo, posed in pairs:
+        inputs, warnings = _inputs(photo)
+        notes += [f"{photo.photo.name}: {line}" for line in warnings]
+        read.append((photo.photo.name, photo.photo, _posed(photo, inputs, posed)))
+    read.sort(key=lambda row: (-len(row[2].inputs.boxes), row[0]))
+
+    def choose(inputs: Inputs) -> Stages:
+        return stages_for(options.profile, inputs, library, recipe=options.recipe)
+
+    project = Project.create(output)
+    with ProjectLock(project.folder, "diorama build"):
+        placed, _ = in_room(
+            [row[2] for row in read], choose, metric=poses.metric, up=poses.up, progress=progress.part(0.0, 0.15)
+        )
+        layout = recipe(options.recipe, library, depth_measured=True)
+        room = build_room(placed, library, choose, layout, progress.part(0.15, 1.0))
+        scale = () if poses.metric else ("scale of the cameras: from the usual sizes of the named things",)
+        all_notes = (*poses.notes, *notes, *scale, *room.notes)
+        _save(project, room, read, placed, options.library, all_notes)
+    return PosedBuild(room, project, tuple(row[0] for row in read), all_notes)
+
+
+def _paired(photos: Sequence[FolderPhoto], poses: Poses) -> tuple[list[tuple[FolderPhoto, PosedPhoto]], list[str]]:
+    """Photos with their cameras, by name, or by the name without its ending; and a line for those without."""
+    by_name = {Path(p.name).name: p for p in poses.photos}
+    by_stem = {Path(p.name).stem: p for p in poses.photos}
+    pairs, without = [], []
+    for photo in photos:
+        posed = by_name.get(photo.photo.name) or by_stem.get(photo.photo.stem)
+        if posed is None:
+            without.append(photo.photo.name)
+        else:
+            pairs.append((photo, posed))
+    if not pairs:
+        raise InputError("none of the photos has a camera of its name in the poses")
+    return pairs, [f"no camera is known of {', '.join(without)}: left out"] if without else []
+
+
+def _inputs(photo: FolderPhoto) -> tuple[Inputs, tuple[str, ...]]:
+    files = photo.files()
+    read = read_inputs(files.photo, boxes=files.boxes, masks=files.masks)
+    return read.inputs, read.warnings
+
+
+def _posed(photo: FolderPhoto, inputs: Inputs, posed: PosedPhoto) -> PosedInputs:
+    k = posed.camera.intrinsics
+    width, height = inputs.photo.width, inputs.photo.height
+    if abs(k.width / k.height * height / width - 1.0) > MAX_ASPECT_OFF:
+        raise InputError(
+            f"{photo.photo.name} has {width} x {height} pixels, its camera {k.width} x {k.height}: another picture?"
+        )
+    camera = Camera(k.scaled(width, height), posed.camera.T_world_camera)
+    return PosedInputs(replace(inputs, intrinsics=camera.intrinsics), camera)
+
+
+def _save(
+    project: Project,
+    room: JoinedRoom,
+    read: Sequence[tuple[str, Path, PosedInputs]],
+    placed: Sequence[PosedInputs],
+    library: str,
+    notes: tuple[str, ...],
+) -> None:
+    """The project with the main photo; the others lie in `photos`, their cameras in `project.json`."""
+    folder = project.folder / "photos"
+    folder.mkdir(exist_ok=True)
+    for name, path, _ in read:
+        shutil.copyfile(path, folder / name)
+    cameras = [
+        {
+            "photo": name,
+            "T_world_camera": [[round(float(v), 6) for v in row] for row in posed.camera.T_world_camera],
+            "intrinsics": [float(v) for v in (k.width, k.height, k.fx, k.fy, k.cx, k.cy)],
+        }
+        for (name, _, _), posed in zip(read, placed, strict=True)
+        for k in (posed.camera.intrinsics,)
+    ]
+    project.save_inputs(replace(room.main.inputs, intrinsics=placed[0].camera.intrinsics))
+    project.save_textures(room.textures)
+    project.save_scene(room.scene)
+    project.save_stage_runs(room.main.runs)
+    project.update_info(library=library, notes=list(notes), cameras=cameras)

@@ -1,0 +1,53 @@
+"""What people and programs upload to begin a project, decoded in a process of its own with limited memory."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from diorama_core.io.limited import LimitedProcess
+from diorama_core.perception.inputs import ReadInputs, read_inputs
+from diorama_core.pipeline import codec
+
+
+@dataclass(frozen=True)
+class Upload:
+    """What `read_inputs` takes, as it was uploaded."""
+
+    photo: bytes
+    name: str
+    depth: bytes | None = None
+    boxes: bytes | None = None
+    masks: bytes | None = None
+    intrinsics: tuple[float, float, float, float] | None = None
+    fov_deg: float | None = None
+    depth_scale: float = 1000.0
+    """Units of a depth PNG per metre."""
+
+
+def decoded(upload: Upload, process: LimitedProcess) -> ReadInputs:
+    """The checked inputs of an upload.
+
+    Args:
+        upload: what came.
+        process: where its files are decoded.
+
+    Raises:
+        InputError: a file cannot be read, or needs more memory or time than a file of its kind should.
+    """
+    packed, warnings = process.call(upload.name, read_packed, upload)
+    return ReadInputs(codec.load(packed), warnings)
+
+
+def read_packed(upload: Upload) -> tuple[bytes, tuple[str, ...]]:
+    """Checked inputs, packed, and warnings. Runs in the decoding process."""
+    read = read_inputs(
+        upload.photo,
+        name=upload.name,
+        depth=upload.depth,
+        depth_scale=upload.depth_scale,
+        boxes=upload.boxes,
+        masks=upload.masks,
+        intrinsics=upload.intrinsics,
+        fov_deg=upload.fov_deg,
+    )
+    return codec.dump(read.inputs), read.warnings

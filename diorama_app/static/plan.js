@@ -1,0 +1,170 @@
+// The plan over the 3D view: the room from above with thick walls, lengths, door swings and furniture. What is dragged
+// follows the hand at once; the server hears when it is let go of. Metres; the page's y runs down, the world's up.
+(() => {
+  const SVG = "http://www.w3.org/2000/svg";
+  const ROOM_PX = 74, TOP_PX = 64, GRID_M = 0.05, CORNER_PX = 6, AWAY_PX = 30, CLICK_PX = 4, TEXT_PX = 12, LETTER_PX = 6.8;
+  let about = null, view = null, held = null;
+
+  const send = (what, arg) => {
+    const button = document.getElementById("dio-plan-send");
+    if (!button) return;
+    button.dataset.do = what;
+    button.dataset.arg = JSON.stringify(arg);
+    button.click();
+  };
+  const add = (parent, tag, attributes = {}, words = "") => {
+    const node = document.createElementNS(SVG, tag);
+    for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
+    if (words) node.textContent = words;
+    parent.append(node);
+    return node;
+  };
+  const path = (points, closed) => points.map((p, k) => `${k ? "L" : "M"}${toPage(p).join(" ")}`).join("") + (closed ? "Z" : "");
+  const closed = (outlines) => outlines.map((o) => path(o, true)).join("");
+  const snapped = (value) => about.snap ? Math.round(value / GRID_M) * GRID_M : value;
+  const dot = (a, b) => a[0] * b[0] + a[1] * b[1];
+  const plus = (a, b, by = 1) => [a[0] + by * b[0], a[1] + by * b[1]];
+  const length = (metres) => about.feet ? null : `${metres.toFixed(2)} m`;
+
+  // The whole plan fits between the tools and the edges; the scale is pixels a metre.
+  const fit = (box) => {
+    const [[x0, y0], [x1, y1]] = about.bounds, width = box.width - 2 * ROOM_PX, height = box.height - TOP_PX - ROOM_PX;
+    const scale = Math.max(1, Math.min(width / Math.max(x1 - x0, 0.1), (height - ROOM_PX) / Math.max(y1 - y0, 0.1)));
+    return { scale, x: box.width / 2 - scale * (x0 + x1) / 2, y: (TOP_PX + box.height) / 2 + scale * (y0 + y1) / 2 };
+  };
+  const toPage = ([x, y]) => [view.x + view.scale * x, view.y - view.scale * y];
+  const metres = (event, from) => [(event.clientX - from[0]) / view.scale, -(event.clientY - from[1]) / view.scale];
+
+  // -- what can be dragged: what it shows while held, and what it tells when let go of -------------------------------
+  const wall = (group, w) => ({
+    shown: (d) => {
+      const by = snapped(dot(d, w.outward)), a = plus(w.start, w.outward, by), b = plus(w.end, w.outward, by);
+      ghost(group, path([a, b]), plus([(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], w.outward, -18 / view.scale),
+        `${by >= 0 ? "+" : "−"}${length(Math.abs(by)) ?? ""}`);
+    },
+    told: (d) => { const by = snapped(dot(d, w.outward)); if (by) send("wall", [w.id, by]); },
+    clicked: () => send("surface", w.id),
+  });
+  const corner = (group, c) => ({
+    shown: (d) => {
+      const at = plus(c.at, d.map(snapped)), legs = c.walls.map((id) => about.walls.find((w) => w.id === id));
+      ghost(group, legs.map((w) => path([at, plus(w === legs[0] ? w.start : w.end, w.outward, dot(d.map(snapped), w.outward))])).join(""));
+    },
+    told: (d) => { const by = d.map(snapped); if (by[0] || by[1]) send("corner", [...c.walls, ...by]); },
+  });
+  const piece = (node, p) => {
+    const way = (d) => (p.along ? p.along.map((v) => v * snapped(dot(d, p.along))) : d.map(snapped));
+    return {
+      shown: (d) => { const by = way(d); node.setAttribute("transform", `translate(${by[0] * view.scale} ${-by[1] * view.scale})`); },
+      told: (d) => { const by = way(d); if (by[0] || by[1]) send("move", [p.id, ...by]); else node.removeAttribute("transform"); },
+      clicked: (event) => send("select", [p.id, event.shiftKey || event.ctrlKey || event.metaKey]),
+    };
+  };
+  const ghost = (group, d, at, words) => {
+    group.querySelectorAll(".ghost, .ghost-length").forEach((old) => old.remove());
+    add(group, "path", { class: "ghost", d });
+    if (at && words) label(group, at, words, "length ghost-length");
+  };
+  const label = (group, at, words, kind, turn = 0) =>
+    add(group, "text", { class: kind, transform: `translate(${toPage(at).join(" ")}) rotate(${turn})` }, words);
+  const hold = (node, what) => node.addEventListener("pointerdown", (event) => {
+    if (event.button !== 0) return;
+    event.stopPropagation();
+    node.setPointerCapture(event.pointerId);
+    held = { node, what, from: [event.clientX, event.clientY], moved: false };
+  });
+  addEventListener("pointermove", (event) => {
+    if (!held) return;
+    held.moved ||= Math.hypot(event.clientX - held.from[0], event.clientY - held.from[1]) > CLICK_PX;
+    if (held.moved) held.what.shown(metres(event, held.from));
+  });
+  addEventListener("pointerup", (event) => {
+    const { what, from, moved } = held ?? {};
+    held = null;
+    if (moved) what.told(metres(event, from));
+    else what?.clicked?.(event);
+  });
+  addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" || !held) return;
+    event.stopImmediatePropagation();
+    held = null;
+    draw();
+  }, true);
+
+  const typed = (layer, w, at) => {
+    const field = Object.assign(document.createElement("input"), { value: w.length });
+    field.setAttribute("aria-label", `Length of ${w.name}`);
+    [field.style.left, field.style.top] = toPage(at).map((v) => `${v}px`);
+    const end = () => { field.onblur = null; field.remove(); };
+    field.onkeydown = (event) => {
+      event.stopPropagation();
+      if (event.key === "Enter") send("length", [w.id, field.value]);
+      if (event.key === "Enter" || event.key === "Escape") end();
+    };
+    field.onblur = end;
+    layer.append(field);
+    field.focus();
+    field.select();
+  };
+  const measure = (layer, group, w) => {
+    const away = AWAY_PX / view.scale + w.thickness, a = plus(w.start, w.outward, away), b = plus(w.end, w.outward, away);
+    const tick = 5 / view.scale, middle = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
+    add(group, "path", { class: "measure", d: path([a, b]) + [a, b].map((p) =>
+      path([plus(p, w.outward, -tick), plus(p, w.outward, tick)])).join("") });
+    let turn = -Math.atan2(b[1] - a[1], b[0] - a[0]) * 180 / Math.PI;
+    if (turn > 90.01) turn -= 180; else if (turn <= -89.99) turn += 180;
+    const words = label(group, middle, w.length, "length", turn);
+    words.dataset.wall = w.id;
+    words.addEventListener("click", () => typed(layer, w, middle));
+  };
+
+  const draw = () => {
+    const old = document.getElementById("dio-plan");
+    if (!about) return old?.remove();
+    const layer = old ?? Object.assign(document.createElement("div"), { id: "dio-plan" });
+    if (!old) {
+      layer.setAttribute("role", "region");
+      layer.setAttribute("aria-label", "Plan");
+      document.body.append(layer);
+    }
+    view = fit(layer.getBoundingClientRect());
+    const svg = document.createElementNS(SVG, "svg");
+    const group = add(svg, "g");
+    add(group, "path", { class: "floor", d: closed(about.floors) });
+    for (const p of about.pieces) {
+      const node = add(group, "g", {
+        class: ["piece", p.on && "on", p.overhead && "overhead", p.flat && "flat", p.along && "opening"].filter(Boolean).join(" "),
+      });
+      node.dataset.id = p.id;
+      add(node, "title", {}, p.label);
+      add(node, "path", { d: closed(p.outlines) });
+      const [across, up] = p.room.map((v) => v * view.scale), wide = p.label.length * LETTER_PX;
+      if (across > wide && up > 2 * TEXT_PX) label(node, p.at, p.label, "label");
+      else if (up > wide && across > 2 * TEXT_PX) label(node, p.at, p.label, "label", -90);
+      hold(node, piece(node, p));
+    }
+    add(group, "path", { class: "wall", "fill-rule": "evenodd", d: closed(about.solid) });
+    for (const line of about.swings) add(group, "path", { class: "line swing", d: path(line) });
+    for (const line of about.panes) add(group, "path", { class: "line", d: path(line) });
+    for (const w of about.walls) {
+      const grip = add(group, "path", { class: `grip ${w.on ? "on" : ""}`, d: path([w.start, w.end].map((p) => plus(p, w.outward, w.thickness / 2))) });
+      grip.dataset.wall = w.id;
+      hold(grip, wall(group, w));
+      measure(layer, group, w);
+    }
+    group.append(...group.querySelectorAll(".piece.opening"));
+    for (const c of about.corners) {
+      const node = add(group, "circle", { class: "corner", cx: toPage(c.at)[0], cy: toPage(c.at)[1], r: CORNER_PX });
+      node.dataset.walls = c.walls.join(" ");
+      hold(node, corner(group, c));
+    }
+    svg.addEventListener("pointerdown", (event) => { if (event.target === svg || event.target.matches(".floor")) send("select", [null, false]); });
+    layer.querySelector("svg")?.remove();
+    layer.prepend(svg);
+  };
+  addEventListener("dio-measured", () => { if (about && !held) draw(); });
+  window.__dioPlan = { told: (news) => { about = news; if (!held) draw(); }, toPage: (point) => {
+    const box = document.getElementById("dio-plan").getBoundingClientRect(), [x, y] = toPage(point);
+    return [box.left + x, box.top + y];
+  } };
+})();

@@ -1,0 +1,36 @@
+// The start page opens by itself once in a tab, where the program was started without a project. Its labels that stand for
+// file fields are pressed by keys, too; the focus goes into it, and newcomers are shown around when it closes.
+(() => {
+  const BEGUN = "diorama-begun", WANTED = "diorama-tour-wanted";
+  const note = (key, value) => { try { sessionStorage.setItem(key, value); } catch { return; } };
+  const noted = (key) => { try { return sessionStorage.getItem(key); } catch { return "not remembered"; } };
+  let open = false;
+  setInterval(() => {
+    const opener = document.getElementById("dio-start-open");
+    if (opener?.dataset.auto !== undefined && !noted(BEGUN) && document.documentElement.classList.contains("dio-ready")) {
+      note(BEGUN, "yes");
+      opener.click();
+    }
+    const page = document.getElementById("dio-start");
+    if (page && !open) {
+      note(BEGUN, "yes");
+      page.querySelector(".choose")?.focus();
+    }
+    open = page !== null;
+  }, 200);
+  addEventListener("click", (event) => {
+    const chosen = event.target.closest?.("#dio-start [data-do]")?.dataset.do;
+    if (["example", "empty", "close"].includes(chosen)) note(WANTED, chosen === "close" ? "here" : location.search);
+  }, true);
+  addEventListener("keydown", (event) => {
+    if ((event.key === "Enter" || event.key === " ") && event.target.matches?.("#dio-start label.choose")) {
+      event.preventDefault();
+      event.target.click();
+    }
+    if (event.key !== "Tab" || !open) return;
+    const reached = [...document.querySelectorAll("#dio-start :is(button, input, textarea, [tabindex])")];
+    const first = reached[0], last = reached[reached.length - 1];
+    if (event.shiftKey && document.activeElement === first) { event.preventDefault(); last?.focus(); }
+    if (!event.shiftKey && document.activeElement === last) { event.preventDefault(); first?.focus(); }
+  }, true);
+})();

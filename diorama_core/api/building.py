@@ -1,0 +1,236 @@
+"""Photos and descriptions become scenes."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from diorama_core.api.reconstruction import Reconstruction, open_library
+
+if TYPE_CHECKING:
+    from diorama_core.artefacts import Inputs
+    from diorama_core.library.record import ShapeLibrary
+    from diorama_core.models.store import ModelStore
+    from diorama_core.perception.input_arrays import Boxes, Depth, Masks, Picture
+    from diorama_core.perception.input_depth import DepthEncoding
+    from diorama_core.pipeline.choices import NetworkChoice
+    from diorama_core.pipeline.fallback import ChooseStages
+    from diorama_core.pipeline.presets import Profile
+    from diorama_core.pipeline.stages import Stages
+    from diorama_core.progress import Progress
+
+log = logging.getLogger(__name__)
+
+Recipe = Literal["feasible", "paper", "all-in-one"]
+
+
+def build(
+    photo: Path | str | bytes | Picture,
+    *,
+    boxes: Path | str | bytes | Boxes | None = None,
+    masks: Path | str | bytes | Masks | None = None,
+    depth: Path | str | bytes | Depth | None = None,
+    depth_scale: float = 1000.0,
+    depth_encoding: DepthEncoding = "linear",
+    intrinsics: tuple[float, float, float, float] | None = None,
+    fov_deg: float | None = None,
+    profile: Profile = "auto",
+    networks: NetworkChoice | None = None,
+    recipe: Recipe = "feasible",
+    library: str | ShapeLibrary = "built-in",
+    stages: Callable[[Stages], Stages] | None = None,
+    output: Path | str | None = None,
+    progress: Progress | None = None,
+    warn: Callable[[str], None] = log.warning,
+) -> Reconstruction:
+    """Build a scene from a photo.
+
+    Args:
+        photo: path or content of a picture file, or its sRGB pixels.
+        boxes: path or content of a JSON list of `{"bbox": [x1, y1, x2, y2], "class": "chair"}`, or that list; in pixels
+            of the upright original photo.
+        masks: PNG with one colour or one id per object, black or 0 for background; or an array of ids.
+        depth: z in camera: 16-bit PNG in 1 / `depth_scale` metres, `.npy` or EXR in metres, or an array of metres; 0
+            and NaN where missing.
+        depth_scale: units per metre of a PNG.
+        depth_encoding: "sunrgbd" where a PNG's bits are rotated as in SUN RGB-D.
+        intrinsics: fx, fy, cx, cy in pixels of the upright original photo.
+        fov_deg: horizontal field of view in degrees, instead of `intrinsics`.
+        profile: "auto" uses the networks on this machine, "embedded" none, "foundation" insists on the paper's.
+        networks: detector and depth network by id, instead of the best ones on this machine.
+        recipe: of the layout optimiser.
+        library: where shapes come from: a library, or a name that `open_library` understands.
+        stages: maps the profile's stages to those that run:
+            `lambda stages: dataclasses.replace(stages, camera=MyCamera())`.
+        output: project folder to build in. Stage results are cached there, and an interrupted build resumes.
+        progress: reports and cancellation.
+        warn: receives each warning about the inputs; logs it by default.
+
+    Raises:
+        InputError: an input cannot be used.
+        LibraryError: the library does not exist.
+        UnavailableError: the foundation profile lacks a network.
+        ProjectError: `output` cannot be written, or holds something else.
+        Cancelled: on request; finished stages stay in the cache of `output`.
+    """
+    from diorama_core.perception import input_arrays
+    from diorama_core.perception.inputs import read_inputs
+
+    read = read_inputs(
+        input_arrays.photo_file(photo),
+        depth=input_arrays.depth_file(depth),
+        depth_scale=depth_scale,
+        depth_encoding=depth_encoding,
+        intrinsics=intrinsics,
+        fov_deg=fov_deg,
+        boxes=input_arrays.boxes_file(boxes),
+        masks=input_arrays.masks_file(masks),
+    )
+    for warning in read.warnings:
+        warn(warning)
+    opened, name = _opened(library)
+    choose = _choice(read.inputs, opened, profile, recipe, stages, networks)
+    return _built(read.inputs, read.warnings, opened, name, choose, output, progress)
+
+
+def build_from_text(
+    prompt: str,
+    *,
+    seed: int = 0,
+    profile: Profile = "auto",
+    recipe: Recipe = "feasible",
+    library: str | ShapeLibrary = "built-in",
+    stages: Callable[[Stages], Stages] | None = None,
+    output: Path | str | None = None,
+    progress: Progress | None = None,
+    warn: Callable[[str], None] = log.warning,
+) -> Reconstruction:
+    """Build a scene from a description: a room composed from the library's shapes, with every unmet wish named.
+
+    A language model, where the environment names one (DIORAMA_LMM_BASE_URL), lists what the room holds and mends the
+    result. Where it names an image endpoint (DIORAMA_IMAGE_BASE_URL), that draws a picture, which `build` reads like a
+    photo.
+
+    Args:
+        prompt: description of the room and its furniture, in English.
+        seed: random seed of the room.
+        profile, recipe, stages: as for `build`, for the picture of an image endpoint; a composed room needs none.
+        library, output, progress, warn: as for `build`.
+
+    Raises:
+        InputError: the prompt cannot be used.
+        UnavailableError: the endpoint does not answer.
+        LibraryError, ProjectError, Cancelled: as for `build`.
+    """
+    from diorama_core.progress import Progress
+    from diorama_core.text.pictures import ImageSettings, picture_of
+
+    progress = progress or Progress()
+    opened, name = _opened(library)
+    endpoint = ImageSettings.from_environment()
+    if endpoint is None:
+        return _composed(prompt, opened, name, seed, output, progress, warn)
+    made = picture_of(prompt, endpoint, progress.part(0.0, 0.2))
+    for note in made.notes:
+        warn(note)
+    choose = _choice(made.inputs, opened, profile, recipe, stages)
+    return _built(made.inputs, made.notes, opened, name, choose, output, progress.part(0.2, 1.0))
+
+
+def _composed(
+    prompt: str,
+    library: ShapeLibrary,
+    library_name: str | None,
+    seed: int,
+    output: Path | str | None,
+    progress: Progress,
+    warn: Callable[[str], None],
+) -> Reconstruction:
+    """The composed room of a description, saved in a project folder where one is given."""
+    from diorama_core.perception.language.client import LmmSettings
+    from diorama_core.project.lock import ProjectLock
+    from diorama_core.project.storage import Project
+    from diorama_core.text.scene_from_text import scene_from_text
+
+    made = scene_from_text(prompt, library, seed=seed, language_model=LmmSettings.from_environment(), progress=progress)
+    for note in made.notes:
+        warn(note)
+    project = None if output is None else Project.create(Path(output))
+    if project is not None:
+        with ProjectLock(project.folder, "diorama text"):
+            if library_name is not None:
+                project.update_info(library=library_name)
+            project.save_textures(made.textures)
+            project.save_scene(made.scene)
+            project.update_info(notes=list(made.notes))
+    return Reconstruction(
+        scene=made.scene,
+        library=library,
+        textures=made.textures,
+        warnings=made.notes,
+        library_name=library_name,
+        project=project,
+    )
+
+
+def _opened(library: str | ShapeLibrary) -> tuple[ShapeLibrary, str | None]:
+    """A library and the name that opens it again, if it has one."""
+    return (open_library(library), library) if isinstance(library, str) else (library, None)
+
+
+def _choice(
+    inputs: Inputs,
+    library: ShapeLibrary,
+    profile: Profile,
+    recipe: str,
+    change: Callable[[Stages], Stages] | None,
+    networks: NetworkChoice | None = None,
+) -> ChooseStages:
+    """How the stages are chosen for the networks that can be used."""
+    from diorama_core.pipeline.presets import stages_for
+
+    def choose(store: ModelStore) -> Stages:
+        stages = stages_for(profile, inputs, library, recipe=recipe, store=store, choice=networks)
+        return stages if change is None else change(stages)
+
+    return choose
+
+
+def _built(
+    inputs: Inputs,
+    warnings: tuple[str, ...],
+    library: ShapeLibrary,
+    library_name: str | None,
+    choose: ChooseStages,
+    output: Path | str | None,
+    progress: Progress | None,
+) -> Reconstruction:
+    """The scene of `inputs`, built in a project folder or, without one, in memory."""
+    from diorama_core.project.build import build_project, build_with_usable_networks
+    from diorama_core.project.lock import ProjectLock
+    from diorama_core.project.storage import Project
+
+    project = None
+    if output is None:
+        built = build_with_usable_networks(inputs, library, choose, progress=progress)
+    else:
+        project = Project.create(Path(output))
+        with ProjectLock(project.folder, "diorama build"):
+            if library_name is not None:
+                project.update_info(library=library_name)
+            built = build_project(project, inputs, library, choose=choose, warnings=warnings, progress=progress)
+    return Reconstruction(
+        scene=built.scene,
+        library=library,
+        textures=built.textures,
+        given=replace(inputs, boxes=built.inputs.boxes),
+        built=built,
+        stages=built.stages,
+        layout=built.layout,
+        warnings=warnings,
+        library_name=library_name,
+        project=project,
+    )

@@ -1,0 +1,129 @@
+"""A scene with what belongs to it, and the project folders it is kept in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from diorama_core.artefacts import Inputs, LayoutReport
+    from diorama_core.library.record import ShapeLibrary
+    from diorama_core.perception.input_arrays import Picture
+    from diorama_core.pipeline.run import Built
+    from diorama_core.pipeline.stages import Stages
+    from diorama_core.project.storage import Project
+    from diorama_core.scene.types import Scene
+
+
+@dataclass(frozen=True, eq=False)
+class Reconstruction:
+    """A scene with the library of its shapes, the pictures of its planes and what it was made from.
+
+    A value: `optimise` returns a new one, and `dataclasses.replace(room, scene=...)` gives one with another scene.
+    """
+
+    scene: Scene
+    """Camera, architecture, objects and support graph; frames and units as in `diorama_core.scene.frames`."""
+    library: ShapeLibrary
+    """Where the shapes of the scene's objects are."""
+    textures: Mapping[str, Picture]
+    """Pictures of the planes, sRGB, by `Plane.texture`."""
+    given: Inputs | None = None
+    """What the user gave and the boxes that a network found, where this was built; see `inputs`."""
+    built: Built | None = None
+    """Artefacts of all stages, where this was built; None where it was loaded."""
+    stages: Stages | None = None
+    """The implementations that built it; None where it was loaded."""
+    layout: LayoutReport | None = None
+    """Report of the last layout run; None where none ran."""
+    warnings: tuple[str, ...] = ()
+    """Warnings about the inputs."""
+    library_name: str | None = None
+    """Name that opens the library again; None where a library itself was given."""
+    project: Project | None = None
+    """The project folder that it was loaded from or built in."""
+
+    @property
+    def inputs(self) -> Inputs | None:
+        """The photo and what was given with it; None for a scene without a photo.
+
+        Raises:
+            ProjectError: the project's copy is damaged.
+        """
+        if self.given is not None or self.project is None:
+            return self.given
+        return self.project.load_inputs()
+
+    def save(self, folder: Path | str) -> None:
+        """Write a project folder; see `diorama_core.save`."""
+        save(self, folder)
+
+
+def open_library(name: str = "built-in") -> ShapeLibrary:
+    """A library of shapes by name.
+
+    Args:
+        name: `built-in`; the name or the path of a stored library; or several joined by `+`.
+
+    Raises:
+        LibraryError: one of them does not exist.
+    """
+    from diorama_core.library import store
+
+    return store.open_library(name)
+
+
+def load(folder: Path | str, *, library: ShapeLibrary | None = None) -> Reconstruction:
+    """The scene of a project folder.
+
+    Args:
+        folder: written by `save`, `build`, the command line or the editor.
+        library: where its shapes are; by default the library that the project was built with.
+
+    Raises:
+        ProjectError: the folder is not a project, or has no scene.
+        SceneError: the scene file is not valid.
+        LibraryError: the project's library does not exist.
+    """
+    from diorama_core.project.storage import Project
+
+    project = Project.open(Path(folder))
+    scene, name = project.load_scene(), project.library_name
+    return Reconstruction(
+        scene=scene,
+        library=library or open_library(name),
+        textures=project.textures(scene),
+        library_name=name,
+        project=project,
+    )
+
+
+def save(reconstruction: Reconstruction, folder: Path | str) -> None:
+    """Write a project folder, which `load`, the command line and the editor open.
+
+    Args:
+        reconstruction: what to save.
+        folder: a new or empty folder, or a project, whose scene is replaced and remains among its backups.
+
+    Raises:
+        ProjectError: the folder cannot be written, or holds something else.
+    """
+    from diorama_core.project.build import save_built
+    from diorama_core.project.storage import Project
+
+    project, own = Project.create(Path(folder)), reconstruction.project
+    if own is not None and own.folder.resolve() == project.folder.resolve():
+        project.save_scene(reconstruction.scene)
+        return
+    inputs, built = reconstruction.inputs, reconstruction.built
+    if reconstruction.library_name is not None:
+        project.update_info(library=reconstruction.library_name)
+    if inputs is not None:
+        project.save_inputs(inputs, reconstruction.warnings)
+    if inputs is not None and built is not None:
+        save_built(project, replace(built, scene=reconstruction.scene), inputs, reconstruction.warnings)
+    else:
+        project.save_textures(reconstruction.textures)
+        project.save_scene(reconstruction.scene)

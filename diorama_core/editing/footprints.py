@@ -1,0 +1,101 @@
+"""Outlines of objects on the floor, many at once: overlap, gaps, containment. Seen from above, in metres."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from diorama_core.geometry.planes import in_polygon
+from diorama_core.scene.types import SceneObject
+
+Points: TypeAlias = Float[np.ndarray, "n 2"]
+Quads: TypeAlias = Float[np.ndarray, "n 4 2"]
+Quad: TypeAlias = Float[np.ndarray, "4 2"]
+Outline: TypeAlias = Float[np.ndarray, "k 2"]
+
+_UNIT = 0.5 * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+
+
+def footprints(size_m: Float[np.ndarray, "_"], places: Points, yaws_rad: Float[np.ndarray, "n"]) -> Quads:
+    """Outlines of a box at places and headings, counter-clockwise; `size_m` begins with its depth and width."""
+    local = _UNIT * np.asarray(size_m)[:2]
+    c, s = np.cos(yaws_rad), np.sin(yaws_rad)
+    turns = np.stack([np.stack([c, s], axis=-1), np.stack([-s, c], axis=-1)], axis=-2)
+    return local @ turns + places[:, None]
+
+
+def footprint_of(item: SceneObject) -> Quad:
+    """The outline of an object's box, taken as upright."""
+    return footprints(item.size_m, item.pose.position[None, :2], np.array([item.pose.yaw_rad]))[0]
+
+
+def overlapping(quads: Quads, other: Outline, slack_m: float = 1e-4) -> Bool[np.ndarray, "n"]:
+    """Which outlines share more than `slack_m` in every direction with another (separating axes)."""
+    apart = np.zeros(len(quads), dtype=bool)
+    axes = _normals(other)
+    theirs, ours = other @ axes.T, quads @ axes.T
+    apart |= (
+        (ours.max(axis=1) <= theirs.min(axis=0) + slack_m) | (theirs.max(axis=0) <= ours.min(axis=1) + slack_m)
+    ).any(axis=1)
+    edges = quads[:, 1:3] - quads[:, 0:2]
+    own = np.stack([edges[..., 1], -edges[..., 0]], axis=-1)
+    own /= np.maximum(np.linalg.norm(own, axis=-1, keepdims=True), 1e-12)
+    ours, theirs = np.einsum("nkd,nad->nak", quads, own), np.einsum("kd,nad->nak", other, own)
+    apart |= (
+        (ours.max(axis=2) <= theirs.min(axis=2) + slack_m) | (theirs.max(axis=2) <= ours.min(axis=2) + slack_m)
+    ).any(axis=1)
+    return ~apart
+
+
+def gaps(quads: Quads, other: Outline) -> Float[np.ndarray, "n"]:
+    """Free distance between each outline and another; 0 where they overlap."""
+    near = np.minimum(
+        _to_edges(quads, np.broadcast_to(other, (len(quads), *other.shape))),
+        _to_edges(np.broadcast_to(other, (len(quads), *other.shape)), quads),
+    )
+    return np.where(overlapping(quads, other, 0.0), 0.0, near)
+
+
+def within(quads: Quads, outline: Outline, slack_m: float = 0.002) -> Bool[np.ndarray, "n"]:
+    """Which outlines lie inside a room's, convex or not, up to a slack."""
+    centre = quads.mean(axis=1, keepdims=True)
+    drawn_in = quads + (centre - quads) * slack_m / np.maximum(
+        np.linalg.norm(centre - quads, axis=-1, keepdims=True), slack_m
+    )
+    inside: Bool[np.ndarray, "n"] = np.array(np.asarray(in_polygon(drawn_in, outline)).all(axis=1))
+    for corner in outline:  # a corner of the room that points into the outline
+        inside &= ~_holds(drawn_in, corner)
+    return inside
+
+
+def to_outline(points: Points, outline: Outline) -> Float[np.ndarray, "n"]:
+    """Distance of points from the nearest edge of an outline."""
+    return _points_to_edges(points[:, None], np.broadcast_to(outline, (len(points), *outline.shape)))[:, 0]
+
+
+def _holds(quads: Quads, point: Float[np.ndarray, "2"]) -> Bool[np.ndarray, "n"]:
+    edges = np.roll(quads, -1, axis=1) - quads
+    away = point - quads
+    return np.asarray((edges[..., 0] * away[..., 1] - edges[..., 1] * away[..., 0] > 0).all(axis=1))
+
+
+def _normals(outline: Outline) -> Float[np.ndarray, "k 2"]:
+    edges = np.roll(outline, -1, axis=0) - outline
+    normals = np.stack([edges[:, 1], -edges[:, 0]], axis=1)
+    return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+
+
+def _to_edges(a: Float[np.ndarray, "n p 2"], b: Float[np.ndarray, "n k 2"]) -> Float[np.ndarray, "n"]:
+    return _points_to_edges(a, b).min(axis=1)
+
+
+def _points_to_edges(
+    points: Float[np.ndarray, "n p 2"], outline: Float[np.ndarray, "n k 2"]
+) -> Float[np.ndarray, "n p"]:
+    begin, edge = outline, np.roll(outline, -1, axis=1) - outline
+    away = points[:, :, None] - begin[:, None]
+    along = (away * edge[:, None]).sum(-1) / np.maximum((edge**2).sum(-1), 1e-12)[:, None]
+    nearest = away - np.clip(along, 0.0, 1.0)[..., None] * edge[:, None]
+    return np.linalg.norm(nearest, axis=-1).min(axis=2)

@@ -1,0 +1,93 @@
+"""Which things still find a place in a room: on its free floor, or on one of its walls."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float
+
+from diorama_core.geometry.planes import in_polygon
+from diorama_core.library.record import Shape
+from diorama_core.library.taxonomy import resolve
+from diorama_core.scene.types import Scene
+
+CELL_M = 0.05
+MAX_CELLS = 800
+"""Of either side of the floor's grid; larger rooms have coarser cells."""
+FLAT_M = 0.05
+"""What is lower may be stood on: rugs."""
+
+
+@dataclass(frozen=True, eq=False)
+class FreeSpace:
+    """What is free of a scene, measured once for many questions."""
+
+    free: Bool[np.ndarray, "h w"] | None
+    """Cells of the floor, along the room's longest edge; None in a room without a floor."""
+    cell_m: float
+    height_m: float
+    """Below the ceiling; infinite without one."""
+    walls_m: tuple[tuple[float, float], ...]
+    """Length and height of every wall."""
+
+    def has_place_for(self, shape: Shape) -> bool:
+        """Whether a shape finds a place as it is, in one of four headings; what lies on furniture always does."""
+        depth, width, height = shape.size_m
+        mount = resolve(shape.category).category.mount
+        if height > self.height_m:
+            return False
+        if mount == "wall":
+            return not self.walls_m or any(width <= w and height <= h for w, h in self.walls_m)
+        if mount != "floor" or self.free is None:
+            return True
+        return self._fits(depth, width) or self._fits(width, depth)
+
+    def _fits(self, across_m: float, down_m: float) -> bool:
+        """Whether a rectangle of free cells is as large."""
+        assert self.free is not None
+        columns, rows = (max(1, int(np.ceil(e / self.cell_m - 1e-6))) for e in (across_m, down_m))
+        if columns > self.free.shape[1] or rows > self.free.shape[0]:
+            return False
+        total = cv2.integral(self.free.astype(np.uint8))
+        inside = total[rows:, columns:] - total[:-rows, columns:] - total[rows:, :-columns] + total[:-rows, :-columns]
+        return bool(inside.max() >= rows * columns)
+
+
+def free_space(scene: Scene) -> FreeSpace:
+    """Measure the free floor between visible objects that stand on it or reach down to it, and the walls."""
+    walls = tuple(
+        (float(np.linalg.norm(np.ptp(w.polygon[:, :2], axis=0))), float(np.ptp(w.polygon[:, 2])))
+        for w in scene.architecture.by_role("wall")
+    )
+    floor = scene.architecture.floor
+    if floor is None:
+        return FreeSpace(None, CELL_M, np.inf, walls)
+    level = float(floor.polygon[:, 2].mean())
+    ceilings = [float(p.polygon[:, 2].max()) for p in scene.architecture.by_role("ceiling")]
+    outline = floor.polygon[:, :2]
+    edges = np.roll(outline, -1, axis=0) - outline
+    along = edges[int(np.linalg.norm(edges, axis=1).argmax())]
+    angle = float(np.arctan2(along[1], along[0]))
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    flat = outline @ turn
+    origin, extent = flat.min(axis=0), np.ptp(flat, axis=0)
+    cell = max(CELL_M, float(extent.max()) / MAX_CELLS)
+    width, height = (max(1, int(e / cell + 1e-6)) for e in extent)
+    free = _filled((flat - origin) / cell, height, width)
+    for item in scene.objects:
+        corners = item.corners_world
+        low, high = float(corners[:, 2].min()) - level, float(corners[:, 2].max()) - level
+        if item.hidden or high < FLAT_M or low > FLAT_M:
+            continue
+        free &= ~_filled(
+            (cv2.convexHull(corners[:, :2].astype(np.float32))[:, 0] @ turn - origin) / cell, height, width
+        )
+    return FreeSpace(free, cell, max(ceilings) - level if ceilings else np.inf, walls)
+
+
+def _filled(corners: Float[np.ndarray, "n 2"], height: int, width: int) -> Bool[np.ndarray, "{height} {width}"]:
+    """Cells whose middles are in a polygon, given in cells."""
+    x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
+    return in_polygon(np.stack([x, y], axis=-1), np.asarray(corners, dtype=np.float64))

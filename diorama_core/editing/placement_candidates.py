@@ -1,0 +1,301 @@
+"""Where an object could go: stances on floor, furniture, walls and ceiling, and what holds it up there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from diorama_core.editing.collisions import WALKED_ON_M
+from diorama_core.editing.footprints import footprint_of, gaps, overlapping, within
+from diorama_core.editing.habits import TUCKED, carries, host_cost, pushed_under, stands
+from diorama_core.editing.placing import places_of
+from diorama_core.editing.relations import Relation, Stances
+from diorama_core.editing.room_frame import RoomFrame
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.taxonomy import broad, category
+from diorama_core.scene.types import Pose, Scene, SceneObject, Support, yaw_rotation
+
+WALL_GAP_M = 0.015
+STEP_M = 0.12
+GRID_M = 0.22
+EYE_M = 1.55
+OVERHANG = 0.35
+"""Share of an object's width by which it may reach beyond what it stands on: a lamp's shade, a plant's leaves."""
+ON_FLOOR_COST = 1.5
+"""What it costs to put on the floor what belongs on furniture."""
+WITHIN_REACH_M = 1.2
+"""What is put beside something goes on furniture that is no farther from it."""
+
+
+@dataclass(eq=False)
+class Candidates:
+    """Stances on one level, and what holds the object up there."""
+
+    stances: Stances
+    base_m: Float[np.ndarray, "n"]
+    supports: list[Support | None]
+    extra: Float[np.ndarray, "n"]
+    """What a place costs in itself."""
+    usable: Bool[np.ndarray, "n"]
+
+    def pose(self, item: SceneObject, k: int) -> Pose:
+        """The pose of an object at one of them."""
+        x, y = self.stances.places[k]
+        z = float(self.base_m[k]) + float(item.size_m[2]) / 2
+        return Pose(yaw_rotation(float(self.stances.yaws_rad[k])), np.array([x, y, z]), item.pose.scale)
+
+
+def candidates_for(
+    scene: Scene, item: SceneObject, relations: Sequence[Relation], frame: RoomFrame, library: ShapeLibrary
+) -> list[Candidates]:
+    """All places that an object could take, level by level: on what relations and its category say.
+
+    Args:
+        scene: without the object.
+        item: what; its size counts.
+        relations: "on" and "above" decide where candidates come from.
+        frame: of the scene.
+        library: where surfaces of shapes are.
+    """
+    mount = category(item.category).mount
+    on = [t for r in relations if r.kind == "on" for t in r.targets if scene.has_object(t)]
+    above = [t for r in relations if r.kind == "above" for t in r.targets if scene.has_object(t)]
+    if on:
+        return _on_objects(scene, item, on, library)
+    if mount == "wall":
+        return [_on_walls(scene, item, above, frame)]
+    if mount == "ceiling":
+        return [_on_ceiling(scene, item, above, frame)]
+    floor = [_on_floor(scene, item, relations, frame)]
+    if mount == "surface":
+        named = [t for r in relations for t in r.targets if scene.has_object(t)]
+        carriers = [o.id for o in scene.objects if carries(o) and o.id not in named]
+        own = [t for t in named if carries(scene.object(t))]
+        beside_named = [
+            c for c in carriers
+            if any(_apart(scene.object(c), scene.object(t)) < WITHIN_REACH_M for t in named)
+        ]  # fmt: skip
+        on_objects = _on_objects(scene, item, beside_named if named else carriers + own, library)
+        return [*on_objects, *_less_likely(floor)] if named else on_objects or floor
+    return floor
+
+
+def _on_floor(scene: Scene, item: SceneObject, relations: Sequence[Relation], frame: RoomFrame) -> Candidates:
+    stances = _floor_stances(scene, item, relations, frame)
+    count = len(stances.places)
+    quads = stances.quads
+    usable = within(quads, frame.outline)
+    usable &= ~_blocked(scene, item, quads, relations)
+    support = None if frame.floor_id is None else Support(item.id, frame.floor_id)
+    base = np.full(count, frame.floor_m)
+    supports: list[Support | None] = [support] * count
+    if item.category != "rug":
+        for rug in (o for o in scene.objects if broad(o.category) == "rug"):
+            on = np.array(within(quads, footprint_of(rug), 0.001))
+            base[on] = float(rug.corners_world[:, 2].max())
+            for k in np.flatnonzero(on):
+                supports[k] = Support(item.id, rug.id)
+    return Candidates(stances, base, supports, np.zeros(count), usable)
+
+
+def _floor_stances(scene: Scene, item: SceneObject, relations: Sequence[Relation], frame: RoomFrame) -> Stances:
+    """Along the walls, about what the relations name, and over all of the floor."""
+    places: list[np.ndarray] = []
+    yaws: list[np.ndarray] = []
+
+    def add(xy: np.ndarray, yaw: np.ndarray | float) -> None:
+        places.append(np.atleast_2d(xy))
+        yaws.append(np.broadcast_to(np.asarray(yaw, dtype=float), (len(places[-1]),)))
+
+    depth, width = float(item.size_m[0]), float(item.size_m[1])
+    for wall in frame.walls:
+        low, high = width / 2 + WALL_GAP_M, wall.length_m - width / 2 - WALL_GAP_M
+        if high >= low:
+            t = np.unique(np.concatenate([np.arange(low, high, STEP_M), [high, 0.5 * wall.length_m]]))
+            t = t[(t >= low - 1e-9) & (t <= high + 1e-9)]
+            add(wall.start + t[:, None] * wall.along + wall.inward * (depth / 2 + WALL_GAP_M), wall.yaw_rad)
+    targets = [scene.object(t) for r in relations for t in r.targets if scene.has_object(t)]
+    turns = frame.axis_rad + np.arange(4) * np.pi / 2
+    for target in targets:
+        for xy, yaw in _about(target, item):
+            add(xy, yaw)
+    if len(targets) > 1:
+        middle = np.mean([t.pose.position[:2] for t in targets], axis=0)
+        for yaw in turns:
+            add(middle, float(yaw))
+    low, high = frame.outline.min(axis=0), frame.outline.max(axis=0)
+    xs, ys = np.meshgrid(*(np.arange(a + 0.1, b, GRID_M) for a, b in zip(low, high, strict=True)))
+    grid = np.column_stack([xs.ravel(), ys.ravel()])
+    for yaw in turns:
+        add(np.concatenate([grid, frame.middle[None]]), float(yaw))
+    for target in targets[:3]:
+        toward = target.pose.position[:2] - grid
+        add(grid, np.arctan2(toward[:, 1], toward[:, 0]))
+    return Stances(item.size_m, np.concatenate(places), np.concatenate(yaws))
+
+
+def _about(target: SceneObject, item: SceneObject) -> list[tuple[Float[np.ndarray, "n 2"], float]]:
+    """Places on the four sides of a target, at several distances and shifts, with headings in quarter turns to it."""
+    found = []
+    half, yaw0 = target.size_m[:2] / 2, target.pose.yaw_rad
+    R = yaw_rotation(yaw0)[:2, :2]
+    for quarter in range(4):
+        own = item.size_m[:2] / 2 if quarter % 2 == 0 else item.size_m[1::-1] / 2
+        for side in range(4):
+            out = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]][side], dtype=float)
+            across = np.array([-out[1], out[0]])
+            reach = float(np.abs(out) @ (half + own))
+            free = float(np.abs(across) @ half)
+            flush = max(float(np.abs(across) @ (half - own)), 0.0)
+            slides = sorted({0.0, 0.33 * free, -0.33 * free, 0.6 * free, -0.6 * free, flush, -flush})
+            distances = (-0.3, -0.22, -0.15, -0.08, 0.03, 0.08, 0.2, 0.35, 0.5, 0.8, 1.2, 1.8, 2.4)
+            local = np.array([out * (reach + g) + across * s for g in distances for s in slides])
+            found.append((local @ R.T + target.pose.position[:2], yaw0 + quarter * np.pi / 2))
+    turns = np.arange(12) * np.pi / 6
+    for reach in (0.25, 0.4, 0.6):
+        radius = float(half.max() + item.size_m[0] / 2 + reach) - 0.3
+        ring = target.pose.position[:2] + radius * np.stack([np.cos(turns + yaw0), np.sin(turns + yaw0)], axis=1)
+        found += [(ring[k : k + 1], float(turns[k] + yaw0 + np.pi)) for k in range(len(turns))]
+    found.append((target.pose.position[None, :2], yaw0))
+    found.append((target.pose.position[None, :2], yaw0 + np.pi / 2))
+    return found
+
+
+def _blocked(
+    scene: Scene, item: SceneObject, quads: Float[np.ndarray, "n 4 2"], relations: Sequence[Relation]
+) -> Bool[np.ndarray, "n"]:
+    """Stances on the floor that share their place with furniture, seats pushed under tables apart."""
+    hit = np.zeros(len(quads), dtype=bool)
+    if item.size_m[2] < WALKED_ON_M:
+        return hit
+    under = {t for r in relations if r.kind == "under" for t in r.targets}
+    tucked = TUCKED.get(broad(item.category), ())
+    for other in scene.objects:
+        low, high = float(other.corners_world[:, 2].min()), float(other.corners_world[:, 2].max())
+        if other.size_m[2] < WALKED_ON_M or low > item.size_m[2] + 0.01 or high < 0.02 or other.hidden:
+            continue
+        if other.id in under or broad(other.category) in tucked or item.category in pushed_under(other):
+            continue
+        hit |= overlapping(quads, footprint_of(other), 0.004)
+    return hit
+
+
+def _on_objects(scene: Scene, item: SceneObject, hosts: Sequence[str], library: ShapeLibrary) -> list[Candidates]:
+    found: list[Candidates] = []
+    usual = category(item.category).mount
+    for place in places_of(scene, library):
+        if place.parent not in hosts or not place.upward:
+            continue
+        host = scene.object(place.parent)
+        if item.size_m[2] > place.surface.clearance_m - 0.01:
+            continue
+        outline = place.surface.polygon[:, :2]
+        R = host.pose.R_world_object[:2, :2]
+        local = (outline - host.pose.position[:2]) @ R
+        low, high = local.min(axis=0), local.max(axis=0)
+        steps = [np.linspace(a, b, max(3, min(13, int((b - a) / 0.05)))) for a, b in zip(low, high, strict=True)]
+        xs, ys = np.meshgrid(*steps)
+        flat = np.column_stack([xs.ravel(), ys.ravel()])
+        yaws = [0.0, np.pi / 2] if item.size_m[1] > np.ptp(local[:, 1]) or broad(item.category) == "rug" else [0.0]
+        places = np.concatenate([flat] * len(yaws)) @ R.T + host.pose.position[:2]
+        turns = np.repeat(yaws, len(flat)) + host.pose.yaw_rad
+        stances = Stances(item.size_m, places, turns)
+        quads = stances.quads
+        foot = _smaller(stances, 1.0 - OVERHANG if usual == "surface" or item.category == "plant" else 1.0).quads
+        usable = np.array(within(foot, outline, 0.01))
+        middle = 0.5 * (low + high)
+        off = np.abs(np.concatenate([flat] * len(yaws)) - middle) / np.maximum((high - low) / 2, 0.05)
+        extra = 0.15 * off.sum(axis=1) + 0.4 * ~np.array(within(quads, outline, 0.01))
+        if item.category in ("lamp", "monitor", "television", "computer", "plant", "vase", "clock", "speaker"):
+            extra += 0.3 * (np.concatenate([flat] * len(yaws))[:, 0] - low[0]) / max(float(high[0] - low[0]), 0.05)
+        if item.category in ("keyboard", "laptop", "book", "plate", "mouse"):
+            extra += 0.3 * (high[0] - np.concatenate([flat] * len(yaws))[:, 0]) / max(float(high[0] - low[0]), 0.05)
+        for child in scene.children_of(place.parent):
+            other = scene.object(child)
+            if abs(float(other.corners_world[:, 2].min()) - place.surface.level) < 0.08:
+                usable &= ~overlapping(quads, footprint_of(other), -0.01)
+        inner = np.isfinite(place.surface.clearance_m)
+        extra = extra + 0.5 * inner + host_cost(item, host) * (usual == "surface")
+        edge = Support(item.id, place.parent, parent_surface=place.index)
+        base = np.full(len(places), place.surface.level)
+        found.append(Candidates(stances, base, [edge] * len(places), extra, usable))
+    return found
+
+
+def _on_walls(scene: Scene, item: SceneObject, above: Sequence[str], frame: RoomFrame) -> Candidates:
+    places, yaws, base, extra, usable = [], [], [], [], []
+    supports: list[Support | None] = []
+    height, width = float(item.size_m[2]), float(item.size_m[1])
+    for wall in frame.walls:
+        low, high = width / 2 + 0.05, wall.length_m - width / 2 - 0.05
+        if high < low or wall.high_m - wall.low_m < height:
+            continue
+        ts = np.unique(np.concatenate([np.arange(low, high, STEP_M), [high, 0.5 * wall.length_m]]))
+        hosts = [scene.object(i) for i in above]
+        ts = np.concatenate([ts, [float(wall.t_of(h.pose.position[:2])) for h in hosts]])
+        for t in ts[(ts >= low - 1e-9) & (ts <= high + 1e-9)]:
+            span = (t - width / 2, t + width / 2)
+            top = frame.floor_m
+            behind = 0.0
+            for other in scene.objects:
+                corners = other.corners_world
+                along = wall.t_of(corners[:, :2])
+                if float(wall.off_of(corners[:, :2]).min()) > 0.4 or other.hidden:
+                    continue
+                if along.max() > span[0] and along.min() < span[1]:
+                    if category(other.category).mount == "wall":
+                        behind += 5.0
+                    elif stands(scene, other):
+                        top = max(top, float(corners[:, 2].max()))
+            centre = max(frame.floor_m + EYE_M, top + 0.12 + height / 2)
+            low_z = centre - height / 2
+            if category(item.category).name in ("curtain", "door"):
+                low_z = frame.floor_m + 0.01
+            places.append(wall.start + t * wall.along + wall.inward * item.size_m[0] / 2)
+            yaws.append(wall.yaw_rad)
+            base.append(low_z)
+            supports.append(Support(item.id, wall.id, "mounted on", child_face="back"))
+            usable.append(low_z + height <= wall.high_m - 0.03)
+            extra.append(behind + 0.5 * abs(centre - frame.floor_m - EYE_M) + 0.3 * abs(t / wall.length_m - 0.5))
+    stances = Stances(item.size_m, np.array(places).reshape(-1, 2), np.array(yaws))
+    return Candidates(stances, np.array(base), supports, np.array(extra), np.array(usable, dtype=bool))
+
+
+def _on_ceiling(scene: Scene, item: SceneObject, above: Sequence[str], frame: RoomFrame) -> Candidates:
+    low, high = frame.outline.min(axis=0), frame.outline.max(axis=0)
+    steps = [np.linspace(a, b, 15)[1:-1] for a, b in zip(low, high, strict=True)]
+    xs, ys = np.meshgrid(*steps)
+    hosts = [scene.object(i).pose.position[:2] for i in above]
+    places = np.concatenate([np.column_stack([xs.ravel(), ys.ravel()]), frame.middle[None], *(h[None] for h in hosts)])
+    stances = Stances(item.size_m, places, np.full(len(places), frame.axis_rad))
+    usable = np.array(within(stances.quads, frame.outline))
+    top = frame.floor_m + 2.5
+    if frame.ceiling is not None:
+        n = frame.ceiling.normal
+        heights = (frame.ceiling.offset - places @ n[:2]) / n[2]
+    else:
+        heights = np.full(len(places), top)
+    base = heights - item.size_m[2] - 0.005
+    support = None if frame.ceiling is None else Support(item.id, frame.ceiling.id, "mounted on", child_face="top")
+    extra = 0.3 * np.linalg.norm(places - frame.middle, axis=1)
+    return Candidates(stances, base, [support] * len(places), extra, usable)
+
+
+def _less_likely(candidates: list[Candidates]) -> list[Candidates]:
+    """The floor, for what people put on furniture."""
+    for one in candidates:
+        one.extra = one.extra + ON_FLOOR_COST
+    return candidates
+
+
+def _apart(a: SceneObject, b: SceneObject) -> float:
+    """Free distance between two objects, seen from above."""
+    return float(gaps(Stances.of(a).quads, footprint_of(b))[0])
+
+
+def _smaller(stances: Stances, share: float) -> Stances:
+    """The same stances of a smaller object."""
+    return replace(stances, size_m=stances.size_m * share)

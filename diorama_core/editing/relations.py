@@ -1,0 +1,266 @@
+"""How objects stand to one another and to the room, as costs: 0 where a relation holds, above `MET` where it does not.
+
+One definition serves placement, which seeks the least sum, and reports, which name what is not met. Costs are in units
+of what people would notice: 0.3 to 0.5 m, or a quarter of a turn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.editing.footprints import Points, Quad, Quads, footprint_of, footprints, gaps
+from diorama_core.editing.room_frame import RoomFrame
+from diorama_core.library.taxonomy import broad, category
+from diorama_core.scene.support import ancestors
+from diorama_core.scene.types import Scene, SceneObject
+
+RelationKind = Literal[
+    "on", "under", "above", "beside", "near", "in front of", "behind", "left of", "right of", "around", "between",
+    "facing", "opposite", "aligned with", "against wall", "in corner", "in middle",
+]  # fmt: skip
+RELATION_KINDS: tuple[RelationKind, ...] = get_args(RelationKind)
+OF_ROOM = ("against wall", "in corner", "in middle")
+"""Relations to the room: they name no object."""
+MET = 0.6
+SIDE_GAP_M = 0.45
+"""Beside something is at most this far from it."""
+NEAR_M = 0.9
+AT_WALL_M = 0.15
+IN_CORNER_M = 0.45
+MIDDLE_SHARE = 0.2
+"""The middle of a room is this share of its extents."""
+FACING_RAD = float(np.radians(30.0))
+FACING_REACH_M = 4.0
+SEATS_FACING_M = 1.1
+SEATS = ("chair", "armchair", "stool", "office chair", "sofa", "bench", "ottoman")
+NO_FRONT = frozenset({
+    "plant", "rug", "ceiling lamp", "floor lamp", "lamp", "vase", "ottoman", "stool", "basket", "coffee table", "table",
+    "side table", "trash can", "box",
+})  # fmt: skip
+"""Categories that look alike from all sides: anything beside them is beside them."""
+
+
+@dataclass(frozen=True)
+class Relation:
+    """One wish about where an object is."""
+
+    kind: RelationKind
+    targets: tuple[str, ...] = ()
+    """Ids of objects: two for "between", none for relations to the room."""
+
+    def words(self, scene: Scene) -> str:
+        """In words: "beside sofa 1"."""
+        if self.kind in OF_ROOM:
+            return {"against wall": "against a wall", "in corner": "in a corner", "in middle": "in the middle"}[
+                self.kind
+            ]
+        names = [scene.object(t).label for t in self.targets if scene.has_object(t)]
+        return f"{self.kind} {' and '.join(names)}"
+
+
+@dataclass(frozen=True, eq=False)
+class Stances:
+    """Many places and headings of one object on a level."""
+
+    size_m: Float[np.ndarray, "3"]
+    places: Points
+    yaws_rad: Float[np.ndarray, "n"]
+
+    @property
+    def quads(self) -> Quads:
+        """Their outlines."""
+        return footprints(self.size_m, self.places, self.yaws_rad)
+
+    @property
+    def fronts(self) -> Points:
+        """Unit directions of their fronts."""
+        return np.stack([np.cos(self.yaws_rad), np.sin(self.yaws_rad)], axis=1)
+
+    @classmethod
+    def of(cls, item: SceneObject) -> Stances:
+        """The one stance that an object has."""
+        return cls(item.size_m, item.pose.position[None, :2], np.array([item.pose.yaw_rad]))
+
+
+def relation_cost(
+    relation: Relation, stances: Stances, kind: str, targets: Mapping[str, SceneObject], frame: RoomFrame
+) -> Float[np.ndarray, "n"]:
+    """What a relation costs at every stance of an object of a category.
+
+    "on", "above" for what hangs, and "under" for what lies are made true by where candidates come from; here they cost
+    only how far the object is from its target, seen from above.
+    """
+    if relation.kind == "against wall":
+        return _against_wall(stances, frame)
+    if relation.kind == "in corner":
+        return _in_corner(stances, frame)
+    if relation.kind == "in middle":
+        extent = np.ptp(frame.outline, axis=0) * MIDDLE_SHARE
+        return np.maximum(np.abs(stances.places - frame.middle) / np.maximum(extent, 0.1) - 1.0, 0.0).max(axis=1)
+    found = [targets[t] for t in relation.targets if t in targets]
+    if not found:
+        return np.full(len(stances.places), 2.0)
+    if relation.kind == "between" and len(found) > 1:
+        return _between(stances, found)
+    cost = np.zeros(len(stances.places))
+    for target in found:
+        cost = cost + _to_target(relation.kind, stances, kind, target)
+    return cost / len(found)
+
+
+def _to_target(kind: RelationKind, stances: Stances, category_name: str, target: SceneObject) -> Float[np.ndarray, "n"]:
+    quad = footprint_of(target)
+    local = (stances.places - target.pose.position[:2]) @ target.pose.R_world_object[:2, :2]
+    half = target.size_m[:2] / 2
+    gap = gaps(stances.quads, quad)
+    toward = target.pose.position[:2] - stances.places
+    apart = np.linalg.norm(toward, axis=1)
+    # Whoever sits at a desk looks over it, away from its front.
+    over = np.pi if broad(category_name) == "desk" else 0.0
+    looking = _angle(stances.yaws_rad + over, np.arctan2(toward[:, 1], toward[:, 0]))
+    if kind in ("on", "under", "above"):
+        return np.maximum(np.abs(local) - half, 0.0).sum(axis=1) / 0.3 + 0.2 * np.abs(local).sum(axis=1) * (
+            kind != "on"
+        )
+    if kind in ("beside", "near") and category(target.category).mount == "wall":  # by the window, before or next to it
+        corners = (stances.quads - stances.places[:, None]) @ target.pose.R_world_object[:2, 1]
+        aside = np.maximum(np.abs(local[:, 1]) - half[1] - np.abs(corners).max(axis=1), 0.0)
+        return np.maximum(gap - 0.5, 0.0) / 0.3 + aside / 0.5 + 0.1 * gap
+    if kind == "beside":
+        far = np.maximum(gap - SIDE_GAP_M, 0.0) / 0.3
+        if broad(target.category) in NO_FRONT:
+            return far + 0.15 * gap
+        off_side = np.maximum(np.abs(local[:, 0]) - half[0], 0.0) / max(half[0], 0.2)
+        ahead = np.maximum(np.abs(local[:, 0]) - 0.8 * half[0], 0.0)
+        not_side = np.maximum(half[1] - np.abs(local[:, 1]), 0.0)
+        return far + 0.4 * np.minimum(off_side, 2.0) + 0.4 * ahead + 0.6 * np.minimum(not_side, 1.0) + 0.2 * gap
+    if kind == "near":
+        return np.maximum(gap - NEAR_M, 0.0) / 0.4 + 0.1 * gap
+    if kind in ("in front of", "behind"):
+        sign = 1.0 if kind == "in front of" else -1.0
+        ahead = sign * local[:, 0] - half[0]
+        aside = np.maximum(np.abs(local[:, 1]) - half[1], 0.0)
+        return (
+            np.maximum(-ahead, 0.0) / 0.2 + aside / 0.3 + np.maximum(gap - 1.0, 0.0) / 0.4 + 0.1 * np.abs(local[:, 1])
+        )
+    if kind in ("left of", "right of"):  # as seen by whoever stands before the target
+        sign = 1.0 if kind == "right of" else -1.0
+        aside = sign * local[:, 1] - half[1]
+        ahead = np.maximum(np.abs(local[:, 0]) - half[0], 0.0)
+        return np.maximum(-aside, 0.0) / 0.2 + ahead / 0.4 + np.maximum(gap - NEAR_M, 0.0) / 0.4 + 0.15 * gap
+    if kind == "around":
+        seat = np.maximum(looking - FACING_RAD, 0.0) / FACING_RAD if _is_seat(category_name) else 0.0
+        at_front = 0.0
+        if broad(target.category) == "desk":
+            ahead = np.maximum(half[0] - local[:, 0], 0.0) / 0.3
+            at_front = ahead + np.maximum(np.abs(local[:, 1]) - 0.5 * half[1], 0.0) / 0.3
+        return np.maximum(gap - 0.5, 0.0) / 0.3 + seat + 0.4 * gap + at_front
+    if kind == "facing":
+        return (
+            np.maximum(looking - FACING_RAD, 0.0) / FACING_RAD
+            + 0.5 * looking
+            + _too_far(apart)
+            + 0.08 * gap
+            + _too_near(category_name, target, gap)
+        )
+    if kind == "opposite":
+        heading = _angle(stances.yaws_rad, np.full(len(local), target.pose.yaw_rad + np.pi))
+        aside = np.maximum(np.abs(local[:, 1]) - 0.5 * half[1] - 0.2, 0.0)
+        before = np.maximum(half[0] - local[:, 0], 0.0) / 0.3
+        turned = np.minimum(np.maximum(looking - FACING_RAD, 0.0), np.maximum(heading - FACING_RAD, 0.0)) / FACING_RAD
+        return (
+            before
+            + aside / 0.5
+            + turned
+            + 0.3 * heading
+            + 0.3 * np.abs(local[:, 1])
+            + _too_far(apart)
+            + _too_near(category_name, target, gap)
+        )
+    if kind == "aligned with":
+        square = np.abs(np.sin(2.0 * (stances.yaws_rad - target.pose.yaw_rad)))
+        own = np.abs(local)
+        edges = np.abs(own - np.abs(half - stances.size_m[:2] / 2))
+        return np.minimum(own, edges).min(axis=1) / 0.15 * 0.6 + square
+    return np.zeros(len(local))
+
+
+def _is_seat(name: str) -> bool:
+    return broad(name) in SEATS
+
+
+def _too_near(name: str, target: SceneObject, gap_m: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
+    """Seats that face each other leave room for legs, and for a table between."""
+    if not (_is_seat(name) and _is_seat(target.category)):
+        return np.zeros(len(gap_m))
+    return 0.8 * np.maximum(SEATS_FACING_M - gap_m, 0.0)
+
+
+def _too_far(apart_m: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
+    return np.maximum(apart_m - FACING_REACH_M, 0.0) / 0.5
+
+
+def _angle(a: Float[np.ndarray, "n"], b: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
+    return np.abs(np.arctan2(np.sin(a - b), np.cos(a - b)))
+
+
+def _between(stances: Stances, found: list[SceneObject]) -> Float[np.ndarray, "n"]:
+    a, b = found[0].pose.position[:2], found[1].pose.position[:2]
+    along = (b - a) / max(float(np.linalg.norm(b - a)), 1e-6)
+    t = (stances.places - a) @ along / max(float(np.linalg.norm(b - a)), 1e-6)
+    aside = np.abs((stances.places - a) @ np.array([-along[1], along[0]]))
+    return np.maximum(np.abs(t - 0.5) - 0.2, 0.0) / 0.2 + np.maximum(aside - 0.3, 0.0) / 0.3 + 0.2 * aside
+
+
+def _against_wall(stances: Stances, frame: RoomFrame) -> Float[np.ndarray, "n"]:
+    best = np.full(len(stances.places), 3.0)
+    for wall in frame.walls:
+        turned = _angle(stances.yaws_rad, np.full(len(stances.yaws_rad), wall.yaw_rad))
+        back = wall.off_of(stances.places) - stances.size_m[0] / 2
+        t = wall.t_of(stances.places)
+        off_end = np.maximum(np.maximum(-t, t - wall.length_m), 0.0)
+        best = np.minimum(best, np.maximum(np.abs(back) - AT_WALL_M, 0.0) / 0.3 + turned / FACING_RAD + off_end)
+    return best
+
+
+def _in_corner(stances: Stances, frame: RoomFrame) -> Float[np.ndarray, "n"]:
+    if not frame.corners:
+        return np.full(len(stances.places), 3.0)
+    quads = stances.quads
+    reach = np.min([np.linalg.norm(quads - corner, axis=-1).min(axis=1) for corner in frame.corners], axis=0)
+    return np.maximum(reach - IN_CORNER_M, 0.0) / 0.3 + 0.2 * reach
+
+
+def unmet_cost(scene: Scene, object_id: str, relation: Relation, frame: RoomFrame) -> float:
+    """What a relation of a placed object costs; above `MET` it is not met."""
+    item = scene.object(object_id)
+    targets = {t: scene.object(t) for t in relation.targets if scene.has_object(t)}
+    if relation.kind == "on":
+        above = ancestors(scene, object_id)
+        return 0.0 if any(t in above for t in relation.targets) else 2.0
+    if relation.kind == "under" and targets:
+        under = all(item.corners_world[:, 2].max() <= t.corners_world[:, 2].max() + 0.02 for t in targets.values())
+        meet = all(_meet(item, t) for t in targets.values())
+        return 0.0 if under and meet else 2.0
+    if relation.kind == "above" and targets:
+        over = all(item.corners_world[:, 2].min() >= t.corners_world[:, 2].max() - 0.05 for t in targets.values())
+        beside = max(float(gaps(Stances.of(item).quads, footprint_of(t))[0]) for t in targets.values())
+        return 0.0 if over and beside < 0.5 else 2.0
+    if relation.kind == "against wall" and category(item.category).mount == "wall":
+        return 0.0
+    return float(relation_cost(relation, Stances.of(item), item.category, targets, frame)[0])
+
+
+def is_met(scene: Scene, object_id: str, relation: Relation, frame: RoomFrame) -> bool:
+    """Whether a relation of a placed object holds."""
+    return unmet_cost(scene, object_id, relation, frame) <= MET
+
+
+def _meet(a: SceneObject, b: SceneObject) -> bool:
+    quad: Quad = footprint_of(b)
+    return bool(gaps(Stances.of(a).quads, quad)[0] <= 1e-6)

@@ -1,0 +1,139 @@
+"""The room as furniture meets it: the floor's outline, stretches of wall, corners, and floor to be left free."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.editing.footprints import Quad, footprints
+from diorama_core.geometry.wall_line import WallLine
+from diorama_core.library.taxonomy import broad
+from diorama_core.scene.room_edits import floor_height
+from diorama_core.scene.types import Plane, Scene, SceneObject
+
+AROUND_OBJECTS_M = 1.0
+"""Where there is no floor, the room reaches this far beyond its objects."""
+UPRIGHT = 0.3
+"""A wall's normal rises by less."""
+JOINED_M = 0.15
+"""Ends of two stretches of wall nearer than this meet in a corner."""
+SWING_M = 0.9
+"""Floor that a door needs on either side."""
+FRONT_M = {
+    "bed": 0.0, "sofa": 0.45, "armchair": 0.35, "chair": 0.0, "desk": 0.6, "wardrobe": 0.6, "dresser": 0.5,
+    "cabinet": 0.5, "sideboard": 0.5, "bookshelf": 0.5, "tv stand": 0.5, "refrigerator": 0.7, "stove": 0.7,
+    "kitchen counter": 0.7, "sink": 0.6, "toilet": 0.5, "washing machine": 0.6, "fireplace": 0.6, "piano": 0.6,
+}  # fmt: skip
+"""Floor that people need before furniture of a kind, to sit down, to open it, to stand at it."""
+
+
+@dataclass(frozen=True, eq=False)
+class WallRun(WallLine):
+    """One wall of a scene, with the heights it reaches from and to."""
+
+    low_m: float
+    high_m: float
+
+
+@dataclass(frozen=True, eq=False)
+class RoomFrame:
+    """Floor, walls and corners of a scene."""
+
+    outline: Float[np.ndarray, "k 2"]
+    """Of the floor, counter-clockwise."""
+    floor_m: float
+    floor_id: str | None
+    walls: tuple[WallRun, ...]
+    ceiling: Plane | None
+
+    @classmethod
+    def of(cls, scene: Scene) -> RoomFrame:
+        """The frame of a scene's architecture; around its objects where it has none."""
+        floor = scene.architecture.floor
+        if floor is not None:
+            outline = floor.polygon[:, :2]
+        else:
+            corners = [o.corners_world[:, :2] for o in scene.objects] or [np.zeros((1, 2))]
+            points = np.concatenate(corners)
+            low, high = points.min(axis=0) - AROUND_OBJECTS_M, points.max(axis=0) + AROUND_OBJECTS_M
+            outline = np.array([low, [high[0], low[1]], high, [low[0], high[1]]])
+        walls = tuple(w for p in scene.architecture.by_role("wall") if (w := _run(p)) is not None)
+        ceiling = next(iter(scene.architecture.by_role("ceiling")), None)
+        return cls(outline, floor_height(scene), None if floor is None else floor.id, walls, ceiling)
+
+    @cached_property
+    def corners(self) -> tuple[Float[np.ndarray, "2"], ...]:
+        """Where two walls meet inward."""
+        found = []
+        for a in self.walls:
+            for b in self.walls:
+                turn = a.along[0] * b.along[1] - a.along[1] * b.along[0]
+                if np.linalg.norm(a.end - b.start) < JOINED_M and turn < -0.5:
+                    found.append(0.5 * (a.end + b.start))
+        return tuple(found)
+
+    @property
+    def middle(self) -> Float[np.ndarray, "2"]:
+        """The middle of the floor's bounding box."""
+        return 0.5 * (self.outline.min(axis=0) + self.outline.max(axis=0))
+
+    @property
+    def axis_rad(self) -> float:
+        """Heading of the longest edge of the floor: furniture stands along it."""
+        edges = np.roll(self.outline, -1, axis=0) - self.outline
+        longest = edges[int(np.linalg.norm(edges, axis=1).argmax())]
+        return float(np.arctan2(longest[1], longest[0]))
+
+    def wall(self, wall_id: str) -> WallRun | None:
+        """The stretch of a wall by its plane's id."""
+        return next((w for w in self.walls if w.id == wall_id), None)
+
+    def nearest_wall(self, xy: Float[np.ndarray, "2"]) -> WallRun | None:
+        """The wall that a point is nearest to."""
+
+        def away(w: WallRun) -> float:
+            t = float(np.clip(w.t_of(xy), 0.0, w.length_m))
+            return float(np.linalg.norm(w.start + t * w.along - xy))
+
+        return min(self.walls, key=away, default=None)
+
+
+def _run(plane: Plane) -> WallRun | None:
+    n = plane.normal
+    if abs(float(n[2])) > UPRIGHT:
+        return None
+    inward = n[:2] / np.linalg.norm(n[:2])
+    along = np.array([-inward[1], inward[0]])
+    t = plane.polygon[:, :2] @ along
+    foot = (plane.polygon[:, :2] @ inward).mean()
+    if float(np.ptp(t)) < 0.05:
+        return None
+    low, high = float(plane.polygon[:, 2].min()), float(plane.polygon[:, 2].max())
+    return WallRun(plane.id, along * t.min() + inward * foot, along * t.max() + inward * foot, low, high)
+
+
+def front_floor(item: SceneObject, free_m: float | None = None) -> Quad | None:
+    """The floor that people need before an object; None where they need none."""
+    depth = FRONT_M.get(item.category, FRONT_M.get(broad(item.category), 0.0)) if free_m is None else free_m
+    if depth <= 0.0:
+        return None
+    yaw = item.pose.yaw_rad
+    ahead = np.array([np.cos(yaw), np.sin(yaw)]) * (item.size_m[0] + depth) / 2
+    size = np.array([depth - 0.02, 0.8 * item.size_m[1]])
+    return footprints(size, (item.pose.position[:2] + ahead)[None], np.array([yaw]))[0]
+
+
+def door_floors(objects: Iterable[SceneObject]) -> list[Quad]:
+    """The floor before every door."""
+    found = []
+    for item in objects:
+        if item.category == "door":
+            yaw = item.pose.yaw_rad
+            ahead = np.array([np.cos(yaw), np.sin(yaw)]) * SWING_M / 2
+            size = np.array([SWING_M, item.size_m[1]])
+            found.append(footprints(size, (item.pose.position[:2] + ahead)[None], np.array([yaw]))[0])
+    return found

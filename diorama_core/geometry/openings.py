@@ -1,0 +1,119 @@
+"""Doors and windows cut the wall that they are in: the wall's outline without what they cover.
+
+The scene's own planes stay whole, so that a door that is moved or removed leaves no trace. A wall with openings stays
+one polygon: a door is a notch in its foot, a window is reached by a cut from below.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import replace
+
+import manifold3d
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.geometry.planes import plane_axes
+from diorama_core.scene.types import Architecture, Plane, Scene, SceneObject
+
+OPENING_CATEGORIES = ("door", "window")
+REACH_M = 0.3
+"""A door or window whose middle is no farther than this from a wall's face belongs to it."""
+FRAME_M = 0.02
+"""So much of a wall stays behind the rim of what fills the opening, and nothing is seen past it."""
+FOOT_M = 0.05
+"""What comes down to the floor this nearly reaches it."""
+MIN_SIDE_M = 0.1
+
+Contour = Float[np.ndarray, "_ 2"]
+
+
+def wall_of(item: SceneObject, walls: Iterable[Plane], scene: Scene) -> Plane | None:
+    """The wall that a door or window is in: the one it hangs on or stands against, or else the one right behind it."""
+    edge = scene.support_of(item.id)
+    named = () if edge is None else (edge.parent, *edge.adheres_to)
+    candidates = tuple(walls)
+    for wall in candidates:
+        if wall.id in named:
+            return wall
+    near = [(abs(float(w.normal @ item.pose.position) - w.offset), w) for w in candidates if _beside(item, w)]
+    distance, nearest = min(near, key=lambda pair: pair[0], default=(np.inf, None))
+    return nearest if distance <= REACH_M else None
+
+
+def with_openings(scene: Scene) -> Scene:
+    """The scene as it is drawn and written: every visible door and window cuts its wall."""
+    fills = [o for o in scene.objects if o.category in OPENING_CATEGORIES and not o.hidden]
+    walls = scene.architecture.by_role("wall")
+    if not fills or not walls:
+        return scene
+    wall_of_fill = {o.id: wall_of(o, walls, scene) for o in fills}
+    by_wall = {w.id: [o for o in fills if wall_of_fill[o.id] is w] for w in walls}
+    planes = tuple(cut_wall(p, by_wall[p.id]) if by_wall.get(p.id) else p for p in scene.architecture.planes)
+    return replace(scene, architecture=Architecture(planes))
+
+
+def cut_wall(wall: Plane, fills: Collection[SceneObject]) -> Plane:
+    """A wall without what doors and windows cover; whole where nothing or no single piece would be left."""
+    axes = np.stack(plane_axes(wall.normal), axis=1)
+    outline = wall.polygon @ axes
+    foot = float(outline[:, 1].min())
+    rest = manifold3d.CrossSection([outline], manifold3d.FillRule.NonZero)
+    whole = rest.area()
+    for item in fills:
+        rest -= _covered(item.corners_world @ axes, foot)
+    if rest.area() < 1e-4 or rest.area() > whole - 1e-6 or len(rest.decompose()) != 1:
+        return wall
+    contours = [np.asarray(c, dtype=np.float64) for c in rest.to_polygons()]
+    outer = next(c for c in contours if _area(c) > 0)
+    holes = [c for c in contours if _area(c) < 0]
+    flat = _with_slits(outer, holes)
+    return replace(wall, polygon=flat @ axes.T + wall.offset * wall.normal)
+
+
+def _beside(item: SceneObject, wall: Plane) -> bool:
+    u, _ = plane_axes(wall.normal)
+    along, ends = float(item.pose.position @ u), wall.polygon @ u
+    turned = abs(float(item.pose.R_world_object[:, 0] @ wall.normal)) > 0.8
+    return turned and float(ends.min()) <= along <= float(ends.max())
+
+
+def _covered(corners: Contour, foot: float) -> manifold3d.CrossSection:
+    """The rectangle that a door or window covers on its wall, a little smaller; down to the floor where it stands."""
+    (left, low), (right, high) = corners.min(axis=0) + FRAME_M, corners.max(axis=0) - FRAME_M
+    if low - FRAME_M < foot + FOOT_M:
+        low = foot - 1.0
+    if right - left < MIN_SIDE_M or high - low < MIN_SIDE_M:
+        return manifold3d.CrossSection()
+    return manifold3d.CrossSection([[[left, low], [right, low], [right, high], [left, high]]])
+
+
+def _with_slits(outer: Contour, holes: Sequence[Contour]) -> Contour:
+    """One outline of a polygon with holes: each hole is reached by a cut straight down to what lies below it."""
+    ring = outer
+    for hole in sorted(holes, key=lambda h: float(h[:, 1].min())):
+        first = int(np.lexsort((hole[:, 0], hole[:, 1]))[0])
+        start = hole[first]
+        edge, point = _below(ring, start)
+        around = np.concatenate([hole[first:], hole[: first + 1]])
+        ring = np.concatenate([ring[: edge + 1], point[None], around, point[None], ring[edge + 1 :]])
+    return ring
+
+
+def _below(ring: Contour, start: Float[np.ndarray, "2"]) -> tuple[int, Float[np.ndarray, "2"]]:
+    """The edge of a ring straight below a point, nearest to it, and where it is met."""
+    found: list[tuple[float, int]] = []
+    for number, (a, b) in enumerate(zip(ring, np.roll(ring, -1, axis=0), strict=True)):
+        low, high = min(a[0], b[0]), max(a[0], b[0])
+        if high - low < 1e-9 or not low <= start[0] <= high:
+            continue
+        height = float(a[1] + (start[0] - a[0]) / (b[0] - a[0]) * (b[1] - a[1]))
+        if height <= start[1] + 1e-9:
+            found.append((height, number))
+    height, edge = max(found)
+    return edge, np.array([start[0], height])
+
+
+def _area(contour: Contour) -> float:
+    after = np.roll(contour, -1, axis=0)
+    return float((contour[:, 0] * after[:, 1] - contour[:, 1] * after[:, 0]).sum()) / 2

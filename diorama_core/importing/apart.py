@@ -1,0 +1,40 @@
+"""Scene files read in a process of their own: what crashes a reader, or unpacks to too much, ends in one line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+from diorama_core.importing.opening import Opened
+from diorama_core.importing.scene_import import Imported, import_scene, read_scene
+from diorama_core.io.limited import LimitedProcess
+from diorama_core.progress import Progress
+
+MAX_MEMORY = 4_000_000_000
+"""Address space of the process: models, pictures, and what they are compared with."""
+MAX_QUIET_S = 90.0
+"""How long it may work on one part of a file."""
+R = TypeVar("R")
+
+
+def imported_apart(path: Path, library_name: str | None, progress: Progress) -> Imported:
+    """`import_scene` in a process of its own; it raises the same, and `InputError` where that process had to end."""
+    return _apart(path, _imported, path, library_name, progress=progress)
+
+
+def read_apart(path: Path, known: frozenset[str], progress: Progress) -> Opened:
+    """`read_scene` in a process of its own; it raises the same, and `InputError` where that process had to end."""
+    return _apart(path, read_scene, path, known, progress=progress)
+
+
+def _imported(path: Path, library_name: str | None, progress: Progress) -> Imported:
+    return import_scene(path, library_name=library_name, progress=progress)
+
+
+def _apart(path: Path, read: Callable[..., R], *args: Any, progress: Progress) -> R:
+    process = LimitedProcess(memory=MAX_MEMORY, seconds=MAX_QUIET_S)
+    try:
+        return process.work(path.name, read, *args, progress=progress)
+    finally:
+        process.close()

@@ -1,0 +1,343 @@
+"""A room that was measured elsewhere, by a phone or in a point cloud: walls, openings and boxes of known kinds become
+planes as they were measured and objects whose shapes fill the boxes."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Float
+from shapely.geometry import MultiPoint, MultiPolygon, Point, Polygon
+from shapely.ops import polygonize, snap, unary_union
+
+from diorama_core.importing.opening import Opened
+from diorama_core.library.record import Shape, ShapeLibrary
+from diorama_core.library.taxonomy import UNKNOWN, category
+from diorama_core.retrieval.pools import RetrievalQuery, pool_for, size_cost
+from diorama_core.scene.support import check_scene
+from diorama_core.scene.types import Architecture, Candidate, Plane, Pose, Scene, SceneObject, Support
+
+KEEP = 8
+"""Candidates of an object."""
+RESTS_M = 0.08
+"""How far the bottom of a box may be off what it stands on."""
+AT_WALL_M = 0.15
+CORNER_M = 0.25
+"""Ends of walls that are so near meet in a corner, where the file has no floor."""
+INSIDE_M = 0.3
+"""So far from a wall one is in the room, on one side of it."""
+FRAME_M = 0.06
+"""How far doors and windows stand out into the room."""
+LEVEL_M = 0.05
+"""Walls whose tops differ by less carry a level ceiling."""
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredWall:
+    """A flat wall: corners of its middle plane in the world, in order, either way round."""
+
+    id: str
+    polygon: Float[np.ndarray, "n 3"]
+    thickness_m: float = 0.0
+    """Of a slab, half of which is on the room's side of the corners; 0 where they are on the surface."""
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredOpening:
+    """A door, a window, or a hole in a wall."""
+
+    kind: Literal["door", "window", "opening"]
+    centre: Float[np.ndarray, "3"]
+    width_m: float
+    height_m: float
+    wall: str | None = None
+    """Id of its wall, where the file names it; otherwise the nearest one is taken."""
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredBox:
+    """A box with a thing in it."""
+
+    label: str
+    kinds: Mapping[str, float]
+    """Categories that it may be of, with how often its word means each; sizes decide among them."""
+    R_world_box: Float[np.ndarray, "3 3"]
+    """Axes of the box in the world: x to the front, z up."""
+    centre: Float[np.ndarray, "3"]
+    size_m: Float[np.ndarray, "3"]
+    """Along x (depth), y (width), z (height)."""
+    confidence: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredRoom:
+    """Everything that was measured. World frame: +Z up, metres."""
+
+    walls: tuple[MeasuredWall, ...]
+    boxes: tuple[MeasuredBox, ...]
+    openings: tuple[MeasuredOpening, ...] = ()
+    floor: Float[np.ndarray, "n 2"] | None = None
+    """Outline, where the file has one."""
+    floor_m: float | None = None
+    """Height of the floor; the lowest corner of the walls where None."""
+    notes: tuple[str, ...] = field(default=())
+
+
+def opened_room(room: MeasuredRoom, library: ShapeLibrary) -> Opened:
+    """The scene: planes exactly where they were measured, and in every box the shape that fits it best.
+
+    A front that looks into a wall it touches is turned round. Boxes stand on the floor, on what is right below them, or
+    hang on the wall that they touch.
+    """
+    floor_m = _floor_height(room)
+    outline = _outline(room)
+    walls = tuple(_wall(w, outline) for w in room.walls)
+    planes = (*_floor(outline, floor_m), *walls, *_ceiling(outline, walls))
+    boxes = [_facing_the_room(_resting(b, floor_m), walls) for b in room.boxes]
+    names = _Names()
+    objects = [_object(names, box, _held(index, boxes, walls, floor_m), library) for index, box in enumerate(boxes)]
+    ids = [o.id for o in objects]
+    supports = [_support(ids, index, boxes, walls, floor_m) for index in range(len(boxes))]
+    notes = list(room.notes)
+    for opening in room.openings:
+        wall = _wall_of(opening, walls)
+        if opening.kind == "opening" or wall is None:
+            reason = "is not in the scene" if wall is not None else "has no wall and was left out"
+            notes.append(f"{opening.kind} of {opening.width_m:.2f} x {opening.height_m:.2f} m {reason}")
+            continue
+        item = _hung(names, opening, wall, library)
+        objects.append(item)
+        supports.append(Support(item.id, wall.id, "mounted on", child_face="back"))
+    held = tuple(s for s in supports if s is not None and (s.parent != "floor" or outline is not None))
+    scene = Scene(None, Architecture(planes), tuple(objects), held)
+    check_scene(scene)
+    return Opened(scene, changes=tuple(notes))
+
+
+def likeliest_kind(kinds: Mapping[str, float], size_m: Float[np.ndarray, "3"]) -> dict[str, float]:
+    """How likely each kind is for a thing of this size; sums to 1."""
+    log_size = np.log(np.maximum(size_m, 1e-3))
+    found = {}
+    for kind, share in kinds.items():
+        modes = category(kind).priors
+        off = [(log_size - p.log_median_xyz) / p.log_sigma_xyz for p in modes]
+        fits = [float(np.exp(-0.5 * (o**2).sum()) / p.log_sigma_xyz.prod()) for o, p in zip(off, modes, strict=True)]
+        found[kind] = share * max(max(fits), 1e-12)
+    total = sum(found.values())
+    return {kind: value / total for kind, value in found.items()}
+
+
+class _Names:
+    def __init__(self) -> None:
+        self._counts: Counter[str] = Counter()
+
+    def new(self, word: str) -> str:
+        stem = re.sub(r"[^a-z0-9]+", "-", word.lower()).strip("-") or "object"
+        self._counts[stem] += 1
+        return f"{stem}-{self._counts[stem]}"
+
+
+def _floor_height(room: MeasuredRoom) -> float:
+    if room.floor_m is not None:
+        return room.floor_m
+    lowest = [float(w.polygon[:, 2].min()) for w in room.walls] or [
+        float(b.centre[2] - b.size_m[2] / 2) for b in room.boxes
+    ]
+    return min(lowest, default=0.0)
+
+
+def _outline(room: MeasuredRoom) -> Polygon | None:
+    """The floor seen from above: as measured, enclosed by the walls, or around everything."""
+    if room.floor is not None and Polygon(room.floor).is_valid and Polygon(room.floor).area > 0:
+        return Polygon(room.floor)
+    ends = [w.polygon[:, :2] for w in room.walls]
+    lines = MultiPoint(np.vstack(ends)) if ends else None
+    if lines is not None:
+        segments = [MultiPoint(e).convex_hull for e in ends]
+        for index in range(1, len(segments)):
+            segments[index] = snap(segments[index], unary_union(segments[:index]), CORNER_M)
+        rooms = list(polygonize(unary_union([s for s in segments if s.geom_type == "LineString"])))
+        if rooms:
+            whole = unary_union(rooms)
+            return max(whole.geoms, key=lambda p: p.area) if isinstance(whole, MultiPolygon) else whole
+    corners = [_corners(b)[:, :2] for b in room.boxes] + ends
+    hull = MultiPoint(np.vstack(corners)).convex_hull if corners else None
+    return hull if isinstance(hull, Polygon) else None
+
+
+def _floor(outline: Polygon | None, floor_m: float) -> tuple[Plane, ...]:
+    if outline is None:
+        return ()
+    ring = _ring(outline)
+    return (Plane("floor", "floor", np.column_stack([ring, np.full(len(ring), floor_m)])),)
+
+
+def _ring(outline: Polygon) -> Float[np.ndarray, "n 2"]:
+    """Corners counter-clockwise seen from above."""
+    ring = np.asarray(outline.exterior.coords)[:-1, :2]
+    return ring if outline.exterior.is_ccw else ring[::-1]
+
+
+def _ceiling(outline: Polygon | None, walls: Sequence[Plane]) -> tuple[Plane, ...]:
+    """A level ceiling where all walls are as high."""
+    tops = [float(w.polygon[:, 2].max()) for w in walls]
+    if outline is None or len(tops) < 3 or np.ptp(tops) > LEVEL_M:
+        return ()
+    ring = _ring(outline)[::-1]
+    return (Plane("ceiling", "ceiling", np.column_stack([ring, np.full(len(ring), float(np.median(tops)))])),)
+
+
+def _wall(wall: MeasuredWall, outline: Polygon | None) -> Plane:
+    """The wall's inner face, seen counter-clockwise from inside the room."""
+    plane = Plane(wall.id, "wall", wall.polygon)
+    normal, centre = plane.normal, plane.centre
+    if outline is not None:
+        ahead, behind = (outline.contains(Point((centre + side * INSIDE_M * normal)[:2])) for side in (1, -1))
+        middle = np.asarray(outline.representative_point().coords)[0]
+        inward = ahead if ahead != behind else (middle - centre[:2]) @ normal[:2] > 0
+        if not inward:
+            plane, normal = replace(plane, polygon=wall.polygon[::-1]), -normal
+    if wall.thickness_m == 0.0:
+        return plane
+    return replace(plane, polygon=plane.polygon + normal * wall.thickness_m / 2, thickness=wall.thickness_m)
+
+
+def _resting(box: MeasuredBox, floor_m: float) -> MeasuredBox:
+    """A box whose bottom is about at the floor ends there."""
+    gap = float(box.centre[2] - box.size_m[2] / 2) - floor_m
+    if abs(gap) > RESTS_M or gap == 0.0 or gap + box.size_m[2] < RESTS_M:
+        return box
+    size, centre = box.size_m.copy(), box.centre.copy()
+    size[2] += gap
+    centre[2] -= gap / 2
+    return replace(box, size_m=size, centre=centre)
+
+
+def _facing_the_room(box: MeasuredBox, walls: Sequence[Plane]) -> MeasuredBox:
+    """A front that looks into a wall right before it belongs on the other side, where nothing is."""
+    gaps = {side: _gap(box, side * box.R_world_box[:, 0], walls) for side in (1.0, -1.0)}
+    if gaps[1.0] < AT_WALL_M <= gaps[-1.0]:
+        return replace(box, R_world_box=box.R_world_box @ np.diag([-1.0, -1.0, 1.0]))
+    return box
+
+
+def _gap(box: MeasuredBox, direction: Float[np.ndarray, "3"], walls: Sequence[Plane]) -> float:
+    """From the face on that side to the wall that it is parallel to and looks at."""
+    face = box.centre + direction * box.size_m[0] / 2
+    gaps = [
+        abs(float(w.normal @ face) - w.offset)
+        for w in walls
+        if w.normal @ direction < -0.94 and _beside(w, face, box.size_m[1] / 2)
+    ]
+    return min(gaps, default=np.inf)
+
+
+def _beside(wall: Plane, point: Float[np.ndarray, "3"], reach_m: float) -> bool:
+    """Whether a point lies before the wall rather than beyond its ends."""
+    along = np.cross([0.0, 0.0, 1.0], wall.normal)
+    span = wall.polygon @ along
+    return bool(span.min() - reach_m < point @ along < span.max() + reach_m)
+
+
+def _corners(box: MeasuredBox) -> Float[np.ndarray, "8 3"]:
+    signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    return box.centre + (0.5 * signs * box.size_m) @ box.R_world_box.T
+
+
+def _held(index: int, boxes: Sequence[MeasuredBox], walls: Sequence[Plane], floor_m: float) -> str:
+    """What holds a box up: the floor, a wall, or the number of another box."""
+    box = boxes[index]
+    low = float(box.centre[2] - box.size_m[2] / 2)
+    below = [
+        (float(b.centre[2] + b.size_m[2] / 2), k)
+        for k, b in enumerate(boxes)
+        if k != index
+        and abs(float(b.centre[2] + b.size_m[2] / 2) - low) < RESTS_M
+        and (np.abs(b.R_world_box.T @ (box.centre - b.centre))[:2] < b.size_m[:2] / 2).all()
+    ]
+    if below:
+        return str(max(below)[1])
+    if low - floor_m < RESTS_M:
+        return "floor"
+    near = [(_gap(box, -box.R_world_box[:, 0], [w]), w.id) for w in walls]
+    return min(near)[1] if near and min(near)[0] < AT_WALL_M else "nothing"
+
+
+def _support(
+    ids: Sequence[str], index: int, boxes: Sequence[MeasuredBox], walls: Sequence[Plane], floor_m: float
+) -> Support | None:
+    held = _held(index, boxes, walls, floor_m)
+    if held == "nothing":
+        return None
+    if held == "floor":
+        return Support(ids[index], "floor")
+    if held.isdecimal():
+        return Support(ids[index], ids[int(held)])
+    return Support(ids[index], held, "mounted on", child_face="back")
+
+
+def _object(names: _Names, box: MeasuredBox, held: str, library: ShapeLibrary) -> SceneObject:
+    hung = held not in ("floor", "nothing") and not held.isdecimal()
+    mounted = {k: v for k, v in box.kinds.items() if (category(k).mount == "wall") == hung}
+    senses = likeliest_kind(mounted or box.kinds or {UNKNOWN.name: 1.0}, box.size_m)
+    kind = max(senses, key=lambda k: (senses[k], k))
+    query = RetrievalQuery(kind, box.size_m, False, "wall" if hung else "floor", senses)
+    ranked = sorted(
+        (
+            (m.kind_factor * float(np.exp(-size_cost(m.shape.size_m, box.size_m))), m.shape)
+            for m in pool_for(library, query).members
+        ),
+        key=lambda row: (-row[0], row[1].id),
+    )[:KEEP]
+    candidates = tuple(Candidate(s.id, s.size_m, score, _filling(s, box)) for score, s in ranked)
+    best = ranked[0][1]
+    return SceneObject(
+        names.new(best.category),
+        box.label,
+        best.category,
+        best.id,
+        best.size_m,
+        candidates[0].pose,
+        candidates,
+        confidence=box.confidence,
+    )
+
+
+def _filling(shape: Shape, box: MeasuredBox) -> Pose:
+    return Pose(box.R_world_box, box.centre, np.maximum(box.size_m, 1e-3) / np.array(shape.size_m))
+
+
+def _wall_of(opening: MeasuredOpening, walls: Sequence[Plane]) -> Plane | None:
+    named = next((w for w in walls if w.id == opening.wall), None)
+    if named is not None or not walls:
+        return named
+    near = [
+        (abs(float(w.normal @ opening.centre) - w.offset), w.id, w) for w in walls if _beside(w, opening.centre, 0.0)
+    ]
+    return min(near)[2] if near and min(near)[0] < AT_WALL_M else None
+
+
+def _hung(names: _Names, opening: MeasuredOpening, wall: Plane, library: ShapeLibrary) -> SceneObject:
+    """A door or a window with its back at the wall."""
+    yaw = float(np.arctan2(wall.normal[1], wall.normal[0]))
+    on_wall = opening.centre - (wall.normal @ opening.centre - wall.offset) * wall.normal
+    shapes = library.in_category(opening.kind)
+    size = np.array([FRAME_M, opening.width_m, opening.height_m])
+    ranked = sorted(shapes, key=lambda s: (size_cost(s.size_m[1:], size[1:]), s.id))[:KEEP]
+    centre = on_wall + wall.normal * FRAME_M / 2
+    candidates = tuple(
+        Candidate(
+            s.id,
+            s.size_m,
+            float(np.exp(-size_cost(s.size_m[1:], size[1:]))),
+            Pose.upright(centre, yaw, size / np.array(s.size_m)),
+        )
+        for s in ranked
+    )
+    best = ranked[0]
+    name = names.new(opening.kind)
+    return SceneObject(name, opening.kind, opening.kind, best.id, best.size_m, candidates[0].pose, candidates)

@@ -1,0 +1,96 @@
+"""Objects whose hidden side reaches into a neighbour: how far they go on behind it is a guess, so they end before it.
+
+A bookcase whose left end is behind a wardrobe was seen up to the wardrobe. Where its shape goes on into the wardrobe, a
+narrower bookcase agrees with the picture as well, and nothing has to move.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from diorama_core.layout.feasible.photo_observations import PhotoObservations
+from diorama_core.layout.feasible.separate import APART_M
+from diorama_core.layout.problem.problem import Problem
+from diorama_core.layout.report import part_overlaps
+from diorama_core.scene.types import box_corners
+
+LEAST_SHARE = 0.5
+"""An extent is reduced to no less than this share of what was retrieved."""
+LEAST_OVERLAP_M = 0.01
+"""Overlaps that go less deep are left to moves."""
+AROUND_LOAD_M = 0.02
+"""Left beside what stands on an object."""
+
+
+def ending_before_neighbours(problem: Problem, observations: PhotoObservations) -> Problem:
+    """The problem with objects shortened where a side that was not seen reaches into another object.
+
+    The opposite side stays, and so does what the object holds up.
+    """
+    scale, p = problem.scale.copy(), problem.p.copy()
+    overlaps = part_overlaps(problem, problem.R, problem.p, problem.scale)
+    for i in map(int, np.flatnonzero(problem.free & observations.hidden.any(axis=1))):
+        neighbours = [j for j in range(problem.count) if overlaps.get((min(i, j), max(i, j)), 0.0) > LEAST_OVERLAP_M]
+        if not neighbours:
+            continue
+        for axis in (0, 1):
+            for sign in (-1.0, 1.0):
+                outward = sign * problem.R[i][:, axis]
+                extent = float(problem.shape_size[i, axis] * scale[i, axis])
+                face = p[i] + 0.5 * extent * outward
+                if not _is_hidden(observations, i, p[i], face):
+                    continue
+                cut = _overlap_m(problem, i, neighbours, p, scale, axis, outward)
+                cut = min(cut, _free_m(problem, i, float(face @ outward), outward), (1.0 - LEAST_SHARE) * extent)
+                if cut > LEAST_OVERLAP_M:
+                    scale[i, axis] *= 1.0 - cut / extent
+                    p[i] = p[i] - 0.5 * cut * outward
+    return replace(problem, scale=scale, p=p)
+
+
+def _is_hidden(observations: PhotoObservations, i: int, centre: np.ndarray, face: np.ndarray) -> bool:
+    """Whether a face of an object looks to a side of the picture on which something hides the object's end."""
+    ends = np.stack([centre, face])
+    if observations.camera.to_camera(ends)[:, 2].min() <= 0.0:
+        return False
+    step = np.diff(observations.camera.project(ends), axis=0)[0]
+    if abs(step[0]) <= abs(step[1]):
+        return False
+    return bool(observations.hidden[i, 0 if step[0] < 0 else 2])
+
+
+def _overlap_m(
+    problem: Problem,
+    i: int,
+    neighbours: Sequence[int],
+    p: np.ndarray,
+    scale: np.ndarray,
+    axis: int,
+    outward: np.ndarray,
+) -> float:
+    """How far the boxes of unrelated objects reach into an object's box from one of its sides, metres."""
+    R, half = problem.R[i], 0.5 * problem.shape_size[i] * scale[i]
+    others = [k for k in range(3) if k != axis]
+    deepest = 0.0
+    for j in neighbours:
+        corners = (p[j] + box_corners(problem.shape_size[j] * scale[j]) @ problem.R[j].T - p[i]) @ R
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        beside = (low[others] >= half[others]).any() or (high[others] <= -half[others]).any()
+        along = corners @ (R.T @ outward)
+        reaches = float(half[axis] - along.min())
+        # What goes on beyond the face comes from outside; what is within the box does not.
+        if not beside and reaches > 0.0 and float(along.max()) > half[axis]:
+            deepest = max(deepest, reaches + APART_M)
+    return deepest
+
+
+def _free_m(problem: Problem, i: int, face: float, outward: np.ndarray) -> float:
+    """How far a side may come in until it meets what the object holds up, metres."""
+    loads = (
+        problem.p[k] + box_corners(problem.shape_size[k] * problem.scale[k]) @ problem.R[k].T
+        for k in problem.rides(i)[1:]
+    )
+    return face - AROUND_LOAD_M - max((float((corners @ outward).max()) for corners in loads), default=-np.inf)

@@ -1,0 +1,53 @@
+"""What encloses a place: the parts of a supporter that stand beside what rests on it.
+
+An object touches the board it stands on, so it never collides with its supporter as a whole. It does collide with the
+back and the sides of a bookcase, with the arms of a chair and with the frame of a mirror on a dresser.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+from jaxtyping import Bool
+
+from diorama_core.geometry.sat import Bodies
+from diorama_core.layout.problem.problem import Problem
+from diorama_core.layout.problem.supports import Surface
+
+ABOVE_M = 0.01
+"""Parts of a supporter that do not rise above a place by so much are below what rests there."""
+BESIDE_M = 0.005
+"""Parts reach by up to so much over the edge of a place beside which they stand: they contain the mesh."""
+
+
+def may_meet(problem: Problem, bodies: Bodies, surface: Sequence[Surface | None]) -> Bool[np.ndarray, "b b"]:
+    """Which pairs of parts must not overlap: those of unrelated objects, and what encloses a place with what is there.
+
+    Args:
+        problem: who holds up whom.
+        bodies: every part, posed.
+        surface: the place of every object, in the world; None without one.
+    """
+    owner = bodies.owner
+    allowed = ~problem.kin[owner[:, None], owner[None]]
+    for i in range(problem.count):
+        chain = problem.chain(i)
+        for above, below in pairwise(chain):
+            place = surface[above]
+            if place is None or problem.yielding[i, below]:
+                continue
+            parts = np.flatnonzero(owner == below)
+            beside = parts[_beside(bodies, parts, place)]
+            own = np.flatnonzero(owner == i)
+            allowed[np.ix_(own, beside)] = allowed[np.ix_(beside, own)] = True
+    return allowed
+
+
+def _beside(bodies: Bodies, parts: np.ndarray, place: Surface) -> Bool[np.ndarray, " k"]:
+    """Which parts rise above a place (world) and lie outside of one of its sides."""
+    points = bodies.vertices[parts]
+    rises = (points @ place.normal).max(axis=1) - place.level > ABOVE_M
+    outside = (np.matmul(points, place.outward.T) - place.offset).min(axis=1).max(axis=1) > -BESIDE_M
+    return rises & outside

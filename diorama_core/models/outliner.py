@@ -1,0 +1,155 @@
+"""The outliner that comes with Diorama: which pixels in a box are the object's, with nothing downloaded.
+
+A small network trained by `diorama_core.training` on rendered rooms; `assets/models` has its weights, how they were
+made and how good they are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+
+import cv2
+import numpy as np
+from jaxtyping import Float32, Shaped, UInt8
+from scipy.special import expit
+
+from diorama_core.errors import UnavailableError
+from diorama_core.models import own_weights
+from diorama_core.models.own_weights import OUTLINER
+from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
+from diorama_core.models.store import sha256_of
+
+Box = tuple[float, float, float, float]
+
+SIDE = 96
+"""Of a window, in cells."""
+MARGIN = 0.25
+"""Of the box's size, on every side of a window: what is around an object tells what is not the object."""
+FILL = 114
+"""Grey of what is outside the photo."""
+_BATCH = 16
+"""Windows a run."""
+_SKIPPED = 1.2
+"""Pixels a cell above which linear interpolation alone would skip some."""
+_BLUR = 0.45
+
+
+@dataclass(frozen=True)
+class Outliner:
+    """Input: an upright RGB picture, eight bits, any size, and boxes in its pixels. Output: shares of their windows.
+
+    Args:
+        graph: from windows to logits.
+        weights: identity of the graph, for cache keys.
+    """
+
+    graph: Path = field(repr=False)
+    weights: str = "outliner"
+    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
+
+    @classmethod
+    def of(cls, folder: Path) -> Outliner:
+        """The outliner of a folder.
+
+        Raises:
+            UnavailableError: when it is not there.
+        """
+        path = folder / OUTLINER
+        if not path.is_file():
+            raise UnavailableError(f"{folder}: {OUTLINER} is missing; restore it from the repository")
+        return cls(path, sha256_of(path)[:8])
+
+    def outlines(self, rgb: UInt8[np.ndarray, "h w 3"], boxes: Sequence[Box]) -> list[Float32[np.ndarray, "h2 w2"]]:
+        """For every box how likely each pixel of its rectangle in the photo (`pixels_of`) is the object's, 0 to 1.
+
+        Every window is looked at as it is and mirrored.
+        """
+        found: list[Float32[np.ndarray, "h2 w2"]] = []
+        for first in range(0, len(boxes), _BATCH):
+            some = boxes[first : first + _BATCH]
+            windows = np.stack([window(rgb, box) for box in some])
+            both = self._logits(windows) + self._logits(np.ascontiguousarray(windows[..., ::-1]))[..., ::-1]
+            shares = expit(both / 2).astype(np.float32)
+            found += [in_photo(share, box, rgb.shape[:2]) for share, box in zip(shares, some, strict=True)]
+        return found
+
+    def _logits(self, windows: Float32[np.ndarray, "b 4 s s"]) -> Float32[np.ndarray, "b s s"]:
+        session = self.pool.get(self.graph)
+        out: Float32[np.ndarray, "b s s"] = session.run({"windows": windows}, {"logits": (len(windows), SIDE, SIDE)})[
+            "logits"
+        ].astype(np.float32)
+        return out
+
+
+@cache
+def own_outliner() -> Outliner:
+    """The outliner whose weights come with Diorama.
+
+    Raises:
+        UnavailableError: when they are not there.
+    """
+    return Outliner.of(own_weights.FOLDER)
+
+
+def window(rgb: UInt8[np.ndarray, "h w 3"], box: Box) -> Float32[np.ndarray, "4 s s"]:
+    """The box with its margin, stretched to a square: colours 0 to 1, and where there is a photo at all."""
+    inside = resampled(np.ones(rgb.shape[:2], np.float32), box) > 0.5
+    colours = np.where(inside[..., None], resampled(rgb, box), FILL).astype(np.float32) / np.float32(255)
+    stacked = np.concatenate([colours, inside[..., None].astype(np.float32)], axis=2)
+    return np.ascontiguousarray(stacked.transpose(2, 0, 1))
+
+
+def resampled(image: Shaped[np.ndarray, "h w *c"], box: Box) -> Shaped[np.ndarray, "s s *c"]:
+    """An image of numbers at the cells of the box's window; 0 outside the photo."""
+    left, top, per_x, per_y = _grid(box)
+    reach = int(2 + max(per_x, per_y))
+    x, y = max(0, int(left) - reach), max(0, int(top) - reach)
+    right, bottom = int(left + SIDE * per_x) + reach, int(top + SIDE * per_y) + reach
+    part = np.ascontiguousarray(image[y : max(bottom, y + 1), x : max(right, x + 1)])
+    if not part.size:
+        return np.zeros((SIDE, SIDE, *image.shape[2:]), image.dtype)
+    if max(per_x, per_y) > _SKIPPED:
+        edge = cv2.BORDER_ISOLATED
+        part = cv2.GaussianBlur(part, (0, 0), sigmaX=_sigma(per_x), sigmaY=_sigma(per_y), borderType=edge)
+    to_photo = np.array([[per_x, 0, left + per_x / 2 - 0.5 - x], [0, per_y, top + per_y / 2 - 0.5 - y]])
+    how = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
+    return np.asarray(cv2.warpAffine(part, to_photo, (SIDE, SIDE), flags=how, borderMode=cv2.BORDER_CONSTANT))
+
+
+def in_photo(share: Float32[np.ndarray, "s s"], box: Box, photo_shape: tuple[int, int]) -> Float32[np.ndarray, "h2 w2"]:
+    """A window's numbers at the pixels of its box (`pixels_of`), interpolated."""
+    left, top, per_x, per_y = _grid(box)
+    rows, columns = pixels_of(box, photo_shape)
+    size = (columns.stop - columns.start, rows.stop - rows.start)
+    to_window = np.array(
+        [
+            [1 / per_x, 0, (columns.start + 0.5 - left) / per_x - 0.5],
+            [0, 1 / per_y, (rows.start + 0.5 - top) / per_y - 0.5],
+        ]
+    )
+    how = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
+    return np.asarray(cv2.warpAffine(share, to_window, size, flags=how, borderMode=cv2.BORDER_REPLICATE), np.float32)
+
+
+def pixels_of(box: Box, photo_shape: tuple[int, int]) -> tuple[slice, slice]:
+    """Rows and columns of the pixels that a box touches inside the photo, at least one each."""
+    height, width = photo_shape
+    x, y = min(max(int(np.floor(box[0])), 0), width - 1), min(max(int(np.floor(box[1])), 0), height - 1)
+    right = min(max(x + 1, int(np.ceil(box[2]))), width)
+    bottom = min(max(y + 1, int(np.ceil(box[3]))), height)
+    return slice(y, bottom), slice(x, right)
+
+
+def _grid(box: Box) -> tuple[float, float, float, float]:
+    """Left and top of the window, and the width and height of its cells, in photo pixels."""
+    x1, y1, x2, y2 = box
+    w, h = max(x2 - x1, 1.0), max(y2 - y1, 1.0)
+    per_x, per_y = (1 + 2 * MARGIN) * w / SIDE, (1 + 2 * MARGIN) * h / SIDE
+    return x1 - MARGIN * w, y1 - MARGIN * h, per_x, per_y
+
+
+def _sigma(per_cell: float) -> float:
+    return max(_BLUR * (per_cell - 0.2), 0.01) if per_cell > _SKIPPED else 0.01

@@ -1,0 +1,169 @@
+"""Which boxes of different photos are of one object: projected cuboids claim boxes in the next photo."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+from scipy.optimize import linear_sum_assignment
+
+from diorama_core.geometry.projection import box_iou, cuboid_corners, visible_bounds
+from diorama_core.library.taxonomy import Category, broad
+from diorama_core.multiview.joint_fit import JointCuboid, PhotoBoxes, fit_jointly, meeting_point
+from diorama_core.perception.metrology.placement import FLOOR
+from diorama_core.progress import Progress
+
+MIN_OVERLAP = 0.1
+"""Of a cuboid's outline with a box of its kind in another photo, intersection over union."""
+FARTHER = tuple(float(f) for f in np.geomspace(0.6, 1.67, 9))
+FARTHER_PENALTY = tuple(float(np.exp(-0.5 * (np.log(f) / 0.3) ** 2)) for f in FARTHER)
+"""Distances at which a thing that one photo shows is looked for in another, and how unlikely each is."""
+ROUNDS = 2
+"""How often all boxes are claimed anew by cuboids that know the others."""
+
+
+Boxes = tuple[tuple[int, int], ...]
+"""(photo, box)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sighted:
+    """What one photo alone says of one of its objects."""
+
+    kind: Category
+    centre: Float[np.ndarray, "3"]
+    """In the room."""
+    yaw_rad: float
+    size_m: Float[np.ndarray, "3"]
+    supporter: int
+    """As `metrology.placement.Placement.supporter`."""
+
+
+@dataclass(frozen=True, eq=False)
+class RoomPhoto:
+    """A photo with what it says by itself."""
+
+    boxes: PhotoBoxes
+    alone: tuple[Sighted, ...]
+    """One for each box."""
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """One object of the room: its boxes, by photo, and the cuboid that fits them."""
+
+    boxes: Boxes
+    kind: Category
+    cuboid: JointCuboid
+
+    def sightings(self, photos: Sequence[RoomPhoto]) -> list[tuple[PhotoBoxes, int]]:
+        """As `fit_jointly` takes them."""
+        return [(photos[photo].boxes, box) for photo, box in self.boxes]
+
+
+def joined_objects(photos: Sequence[RoomPhoto], progress: Progress | None = None) -> tuple[Track, ...]:
+    """The room's objects. Every box is of one of them; an object has one box at most in a photo.
+
+    Photo by photo, known objects claim the boxes of their kind that their cuboids cover best; what is left is new. Then
+    every photo's boxes are claimed again by cuboids that were fitted to all other photos.
+    """
+    progress = progress or Progress()
+    joining = _Joining(photos)
+    tracks: list[Track] = []
+    steps = len(photos) * (1 + ROUNDS)
+    for number in range(len(photos)):
+        progress.report(number / steps, f"joining photo {number + 1} of {len(photos)}")
+        tracks = joining.with_photo(tracks, number)
+    if len(photos) > 1:
+        for turn in range(ROUNDS):
+            for number in range(len(photos)):
+                progress.report((len(photos) * (1 + turn) + number) / steps, f"joining photo {number + 1} again")
+                tracks = joining.with_photo(joining.without_photo(tracks, number), number)
+    return tuple(sorted(tracks, key=lambda t: t.boxes))
+
+
+class _Joining:
+    """Tracks of some photos; what was fitted once is not fitted again."""
+
+    def __init__(self, photos: Sequence[RoomPhoto]) -> None:
+        self._photos = photos
+        self._fits: dict[Boxes, Track] = {}
+
+    def with_photo(self, tracks: list[Track], number: int) -> list[Track]:
+        """The tracks with the boxes of one more photo."""
+        photo = self._photos[number]
+        count = len(photo.alone)
+        overlap = np.zeros((len(tracks), count))
+        for k, track in enumerate(tracks):
+            for box in range(count):
+                if broad(track.kind.name) == broad(photo.alone[box].kind.name):
+                    overlap[k, box] = self._overlap(track, number, box)
+        rows, columns = linear_sum_assignment(-overlap) if overlap.size else ((), ())
+        claimed = {int(c): int(r) for r, c in zip(rows, columns, strict=True) if overlap[r, c] >= MIN_OVERLAP}
+        found = list(tracks)
+        for box in range(count):
+            if box in claimed:
+                boxes = tracks[claimed[box]].boxes
+                found[claimed[box]] = self._fitted(tuple(sorted((*boxes, (number, box)))))
+            else:
+                found.append(self._fitted(((number, box),)))
+        return found
+
+    def without_photo(self, tracks: list[Track], number: int) -> list[Track]:
+        """The tracks as the other photos have them."""
+        left = [tuple(b for b in track.boxes if b[0] != number) for track in tracks]
+        return [self._fitted(boxes) for boxes in left if boxes]
+
+    def _overlap(self, track: Track, number: int, box: int) -> float:
+        """Of the track's outline with a box: of a thing seen once also at other distances along its ray, and the other
+        way round, of the box's own reading with the track's only box."""
+        photo = self._photos[number]
+        if len(track.boxes) > 1:
+            return _shared(track.cuboid, photo, box)
+        first, index = self._photos[track.boxes[0][0]], track.boxes[0][1]
+        one = photo.alone[box]
+        there = JointCuboid(one.centre, one.yaw_rad, one.size_m, 0.0)
+        return max(
+            penalty
+            * max(_shared(_pushed(track.cuboid, first, f), photo, box), _shared(_pushed(there, photo, f), first, index))
+            for f, penalty in zip(FARTHER, FARTHER_PENALTY, strict=True)
+        )
+
+    def _fitted(self, boxes: Boxes) -> Track:
+        if boxes not in self._fits:
+            self._fits[boxes] = _fitted(boxes, self._photos)
+        return self._fits[boxes]
+
+
+def _pushed(cuboid: JointCuboid, photo: RoomPhoto, factor: float) -> JointCuboid:
+    """The cuboid seen alike in its photo, so many times as far and as large."""
+    eye = photo.boxes.camera.position
+    return replace(cuboid, centre=eye + factor * (cuboid.centre - eye), size_m=factor * cuboid.size_m)
+
+
+def _shared(cuboid: JointCuboid, photo: RoomPhoto, box: int) -> float:
+    """Intersection over union of a cuboid's outline in a photo with a box."""
+    camera = photo.boxes.camera
+    corners = cuboid_corners(cuboid.centre[None], np.array([cuboid.yaw_rad]), cuboid.size_m[None])
+    bounds, visible = visible_bounds(camera.to_camera(corners), camera.intrinsics)
+    return float(box_iou(bounds[0], photo.boxes.observations.box_px[box])) if visible[0] else 0.0
+
+
+def _fitted(boxes: Boxes, photos: Sequence[RoomPhoto]) -> Track:
+    """The cuboid of some boxes: of one box what its photo says, of more the joint fit."""
+    alone = [photos[photo].alone[box] for photo, box in boxes]
+    names = [a.kind.name for a in alone]
+    kind = alone[names.index(max(sorted(set(names)), key=names.count))].kind
+    if len(boxes) == 1:
+        one = alone[0]
+        return Track(boxes, kind, JointCuboid(one.centre, one.yaw_rad, one.size_m, 0.0))
+    sightings = [(photos[photo].boxes, box) for photo, box in boxes]
+    standing = kind.name == "door" or (
+        kind.mount == "floor" and 2 * sum(a.supporter == FLOOR for a in alone) > len(alone)
+    )
+    middle = np.median([a.centre for a in alone], axis=0)
+    starts = [middle, meeting_point(sightings)]
+    found = fit_jointly(sightings, kind, starts, on_floor=standing, upright_m=float(middle[2]))
+    return Track(boxes, kind, found)

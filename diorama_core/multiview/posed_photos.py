@@ -1,0 +1,294 @@
+"""Photos with known cameras: COLMAP models (text and binary), nerfstudio's `transforms.json`, and ARKit frames as
+Polycam (`keyframes/cameras/*.json`) and 3D Scanner App (`frame_*.json`) export them.
+
+COLMAP: https://colmap.github.io/format.html. nerfstudio: https://docs.nerf.studio/quickstart/data_conventions.html.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+from io import TextIOWrapper
+from itertools import islice
+from pathlib import Path
+from typing import Any, BinaryIO, Literal
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import Rotation
+
+from diorama_core.errors import InputError
+from diorama_core.io.bounded import megabytes, read_json, shortened
+from diorama_core.scene.types import Camera, Intrinsics
+
+MAX_BYTES = 512_000_000
+MAX_PHOTOS = 10_000
+MAX_NAME_BYTES = 4096
+OPENCV_FROM_OPENGL = np.diag([1.0, -1.0, -1.0, 1.0])
+MODELS: Mapping[int, tuple[str, int]] = {
+    0: ("SIMPLE_PINHOLE", 3),
+    1: ("PINHOLE", 4),
+    2: ("SIMPLE_RADIAL", 4),
+    3: ("RADIAL", 5),
+    4: ("OPENCV", 8),
+    5: ("OPENCV_FISHEYE", 8),
+    6: ("FULL_OPENCV", 12),
+}
+"""COLMAP's camera models by number, with how many parameters each has."""
+_ONE_FOCAL = ("SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL")
+_MILD_DISTORTION = 0.1
+"""Of the first coefficients: more bends straight lines so that boxes no longer fit."""
+
+
+@dataclass(frozen=True, eq=False)
+class PosedPhoto:
+    """Where one photo was taken."""
+
+    name: str
+    """The file's path as the poses name it."""
+    camera: Camera
+    """In the world of the poses."""
+
+
+@dataclass(frozen=True, eq=False)
+class Poses:
+    """Cameras of a set of photos, in one world."""
+
+    photos: tuple[PosedPhoto, ...]
+    metric: bool
+    """Whether lengths are metres."""
+    up: Float[np.ndarray, "3"] | None
+    """Direction against gravity, where the format says it."""
+    notes: tuple[str, ...] = ()
+
+
+def read_poses(path: Path) -> Poses:
+    """Cameras from a file or a folder: `transforms.json`, a COLMAP model, or a folder of ARKit frames.
+
+    Raises:
+        InputError: nothing of the kind is there, or it makes no sense.
+    """
+    reader = _reader_of(path)
+    try:
+        poses = reader(path)
+    except (LookupError, ValueError, TypeError, AttributeError, ArithmeticError, struct.error, OSError) as error:
+        raise InputError(f"{path}: the cameras cannot be read ({shortened(str(error))}); export them again") from error
+    if not poses.photos:
+        raise InputError(f"{path} holds no camera")
+    return poses
+
+
+def _reader_of(path: Path) -> Callable[[Path], Poses]:
+    if path.is_file() and path.suffix.lower() == ".json":
+        return _nerfstudio
+    if (path / "transforms.json").is_file():
+        return lambda folder: _nerfstudio(folder / "transforms.json")
+    for folder in (path, path / "sparse" / "0", path / "sparse"):
+        for ending, reader in ((".bin", _colmap_binary), (".txt", _colmap_text)):
+            if (folder / f"cameras{ending}").is_file() and (folder / f"images{ending}").is_file():
+                return partial(_in_folder, reader, folder)
+    if any(path.glob("frame_*.json")) or any(_polycam_files(path)):
+        return _arkit
+    raise InputError(f"{path}: there is no transforms.json, COLMAP model or folder of ARKit frames")
+
+
+def _in_folder(reader: Callable[[Path], Poses], folder: Path, path: Path) -> Poses:
+    return reader(folder)
+
+
+def _nerfstudio(path: Path) -> Poses:
+    document = read_json(path, InputError, most=MAX_BYTES, advice="export it again")
+    frames = document["frames"]
+    if not isinstance(frames, list) or len(frames) > MAX_PHOTOS:
+        raise ValueError(f"'frames' is no list of at most {MAX_PHOTOS}")
+    photos, bent = [], 0.0
+    for frame in frames:
+        values = {**document, **frame}
+        if "fl_x" in values:
+            fx = float(values["fl_x"])
+            fy = float(values.get("fl_y", fx))
+        else:
+            fx = fy = 0.5 * float(values["w"]) / float(np.tan(float(values["camera_angle_x"]) / 2))
+        k = _intrinsics(values["w"], values["h"], fx, fy, values.get("cx"), values.get("cy"))
+        bent = max(bent, abs(float(values.get("k1", 0.0))), abs(float(values.get("k2", 0.0))))
+        T = _rigid(np.asarray(frame["transform_matrix"], np.float64)) @ OPENCV_FROM_OPENGL
+        photos.append(PosedPhoto(str(frame["file_path"]), Camera(k, T)))
+    return Poses(tuple(photos), bool(document.get("metric", False)), None, _distortion(bent))
+
+
+def _colmap_text(folder: Path) -> Poses:
+    cameras: dict[int, Intrinsics] = {}
+    bent = 0.0
+    for line in _lines(folder / "cameras.txt"):
+        number, model, width, height, *parameters = line.split()
+        cameras[int(number)], own = _colmap_camera(model, int(width), int(height), [float(p) for p in parameters])
+        bent = max(bent, own)
+    photos: list[PosedPhoto] = []
+    for line in islice(_lines(folder / "images.txt", keep_empty=True), 0, None, 2):  # every other line lists points
+        if not line:
+            continue
+        if len(photos) == MAX_PHOTOS:
+            raise ValueError(f"more than {MAX_PHOTOS} cameras")
+        _, *numbers, camera, name = line.split(maxsplit=9)
+        photos.append(PosedPhoto(name, Camera(cameras[int(camera)], _colmap_pose([float(n) for n in numbers]))))
+    return Poses(tuple(photos), False, None, _distortion(bent))
+
+
+def _lines(path: Path, *, keep_empty: bool = False) -> Iterator[str]:
+    with _opened(path) as data, TextIOWrapper(data, encoding="utf-8") as stream:
+        for line in stream:
+            text = line.strip()
+            if not text.startswith("#") and (text or keep_empty):
+                yield text
+
+
+def _opened(path: Path) -> BinaryIO:
+    """A file that is not too large to be a list of cameras."""
+    if path.stat().st_size > MAX_BYTES:
+        raise ValueError(f"{path.name} has more than the {megabytes(MAX_BYTES)} that are read")
+    return path.open("rb")
+
+
+def _colmap_binary(folder: Path) -> Poses:
+    cameras: dict[int, Intrinsics] = {}
+    bent, photos = 0.0, []
+    with _opened(folder / "cameras.bin") as stream:
+        for _ in range(_count(stream)):
+            number, model, width, height = struct.unpack("<iiQQ", stream.read(24))
+            name, count = MODELS[model]
+            parameters = struct.unpack(f"<{count}d", stream.read(8 * count))
+            cameras[number], own = _colmap_camera(name, width, height, list(parameters))
+            bent = max(bent, own)
+    with _opened(folder / "images.bin") as stream:
+        for _ in range(_count(stream)):
+            _, *numbers, camera = struct.unpack("<i7di", stream.read(64))
+            text = bytearray()
+            while (byte := stream.read(1)) not in (b"\0", b""):
+                text += byte
+                if len(text) > MAX_NAME_BYTES:
+                    raise ValueError("a photo's name does not end")
+            (points,) = struct.unpack("<Q", stream.read(8))
+            stream.seek(24 * points, 1)
+            photos.append(PosedPhoto(text.decode(), Camera(cameras[camera], _colmap_pose(numbers))))
+    return Poses(tuple(photos), False, None, _distortion(bent))
+
+
+def _count(stream: BinaryIO) -> int:
+    (count,) = struct.unpack("<Q", stream.read(8))
+    if count > MAX_PHOTOS:
+        raise ValueError(f"more than {MAX_PHOTOS} cameras")
+    return int(count)
+
+
+def _colmap_camera(model: str, width: int, height: int, p: list[float]) -> tuple[Intrinsics, float]:
+    """Intrinsics, and the largest coefficient of distortion."""
+    if model not in {name for name, _ in MODELS.values()}:
+        raise ValueError(f"camera model {model} is not read")
+    fx, fy, cx, cy = (p[0], p[0], p[1], p[2]) if model in _ONE_FOCAL else p[:4]
+    rest = p[3:] if model in _ONE_FOCAL else p[4:]
+    return _intrinsics(width, height, fx, fy, cx, cy), max((abs(v) for v in rest), default=0.0)
+
+
+def _colmap_pose(numbers: list[float]) -> Float[np.ndarray, "4 4"]:
+    """`T_world_camera` of a quaternion (w first) and a translation from the world to the camera."""
+    w, x, y, z, *t = numbers
+    T = np.eye(4)
+    T[:3, :3] = Rotation.from_quat([x, y, z, w]).as_matrix()
+    T[:3, 3] = t
+    return np.linalg.inv(T)
+
+
+def _polycam_files(path: Path) -> Iterator[Path]:
+    for folder in (path / "keyframes" / "corrected_cameras", path / "keyframes" / "cameras", path / "cameras"):
+        files = sorted(folder.glob("*.json")) if folder.is_dir() else []
+        if files:
+            yield from files
+            return
+
+
+def _arkit(path: Path) -> Poses:
+    """ARKit's world is metric and +Y up; its cameras look along -z."""
+    photos = []
+    files = sorted(path.glob("frame_*.json")) or list(_polycam_files(path))
+    if len(files) > MAX_PHOTOS:
+        raise ValueError(f"more than {MAX_PHOTOS} cameras")
+    for file in files:
+        row = read_json(file, InputError, most=1_000_000, advice="export the scan again")
+        if "cameraPoseARFrame" in row:
+            T = np.asarray(row["cameraPoseARFrame"], np.float64).reshape(4, 4)
+            K = np.asarray(row["intrinsics"], np.float64).reshape(3, 3)
+            k = _intrinsics(*_size_beside(file, K), K[0, 0], K[1, 1], K[0, 2], K[1, 2])
+        else:
+            T = np.eye(4)
+            T[:3] = [[float(row[f"t_{i}{j}"]) for j in range(4)] for i in range(3)]
+            k = _intrinsics(row["width"], row["height"], row["fx"], row["fy"], row["cx"], row["cy"])
+        photos.append(PosedPhoto(f"{file.stem}.jpg", Camera(k, _rigid(T) @ OPENCV_FROM_OPENGL)))
+    return Poses(tuple(photos), True, np.array([0.0, 1.0, 0.0]))
+
+
+def _size_beside(file: Path, K: Float[np.ndarray, "3 3"]) -> tuple[int, int]:
+    """Size of the picture beside a frame's file; about twice its centre where it is not there."""
+    from PIL import Image
+
+    picture = file.with_suffix(".jpg")
+    if picture.is_file():
+        try:
+            with Image.open(picture, formats=("JPEG",)) as opened:
+                return opened.size
+        except Image.DecompressionBombError as error:
+            raise ValueError(f"{picture.name} has more pixels than are read") from error
+    return round(2 * float(K[0, 2])), round(2 * float(K[1, 2]))
+
+
+def _intrinsics(width: Any, height: Any, fx: Any, fy: Any, cx: Any, cy: Any) -> Intrinsics:
+    w, h = int(width), int(height)
+    return Intrinsics(
+        w, h, float(fx), float(fy), w / 2 if cx is None else float(cx), h / 2 if cy is None else float(cy)
+    )
+
+
+def _rigid(T: Float[np.ndarray, "4 4"]) -> Float[np.ndarray, "4 4"]:
+    if T.shape != (4, 4) or not np.isfinite(T).all() or abs(np.linalg.det(T[:3, :3]) - 1.0) > 1e-2:
+        raise ValueError("a camera's matrix is no rotation and translation")
+    return T
+
+
+def _distortion(largest: float) -> tuple[str, ...]:
+    if largest <= _MILD_DISTORTION:
+        return ()
+    return (f"the photos are distorted (coefficient {largest:.2f}) and were read as they are; undistort them first",)
+
+
+Kind = Literal["text", "binary"]
+
+
+def write_colmap(folder: Path, photos: tuple[PosedPhoto, ...], kind: Kind = "text") -> None:
+    """Write cameras as a COLMAP model without points.
+
+    Args:
+        folder: made if it is missing.
+        photos: each gets a camera of its own.
+        kind: text or binary files.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    rows = []
+    for photo in photos:
+        T = np.linalg.inv(photo.camera.T_world_camera)
+        x, y, z, w = Rotation.from_matrix(T[:3, :3]).as_quat()
+        rows.append((photo, [float(v) for v in (w, x, y, z, *T[:3, 3])]))
+    ks = [p.camera.intrinsics for p in photos]
+    if kind == "text":
+        cameras = [f"{n} PINHOLE {k.width} {k.height} {k.fx!r} {k.fy!r} {k.cx!r} {k.cy!r}" for n, k in enumerate(ks, 1)]
+        (folder / "cameras.txt").write_text("\n".join(["# cameras", *cameras]) + "\n")
+        images = [f"{n} {' '.join(map(repr, v))} {n} {p.name}\n" for n, (p, v) in enumerate(rows, 1)]
+        (folder / "images.txt").write_text("# images\n" + "\n".join(images) + "\n")
+        return
+    packed = [struct.pack("<iiQQ4d", n, 1, k.width, k.height, k.fx, k.fy, k.cx, k.cy) for n, k in enumerate(ks, 1)]
+    (folder / "cameras.bin").write_bytes(struct.pack("<Q", len(ks)) + b"".join(packed))
+    images_b = [
+        struct.pack("<i7di", n, *v, n) + p.name.encode() + b"\0" + struct.pack("<Q", 0)
+        for n, (p, v) in enumerate(rows, 1)
+    ]
+    (folder / "images.bin").write_bytes(struct.pack("<Q", len(rows)) + b"".join(images_b))

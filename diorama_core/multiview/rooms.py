@@ -1,0 +1,375 @@
+"""From photos with known cameras to one scene.
+
+Each photo is outlined and read by itself; then objects are joined across photos and fitted to all of them
+(`joining`, `joint_fit`). Each object gets its shape, its front and its colours from the photo that shows it best,
+through the same stages as a single photo. The room is that of the first photo, extended to hold everything.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float, UInt8
+
+from diorama_core.architecture.room_extent import containing_room
+from diorama_core.artefacts import (
+    CameraEstimate,
+    CameraHypothesis,
+    Cuboid,
+    DetectedObject,
+    Inputs,
+    LayoutReport,
+    ObjectGeometry,
+)
+from diorama_core.errors import InputError
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.taxonomy import category
+from diorama_core.multiview.alignment import Alignment, PhotoReading, align
+from diorama_core.multiview.joining import RoomPhoto, Sighted, Track, joined_objects
+from diorama_core.multiview.joint_fit import JointCuboid, PhotoBoxes
+from diorama_core.perception.metrology.box_observations import gather
+from diorama_core.perception.metrology.placement import place_all
+from diorama_core.perception.metrology.problem import View
+from diorama_core.perception.metrology.reading import heading_and_size
+from diorama_core.perception.metrology.stage import supports_of
+from diorama_core.pipeline.plan import evaluate
+from diorama_core.pipeline.run import Built, build_scene
+from diorama_core.pipeline.runner import Runner
+from diorama_core.pipeline.stages import Stages
+from diorama_core.progress import Progress
+from diorama_core.protocols import LayoutStage, Preview
+from diorama_core.provenance import CameraSource, ScaleSource
+from diorama_core.scene.edits import set_metrics
+from diorama_core.scene.support import check_scene
+from diorama_core.scene.types import Architecture, Camera, Pose, Scene, SceneObject, Support, yaw_rotation
+
+UNSEEN_EDGE_FACTOR = 0.5
+"""Of a box's area, for each of its edges that is hidden or cut: how well a photo shows an object."""
+
+
+@dataclass(frozen=True, eq=False)
+class PosedInputs:
+    """A photo with what is known of it, and its camera in the room (+Z up, floor at 0, axes along x and y, metres)."""
+
+    inputs: Inputs
+    camera: Camera
+
+
+def in_room(
+    photos: Sequence[PosedInputs],
+    choose: Callable[[Inputs], Stages],
+    *,
+    metric: bool,
+    up: Float[np.ndarray, "3"] | None,
+    progress: Progress | None = None,
+) -> tuple[tuple[PosedInputs, ...], Alignment]:
+    """Photos whose cameras are in some world of their own, with their cameras in the room.
+
+    Args:
+        photos: with cameras in the poses' world.
+        choose: the stages for a photo.
+        metric: whether that world is in metres.
+        up: direction against gravity there, where it is known.
+        progress: reports and cancellation.
+    """
+    progress = progress or Progress()
+    readings = []
+    for number, photo in enumerate(photos):
+        given = replace(photo.inputs, intrinsics=photo.camera.intrinsics)
+        part = progress.part(number / len(photos), (number + 1) / len(photos))
+        found = evaluate(choose(given), {"given": given}, ("camera", "objects"), Runner(None), part)
+        k = photo.camera.intrinsics
+        readings.append(PhotoReading(photo.camera, found["camera"], gather(found["objects"], k.width, k.height)))
+    found_alignment = align(readings, metric=metric, up=up)
+    return tuple(replace(p, camera=found_alignment.camera(p.camera)) for p in photos), found_alignment
+
+
+@dataclass(frozen=True, eq=False)
+class JoinedRoom:
+    """One scene of several photos."""
+
+    scene: Scene
+    """In the room's frame; its camera is the first photo's."""
+    tracks: tuple[Track, ...]
+    main: Built
+    """The first photo's build, whose room and textures the scene has."""
+    textures: dict[str, UInt8[np.ndarray, "_ _ 3"]]
+    layout: LayoutReport | None
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _Read:
+    """One photo, read by itself."""
+
+    posed: PosedInputs
+    stages: Stages
+    inputs: Inputs
+    objects: tuple[DetectedObject, ...]
+    T_room_photo: Float[np.ndarray, "4 4"]
+    """From the photo's own world (origin on the floor below its camera, +Y the axis it faces) to the room."""
+
+    @property
+    def camera(self) -> Camera:
+        """In the photo's own world."""
+        T = np.linalg.inv(self.T_room_photo) @ self.posed.camera.T_world_camera
+        return Camera(self.posed.camera.intrinsics, T)
+
+
+def build_room(
+    photos: Sequence[PosedInputs],
+    library: ShapeLibrary,
+    choose: Callable[[Inputs], Stages],
+    layout: LayoutStage,
+    progress: Progress | None = None,
+    preview: Preview | None = None,
+) -> JoinedRoom:
+    """Build one scene of several photos of a room.
+
+    Args:
+        photos: with boxes, or for a detector to find; the first is the one the scene is looked at from.
+        library: where shapes come from.
+        choose: the stages for a photo.
+        layout: the optimiser of the whole room; one for measured places, since rays of several photos measure them.
+        progress: reports and cancellation.
+        preview: receives the layout optimiser's intermediate scenes.
+
+    Raises:
+        InputError: there is no photo.
+        Cancelled: on request.
+        DioramaError: when a stage cannot do its work.
+    """
+    if not photos:
+        raise InputError("there is no photo with a known camera")
+    progress = progress or Progress()
+    read = []
+    for number, photo in enumerate(photos):
+        part = progress.part(0.2 * number / len(photos), 0.2 * (number + 1) / len(photos))
+        read.append(_read(photo, choose(photo.inputs), part))
+    room_photos = [_alone(r) for r in read]
+    tracks = joined_objects(room_photos, progress.part(0.2, 0.45))
+    best = [max(t.boxes, key=lambda b: (_shown(room_photos[b[0]], b[1]), -b[0]))[0] for t in tracks]
+    used = sorted({0, *best})
+    built: dict[int, Built] = {}
+    for number, index in enumerate(used):
+        part = progress.part(0.45 + 0.45 * number / len(used), 0.45 + 0.45 * (number + 1) / len(used))
+        built[index] = _built(read[index], index, tracks, library, part)
+    scene, textures = _merged(read, built, tracks, best)
+    report = None
+    if scene.objects:
+        scene, report = layout.optimise(scene, progress.part(0.9, 1.0), preview)
+        scene = set_metrics(scene, report.after)
+    several = sum(len(t.boxes) > 1 for t in tracks)
+    notes = (f"{len(photos)} photos: {several} of {len(tracks)} objects are seen in more than one",)
+    return JoinedRoom(scene, tracks, built[0], textures, report, (*notes, *built[0].notes))
+
+
+def _read(photo: PosedInputs, stages: Stages, progress: Progress) -> _Read:
+    given = replace(photo.inputs, intrinsics=photo.camera.intrinsics)
+    T = photo_world(photo.camera)
+    camera = Camera(photo.camera.intrinsics, np.linalg.inv(T) @ photo.camera.T_world_camera)
+    known = {"given": given, "camera": _estimate(camera)}
+    found = evaluate(stages, known, ("inputs", "objects"), Runner(None), progress)
+    return _Read(photo, stages, found["inputs"], found["objects"], T)
+
+
+def photo_world(camera: Camera) -> Float[np.ndarray, "4 4"]:
+    """From a photo's own world to the room: origin on the floor below the camera, +Y the room axis that it faces."""
+    forward = camera.T_world_camera[:3, 2]
+    quarter = round(float(np.arctan2(forward[1], forward[0]) / (np.pi / 2)))
+    T = np.eye(4)
+    T[:3, :3] = np.rint(yaw_rotation(np.pi / 2 * (quarter - 1)))
+    T[:2, 3] = camera.position[:2]
+    return T
+
+
+def _estimate(camera: Camera) -> CameraEstimate:
+    reading = CameraHypothesis(camera.intrinsics, camera.T_world_camera[:3, :3], 1.0)
+    return CameraEstimate((reading,), 1.0, CameraSource.given(), height_m=float(camera.position[2]))
+
+
+def _alone(read: _Read) -> RoomPhoto:
+    """What a photo says of its objects by itself, with its camera known."""
+    camera = read.camera
+    k, R, t = camera.intrinsics, read.T_room_photo[:3, :3], read.T_room_photo[:3, 3]
+    observations = gather(read.objects, k.width, k.height)
+    placements = place_all(observations, View(k, camera.T_world_camera[:3, :3]), float(camera.position[2]))
+    turn = float(np.arctan2(R[1, 0], R[0, 0]))
+    alone = []
+    for item, placement in zip(read.objects, placements, strict=True):
+        yaw, size = heading_and_size(placement, category(item.category))
+        centre = R @ placement.cuboid.centre[0] + t
+        alone.append(Sighted(category(item.category), centre, yaw + turn, size, placement.supporter))
+    return RoomPhoto(PhotoBoxes(read.posed.camera, observations), tuple(alone))
+
+
+def _shown(photo: RoomPhoto, box: int) -> float:
+    """How well a photo shows an object: the area of its box, less where edges are hidden or cut."""
+    seen = photo.boxes.observations
+    x1, y1, x2, y2 = seen.box_px[box]
+    unseen = int((seen.hidden(box) | seen.truncated[box]).sum())
+    k = photo.boxes.camera.intrinsics
+    return float((x2 - x1) * (y2 - y1) / (k.width * k.height)) * UNSEEN_EDGE_FACTOR**unseen
+
+
+def _name(number: int) -> str:
+    return f"object-{number + 1}"
+
+
+def _built(read: _Read, index: int, tracks: Sequence[Track], library: ShapeLibrary, progress: Progress) -> Built:
+    """The scene of one photo with the joint cuboids, before any layout."""
+    named = {box: number for number, track in enumerate(tracks) for photo, box in track.boxes if photo == index}
+    objects = tuple(replace(item, id=_name(named[k])) for k, item in enumerate(read.objects))
+    cuboids = tuple(_cuboid(_name(named[k]), tracks[named[k]].cuboid, read) for k in range(len(objects)))
+    stages = replace(
+        read.stages,
+        camera=_GivenCamera(read.camera),
+        objects=_GivenObjects(objects),
+        geometry=_GivenCuboids(read.camera, cuboids),
+        layout=_AsObserved(),
+    )
+    return build_scene(read.inputs, library, stages=stages, progress=progress)
+
+
+def _cuboid(name: str, joint: JointCuboid, read: _Read) -> Cuboid:
+    """A joint cuboid in a photo's own world; its front is the side that faces the camera most."""
+    R, t = read.T_room_photo[:3, :3], read.T_room_photo[:3, 3]
+    yaw = joint.yaw_rad - float(np.arctan2(R[1, 0], R[0, 0]))
+    centre = R.T @ (joint.centre - t)
+    if np.array([np.cos(yaw), np.sin(yaw)]) @ centre[:2] > 0:
+        yaw += np.pi
+    return Cuboid(name, yaw_rotation(yaw), centre, joint.size_m, 1.0 / (1.0 + joint.cost / 20.0))
+
+
+@dataclass(frozen=True, eq=False)
+class _GivenCamera:
+    camera: Camera
+
+    def estimate(self, inputs: Inputs, progress: Progress) -> CameraEstimate:
+        return _estimate(self.camera)
+
+
+@dataclass(frozen=True, eq=False)
+class _GivenObjects:
+    objects: tuple[DetectedObject, ...]
+
+    def segment(self, inputs: Inputs, progress: Progress) -> tuple[DetectedObject, ...]:
+        return self.objects
+
+
+@dataclass(frozen=True, eq=False)
+class _GivenCuboids:
+    """The cuboids of all photos, with the supports that the photo itself suggests."""
+
+    camera: Camera
+    cuboids: tuple[Cuboid, ...]
+
+    def measure(
+        self, inputs: Inputs, camera: CameraEstimate, objects: tuple[DetectedObject, ...], progress: Progress
+    ) -> ObjectGeometry:
+        observations = gather(objects, inputs.photo.width, inputs.photo.height)
+        view = View(self.camera.intrinsics, self.camera.T_world_camera[:3, :3])
+        supports = supports_of(place_all(observations, view, float(self.camera.position[2])), objects)
+        return ObjectGeometry(self.camera, self.cuboids, supports, ScaleSource.GIVEN, 1.0)
+
+
+@dataclass(frozen=True)
+class _AsObserved:
+    """No layout: that runs once, on the whole room."""
+
+    def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
+        return scene, LayoutReport("none", {}, {}, 0.0)
+
+
+def _merged(
+    read: Sequence[_Read],
+    built: dict[int, Built],
+    tracks: Sequence[Track],
+    best: Sequence[int],
+) -> tuple[Scene, dict[str, UInt8[np.ndarray, "_ _ 3"]]]:
+    """All objects in the first photo's room, each from the photo that shows it best."""
+    scenes = {k: _in_room(b.scene, read[k].T_room_photo) for k, b in built.items()}
+    main = scenes[0]
+    objects: list[SceneObject] = []
+    textures = dict(built[0].textures)
+    supports: list[Support] = []
+    for number, (track, index) in enumerate(zip(tracks, best, strict=True)):
+        name = _name(number)
+        source = next((k for k in (index, *scenes) if scenes[k].has_object(name)), None)
+        if source is None:
+            continue  # nothing of the library is like it, or it is an open doorway
+        item = scenes[source].object(name)
+        in_main = main.object(name) if main.has_object(name) else None
+        if len(track.boxes) > 1:
+            item = _filling(item, track.cuboid)
+        box = None if in_main is None else in_main.box_px
+        objects.append(replace(item, box_px=box, mask_id=None if in_main is None else in_main.mask_id))
+        textures |= {
+            m.texture: built[source].textures[m.texture]
+            for m in item.photo_materials
+            if m.texture is not None and m.texture in built[source].textures
+        }
+        edge = scenes[source].support_of(name)
+        if edge is not None:
+            supports.append(_in_main_room(edge, scenes[source], main.architecture))
+    known = {o.id for o in objects} | {p.id for p in main.architecture.planes}
+    held = tuple(s for s in supports if s.parent in known)
+    scene = containing_room(replace(main, objects=tuple(objects), supports=_acyclic(held)))
+    check_scene(scene)
+    return scene, textures
+
+
+def _acyclic(edges: Sequence[Support]) -> tuple[Support, ...]:
+    """Without edges that would close a circle: different photos may disagree about what stands on what."""
+    parent: dict[str, str] = {}
+    retained = []
+    for edge in edges:
+        above, seen = edge.parent, {edge.child}
+        while above in parent and above not in seen:
+            seen.add(above)
+            above = parent[above]
+        if above not in seen:
+            parent[edge.child] = edge.parent
+            retained.append(edge)
+    return tuple(retained)
+
+
+def _in_main_room(edge: Support, scene: Scene, room: Architecture) -> Support:
+    """An edge whose plane is the first photo's plane of the same role that is nearest."""
+    if not scene.has_plane(edge.parent):
+        return replace(edge, adheres_to=())
+    own = scene.plane(edge.parent)
+    alike = [
+        (abs(p.offset - own.offset) + 10 * (1 - float(p.normal @ own.normal)), p.id) for p in room.by_role(own.role)
+    ]
+    return replace(edge, parent=min(alike)[1] if alike else "", adheres_to=())
+
+
+def _in_room(scene: Scene, T: Float[np.ndarray, "4 4"]) -> Scene:
+    R, t = T[:3, :3], T[:3, 3]
+
+    def there(pose: Pose) -> Pose:
+        return Pose(R @ pose.R_world_object, R @ pose.position + t, pose.scale)
+
+    planes = tuple(replace(p, polygon=p.polygon @ R.T + t) for p in scene.architecture.planes)
+    objects = tuple(
+        replace(o, pose=there(o.pose), candidates=tuple(replace(c, pose=there(c.pose)) for c in o.candidates))
+        for o in scene.objects
+    )
+    camera = scene.camera and Camera(scene.camera.intrinsics, T @ scene.camera.T_world_camera)
+    return replace(scene, camera=camera, objects=objects, architecture=replace(scene.architecture, planes=planes))
+
+
+def _filling(item: SceneObject, joint: JointCuboid) -> SceneObject:
+    """The object with every candidate filling the joint cuboid, its front on the side where its photo saw it."""
+
+    def fitted(pose: Pose, shape_size_m: tuple[float, float, float]) -> Pose:
+        turn = round((pose.yaw_rad - joint.yaw_rad) / (np.pi / 2))
+        size = joint.size_m[[1, 0, 2]] if turn % 2 else joint.size_m
+        R = yaw_rotation(joint.yaw_rad + turn * np.pi / 2)
+        return Pose(R, joint.centre, np.maximum(size, 1e-3) / np.array(shape_size_m))
+
+    candidates = tuple(replace(c, pose=fitted(c.pose, c.shape_size_m)) for c in item.candidates)
+    return replace(item, pose=fitted(item.pose, item.shape_size_m), candidates=candidates)

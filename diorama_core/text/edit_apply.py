@@ -1,0 +1,93 @@
+"""Typed edits done with the editor's own edits; what moves is held up, free of others and inside the room."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from diorama_core.editing.placing import seated
+from diorama_core.editing.positioning import Positioner
+from diorama_core.editing.relations import OF_ROOM, Relation
+from diorama_core.errors import EditRefused
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.taxonomy import broad
+from diorama_core.scene import edits
+from diorama_core.scene.support import descendants
+from diorama_core.scene.types import Scene
+from diorama_core.text.edit_insert import inserted
+from diorama_core.text.edit_looks import painted, restyled, swapped
+from diorama_core.text.edit_outcome import Done, names_of
+from diorama_core.text.edit_places import moved, resized, shifted, turned
+from diorama_core.text.edit_plan import Edit, Insert, Move, Paint, Place, Remove, Restyle, Shift, Swap, Turn
+
+
+@dataclass(eq=False)
+class EditApplier:
+    """Applies edits one after the other; a refused one leaves everything as it was."""
+
+    positioner: Positioner
+    names: dict[str, str] = field(default_factory=dict)
+    """Ids of objects that edits of the same list have named."""
+
+    def apply(self, scene: Scene, edit: Edit) -> Done:
+        """The scene with one edit done.
+
+        Raises:
+            EditRefused: it cannot be done: one line that says why.
+        """
+        if isinstance(edit, Paint):
+            return painted(scene, edit)
+        if isinstance(edit, Insert):
+            done = inserted(self.positioner, scene, edit, self._relations(scene, edit.places))
+            if edit.name:
+                self.names[edit.name] = done.touched[0]
+            return done
+        ids = self._ids(scene, edit.objects)
+        if isinstance(edit, Remove):
+            return _removed(self.positioner.library, scene, ids)
+        if isinstance(edit, Move):
+            return moved(self.positioner, scene, ids, self._relations(scene, edit.places, ids))
+        if isinstance(edit, Shift):
+            return shifted(self.positioner, scene, ids, edit)
+        if isinstance(edit, Turn):
+            toward = self._ids(scene, [edit.toward])[0] if edit.toward else ""
+            return turned(self.positioner, scene, ids, edit, toward)
+        if isinstance(edit, Restyle):
+            return restyled(self.positioner.library, scene, ids, edit.look)
+        if isinstance(edit, Swap):
+            return swapped(self.positioner, scene, ids, edit.what)
+        return resized(self.positioner, scene, ids, edit.factor)
+
+    def _ids(self, scene: Scene, given: Sequence[str]) -> list[str]:
+        """Known ids, with the names of new objects resolved, each once."""
+        ids = list(dict.fromkeys(self.names.get(i, i) for i in given))
+        unknown = next((i for i in ids if not scene.has_object(i)), None)
+        if unknown is not None:
+            raise EditRefused(f"there is no object “{unknown}” in this scene")
+        if not ids:
+            raise EditRefused("no object was named")
+        return ids
+
+    def _relations(self, scene: Scene, places: Sequence[Place], own: Sequence[str] = ()) -> list[Relation]:
+        found = []
+        for place in places:
+            targets = tuple(self._ids(scene, place.targets)) if place.targets else ()
+            if not targets and place.relation not in OF_ROOM and not own:
+                raise EditRefused(f"“{place.relation}” what? Name the object")
+            if set(targets) & set(own):
+                raise EditRefused(f"{scene.object(targets[0]).label} cannot be {place.relation} itself")
+            found.append(Relation(place.relation, targets))
+        return found
+
+
+def _removed(library: ShapeLibrary, scene: Scene, ids: Sequence[str]) -> Done:
+    """Without objects and what is on them; what stood on a rug stands on the floor."""
+    riding = [d for i in ids for d in descendants(scene, i) if broad(scene.object(i).category) != "rug"]
+    gone = list(dict.fromkeys((*ids, *riding)))
+    extra = [i for i in gone if i not in ids]
+    what = f" with what is on {'it' if len(ids) == 1 else 'them'}: {names_of(scene, extra)}" if extra else ""
+    after = edits.remove(scene, gone)
+    for rug in (i for i in ids if broad(scene.object(i).category) == "rug"):
+        for child in scene.children_of(rug):
+            after = seated(after, library, child)
+    return Done(after, (f"remove {names_of(scene, ids)}{what}",))

@@ -1,0 +1,354 @@
+"""Edits in plain English without a language model: a small grammar of verbs, objects and places.
+
+A command is a list of clauses ("remove the vase and move the lamp beside the sofa"). Each clause is understood in the
+scene as the clauses before it leave it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Literal
+
+from diorama_core.editing.relations import RelationKind
+from diorama_core.errors import EditRefused
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.taxonomy import category
+from diorama_core.scene.types import Scene
+from diorama_core.text.edit_plan import (
+    Edit,
+    Insert,
+    Move,
+    Paint,
+    Place,
+    Remove,
+    Resize,
+    Restyle,
+    Shift,
+    Swap,
+    Turn,
+)
+from diorama_core.text.looks import look_of
+from diorama_core.text.phrases import NUMBERS, Placing, noun_phrase, split_places
+from diorama_core.text.selecting import Selector
+
+_VERBS = {
+    "remove": "remove|delete|take away|take out|get rid of|throw out|throw away|clear away|erase|drop",
+    "clear": "clear|empty|tidy",
+    "turn": "turn|rotate|face|point|orient|aim|spin",
+    "swap": "swap|replace|exchange|switch|substitute",
+    "change": "change",
+    "paint": "paint|colour|color|recolour|recolor|dye",
+    "make": "make",
+    "larger": "enlarge|scale up|grow",
+    "smaller": "shrink|scale down|reduce",
+    "move": "move|shift|push|pull|drag|bring|slide|relocate|carry",
+    "put": "put|place|set|hang|stand|lay|position|arrange",
+    "insert": "add|insert|give me|i want|i would like|i'd like|i need|there should be|create|get|bring in",
+}
+_VERB = re.compile(
+    r"^(?:please |now |then |also |and |can you |could you )*(?:"
+    + "|".join(f"(?P<{name}>(?:{words})\\b)" for name, words in _VERBS.items())
+    + ")"
+)
+_ANY_VERB = "|".join(words for words in _VERBS.values())
+_CLAUSES = re.compile(
+    rf"\s*(?:;|\.(?!\d)|,?\s*\b(?:and )?then\b|,?\s*\band\s+(?=(?:{_ANY_VERB})\b)|,\s*(?=(?:{_ANY_VERB})\b))\s*"
+)
+_SCALES = {"twice": 2.0, "double": 2.0, "half": 0.5}
+EXAMPLES = "make all chairs wooden; move the lamp beside the sofa; remove everything on the desk; a rug under the table"
+MAX_COMMAND_CHARS = 1000
+
+
+def clauses_of(command: str) -> tuple[str, ...]:
+    """The clauses of a command, each of which is one edit or several.
+
+    Raises:
+        EditRefused: there are no words, or too many.
+    """
+    text = " ".join(command.lower().replace("’", "'").split()).strip(" .!")
+    if not text:
+        raise EditRefused(f"there is no command; for example: {EXAMPLES}")
+    if len(text) > MAX_COMMAND_CHARS:
+        raise EditRefused(f"the command has {len(text)} characters; {MAX_COMMAND_CHARS} are enough")
+    return tuple(c for c in _CLAUSES.split(text) if c.strip())
+
+
+def edits_of(
+    clause: str, scene: Scene, library: ShapeLibrary, last: Sequence[str] = (), selected: Sequence[str] = ()
+) -> tuple[Edit, ...]:
+    """What one clause asks for in a scene.
+
+    Args:
+        clause: lower case.
+        scene: as the clauses before leave it.
+        library: of its shapes.
+        last: ids that "it" means: those of the clause before.
+        selected: ids that a person has selected.
+
+    Raises:
+        EditRefused: the clause is not understood, or names what is not there; one line that says which.
+    """
+    selector = Selector(scene, library, last, selected)
+    found = _VERB.match(clause)
+    verb = "" if found is None else str(found.lastgroup)
+    rest = clause if found is None else clause[found.end() :].strip()
+    if not rest and verb:
+        raise EditRefused(f"“{clause}”: {verb} what? For example: {EXAMPLES}")
+    if verb == "remove":
+        return (Remove(objects=list(_subject(selector, rest))),)
+    if verb == "clear":
+        carrier = selector.objects(rest.removeprefix("off ").removeprefix("up "))
+        on = [i for c in carrier for i in _carried(scene, c)]
+        if not on:
+            raise EditRefused(f"there is nothing on {scene.object(carrier[0]).label}")
+        return (Remove(objects=on),)
+    if verb == "turn":
+        return (_turn(selector, clause, rest),)
+    if verb in ("swap", "change"):
+        return (_swap(selector, clause, rest),)
+    if verb in ("paint", "make"):
+        return (_look(selector, clause, rest),)
+    if verb in ("larger", "smaller"):
+        return (Resize(objects=list(_subject(selector, rest)), factor=_factor(rest, verb == "larger")),)
+    if verb == "move":
+        return (_move(selector, clause, rest),)
+    if verb == "put":
+        return (_move(selector, clause, rest),) if _is_known(selector, rest) else _inserts(selector, clause, rest)
+    return _inserts(selector, clause, rest)
+
+
+def _carried(scene: Scene, carrier: str) -> tuple[str, ...]:
+    return scene.children_of(carrier)
+
+
+def _subject(selector: Selector, text: str) -> tuple[str, ...]:
+    """Objects with everything that is said of where they are; several joined by "and"."""
+    kept, _, spared = (
+        part.strip()
+        for part in re.sub(r"\b(?:other than|apart from|but not|but)\b", "except", text).partition("except")
+    )
+    if spared:
+        left_out = _subject(selector, spared)
+        return tuple(i for i in _subject(selector, kept) if i not in left_out)
+    parts = re.split(r",\s*|\band\b", text) if not re.search(r"\bbetween\b", text) else [text]
+    found: list[str] = []
+    for part in parts:
+        if part.strip():
+            head, places = split_places(part)
+            found += [i for i in selector.objects(head, places) if i not in found]
+    return tuple(found)
+
+
+def _is_known(selector: Selector, text: str) -> bool:
+    """Whether what is put somewhere is in the scene: "the lamp", not "a lamp"."""
+    head, _ = split_places(text)
+    phrase, _ = noun_phrase(head)
+    first = head.split()[0] if head.split() else ""
+    if phrase is None or phrase.pronoun or phrase.every or phrase.definite or not phrase.label:
+        return True
+    return (
+        first not in NUMBERS
+        and not first.isdigit()
+        and any(o.category == phrase.category for o in selector.scene.objects)
+    )
+
+
+def _places(selector: Selector, places: Sequence[Placing]) -> list[Place]:
+    found = []
+    for place in places:
+        if place.words in ("", "each other", "one another"):
+            found.append(Place(relation=place.kind, targets=[]))
+        elif re.fullmatch(r"(?:the |this )?(?:\w+ )?(?:room|bedroom|kitchen|office|scene|floor|ground)", place.words):
+            continue
+        elif re.fullmatch(r"(?:the |a )?(?:\w+ )?walls?", place.words):
+            found.append(Place(relation="against wall", targets=[]))
+        else:
+            targets = list(selector.targets(place.words))
+            found.append(Place(relation=place.kind, targets=targets))
+    return found
+
+
+def _move(selector: Selector, clause: str, rest: str) -> Edit:
+    head, places = split_places(rest)
+    shift = _shift(selector, rest)
+    if shift is not None:
+        return shift
+    toward = re.match(r"(.*?)\s+\bto\s+(.+)$", rest)
+    if not places and toward is not None:
+        head, places = toward[1], [Placing(_usual_relation(selector, toward[1], toward[2]), toward[2])]
+    if not places:
+        raise EditRefused(f"“{clause}”: where to? For example: move the lamp beside the sofa")
+    qualifiers, goals = _split(selector, head, places)
+    ids = selector.objects(head, qualifiers)
+    wanted = _places(selector, goals)
+    if not wanted:
+        raise EditRefused(f"“{clause}”: where to? For example: beside the sofa, against the wall, in the corner")
+    return Move(objects=list(ids), places=wanted)
+
+
+_DISTANCE = re.compile(r"\b(?:by )?(\d+(?:\.\d+)?|a|half a|one|two) ?(m|cm|metres?|meters?|centimet(?:re|er)s?)\b")
+_WAYS = {
+    "left": (-1.0, 0.0), "right": (1.0, 0.0), "back": (0.0, 1.0), "backwards": (0.0, 1.0), "backward": (0.0, 1.0),
+    "forward": (0.0, -1.0), "forwards": (0.0, -1.0), "closer": (0.0, -1.0), "away": (0.0, 1.0),
+}  # fmt: skip
+_STEP_M = 0.5
+
+
+def _shift(selector: Selector, rest: str) -> Shift | None:
+    """ "the sofa 50 cm to the left": None where it says something else."""
+    found = _DISTANCE.search(rest)
+    plain = _DISTANCE.sub(" ", rest)
+    way = re.search(rf"^(.*?)\s*(?:to the |a (?:bit|little) |further )*\b({'|'.join(_WAYS)})\s*$", plain.strip())
+    if way is None or not way[1]:
+        return None
+    distance = _STEP_M
+    if found is not None:
+        number = {"a": 1.0, "half a": 0.5, "one": 1.0, "two": 2.0}.get(found[1]) or float(found[1])
+        distance = number * (0.01 if found[2].startswith("c") else 1.0)
+    right, away = _WAYS[way[2]]
+    if distance > 20.0:
+        raise EditRefused(f"{distance:g} m is farther than any room; give at most 20 m")
+    head = re.sub(r"\b(?:to the|a bit|a little|further)\s*$", "", way[1]).strip()
+    return Shift(objects=list(_subject(selector, head)), right_m=distance * right, away_m=distance * away)
+
+
+def _usual_relation(selector: Selector, head: str, goal: str) -> RelationKind:
+    """What "to" means: onto furniture for what lies on things, beside it for what stands on the floor."""
+    scene = selector.scene
+    item, target = scene.object(selector.objects(head)[0]), scene.object(selector.targets(goal)[0])
+    carries = category(target.category).supports_objects
+    return "on" if carries and category(item.category).mount == "surface" else "beside"
+
+
+def _split(selector: Selector, head: str, places: list[Placing]) -> tuple[list[Placing], list[Placing]]:
+    """What tells the object from others of its kind, and where it goes: "the lamp on the desk", "beside the sofa"."""
+    if len(places) < 2:
+        return [], places
+    try:
+        selector.objects(head, places[:1])
+    except EditRefused:
+        return [], places
+    return places[:1], places[1:]
+
+
+def _turn(selector: Selector, clause: str, rest: str) -> Edit:
+    degrees = re.search(r"(?:by )?(-?\d+(?:\.\d+)?)\s*(?:degrees|degree|deg|°)", rest)
+    fixed = re.search(r"\b(around|round|over|left|right|clockwise|anticlockwise|counter-?clockwise)\b\s*$", rest)
+    if degrees is not None:
+        head = re.sub(r"\bby\b.*$", "", rest[: degrees.start()]).strip()
+        sign = -1.0 if re.search(r"\bright\b|(?<!anti)(?<!counter)(?<!-)\bclockwise\b", rest) else 1.0
+        head = re.sub(r"\b(left|right|clockwise)\b", "", head)
+        return Turn(objects=list(_subject(selector, head)), degrees=max(min(sign * float(degrees[1]), 360.0), -360.0))
+    toward = re.match(r"(.*?)\s*\b(?:to face|to look at|towards?|to|at|facing)\b\s+(.*)$", rest) or re.match(
+        r"(the [\w ]+?)\s+(the [\w ]+)$", rest
+    )
+    if toward is not None and toward[1] and toward[2] not in ("left", "right", "the left", "the right"):
+        targets = selector.targets(toward[2])
+        return Turn(objects=list(_subject(selector, toward[1])), toward=targets[0])
+    if fixed is not None or (toward is not None and toward[1]):
+        word = fixed[1] if fixed is not None else str(toward and toward[2]).removeprefix("the ")
+        angle = {"left": 90.0, "anticlockwise": 90.0, "right": -90.0, "clockwise": -90.0}.get(word, 180.0)
+        head = rest[: fixed.start()] if fixed is not None else str(toward and toward[1])
+        return Turn(objects=list(_subject(selector, re.sub(r"\bto the\b\s*$", "", head))), degrees=angle)
+    raise EditRefused(f"“{clause}”: which way? For example: turn the armchair to the window, or by 90 degrees")
+
+
+def _swap(selector: Selector, clause: str, rest: str) -> Edit:
+    parts = re.split(r"\s+\b(?:for|with|by|into|to)\b\s+", rest, maxsplit=1)
+    if len(parts) < 2:
+        raise EditRefused(f"“{clause}”: for what? For example: swap the sofa for a leather one")
+    surface = _room_part(parts[0])
+    if surface is not None:
+        return Paint(part=surface, colour=_colour(parts[1], clause))
+    ids = list(_subject(selector, parts[0]))
+    what = re.sub(r"^(?:an?|some|the|another)\s+|\s+\b(?:ones?|instead)\b", " ", f"{parts[1]}").strip()
+    phrase, unknown = noun_phrase(what)
+    if phrase is None and look_of(what) is None and unknown and unknown not in ("one", "ones", "different", "other"):
+        raise EditRefused(f"“{unknown}” names nothing in the library; try another word")
+    kind = selector.scene.object(ids[0]).category
+    if (phrase is None or (look_of(what) is not None and not phrase.label)) and re.match(r"change|make", clause):
+        return Restyle(objects=ids, look=what)
+    return Swap(objects=ids, what=what if phrase is not None and phrase.label else f"{what} {kind}".strip())
+
+
+def _room_part(text: str) -> Literal["walls", "floor", "ceiling"] | None:
+    """The part of the room that a phrase names, if it names one."""
+    found = re.fullmatch(r"(?:all |of |the |my |this |room's )*(walls?|floor|ceiling)", text.strip())
+    if found is None:
+        return None
+    return "floor" if found[1] == "floor" else "ceiling" if found[1] == "ceiling" else "walls"
+
+
+def _colour(text: str, clause: str) -> str:
+    look = look_of(text)
+    if look is None:
+        raise EditRefused(
+            f"“{clause}”: “{text.strip()}” is no colour or material known here; try light blue, sage, oak"
+        )
+    return look.words
+
+
+def _look(selector: Selector, clause: str, rest: str) -> Edit:
+    """ "make the chairs wooden", "paint the walls blue", "make the table bigger", "make the chair face the door"."""
+    facing = re.match(r"(.*?)\s*\b(?:face|look at|point (?:at|to))\b\s+(.*)$", rest)
+    if facing is not None and facing[1]:
+        return Turn(objects=list(_subject(selector, facing[1])), toward=selector.targets(facing[2])[0])
+    resized = re.match(
+        r"(.*?)\s*\b((?:a (?:bit|little) |much |\d+ ?(?:%|percent) |twice as |half as |\d+(?:\.\d+)? times )*"
+        r"(?:bigger|larger|smaller|big|large|small|(?:half|twice|double) (?:the|its|their) size))$",
+        rest,
+    )
+    if resized is not None and resized[1]:
+        shrinks = bool(re.search(r"small|half", resized[2]))
+        return Resize(objects=list(_subject(selector, resized[1])), factor=_factor(resized[2], not shrinks))
+    words = rest.split()
+    for cut in range(1, len(words)):
+        head, look = " ".join(words[:cut]), " ".join(words[cut:])
+        look = re.sub(r"^(?:in|into|to|of|be|out of|look)\s+", "", look)
+        if look_of(look) is None:
+            continue
+        surface = _room_part(head)
+        if surface is not None:
+            return Paint(part=surface, colour=look)
+        phrase, _ = noun_phrase(split_places(head)[0])
+        if phrase is None:
+            continue
+        return Restyle(objects=list(_subject(selector, head)), look=look)
+    if _room_part(rest) is not None:
+        raise EditRefused(f"“{clause}”: in what colour? For example: paint the walls light blue")
+    raise EditRefused(f"“{clause}” names no colour, material or size known here; for example: make all chairs wooden")
+
+
+def _factor(text: str, larger: bool) -> float:
+    percent = re.search(r"(\d+(?:\.\d+)?) ?(?:%|percent)", text)
+    times = re.search(r"(\d+(?:\.\d+)?) times", text)
+    if percent is not None:
+        factor = 1.0 + float(percent[1]) / 100 * (1 if larger else -1)
+    elif times is not None:
+        factor = float(times[1])
+    else:
+        named = next((f for word, f in _SCALES.items() if re.search(rf"\b{word}\b", text)), None)
+        factor = named or (1.25 if larger else 0.8)
+    if not 0.2 <= factor <= 5.0:
+        raise EditRefused(f"a factor of {factor:g} is too much; between 0.2 and 5 is possible")
+    return factor
+
+
+def _inserts(selector: Selector, clause: str, rest: str) -> tuple[Edit, ...]:
+    """Each of "a lamp, two plants and a rug", with the phrases of place that follow it."""
+    parts = [rest] if re.search(r"\bbetween\b", rest) else re.split(r",\s*(?:and\s+)?|\band\b", rest)
+    return tuple(_insert(selector, clause, part.strip()) for part in parts if part.strip())
+
+
+def _insert(selector: Selector, clause: str, rest: str) -> Edit:
+    head, places = split_places(rest)
+    phrase, unknown = noun_phrase(head)
+    if phrase is None or not phrase.label:
+        words = unknown or head or clause
+        raise EditRefused(f"“{words}” is not understood; for example: {EXAMPLES}")
+    if category(phrase.category).name in ("door", "window"):
+        raise EditRefused(f"a {phrase.category} is part of the room, which edits by words leave as it is")
+    return Insert(
+        what=" ".join((*phrase.appearance, phrase.label)), count=phrase.count, places=_places(selector, places)
+    )

@@ -1,0 +1,123 @@
+"""Edits that add objects: which shape of the library the words mean, and where it goes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from diorama_core.editing.positioning import Positioner
+from diorama_core.editing.relations import Relation
+from diorama_core.errors import EditRefused
+from diorama_core.library.record import Shape, ShapeLibrary
+from diorama_core.library.taxonomy import broad
+from diorama_core.scene import edits
+from diorama_core.scene.types import Pose, Scene, SceneObject
+from diorama_core.text.edit_looks import looking_like
+from diorama_core.text.edit_outcome import Done, with_article
+from diorama_core.text.edit_places import lifted_onto, missed_notes
+from diorama_core.text.edit_plan import Insert
+from diorama_core.text.looks import fitting_shapes
+from diorama_core.text.phrases import NounPhrase, noun_phrase
+
+SHAPES_TRIED = 8
+RUG_MARGIN_M = 0.25
+"""How far a rug reaches beyond what stands on it, on each side."""
+TALL_M = 0.6
+"""Plants of at least this height stand on the floor."""
+
+
+def inserted(positioner: Positioner, scene: Scene, edit: Insert, relations: Sequence[Relation]) -> Done:
+    """New objects of the library at the best free places where relations hold."""
+    phrase, unknown = noun_phrase(edit.what)
+    if phrase is None or not phrase.label:
+        raise EditRefused(f"“{unknown or edit.what}” names nothing in the library; try another word")
+    targets = [scene.object(t) for r in relations for t in r.targets]
+    new: list[str] = []
+    lacking: tuple[str, ...] = ()
+    after = scene
+    shape: Shape | None = None
+    missed: list[str] = []
+    for copy in range(edit.count):
+        options, lacking = _options(positioner.library, phrase, relations, targets)
+        if not options:
+            raise EditRefused(f"the library has no {phrase.label}")
+        tried = (shape,) if shape is not None else options[:SHAPES_TRIED]
+        after, object_id, shape = _with_one(
+            positioner, after, phrase.category, tried, relations, targets, copy, edit.count
+        )
+        if object_id is None or shape is None:
+            where = f" {relations[0].words(scene)}" if relations else ""
+            done = f"; {copy} of {edit.count} would fit" if copy else ""
+            raise EditRefused(f"there is no free place for {with_article(phrase.label)}{where}{done}")
+        new.append(object_id)
+        missed += missed_notes(after, object_id, relations)
+    assert shape is not None
+    after, note = looking_like(after, new, lacking)
+    where = "".join(f" {r.words(scene)}" for r in relations)
+    what = f"{edit.count} x {phrase.category}" if edit.count > 1 else with_article(phrase.category)
+    return Done(after, (f"add {what} ({shape.caption or shape.id}){where}",), tuple(new), (*note, *missed))
+
+
+def _options(
+    library: ShapeLibrary,
+    phrase: NounPhrase,
+    relations: Sequence[Relation],
+    targets: Sequence[SceneObject],
+) -> tuple[tuple[Shape, ...], tuple[str, ...]]:
+    """Shapes for a new object, the best first, as far as their size fits where they go."""
+    kind, label, appearance = phrase.category, phrase.label, phrase.appearance
+    on = any(r.kind == "on" for r in relations)
+
+    def usable(shape: Shape) -> bool:
+        if kind == "plant" and not on and label in ("plant", "plants"):
+            return TALL_M < shape.size_m[2] < 2.0
+        if kind == "television" and not on:
+            return True
+        return shape.size_m[2] < 2.4
+
+    shapes, lacking = fitting_shapes(library, kind, label, appearance, usable)
+    shapes, lacking = (shapes, lacking) if shapes else fitting_shapes(library, kind, label, appearance)
+    if broad(kind) == "rug" and targets and any(r.kind in ("under", "around") for r in relations):
+        need = np.sort(np.ptp(np.concatenate([t.corners_world[:, :2] for t in targets]), axis=0)) + 2 * RUG_MARGIN_M
+        wide = tuple(s for s in shapes if (np.sort(s.size_m[:2]) >= need - 0.1).all())
+        shapes = wide or tuple(sorted(shapes, key=lambda s: -float(np.prod(s.size_m[:2]))))
+    return shapes, lacking
+
+
+def _with_one(
+    positioner: Positioner,
+    scene: Scene,
+    kind: str,
+    shapes: Sequence[Shape],
+    relations: Sequence[Relation],
+    targets: Sequence[SceneObject],
+    copy: int,
+    count: int,
+) -> tuple[Scene, str | None, Shape | None]:
+    """The first shape that finds a free place; of several targets "beside", each gets its share."""
+    object_id = edits.fresh_id(scene, kind)
+    own = list(relations)
+    if count > 1 or len(targets) > 1:
+        own = [
+            replace(r, targets=(r.targets[copy % len(r.targets)],))
+            if r.kind in ("beside", "on", "near", "above", "in front of") and len(r.targets) > 1
+            else r
+            for r in own
+        ]
+    for shape in shapes:
+        number = sum(o.category == shape.category for o in scene.objects) + 1
+        item = SceneObject(
+            object_id,
+            f"{shape.category} {number}",
+            shape.category,
+            shape.id,
+            shape.size_m,
+            Pose.upright(np.zeros(3)),
+        )
+        spot = positioner.best(scene, item, own)
+        if spot is not None:
+            after = positioner.put(scene, item, spot)
+            return lifted_onto(after, object_id), object_id, shape
+    return scene, None, None

@@ -1,0 +1,160 @@
+"""Edits that move objects: to where they are wished, by lengths and angles, larger and smaller; all stay free."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from diorama_core.editing.footprints import footprint_of, within
+from diorama_core.editing.placing import seated
+from diorama_core.editing.positioning import Positioner
+from diorama_core.editing.relations import OF_ROOM, Relation, is_met
+from diorama_core.editing.room_frame import RoomFrame
+from diorama_core.errors import EditRefused
+from diorama_core.geometry.planes import in_polygon
+from diorama_core.library.taxonomy import broad, category
+from diorama_core.scene import edits
+from diorama_core.scene.support import descendants
+from diorama_core.scene.types import Pose, Scene, Support, yaw_rotation
+from diorama_core.text.edit_outcome import Done, names_of
+from diorama_core.text.edit_plan import Shift, Turn
+
+
+def moved(positioner: Positioner, scene: Scene, ids: Sequence[str], relations: Sequence[Relation]) -> Done:
+    """Objects at the best free places where relations hold."""
+    if not relations:
+        raise EditRefused(f"where to should {names_of(scene, ids)} go?")
+    after, missed = scene, []
+    for object_id in ids:
+        item = after.object(object_id)
+        if item.locked:
+            raise EditRefused(f"{item.label} is locked; unlock it first")
+        own = [replace(r, targets=r.targets or tuple(i for i in ids if i != object_id)) if r.kind not in OF_ROOM
+               else r for r in relations]  # fmt: skip
+        spot = positioner.best(after, item, own, near=item.pose.position)
+        if spot is None:
+            raise EditRefused(f"there is no free place for {item.label} {own[0].words(after)}")
+        after = positioner.put(after, item, spot)
+        after = lifted_onto(after, item.id)
+        missed += missed_notes(after, object_id, own)
+    where = " and ".join(r.words(scene) for r in relations)
+    return Done(after, (f"move {names_of(scene, ids)} {where}",), tuple(ids), tuple(missed))
+
+
+def shifted(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Shift) -> Done:
+    """Objects moved by lengths, as seen in the photo."""
+    away = np.array([0.0, 1.0]) if scene.camera is None else np.array(scene.camera.T_world_camera[:2, 2])
+    away = away / max(float(np.linalg.norm(away)), 1e-6)
+    right = np.array([away[1], -away[0]])
+    step = edit.right_m * right + edit.away_m * away
+    if not step.any():
+        raise EditRefused(f"which way should {names_of(scene, ids)} go?")
+    after, notes = scene, []
+    for object_id in ids:
+        pose = after.object(object_id).pose.moved((step[0], step[1], 0.0))
+        after, note = freed(positioner, edits.move(after, object_id, pose), object_id)
+        if _off_its_support(after, object_id):
+            raise EditRefused(f"{after.object(object_id).label} would fall off what it stands on; move it by less")
+        notes += note
+    ways = ((edit.right_m, "to the right", "to the left"), (edit.away_m, "back", "forward"))
+    said = " and ".join(f"{abs(m):g} m {plus if m > 0 else minus}" for m, plus, minus in ways if m)
+    return Done(after, (f"move {names_of(scene, ids)} {said}",), tuple(ids), tuple(notes))
+
+
+def turned(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Turn, toward: str = "") -> Done:
+    """Objects turned where they are, by an angle or toward an object of an id."""
+    if not toward and not edit.degrees:
+        raise EditRefused(f"which way should {names_of(scene, ids)} turn?")
+    after, notes = scene, []
+    for object_id in ids:
+        pose = after.object(object_id).pose
+        if toward:
+            away = after.object(toward).pose.position[:2] - pose.position[:2]
+            angle = float(np.arctan2(away[1], away[0])) - pose.yaw_rad
+        else:
+            angle = float(np.radians(edit.degrees))
+        pose = replace(pose, R_world_object=yaw_rotation(angle) @ pose.R_world_object)
+        after = edits.move(after, object_id, pose)
+        after, note = freed(positioner, after, object_id)
+        notes += note
+    if toward:
+        how = f"to {scene.object(toward).label}"
+    else:
+        side = "" if abs(edit.degrees) == 180 else " to the left" if edit.degrees > 0 else " to the right"
+        how = f"by {abs(edit.degrees):g} degrees{side}"
+    return Done(after, (f"turn {names_of(scene, ids)} {how}",), tuple(ids), tuple(notes))
+
+
+def resized(positioner: Positioner, scene: Scene, ids: Sequence[str], factor: float) -> Done:
+    """Objects larger or smaller, standing on what they stood on."""
+    after, notes = scene, []
+    for object_id in ids:
+        item = after.object(object_id)
+        scale = np.asarray(item.pose.scale) * factor
+        rise = float(item.size_m[2]) * (factor - 1.0) / 2
+        hung = scene.support_of(object_id)
+        up = 0.0 if hung is not None and hung.relation == "mounted on" else rise
+        pose = Pose(item.pose.R_world_object, item.pose.position + np.array([0.0, 0.0, up]), scale)
+        on_it = scene.children_of(object_id)
+        after = edits.move(after, object_id, pose)
+        for child in on_it:
+            after = seated(after, positioner.library, child)
+        if hung is None or hung.relation != "mounted on":
+            after, note = freed(positioner, after, object_id)
+            notes += note
+    how = "larger" if factor > 1 else "smaller"
+    return Done(after, (f"make {names_of(scene, ids)} {factor:.0%} of its size ({how})",), tuple(ids), tuple(notes))
+
+
+def freed(positioner: Positioner, scene: Scene, object_id: str) -> tuple[Scene, list[str]]:
+    """An object that turned or grew into another steps aside, with the same heading."""
+    after, item = scene, scene.object(object_id)
+    own = [object_id, *descendants(scene, object_id)]
+    if not positioner.collisions.of(scene, own) and positioner.inside(scene, object_id):
+        return after, []
+    spot = positioner.nearby(scene, object_id)
+    if spot is None:
+        raise EditRefused(f"there is no room for {item.label} to do that; move it into the open first")
+    return edits.move(scene, object_id, spot.pose), [f"{item.label} steps aside to stay free"]
+
+
+def missed_notes(scene: Scene, object_id: str, relations: Sequence[Relation]) -> list[str]:
+    """The relations that a placed object does not meet, in words."""
+    frame = RoomFrame.of(scene)
+    label = scene.object(object_id).label
+    return [
+        f"there is no room for {label} {r.words(scene)}; it is as near as possible"
+        for r in relations
+        if not is_met(scene, object_id, r, frame)
+    ]
+
+
+def lifted_onto(scene: Scene, rug_id: str) -> Scene:
+    """What stands wholly on a new rug is raised onto it; what reaches over its rim stays on the floor."""
+    rug = scene.object(rug_id)
+    if broad(rug.category) != "rug":
+        return scene
+    quad, top = footprint_of(rug), float(rug.corners_world[:, 2].max())
+    edge = scene.support_of(rug_id)
+    for item in scene.objects:
+        below = scene.support_of(item.id)
+        if item.id == rug_id or below is None or edge is None or below.parent != edge.parent:
+            continue
+        if category(item.category).mount == "wall" or broad(item.category) == "rug":
+            continue
+        if bool(within(footprint_of(item)[None], quad)[0]):
+            rise = top - float(item.corners_world[:, 2].min())
+            scene = edits.move(scene, item.id, item.pose.moved((0.0, 0.0, rise)))
+            scene = edits.attach(scene, Support(item.id, rug_id))
+    return scene
+
+
+def _off_its_support(scene: Scene, object_id: str) -> bool:
+    """Whether the middle of an object is no longer over the furniture that holds it up."""
+    edge = scene.support_of(object_id)
+    if edge is None or not scene.has_object(edge.parent) or broad(scene.object(edge.parent).category) == "rug":
+        return False
+    place = scene.object(object_id).pose.position[None, :2]
+    return not bool(in_polygon(place, footprint_of(scene.object(edge.parent)))[0])

@@ -1,0 +1,140 @@
+"""Commands in words become the editor's own edits, to be looked at before they are done.
+
+A language model translates them where one is set up (DIORAMA_LMM_BASE_URL), else a small grammar, into the same list of
+typed edits. The grammar also steps in where the model is slow, unreachable or answers what cannot be done.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from diorama_core.editing.positioning import Positioner
+from diorama_core.errors import EditRefused, UnavailableError
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.perception.language.client import LmmClient, LmmSettings
+from diorama_core.progress import Progress
+from diorama_core.scene.schema import check_limits
+from diorama_core.scene.support import check_scene
+from diorama_core.scene.types import Scene
+from diorama_core.text.edit_apply import EditApplier
+from diorama_core.text.edit_grammar import clauses_of, edits_of
+from diorama_core.text.edit_plan import Edit, EditPlan
+from diorama_core.text.edit_prompt import SYSTEM, edit_prompt
+
+MOST_OBJECTS_ASKED = 300
+"""A language model is told of no more objects."""
+
+
+@dataclass(frozen=True, eq=False)
+class ProposedEdits:
+    """What a command would do."""
+
+    command: str
+    scene: Scene
+    """With all edits done."""
+    edits: tuple[Edit, ...]
+    lines: tuple[str, ...]
+    """What is done, one line each."""
+    notes: tuple[str, ...] = ()
+    """What is done otherwise than asked."""
+    translator: str = "grammar"
+    """Who translated: "grammar" or the language model's name."""
+    changed: tuple[str, ...] = ()
+    """Ids of the objects in the new scene that differ or are new."""
+
+
+def propose_edits(
+    command: str,
+    scene: Scene,
+    library: ShapeLibrary,
+    *,
+    selected: Sequence[str] = (),
+    language_model: LmmSettings | None = None,
+    progress: Progress | None = None,
+) -> ProposedEdits:
+    """What a command in words would do to a scene, which stays as it is.
+
+    Args:
+        command: in plain English, such as "make all chairs wooden and remove the rug".
+        scene: what is edited.
+        library: of its shapes, and of new ones.
+        selected: ids of selected objects, which "it" and a noun that several objects share mean first.
+        language_model: translates; None leaves it to the grammar.
+        progress: reports and cancellation of a question to the language model.
+
+    Raises:
+        EditRefused: something is not understood, not there, or does not fit: one line that says what. Nothing is done.
+    """
+    clauses_of(command)  # an empty or endless command is nothing to ask about
+    if language_model is None:
+        return _by_grammar(command, scene, library, selected)
+    try:
+        return _by_model(command, scene, library, language_model, selected, progress or Progress())
+    except (UnavailableError, EditRefused) as trouble:
+        try:
+            plain = _by_grammar(command, scene, library, selected)
+        except EditRefused as refused:
+            raise trouble if isinstance(trouble, EditRefused) else refused from trouble
+        note = f"understood without the language model ({trouble})"
+        return replace(plain, notes=(note, *plain.notes))
+
+
+def _by_grammar(command: str, scene: Scene, library: ShapeLibrary, selected: Sequence[str]) -> ProposedEdits:
+    applier = EditApplier(Positioner(library))
+    after, last = scene, tuple(selected)
+    edits: list[Edit] = []
+    lines: list[str] = []
+    notes: list[str] = []
+    for clause in clauses_of(command):
+        for edit in edits_of(clause, after, library, last, selected):
+            done = applier.apply(after, edit)
+            after, last = done.scene, done.touched or last
+            edits.append(edit)
+            lines += done.lines
+            notes += done.notes
+    return _proposed(command, scene, after, edits, lines, notes, "grammar")
+
+
+def _by_model(
+    command: str,
+    scene: Scene,
+    library: ShapeLibrary,
+    settings: LmmSettings,
+    selected: Sequence[str],
+    progress: Progress,
+) -> ProposedEdits:
+    if len(scene.objects) > MOST_OBJECTS_ASKED:
+        raise UnavailableError(f"a scene of more than {MOST_OBJECTS_ASKED} objects is too large to be told")
+    progress.report(0.0, f"Asking {settings.model} what is meant")
+    client = LmmClient(settings, system=SYSTEM)
+    plan = client.ask(edit_prompt(command, scene, selected), [], EditPlan, progress).value
+    if plan.not_understood or not plan.edits:
+        said = "; ".join(plan.not_understood) or command
+        raise EditRefused(f"not understood: “{said[:120]}”; nothing was done")
+    applier = EditApplier(Positioner(library))
+    after = scene
+    lines: list[str] = []
+    notes: list[str] = []
+    for edit in plan.edits:
+        progress.check()
+        done = applier.apply(after, edit)
+        after = done.scene
+        lines += done.lines
+        notes += done.notes
+    return _proposed(command, scene, after, plan.edits, lines, notes, settings.model)
+
+
+def _proposed(
+    command: str,
+    before: Scene,
+    after: Scene,
+    edits: Sequence[Edit],
+    lines: Sequence[str],
+    notes: Sequence[str],
+    translator: str,
+) -> ProposedEdits:
+    check_scene(after)
+    check_limits(after, before)
+    changed = tuple(o.id for o in after.objects if not before.has_object(o.id) or before.object(o.id) != o)
+    return ProposedEdits(command, after, tuple(edits), tuple(lines), tuple(dict.fromkeys(notes)), translator, changed)

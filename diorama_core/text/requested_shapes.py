@@ -1,0 +1,78 @@
+"""Which shapes of the library a request of a prompt means."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diorama_core.editing.relations import SEATS
+from diorama_core.library.language import size_request
+from diorama_core.library.record import Shape, ShapeLibrary
+from diorama_core.library.taxonomy import broad
+from diorama_core.scene import edits
+from diorama_core.scene.types import Scene
+from diorama_core.text.customs import USUAL
+from diorama_core.text.looks import fitting_shapes, has_look, look_of
+from diorama_core.text.prompt import RequestedObject
+
+TALL_PLANT_M = 0.6
+SEAT_WIDTH_M = 0.62
+"""Of a table's rim, for each who sits at it."""
+
+
+def requested_shapes(
+    library: ShapeLibrary, rng: np.random.Generator, request: RequestedObject, wanted: Sequence[RequestedObject]
+) -> tuple[Shape, ...]:
+    """Shapes that fit the words equally well, in an order left to chance; the others after them."""
+    on = any(w.kind == "on" for w in request.wishes)
+    double = request.category == "bed" and "double" in (*request.appearance, *request.label.split())
+
+    def usable(shape: Shape) -> bool:
+        if request.category == "plant" and request.label in ("plant", "plants", "potted plant") and not on:
+            return TALL_PLANT_M < shape.size_m[2] < 1.9
+        if double:
+            return shape.size_m[1] > 1.3
+        if request.category == "television":
+            return shape.size_m[0] > 0.12
+        if request.category == "kitchen counter":
+            return "island" not in shape.caption
+        if request.category == "sink":
+            return shape.size_m[2] > 0.7
+        return shape.size_m[2] < 2.35
+
+    shapes, _ = fitting_shapes(library, request.category, request.label, request.appearance, usable)
+    shapes = shapes or fitting_shapes(library, request.category, request.label, request.appearance)[0]
+    under = {t for w in request.wishes if w.kind == "under" for t in w.targets}
+    if broad(request.category) == "rug":
+        shapes = tuple(s for s in shapes if float(np.prod(s.size_m[:2])) > (2.4 if under else 1.6)) or shapes
+    if not shapes:
+        return ()
+    seats = sum(o.count for o in wanted if broad(o.category) in SEATS and _stand_around(o, request.category))
+    if broad(request.category) == "table" and seats > 2:
+        roomy = tuple(s for s in shapes if 2.0 * float(sum(s.size_m[:2])) >= SEAT_WIDTH_M * seats)
+        shapes = roomy or tuple(sorted(shapes, key=lambda s: -float(sum(s.size_m[:2])))[:3])
+    asked = [w for w in request.appearance if look_of(w) is not None]
+    most = [sum(has_look(s, w) for w in asked) for s in shapes]
+    named = [s for s, n in zip(shapes, most, strict=True) if n == max(most)]
+    sized = any(size_request(w) is not None for w in request.appearance)
+    if (request.label != request.category and not asked) or sized:
+        named = named[:4]  # "reading lamp": the search knows best which is one
+    order = rng.permutation(len(named))
+    return tuple(named[int(k)] for k in order)
+
+
+def dressed(scene: Scene, object_id: str, shape: Shape, appearance: Sequence[str]) -> Scene:
+    """Colours that no shape has are painted on."""
+    for word in appearance:
+        look = look_of(word)
+        if look is not None and look.colour is not None and not has_look(shape, word) and word not in ("light", "dark"):
+            scene = edits.refinish(edits.recolour(scene, object_id, look.colour), object_id, look.finish)
+    return scene
+
+
+def _stand_around(seats: RequestedObject, name: str) -> bool:
+    """Whether seats are wished, or usually stand, around something."""
+    if seats.wishes:
+        return any(w.kind == "around" and name in w.targets for w in seats.wishes)
+    return any(kind == "around" and name in names for kind, names in USUAL.get(broad(seats.category), ()))

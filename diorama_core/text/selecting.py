@@ -1,0 +1,149 @@
+"""Which objects of a scene a phrase means: by noun, attributes and what they stand on or beside."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+import numpy as np
+
+from diorama_core.editing.relations import Relation, is_met
+from diorama_core.editing.room_frame import RoomFrame
+from diorama_core.errors import EditRefused
+from diorama_core.library.record import ShapeLibrary, record_of
+from diorama_core.library.taxonomy import with_kin
+from diorama_core.scene.support import descendants
+from diorama_core.scene.types import Scene, SceneObject
+from diorama_core.text.looks import has_look
+from diorama_core.text.phrases import NounPhrase, Placing, noun_phrase
+
+LISTED = 12
+_LARGER = frozenset({"larger", "bigger", "largest", "biggest", "large", "big"})
+_SMALLER = frozenset({"smaller", "smallest", "small", "little", "tiny"})
+
+
+class Selector:
+    """Finds what phrases mean in one scene.
+
+    Args:
+        scene: where.
+        library: what its shapes look like.
+        last: ids that "it" and "them" mean.
+        selected: ids that a person has selected: they decide between several of a kind.
+    """
+
+    def __init__(
+        self, scene: Scene, library: ShapeLibrary, last: Sequence[str] = (), selected: Sequence[str] = ()
+    ) -> None:
+        self.scene, self.library = scene, library
+        self.last, self.selected = tuple(last), tuple(selected)
+        self._frame = RoomFrame.of(scene)
+
+    def objects(self, words: str, places: Sequence[Placing] = ()) -> tuple[str, ...]:
+        """Ids of the objects that a phrase means, with the phrases of place that tell them apart.
+
+        Raises:
+            EditRefused: it means none, or one of several without saying which.
+        """
+        phrase, unknown = noun_phrase(words)
+        if phrase is None:
+            raise EditRefused(
+                f"“{unknown or words.strip()}” names nothing that can be in a room; this scene has: {self.inventory()}"
+            )
+        if phrase.pronoun:
+            return self._meant(words)
+        exact = next((o.id for o in self.scene.objects if o.label.lower() == _plain(words)), None)
+        if exact is not None:
+            return (exact,)
+        found = self._named(phrase, words)
+        found = self._in_place(found, places, words)
+        return self._counted(found, phrase, words)
+
+    def targets(self, words: str) -> tuple[str, ...]:
+        """Ids of what a phrase of place refers to; one object, or two joined by "and"."""
+        parts = [p for p in words.replace("&", " and ").split(" and ") if p.strip()]
+        if len(parts) > 1:
+            return tuple(i for part in parts for i in self.objects(part))
+        return self.objects(words)
+
+    def inventory(self) -> str:
+        """What the scene has, in a few words."""
+        counts = Counter(o.category for o in self.scene.objects)
+        listed = [name if n == 1 else f"{name} ({n})" for name, n in counts.most_common(LISTED)]
+        return ", ".join(listed) + (", ..." if len(counts) > LISTED else "") if listed else "nothing yet"
+
+    def _meant(self, words: str) -> tuple[str, ...]:
+        known = tuple(i for i in (self.last or self.selected) if self.scene.has_object(i))
+        if not known:
+            raise EditRefused(f"“{words.strip()}” is not clear here; name the object")
+        return known
+
+    def _named(self, phrase: NounPhrase, words: str) -> list[SceneObject]:
+        if not phrase.label:
+            return [o for o in self.scene.objects if o.category not in ("door", "window")]
+        objects = self.scene.objects
+        kin = with_kin(phrase.category)
+        found = [o for o in objects if o.category == phrase.category] or [o for o in objects if o.category in kin]
+        noun = phrase.label.split()[-1].removesuffix("s")
+        labelled = [o for o in objects if noun in (w.removesuffix("s") for w in o.label.lower().split())]
+        found = found or [o for o in objects if o.category.split()[-1] == noun] or labelled
+        if not found:
+            raise EditRefused(f"there is no {phrase.category} in this scene; it has: {self.inventory()}")
+        return self._looking(found, phrase.appearance, words)
+
+    def _looking(self, found: list[SceneObject], appearance: Sequence[str], words: str) -> list[SceneObject]:
+        for word in appearance:
+            if word in _LARGER | _SMALLER and len(found) > 1:
+                order = sorted(found, key=lambda o: float(np.prod(o.size_m)), reverse=word in _LARGER)
+                found = order[:1]
+                continue
+            like = [o for o in found if has_look(record_of(self.library, o.shape_id), word) or word in o.label.lower()]
+            if like:
+                found = like
+            elif len(found) > 1:
+                raise EditRefused(f"no {found[0].category} here is {word}; there are {len(found)}: {_names(found)}")
+        return found
+
+    def _in_place(self, found: list[SceneObject], places: Sequence[Placing], words: str) -> list[SceneObject]:
+        for place in places:
+            targets = self.targets(place.words) if place.words else ()
+            if place.kind == "on" and targets:
+                carried = {d for t in targets for d in descendants(self.scene, t)}
+                here = [o for o in found if o.id in carried]
+            else:
+                relation = Relation(place.kind, targets)
+                here = [o for o in found if o.id not in targets and is_met(self.scene, o.id, relation, self._frame)]
+            if not here:
+                where = Relation(place.kind, targets).words(self.scene)
+                what = "nothing" if len({o.category for o in found}) > 1 else f"no {found[0].category}"
+                raise EditRefused(f"{what} is {where} in this scene")
+            found = here
+        return found
+
+    def _counted(self, found: list[SceneObject], phrase: NounPhrase, words: str) -> tuple[str, ...]:
+        ids = tuple(o.id for o in found)
+        if phrase.every or not phrase.label or len(ids) == 1:
+            return ids
+        chosen = tuple(i for i in ids if i in self.selected)
+        if phrase.plural:
+            exact = (
+                phrase.count
+                if any(w.isdigit() or w in ("two", "three", "four", "five", "six") for w in words.split())
+                else 0
+            )
+            if exact > len(ids):
+                raise EditRefused(f"there are only {len(ids)} of {phrase.count} {phrase.label}: {_names(found)}")
+            return (chosen or ids)[:exact] if exact else ids
+        if len(chosen) == 1:
+            return chosen
+        if not phrase.definite:
+            return ids[:1]
+        raise EditRefused(f"there are {len(ids)} of these: {_names(found)}; say which (“{found[0].label}”), or “all”")
+
+
+def _plain(words: str) -> str:
+    return " ".join(w for w in words.lower().split() if w not in ("the", "a", "my"))
+
+
+def _names(found: Sequence[SceneObject]) -> str:
+    return ", ".join(o.label for o in found[:6]) + (", ..." if len(found) > 6 else "")

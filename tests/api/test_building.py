@@ -1,0 +1,57 @@
+"""Rooms built as a script builds them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import pytest
+
+import diorama_core as diorama
+from diorama_core.artefacts import CameraEstimate, Inputs
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.perception.camera.estimate import EmbeddedCamera
+from diorama_core.progress import Progress, ProgressEvent
+from tests.cli.room_photo import BOXES, room_picture, write_room
+
+
+def test_arrays_and_files_give_the_same_scene(room: diorama.Reconstruction, tmp_path: Path) -> None:
+    photo, boxes = write_room(tmp_path)
+    built = diorama.build(str(photo), boxes=boxes, profile="embedded", output=tmp_path / "room")
+    assert built.scene == room.scene
+    assert diorama.load(tmp_path / "room").scene == built.scene
+
+
+def test_one_stage_can_be_replaced(room: diorama.Reconstruction) -> None:
+    @dataclass(frozen=True)
+    class Wider:
+        """The embedded camera with a shorter focal length."""
+
+        def estimate(self, inputs: Inputs, progress: Progress) -> CameraEstimate:
+            found = EmbeddedCamera().estimate(inputs, progress)
+            k = found.best.intrinsics
+            best = replace(found.best, intrinsics=replace(k, fx=0.8 * k.fx, fy=0.8 * k.fy))
+            return replace(found, hypotheses=(best,))
+
+    wider = diorama.build(
+        room_picture(), boxes=BOXES, profile="embedded", stages=lambda stages: replace(stages, camera=Wider())
+    )
+    assert wider.scene.camera is not None
+    assert room.scene.camera is not None
+    assert wider.scene.camera.intrinsics.fx == pytest.approx(0.8 * room.scene.camera.intrinsics.fx)
+
+
+def test_remarks_reach_the_caller_and_are_recorded() -> None:
+    said: list[str] = []
+    odd = [*BOXES, {"bbox": [250, 20, 400, 140], "class": "floor lamp"}]
+    built = diorama.build(room_picture(), boxes=odd, profile="embedded", warn=said.append)
+    assert said
+    assert tuple(said) == built.warnings
+
+
+def test_progress_is_reported_and_a_library_can_be_given() -> None:
+    events: list[ProgressEvent] = []
+    built = diorama.build(room_picture(), library=built_in_library(), progress=Progress(events.append))
+    assert events[-1].fraction == pytest.approx(1.0)
+    assert [e.fraction for e in events] == sorted(e.fraction for e in events)
+    assert built.library_name is None

@@ -1,0 +1,221 @@
+"""The real process, driven by a client that is made of its OpenAPI document."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+import trimesh
+from PIL import Image
+
+from diorama_app.cli import main
+from diorama_app.http_api.access import MAX_BODY_BYTES
+from diorama_app.projects.formats import EXPORT_FORMATS
+from tests.app.http_api.openapi_client import Client, send
+from tests.cli.room_photo import write_room
+from tests.io.test_bombs import png
+from tests.waiting import until
+
+pytest.importorskip("fastapi", reason="needs FastAPI (pip install 'diorama[api]')")
+pytest.importorskip("uvicorn", reason="needs uvicorn (pip install 'diorama[api]')")
+ROOT = Path(__file__).resolve().parents[3]
+
+
+@contextmanager
+def running(projects: Path, *more: str) -> Iterator[tuple[str, subprocess.Popen]]:
+    """A server and its address."""
+    command = [sys.executable, "-m", "diorama_app.cli", "api", "--port", "0", "--projects", str(projects), *more]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=ROOT)
+    assert process.stdout is not None
+    try:
+        line = process.stdout.readline()
+        assert "http://" in line, line
+        yield line.split(" at ")[1].split()[0], process
+    finally:
+        process.send_signal(signal.SIGINT)
+        try:
+            process.wait(60)
+        finally:
+            process.kill()
+            process.wait()
+            process.stdout.close()
+
+
+@pytest.fixture(scope="module")
+def photo(tmp_path_factory: pytest.TempPathFactory) -> dict:
+    """Arguments of `create_job`."""
+    image, boxes = write_room(tmp_path_factory.mktemp("photo"))
+    return {"photo": ("my room.png", image.read_bytes()), "boxes": boxes.read_text(), "profile": "embedded"}
+
+
+@pytest.fixture(scope="module")
+def projects(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("projects")
+
+
+@pytest.fixture(scope="module")
+def client(projects: Path) -> Iterator[Client]:
+    with running(projects) as (url, _):
+        yield Client(url)
+
+
+@pytest.fixture(scope="module")
+def finished(client: Client, photo: dict) -> str:
+    """A job that is done."""
+    created = client.create_job(**photo, fov_deg=62)
+    assert created.status == 202
+    assert created.body["state"] in ("queued", "running")
+    for _ in range(5):  # a busy machine takes some minutes
+        done = client.get_job(job_id=created.body["id"], wait_s=60)
+        if done.body["state"] not in ("queued", "running"):
+            break
+    assert (done.body["state"], done.body["progress"], done.body["error"]) == ("done", 1.0, None)
+    assert done.body["objects"] >= 1
+    return created.body["id"]
+
+
+def test_a_photo_becomes_a_scene_a_picture_and_files(client: Client, finished: str) -> None:
+    scene = client.get_scene(job_id=finished).body
+    assert scene["objects"]
+    picture = client.get_picture(job_id=finished, view="top", width=200, height=100)
+    assert Image.open(io.BytesIO(picture.body)).size == (200, 100)
+    file = client.export_scene(job_id=finished, format_name="glb", ceiling="false", texture_size=64)
+    assert len(trimesh.load_scene(io.BytesIO(file.body), file_type="glb").geometry) >= len(scene["objects"])
+    names = {f["name"] for f in client.list_formats().body}
+    assert names == set(EXPORT_FORMATS)
+    assert finished in [job["id"] for job in client.list_jobs().body["jobs"]]
+
+
+def test_a_scene_that_was_damaged_meanwhile_is_one_line(client: Client, finished: str, projects: Path) -> None:
+    path = projects / finished / "scene.json"
+    good = path.read_bytes()
+    path.write_bytes(good[: len(good) // 2])
+    try:
+        replies = [client.get_scene(job_id=finished), client.get_picture(job_id=finished)]
+    finally:
+        path.write_bytes(good)
+    for reply in replies:
+        assert reply.status == 500
+        assert "not valid JSON" in reply.body["error"]
+        assert "\n" not in reply.body["error"]
+
+
+def test_errors_are_one_line_with_the_status_that_fits(client: Client, photo: dict, finished: str) -> None:
+    cases = [
+        (client.create_job(photo=("a.jpg", b"no picture")), 422, "a.jpg"),
+        (client.create_job(**{**photo, "boxes": '[{"bbox": [1]}]'}), 422, "box"),
+        (client.create_job(**{**photo, "intrinsics": "1,2"}), 422, "four numbers"),
+        (client.create_job(boxes="[]"), 422, "photo"),
+        (client.create_job(**{**photo, "profile": "best"}), 422, "profile"),
+        (client.get_job(job_id="nobody"), 404, "nobody"),
+        (client.get_job(job_id="../etc"), 404, ""),
+        (client.get_job(job_id=finished, wait_s=1e9), 422, "wait_s"),
+        (client.export_scene(job_id=finished, format_name="dwg"), 404, "dwg"),
+        (client.get_picture(job_id=finished, view="sideways"), 422, "sideways"),
+        (client.get_picture(job_id=finished, width=10**6), 422, "width"),
+        (client.cancel_job(job_id=finished), 409, "over already"),
+    ]
+    for reply, status, words in cases:
+        assert (reply.status, words in reply.body["error"]) == (status, True), reply
+        assert "\n" not in reply.body["error"]
+    assert send("GET", f"{client.url}/nothing").body == {"error": "Not Found"}
+
+
+def test_other_origins_and_names_are_refused(client: Client) -> None:
+    port = client.url.rpartition(":")[2]
+    for headers in ({"Origin": "http://evil.example"}, {"Host": f"evil.example:{port}"}):
+        reply = send("GET", f"{client.url}/v1/jobs", headers=headers)
+        assert reply.status == 403
+        assert reply.body["error"]
+    assert send("GET", f"{client.url}/v1/jobs", headers={"Origin": client.url}).status == 200
+
+
+def test_large_requests_are_refused_before_they_are_read(client: Client) -> None:
+    host, port = client.url.removeprefix("http://").split(":")
+    head = f"POST /v1/jobs HTTP/1.1\r\nHost: {host}:{port}\r\nContent-Type: multipart/form-data; boundary=x\r\n"
+    for line in (f"Content-Length: {MAX_BODY_BYTES + 1}", "Content-Length: many"):
+        with socket.create_connection((host, int(port)), timeout=20) as connection:
+            connection.sendall(f"{head}{line}\r\n\r\n".encode())
+            status = int(connection.recv(1000).split()[1])
+        assert status in (400, 413)
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="reads memory from /proc")
+def test_pictures_are_decoded_outside_the_server(tmp_path: Path) -> None:
+    """63 megapixels that end too early: decoded here they would take 190 MB and more."""
+    with running(tmp_path) as (url, process):
+        own = Client(url)
+        assert own.create_job(photo=("small.png", b"no picture")).status == 422  # what is loaded on first use
+        before = most_memory_mb(process.pid)
+        reply = own.create_job(photo=("large.png", png(9_000, 7_000, 8, 2, 3)[:-2_000]))
+        assert (reply.status, "large.png" in reply.body["error"]) == (422, True), reply
+        assert most_memory_mb(process.pid) < before + 60
+        assert own.list_jobs().body == {"jobs": []}
+
+
+def most_memory_mb(pid: int) -> float:
+    """The most that a process has held until now."""
+    lines = Path(f"/proc/{pid}/status").read_text().splitlines()
+    return float(next(line for line in lines if line.startswith("VmHWM")).split()[1]) / 1000
+
+
+def test_a_token_opens_the_door(tmp_path: Path) -> None:
+    with running(tmp_path, "--token", "s3cret") as (url, _):
+        assert send("GET", f"{url}openapi.json").status == 401
+        assert send("GET", f"{url}openapi.json", headers={"Authorization": "Bearer wrong"}).status == 401
+        assert Client(url, "s3cret").list_jobs().body == {"jobs": []}
+
+
+@pytest.mark.slow
+def test_jobs_survive_a_server_that_was_killed(tmp_path: Path, photo: dict) -> None:
+    with running(tmp_path) as (url, process):
+        client = Client(url)
+        first, second = (client.create_job(**photo).body["id"] for _ in range(2))
+        until(lambda: client.get_job(job_id=first).body["state"] == "running", "the first build begins")
+        dropped = client.create_job(**photo).body["id"]
+        assert client.cancel_job(job_id=dropped).body["state"] == "cancelled"
+        assert client.delete_job(job_id=second).status == 409, "it waits"
+        os.kill(process.pid, signal.SIGKILL)
+        process.wait()
+    with running(tmp_path) as (url, _):
+        client = Client(url)
+        assert client.get_job(job_id=first, wait_s=60).body["state"] == "done"
+        assert client.get_job(job_id=second, wait_s=60).body["state"] == "done"
+        assert client.get_job(job_id=dropped).body["state"] == "cancelled"
+        assert client.delete_job(job_id=second).status == 204
+        assert client.get_job(job_id=second).status == 404
+    assert {p.name for p in tmp_path.iterdir()} == {first, dropped}
+    assert main(["export", str(tmp_path / first), "--format", "glb", "-o", str(tmp_path / "room.glb")]) == 0
+
+
+@pytest.mark.slow
+def test_a_running_job_can_be_cancelled(client: Client, photo: dict) -> None:
+    job = client.create_job(**{**photo, "recipe": "paper"}).body["id"]
+    until(lambda: client.get_job(job_id=job).body["state"] == "running", "it begins", seconds=60)
+    assert client.cancel_job(job_id=job).status == 200
+    assert client.get_job(job_id=job, wait_s=60).body["state"] == "cancelled"
+    assert client.get_scene(job_id=job).status == 404
+
+
+def test_a_taken_port_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        assert main(["api", "--port", str(port), "--projects", str(tmp_path)]) == 1
+    assert f"port {port}" in capsys.readouterr().err
+
+
+def test_the_document_says_what_the_api_is(client: Client) -> None:
+    assert set(client.operations) == {
+        *("create_job", "list_jobs", "get_job", "cancel_job", "delete_job"),
+        *("get_scene", "get_picture", "export_scene", "list_formats"),
+    }
+    assert json.dumps(client.document).count('"#/components/schemas/Problem"') > 20

@@ -1,0 +1,34 @@
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from PIL import Image
+
+from diorama_app.projects.folder_build import PhotoResult
+from diorama_app.projects.folder_report import write_report
+
+
+def test_failures_come_first_and_every_picture_is_inside(tmp_path: Path) -> None:
+    project = tmp_path / "living"
+    (project / "exports").mkdir(parents=True)
+    for name in ("photo.jpg", "exports/scene.jpg"):
+        Image.new("RGB", (900, 600), (90, 120, 150)).save(project / name)
+    report = {
+        "objects": [{"category": "chair"}, {"category": "chair"}, {"category": "sofa"}],
+        "planes": [{"role": "wall"}, {"role": "floor"}],
+        "notes": ["a <note>"],
+    }
+    done = PhotoResult(tmp_path / "living.jpg", project, report, seconds=12.3, tries=2)
+    kept = PhotoResult(tmp_path / "gone.jpg", tmp_path / "gone", report, kept=True)
+    failed = PhotoResult(tmp_path / "<b>.jpg", tmp_path / "b", error="it is <broken>", tries=2)
+    write_report(tmp_path / "report.html", (done, kept, failed), ("a remark",))
+    page = (tmp_path / "report.html").read_text()
+    assert page.index("&lt;b&gt;.jpg") < page.index("living.jpg")
+    assert "it is &lt;broken&gt; It was tried twice." in page
+    assert "2 of 3 photos became scenes with 6 objects; 1 of them were finished before" in page
+    assert "2 × chair, sofa" in page
+    assert "12 s, second try" in page
+    assert len(re.findall(r'src="data:image/jpeg;base64,[A-Za-z0-9+/=]{200,}"', page)) == 2
+    assert page.count("cannot be shown") == 2, "pictures of the other are gone"
+    assert not re.search(r'src="(?!data:)|<script|<link', page)

@@ -1,0 +1,156 @@
+"""From nothing to an exported room by a stranger's path: every click, drag and key is counted, and there are few."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from playwright.sync_api import expect
+
+from diorama_app.projects.example import EXAMPLE
+from diorama_app.serve import Running
+from diorama_core.models.own_weights import has_own_recogniser
+from diorama_core.scene.types import SceneObject
+from tests.e2e.browser import EditorPage
+from tests.e2e.conftest import ARTEFACTS, keep_picture
+from tests.e2e.hand import Hand
+
+pytestmark = pytest.mark.browser
+
+MOST_ACTIONS = 60
+BUILD_S = 300
+SOFA, RUG = (875.0, 565.0), (640.0, 800.0, 1240.0, 940.0)
+"""Of the example's photo: a point on the sofa, and the box of the rug (px)."""
+
+
+@pytest.fixture
+def hand(context, serve: Callable[..., Running], request: pytest.FixtureRequest) -> Iterator[Hand]:
+    """A stranger before the start page."""
+    editor = EditorPage.open(context, serve(), newcomer=True)
+    expect(editor.page.locator("#dio-start")).to_be_visible(timeout=30_000)
+    hand = Hand(editor)
+    tour = editor.page.get_by_role("dialog", name="Tour")
+    skip = tour.get_by_role("button", name="Skip")
+    # It comes a while after the start page is left, and then lies over everything.
+    editor.page.add_locator_handler(tour, lambda: hand.click(skip, "Skip, on the tour"))
+    yield hand
+    keep_picture(editor, request.node.name)
+    hand.save(ARTEFACTS / f"{request.node.name}.txt")
+    editor.page.close()
+    assert not editor.errors, editor.errors
+
+
+def tab(hand: Hand, name: str) -> None:
+    hand.click(hand.editor.page.get_by_role("tab", name=name, exact=True), f"the tab {name}")
+
+
+def export(hand: Hand, tmp_path: Path) -> None:
+    """Download the scene and open it again."""
+    scene = hand.editor.session.scene
+    tab(hand, "Export")
+    with hand.editor.page.expect_download(timeout=90_000) as download:
+        hand.click(hand.editor.button("Export .glb"), "Export .glb")
+    path = tmp_path / "room.glb"
+    download.value.save_as(path)
+    model = trimesh.load_scene(path)
+    assert len(model.geometry) >= len(scene.objects)
+
+
+def click_object(hand: Hand, item: SceneObject) -> None:
+    """In the view; what something hides is clicked in the list."""
+    editor = hand.editor
+    editor.settle()
+    at = editor.place_of(item.pose.position)
+    hand.click(at, f"the {item.label} in the view")
+    editor.page.wait_for_timeout(400)
+    if editor.selection[-1:] != (item.id,):
+        tab(hand, "Scene")
+        hand.click(editor.page.locator(f'.dio .row[data-arg="{item.id}"] .name'), f"the {item.label} in the list")
+    editor.until(lambda: editor.selection == (item.id,), f"{item.label} is selected")
+    editor.settle()
+
+
+@pytest.mark.skipif(not has_own_recogniser(), reason="no weights are shipped")
+def test_from_a_photo_to_an_exported_room(hand: Hand, tmp_path: Path) -> None:
+    editor, page = hand.editor, hand.editor.page
+    hand.choose_file(page.locator("#dio-start label.main"), EXAMPLE / "photo.jpg")
+    editor.until(lambda: editor.session.unfinished, "a project of its own")
+    editor.at_board()
+    proposals = page.locator(".dio-canvas-proposal")
+    proposals.first.wait_for(timeout=60_000)
+    page.screenshot(path=str(ARTEFACTS / "journey-board.png"))
+    session = editor.session
+    for number in range(1, proposals.count() + 1):
+        hand.key("Tab", "the next proposal")
+        hand.key("Enter", "accept it")
+        editor.until(lambda number=number: len(session.inputs.boxes) == number, "accepted")
+    hand.drag(editor.on_photo(*RUG[:2]), editor.on_photo(*RUG[2:]), "a box around the rug")
+    editor.until(lambda: len(session.inputs.boxes) == number + 1, "the rug has a box")
+    hand.click(editor.on_photo(940, 900), "the box")
+    hand.click(page.locator(".dio-canvas-box.on input"), "its name")
+    hand.key("Control+a", "all of it")
+    hand.write("rug")
+    hand.key("Enter", "take the name")
+    editor.until(lambda: session.inputs.boxes[-1].label == "rug", "named")
+    page.screenshot(path=str(ARTEFACTS / "journey-boxes.png"))
+    hand.click(editor.button("Build scene"), "Build scene")
+    editor.until(lambda: session.jobs.status is None and len(session.scene.objects) > number, "built", seconds=BUILD_S)
+    editor.settle()
+    page.screenshot(path=str(ARTEFACTS / "journey-built.png"))
+    chosen = next(o for o in session.scene.objects if len({c.shape_id for c in o.candidates}) > 1)
+    click_object(hand, chosen)
+    hand.click(page.locator(".dio .tile:not(.on)[data-do=swap]").first, "another shape")
+    editor.until(lambda: session.scene.object(chosen.id).shape_id != chosen.shape_id, "swapped")
+    editor.settle()
+    start = editor.place_of(session.scene.object(chosen.id).pose.position)
+    hand.drag(start, (start[0] + 60, start[1] + 25), f"the {chosen.label}")
+    editor.until(
+        lambda: not np.allclose(session.scene.object(chosen.id).pose.position, chosen.pose.position, atol=0.02), "moved"
+    )
+    export(hand, tmp_path)
+    assert hand.count < MOST_ACTIONS, "\n".join(hand.actions)
+
+
+def test_from_an_empty_room_to_an_exported_one(hand: Hand, tmp_path: Path) -> None:
+    editor, page = hand.editor, hand.editor.page
+    hand.click(editor.button("Create empty room"), "Create empty room")
+    editor.until(lambda: editor.session.project is not None and editor.session.project.name == "Empty room")
+    session = editor.session
+    tab(hand, "Library")
+    for number, words in enumerate(("sofa", "table", "lamp"), start=1):
+        field = page.get_by_label("Search")
+        hand.click(field, "the search field")
+        if number > 1:
+            hand.key("Control+a", "everything in it")
+        hand.write(words)
+        tile = page.locator(".dio div.tile", has_text=words).first
+        hand.click(tile.get_by_role("button", name="Insert"), f"Insert, on a {words}")
+        editor.until(lambda number=number: len(session.scene.objects) == number, f"{words} is there")
+    tab(hand, "Scene")
+    hand.click(page.locator(".dio .row:visible", has_text="Wall 3").first, "Wall 3 in the list")
+    hand.click(page.locator(".dio .tile:visible", has_text="Paint"), "Paint")
+    editor.until(lambda: session.scene.plane("wall_3").finish is not None, "painted")
+    export(hand, tmp_path)
+    assert hand.count < MOST_ACTIONS, "\n".join(hand.actions)
+
+
+def test_from_a_description_to_an_exported_room(hand: Hand, tmp_path: Path) -> None:
+    editor, page = hand.editor, hand.editor.page
+    hand.click(page.get_by_label("Description of the room"), "the description")
+    hand.write("a bed, a desk, two lamps")
+    hand.click(editor.button("Create room"), "Create room")
+    editor.until(
+        lambda: editor.session.jobs.status is None and len(editor.session.scene.objects) >= 4, "furnished", seconds=60
+    )
+    editor.settle()
+    page.screenshot(path=str(ARTEFACTS / "journey-described.png"))
+    session = editor.session
+    tab(hand, "Scene")
+    hand.click(page.locator(".dio .row:visible", has_text="Wall").first, "a wall in the list")
+    hand.click(page.locator(".dio .tile:visible", has_text="Paint"), "Paint")
+    editor.until(lambda: any(p.finish is not None for p in session.scene.architecture.planes), "painted")
+    export(hand, tmp_path)
+    assert hand.count < MOST_ACTIONS, "\n".join(hand.actions)

@@ -1,0 +1,90 @@
+"""The start page and the tour: what a newcomer sees first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from playwright.sync_api import expect
+
+from diorama_app.serve import Running
+from diorama_core.geometry.planes import plane_rectangle
+from tests.app.small_room import make_project
+from tests.e2e.browser import EditorPage
+from tests.e2e.conftest import keep_picture
+
+pytestmark = pytest.mark.browser
+
+
+@pytest.fixture
+def newcomer(context, serve: Callable[..., Running], request: pytest.FixtureRequest) -> Iterator[EditorPage]:
+    page = EditorPage.open(context, serve(), newcomer=True)
+    yield page
+    keep_picture(page, request.node.name)
+    page.page.close()
+    assert not page.errors, page.errors
+
+
+def test_an_empty_room_is_begun_and_the_tour_comes_once(newcomer: EditorPage) -> None:
+    page, begun = newcomer.page, newcomer.page.locator("#dio-start")
+    expect(begun).to_be_visible(timeout=30_000)
+    for name, length in (("Width", "3.5"), ("Depth", "4.2")):
+        page.get_by_label(f"{name} of the room").fill(length)
+    newcomer.button("Create empty room").click()
+    newcomer.until(lambda: newcomer.session.project is not None and newcomer.session.project.name == "Empty room")
+    expect(begun).to_have_count(0)
+    floor = newcomer.session.scene.plane("floor")
+    np.testing.assert_allclose(plane_rectangle(floor)[2], (3.5, 4.2))
+    tour = page.get_by_role("dialog", name="Tour")
+    expect(tour).to_be_visible()
+    for step in range(1, 7):
+        expect(tour).to_contain_text(f"{step} of 6")
+        tour.locator(".main").click()
+    expect(tour).to_have_count(0)
+    page.reload()
+    newcomer.settle()
+    page.wait_for_selector("#dio-toolbar")
+    page.wait_for_timeout(2500)
+    expect(begun).to_have_count(0)
+    expect(tour).to_have_count(0)
+
+
+def test_an_example_is_furnished_and_the_tour_is_skipped(newcomer: EditorPage) -> None:
+    page = newcomer.page
+    page.locator("#dio-start .tile", has_text="Study").click()
+    newcomer.until(lambda: newcomer.session.project is not None and newcomer.session.project.name == "Study")
+    assert len(newcomer.session.scene.objects) > 5
+    page.get_by_role("dialog", name="Tour").get_by_role("button", name="Skip").click()
+    expect(page.locator("#dio-tour")).to_have_count(0)
+    expect(page.locator(".dio .row[data-grab]").first).to_be_visible()
+
+
+def test_keys_stay_in_the_start_page_and_escape_leads_to_the_room_behind(newcomer: EditorPage) -> None:
+    page = newcomer.page
+    expect(page.get_by_text("Choose a photo")).to_be_focused()
+    for _ in range(24):
+        page.keyboard.press("Tab")
+        assert page.evaluate("document.querySelector('#dio-start').contains(document.activeElement)")
+    with page.expect_file_chooser():
+        page.get_by_text("Choose a photo").click()
+    page.get_by_text("Choose a photo").focus()
+    page.keyboard.press("Escape")
+    expect(page.locator("#dio-start")).to_have_count(0)
+    assert newcomer.session.project is not None
+    assert newcomer.session.project.name == "Example"
+
+
+def test_a_server_with_a_project_shows_it_at_once_and_the_start_page_when_asked(
+    context, serve: Callable[..., Running], tmp_path: Path
+) -> None:
+    page = EditorPage.open(context, serve(make_project(tmp_path / "projects" / "mine").folder), newcomer=True)
+    page.page.wait_for_timeout(1000)
+    expect(page.page.locator("#dio-start")).to_have_count(0)
+    page.tab("Project")
+    page.button("Start page").click()
+    expect(page.page.locator("#dio-start")).to_be_visible()
+    page.page.locator("#dio-start").get_by_role("button", name="mine").click()
+    expect(page.page.locator("#dio-start")).to_have_count(0)
+    page.page.close()

@@ -1,0 +1,55 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diorama_core.layout.feasible.hidden_extents import LEAST_SHARE, ending_before_neighbours
+from diorama_core.layout.feasible.photo_observations import photo_observations
+from diorama_core.layout.problem.problem import Problem, build_problem
+from diorama_core.layout.report import part_overlaps
+from tests.layout.feasible.test_photo_observations import looking_north, outline
+from tests.layout.small_rooms import Room
+
+BOX = "box_24"
+"""0.35 x 0.45 x 0.3 m."""
+
+
+def problem_of(room: Room, x: float, *, hidden: bool = True, load: bool = False) -> tuple[Problem, Problem]:
+    """A box whose left end is behind a nearer one, and in it; before and after."""
+    far = room.put(BOX, (x, 1.0, 0.15), yaw=-np.pi / 2, id="far")
+    near = room.put(BOX, (0.0, 0.8, 0.15), yaw=-np.pi / 2, id="near")
+    if load:
+        room.put("cup_21", (x - 0.2, 1.0, 0.35), on=far, id="load")
+    camera = looking_north()
+    scene = room.scene(camera=camera)
+    seen = {far, near} if hidden else {far}
+    boxed = tuple(replace(o, box_px=tuple(outline(scene, o.id)) if o.id in seen else None) for o in scene.objects)
+    problem = build_problem(replace(scene, objects=boxed), room.library)
+    return problem, ending_before_neighbours(problem, photo_observations(problem, camera, depth_weight=1.0))
+
+
+def test_a_hidden_end_stops_before_what_hides_it(room: Room) -> None:
+    before, after = problem_of(room, 0.3)
+    k = before.ids.index("far")
+    assert after.scale[k, 1] < before.scale[k, 1]
+    right = before.p[k, 0] + before.shape_size[k, 1] / 2
+    assert after.p[k, 0] + after.shape_size[k, 1] * after.scale[k, 1] / 2 == pytest.approx(right)
+    assert part_overlaps(before, before.R, before.p, before.scale)
+    assert not part_overlaps(after, after.R, after.p, after.scale)
+
+
+def test_an_end_that_was_seen_stays(room: Room) -> None:
+    before, after = problem_of(room, 0.3, hidden=False)
+    np.testing.assert_array_equal(after.scale, before.scale)
+
+
+def test_no_object_loses_more_than_half(room: Room) -> None:
+    before, after = problem_of(room, 0.05)
+    assert (after.scale >= LEAST_SHARE * before.scale - 1e-12).all()
+
+
+def test_an_end_goes_on_under_its_load(room: Room) -> None:
+    before, after = problem_of(room, 0.3, load=True)
+    np.testing.assert_array_equal(after.scale, before.scale)

@@ -1,0 +1,47 @@
+from __future__ import annotations
+
+import numpy as np
+
+from diorama_core.layout.feasible.recipe import FeasibleRecipe
+from diorama_core.layout.feasible.separate import build_program
+from diorama_core.layout.feasible.structure import exact_structure
+from diorama_core.layout.problem.problem import build_problem
+from diorama_core.progress import Progress
+from tests.layout.small_rooms import Room
+
+
+def allowed(room: Room, first: str, second: str) -> np.ndarray:
+    """Which parts of two objects may not overlap."""
+    problem = build_problem(room.scene(), room.library)
+    program = build_program(problem, exact_structure(problem), np.tile(np.eye(2), (problem.count, 1, 1)))
+    owner = program.bodies.owner
+    a, b = (owner == problem.ids.index(name) for name in (first, second))
+    return program.may_meet[np.ix_(a, b)]
+
+
+def test_books_meet_the_sides_of_a_bookshelf_but_not_its_boards(room: Room) -> None:
+    shelf = room.put("bookshelf_6", (0.0, 1.0, 0.9))
+    books = room.put("books_18", (0.0, 1.0, 0.6), on=shelf)
+    met = allowed(room, books, shelf)
+    assert met.any()
+    assert not met.all()
+
+
+def test_a_cup_on_a_table_meets_nothing_of_it(room: Room) -> None:
+    table = room.put("table_0", (0.0, 0.0, 0.37))
+    cup = room.put("cup_21", (0.0, 0.0, 0.8), on=table)
+    assert not allowed(room, cup, table).any()
+
+
+def test_strangers_meet_with_all_parts(room: Room) -> None:
+    first, second = room.put("table_0", (0.0, 0.0, 0.37)), room.put("table_0", (0.2, 0.0, 0.37))
+    assert allowed(room, first, second).all()
+
+
+def test_a_layout_takes_books_out_of_the_back_of_their_shelf(room: Room) -> None:
+    shelf = room.put("bookshelf_6", (0.0, 1.0, 0.9))
+    depth = room.objects[0].size_m[0]
+    books = room.put("books_18", (-depth / 2, 1.0, 0.6), on=shelf)
+    settled, _ = FeasibleRecipe(room.library).optimise(room.scene(), Progress())
+    back = float(settled.object(shelf).corners_world[:, 0].min())
+    assert float(settled.object(books).corners_world[:, 0].min()) > back

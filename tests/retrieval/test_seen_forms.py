@@ -1,0 +1,60 @@
+"""Shapes whose form is the one that was seen score higher; what was not seen changes nothing."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from diorama_core.geometry.shape_appearance import appearance_of
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.library.form import MEASURED, VALUES
+from diorama_core.retrieval.seen_forms import seen_form_factor, shape_form
+
+LIBRARY = built_in_library()
+
+
+def seen(**sure: str | int) -> list[float]:
+    """Nine in ten for the given values, and nothing known of the other attributes."""
+    found: list[float] = []
+    for name in MEASURED:
+        values = VALUES[name]
+        if name in sure:
+            found += [0.9 if v == sure[name] else 0.1 / (len(values) - 1) for v in values]
+        else:
+            found += [1.0 / len(values)] * len(values)
+    return found
+
+
+def form(shape_id: str) -> dict[str, str | int]:
+    return dict(shape_form(LIBRARY.shape(shape_id), appearance_of(LIBRARY.parts(shape_id))))
+
+
+def test_the_form_that_was_seen_scores_higher() -> None:
+    round_top = seen(top="round", base="pedestal")
+    assert seen_form_factor(form("table-round-tulip"), round_top) > 1.0
+    assert seen_form_factor(form("table-trestle-x"), round_top) < 1.0
+
+
+def test_drawers_are_counted_by_joints() -> None:
+    assert form("night-stand-white-open")["drawers"] == 0
+    assert seen_form_factor(form("night-stand-white-open"), seen(drawers=2)) < 1.0
+
+
+@pytest.mark.parametrize("shape_id", ["table-round-tulip", "sofa-grey-three", "picture-hills-oak"])
+def test_what_was_not_seen_changes_nothing(shape_id: str) -> None:
+    assert seen_form_factor(form(shape_id), ()) == 1.0
+    assert seen_form_factor(form(shape_id), seen()) == pytest.approx(1.0)
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_on_average_no_form_is_preferred(seed: int) -> None:
+    """Weighted by what was seen, the logarithms of the factors of all values of an attribute add up to 0."""
+    rng = np.random.default_rng(seed)
+    parts = [rng.dirichlet(np.ones(len(VALUES[name]))) for name in MEASURED]
+    flat = [float(p) for part in parts for p in part]
+    for name, part in zip(MEASURED, parts, strict=True):
+        smooth = (part + 0.03) / (part + 0.03).sum()
+        logs = [np.log(seen_form_factor({name: value}, flat)) for value in VALUES[name]]
+        assert float(smooth @ np.array(logs)) == pytest.approx(0.0, abs=1e-9)

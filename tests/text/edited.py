@@ -1,0 +1,48 @@
+"""Furnished rooms that tests edit by words, and what must hold of them afterwards."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from diorama_core.editing.collisions import Collisions
+from diorama_core.editing.footprints import footprint_of, within
+from diorama_core.editing.positioning import Positioner
+from diorama_core.editing.room_frame import RoomFrame
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.scene.support import check_scene
+from diorama_core.scene.types import Scene
+from diorama_core.synthesis.grammar import furnished_room
+from diorama_core.text.edit_apply import EditApplier
+from diorama_core.text.edit_plan import Edit
+
+
+@cache
+def living_room() -> Scene:
+    return furnished_room(3, "living", built_in_library(), outline="box", clutter=4)
+
+
+@cache
+def dining_room() -> Scene:
+    return furnished_room(2, "dining", built_in_library(), outline="box", clutter=6)
+
+
+def done(scene: Scene, *asked: Edit) -> Scene:
+    applier = EditApplier(Positioner(built_in_library()))
+    for edit in asked:
+        scene = applier.apply(scene, edit).scene
+    check_scene(scene)
+    return scene
+
+
+def assert_sound(before: Scene, after: Scene) -> None:
+    """What changed meets nothing that it did not meet before, and is inside the room."""
+    changed = [o.id for o in after.objects if not before.has_object(o.id) or before.object(o.id) != o]
+    collisions = Collisions(built_in_library())
+    earlier = collisions.of(before, [o.id for o in before.objects])
+    assert {frozenset(p) for p in collisions.of(after, changed)} <= {frozenset(p) for p in earlier}
+    outline = RoomFrame.of(after).outline
+    for object_id in changed:
+        item = after.object(object_id)
+        if item.category not in ("window", "door"):
+            assert within(footprint_of(item)[None], outline, 0.03)[0], object_id
+        assert after.support_of(object_id) is not None

@@ -1,0 +1,171 @@
+"""The grammar of edits in words: clauses, verbs, objects, places. Scenes are made by the room grammar."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from diorama_core.errors import EditRefused
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.scene.types import Scene
+from diorama_core.synthesis.grammar import furnished_room
+from diorama_core.text.edit_grammar import clauses_of, edits_of
+from diorama_core.text.edit_plan import Insert, Move, Paint, Place, Remove, Resize, Restyle, Shift, Swap, Turn
+from diorama_core.text.looks import look_of
+from diorama_core.text.phrases import noun_phrase, split_places
+from diorama_core.text.selecting import Selector
+
+
+@pytest.fixture(scope="module")
+def living() -> Scene:
+    """Sofa, coffee table, side table, sideboard with a lamp and books, piano, plant, rug, four pictures."""
+    return furnished_room(3, "living", built_in_library(), outline="box", clutter=4)
+
+
+@pytest.fixture(scope="module")
+def dining() -> Scene:
+    """A table on a rug with five chairs."""
+    return furnished_room(2, "dining", built_in_library(), outline="box", clutter=6)
+
+
+def on(*targets: str) -> list[Place]:
+    return [Place(relation="on", targets=list(targets))]
+
+
+def beside(*targets: str) -> list[Place]:
+    return [Place(relation="beside", targets=list(targets))]
+
+
+LIVING = {
+    "remove everything on the sideboard": Remove(objects=["lamp_1", "books_1"]),
+    "clear the sideboard": Remove(objects=["lamp_1", "books_1"]),
+    "delete all pictures except picture 1": Remove(objects=["picture_2", "picture_3", "picture_4"]),
+    "remove the lamp on the sideboard": Remove(objects=["lamp_1"]),
+    "move the lamp beside the sofa": Move(objects=["lamp_1"], places=beside("sofa_1")),
+    "move the lamp on the sideboard next to the sofa": Move(objects=["lamp_1"], places=beside("sofa_1")),
+    "move the books to the coffee table": Move(objects=["books_1"], places=on("coffee_table_1")),
+    "put the plant in the corner": Move(objects=["plant_1"], places=[Place(relation="in corner")]),
+    "move the side table between the sofa and the piano": Move(
+        objects=["side_table_1"], places=[Place(relation="between", targets=["sofa_1", "piano_1"])]
+    ),
+    "move the sofa 50 cm to the left": Shift(objects=["sofa_1"], right_m=-0.5),
+    "turn the sofa to the window": Turn(objects=["sofa_1"], toward="window_1"),
+    "make the sofa face the piano": Turn(objects=["sofa_1"], toward="piano_1"),
+    "rotate the sofa by 30 degrees to the right": Turn(objects=["sofa_1"], degrees=-30.0),
+    "turn the sofa around": Turn(objects=["sofa_1"], degrees=180.0),
+    "a rug under the coffee table": Insert(what="rug", places=[Place(relation="under", targets=["coffee_table_1"])]),
+    "put two plants in the corner": Insert(what="plants", count=2, places=[Place(relation="in corner")]),
+    "add a small red armchair by the window": Insert(what="small red armchair", places=beside("window_1")),
+    "make the sofa light blue": Restyle(objects=["sofa_1"], look="light blue"),
+    "paint the coffee table white": Restyle(objects=["coffee_table_1"], look="white"),
+    "make the sofa bigger": Resize(objects=["sofa_1"], factor=1.25),
+    "make the sofa 20% smaller": Resize(objects=["sofa_1"], factor=0.8),
+    "swap the sofa for a leather one": Swap(objects=["sofa_1"], what="leather sofa"),
+    "replace the piano with a bookshelf": Swap(objects=["piano_1"], what="bookshelf"),
+    "paint the walls light blue": Paint(part="walls", colour="light blue"),
+    "make the floor oak": Paint(part="floor", colour="oak"),
+}
+
+
+@pytest.mark.parametrize("command", list(LIVING))
+def test_commands_become_edits(command: str, living: Scene) -> None:
+    assert edits_of(command, living, built_in_library()) == (LIVING[command],)
+
+
+def test_lists_are_several_edits_and_clauses_follow_each_other(dining: Scene) -> None:
+    found = edits_of("add a floor lamp and two plants", dining, built_in_library())
+    assert [e.what for e in found if isinstance(e, Insert)] == ["floor lamp", "plants"]
+    assert clauses_of("Remove the rug, then move the table and paint the walls red.") == (
+        "remove the rug",
+        "move the table",
+        "paint the walls red",
+    )
+    assert clauses_of("move the lamp between the sofa and the table") == (
+        "move the lamp between the sofa and the table",
+    )
+
+
+def test_all_and_some_of_a_kind(dining: Scene) -> None:
+    library = built_in_library()
+    every = edits_of("make all chairs wooden", dining, library)[0]
+    assert isinstance(every, Restyle)
+    assert len(every.objects) == 5
+    two = edits_of("remove two chairs", dining, library)[0]
+    assert isinstance(two, Remove)
+    assert len(two.objects) == 2
+    with pytest.raises(EditRefused, match="there are 5 of these"):
+        edits_of("remove the chair", dining, library)
+    chosen = edits_of("remove the chair", dining, library, selected=["chair_3"])
+    assert chosen == (Remove(objects=["chair_3"]),)
+    assert edits_of("remove it", dining, library, last=["chair_2"]) == (Remove(objects=["chair_2"]),)
+
+
+REFUSED = {
+    "remove the bathtub": "no bathtub in this scene; it has",
+    "remove the zorkmid": "“zorkmid” names nothing",
+    "make the sofa": "no colour, material or size",
+    "paint the walls zorkmid": "names no colour",
+    "move the sofa": "where to",
+    "turn the sofa": "which way",
+    "swap the sofa": "for what",
+    "whatever": "not understood",
+    "remove it": "not clear",
+    "add a window": "part of the room",
+    "remove the vase on the sofa": "no vase",
+}
+
+
+@pytest.mark.parametrize("command", list(REFUSED))
+def test_what_is_not_understood_is_named_in_one_line(command: str, living: Scene) -> None:
+    with pytest.raises(EditRefused) as refused:
+        edits_of(command, living, built_in_library())
+    assert REFUSED[command] in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+@given(
+    st.sampled_from(["", "move the ", "make the sofa ", "put a "]),
+    st.text(alphabet="abcdefghijklmnopqrstuvwxyz ,.%0123456789", max_size=60),
+)
+@settings(deadline=None, max_examples=150)
+def test_any_text_is_edits_or_a_refusal(living: Scene, start: str, text: str) -> None:
+    said = ""
+    try:
+        for clause in clauses_of(start + text):
+            edits_of(clause, living, built_in_library())
+    except EditRefused as refused:
+        said = str(refused)
+    assert "\n" not in said, "one line"
+
+
+def test_phrases() -> None:
+    phrase, unknown = noun_phrase("two dark wooden dining chairs")
+    assert phrase is not None
+    assert (phrase.category, phrase.count, phrase.appearance, unknown) == ("chair", 2, ("dark", "wooden"), "")
+    head, places = split_places("a lamp on the desk to the left of the monitor")
+    assert head == "a lamp"
+    assert [(p.kind, p.words) for p in places] == [("on", "the desk"), ("left of", "the monitor")]
+    assert [p.kind for p in split_places("an armchair in the corner facing the window")[1]] == ["in corner", "facing"]
+    vase, _ = noun_phrase("a vase of flowers")
+    assert vase is not None
+    assert vase.category == "vase"
+
+
+def test_looks() -> None:
+    light = look_of("light blue")
+    dark = look_of("dark blue")
+    assert light is not None
+    assert dark is not None
+    assert sum(light.colour or ()) > sum(dark.colour or ())
+    wooden = look_of("wooden")
+    assert wooden is not None
+    assert wooden.material == "wood"
+    assert look_of("light blue piano") is None
+
+
+def test_selectors_tell_objects_by_place_and_size(living: Scene, dining: Scene) -> None:
+    selector = Selector(living, built_in_library())
+    assert selector.objects("everything", split_places("on the sideboard")[1]) == ("lamp_1", "books_1")
+    assert len(Selector(dining, built_in_library()).objects("the chairs", split_places("around the table")[1])) >= 3
+    assert "sofa" in selector.inventory()

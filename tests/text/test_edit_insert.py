@@ -1,0 +1,60 @@
+"""New objects: where they are wished, free, and of the shape that the words name."""
+
+from __future__ import annotations
+
+import pytest
+
+from diorama_core.editing.positioning import Positioner
+from diorama_core.editing.relations import Relation, is_met
+from diorama_core.editing.room_frame import RoomFrame
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.scene.types import Scene
+from diorama_core.text.edit_insert import RUG_MARGIN_M, inserted
+from diorama_core.text.edit_plan import Insert, Place
+from tests.text.edited import assert_sound, done, living_room
+
+
+@pytest.fixture
+def living() -> Scene:
+    return living_room()
+
+
+MOVES = [
+    ("floor lamp", Place(relation="beside", targets=["sofa_1"])),
+    ("plant", Place(relation="in corner")),
+    ("armchair", Place(relation="facing", targets=["sofa_1"])),
+    ("armchair", Place(relation="opposite", targets=["sofa_1"])),
+    ("vase", Place(relation="on", targets=["coffee_table_1"])),
+    ("picture", Place(relation="above", targets=["sideboard_1"])),
+    ("rug", Place(relation="under", targets=["coffee_table_1"])),
+    ("armchair", Place(relation="beside", targets=["window_1"])),
+    ("console table", Place(relation="against wall")),
+    ("side table", Place(relation="between", targets=["sofa_1", "piano_1"])),
+    ("plant", Place(relation="left of", targets=["tv_stand_1"])),
+    ("ceiling lamp", Place(relation="above", targets=["coffee_table_1"])),
+]
+
+
+@pytest.mark.parametrize(("what", "place"), MOVES, ids=[f"{w} {p.relation}" for w, p in MOVES])
+def test_new_objects_go_where_they_are_wished(living: Scene, what: str, place: Place) -> None:
+    after = done(living, Insert(what=what, places=[place]))
+    new = next(o for o in after.objects if not living.has_object(o.id))
+    assert is_met(after, new.id, Relation(place.relation, tuple(place.targets)), RoomFrame.of(after))
+    assert_sound(living, after)
+
+
+def test_a_rug_is_as_large_as_what_it_goes_under(living: Scene) -> None:
+    outcome = inserted(
+        Positioner(built_in_library()), living, Insert(what="rug"), [Relation("under", ("coffee_table_1",))]
+    )
+    rug, table = outcome.scene.object(outcome.touched[0]), living.object("coffee_table_1")
+    assert min(rug.size_m[:2]) >= min(table.size_m[:2]) + 2 * RUG_MARGIN_M - 0.1
+
+
+def test_several_share_what_they_are_beside(living: Scene) -> None:
+    relation = Relation("beside", ("sofa_1", "piano_1"))
+    outcome = inserted(Positioner(built_in_library()), living, Insert(what="basket", count=2), [relation])
+    frame = RoomFrame.of(outcome.scene)
+    for object_id, target in zip(outcome.touched, relation.targets, strict=True):
+        assert is_met(outcome.scene, object_id, Relation("beside", (target,)), frame)
+    assert len({outcome.scene.object(i).shape_id for i in outcome.touched}) == 1

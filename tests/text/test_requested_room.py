@@ -1,0 +1,58 @@
+"""Rooms for what is asked: as large as their furniture needs, with what such rooms have."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.scene.types import Scene
+from diorama_core.text.prompt import RequestedObject, RoomRequest, Wish
+from diorama_core.text.requested_room import empty_room, with_essentials
+
+
+def counts(request: RoomRequest) -> dict[str, int]:
+    return {o.category: o.count for o in with_essentials(request)[0]}
+
+
+def test_a_named_room_has_what_its_kind_has_unless_something_does_the_same() -> None:
+    asked = (RequestedObject("toilet", "toilet"), RequestedObject("shower", "shower"))
+    assert counts(RoomRequest("bathroom", asked, named=True)) == {"toilet": 1, "shower": 1, "sink": 1}
+    assert with_essentials(RoomRequest("bathroom", asked, named=True))[1] == ("sink",)
+    assert counts(RoomRequest("bathroom", asked)) == {"toilet": 1, "shower": 1}
+
+
+def test_what_lies_on_furniture_gets_some_where_none_is_asked_for() -> None:
+    lamps = RequestedObject("lamp", "lamp", 3)
+    assert counts(RoomRequest("living", (lamps,))) == {"lamp": 3, "side table": 2}
+    assert counts(RoomRequest("bedroom", (lamps,))) == {"lamp": 3, "night stand": 2}
+    assert counts(RoomRequest("living", (lamps, RequestedObject("desk", "desk")))) == {"lamp": 3, "desk": 1}
+    placed = RequestedObject("lamp", "lamp", wishes=(Wish("on", ("piano",)),))
+    assert counts(RoomRequest("living", (placed,))) == {"lamp": 1}
+
+
+def area_m2(scene: Scene) -> float:
+    assert scene.architecture.floor is not None
+    return float(np.prod(np.ptp(scene.architecture.floor.polygon[:, :2], axis=0)))
+
+
+def room_for(request: RoomRequest, attempt: int = 0) -> Scene:
+    library = built_in_library()
+    shapes = {k: library.in_category(o.category)[:1] for k, o in enumerate(request.objects)}
+    return empty_room(request, library, np.random.default_rng(5), request.objects, shapes, attempt)
+
+
+def test_more_furniture_a_wish_for_size_and_later_attempts_make_rooms_larger() -> None:
+    few, many = (RoomRequest("living", (RequestedObject("sofa", "sofa", n),)) for n in (1, 12))
+    assert area_m2(room_for(few)) < area_m2(room_for(many))
+    assert area_m2(room_for(few)) < area_m2(room_for(RoomRequest("living", few.objects, size=1.3)))
+    assert area_m2(room_for(few, 2)) == pytest.approx(area_m2(room_for(few)) * 1.16**2)
+
+
+def test_every_room_has_a_door_and_as_many_windows_as_are_asked_for() -> None:
+    windows = RequestedObject("window", "window", 3)
+    made = [o.category for o in room_for(RoomRequest("living", (windows,))).objects]
+    assert made.count("door") == 1
+    assert made.count("window") == 3
+    corridor = [o.category for o in room_for(RoomRequest("corridor", ())).objects]
+    assert (corridor.count("door"), corridor.count("window")) == (1, 0)

@@ -1,0 +1,72 @@
+"""Pictures of a room: what is seen has a box, a kind and a form; a file gives back what was written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from diorama_core.errors import InputError
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.library.form import MEASURED
+from diorama_core.training import pictures
+from diorama_core.training.picture_files import BoxStatistics, PictureFiles
+from diorama_core.training.pictures import (
+    category_names,
+    count_pictures,
+    make_pictures,
+    read_boxes,
+    read_picture,
+    visible_boxes,
+)
+
+
+def test_a_room_is_rendered_once_with_kinds_and_forms(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pictures, "VIEWS", 2)
+    library = built_in_library()
+    assert make_pictures(tmp_path, library, range(3, 4)) == 1
+    assert make_pictures(tmp_path, library, range(3, 4)) == 0
+    path, names = tmp_path / "room_000003.npz", category_names(library)
+    assert count_pictures(path) == 2
+    picture = read_picture(path, 0)
+    assert picture.rgb.shape == (pictures.SIZE[1], pictures.SIZE[0], 3)
+    assert len(picture.boxes) == len(picture.categories) == len(picture.pixels) == len(picture.forms) > 2
+    base = MEASURED.index("base")
+    for category, form in zip(picture.categories, picture.forms, strict=True):
+        if names[category] in ("table", "chair", "sofa"):
+            assert form[base] >= 0
+        if names[category] in ("picture", "vase"):
+            assert form[base] == -1
+    boxes, categories, size = read_boxes(path, 0)
+    np.testing.assert_array_equal(boxes, picture.boxes)
+    np.testing.assert_array_equal(categories, picture.categories)
+    assert size == pictures.SIZE
+
+
+@pytest.mark.parametrize(("pixels", "seen"), [(3, False), (12, True)])
+def test_what_is_hardly_seen_has_no_box(pixels: int, seen: bool) -> None:
+    ids = np.full((40, 40), -1, np.int32)
+    ids[5 : 5 + pixels, 7 : 7 + pixels] = 1
+    boxes, visible, counted = visible_boxes(ids, 3)
+    assert list(visible) == ([1] if seen else [])
+    if seen:
+        assert boxes[0].tolist() == [7, 5, 7 + pixels, 5 + pixels]
+        assert counted[0] == pixels**2
+
+
+def test_statistics_draw_boxes_of_the_asked_proportions(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pictures, "VIEWS", 1)
+    make_pictures(tmp_path, built_in_library(), range(4, 5))
+    files = PictureFiles.of(tmp_path)
+    statistics = BoxStatistics.of(files, 147)
+    assert statistics.counts.sum() == len(read_picture(*files.pictures[0]).boxes)
+    assert files.rooms == (tmp_path / "room_000004.npz",)
+    drawn = statistics.draw(int(np.argmin(statistics.counts)), (2.0, 1.0), np.random.default_rng(0))
+    assert drawn[5] == pytest.approx(np.log(2.0))
+    assert drawn[3] - drawn[4] == pytest.approx(np.log(2.0))
+
+
+def test_a_folder_without_pictures_is_one_clear_line(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="training pictures"):
+        PictureFiles.of(tmp_path)
