@@ -12,7 +12,7 @@ from diorama_app.serve import Running, start
 from diorama_app.session.preferences import Preferences
 from diorama_core.library.record import ShapeLibrary
 from tests.app.small_room import PlainLibrary, make_project
-from tests.e2e.browser import FLAGS, SIZE, EditorPage, chromium
+from tests.e2e.browser import FLAGS, PATIENCE_MS, SIZE, EditorPage, chromium
 
 playwright = pytest.importorskip("playwright.sync_api", reason="the browser tests need playwright (extra 'dev')")
 
@@ -35,6 +35,7 @@ def program() -> str:
 @pytest.fixture(scope="session")
 def driver() -> Iterator:
     """Playwright, of which a process has one at a time."""
+    playwright.expect.set_options(timeout=PATIENCE_MS)  # what is expected may come as late as what is waited for
     with playwright.sync_playwright() as started:
         yield started
 
