@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from diorama_core.architecture.single_view.box_search import find_box
 from diorama_core.architecture.single_view.level_view import level_view
 from diorama_core.architecture.single_view.room_cues import MAX_CEILING_M, RoomCues, gather_room_cues
 from diorama_core.architecture.single_view.wall_chain import (
+    CORNER_COST,
     DISTANCES,
     FARTHEST_M,
     NEAREST_M,
@@ -131,15 +132,14 @@ def _pieces(chain: Chain, scorer: ChainScorer, sure: Float[np.ndarray, "r"]) -> 
     view = scorer.view
     eye = scorer.cues.camera.position[:2]
     ends = view.edges_rad[chain.borders]
-    runs = []
-    for k in range(len(chain.walls)):
-        first, last = float(ends[k]), float(ends[k + 1])
-        wall = _as_candidate(chain.walls, k, float(sure[k]))
-        runs.append(Run(_pushed(wall, first, last, scorer.cues, sure=bool(sure[k] > SURE)), first, last))
+    walls = _with_room(chain, scorer, sure > SURE)
+    runs = [
+        Run(_as_candidate(walls, k, float(sure[k])), float(ends[k]), float(ends[k + 1]))
+        for k in range(len(chain.walls))
+    ]
     for k in range(len(runs) - 1):
         corner = meeting_point(runs[k].wall, runs[k + 1].wall)
-        before = meeting_point(_as_candidate(chain.walls, k), _as_candidate(chain.walls, k + 1))
-        if corner is None or before is None or abs(float(heading(before, eye)) - runs[k].last) > CORNER_SLACK_RAD:
+        if corner is None or not _joined(chain, k, ends, eye):
             continue
         at = float(heading(corner, eye))
         runs[k], runs[k + 1] = replace(runs[k], last=at), replace(runs[k + 1], first=at)
@@ -150,8 +150,38 @@ def _as_candidate(walls: PhotoWalls, k: int, sure: float = 0.0) -> WallCandidate
     return WallCandidate(walls.normals[k], float(walls.offsets[k]), np.zeros(0, dtype=bool), MEASURED - sure, 1.0)
 
 
-def _pushed(wall: WallCandidate, first: float, last: float, cues: RoomCues, *, sure: bool) -> WallCandidate:
-    """The wall moved outward until no reliable object within its headings protrudes through it."""
+def _with_room(chain: Chain, scorer: ChainScorer, sure: Bool[np.ndarray, "r"]) -> PhotoWalls:
+    """The chain's walls, moved outward until no reliable object within their headings protrudes through them.
+
+    A wall that moves alone takes its corners out of the line of sight in which they were seen; moved as far in
+    proportion, its neighbours retain them. That is done unless it contradicts the photo by more than a corner is worth.
+    """
+    ends, eye = scorer.view.edges_rad[chain.borders], scorer.cues.camera.position[:2]
+    out = [
+        _protrusion(_as_candidate(chain.walls, k), float(ends[k]), float(ends[k + 1]), scorer.cues, sure=bool(sure[k]))
+        for k in range(len(chain.walls))
+    ]
+    apart = replace(chain.walls, offsets=chain.walls.offsets - np.array(out))
+    if not any(out):
+        return apart
+    at_eye = chain.walls.normals @ eye
+    farther = (apart.offsets - at_eye) / (chain.walls.offsets - at_eye)
+    joined = [_joined(chain, k, ends, eye) for k in range(len(chain.walls) - 1)]
+    groups = np.cumsum([0, *(not one for one in joined)])
+    most = np.array([farther[groups == group].max() for group in groups])
+    together = replace(chain.walls, offsets=at_eye + (chain.walls.offsets - at_eye) * most)
+    cost = [best_chain(scorer, walls, chain.ceiling_m).cost for walls in (apart, together)]
+    return together if cost[1] < cost[0] + CORNER_COST else apart
+
+
+def _joined(chain: Chain, k: int, ends: Float[np.ndarray, "r1"], eye: Float[np.ndarray, "2"]) -> bool:
+    """Whether a wall and the next one meet where the one ends."""
+    corner = meeting_point(_as_candidate(chain.walls, k), _as_candidate(chain.walls, k + 1))
+    return corner is not None and bool(abs(heading(corner, eye) - ends[k + 1]) <= CORNER_SLACK_RAD)
+
+
+def _protrusion(wall: WallCandidate, first: float, last: float, cues: RoomCues, *, sure: bool) -> float:
+    """How far, in metres, reliable objects within a wall's headings protrude through it."""
     eye = cues.camera.position[:2]
     out = 0.0
     for low, high in zip(cues.object_low, cues.object_high, strict=True):
@@ -161,7 +191,7 @@ def _pushed(wall: WallCandidate, first: float, last: float, cues: RoomCues, *, s
         beside = towards.max() < first or towards.min() > last or np.ptp(towards) > np.pi
         if not beside and through.max() < (MAX_SURE_PUSH_M if sure else MAX_PUSH_M):
             out = max(out, float(through.max()) + CLEARANCE_M)
-    return replace(wall, offset=wall.offset - out)
+    return out
 
 
 def _highest(cues: RoomCues) -> float:

@@ -23,8 +23,10 @@ _CONTACT_BAND = (0.012, 0.06)
 """Before the feet of things, beyond their contact shadows: distances below masks, as shares of the photo's height."""
 _WITHOUT_CONTACT = 0.2
 """How much a colour counts that is seen at nobody's feet, beside one that is at all of them."""
-_USUAL_LAB, _USUAL_SIGMA_LAB = np.array([52.0, 4.0, 10.0]), np.array([20.0, 9.0, 16.0])
+_USUAL_LAB = np.array([52.0, 5.0, 12.0])
 """Floors' colours in a photo whose brightest parts are white: wood, carpet, tiles; hardly black, white or blue."""
+_USUAL_AXES = np.array([[1.0, 0.0, 0.0], [0.0, 0.45, 0.89], [0.0, 0.89, -0.45]]) / np.array([[20.0], [17.0], [9.0]])
+"""They vary in lightness, from grey to the orange of pine boards, and less across: by these deviations."""
 _WHITE_SHARE = 95.0
 """Percentile of the photo's lightness that is about white."""
 _SPREADS = 3.0
@@ -143,7 +145,7 @@ def _main_colour(
         spread = float(places[alike].var(axis=0).sum()) ** 0.5 if alike.sum() > 1 else 0.0
         touched = float(weight[alike & contact].sum()) / at_feet
         middle = np.median(lab[alike], axis=0) if alike.any() else cell
-        off = (middle * np.array([100.0 / white, 1.0, 1.0]) - _USUAL_LAB) / _USUAL_SIGMA_LAB
+        off = _USUAL_AXES @ (middle * np.array([100.0 / white, 1.0, 1.0]) - _USUAL_LAB)
         usual = float(np.exp(-0.5 * (off**2).sum()))
         score = float(weight[alike].sum()) * spread * (_WITHOUT_CONTACT + touched) * usual
         if score > best:

@@ -68,6 +68,13 @@ def test_the_plain_colour_is_the_floors_and_not_a_shadows():
     assert np.allclose(np.array(floor_colour(rgb, places, 95.0)) * 255, (150, 120, 90), atol=2)
 
 
+@pytest.mark.parametrize("unusual", [(90, 120, 190), (200, 60, 120), (70, 150, 90)])
+def test_boards_in_warm_light_are_likelier_than_what_no_floor_looks_like(unusual):
+    rgb = np.concatenate([np.full((300, 3), (200, 135, 75)), np.full((500, 3), unusual)]).astype(np.uint8)
+    places = np.random.default_rng(0).uniform(0, 100, (800, 2))
+    assert np.allclose(np.array(floor_colour(rgb, places, 95.0)) * 255, (200, 135, 75), atol=2)
+
+
 def test_contact_is_a_little_below_masks_and_in_no_other():
     mask, other = np.zeros((100, 100), dtype=bool), np.zeros((100, 100), dtype=bool)
     mask[20:50, 30:60], other[50:60, 30:40] = True, True
