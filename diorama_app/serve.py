@@ -21,7 +21,7 @@ import viser
 import diorama_core as diorama
 from diorama_app.session.preload import warm_up
 from diorama_app.web.viser_adapter import create_server, stop_server
-from diorama_app.web.visitors import ANY_HOST, Visitors, with_token
+from diorama_app.web.visitors import ANY_HOST, Visitors, page_address, with_token
 from diorama_core.project.storage import Project
 
 if TYPE_CHECKING:
@@ -125,9 +125,7 @@ def start(
         raise
     stopped = threading.Event()
     threading.Thread(target=warm_up, args=(stopped,), daemon=True, name="warm up").start()
-    shown_host = {"": "127.0.0.1", "0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)
-    address = f"http://{f'[{shown_host}]' if ':' in shown_host else shown_host}:{server.get_port()}/"
-    return Running(server, workspace, address if token is None else f"{address}?token={token}", stopped)
+    return Running(server, workspace, page_address(host, server.get_port(), token), stopped)
 
 
 @dataclass(frozen=True)

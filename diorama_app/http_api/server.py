@@ -10,7 +10,7 @@ import uvicorn
 import diorama_core as diorama
 from diorama_app.http_api.jobs import JobQueue
 from diorama_app.http_api.routes import create_app
-from diorama_app.web.visitors import LOOPBACK_NAMES, Visitors, with_token
+from diorama_app.web.visitors import LOOPBACK_NAMES, Visitors, page_address, with_token
 from diorama_core.errors import InputError
 
 MAX_CONNECTIONS = 64
@@ -45,9 +45,9 @@ def serve_api(*, projects_dir: Path, host: str, port: int, token: str | None, li
         server_header=False,
         ws="none",
     )
-    shown = "127.0.0.1" if host == "0.0.0.0" else f"[{host}]" if ":" in host else host
-    print(f"Diorama answers at http://{shown}:{listening.getsockname()[1]}/ (Ctrl+C stops it)", flush=True)
-    print(f"Its OpenAPI document is at http://{shown}:{listening.getsockname()[1]}/openapi.json", flush=True)
+    address = page_address(host, listening.getsockname()[1], None)
+    print(f"Diorama answers at {address} (Ctrl+C stops it)", flush=True)
+    print(f"Its OpenAPI document is at {address}openapi.json", flush=True)
     if token is not None and host not in LOOPBACK_NAMES:
         print(f"Requests must bring the header 'Authorization: Bearer {token}'", flush=True)
     queue.start()

@@ -12,6 +12,7 @@ from diorama_app.projects.formats import EXPORT_FORMATS
 from diorama_app.session.client import Client
 from diorama_core.errors import EditRefused, ExportError
 from diorama_core.export import Format, export_scene
+from diorama_core.export.files import FAST_DEFLATE
 from diorama_core.progress import Progress
 
 if TYPE_CHECKING:
@@ -84,7 +85,7 @@ def packed(folder: Path, zip_name: str) -> tuple[str, bytes]:
     if len(files) == 1:
         return files[0].name, files[0].read_bytes()
     with tempfile.TemporaryFile() as whole:
-        with zipfile.ZipFile(whole, "w", zipfile.ZIP_DEFLATED) as archive:
+        with zipfile.ZipFile(whole, "w", zipfile.ZIP_DEFLATED, compresslevel=FAST_DEFLATE) as archive:
             for file in files:
                 archive.write(file, file.relative_to(folder).as_posix())
         whole.seek(0)

@@ -19,6 +19,19 @@ LOOPBACK_NAMES = frozenset({"127.0.0.1", "localhost", "::1"})
 ANY_HOST = frozenset({"", "0.0.0.0", "::"})
 
 
+def page_address(host: str, port: int, token: str | None) -> str:
+    """The page's address for a browser on this machine: where a server listens on every address, the loopback one.
+
+    Args:
+        host: The address it listens on.
+        port: Its port.
+        token: What visitors must bring; None where nobody needs one.
+    """
+    near = {"": "127.0.0.1", "0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)
+    address = f"http://{f'[{near}]' if ':' in near else near}:{port}/"
+    return address if token is None else f"{address}?token={token}"
+
+
 @dataclass(frozen=True)
 class Visitors:
     """Access rules of the server."""

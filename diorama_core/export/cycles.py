@@ -69,7 +69,8 @@ def cycles_picture(
         }  # fmt: skip
         worker = Path(__file__).with_name("cycles_worker.py")
         run_in_blender(worker, job, name="Cycles", progress=progress, timeout_s=timeout_s)
-        return np.asarray(Image.open(folder / "room.png").convert("RGB"))
+        with Image.open(folder / "room.png", formats=("PNG",)) as drawn:
+            return np.asarray(drawn.convert("RGB"))
 
 
 def facing(scene: Scene, camera: Camera) -> Architecture:

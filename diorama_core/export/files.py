@@ -22,6 +22,8 @@ PART = ".diorama-export-"
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 FAST_DEFLATE = 1
 """Level of compression: higher ones take several times as long for files a tenth smaller."""
+_PACKED = (".png", ".jpg")
+"""Files that are compressed already."""
 Entry = tuple[str, bytes]
 """Name of a file inside a package, with forward slashes, and its content."""
 
@@ -65,6 +67,12 @@ def companion_folder(path: Path, kind: str = "files") -> str:
     return f"{Path(path).stem}_{kind}"
 
 
+def add_entry(archive: zipfile.ZipFile, name: str, content: bytes) -> None:
+    """Add a file to a zip, the same bytes at any time; pictures are stored, anything else is compressed."""
+    method = zipfile.ZIP_STORED if name.endswith(_PACKED) else zipfile.ZIP_DEFLATED
+    archive.writestr(zipfile.ZipInfo(name), content, method, FAST_DEFLATE)
+
+
 def write_package(path: Path, main: str, entries: Iterable[Entry]) -> None:
     """Write a main file and those it refers to: as one zip where `path` ends in .zip, as a file and a folder otherwise.
 
@@ -78,9 +86,9 @@ def write_package(path: Path, main: str, entries: Iterable[Entry]) -> None:
     """
     path = Path(path)
     if path.suffix.lower() == ".zip":
-        with whole_file(path) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
+        with whole_file(path) as temporary, zipfile.ZipFile(temporary, "w") as archive:
             for name, content in entries:
-                archive.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED, FAST_DEFLATE)
+                add_entry(archive, name, content)
         return
     _write_beside(path, main, entries)
 

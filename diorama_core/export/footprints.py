@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import manifold3d
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene
 
@@ -17,7 +17,8 @@ SIMPLER_M = 0.002
 """Deviation allowed when points are left out of an outline."""
 UPRIGHT = 0.999
 """Cosine from which on an object stands upright, so that its shape's outline only has to be turned."""
-AT_ONCE = 4000
+AT_ONCE = 500
+"""Triangles united at once."""
 
 
 def footprints(scene: ExportScene) -> dict[str, tuple[Outline, ...]]:
@@ -38,13 +39,16 @@ def footprints(scene: ExportScene) -> dict[str, tuple[Outline, ...]]:
 
 def outline(triangles: Float[np.ndarray, "n 3 2"]) -> tuple[Outline, ...]:
     """The outer boundaries of the union of triangles, counter-clockwise."""
-    snapped: np.ndarray = np.round(triangles / GRID_M) * GRID_M
-    a, b, c = snapped[:, 0], snapped[:, 1], snapped[:, 2]
-    area = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
-    snapped = np.where((area < 0)[:, None, None], snapped[:, ::-1], snapped)[np.abs(area) > 1e-9]
-    if not len(snapped):
+    cells = np.round(triangles / GRID_M).astype(np.int64)
+    a, b, c = cells[:, 0], cells[:, 1], cells[:, 2]
+    turn = np.sign((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+    if not turn.any():
         return ()
-    snapped = np.unique(np.round(snapped / GRID_M).astype(np.int32), axis=0) * GRID_M
+    if _is_closed(cells):
+        cells = cells[turn > 0]  # what is seen from below covers the same
+    else:
+        cells = np.where((turn < 0)[:, None, None], cells[:, ::-1], cells)[turn != 0]
+    snapped = np.unique(cells.astype(np.int32), axis=0) * GRID_M
     order = np.argsort(snapped[:, 0, 0] + 0.37 * snapped[:, 0, 1])
     blocks = [
         manifold3d.CrossSection(list(snapped[order[i : i + AT_ONCE]]), manifold3d.FillRule.Positive)
@@ -55,6 +59,21 @@ def outline(triangles: Float[np.ndarray, "n 3 2"]) -> tuple[Outline, ...]:
     whole = whole.offset(GAP_M / 2, manifold3d.JoinType.Miter).offset(-GAP_M / 2, manifold3d.JoinType.Miter)
     polygons = [np.asarray(p) for p in whole.simplify(SIMPLER_M).to_polygons()]
     return tuple(p for p in polygons if signed_area(p) > 1e-5)
+
+
+def _is_closed(cells: Int[np.ndarray, "n 3 2"]) -> bool:
+    """Whether every edge is run through as often in one direction as in the other, seen from above.
+
+    Then the triangles seen from above and those seen from below cover every place equally often, as those of a closed
+    body do: chains of triangles in a plane that have no boundary cancel.
+    """
+    corners = cells - cells.min(axis=(0, 1))
+    across = int(corners.max()) + 1
+    if across**4 >= 2**63:
+        return False  # an edge is no longer one number
+    start = corners[..., 0] * across + corners[..., 1]
+    end = np.roll(start, -1, axis=1)
+    return np.array_equal(np.sort(start * across**2 + end, axis=None), np.sort(end * across**2 + start, axis=None))
 
 
 def signed_area(polygon: Outline) -> float:

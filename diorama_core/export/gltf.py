@@ -99,7 +99,8 @@ class _Builder:
         self._meshes: dict[str, int] = {}
         names = [o.name for o in gathered.objects] + [p.name for p in gathered.planes]
         self._names = {name.casefold() for name in names}
-        self._entries = {o["id"]: o for o in json.loads(scene_to_json(gathered.scene))["objects"]}
+        self._scene_text = scene_to_json(gathered.scene, indent=None)
+        self._entries = {o["id"]: o for o in json.loads(self._scene_text)["objects"]}
         self._lights: dict[str, list[ExportLight]] = {}
         for light in gathered.lights:
             self._lights.setdefault(light.owner, []).append(light)
@@ -120,7 +121,7 @@ class _Builder:
             "extras": {
                 "units": "metres",
                 "world_up": "+Z below this node, +Y above it",
-                "diorama": scene_to_json(self._gathered.scene),
+                "diorama": self._scene_text,
                 "diorama_objects": json.dumps([o.id for o in self._gathered.objects]),
                 "provenance": dict(self._gathered.provenance),
             },

@@ -16,7 +16,7 @@ import numpy as np
 from diorama_core.export import meshopt
 from diorama_core.export.draco import EXTENSION, draco_mesh
 from diorama_core.export.gathering import Compression
-from diorama_core.export.pictures import Picture, encoded_picture, picture_suffix, power_of_two
+from diorama_core.export.pictures import OncePerPicture, Picture, texture_file
 from diorama_core.export.tangents import tangents
 from diorama_core.io.atomic import ByteSink
 from diorama_core.render.appearance import Material, Surface
@@ -28,10 +28,22 @@ _WIDTHS = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
 _MAGIC, _JSON_CHUNK, _BINARY_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
 
 
-class GltfDocument:
-    """A document under construction. Every `add_` method returns the index of what it added."""
+TextureFiles = OncePerPicture[[], tuple[str, bytes]]
 
-    def __init__(self, generator: str, *, compression: Compression = "none") -> None:
+
+class GltfDocument:
+    """A document under construction. Every `add_` method returns the index of what it added.
+
+    Args:
+        generator: The program that the file names.
+        compression: Of its geometry.
+        texture_files: Files of pictures, shared with other documents that show the same ones.
+    """
+
+    def __init__(
+        self, generator: str, *, compression: Compression = "none", texture_files: TextureFiles | None = None
+    ) -> None:
+        self._texture_files = OncePerPicture(texture_file) if texture_files is None else texture_files
         self._data = bytearray()
         self._compressed = compression == "meshopt"
         self._draco = compression == "draco"
@@ -233,8 +245,7 @@ class GltfDocument:
             self._referenced.append(picture)
             if not self._json.get("samplers"):
                 self.add("samplers", {"magFilter": 9729, "minFilter": 9987, "wrapS": 10497, "wrapT": 10497})
-            scaled = power_of_two(picture)
-            mime = _MEDIA_TYPES[picture_suffix(scaled)]
-            image = self.add("images", {"bufferView": self._view(encoded_picture(scaled)), "mimeType": mime})
+            suffix, content = self._texture_files(picture)
+            image = self.add("images", {"bufferView": self._view(content), "mimeType": _MEDIA_TYPES[suffix]})
             self._pictures[id(picture)] = self.add("textures", {"sampler": 0, "source": image})
         return self._pictures[id(picture)]

@@ -21,7 +21,7 @@ from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene,
 from diorama_core.export.lights import ExportLight, MainLight
 from diorama_core.export.limbs import ExportLimb
 from diorama_core.export.physics import FLOOR_FRICTION, Inertia
-from diorama_core.export.pictures import png_bytes
+from diorama_core.export.pictures import OncePerPicture, png_bytes
 from diorama_core.export.wavefront import obj_file
 from diorama_core.export.xml_values import numbers, srgb_rgba
 from diorama_core.progress import Progress
@@ -234,9 +234,10 @@ def _materials(assets: Element, gathered: ExportScene, folder: str) -> None:
 
 
 def _assets(gathered: ExportScene, folder: str, progress: Progress) -> Iterator[Entry]:
+    encoded = OncePerPicture(png_bytes)
     for number, material in enumerate(gathered.materials):
         if material.texture is not None:
-            yield f"{folder}/textures/{number}.png", png_bytes(material.texture)
+            yield f"{folder}/textures/{number}.png", encoded(material.texture)
     for done, mesh in enumerate(gathered.meshes.values()):
         progress.report(0.3 + 0.7 * done / len(gathered.meshes), f"writing {mesh.name}")
         for number, surface in enumerate(mesh.surfaces):

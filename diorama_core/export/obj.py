@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from diorama_core.export.files import FAST_DEFLATE, companion_folder, whole_file, write_whole
+from diorama_core.export.files import FAST_DEFLATE, add_entry, companion_folder, whole_file, write_whole
 from diorama_core.export.gathering import ExportScene
 from diorama_core.export.wavefront import MaterialFile, ObjText
 from diorama_core.export.world_meshes import Y_UP, world_meshes
@@ -33,7 +33,7 @@ def write_obj(scene: ExportScene, path: Path, progress: Progress | None = None) 
             with archive.open(f"{path.stem}.obj", "w", force_zip64=True) as stream:
                 _write_geometry(scene, stream.write, f"{path.stem}.mtl", materials, progress)
             for name, content in _companions(materials, f"{path.stem}.mtl"):
-                archive.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)
+                add_entry(archive, name, content)
         return
     folder = companion_folder(path)
     with whole_file(path) as temporary, _created(path.parent / folder):

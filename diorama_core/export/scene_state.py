@@ -20,9 +20,10 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
-from diorama_core.export.files import Entry, whole_file, write_whole
+from diorama_core.export.files import Entry, add_entry, whole_file, write_whole
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene
-from diorama_core.export.gltf_document import GltfDocument
+from diorama_core.export.gltf_document import GltfDocument, TextureFiles
+from diorama_core.export.pictures import OncePerPicture, texture_file
 from diorama_core.export.wall_lines import Opening, WallLine, wall_lines
 from diorama_core.library.record import record_of
 from diorama_core.progress import Progress
@@ -49,10 +50,10 @@ def write_scene_state(scene: ExportScene, path: Path, progress: Progress | None 
         progress.check()
         write_whole(path, text.encode())
         return
-    with whole_file(path) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr(zipfile.ZipInfo(f"{path.stem}.json"), text, zipfile.ZIP_DEFLATED)
+    with whole_file(path) as temporary, zipfile.ZipFile(temporary, "w") as archive:
+        add_entry(archive, f"{path.stem}.json", text.encode())
         for name, content in _assets(scene, progress):
-            archive.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)
+            add_entry(archive, name, content)
 
 
 def scene_state(scene: ExportScene) -> dict[str, Any]:
@@ -183,11 +184,12 @@ def _camera(scene: ExportScene) -> dict[str, Any]:
 def _assets(scene: ExportScene, progress: Progress) -> Iterator[Entry]:
     """Each model as a GLB in the usual frame, and what it is, under the names SceneEval looks for."""
     used = {o.mesh: o.item for o in scene.objects}
+    texture_files = OncePerPicture(texture_file)
     for number, (key, item) in enumerate(used.items()):
         progress.report(number / len(used), f"writing {item.label}")
         mesh = scene.meshes[key]
         name = f"assets/{model_id(mesh)}"
-        yield f"{name}/{model_id(mesh)}.glb", _asset(mesh)
+        yield f"{name}/{model_id(mesh)}.glb", _asset(mesh, texture_files)
         record = record_of(scene.library, item.shape_id)
         said = {"category": item.category, "description": record.caption, "materials": _materials(mesh)}
         yield f"{name}/data.json", json.dumps({"annotations": said}, indent=1).encode()
@@ -197,8 +199,8 @@ def _materials(mesh: ExportMesh) -> list[str]:
     return list(dict.fromkeys(s.material.name for s in mesh.surfaces))
 
 
-def _asset(mesh: ExportMesh) -> bytes:
-    document = GltfDocument(generator="Diorama")
+def _asset(mesh: ExportMesh, texture_files: TextureFiles) -> bytes:
+    document = GltfDocument(generator="Diorama", texture_files=texture_files)
     index = document.add_mesh(mesh.name, tuple(_turned(s, R_SHAPE_FILE) for s in mesh.surfaces))
     node = document.add("nodes", {"name": mesh.name, "mesh": index})
     document.set_scene(document.add("scenes", {"name": "scene", "nodes": [node]}))

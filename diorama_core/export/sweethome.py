@@ -15,8 +15,9 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.export.files import FAST_DEFLATE, whole_file
+from diorama_core.export.files import add_entry, whole_file
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportPlane, ExportScene
+from diorama_core.export.pictures import TexturePictures
 from diorama_core.export.scene_state import R_SHAPE_FILE
 from diorama_core.export.wall_lines import WallLine, wall_lines
 from diorama_core.export.wavefront import MaterialFile, ObjText
@@ -40,14 +41,13 @@ def write_sweet_home(scene: ExportScene, path: Path, progress: Progress | None =
         Cancelled: when asked to stop; what was there stays.
     """
     progress = progress or Progress()
-    with whole_file(Path(path)) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.compresslevel = FAST_DEFLATE
+    with whole_file(Path(path)) as temporary, zipfile.ZipFile(temporary, "w") as archive:
         models: dict[str, str] = {}
         for number, (key, name, content) in enumerate(_model_files(scene)):
             progress.report(min(number / (3 * len(scene.objects) + 1), 1.0), "writing models")
             models.setdefault(key, name)
-            archive.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)
-        archive.writestr(zipfile.ZipInfo("Home.xml"), home_xml(scene, models), zipfile.ZIP_DEFLATED)
+            add_entry(archive, name, content)
+        add_entry(archive, "Home.xml", home_xml(scene, models))
 
 
 def home_xml(scene: ExportScene, models: Mapping[str, str]) -> bytes:
@@ -165,6 +165,7 @@ def _observer(camera: Camera) -> dict[str, str]:
 def _model_files(scene: ExportScene) -> Iterator[tuple[str, str, bytes]]:
     """Key of the model, entry and content of each of its files; the OBJ comes first."""
     done: set[str] = set()
+    pictures = TexturePictures()
     for item in scene.objects:
         key = model_key(item)
         if key in done:
@@ -172,12 +173,16 @@ def _model_files(scene: ExportScene) -> Iterator[tuple[str, str, bytes]]:
         folder = str(len(done) + 1)
         done.add(key)
         turn = np.eye(3) if key == item.mesh else item.T_world[:3, :3] * item.scale
-        yield from ((key, f"{folder}/{name}", content) for name, content in _obj_files(scene.meshes[item.mesh], turn))
+        files = _obj_files(scene.meshes[item.mesh], turn, pictures)
+        yield from ((key, f"{folder}/{name}", content) for name, content in files)
 
 
-def _obj_files(mesh: ExportMesh, turn: Float[np.ndarray, "3 3"]) -> Iterator[tuple[str, bytes]]:
+def _obj_files(
+    mesh: ExportMesh, turn: Float[np.ndarray, "3 3"], pictures: TexturePictures
+) -> Iterator[tuple[str, bytes]]:
     """A model in Sweet Home 3D's usual frame: +Y up, +Z front. Colours are sRGB, as it shows them."""
-    materials = MaterialFile({id(s.material): s.material for s in mesh.surfaces}.values(), display=True, maps=False)
+    shown = {id(s.material): s.material for s in mesh.surfaces}.values()
+    materials = MaterialFile(shown, display=True, maps=False, made=pictures)
     linear = R_SHAPE_FILE.T @ turn
     back = np.linalg.inv(linear)
     text, content = ObjText(decimals=4), b"mtllib model.mtl\n"

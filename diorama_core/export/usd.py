@@ -127,7 +127,7 @@ def object_path(item: ExportObject) -> str:
 
 def _describe(prim: Usd.Prim, gathered: ExportScene) -> None:
     prim.SetDisplayName(gathered.name)
-    prim.SetCustomDataByKey("diorama", scene_to_json(gathered.scene))
+    prim.SetCustomDataByKey("diorama", scene_to_json(gathered.scene, indent=None))
     prim.SetCustomDataByKey("diorama_objects", json.dumps([o.id for o in gathered.objects]))
     if gathered.carried_photo is not None:
         prim.SetCustomDataByKey("diorama_photo", gathered.carried_photo)
@@ -164,7 +164,7 @@ def _objects(stage: Usd.Stage, gathered: ExportScene) -> None:
         return
     group = UsdGeom.Xform.Define(stage, f"{ROOT}/Objects")
     Usd.ModelAPI(group).SetKind(Kind.Tokens.group)
-    entries = {o["id"]: o for o in json.loads(scene_to_json(gathered.scene))["objects"]}
+    entries = {o["id"]: o for o in json.loads(scene_to_json(gathered.scene, indent=None))["objects"]}
     for item in gathered.objects:
         path = object_path(item)
         xform = UsdGeom.Xform.Define(stage, path)

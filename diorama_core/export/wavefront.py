@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float, Int
 
-from diorama_core.export.pictures import Picture, encoded_picture, picture_suffix, tinted
+from diorama_core.export.pictures import Picture, TexturePictures, picture_suffix
 from diorama_core.export.text import index_rows, number_rows
 from diorama_core.io.srgb import linear_to_srgb
 from diorama_core.render.appearance import Colour, Material, Surface
@@ -76,15 +76,22 @@ class MaterialFile:
         pictures: Folder of the pictures, relative to the file, with its slash.
         display: Whether colours are written as display values (sRGB), for programs without linear light.
         maps: Whether pictures other than the colour's are written.
+        made: Tinted and encoded pictures, shared with other material files that show the same ones.
     """
 
     def __init__(
-        self, materials: Iterable[Material], *, pictures: str = "", display: bool = False, maps: bool = True
+        self,
+        materials: Iterable[Material],
+        *,
+        pictures: str = "",
+        display: bool = False,
+        maps: bool = True,
+        made: TexturePictures | None = None,
     ) -> None:
+        self._made = TexturePictures() if made is None else made
         self._folder = pictures
         self._display = display
         self._files: dict[int, tuple[str, Picture]] = {}
-        self._tints: dict[tuple[int, Colour], Picture] = {}
         self._names: dict[int, str] = {}
         self._materials: dict[str, Material] = {}
         self._sources = tuple(materials)  # holding them keeps their ids from being reused
@@ -104,7 +111,7 @@ class MaterialFile:
     def pictures(self) -> Iterator[tuple[str, bytes]]:
         """Names, relative to the file, and contents of the pictures."""
         for name, picture in self._files.values():
-            yield name, encoded_picture(picture)
+            yield name, self._made.encoded(picture)
 
     def _unused(self, stem: str) -> str:
         name, number = stem, 2
@@ -115,10 +122,8 @@ class MaterialFile:
     def _written(self, material: Material) -> Material:
         """The material as it is written; its pictures get their names."""
         if material.texture is not None:
-            key = (id(material.texture), material.colour)
-            if key not in self._tints:
-                self._tints[key] = tinted(material.texture, material.colour)
-            material = replace(material, colour=(1.0, 1.0, 1.0), texture=self._tints[key])
+            texture = self._made.tinted(material.texture, material.colour)
+            material = replace(material, colour=(1.0, 1.0, 1.0), texture=texture)
         for picture in (material.texture, *(material.maps[k] for k in _MAP_KEYWORDS if k in material.maps)):
             if picture is not None and id(picture) not in self._files:
                 name = f"{self._folder}{len(self._files):03d}{picture_suffix(picture)}"

@@ -9,6 +9,7 @@ contain the mesh: two shapes whose parts are apart do not touch.
 from __future__ import annotations
 
 import itertools
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -133,14 +134,15 @@ def _directions(vectors: np.ndarray) -> Float[np.ndarray, "k 3"]:
 
 
 def _hull_edges(hull: ConvexHull) -> Float[np.ndarray, "e 3"]:
-    edges = []
-    for a, neighbours in enumerate(hull.neighbors):
-        for b in neighbours:
-            if b > a and hull.equations[a, :3] @ hull.equations[b, :3] < _SAME_DIRECTION:
-                shared = np.intersect1d(hull.simplices[a], hull.simplices[b])
-                if len(shared) == 2:
-                    edges.append(hull.points[shared[1]] - hull.points[shared[0]])
-    return _directions(np.array(edges).reshape(-1, 3))
+    """Directions of the edges between faces that are not parallel."""
+    a = np.repeat(np.arange(len(hull.simplices)), 3)
+    b = hull.neighbors.reshape(-1)
+    turn = (hull.equations[a, :3] * hull.equations[b, :3]).sum(axis=1)
+    shared = np.sort(hull.simplices[:, [[1, 2], [0, 2], [0, 1]]].reshape(-1, 2), axis=1)  # a neighbour lacks one corner
+    both = (shared[:, :, None] == hull.simplices[b][:, None, :]).any(axis=2).all(axis=1)
+    other = (hull.simplices.reshape(-1, 1) == hull.simplices[b]).any(axis=1)
+    first, second = shared[(b > a) & (turn < _SAME_DIRECTION) & both & ~other].T
+    return _directions(hull.points[second] - hull.points[first])
 
 
 def _components(vertices: np.ndarray, faces: Int[np.ndarray, "f 3"]) -> list[np.ndarray]:
@@ -199,8 +201,10 @@ def _split(triangles: Float[np.ndarray, "t 3 3"], small: float, depth: int) -> l
     best: tuple[float, int, float] | None = None
     for axis, share in itertools.product(range(3), (0.12, 0.3, 0.5, 0.7, 0.88)):
         at = float(low[axis] + share * (high[axis] - low[axis]))
-        total = sum(_volume(_one_side(triangles, axis, at, sign)) for sign in (1.0, -1.0))
-        if total < (0.9 * whole if best is None else best[0]):
+        most = 0.9 * whole if best is None else best[0]
+        above = _volume(_one_side(triangles, axis, at, 1.0))
+        total = above if above >= most else above + _volume(_one_side(triangles, axis, at, -1.0))
+        if total < most:
             best = (total, axis, at)
     if best is None:
         return _split_blindly(triangles, whole, small, depth)
@@ -252,30 +256,45 @@ def _gathered(clouds: list[np.ndarray]) -> list[np.ndarray]:
 
 def _merge(clouds: list[np.ndarray]) -> list[np.ndarray]:
     """Join parts while the union stays nearly convex; beyond `MOST_PARTS`, those that add least empty space."""
-    parts = {k: (c, _volume(c)) for k, c in enumerate(clouds)}
+    parts = {k: _Cloud.of(c) for k, c in enumerate(clouds)}
     added = {pair: _added(parts[pair[0]], parts[pair[1]]) for pair in itertools.combinations(parts, 2)}
     while added:
         pair = min(added, key=added.__getitem__)
-        filled = parts[pair[0]][1] + parts[pair[1]][1]
+        filled = parts[pair[0]].volume + parts[pair[1]].volume
         if added[pair] > (1.0 / MERGE - 1.0) * filled + 1e-7 and len(parts) <= MAX_PARTS:
             break
-        joined = _hull_points(np.vstack([parts[pair[0]][0], parts[pair[1]][0]]))
+        joined = _hull_points(np.vstack([parts[pair[0]].points, parts[pair[1]].points]))
         for k in pair:
             del parts[k]
         added = {p: v for p, v in added.items() if not set(p) & set(pair)}
         new = max([*parts, *pair]) + 1
-        parts[new] = (joined, _volume(joined))
+        parts[new] = _Cloud.of(joined)
         added.update({(k, new): _added(parts[k], parts[new]) for k in parts if k != new})
-    return [cloud for cloud, _ in parts.values()]
+    return [cloud.points for cloud in parts.values()]
 
 
-def _added(a: tuple[np.ndarray, float], b: tuple[np.ndarray, float]) -> float:
+@dataclass(frozen=True, eq=False)
+class _Cloud:
+    """Points with the volume of their hull and their box, which are asked for with every other cloud."""
+
+    points: Float[np.ndarray, "n 3"]
+    volume: float
+    lower: tuple[float, ...]
+    upper: tuple[float, ...]
+
+    @classmethod
+    def of(cls, points: Float[np.ndarray, "n 3"]) -> _Cloud:
+        """The cloud of some points."""
+        return cls(points, _volume(points), tuple(points.min(axis=0).tolist()), tuple(points.max(axis=0).tolist()))
+
+
+def _added(a: _Cloud, b: _Cloud) -> float:
     """Empty volume that the common hull of two parts would enclose, m3; estimated from boxes for distant parts."""
-    both = np.vstack([a[0], b[0]])
-    apart = np.maximum(a[0].min(axis=0) - b[0].max(axis=0), b[0].min(axis=0) - a[0].max(axis=0)).max()
+    apart = max(max(p - q, r - s) for p, q, r, s in zip(a.lower, b.upper, b.lower, a.upper, strict=True))
     if apart > 0.01:
-        return 0.5 * float(np.prod(both.max(axis=0) - both.min(axis=0))) + float(apart)
-    return max(_volume(both) - a[1] - b[1], 0.0)
+        sides = (max(p, q) - min(r, s) for p, q, r, s in zip(a.upper, b.upper, a.lower, b.lower, strict=True))
+        return 0.5 * math.prod(sides) + apart
+    return max(_volume(np.vstack([a.points, b.points])) - a.volume - b.volume, 0.0)
 
 
 def _drop_contained(clouds: list[np.ndarray]) -> list[np.ndarray]:

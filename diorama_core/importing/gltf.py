@@ -21,7 +21,7 @@ from diorama_core.importing.marked import MarkedFile, ObjectNode, as_bytes, as_i
 from diorama_core.io.bounded import shortened
 from diorama_core.library.ingest.gltf import container
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
-from diorama_core.library.ingest.references import References, read_bytes
+from diorama_core.library.ingest.references import IMAGE_FORMATS, References, read_bytes
 
 Json = dict[str, Any]
 MARK = "diorama"
@@ -175,7 +175,10 @@ class _Pictures:
         image = self._document["images"][texture["source"]]
         data = self._inside(image["bufferView"]) if "bufferView" in image else self._outside(image.get("uri", ""))
         data = None if data is None else self._references.checked_image(data, str(image.get("name", "a picture")))
-        return None if data is None else np.asarray(Image.open(io.BytesIO(data)).convert("RGB"))
+        if data is None:
+            return None
+        with Image.open(io.BytesIO(data), formats=IMAGE_FORMATS) as picture:
+            return np.asarray(picture.convert("RGB"))
 
     def _inside(self, view: int) -> bytes | None:
         row = self._document["bufferViews"][view]

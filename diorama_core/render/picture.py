@@ -14,10 +14,11 @@ from diorama_core.geometry.vectors import unit
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.render.filters import as_bytes, tone_mapped
+from diorama_core.render.grid import bands, each
 from diorama_core.render.lighting import Effort, Lighting, room_lighting, studio
 from diorama_core.render.raycast import OrthographicView, PinholeView, View
 from diorama_core.render.scene_light import with_settings
-from diorama_core.render.shading import shoot
+from diorama_core.render.shading import Shot, shoot
 from diorama_core.render.world import World, scene_world
 from diorama_core.scene.frames import UP_WORLD
 from diorama_core.scene.support import descendants
@@ -73,9 +74,8 @@ def picture(
     blockers = world.shadow_caster(without=range(count, count + len(scene.architecture.planes)))
     light = light or with_settings(scene_lighting(scene, world, source), opened, library, _room_bounds(scene, world))
     shot = shoot(world, blockers, source, light, effort, progress.part(0.1, 1.0))
-    background = np.asarray(BACKGROUND_SRGB) * (1 - shot.coverage[..., None])
-    radiance = _uncovered(shot.radiance, shot.coverage) * np.float32(scene.light_settings.exposure)
-    return as_bytes(tone_mapped(radiance) * shot.coverage[..., None] + background)
+    exposure = np.float32(scene.light_settings.exposure)
+    return np.concatenate(each(lambda band: _developed(shot, band, exposure), bands(source.height)))
 
 
 def scene_lighting(scene: Scene, world: World, view: View) -> Lighting:
@@ -84,8 +84,11 @@ def scene_lighting(scene: Scene, world: World, view: View) -> Lighting:
     return studio(bounds, -_axis(view)) if scene.light is None else room_lighting(bounds, scene.light)
 
 
-def _uncovered(radiance: np.ndarray, coverage: np.ndarray) -> np.ndarray:
-    return radiance / np.maximum(coverage, 1e-3)[..., None]
+def _developed(shot: Shot, rows: slice, exposure: np.float32) -> UInt8[np.ndarray, "rows w 3"]:
+    """Some rows of the finished picture, the background behind what is seen."""
+    coverage = shot.coverage[rows][..., None]
+    radiance = shot.radiance[rows] / np.maximum(coverage, 1e-3) * exposure
+    return as_bytes(tone_mapped(radiance) * coverage + np.asarray(BACKGROUND_SRGB) * (1 - coverage))
 
 
 def scene_view(scene: Scene, view: str, size: tuple[int, int] | None = None) -> View:

@@ -189,7 +189,7 @@ def _with_smooth_edges(
 ) -> Shot:
     """Pixels at edges seen again through four more positions."""
     grid = shot.grid
-    pixels = np.argwhere(_edges(shot))
+    pixels = np.argwhere(np.concatenate(each(lambda band: _edges(shot, band), bands(view.height))))
     if not len(pixels):
         return shot
     groups = np.array_split(pixels, 1 + len(pixels) // 4096)
@@ -224,11 +224,12 @@ def _seen_again(
     return seen.reshape(-1, count, 3).mean(axis=1), share.astype(np.float32)
 
 
-def _edges(shot: Shot) -> Bool[np.ndarray, "h w"]:
-    """Pixels beside a change of object, direction, depth or brightness."""
-    grid = shot.grid
+def _edges(shot: Shot, rows: slice) -> Bool[np.ndarray, "rows w"]:
+    """Pixels of some rows that lie beside a change of object, direction, depth or brightness."""
+    near = slice(max(0, rows.start - 1), rows.stop + 1)
+    grid = shot.grid.part(near)
     edge = np.zeros(grid.found.shape, bool)
-    bright = tone_mapped(shot.radiance).mean(axis=-1)
+    bright = tone_mapped(shot.radiance[near]).mean(axis=-1)
     for here, there in (
         ((slice(None), slice(0, -1)), (slice(None), slice(1, None))),
         ((slice(0, -1), slice(None)), (slice(1, None), slice(None))),
@@ -242,7 +243,7 @@ def _edges(shot: Shot) -> Bool[np.ndarray, "h w"]:
         )
         edge[here] |= differs
         edge[there] |= differs
-    return edge
+    return edge[rows.start - near.start : rows.stop - near.start]
 
 
 def _borrowed(

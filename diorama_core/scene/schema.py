@@ -189,8 +189,13 @@ class _SceneFile(_Model):
     light_settings: _LightSettingsFile | None = None
 
 
-def scene_to_json(scene: Scene) -> str:
-    """The scene file's text."""
+def scene_to_json(scene: Scene, *, indent: int | None = 1) -> str:
+    """The scene file's text.
+
+    Args:
+        scene: any.
+        indent: Spaces a level; None puts all into one line, in a third of the time, for text inside other files.
+    """
     document = {
         "format": FORMAT,
         "version": VERSION,
@@ -203,7 +208,7 @@ def scene_to_json(scene: Scene) -> str:
         "light": None if scene.light is None else asdict(scene.light),
         "light_settings": asdict(scene.light_settings),
     }
-    return json.dumps(document, indent=1, allow_nan=False)
+    return json.dumps(document, indent=indent, allow_nan=False)
 
 
 def scene_from_json(text: str | bytes, *, migrations: Mapping[int, Migration] = MIGRATIONS) -> Scene:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 import time
+import zipfile
 from pathlib import Path
 
 import pytest
 
-from diorama_core.export.files import PART, whole_file, write_package, write_whole
+from diorama_core.export.files import PART, add_entry, whole_file, write_package, write_whole
 
 
 def _old(path: Path) -> Path:
@@ -65,3 +66,19 @@ def test_the_mode_is_what_the_umask_says(umask: int, tmp_path: Path) -> None:
     files = [p for p in tmp_path.rglob("*") if p.is_file()]
     assert {p.stat().st_mode & 0o777 for p in files} == {0o666 & ~umask}
     assert len(files) == 3
+
+
+def test_entries_of_zips_are_the_same_at_any_time_and_pictures_are_stored(tmp_path: Path) -> None:
+    text, picture = b"v 0 0 0\n" * 1000, bytes(range(256)) * 10
+    written = []
+    for name in ("one.zip", "two.zip"):
+        with zipfile.ZipFile(tmp_path / name, "w") as archive:
+            add_entry(archive, "a/model.obj", text)
+            add_entry(archive, "a/oak.png", picture)
+        written.append((tmp_path / name).read_bytes())
+        time.sleep(0.01)
+    assert written[0] == written[1]
+    with zipfile.ZipFile(tmp_path / "one.zip") as archive:
+        assert (archive.read("a/model.obj"), archive.read("a/oak.png")) == (text, picture)
+        assert archive.getinfo("a/model.obj").compress_size < len(text) / 10
+        assert archive.getinfo("a/oak.png").compress_type == zipfile.ZIP_STORED

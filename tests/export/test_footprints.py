@@ -6,10 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from diorama_core.export.footprints import footprints, outline, signed_area
+from diorama_core.export.footprints import GRID_M, _is_closed, footprints, outline, signed_area
 from diorama_core.export.gathering import gather
 from diorama_core.scene.types import Pose, Scene
 from tests.primitives import PrimitiveLibrary, furnished_room, place
@@ -53,3 +54,29 @@ def test_turning_triangles_turns_the_outline(seed: int, angle: float) -> None:
 def test_nothing_flat_is_left() -> None:
     upright = np.array([[[0, 0], [1, 0], [0.5, 0]]], float)
     assert outline(upright) == ()
+
+
+def covered(triangles: np.ndarray) -> float:
+    return sum(signed_area(p) for p in outline(triangles))
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 10_000))
+def test_closed_bodies_cover_what_all_their_triangles_cover(seed: int) -> None:
+    """Half the triangles are enough there; without one triangle the body is open, and all of them are needed."""
+    rng = np.random.default_rng(seed)
+    turns = [trimesh.transformations.random_rotation_matrix(rng.random(3)) for _ in range(3)]
+    bodies = [trimesh.creation.box(rng.uniform(0.1, 1, 3), turn) for turn in turns]
+    corners = [np.asarray(body.triangles)[:, :, :2] + rng.uniform(-0.5, 0.5, 2) for body in bodies]
+    closed = np.concatenate(corners)
+    cells = np.round(closed / GRID_M).astype(np.int64)
+    assert _is_closed(cells)
+    assert not _is_closed(cells[1:])
+    tiny = np.array([[[9.0, 9.0], [9.1, 9.0], [9.0, 9.1]]])  # opens the set, elsewhere
+    assert covered(closed) == pytest.approx(covered(np.concatenate([closed, tiny])) - covered(tiny), abs=1e-4)
+
+
+def test_a_sheet_that_faces_down_covers_the_floor_too() -> None:
+    sheet = np.array([[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]], float)
+    assert covered(sheet) == pytest.approx(1.0)
+    assert covered(sheet[:, ::-1]) == pytest.approx(1.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ET
 import zipfile
 from dataclasses import replace
 from pathlib import Path
@@ -103,6 +104,33 @@ def test_sweet_home_there_and_back(tmp_path, known: KnownShapes) -> None:
     for wall in scene.architecture.by_role("wall"):
         offsets = [w.offset for w in found.architecture.by_role("wall") if w.normal @ wall.normal > 0.999]
         assert offsets == [pytest.approx(wall.offset, abs=1e-3)]
+
+
+def move_piece(path: Path, object_id: str, by_m: np.ndarray) -> None:
+    """Move a piece of furniture in a Sweet Home 3D file, whose y points down the plan, in centimetres."""
+    with zipfile.ZipFile(path) as archive:
+        files = {name: archive.read(name) for name in archive.namelist()}
+    home = ET.fromstring(files["Home.xml"])
+    piece = next(e for e in home.iter() if e.get("id") == f"piece-{object_id}")
+    for axis, by_cm in (("x", 100 * by_m[0]), ("y", -100 * by_m[1])):
+        piece.set(axis, str(float(piece.get(axis, "")) + by_cm))
+    files["Home.xml"] = ET.tostring(home)
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, content in files.items():
+            archive.writestr(name, content)
+
+
+def test_a_piece_that_was_moved_in_sweet_home_comes_back_at_its_new_place(tmp_path, known: KnownShapes) -> None:
+    scene, by_m = furnished_room(LIBRARY), np.array([0.25, -0.4, 0.0])
+    export_scene(scene, LIBRARY, tmp_path / "home.sh3d", "sh3d")
+    move_piece(tmp_path / "home.sh3d", "c1", by_m)
+    found = opened(tmp_path / "home.sh3d", known, tmp_path).scene.objects
+    assert len(found) == len(scene.objects)
+    for item in scene.objects:
+        expected = item.corners_world + (by_m if item.id == "c1" else 0.0)
+        ends = np.stack([expected.min(axis=0), expected.max(axis=0)])
+        off = [np.abs(np.stack([o.corners_world.min(axis=0), o.corners_world.max(axis=0)]) - ends).max() for o in found]
+        assert min(off) < 1e-3, f"{item.id} is off by {1000 * min(off):.1f} mm"
 
 
 def test_broken_homes_are_one_clear_line(tmp_path, known: KnownShapes) -> None:

@@ -1,9 +1,11 @@
-"""The photo of a scene: brought back from a file that holds it, missed in one that does not."""
+"""What comes back from a file: every object in its place, and the photo where the file holds it."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from diorama_core.importing.marked import as_bytes
 from diorama_core.importing.opening import marked_file, open_marked
 from diorama_core.scene.types import Scene
 from tests.export.scenes import scene_of
+from tests.importing.test_gltf import edit
 
 
 def photo_of(scene: Scene) -> np.ndarray:
@@ -67,3 +70,67 @@ def test_text_that_is_no_bytes_is_none() -> None:
     assert as_bytes("not base 64!") is None
     assert as_bytes(None) is None
     assert as_bytes("") is None
+
+
+def boxes(scene: Scene) -> dict[str, np.ndarray]:
+    """World box of every object: lower and upper corner."""
+    return {o.id: np.stack([o.corners_world.min(axis=0), o.corners_world.max(axis=0)]) for o in scene.objects}
+
+
+def move_node(path: Path, object_id: str, by_m: np.ndarray) -> None:
+    """Move an object's node in a GLB, as a program would that knows nothing of Diorama."""
+
+    def change(document: dict[str, Any]) -> None:
+        node = next(n for n in document["nodes"] if n.get("extras", {}).get("id") == object_id)
+        node["translation"] = [float(v + d) for v, d in zip(node["translation"], by_m, strict=True)]
+
+    edit(path, change)
+
+
+def move_prim(path: Path, object_id: str, by_m: np.ndarray) -> None:
+    """Move an object's prim in a USD file."""
+    from pxr import Gf, Usd, UsdGeom
+
+    stage = Usd.Stage.Open(str(path))
+    ops = UsdGeom.Xformable(stage.GetPrimAtPath(f"/Scene/Objects/{object_id}")).GetOrderedXformOps()
+    place = next(o for o in ops if o.GetOpName() == "xformOp:translate")
+    place.Set(place.Get() + Gf.Vec3d(*(float(d) for d in by_m)))
+    stage.Save()
+
+
+@pytest.mark.parametrize(
+    ("suffix", "compression", "move"),
+    [
+        ("glb", "none", move_node),
+        ("glb", "meshopt", move_node),
+        ("glb", "draco", move_node),
+        ("usda", "none", move_prim),
+        ("usdc", "none", move_prim),
+        ("usdz", "none", None),  # a package is changed by writing it anew
+    ],
+)
+def test_boxes_come_back_within_a_millimetre_and_one_that_was_moved_at_its_new_place(
+    suffix: str, compression: Any, move: Callable[[Path, str, np.ndarray], None] | None, tmp_path: Path
+) -> None:
+    if suffix != "glb":
+        pytest.importorskip("pxr", reason="OpenUSD is not installed (optional extra 'usd')")
+    if compression == "draco":
+        pytest.importorskip("DracoPy", reason="DracoPy is not installed (optional extra 'draco')")
+    scene, library = scene_of("fittings")
+    path, expected = tmp_path / f"room.{suffix}", boxes(scene)
+    export_scene(scene, library, path, suffix, options=ExportOptions(compression=compression))
+    moved: set[str] = set()
+    if move is not None:
+        by_m = np.array([0.25, -0.4, 0.0])
+        move(path, "chair_1", by_m)
+        expected["chair_1"] = expected["chair_1"] + by_m
+        moved = {"chair_1"}
+    opened = open_marked(marked_file(path))
+    found = boxes(opened.scene)
+    assert found.keys() == expected.keys()
+    for name, box in expected.items():
+        np.testing.assert_allclose(found[name], box, atol=1e-3, err_msg=name)
+    assert opened.scene.supports == scene.supports
+    unmoved = [o for o in scene.objects if o.id not in moved]
+    assert [opened.scene.object(o.id) for o in unmoved] == unmoved
+    assert len(opened.changes) == len(moved)

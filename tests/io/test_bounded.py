@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import ast
 import io
 import json
 import os
@@ -11,6 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from PIL import Image
 
+import diorama_app
+import diorama_core
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import (
     MAX_JSON_DEPTH,
@@ -115,3 +118,14 @@ def test_messages_are_one_short_line() -> None:
     assert len(shortened("x" * 500)) == 200
     assert megabytes(64_000_000) == "64 MB"
     assert megabytes(1_500) == "1.5 kB"
+
+
+def test_every_picture_is_opened_with_the_formats_that_it_may_have() -> None:
+    packages = [Path(module.__file__).parent for module in (diorama_core, diorama_app) if module.__file__]
+    opened = 0
+    for source in (file for package in packages for file in package.rglob("*.py")):
+        for call in ast.walk(ast.parse(source.read_text())):
+            if isinstance(call, ast.Call) and ast.unparse(call.func) in ("Image.open", "PIL.Image.open"):
+                opened += 1
+                assert "formats" in {keyword.arg for keyword in call.keywords}, f"{source.name}, line {call.lineno}"
+    assert opened >= 8

@@ -91,3 +91,49 @@ def test_smooth_profile_never_bulges_past_its_points() -> None:
     radii = [r for r, _ in solids.smooth_profile(profile, 6)]
     assert min(radii) >= 0.1 - 1e-9
     assert max(radii) <= 0.4 + 1e-9
+
+
+VECTORS = st.lists(st.tuples(*[st.floats(-9, 9)] * 3), min_size=1, max_size=30).map(np.array)
+
+
+@given(VECTORS)
+def test_lengths_and_products_are_numpys(vectors: np.ndarray) -> None:
+    other = np.roll(vectors, 1, axis=0)
+    np.testing.assert_array_equal(solids.length(vectors), np.linalg.norm(vectors, axis=-1))
+    np.testing.assert_array_equal(solids.cross(vectors, other), np.cross(vectors, other))
+    np.testing.assert_array_equal(solids.cross(vectors, other[0]), np.cross(vectors, other[0]))
+    np.testing.assert_array_equal(solids.unit(vectors[0]), vectors[0] / max(np.linalg.norm(vectors[0]), 1e-12))
+
+
+@given(VECTORS, st.sampled_from([1.0, 1e7]))
+def test_places_are_rows_in_order_also_where_one_number_cannot_tell_them(points: np.ndarray, spread: float) -> None:
+    vertices = np.round(np.concatenate([points, points[::-1]]) * spread, 4)
+    first, number = solids.places(vertices)
+    keys = np.round(vertices * 1e5).astype(np.int64)
+    np.testing.assert_array_equal(keys[first], np.unique(keys, axis=0))
+    np.testing.assert_array_equal(keys[first][number], keys)
+
+
+def normals_by_definition(faces: np.ndarray, doubled: np.ndarray, crease_rad: float) -> np.ndarray:
+    """For every corner the sum over all faces at its vertex that meet its own face within the angle."""
+    n = solids.unit(doubled)
+    sums = [
+        sum(
+            (doubled[g] for g in range(len(faces)) if vertex in faces[g] and n[f] @ n[g] > np.cos(crease_rad)),
+            np.zeros(3),
+        )
+        for f in range(len(faces))
+        for vertex in faces[f]
+    ]
+    return solids.unit(np.array(sums))
+
+
+@pytest.mark.parametrize("crease_deg", [20.0, 38.0, 70.0, 180.0])
+@pytest.mark.parametrize("name", ["box", "taper", "beam", "ball"])
+def test_corner_normals_are_means_within_the_crease(name: str, crease_deg: float) -> None:
+    mesh = welded(SOLIDS[name] if name != "ball" else solids.ball(0.3, 3))
+    mesh = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
+    a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
+    doubled, crease = np.cross(b - a, c - a), np.deg2rad(crease_deg)
+    found = solids._corner_normals(mesh.faces, doubled, crease, len(mesh.vertices))
+    np.testing.assert_allclose(found, normals_by_definition(mesh.faces, doubled, crease), atol=1e-9)

@@ -15,8 +15,9 @@ from diorama_core.io.derived import read_arrays, write_arrays
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
 
-VERSION = 6
-"""Of the decomposition: raise it when `convex_parts` changes, so that files of older versions are not read."""
+VERSION = 7
+"""Of the decomposition and its files: raise it when `convex_parts` changes, so that older files are not read."""
+_ARRAYS = ("vertices", "normals", "edges")
 
 _CACHE: LruCache[str, tuple[ConvexPart, ...]] = LruCache(4096)
 
@@ -51,19 +52,19 @@ def _path(key: str) -> Path:
 
 
 def _read(path: Path) -> tuple[ConvexPart, ...] | None:
-    count = read_arrays(path, "count")
-    names = [] if count is None else _names(int(count[0]))
-    arrays = read_arrays(path, *names)
-    return None if not arrays else tuple(ConvexPart(*arrays[k : k + 3]) for k in range(0, len(arrays), 3))
+    """The parts in a file: their rows one after the other, since each array costs more to open than to read."""
+    arrays = read_arrays(path, "counts", *_ARRAYS)
+    if arrays is None or arrays[0].ndim != 2 or arrays[0].sum(axis=0).tolist() != [len(a) for a in arrays[1:]]:
+        return None
+    counts, *rows = arrays
+    ends = np.cumsum(counts, axis=0)[:-1]
+    parts = zip(*(np.split(array, ends[:, k]) for k, array in enumerate(rows)), strict=True)
+    return tuple(ConvexPart(*part) for part in parts)
 
 
 def _made(path: Path, mesh: trimesh.Trimesh) -> tuple[ConvexPart, ...]:
     parts = convex_parts(mesh)
-    arrays = (array for q in parts for array in (q.vertices, q.normals, q.edges))
-    write_arrays(path, {"count": np.array(len(parts)), **dict(zip(_names(len(parts)), arrays, strict=True))})
+    columns = {name: [getattr(part, name) for part in parts] for name in _ARRAYS}
+    counts = np.array([[len(array) for array in column] for column in columns.values()]).T
+    write_arrays(path, {"counts": counts, **{name: np.concatenate(column) for name, column in columns.items()}})
     return parts
-
-
-def _names(count: int) -> list[str]:
-    """Of the arrays in a file: three of every part."""
-    return [f"{name}_{k}" for k in range(count) for name in ("vertices", "normals", "edges")]

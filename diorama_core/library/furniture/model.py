@@ -12,7 +12,7 @@ import trimesh
 
 from diorama_core.library.furniture.joints import Joint
 from diorama_core.library.furniture.materials import Material, pbr
-from diorama_core.library.furniture.solids import Solid, unit
+from diorama_core.library.furniture.solids import Solid, places, unit
 from diorama_core.library.record import SymmetryFold
 
 Size = tuple[float, float, float]
@@ -197,8 +197,7 @@ def scene_of(solids: Iterable[tuple[Material, Solid]]) -> trimesh.Scene:
 def mesh_of(solids: Iterable[tuple[Material, Solid]]) -> trimesh.Trimesh:
     """Geometry only, equal positions welded."""
     solid = joined([s for _, s in solids])
-    keys = np.round(solid.vertices * 1e5).astype(np.int64)
-    _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-    faces = inverse.reshape(-1)[solid.faces]
+    first, number = places(solid.vertices)
+    faces = number[solid.faces]
     keep = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
     return trimesh.Trimesh(solid.vertices[first], faces[keep], process=False)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import socket
+import urllib.request
 
 import pytest
 import viser
 
 from diorama_app.web.viser_adapter import create_server, stop_server
-from diorama_app.web.visitors import Visitors, with_token
+from diorama_app.web.visitors import Visitors, page_address, with_token
 from tests.app.web.http_client import connects, fetch
 
 
@@ -51,5 +52,31 @@ def test_a_server_for_everybody_still_knows_its_names(host: str) -> None:
         assert fetch(made, "/", Host=f"127.0.0.1:{made.get_port()}")[0] == 403, "no token"
         for name in ("127.0.0.1", "192.168.7.7", "localhost", "[fe80::1]", socket.gethostname()):
             assert fetch(made, "/?token=s3cret", Host=f"{name}:{made.get_port()}")[0] == 200, name
+    finally:
+        stop_server(made)
+
+
+def speaks_ipv6() -> bool:
+    try:
+        with socket.socket(socket.AF_INET6) as probe:
+            probe.bind(("::1", 0))
+    except OSError:
+        return False
+    return True
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1", "0.0.0.0", "::"])
+def test_the_address_that_is_printed_answers_and_lets_in(host: str) -> None:
+    if host == "::" and not speaks_ipv6():
+        pytest.skip("this machine has no IPv6")
+    token = with_token(host, None)
+    made = create_server(host=host, port=0, label="test", visitors=Visitors(host, token))
+    try:
+        address = page_address(host, made.get_port(), token)
+        with urllib.request.urlopen(address, timeout=10) as reply:
+            assert reply.status == 200
+        if token is not None:
+            with pytest.raises(urllib.error.HTTPError, match="403"):
+                urllib.request.urlopen(page_address(host, made.get_port(), None), timeout=10)
     finally:
         stop_server(made)

@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 
 from diorama_core.library.furniture.kit import *
+from diorama_core.library.furniture.solids import cross, length
 
 
 def pot(diameter: float, height: float, material: Material, shape: str = "taper") -> Parts:
@@ -43,12 +44,12 @@ def leaf(spine: np.ndarray, width: float, side: np.ndarray, fold: float = 0.25, 
     half[0] = half[-1] = 0.0
     along = unit(np.gradient(spine, axis=0))
     across = unit(side - along * (along @ side)[:, None])
-    up = np.cross(along, across)
+    up = cross(along, across)
     left, right = spine + half * (across + fold * up), spine - half * (across - fold * up)
     lift = 0.0009 * up * (half > 0)
     vertices = np.concatenate([left, spine + lift, right, left, spine - lift, right])
     normals = np.concatenate([unit(up - fold * across), up, unit(up + fold * across)])
-    reach = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(spine, axis=0), axis=1))])
+    reach = np.concatenate([[0.0], np.cumsum(length(np.diff(spine, axis=0)))])
     uv = np.column_stack([np.tile(reach, 6), np.concatenate([half[:, 0], 0 * s, -half[:, 0]] * 2)])
     return Solid(vertices, _leaf_faces(len(spine)), np.concatenate([normals, -normals]), uv)
 
