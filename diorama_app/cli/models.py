@@ -13,7 +13,7 @@ from diorama_app.cli.arguments import command, progress_bar
 from diorama_core.errors import UnavailableError
 
 if TYPE_CHECKING:
-    from diorama_core.models.manifest import Network
+    from diorama_core.models.network import Network
 
 
 def add_models(commands: Any) -> None:
@@ -79,7 +79,6 @@ def _list(a: argparse.Namespace) -> None:
 
 
 def _pull(a: argparse.Namespace) -> None:
-    from diorama_core.models.manifest import TIERS, network, networks_of
     from diorama_core.models.pull import pull
     from diorama_core.models.store import ModelStore
 
@@ -90,11 +89,22 @@ def _pull(a: argparse.Namespace) -> None:
         return
     chosen: dict[str, Network] = {}
     for what in a.what or ["tiny"]:
-        chosen.update({n.id: n for n in (networks_of(what) if what in TIERS else (network(what),))})
+        chosen.update({n.id: n for n in _members(what)})
     with progress_bar() as progress:
         fetched = pull(store, tuple(chosen.values()), accept=_asker(a.yes), progress=progress)
     count = "1 network" if len(fetched) == 1 else f"{len(fetched)} networks"
     print(f"{count} fetched, {len(chosen) - len(fetched)} already here: {store.folder}")
+
+
+def _members(what: str) -> tuple[Network, ...]:
+    """The networks of a set, in half precision where a card calculates with it, or the one that is named."""
+    from diorama_core.models.manifest import in_half, network, networks_of
+    from diorama_core.models.network import TIERS
+    from diorama_core.models.runtime import calculates_in_half
+
+    if what not in TIERS:
+        return (network(what),)
+    return in_half(networks_of(what)) if calculates_in_half() else networks_of(what)
 
 
 def _asker(yes: bool) -> Any:

@@ -14,7 +14,8 @@ import numpy as np
 
 from diorama_core.artefacts import Inputs
 from diorama_core.errors import UnavailableError
-from diorama_core.models.manifest import NETWORKS, Network, Role
+from diorama_core.models.manifest import NETWORKS
+from diorama_core.models.network import Network, Role
 from diorama_core.models.runtime import SHARED_SESSIONS
 from diorama_core.models.store import ModelStore
 from diorama_core.pipeline import network_stages
@@ -127,7 +128,7 @@ def _geometry(store: ModelStore, network: Network, known: Inputs, progress: Prog
         Measurement("share of pixels with depth", float(valid.mean()), (0.3, 1.0)),
         Measurement("median depth, metres", float(np.median(seen.depth_m[valid])) if valid.any() else np.nan, DEPTH_M),
     ]
-    if known.intrinsics is not None and seen.intrinsics is not None and not network.id.startswith("metric3d"):
+    if known.intrinsics is not None and seen.intrinsics is not None and not network.id.startswith(("metric3d", "da3")):
         ratio = seen.intrinsics.fx / known.intrinsics.fx
         measured.append(Measurement("focal length over the true one", ratio, FOCAL_FACTOR))
     return tuple(measured)

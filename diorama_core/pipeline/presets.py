@@ -19,7 +19,8 @@ from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
 from diorama_core.errors import UnavailableError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.models.foreground import Foreground
-from diorama_core.models.manifest import Network, network
+from diorama_core.models.manifest import network
+from diorama_core.models.network import Network
 from diorama_core.models.own_weights import has_own_recogniser
 from diorama_core.models.recogniser import own_recogniser
 from diorama_core.models.store import ModelStore, how_to_get
@@ -56,6 +57,7 @@ from diorama_core.pipeline.choices import (
     PATCH_FEATURES,
     SEGMENTERS,
     NetworkChoice,
+    best_here,
 )
 from diorama_core.pipeline.learned_retrieval import with_joint_retrieval
 from diorama_core.pipeline.plan import evaluate
@@ -253,5 +255,5 @@ def _foregrounds(store: ModelStore) -> tuple[Foreground, ...]:
 
 
 def _best(store: ModelStore, choices: tuple[str, ...], make: Callable[[ModelStore, Network], T]) -> T | None:
-    here = next((network(i) for i in choices if store.has(network(i))), None)
+    here = best_here(store, choices)
     return None if here is None else make(store, here)

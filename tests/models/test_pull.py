@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from diorama_core.errors import Cancelled, DioramaError, InputError, UnavailableError
-from diorama_core.models.manifest import NETWORKS, TIERS, ModelFile, Network, network, networks_of
+from diorama_core.models.manifest import NETWORKS, network, networks_of
+from diorama_core.models.network import TIERS, ModelFile, Network
 from diorama_core.models.pull import pull
 from diorama_core.models.store import ModelStore, default_folder
 from diorama_core.progress import CancelToken, Progress, ProgressEvent
