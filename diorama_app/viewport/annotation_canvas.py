@@ -124,6 +124,8 @@ class AnnotationCanvas:
         sender = LiveHtml(gui, self._received)
         sender.show('<button type="button" id="dio-canvas-send" style="display:none" tabindex="-1"></button>')
         self._photo, self._boxes, self._proposals, self._mask, self._next = (_Told(gui) for _ in range(5))
+        self._outline: Bool[np.ndarray, "h w"] | None = None
+        """The one that is shown."""
         self._photo.tell({"photo": None})
 
     @property
@@ -177,9 +179,13 @@ class AnnotationCanvas:
         if self.is_open:
             self._proposals.tell({"proposals": _rows(boxes)})
 
-    def show_mask(self, mask: Bool[np.ndarray, "h w"]) -> None:
-        """Lay an outline over the photo."""
-        if not self.is_open:
+    def show_mask(self, mask: Bool[np.ndarray, "h w"] | None) -> None:
+        """Lay an outline over the photo; none takes the last one away."""
+        if not self.is_open or mask is self._outline:
+            return
+        self._outline = mask
+        if mask is None:
+            self._mask.tell({"mask": None})
             return
         tint = np.zeros((*mask.shape, 4), dtype=np.uint8)
         tint[mask] = MASK_COLOUR
@@ -195,6 +201,7 @@ class AnnotationCanvas:
         self._boxes.tell({"boxes": [], "selected": None, "likely": []})
         self._proposals.tell({"proposals": []})
         self._mask.tell({"mask": None})
+        self._outline = None
 
     def _received(self, action: Action) -> None:
         on_event = self._on_event
