@@ -14,7 +14,7 @@ from jaxtyping import Bool, Float
 
 from diorama_core.artefacts import Box, LabelledBox, Photo
 from diorama_core.errors import UnavailableError
-from diorama_core.models.boxes import Detections
+from diorama_core.models.boxes import Detections, areas, overlaps
 from diorama_core.models.own_weights import has_own_recogniser
 from diorama_core.models.store import ModelStore
 
@@ -22,6 +22,10 @@ log = logging.getLogger(__name__)
 
 COUNT = 4
 """Names that are suggested for a box."""
+SMALLER = 0.5
+"""Share of a marked box's area below which another box is of something that lies on the object."""
+SAME_IOU = 0.5
+"""Intersection over union from which two boxes are one object's."""
 
 
 class Suggestions:
@@ -73,7 +77,7 @@ class Suggestions:
         Args:
             x: column of the pixel.
             y: row of the pixel.
-            marked: boxes that are there already.
+            marked: boxes that are there already; in one of these, something smaller is meant.
             then: told the box, with its likeliest name, or None where nothing is recognised; called from a thread.
         """
 
@@ -154,10 +158,20 @@ class Suggestions:
             return None
         if self._clickable is None:
             self._clickable = clickable(own_recogniser(), self.photo, self._everyday())
-        box = clicked_box(self._clickable, x, y)
+        box = clicked_box(unmarked(self._clickable, x, y, marked), x, y)
         if box is None:
             return None
         boxes = (*marked, box)
         self._look_at(tuple(b for b in boxes if b not in self._seen))
         name = self._ranked(boxes)[-1][0]
         return LabelledBox(box, name, name)
+
+
+def unmarked(found: Detections, x: float, y: float, marked: Sequence[Box]) -> Detections:
+    """The boxes that a click at (x, y) may mean beside those that are marked there: of smaller objects on these."""
+    boxes = np.array(marked, dtype=float).reshape(-1, 4)
+    here = boxes[np.all((boxes[:, :2] <= (x, y)) & (boxes[:, 2:] >= (x, y)), axis=1)]
+    if not len(here):
+        return found
+    smaller = areas(found.boxes) < SMALLER * areas(here).min()
+    return found.rows(np.flatnonzero(smaller & (overlaps(found.boxes, boxes).max(axis=1) < SAME_IOU)))

@@ -29,7 +29,8 @@ MAX_LABEL = 40
 
 Mode = Literal["boxes", "one box", "points"]
 HINTS: dict[Mode, str] = {
-    "boxes": "Click each piece of furniture, or drag a box around it. Keys 1 to 4 choose a name, Delete deletes.",
+    "boxes": "Click each piece of furniture, or drag a box around it; Shift-click what lies on a marked one. "
+    "Keys 1 to 4 choose a name, Delete deletes.",
     "one box": "Drag a new box around the object.",
     "points": "Click the object; Shift-click what does not belong to it.",
 }
@@ -84,7 +85,7 @@ class Pointed:
 
 @dataclass(frozen=True)
 class Clicked:
-    """A pixel beside all boxes was clicked: what is there?"""
+    """A pixel was clicked beside all boxes, or in one with Shift: what else is there?"""
 
     x: float
     y: float

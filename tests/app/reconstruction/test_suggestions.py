@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 import torch
 
-from diorama_app.reconstruction.suggestions import COUNT, Suggestions
+from diorama_app.reconstruction.suggestions import COUNT, Suggestions, unmarked
 from diorama_core.artefacts import LabelledBox, Photo
 from diorama_core.models import own_weights
+from diorama_core.models.boxes import Detections
 from diorama_core.models.store import ModelStore
 from tests.app.small_room import plain_photo
 from tests.models import tiny_networks
@@ -121,6 +122,15 @@ def test_a_damaged_network_does_not_stop_marking(
     Suggestions(plain_photo(), lambda: None).at(320.0, 300.0, (), told.put)
     assert told.get(timeout=60) is not None
     assert "marking goes on without the network" in caplog.text
+
+
+def test_in_a_marked_box_something_smaller_is_meant() -> None:
+    sofa, pillow, other = (100.0, 100.0, 400.0, 300.0), (150.0, 150.0, 220.0, 220.0), (90.0, 90.0, 600.0, 400.0)
+    found = Detections(np.array([sofa, pillow, other]), np.ones(3), np.zeros(3, dtype=int))
+    assert unmarked(found, 180.0, 180.0, ()) is found
+    assert unmarked(found, 500.0, 350.0, (sofa,)) is found, "beside what is marked"
+    assert unmarked(found, 180.0, 180.0, (sofa,)).boxes.tolist() == [list(pillow)]
+    assert not len(unmarked(found, 180.0, 180.0, (sofa, pillow)))
 
 
 def test_without_weights_nothing_is_suggested(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
