@@ -14,6 +14,7 @@ import numpy as np
 
 from diorama_core.artefacts import Inputs
 from diorama_core.errors import UnavailableError
+from diorama_core.models.boxes import overlaps
 from diorama_core.models.manifest import NETWORKS
 from diorama_core.models.network import Network, Role
 from diorama_core.models.runtime import SHARED_SESSIONS
@@ -23,6 +24,12 @@ from diorama_core.progress import Progress
 
 BOXES = (2, 40)
 """How many a detector finds."""
+KNOWN_FOUND = (1, 1e6)
+"""Of the objects that are known to be there."""
+SAME_IOU = 0.5
+"""Intersection over union from which a box is a known object's."""
+WORDS_APART = (0.02, 2.0)
+"""How much nearer the right words are to a picture than wrong ones, as cosines; 0 where a network ignores its input."""
 MASK_SHARE = (0.2, 1.0)
 """Of a box that its mask fills, in the median."""
 DEPTH_M = (0.8, 8.0)
@@ -108,7 +115,9 @@ Trial = Callable[[ModelStore, Network, Inputs, Progress], tuple[Measurement, ...
 
 def _detection(store: ModelStore, network: Network, known: Inputs, progress: Progress) -> tuple[Measurement, ...]:
     boxes = network_stages.detector(store, network).detect(known.photo, (), progress)
-    return (Measurement("boxes", len(boxes), BOXES),)
+    found, true = (np.array([b.box for b in some], dtype=float).reshape(-1, 4) for some in (boxes, known.boxes))
+    hits = int((overlaps(found, true).max(axis=0, initial=0.0) >= SAME_IOU).sum())
+    return Measurement("boxes", len(boxes), BOXES), Measurement("known objects found", hits, KNOWN_FOUND)
 
 
 def _segmentation(store: ModelStore, network: Network, known: Inputs, progress: Progress) -> tuple[Measurement, ...]:
@@ -163,7 +172,7 @@ def _text_and_image(store: ModelStore, network: Network, known: Inputs, progress
     clip = network_stages.open_clip(store, network)
     picture = clip.images([known.photo.rgb])[0]
     right, wrong = clip.texts(["a photo of a room with furniture", "a photo of the sea"]) @ picture
-    return (Measurement("cosine with the right words over wrong ones", float(right - wrong), (0.0, 2.0)),)
+    return (Measurement("cosine with the right words over wrong ones", float(right - wrong), WORDS_APART),)
 
 
 def _pose_scale(store: ModelStore, network: Network, known: Inputs, progress: Progress) -> tuple[Measurement, ...]:
