@@ -72,7 +72,7 @@ def _list(a: argparse.Namespace) -> None:
         mark = "here" if row["here"] else "-"
         unsure = "" if row["checked_by"].startswith("published") else " *"
         print(
-            f"{mark:<5} {row['id']:<17} {row['role']:<15} {row['size_mb']:>5} MB  {row['licence']:<13}"
+            f"{mark:<5} {row['id']:<22} {row['role']:<15} {row['size_mb']:>5} MB  {row['licence']:<13}"
             f" {', '.join(row['sets']):<22} {row['title']}{unsure}"
         )
     print("* no published checksum: later downloads must match the first")
@@ -135,7 +135,7 @@ def _verify(a: argparse.Namespace) -> None:
     else:
         for c in checks:
             if c.state != "absent":
-                print(f"{c.network.id:<17} {c.state}")
+                print(f"{c.network.id:<22} {c.state}")
         if all(c.state == "absent" for c in checks):
             print("no networks are here; fetch some with: diorama models pull tiny")
     wrong = [c.network.id for c in checks if c.state not in ("ok", "absent")]
@@ -161,7 +161,7 @@ def _check(a: argparse.Namespace) -> None:
     else:
         for c in checks:
             mark = "ok" if c.ok else "FAIL"
-            print(f"{mark:<5} {c.network.id:<17} {c.seconds:6.1f} s {c.device or '-':<6} {c.words}")
+            print(f"{mark:<5} {c.network.id:<22} {c.seconds:6.1f} s {c.device or '-':<6} {c.words}")
         if not checks:
             print("no networks are here; fetch some with: diorama models pull tiny")
     wrong = [c.network.id for c in checks if not c.ok]

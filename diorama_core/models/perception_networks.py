@@ -108,6 +108,15 @@ PERCEPTION_NETWORKS: tuple[Network, ...] = (
         side=1008,
     ),
     Network(
+        id="llmdet-tiny",
+        role="detection",
+        title="LLMDet tiny (your own converted copy)",
+        licence="Apache-2.0",
+        files=(ModelFile("model.onnx"), ModelFile("tokenizer.json")),
+        about_mb=700,
+        conversion="scripts/convert_llmdet.py",
+    ),
+    Network(
         id="slimsam",
         role="segmentation",
         title="SlimSAM (points and boxes)",

@@ -15,7 +15,7 @@ from diorama_core.models.runtime import calculates_in_half
 from diorama_core.models.store import ModelStore
 from diorama_core.perception.language.client import LmmSettings
 
-DETECTORS = ("owlv2-large", "owlv2-base", "owlv2-base-fp16", "owlv2-base-int8", "yolox-nano")
+DETECTORS = ("owlv2-large", "owlv2-base", "owlv2-base-fp16", "llmdet-tiny", "owlv2-base-int8", "yolox-nano")
 OWN_DETECTOR = "own"
 """The detector that comes with Diorama."""
 SEGMENTERS = (

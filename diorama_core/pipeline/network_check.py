@@ -24,7 +24,7 @@ from diorama_core.progress import Progress
 
 BOXES = (2, 40)
 """How many a detector finds."""
-KNOWN_FOUND = (1, 1e6)
+KNOWN_FOUND = (1, np.inf)
 """Of the objects that are known to be there."""
 SAME_IOU = 0.5
 """Intersection over union from which a box is a known object's."""
@@ -71,7 +71,8 @@ class Measurement:
 
     def __str__(self) -> str:
         low, high = self.expected
-        return f"{self.name} {self.value:.3g} (expected {low:g} to {high:g})"
+        expected = f"at least {low:g}" if np.isinf(high) else f"{low:g} to {high:g}"
+        return f"{self.name} {self.value:.3g} (expected {expected})"
 
 
 def check_networks(store: ModelStore, known: Inputs, progress: Progress | None = None) -> tuple[NetworkCheck, ...]:

@@ -8,6 +8,7 @@ from diorama_core.models.depth_anything import DepthAnything3
 from diorama_core.models.features import Dinov2
 from diorama_core.models.foreground import Foreground
 from diorama_core.models.gigapose import GigaPoseScale
+from diorama_core.models.grounding import GroundingDino
 from diorama_core.models.hq_sam import HqSam
 from diorama_core.models.inpainting import Filler, Lama, Migan
 from diorama_core.models.manifest import network
@@ -19,16 +20,21 @@ from diorama_core.models.yolox import Yolox
 from diorama_core.perception.foundation.detection import EverydayDetection, OpenVocabularyDetection
 from diorama_core.protocols import DetectionStage
 
+WORDS_THRESHOLD = 0.3
+"""Of LLMDet, which is asked for bare words; its own examples take 0.3 to 0.4."""
 PUBLISHED_BLOCK = 17
 """Of DINOv2 large, whose features the publication matches; a smaller network's last block is read."""
 
 
 def detector(store: ModelStore, chosen: Network) -> DetectionStage:
-    """OWLv2 for any words, YOLOX for everyday classes."""
+    """OWLv2 and LLMDet for any words, YOLOX for everyday classes."""
     weights = store.identity(chosen)
     graph = store.path(chosen, chosen.files[0].path)
     if chosen.id.startswith("yolox"):
         return EverydayDetection(Yolox(graph, weights))
+    if chosen.id.startswith("llmdet"):
+        words = GroundingDino(graph, store.path(chosen, "tokenizer.json"), weights)
+        return OpenVocabularyDetection(words, WORDS_THRESHOLD, template="{}")
     return OpenVocabularyDetection(Owlv2(graph, store.path(chosen, "tokenizer.json"), weights, chosen.side or SIDE))
 
 

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tokenizers import Tokenizer
+from tokenizers.models import WordLevel
 
 from diorama_core.models.clip import DuoduoClip, OpenClip
 from diorama_core.models.depth import Metric3d, Moge2
@@ -16,6 +18,7 @@ from diorama_core.models.depth_anything import DepthAnything3
 from diorama_core.models.features import Dinov2
 from diorama_core.models.foreground import Foreground
 from diorama_core.models.gigapose import GigaPoseScale
+from diorama_core.models.grounding import GroundingDino
 from diorama_core.models.hq_sam import HqSam
 from diorama_core.models.inpainting import Lama, Migan
 from diorama_core.models.owlv2 import Owlv2
@@ -60,6 +63,13 @@ def _numbers(outputs: Mapping[str, tuple[int, ...]], value: float = 0.5) -> dict
 
 def _tokenizer(folder: Path) -> Path:
     return clip_tokenizer(folder / "tokenizer.json")
+
+
+def _phrase_tokenizer(folder: Path) -> Path:
+    folder.mkdir(exist_ok=True)
+    path = folder / "tokenizer.json"
+    Tokenizer(WordLevel({"[CLS]": 0, "[SEP]": 1, ".": 2, "chair": 3}, unk_token="chair")).save(str(path))
+    return path
 
 
 def _encoder(folder: Path) -> Path:
@@ -150,6 +160,11 @@ CASES: dict[str, Case] = {
         {"input_ids": ("i", 2), "attention_mask": ("i", 2), "pixel_values": ("f", 4)},
         {"logits": (1, 9, 1), "pred_boxes": (1, 9, 4)},
         lambda g, f, pool: Owlv2(g, _tokenizer(f), pool=pool).detect(RGB, ["a chair"], 0.1),
+    ),
+    "llmdet": Case(
+        {"pixel_values": ("f", 4), "pixel_mask": ("i", 3), "input_ids": ("i", 2), "attention_mask": ("i", 2)},
+        {"logits": (1, 9, 256), "pred_boxes": (1, 9, 4)},
+        lambda g, f, pool: GroundingDino(g, _phrase_tokenizer(f), pool=pool).detect(RGB, ["chair"], 0.1),
     ),
     "gigapose features": Case(
         {"pixels": ("f", 4)}, {"maps": (1, 4, 16, 16)}, lambda g, f, pool: GigaPoseScale(g, g, pool=pool).maps([RGB])

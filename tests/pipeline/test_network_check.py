@@ -26,6 +26,7 @@ def test_a_measurement_is_within_its_range(value: float, ok: bool) -> None:
     measured = Measurement("size", value, (0.5, 2.0))
     assert measured.ok is ok
     assert "expected 0.5 to 2" in str(measured)
+    assert "(expected at least 1)" in str(Measurement("objects", value, (1, np.inf)))
 
 
 def test_the_real_detector_passes(shared: Path, tmp_path: Path) -> None:
