@@ -80,10 +80,13 @@ def joined_boxes(everyday: Sequence[LabelledBox], own: Sequence[LabelledBox]) ->
     return tuple(sorted((*everyday, *new), key=lambda b: -b.score))
 
 
-def left_out(stage: OwnDetection, photo: Photo) -> int:
-    """How many likely objects a build did not use, because it takes only those of which the detector is sure."""
-    likely = OwnDetection(stage.recogniser, LIKELY, stage.most).detect(photo, (), Progress())
-    return sum(box.score < stage.threshold for box in likely)
+def left_out(stage: OwnDetection | JoinedDetection, photo: Photo) -> int:
+    """How many likely objects a build did not use, because it takes only those of which the recogniser is sure."""
+    own = stage if isinstance(stage, OwnDetection) else stage.own
+    likely = OwnDetection(own.recogniser, LIKELY, own.most).detect(photo, (), Progress())
+    unsure = [box for box in likely if box.score < own.threshold]
+    known = () if isinstance(stage, OwnDetection) else stage.everyday.detect(photo, (), Progress())
+    return len(joined_boxes(known, unsure)) - len(known)
 
 
 def clickable(recogniser: Recogniser, photo: Photo, known: Sequence[LabelledBox] = ()) -> Detections:
