@@ -31,7 +31,9 @@ NETWORKS: tuple[Network, ...] = (
         licence="MIT",
         repo="onnx-community/BiRefNet-ONNX",
         revision="534d3c82d3bb8b2f0867db6dfbc3a525b8e42f67",
-        files=(ModelFile("onnx/model.onnx", 972666916),),
+        files=(
+            ModelFile("onnx/model.onnx", 972666916, "58f621f00f5d756097615970a88a791584600dcf7c45b18a0a6267535a1ebd3c"),
+        ),
         tiers=("paper",),
     ),
     Network(
@@ -106,12 +108,17 @@ NETWORKS: tuple[Network, ...] = (
         title="OpenCLIP ViT-B-32 (laion2b)",
         licence="MIT",
         repo="immich-app/ViT-B-32__laion2b-s34b-b79k",
+        revision="19a057a0fb927cf239541300e74237cd56c7ffe2",
         files=(
-            ModelFile("textual/model.onnx"),
+            ModelFile(
+                "textual/model.onnx", 254193396, "48c25be37b352398f2533c9426dab6f9340535e14e46f884cc894236a5060722"
+            ),
             ModelFile("textual/tokenizer.json"),
-            ModelFile("visual/model.onnx"),
+            ModelFile(
+                "visual/model.onnx", 351613724, "b9ce24b91a8c62ef8d40ea786051709c93140104cbf2b6b4a2cc270df3838f9c"
+            ),
         ),
-        about_mb=605,
+        about_mb=608,
         tiers=("lite", "default", "paper"),
     ),
     Network(
