@@ -13,7 +13,7 @@ from diorama_app.cli.arguments import command, progress_bar
 from diorama_core.errors import UnavailableError
 
 if TYPE_CHECKING:
-    from diorama_core.models.manifest import Network
+    from diorama_core.models.network import Network
 
 
 def add_models(commands: Any) -> None:
@@ -72,14 +72,13 @@ def _list(a: argparse.Namespace) -> None:
         mark = "here" if row["here"] else "-"
         unsure = "" if row["checked_by"].startswith("published") else " *"
         print(
-            f"{mark:<5} {row['id']:<17} {row['role']:<15} {row['size_mb']:>5} MB  {row['licence']:<13}"
+            f"{mark:<5} {row['id']:<22} {row['role']:<15} {row['size_mb']:>5} MB  {row['licence']:<13}"
             f" {', '.join(row['sets']):<22} {row['title']}{unsure}"
         )
     print("* no published checksum: later downloads must match the first")
 
 
 def _pull(a: argparse.Namespace) -> None:
-    from diorama_core.models.manifest import TIERS, network, networks_of
     from diorama_core.models.pull import pull
     from diorama_core.models.store import ModelStore
 
@@ -90,11 +89,22 @@ def _pull(a: argparse.Namespace) -> None:
         return
     chosen: dict[str, Network] = {}
     for what in a.what or ["tiny"]:
-        chosen.update({n.id: n for n in (networks_of(what) if what in TIERS else (network(what),))})
+        chosen.update({n.id: n for n in _members(what)})
     with progress_bar() as progress:
         fetched = pull(store, tuple(chosen.values()), accept=_asker(a.yes), progress=progress)
     count = "1 network" if len(fetched) == 1 else f"{len(fetched)} networks"
     print(f"{count} fetched, {len(chosen) - len(fetched)} already here: {store.folder}")
+
+
+def _members(what: str) -> tuple[Network, ...]:
+    """The networks of a set, in half precision where a card calculates with it, or the one that is named."""
+    from diorama_core.models.manifest import in_half, network, networks_of
+    from diorama_core.models.network import TIERS
+    from diorama_core.models.runtime import calculates_in_half
+
+    if what not in TIERS:
+        return (network(what),)
+    return in_half(networks_of(what)) if calculates_in_half() else networks_of(what)
 
 
 def _asker(yes: bool) -> Any:
@@ -125,7 +135,7 @@ def _verify(a: argparse.Namespace) -> None:
     else:
         for c in checks:
             if c.state != "absent":
-                print(f"{c.network.id:<17} {c.state}")
+                print(f"{c.network.id:<22} {c.state}")
         if all(c.state == "absent" for c in checks):
             print("no networks are here; fetch some with: diorama models pull tiny")
     wrong = [c.network.id for c in checks if c.state not in ("ok", "absent")]
@@ -151,7 +161,7 @@ def _check(a: argparse.Namespace) -> None:
     else:
         for c in checks:
             mark = "ok" if c.ok else "FAIL"
-            print(f"{mark:<5} {c.network.id:<17} {c.seconds:6.1f} s {c.device or '-':<6} {c.words}")
+            print(f"{mark:<5} {c.network.id:<22} {c.seconds:6.1f} s {c.device or '-':<6} {c.words}")
         if not checks:
             print("no networks are here; fetch some with: diorama models pull tiny")
     wrong = [c.network.id for c in checks if not c.ok]

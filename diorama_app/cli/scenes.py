@@ -174,9 +174,9 @@ def _build_photo(a: argparse.Namespace, options: BuildOptions) -> None:
 
 
 def _about_proposals(project: Path, used: int, left_out: int) -> str:
-    """What to expect of a scene of the recogniser that comes with Diorama."""
+    """What to expect of a scene whose boxes nobody drew or checked."""
     return (
-        f"No boxes were given: {used} of {used + left_out} likely objects of the built-in recogniser were used. "
+        f"No boxes were given: {used} of {used + left_out} likely objects were used. "
         f"Open it with 'diorama serve {project}' and correct the boxes, or find more with 'diorama models pull tiny'."
     )
 

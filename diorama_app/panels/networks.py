@@ -11,7 +11,8 @@ from diorama_app.reconstruction.networks import get_networks, missing_networks
 from diorama_app.session.client import Client
 from diorama_app.web.html import LiveHtml, text
 from diorama_core.errors import DioramaError
-from diorama_core.models.manifest import Network, networks_of
+from diorama_core.models.manifest import networks_of
+from diorama_core.models.network import Network
 from diorama_core.models.store import ModelStore
 from diorama_core.pipeline.choices import StageStatus, profile_status
 

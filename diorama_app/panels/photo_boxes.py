@@ -52,6 +52,7 @@ class PhotoBoxes:
         canvas.show_boxes(inputs.boxes, index, likely)
         if canvas.is_open:
             canvas.show_proposals(self._proposals(inputs))
+            canvas.show_mask(None if index is None else self._suggested(inputs).outline(inputs.boxes[index].box))
 
     def _suggested(self, inputs: Inputs) -> Suggestions:
         if self._suggestions is None or self._suggestions.photo is not inputs.photo:

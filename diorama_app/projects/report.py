@@ -9,7 +9,7 @@ from diorama_core.api import Reconstruction
 from diorama_core.artefacts import LayoutReport
 from diorama_core.errors import ProjectError
 from diorama_core.io.atomic import write_atomically
-from diorama_core.perception.foundation.proposals import OwnDetection, left_out
+from diorama_core.perception.foundation.proposals import JoinedDetection, OwnDetection, left_out
 from diorama_core.pipeline.arrangements import arrangement, arrangement_count
 from diorama_core.pipeline.provenance_text import camera_sentence
 from diorama_core.progress import Progress
@@ -59,7 +59,7 @@ def build_report(room: Reconstruction, scenes: tuple[str, ...]) -> dict[str, Any
     took = "" if built is None else f", {seconds:.1f} s"
     detection = None if room.stages is None else room.stages.detection
     unsure = {}
-    if built is not None and isinstance(detection, OwnDetection):
+    if built is not None and isinstance(detection, OwnDetection | JoinedDetection):
         unsure = {"left_out": left_out(detection, built.inputs.photo)}
     camera = None
     if built is not None:

@@ -1,4 +1,7 @@
-"""Likely boxes of a photo and likely names of a box, from the recogniser that comes with Diorama."""
+"""Likely boxes of a photo, likely names of a box and its outline, while a person marks.
+
+The recogniser that comes with Diorama works them out, with the network that finds everyday objects where it is here.
+"""
 
 from __future__ import annotations
 
@@ -7,17 +10,22 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from diorama_core.artefacts import Box, LabelledBox, Photo
 from diorama_core.errors import UnavailableError
-from diorama_core.models.boxes import Detections
+from diorama_core.models.boxes import Detections, areas, overlaps
 from diorama_core.models.own_weights import has_own_recogniser
+from diorama_core.models.store import ModelStore
 
 log = logging.getLogger(__name__)
 
 COUNT = 4
 """Names that are suggested for a box."""
+SMALLER = 0.5
+"""Share of a marked box's area below which another box is of something that lies on the object."""
+SAME_IOU = 0.5
+"""Intersection over union from which two boxes are one object's."""
 
 
 class Suggestions:
@@ -34,7 +42,11 @@ class Suggestions:
         self._seen: dict[Box, Float[np.ndarray, "k"]] = {}
         """Probabilities of the namer's categories."""
         self._boxes: tuple[LabelledBox, ...] | None = None
-        self._faint: Detections | None = None
+        self._known: tuple[LabelledBox, ...] | None = None
+        """What the network for everyday objects found."""
+        self._clickable: Detections | None = None
+        self._outline: tuple[Box, Bool[np.ndarray, "h w"]] | None = None
+        """The last one that was worked out; they are as large as the photo."""
         self._asked: set[object] = set()
         self._worker = ThreadPoolExecutor(1, "suggestions")
 
@@ -51,13 +63,21 @@ class Suggestions:
             self._ask(None, self._proposed)
         return self._boxes or ()
 
+    def outline(self, box: Box) -> Bool[np.ndarray, "h w"] | None:
+        """The pixels of the photo that are the object's in a box; None while they are worked out."""
+        last = self._outline
+        if last is not None and last[0] == box:
+            return last[1]
+        self._ask(("outline", box), lambda: self._trace(box))
+        return None
+
     def at(self, x: float, y: float, marked: Sequence[Box], then: Callable[[LabelledBox | None], None]) -> None:
         """Tell what somebody means who clicks on a pixel of the photo.
 
         Args:
             x: column of the pixel.
             y: row of the pixel.
-            marked: boxes that are there already.
+            marked: boxes that are there already; in one of these, something smaller is meant.
             then: told the box, with its likeliest name, or None where nothing is recognised; called from a thread.
         """
 
@@ -89,6 +109,7 @@ class Suggestions:
     def _look_at(self, boxes: Sequence[Box]) -> None:
         from diorama_core.models.recogniser import own_recogniser
 
+        self._everyday()
         rows = own_recogniser().name(self.photo.rgb, np.array(boxes, dtype=float).reshape(-1, 4))
         self._seen.update(zip(boxes, rows, strict=True))
 
@@ -97,27 +118,60 @@ class Suggestions:
         from diorama_core.perception.foundation.proposals import ranked_names
 
         seen, corners = np.stack([self._seen[box] for box in boxes]), np.array(boxes, dtype=float)
-        return [names[:COUNT] for names in ranked_names(own_recogniser().categories, seen, corners)]
+        known = self._known or ()
+        return [names[:COUNT] for names in ranked_names(own_recogniser().categories, seen, corners, known)]
+
+    def _everyday(self) -> tuple[LabelledBox, ...]:
+        """What the network for everyday objects finds; nothing without it, or where it fails."""
+        from diorama_core.pipeline.network_stages import everyday_detector
+        from diorama_core.progress import Progress
+
+        if self._known is None:
+            try:
+                detector = everyday_detector(ModelStore.default())
+                self._known = () if detector is None else detector.detect(self.photo, (), Progress())
+            except UnavailableError as error:
+                log.warning("marking goes on without the network: %s", error)
+                self._known = ()
+        return self._known
 
     def _proposed(self) -> None:
         from diorama_core.models.recogniser import own_recogniser
-        from diorama_core.perception.foundation.proposals import LIKELY, OwnDetection
+        from diorama_core.perception.foundation.proposals import LIKELY, OwnDetection, joined_boxes
         from diorama_core.progress import Progress
 
-        self._boxes = OwnDetection(own_recogniser(), LIKELY).detect(self.photo, (), Progress())
+        known = self._everyday()
+        own = OwnDetection(own_recogniser(), LIKELY).detect(self.photo, (), Progress())
+        self._boxes = joined_boxes(known, own)
+
+    def _trace(self, box: Box) -> None:
+        from diorama_core.perception.masks import EmbeddedMasks
+
+        self._outline = box, EmbeddedMasks().inside_box(self.photo.rgb, box)[0]
+        self._asked.discard(("outline", box))
 
     def _clicked(self, x: float, y: float, marked: Sequence[Box]) -> LabelledBox | None:
         from diorama_core.models.recogniser import own_recogniser
-        from diorama_core.perception.foundation.proposals import FAINT, MOST_FAINT, clicked_box
+        from diorama_core.perception.foundation.proposals import clickable, clicked_box
 
         if not has_own_recogniser():
             return None
-        if self._faint is None:
-            self._faint = own_recogniser().alternatives(self.photo.rgb, FAINT, MOST_FAINT)
-        box = clicked_box(self._faint, x, y)
+        if self._clickable is None:
+            self._clickable = clickable(own_recogniser(), self.photo, self._everyday())
+        box = clicked_box(unmarked(self._clickable, x, y, marked), x, y)
         if box is None:
             return None
         boxes = (*marked, box)
         self._look_at(tuple(b for b in boxes if b not in self._seen))
         name = self._ranked(boxes)[-1][0]
         return LabelledBox(box, name, name)
+
+
+def unmarked(found: Detections, x: float, y: float, marked: Sequence[Box]) -> Detections:
+    """The boxes that a click at (x, y) may mean beside those that are marked there: of smaller objects on these."""
+    boxes = np.array(marked, dtype=float).reshape(-1, 4)
+    here = boxes[np.all((boxes[:, :2] <= (x, y)) & (boxes[:, 2:] >= (x, y)), axis=1)]
+    if not len(here):
+        return found
+    smaller = areas(found.boxes) < SMALLER * areas(here).min()
+    return found.rows(np.flatnonzero(smaller & (overlaps(found.boxes, boxes).max(axis=1) < SAME_IOU)))

@@ -71,13 +71,21 @@
     });
     return best;
   };
-  const click = (point) => {
+  // What lies on a marked object is meant where its proposal is smaller, and with Shift where nothing is proposed.
+  const click = (point, shift) => {
     const found = hit(point), proposed = hit(point, state.proposals);
+    const smaller = proposed !== null && (found === null || 2 * area(state.proposals[proposed].box) < area(state.boxes[found].box));
     at = null;
-    state.selected = found;
-    if (found !== null) send("select", found);
-    else if (proposed !== null) send("accept", [proposed, ""]);
-    else send("click", point);
+    if (smaller) {
+      state.selected = null;
+      send("accept", [proposed, ""]);
+    } else if (found !== null && !shift) {
+      state.selected = found;
+      send("select", found);
+    } else {
+      state.selected = null;
+      send("click", point);
+    }
   };
   const spanned = (a, b) => [Math.min(a[0], b[0]), Math.min(a[1], b[1]), Math.max(a[0], b[0]), Math.max(a[1], b[1])];
 
@@ -123,7 +131,7 @@
     drag = null;
     if (kind === "point") { if (!far) send("point", [...from, !event.shiftKey]); return; }
     if (!far && kind !== "pull") {
-      if (state.photo.mode === "boxes") click(from);
+      if (state.photo.mode === "boxes") click(from, event.shiftKey);
     } else if (far && kind === "new") {
       if (state.photo.mode === "boxes") {
         state.selected = null;

@@ -29,7 +29,8 @@ MAX_LABEL = 40
 
 Mode = Literal["boxes", "one box", "points"]
 HINTS: dict[Mode, str] = {
-    "boxes": "Click each piece of furniture, or drag a box around it. Keys 1 to 4 choose a name, Delete deletes.",
+    "boxes": "Click each piece of furniture, or drag a box around it; Shift-click what lies on a marked one. "
+    "Keys 1 to 4 choose a name, Delete deletes.",
     "one box": "Drag a new box around the object.",
     "points": "Click the object; Shift-click what does not belong to it.",
 }
@@ -84,7 +85,7 @@ class Pointed:
 
 @dataclass(frozen=True)
 class Clicked:
-    """A pixel beside all boxes was clicked: what is there?"""
+    """A pixel was clicked beside all boxes, or in one with Shift: what else is there?"""
 
     x: float
     y: float
@@ -124,6 +125,8 @@ class AnnotationCanvas:
         sender = LiveHtml(gui, self._received)
         sender.show('<button type="button" id="dio-canvas-send" style="display:none" tabindex="-1"></button>')
         self._photo, self._boxes, self._proposals, self._mask, self._next = (_Told(gui) for _ in range(5))
+        self._outline: Bool[np.ndarray, "h w"] | None = None
+        """The one that is shown."""
         self._photo.tell({"photo": None})
 
     @property
@@ -177,9 +180,13 @@ class AnnotationCanvas:
         if self.is_open:
             self._proposals.tell({"proposals": _rows(boxes)})
 
-    def show_mask(self, mask: Bool[np.ndarray, "h w"]) -> None:
-        """Lay an outline over the photo."""
-        if not self.is_open:
+    def show_mask(self, mask: Bool[np.ndarray, "h w"] | None) -> None:
+        """Lay an outline over the photo; none takes the last one away."""
+        if not self.is_open or mask is self._outline:
+            return
+        self._outline = mask
+        if mask is None:
+            self._mask.tell({"mask": None})
             return
         tint = np.zeros((*mask.shape, 4), dtype=np.uint8)
         tint[mask] = MASK_COLOUR
@@ -195,6 +202,7 @@ class AnnotationCanvas:
         self._boxes.tell({"boxes": [], "selected": None, "likely": []})
         self._proposals.tell({"proposals": []})
         self._mask.tell({"mask": None})
+        self._outline = None
 
     def _received(self, action: Action) -> None:
         on_event = self._on_event

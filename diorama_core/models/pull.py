@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from diorama_core.errors import Cancelled, InputError, UnavailableError
-from diorama_core.models.manifest import ModelFile, Network
+from diorama_core.models.network import ModelFile, Network
 from diorama_core.models.store import ModelStore, how_to_get
 from diorama_core.progress import Progress
 

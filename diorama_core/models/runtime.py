@@ -281,6 +281,11 @@ def providers() -> list[str]:
     return [*cards[:1], *cpu]
 
 
+def calculates_in_half() -> bool:
+    """Whether networks run where half precision is faster than single: on CUDA cards, not on processors."""
+    return providers()[0] == "CUDAExecutionProvider"
+
+
 @cache
 def _preload_cuda() -> None:
     """Let onnxruntime find the CUDA and cuDNN libraries that pip installed, where its version can."""

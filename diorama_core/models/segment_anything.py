@@ -1,4 +1,4 @@
-"""Masks from boxes: SAM 2.1 and SlimSAM (Ravi et al. 2024; Chen et al. 2023). One class each, the same two methods."""
+"""Masks from boxes: SAM 2.1, SAM 3's tracker and SlimSAM (Ravi et al. 2024; Carion et al. 2025; Chen et al. 2023)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from jaxtyping import Bool, Float, Float32, UInt8
 from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, enlarged, normalised, resized
 from diorama_core.models.runtime import SHARED_SESSIONS, Dims, Session, SessionPool
 
-SIDE = 1024
+SIDE, MASK_SIDE = 1024, 256
 _MAP: Dims = (None, None, None, None)
 
 
@@ -37,23 +37,36 @@ class BoxSegmenter(Protocol):
 
 @dataclass(frozen=True)
 class Sam2:
-    """SAM 2.1: the picture is stretched to 1024 x 1024."""
+    """SAM 2.1, and what has its graphs: the picture is stretched to a square."""
 
     encoder: Path = field(repr=False)
     decoder: Path = field(repr=False)
     weights: str = "sam2.1"
+    side: int = SIDE
+    """Of the square."""
+    mask_side: int = MASK_SIDE
+    """Of the masks that the decoder answers."""
+    mean: tuple[float, float, float] = IMAGENET_MEAN
+    std: tuple[float, float, float] = IMAGENET_STD
     pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
     def masks(self, rgb: UInt8[np.ndarray, "h w 3"], boxes: Float[np.ndarray, "n 4"]) -> Iterator[PromptedMask]:
         """Masks in the order of the boxes; the picture is encoded once."""
         height, width = rgb.shape[:2]
         encoder, decoder = self.pool.get(self.encoder), self.pool.get(self.decoder)
-        for out in _answers(encoder, decoder, self.pixels(rgb), boxes, (SIDE / width, SIDE / height)):
+        scale = (self.side / width, self.side / height)
+        for out in _answers(encoder, decoder, self.pixels(rgb), boxes, scale, self.mask_side):
             yield _best(out, lambda logits: enlarged(logits, (height, width)))
 
-    def pixels(self, rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "1 3 1024 1024"]:
-        """Stretched, ImageNet statistics."""
-        return normalised(resized(rgb, (SIDE, SIDE)), IMAGENET_MEAN, IMAGENET_STD)
+    def pixels(self, rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "1 3 side side"]:
+        """Stretched, with the network's statistics."""
+        return normalised(resized(rgb, (self.side, self.side)), self.mean, self.std)
+
+
+def sam3_tracker(encoder: Path, decoder: Path, weights: str = "sam3", pool: SessionPool = SHARED_SESSIONS) -> Sam2:
+    """SAM 3's tracker: SAM 2.1's graphs for patches of 14 pixels and pictures from -1 to 1."""
+    half = (0.5, 0.5, 0.5)
+    return Sam2(encoder, decoder, weights, side=1008, mask_side=288, mean=half, std=half, pool=pool)
 
 
 @dataclass(frozen=True)
@@ -70,8 +83,9 @@ class SlimSam:
         height, width = rgb.shape[:2]
         inner = fitted_size(height, width)
         encoder, decoder = self.pool.get(self.encoder), self.pool.get(self.decoder)
-        for out in _answers(encoder, decoder, self.pixels(rgb), boxes, (inner[1] / width, inner[0] / height)):
-            yield _best(out, lambda logits: _unpadded(logits, inner, (height, width)))
+        scale = (inner[1] / width, inner[0] / height)
+        for out in _answers(encoder, decoder, self.pixels(rgb), boxes, scale, MASK_SIDE):
+            yield _best(out, lambda logits: unpadded(logits, inner, (height, width)))
 
     def pixels(self, rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "1 3 1024 1024"]:
         """Fitted, ImageNet statistics, then padded with zeros at the right and bottom."""
@@ -87,9 +101,10 @@ def fitted_size(height: int, width: int) -> tuple[int, int]:
     return int(height * scale + 0.5), int(width * scale + 0.5)
 
 
-def _unpadded(
+def unpadded(
     logits: Float32[np.ndarray, "256 256"], inner: tuple[int, int], size: tuple[int, int]
 ) -> Float32[np.ndarray, "h w"]:
+    """Logits for the padded square, brought to the photo's size."""
     square = enlarged(logits, (SIDE, SIDE))
     return enlarged(square[: inner[0], : inner[1]], size)
 
@@ -97,9 +112,10 @@ def _unpadded(
 def _answers(
     encoder: Session,
     decoder: Session,
-    pixels: Float32[np.ndarray, "1 3 1024 1024"],
+    pixels: Float32[np.ndarray, "1 3 side side"],
     boxes: Float[np.ndarray, "n 4"],
     scale_xy: tuple[float, float],
+    mask_side: int,
 ) -> Iterator[dict[str, np.ndarray]]:
     """The decoder's outputs for every box, scaled from the picture to the network's input; the picture goes in once."""
     features = encoder.run({"pixel_values": pixels}, dict.fromkeys(encoder.outputs, _MAP))
@@ -111,7 +127,9 @@ def _answers(
         }
         feeds = {name: value for name, value in {**features, **prompt}.items() if name in decoder.inputs}
         out = decoder.run(feeds, {"iou_scores": (..., None)})
-        decoder.check("pred_masks", out.get("pred_masks"), (..., out["iou_scores"].size, 256, 256), gaps=True)
+        decoder.check(
+            "pred_masks", out.get("pred_masks"), (..., out["iou_scores"].size, mask_side, mask_side), gaps=True
+        )
         yield out
 
 

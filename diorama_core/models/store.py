@@ -24,7 +24,8 @@ from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 from diorama_core.errors import InputError, UnavailableError
 from diorama_core.io.atomic import write_atomically
 from diorama_core.io.bounded import read_bytes
-from diorama_core.models.manifest import NETWORKS, ModelFile, Network
+from diorama_core.models.manifest import NETWORKS
+from diorama_core.models.network import ModelFile, Network
 from diorama_core.models.runtime import NetworkError
 
 RECORD = "installed.json"

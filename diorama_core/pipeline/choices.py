@@ -5,18 +5,36 @@ Light to load: neither a network's runtime nor the pipeline is needed to say wha
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from diorama_core.errors import InputError
 from diorama_core.models.manifest import network
+from diorama_core.models.network import Network
+from diorama_core.models.runtime import calculates_in_half
 from diorama_core.models.store import ModelStore
 from diorama_core.perception.language.client import LmmSettings
 
-DETECTORS = ("owlv2-large", "owlv2-base", "owlv2-base-int8", "yolox-nano")
+DETECTORS = ("owlv2-large", "owlv2-base", "owlv2-base-fp16", "llmdet-tiny", "owlv2-base-int8", "yolox-nano")
 OWN_DETECTOR = "own"
 """The detector that comes with Diorama."""
-SEGMENTERS = ("sam2.1-large", "sam2.1-base-plus", "sam2.1-tiny", "slimsam")
-DEPTH_NETWORKS = ("moge-2-vitl", "moge-2-vitb", "moge-2-vits", "metric3d-large", "metric3d-small")
+SEGMENTERS = (
+    "sam3-tracker",
+    "sam2.1-large",
+    "sam2.1-base-plus",
+    "sam2.1-base-plus-fp16",
+    "hq-sam-base",
+    "sam2.1-tiny",
+    "slimsam",
+)
+DEPTH_NETWORKS = (
+    "moge-2-vitl",
+    "moge-2-vitb",
+    "moge-2-vits",
+    "metric3d-large",
+    "da3-metric-large",
+    "metric3d-small",
+)
 INPAINTERS = ("lama", "migan")
 """Best first."""
 FOREGROUNDS = (("birefnet", "birefnet-lite"), ("mvanet",))
@@ -50,6 +68,23 @@ class NetworkChoice:
             InputError: when the named one reads no depth.
         """
         return _chosen(self.depth, DEPTH_NETWORKS, "depth network")
+
+
+def best_here(store: ModelStore, choices: Sequence[str]) -> Network | None:
+    """The best of these networks that is on this machine; None where none is.
+
+    Of two files of the same weights, the one in half precision is taken where a CUDA card calculates with it, and the
+    full one elsewhere.
+
+    Args:
+        store: where networks lie.
+        choices: ids, best first.
+    """
+    here = [network(i) for i in choices if store.has(network(i))]
+    if not here:
+        return None
+    half = next((n for n in here if n.half_of == here[0].id), None)
+    return half if half is not None and calculates_in_half() else here[0]
 
 
 def _chosen(named: str | None, known: tuple[str, ...], what: str) -> tuple[str, ...]:
@@ -101,9 +136,9 @@ def profile_status(*, store: ModelStore | None = None, lmm: LmmSettings | None =
 
 
 def _status(store: ModelStore, stage: str, choices: tuple[str, ...], embedded: str) -> StageStatus:
-    here = next((network(i) for i in choices if store.has(network(i))), None)
+    here = best_here(store, choices)
     wanted = network(next(i for i in choices if "default" in network(i).tiers))
-    better = here is None or choices.index(here.id) > choices.index(wanted.id)
+    better = here is None or choices.index(here.half_of or here.id) > choices.index(wanted.id)
     shown = here or wanted
     return StageStatus(
         stage=stage,

@@ -19,7 +19,8 @@ from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
 from diorama_core.errors import UnavailableError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.models.foreground import Foreground
-from diorama_core.models.manifest import Network, network
+from diorama_core.models.manifest import network
+from diorama_core.models.network import Network
 from diorama_core.models.own_weights import has_own_recogniser
 from diorama_core.models.recogniser import own_recogniser
 from diorama_core.models.store import ModelStore, how_to_get
@@ -34,11 +35,10 @@ from diorama_core.perception.foundation.empty_room import EmptyRoomArchitecture
 from diorama_core.perception.foundation.outlines import PromptedMasks
 from diorama_core.perception.foundation.proposals import (
     CONFIDENT,
-    FAINT,
     LIKELY,
-    MOST_FAINT,
     JoinedDetection,
     OwnDetection,
+    clickable,
     clicked_box,
     names_of,
 )
@@ -56,6 +56,7 @@ from diorama_core.pipeline.choices import (
     PATCH_FEATURES,
     SEGMENTERS,
     NetworkChoice,
+    best_here,
 )
 from diorama_core.pipeline.learned_retrieval import with_joint_retrieval
 from diorama_core.pipeline.plan import evaluate
@@ -168,23 +169,37 @@ def detection_routes(store: ModelStore | None = None) -> Mapping[str, DetectionS
     return routes if used is None else {**routes, "used": used}
 
 
-def namers() -> Mapping[str, Callable[[Photo, Float[np.ndarray, "n 4"]], Sequence[Sequence[str]]]]:
-    """Every way to name given boxes, by name."""
+def namers(
+    store: ModelStore | None = None,
+) -> Mapping[str, Callable[[Photo, Float[np.ndarray, "n 4"]], Sequence[Sequence[str]]]]:
+    """Every way to name given boxes, by name: alone, and with the words of what finds everyday objects."""
     if not has_own_recogniser():
         return {}
-    return {"own": partial(names_of, own_recogniser())}
+    return {way: partial(_named, finder) for way, finder in _helped(store).items()}
 
 
-def clickers() -> Mapping[str, Callable[[Photo, Float[np.ndarray, "n 2"]], Sequence[Box | None]]]:
-    """Every way from clicks on a photo to boxes, by name."""
+def clickers(
+    store: ModelStore | None = None,
+) -> Mapping[str, Callable[[Photo, Float[np.ndarray, "n 2"]], Sequence[Box | None]]]:
+    """Every way from clicks on a photo to boxes, by name: alone, and with the boxes of what finds everyday objects."""
     if not has_own_recogniser():
         return {}
+    return {way: partial(_clicked, finder) for way, finder in _helped(store).items()}
 
-    def own(photo: Photo, pixels: Float[np.ndarray, "n 2"]) -> Sequence[Box | None]:
-        found = own_recogniser().alternatives(photo.rgb, FAINT, MOST_FAINT)
-        return [clicked_box(found, float(x), float(y)) for x, y in pixels]
 
-    return {"own": own}
+def _helped(store: ModelStore | None) -> Mapping[str, DetectionStage | None]:
+    everyday = network_stages.everyday_detector(store or ModelStore.default())
+    return {"own": None} if everyday is None else {"own": None, "own, everyday objects known": everyday}
+
+
+def _named(finder: DetectionStage | None, photo: Photo, boxes: Float[np.ndarray, "n 4"]) -> Sequence[Sequence[str]]:
+    return names_of(own_recogniser(), photo, boxes, () if finder is None else finder.detect(photo, (), Progress()))
+
+
+def _clicked(finder: DetectionStage | None, photo: Photo, pixels: Float[np.ndarray, "n 2"]) -> Sequence[Box | None]:
+    known = () if finder is None else finder.detect(photo, (), Progress())
+    found = clickable(own_recogniser(), photo, known)
+    return [clicked_box(found, float(x), float(y)) for x, y in pixels]
 
 
 def propose_boxes(
@@ -253,5 +268,5 @@ def _foregrounds(store: ModelStore) -> tuple[Foreground, ...]:
 
 
 def _best(store: ModelStore, choices: tuple[str, ...], make: Callable[[ModelStore, Network], T]) -> T | None:
-    here = next((network(i) for i in choices if store.has(network(i))), None)
+    here = best_here(store, choices)
     return None if here is None else make(store, here)

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import onnxruntime
 import pytest
 
 from diorama_app.cli import machine
@@ -49,3 +50,24 @@ def test_without_accelerator_or_browser_it_still_runs(findings, monkeypatch) -> 
     found = findings()
     assert (found["browser"].ok, found["browser"].needed) == (False, False)
     assert not found["accelerator"].needed
+
+
+@pytest.mark.parametrize(
+    ("offered", "card", "words"),
+    [
+        (["CUDAExecutionProvider", "CPUExecutionProvider"], True, "cuda for networks"),
+        (["DmlExecutionProvider", "CPUExecutionProvider"], False, "directml for networks"),
+        (["CoreMLExecutionProvider", "CPUExecutionProvider"], False, "coreml for networks"),
+        (["CPUExecutionProvider"], True, "pip install 'diorama[gpu]'"),
+        (["CPUExecutionProvider"], False, "networks run on the processor; optional"),
+    ],
+    ids=["CUDA", "DirectML", "CoreML", "a card that onnxruntime does not use", "no card"],
+)
+def test_the_accelerator_is_what_onnxruntime_offers(
+    findings, monkeypatch: pytest.MonkeyPatch, offered: list[str], card: bool, words: str
+) -> None:
+    monkeypatch.setattr(onnxruntime, "get_available_providers", lambda: offered)
+    monkeypatch.setattr(machine.shutil, "which", lambda name: "/usr/bin/nvidia-smi" if card else None)
+    found = findings()["accelerator"]
+    assert words in found.detail
+    assert found.ok is (len(offered) > 1)

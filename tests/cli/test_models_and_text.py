@@ -3,10 +3,12 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import onnxruntime
 import pytest
 
 from diorama_app.cli import main
 from diorama_core.models.manifest import network
+from diorama_core.models.network import Network
 from diorama_core.models.store import ModelStore
 from diorama_core.project.storage import Project
 
@@ -24,6 +26,23 @@ def test_networks_are_listed_with_size_and_licence(capsys: pytest.CaptureFixture
     assert rows["yolox-nano"]["licence"] == "Apache-2.0"
     assert rows["sam2.1-large"]["size_mb"] > 900
     assert not any(r["here"] for r in rows.values())
+
+
+def test_a_set_is_pulled_in_half_precision_where_a_card_calculates_with_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    pulled: list[str] = []
+
+    def pull(store: ModelStore, networks: tuple[Network, ...], **_: object) -> tuple[str, ...]:
+        pulled[:] = [n.id for n in networks]
+        return ()
+
+    monkeypatch.setattr("diorama_core.models.pull.pull", pull)
+    for cuda, expected in ((True, "owlv2-base-fp16"), (False, "owlv2-base")):
+        offered = ["CUDAExecutionProvider"] * cuda + ["CPUExecutionProvider"]
+        monkeypatch.setattr(onnxruntime, "get_available_providers", lambda offered=offered: offered)
+        assert main(["models", "pull", "default", "--yes"]) == 0
+        assert [i for i in pulled if i.startswith("owlv2")] == [expected]
+    assert main(["models", "pull", "owlv2-base-fp16", "--yes"]) == 0
+    assert pulled == ["owlv2-base-fp16"], "what is named is what is pulled"
 
 
 def test_path_and_verify_without_networks(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -18,10 +18,11 @@ from diorama_core.errors import UnavailableError
 from diorama_core.models.clip import DuoduoClip, OpenClip, clip_pixels
 from diorama_core.models.features import Dinov2
 from diorama_core.models.foreground import Foreground
+from diorama_core.models.hq_sam import HqSam
 from diorama_core.models.inpainting import Lama, Migan
 from diorama_core.models.owlv2 import Owlv2
 from diorama_core.models.runtime import SessionPool
-from diorama_core.models.segment_anything import Sam2, SlimSam
+from diorama_core.models.segment_anything import Sam2, SlimSam, sam3_tracker
 from tests.models import tiny_networks
 
 
@@ -109,6 +110,47 @@ def test_sam2_draws_the_same_masks(sam2: tuple[Any, Path, Path], photo: np.ndarr
         logits = out.pred_masks[0, index, best][None, None]
         expected = torch.nn.functional.interpolate(logits, (height, width), mode="bilinear")[0, 0] > 0
         assert (prompted.mask == expected.numpy()).mean() > 0.999
+        assert 0.001 < prompted.mask.mean() < 0.999
+
+
+def test_sam3s_tracker_draws_the_same_masks(tmp_path: Path, photo: np.ndarray) -> None:
+    model, encoder, decoder = tiny_networks.sam3_tracker(tmp_path)
+    height, width = photo.shape[:2]
+    boxes = np.array([[20.0, 30.0, 100.0, 110.0], [5.0, 5.0, width - 5.0, height - 5.0]])
+    facade = sam3_tracker(encoder, decoder, pool=SessionPool())
+    raw = torch.from_numpy(photo).permute(2, 0, 1)[None]
+    stretched = torch.nn.functional.interpolate(raw, (1008, 1008), mode="bilinear", antialias=True)
+    pixels = (stretched / 255 - 0.5) / 0.5
+    assert (
+        np.abs(facade.pixels(photo) - pixels.numpy()).max() < 1.1 / 127.5
+    )  # one of 255 steps, where halves are rounded
+    with torch.no_grad():
+        scaled = torch.from_numpy(boxes).float() * torch.tensor([1008 / width, 1008 / height] * 2)
+        out = model(pixel_values=pixels, input_boxes=scaled[None])
+    for index, prompted in enumerate(facade.masks(photo, boxes)):
+        best = int(out.iou_scores[0, index].argmax())
+        logits = out.pred_masks[0, index, best][None, None]
+        expected = torch.nn.functional.interpolate(logits, (height, width), mode="bilinear")[0, 0] > 0
+        assert (prompted.mask == expected.numpy()).mean() > 0.999
+        assert 0.001 < prompted.mask.mean() < 0.999
+
+
+def test_hq_sam_draws_the_same_masks(tmp_path: Path, photo: np.ndarray) -> None:
+    model, encoder, decoder = tiny_networks.hq_sam(tmp_path)
+    facade = HqSam(encoder, decoder, pool=SessionPool())
+    height, width = photo.shape[:2]
+    boxes = np.array([[20.0, 30.0, 100.0, 110.0], [40.0, 10.0, 90.0, 60.0]])
+    prepared = SamImageProcessorPil()(Image.fromarray(photo), return_tensors="pt")
+    inner_h, inner_w = (int(v) for v in prepared["reshaped_input_sizes"][0])
+    for box, prompted in zip(boxes, facade.masks(photo, boxes), strict=True):
+        scaled = torch.from_numpy(box).float() * torch.tensor([inner_w / width, inner_h / height] * 2)
+        with torch.no_grad():
+            out = model(pixel_values=prepared["pixel_values"], input_boxes=scaled[None, None], multimask_output=True)
+        best = int(out.iou_scores[0, 0].argmax())
+        masks = SamImageProcessorPil().post_process_masks(
+            out.pred_masks, prepared["original_sizes"], prepared["reshaped_input_sizes"]
+        )
+        assert (prompted.mask == masks[0][0, best].numpy()).mean() > 0.999
         assert 0.001 < prompted.mask.mean() < 0.999
 
 

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import errno
 import hashlib
+import re
 import shutil
 from collections import namedtuple
 from collections.abc import Iterator
@@ -10,7 +11,8 @@ from pathlib import Path
 import pytest
 
 from diorama_core.errors import Cancelled, DioramaError, InputError, UnavailableError
-from diorama_core.models.manifest import NETWORKS, TIERS, ModelFile, Network, network, networks_of
+from diorama_core.models.manifest import NETWORKS, network, networks_of
+from diorama_core.models.network import TIERS, ModelFile, Network
 from diorama_core.models.pull import pull
 from diorama_core.models.store import ModelStore, default_folder
 from diorama_core.progress import CancelToken, Progress, ProgressEvent
@@ -269,3 +271,12 @@ def test_the_manifest_is_consistent() -> None:
     )
     with pytest.raises(InputError, match="models list"):
         network("nothing")
+
+
+def test_the_manual_tells_the_true_sizes_of_the_sets() -> None:
+    manual = (Path(__file__).parents[2] / "docs" / "models.md").read_text()
+    for tier in TIERS:
+        told = re.search(rf"models pull {tier} +# ([\d.]+) (MB|GB)", manual)
+        assert told is not None, tier
+        told_bytes = float(told[1]) * {"MB": 1e6, "GB": 1e9}[told[2]]
+        assert told_bytes == pytest.approx(sum(n.size_bytes for n in networks_of(tier)), rel=0.03), tier

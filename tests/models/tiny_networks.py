@@ -16,7 +16,11 @@ from transformers import (
     Owlv2ForObjectDetection,
     Sam2Config,
     Sam2Model,
+    Sam3TrackerConfig,
+    Sam3TrackerModel,
     SamConfig,
+    SamHQConfig,
+    SamHQModel,
     SamModel,
 )
 
@@ -145,6 +149,146 @@ def sam2(folder: Path) -> tuple[Sam2Model, Path, Path]:
         [*names, "input_points", "input_labels", "input_boxes"],
         ["iou_scores", "pred_masks", "object_score_logits"],
         {"input_points": {1: "n", 2: "k"}, "input_labels": {1: "n", 2: "k"}, "input_boxes": {1: "n"}},
+    )
+    return model, encoder, decoder
+
+
+def sam3_tracker(folder: Path) -> tuple[Sam3TrackerModel, Path, Path]:
+    torch.manual_seed(9)
+    config = Sam3TrackerConfig(
+        vision_config={
+            "model_type": "sam3_vision_model",
+            "backbone_config": {
+                "model_type": "sam3_vit_model",
+                "hidden_size": 16,
+                "intermediate_size": 16,
+                "num_hidden_layers": 1,
+                "num_attention_heads": 2,
+                "global_attn_indexes": [],
+                "image_size": 1008,
+            },
+            "fpn_hidden_size": 32,
+            "backbone_feature_sizes": [[288, 288], [144, 144], [72, 72]],
+        },
+        prompt_encoder_config={"hidden_size": 32},
+        mask_decoder_config={
+            "hidden_size": 32,
+            "num_hidden_layers": 1,
+            "num_attention_heads": 2,
+            "mlp_dim": 32,
+            "iou_head_hidden_dim": 32,
+            "iou_head_depth": 2,
+        },
+    )
+    model = Sam3TrackerModel(config).eval()
+    names = ["image_embeddings.0", "image_embeddings.1", "image_embeddings.2"]
+    pixels = torch.zeros(1, 3, 1008, 1008)
+    encoder = export(_Sam2Encoder(model), (pixels,), folder / "encoder.onnx", ["pixel_values"], names)
+    with torch.no_grad():
+        features = model.get_image_embeddings(pixels)
+    arguments = (
+        *features,
+        torch.zeros(1, 1, 1, 2),
+        torch.zeros(1, 1, 1, dtype=torch.long),
+        torch.tensor([[[100.0, 100.0, 500.0, 600.0]]]),
+    )
+    decoder = export(
+        _Sam2Decoder(model),
+        arguments,
+        folder / "decoder.onnx",
+        [*names, "input_points", "input_labels", "input_boxes"],
+        ["iou_scores", "pred_masks", "object_score_logits"],
+        {"input_points": {1: "n", 2: "k"}, "input_labels": {1: "n", 2: "k"}, "input_boxes": {1: "n"}},
+    )
+    return model, encoder, decoder
+
+
+class _HqEncoder(torch.nn.Module):
+    """Normalising and padding inside the graph, as HQ-SAM's exporter writes it."""
+
+    def __init__(self, model: SamHQModel) -> None:
+        super().__init__()
+        self.model = model
+
+    def forward(self, picture: torch.Tensor) -> tuple[torch.Tensor, ...]:
+        mean, std = torch.tensor([123.675, 116.28, 103.53]), torch.tensor([58.395, 57.12, 57.375])
+        pixels = ((picture - mean) / std).permute(2, 0, 1)[None]
+        missing = (0, 1024 - picture.shape[1], 0, 1024 - picture.shape[0])
+        embeddings, inside = self.model.get_image_embeddings(torch.nn.functional.pad(pixels, missing))
+        return embeddings, *inside
+
+
+class _HqDecoder(torch.nn.Module):
+    def __init__(self, model: SamHQModel) -> None:
+        super().__init__()
+        self.model = model
+
+    def forward(self, embeddings, inside, points, labels, mask, has_mask, size):
+        out = self.model(
+            image_embeddings=embeddings,
+            intermediate_embeddings=list(inside),
+            input_boxes=points.reshape(1, 1, 4),
+            multimask_output=True,
+        )
+        nothing = 0.0 * (labels.sum() + mask.sum() + has_mask.sum() + size.sum())
+        return out.pred_masks[:, 0], out.iou_scores[:, 0] + nothing, out.pred_masks[:, 0]
+
+
+def hq_sam(folder: Path) -> tuple[SamHQModel, Path, Path]:
+    torch.manual_seed(10)
+    config = SamHQConfig(
+        vision_config={
+            "hidden_size": 16,
+            "output_channels": 32,
+            "num_hidden_layers": 2,
+            "num_attention_heads": 2,
+            "mlp_dim": 16,
+            "global_attn_indexes": [0, 1],
+            "num_pos_feats": 16,
+            "initializer_range": 0.1,
+        },
+        prompt_encoder_config={"hidden_size": 32},
+        mask_decoder_config={
+            "hidden_size": 32,
+            "num_hidden_layers": 1,
+            "num_attention_heads": 2,
+            "mlp_dim": 32,
+            "iou_head_hidden_dim": 32,
+            "vit_dim": 16,
+        },
+    )
+    model = SamHQModel(config).eval()
+    picture = torch.zeros(768, 1024, 3)
+    between = ["image_embeddings", "interm_embeddings.0", "interm_embeddings.1"]
+    shape = {"input_image": {0: "height", 1: "width"}}
+    encoder = export(_HqEncoder(model), (picture,), folder / "encoder.onnx", ["input_image"], between, shape)
+    with torch.no_grad():
+        embeddings, *inside = _HqEncoder(model)(picture)
+    arguments = (
+        embeddings,
+        torch.stack(inside),
+        torch.tensor([[[100.0, 100.0], [500.0, 600.0]]]),
+        torch.tensor([[2.0, 3.0]]),
+        torch.zeros(1, 1, 256, 256),
+        torch.zeros(1),
+        torch.tensor([600.0, 800.0]),
+    )
+    names = [
+        "image_embeddings",
+        "interm_embeddings",
+        "point_coords",
+        "point_labels",
+        "mask_input",
+        "has_mask_input",
+        "orig_im_size",
+    ]
+    decoder = export(
+        _HqDecoder(model),
+        arguments,
+        folder / "decoder.onnx",
+        names,
+        ["masks", "iou_predictions", "low_res_masks"],
+        {"point_coords": {1: "k"}, "point_labels": {1: "k"}},
     )
     return model, encoder, decoder
 

@@ -37,13 +37,15 @@ _IN_ROOMS = frozenset(_IN_ROOM_NAMES.split(","))
 
 @dataclass(frozen=True)
 class OpenVocabularyDetection:
-    """OWLv2 with "a photo of CLASS" (paper, supplement A): suppression across classes, then of parts within a class."""
+    """Any class, asked in words (paper, supplement A): suppression across classes, then of parts within a class."""
 
     detector: BoxDetector
     threshold: float = 0.2
     double_iou: float = 0.8
     part_share: float = 0.8
     """A box that lies within another of its class by more than this share of itself goes."""
+    template: str = TEMPLATE
+    """What the detector is asked for a class."""
 
     def detect(self, photo: Photo, words: tuple[str, ...], progress: Progress) -> tuple[LabelledBox, ...]:
         """Boxes of all objects that match the words (a built-in indoor vocabulary without words), best first.
@@ -51,7 +53,7 @@ class OpenVocabularyDetection:
         Walls, floor and ceiling are never returned as objects.
         """
         asked = tuple(dict.fromkeys(w for w in words or INDOOR_WORDS if w.lower() not in ARCHITECTURE_WORDS))
-        phrases = [TEMPLATE.format(w) for w in asked]
+        phrases = [self.template.format(w) for w in asked]
         found = self.detector.detect(photo.rgb, phrases, self.threshold, progress.part(0.0, 0.9))
         progress.report(0.9, "Sorting out double boxes")
         found = without_doubles(found, self.double_iou, across_classes=True)

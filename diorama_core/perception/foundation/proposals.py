@@ -9,9 +9,9 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import Box, LabelledBox, Photo
-from diorama_core.library.hyponyms import meanings
+from diorama_core.library.hyponyms import is_named, meanings
 from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN
-from diorama_core.models.boxes import Detections, areas, overlaps
+from diorama_core.models.boxes import Detections, areas, joined, overlaps
 from diorama_core.models.recogniser import Recogniser
 from diorama_core.progress import Progress
 from diorama_core.protocols import DetectionStage
@@ -68,17 +68,38 @@ class JoinedDetection:
         """Boxes of both, best first; of two that overlap the everyday detector's stays, since it learnt from photos."""
         everyday = self.everyday.detect(photo, words, progress.part(0.0, 0.5))
         own = self.own.detect(photo, words, progress.part(0.5, 1.0))
-        known = np.array([b.box for b in everyday], dtype=float).reshape(-1, 4)
-        boxes = np.array([b.box for b in own], dtype=float).reshape(-1, 4)
-        overlap = overlaps(boxes, known).max(axis=1, initial=0.0)
-        new = [box for box, shared in zip(own, overlap, strict=True) if shared < SAME_IOU]
-        return tuple(sorted((*everyday, *new), key=lambda b: -b.score))
+        return joined_boxes(everyday, own)
 
 
-def left_out(stage: OwnDetection, photo: Photo) -> int:
-    """How many likely objects a build did not use, because it takes only those of which the detector is sure."""
-    likely = OwnDetection(stage.recogniser, LIKELY, stage.most).detect(photo, (), Progress())
-    return sum(box.score < stage.threshold for box in likely)
+def joined_boxes(everyday: Sequence[LabelledBox], own: Sequence[LabelledBox]) -> tuple[LabelledBox, ...]:
+    """Boxes of both, best first; of two that overlap the everyday detector's stays, since it learnt from photos."""
+    known = np.array([b.box for b in everyday], dtype=float).reshape(-1, 4)
+    boxes = np.array([b.box for b in own], dtype=float).reshape(-1, 4)
+    overlap = overlaps(boxes, known).max(axis=1, initial=0.0)
+    new = [box for box, shared in zip(own, overlap, strict=True) if shared < SAME_IOU]
+    return tuple(sorted((*everyday, *new), key=lambda b: -b.score))
+
+
+def left_out(stage: OwnDetection | JoinedDetection, photo: Photo) -> int:
+    """How many likely objects a build did not use, because it takes only those of which the recogniser is sure."""
+    own = stage if isinstance(stage, OwnDetection) else stage.own
+    likely = OwnDetection(own.recogniser, LIKELY, own.most).detect(photo, (), Progress())
+    unsure = [box for box in likely if box.score < own.threshold]
+    known = () if isinstance(stage, OwnDetection) else stage.everyday.detect(photo, (), Progress())
+    return len(joined_boxes(known, unsure)) - len(known)
+
+
+def clickable(recogniser: Recogniser, photo: Photo, known: Sequence[LabelledBox] = ()) -> Detections:
+    """Boxes that a click on the photo may mean.
+
+    Args:
+        recogniser: finds also what is hardly worth to be shown.
+        photo: the photo.
+        known: what a network found in it, which learnt from photos: these boxes count as sure.
+    """
+    faint = recogniser.alternatives(photo.rgb, FAINT, MOST_FAINT)
+    corners = np.array([k.box for k in known], dtype=float).reshape(-1, 4)
+    return joined((faint, Detections(corners, np.ones(len(known)), np.zeros(len(known), dtype=int))))
 
 
 def clicked_box(found: Detections, x: float, y: float) -> Box | None:
@@ -94,13 +115,25 @@ def clicked_box(found: Detections, x: float, y: float) -> Box | None:
     return x1, y1, x2, y2
 
 
-def names_of(recogniser: Recogniser, photo: Photo, boxes: Float[np.ndarray, "n 4"]) -> Sequence[tuple[str, ...]]:
-    """For every box the likeliest categories, best first; all boxes of a photo are named together."""
-    return ranked_names(recogniser.categories, recogniser.name(photo.rgb, boxes), boxes)
+def names_of(
+    recogniser: Recogniser, photo: Photo, boxes: Float[np.ndarray, "n 4"], known: Sequence[LabelledBox] = ()
+) -> Sequence[tuple[str, ...]]:
+    """For every box the likeliest categories, best first; all boxes of a photo are named together.
+
+    Args:
+        recogniser: looks at the boxes.
+        photo: where they are.
+        boxes: in photo pixels.
+        known: what a network found in the photo; its words count for the boxes that are the same.
+    """
+    return ranked_names(recogniser.categories, recogniser.name(photo.rgb, boxes), boxes, known)
 
 
 def ranked_names(
-    categories: Sequence[str], seen: Float[np.ndarray, "n k"], boxes: Float[np.ndarray, "n 4"]
+    categories: Sequence[str],
+    seen: Float[np.ndarray, "n k"],
+    boxes: Float[np.ndarray, "n 4"],
+    known: Sequence[LabelledBox] = (),
 ) -> Sequence[tuple[str, ...]]:
     """For every box the likeliest categories, best first, given what all of them look like and what lies on what.
 
@@ -108,8 +141,23 @@ def ranked_names(
         categories: names of the columns.
         seen: probabilities of the namer, as if all categories were equally frequent.
         boxes: in photo pixels.
+        known: what a network found in the photo; its words count for the boxes that are the same.
     """
-    usual = meanings(UNKNOWN.name, UNKNOWN.name)
-    alone = [as_it_looks(usual, list(zip(categories, map(float, row), strict=True)), named=False) for row in seen]
+    alone = [
+        as_it_looks(
+            meanings(label, category), list(zip(categories, map(float, row), strict=True)), named=is_named(label)
+        )
+        for row, (label, category) in zip(seen, _words(boxes, known), strict=True)
+    ]
     together = kinds_together(alone, carriers([(float(a), float(b), float(c), float(d)) for a, b, c, d in boxes]))
     return [tuple(sorted(kinds, key=lambda name: -kinds[name])[:SUGGESTIONS]) for kinds in together]
+
+
+def _words(boxes: Float[np.ndarray, "n 4"], known: Sequence[LabelledBox]) -> list[tuple[str, str]]:
+    """Label and category of the known box that is the same as each box; an unnamed object where none is."""
+    nothing = UNKNOWN.name, UNKNOWN.name
+    if not known:
+        return [nothing] * len(boxes)
+    shared = overlaps(boxes, np.array([k.box for k in known], dtype=float))
+    same = [(int(row.argmax()), float(row.max())) for row in shared]
+    return [(known[k].label, known[k].category) if share >= SAME_IOU else nothing for k, share in same]

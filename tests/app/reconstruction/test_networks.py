@@ -17,7 +17,7 @@ from diorama_app.session.client import Client
 from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.errors import EditRefused, InputError, UnavailableError
 from diorama_core.models import own_weights
-from diorama_core.models.manifest import ModelFile, Network
+from diorama_core.models.network import ModelFile, Network
 from diorama_core.models.store import ModelStore
 from diorama_core.project.storage import Project
 from tests.app.people import LocalClient

@@ -4,14 +4,22 @@ from __future__ import annotations
 
 import queue
 import threading
+from pathlib import Path
 
 import numpy as np
 import pytest
+import torch
 
-from diorama_app.reconstruction.suggestions import COUNT, Suggestions
+from diorama_app.reconstruction.suggestions import COUNT, Suggestions, unmarked
 from diorama_core.artefacts import LabelledBox, Photo
 from diorama_core.models import own_weights
+from diorama_core.models.boxes import Detections
+from diorama_core.models.store import ModelStore
 from tests.app.small_room import plain_photo
+from tests.models import tiny_networks
+from tests.models.tiny_networks import install
+from tests.pipeline.test_presets import BOX as CHAIR
+from tests.pipeline.test_presets import HEIGHT, WIDTH, _Yolox
 
 PHOTO = Photo(np.full((60, 80, 3), 120, np.uint8), "room.png", (80, 60))
 BOX = (10.0, 10.0, 50.0, 50.0)
@@ -56,11 +64,81 @@ def test_a_click_tells_a_box_around_it_with_its_likeliest_name() -> None:
     assert found.label == suggestions.names([found.box], 0)[0]
 
 
+@shipped
+def test_the_outline_of_the_last_box_arrives_and_stays() -> None:
+    ready, photo = threading.Event(), plain_photo()
+    suggestions = Suggestions(photo, ready.set)
+    box = (200.0, 150.0, 420.0, 400.0)
+    assert suggestions.outline(box) is None
+    assert ready.wait(60)
+    mask = suggestions.outline(box)
+    assert mask is not None
+    assert mask.shape == (photo.height, photo.width)
+    inside = mask[150:400, 200:420]
+    assert inside.any()
+    assert inside.sum() == mask.sum(), "nothing outside the box"
+    assert suggestions.outline(box) is mask
+    ready.clear()
+    assert suggestions.outline(BOX) is None
+    assert ready.wait(60)
+    assert suggestions.outline(BOX) is not None
+    assert suggestions.outline(box) is None, "only the last one is held"
+
+
+@shipped
+def test_a_network_for_everyday_objects_proposes_names_and_is_clicked(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    store = ModelStore(tmp_path / "models")
+    example = (torch.zeros(1, 3, 416, 416),)
+    graph = tiny_networks.export(_Yolox(), example, tmp_path / "y.onnx", ["images"], ["output"])
+    install(store, "yolox-nano", [graph])
+    monkeypatch.setenv("DIORAMA_MODELS", str(store.folder))
+    photo = plain_photo(WIDTH, HEIGHT)
+    ready, told = threading.Event(), queue.Queue[LabelledBox | None]()
+    suggestions = Suggestions(photo, ready.set)
+    suggestions.boxes()
+    assert ready.wait(60)
+    chair = suggestions.boxes()[0]
+    assert chair.label == "chair"
+    np.testing.assert_allclose(chair.box, CHAIR, atol=1.0)
+    x, y = (CHAIR[0] + CHAIR[2]) / 2, (CHAIR[1] + CHAIR[3]) / 2
+    suggestions.at(x, y, (), told.put)
+    clicked = told.get(timeout=60)
+    assert clicked is not None
+    np.testing.assert_allclose(clicked.box, CHAIR, atol=1.0)
+    assert "chair" in suggestions.names([clicked.box], 0)[0], "its word counts beside what the thing looks like"
+
+
+@shipped
+def test_a_damaged_network_does_not_stop_marking(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    store = ModelStore(tmp_path / "models")
+    (tmp_path / "y.onnx").write_bytes(b"no graph")
+    install(store, "yolox-nano", [tmp_path / "y.onnx"])
+    monkeypatch.setenv("DIORAMA_MODELS", str(store.folder))
+    told = queue.Queue[LabelledBox | None]()
+    Suggestions(plain_photo(), lambda: None).at(320.0, 300.0, (), told.put)
+    assert told.get(timeout=60) is not None
+    assert "marking goes on without the network" in caplog.text
+
+
+def test_in_a_marked_box_something_smaller_is_meant() -> None:
+    sofa, pillow, other = (100.0, 100.0, 400.0, 300.0), (150.0, 150.0, 220.0, 220.0), (90.0, 90.0, 600.0, 400.0)
+    found = Detections(np.array([sofa, pillow, other]), np.ones(3), np.zeros(3, dtype=int))
+    assert unmarked(found, 180.0, 180.0, ()) is found
+    assert unmarked(found, 500.0, 350.0, (sofa,)) is found, "beside what is marked"
+    assert unmarked(found, 180.0, 180.0, (sofa,)).boxes.tolist() == [list(pillow)]
+    assert not len(unmarked(found, 180.0, 180.0, (sofa, pillow)))
+
+
 def test_without_weights_nothing_is_suggested(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
     monkeypatch.setattr(own_weights, "FOLDER", tmp_path)
     suggestions = Suggestions(PHOTO, lambda: None)
     assert suggestions.names([BOX], 0) == ()
     assert suggestions.boxes() == ()
+    assert suggestions.outline(BOX) is None
     told: queue.Queue[LabelledBox | None] = queue.Queue()
     suggestions.at(20.0, 20.0, (), told.put)
     assert told.get(timeout=20) is None

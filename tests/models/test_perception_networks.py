@@ -1,0 +1,43 @@
+"""What the manifest says of networks that find, outline and measure."""
+
+from __future__ import annotations
+
+from diorama_core.models.manifest import NETWORKS, in_half, network, networks_of
+from diorama_core.models.perception_networks import PERCEPTION_NETWORKS
+
+
+def test_they_are_part_of_the_manifest_and_have_its_three_roles() -> None:
+    assert set(PERCEPTION_NETWORKS) <= set(NETWORKS)
+    assert {n.role for n in PERCEPTION_NETWORKS} == {"detection", "segmentation", "geometry"}
+
+
+def test_a_side_is_a_whole_number_of_patches() -> None:
+    sides = {n.id: n.side for n in PERCEPTION_NETWORKS if n.side is not None}
+    assert sides == {"owlv2-large": 1008}
+    assert sides["owlv2-large"] % 14 == 0, "as its repository's name says: patch14"
+
+
+def test_files_in_half_precision_stand_for_the_full_ones() -> None:
+    halves = [n for n in NETWORKS if n.half_of]
+    assert "owlv2-base-fp16" in [n.id for n in halves]
+    for half in halves:
+        full = network(half.half_of)
+        assert (half.role, half.repo, half.revision, half.licence) == (
+            full.role,
+            full.repo,
+            full.revision,
+            full.licence,
+        )
+        assert half.size_bytes < full.size_bytes
+        assert not half.tiers, "sets name the full ones"
+    ids = [n.id for n in in_half(networks_of("default"))]
+    assert {"owlv2-base-fp16", "sam2.1-base-plus-fp16", "moge-2-vitb"} <= set(ids)
+    assert not {"owlv2-base", "sam2.1-base-plus"} & set(ids)
+
+
+def test_a_network_under_a_licence_of_its_own_is_pulled_by_name_only() -> None:
+    """All others may be used by anybody for anything."""
+    permissive = {"Apache-2.0", "MIT", "BSD-2-Clause"}
+    own = [n for n in NETWORKS if n.licence not in permissive]
+    assert [n.id for n in own] == ["sam3-tracker"]
+    assert all(not n.tiers and n.pullable for n in own)

@@ -1,0 +1,75 @@
+"""What the recogniser proposes, with what a network for everyday objects found beside it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from diorama_core.artefacts import LabelledBox, Photo
+from diorama_core.models.boxes import Detections
+from diorama_core.perception.foundation.proposals import (
+    JoinedDetection,
+    OwnDetection,
+    joined_boxes,
+    left_out,
+    ranked_names,
+)
+from diorama_core.progress import Progress
+
+CATEGORIES = ("bench", "chair", "office chair", "sofa", "table")
+BOXES = np.array([[10.0, 10.0, 60.0, 90.0], [100.0, 10.0, 190.0, 90.0]])
+UNDECIDED = np.full((2, len(CATEGORIES)), 1 / len(CATEGORIES))
+CHAIR = LabelledBox((12.0, 11.0, 60.0, 90.0), "chair", "chair", 0.7)
+
+
+def test_a_networks_word_counts_for_the_same_box_only() -> None:
+    alone, told = ranked_names(CATEGORIES, UNDECIDED, BOXES), ranked_names(CATEGORIES, UNDECIDED, BOXES, [CHAIR])
+    assert told[0][0] == "chair"
+    assert told[1] == alone[1], "the other box is another object"
+    elsewhere = LabelledBox((300.0, 10.0, 350.0, 90.0), "sofa", "sofa", 0.9)
+    assert ranked_names(CATEGORIES, UNDECIDED, BOXES, [elsewhere]) == alone
+
+
+def test_what_it_looks_like_decides_among_the_kinds_that_a_word_means() -> None:
+    seen = np.array([[0.01, 0.04, 0.9, 0.01, 0.04], UNDECIDED[0]])
+    assert ranked_names(CATEGORIES, seen, BOXES, [CHAIR])[0][0] == "office chair"
+
+
+@dataclass(frozen=True)
+class _Finds:
+    """Stands for the recogniser and for a network: three boxes, of which one is sure."""
+
+    categories: tuple[str, ...] = CATEGORIES
+
+    def propose(self, rgb: np.ndarray, threshold: float, most: int) -> Detections:
+        rows = np.array(
+            [[10.0, 10.0, 60.0, 90.0, 0.9], [70.0, 10.0, 95.0, 90.0, 0.5], [100.0, 10.0, 190.0, 90.0, 0.47]]
+        )
+        rows = rows[rows[:, 4] >= threshold][:most]
+        return Detections(rows[:, :4], rows[:, 4], np.zeros(len(rows), dtype=int))
+
+    def name(self, rgb: np.ndarray, boxes: np.ndarray) -> np.ndarray:
+        return np.full((len(boxes), len(CATEGORIES)), 1 / len(CATEGORIES))
+
+    def detect(self, photo: Photo, words: tuple[str, ...], progress: Progress) -> tuple[LabelledBox, ...]:
+        return (LabelledBox((100.0, 10.0, 188.0, 90.0), "sofa", "sofa", 0.4),)
+
+
+@pytest.mark.unchecked
+def test_likely_objects_that_a_build_leaves_out_are_counted() -> None:
+    photo = Photo(np.zeros((100, 200, 3), np.uint8), "room.png", (200, 100))
+    own = OwnDetection(_Finds())
+    assert len(own.detect(photo, (), Progress())) == 1
+    assert left_out(own, photo) == 2
+    assert left_out(JoinedDetection(_Finds(), own), photo) == 1, "the network found one of them"
+
+
+def test_of_boxes_of_one_object_the_networks_stays() -> None:
+    own = (
+        LabelledBox((10.0, 10.0, 60.0, 90.0), "sofa", "sofa", 0.9),
+        LabelledBox((100.0, 0.0, 150.0, 50.0), "bed", "bed", 0.8),
+    )
+    assert joined_boxes((CHAIR,), own) == (own[1], CHAIR)
+    assert joined_boxes((), own) == own
