@@ -8,21 +8,26 @@
     leaving = true;
     setTimeout(() => { leaving = false; });
   };
-  const find = (drawn) => [...drawn.querySelectorAll(`${FIELD}, .dio .row`)]
-    .find((field) => field.dataset.change === last.change && field.dataset.arg === last.arg);
+  const find = () => [...document.querySelectorAll(`${FIELD}, .dio .row`)]
+    .find(({ dataset }) => dataset.change === last.change && dataset.arg === last.arg && dataset.do === last.do);
   const tell = () => {
     if (!last?.untold || last.typed === null) return;
-    const field = last.field.isConnected ? last.field : find(document);
+    const field = last.field.isConnected ? last.field : find();
     if (!field) return;
     field.value = last.typed;
     last = { ...last, field, typed: null };
     field.dispatchEvent(new Event("change", { bubbles: true }));
   };
+  // In a field with nothing half typed, and on a slider, undo and redo are meant for the scene.
+  const undoes = (event) => (event.ctrlKey || event.metaKey) && /^[zy]$/i.test(event.key)
+    && event.target.matches?.("input[data-change], input[type=range]")
+    && !(last?.field === event.target && last.typed !== null);
   addEventListener("focusin", (event) => {
     const field = event.target;
     if (!field.matches?.(`${FIELD}, .dio .row`) || last?.field === field) return;
     tell();
-    last = { field, change: field.dataset.change, arg: field.dataset.arg, at: performance.now(), typed: null };
+    const { change, arg, do: action } = field.dataset;
+    last = { field, change, arg, do: action, at: performance.now(), typed: null };
     if (field.matches("input")) setTimeout(() => document.activeElement === field && field.select());
   });
   addEventListener("input", (event) => {
@@ -40,6 +45,11 @@
   addEventListener("keydown", (event) => {
     if (event.key === "Enter" || event.key === "Tab") leave();
     if (event.key === "Enter" && event.target === last?.field) tell();
+    if (undoes(event)) {
+      event.stopImmediatePropagation();
+      event.preventDefault();
+      document.body.dispatchEvent(new KeyboardEvent("keydown", event));
+    }
   }, true);
   addEventListener("focusout", (event) => {
     const field = event.target;
@@ -53,10 +63,11 @@
     tell();
     if (last?.typed === null) last = null;
   }, true);
-  window.__dioRefocus = (drawn) => {
+  // Before any key that is pressed next: it would go to the page otherwise.
+  const focusAgain = () => {
     if (!last || last.field.isConnected || document.activeElement !== document.body) return;
     if (performance.now() - last.at > FOCUSED_AGAIN_MS) return;
-    const field = find(drawn);
+    const field = find();
     if (!field) return;
     last.field = field;
     if (last.typed !== null) {
@@ -66,4 +77,5 @@
     field.focus();
     if (last.typed === null) field.select?.();
   };
+  new MutationObserver(focusAgain).observe(document.documentElement, { childList: true, subtree: true });
 })();

@@ -152,8 +152,6 @@ _HOVER = html.escape(
     "window.__dioWait=setTimeout(()=>S('peek',k,event),120)}"
 )
 _LEAVE = html.escape("if(window.__dioPeek){window.__dioPeek='';clearTimeout(window.__dioWait);S('peek','',event)}")
-_REFOCUS = html.escape("const b=this.parentElement;this.remove();window.__dioRefocus(b)")
-"""A field that is drawn anew keeps the focus and what was being typed (`fields.js`)."""
 _GRAB = html.escape(
     "const t=event.target.closest('[data-grab]');"
     "if(t){event.dataTransfer.setData('text',t.dataset.grab);S('grab',t.dataset.grab,event)}"
@@ -269,15 +267,10 @@ class LiveHtml:
             self._handle.visible = True
             self._count += 1
             return
-        back = (
-            f'<img alt="" src="data:," style="display:none" onerror="{_REFOCUS}">'
-            if "data-change" in body or "treeitem" in body
-            else ""
-        )
         if again:
             self._count += 1  # the page draws only what differs
         mark = f"<!--{self._count}-->" if self._count else ""
-        self._handle.content = mark + self._frame.replace("%s", body + back, 1) if body else ""
+        self._handle.content = mark + self._frame.replace("%s", body, 1) if body else ""
         self._handle.visible = bool(body)
 
     @property

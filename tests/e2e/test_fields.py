@@ -74,3 +74,15 @@ def test_edits_told_at_once_are_all_made(editor: EditorPage, busy: threading.Eve
         field.press("Enter")
     busy.set()
     editor.until(lambda: np.allclose(size(editor), (0.95, 1.5, 0.7), atol=1e-3), "all three are written")
+
+
+def test_undo_in_a_field_whose_value_was_told_is_the_scenes(editor: EditorPage) -> None:
+    editor.row("dining table").click()
+    field = editor.page.get_by_label("Size: Width")
+    before = size(editor)[1]
+    field.fill("1.5")
+    field.press("Enter")
+    editor.until(lambda: np.isclose(size(editor)[1], 1.5), "the width is written")
+    expect(field).to_be_focused()
+    editor.page.keyboard.press("Control+z")
+    editor.until(lambda: np.isclose(size(editor)[1], before), "undone")
