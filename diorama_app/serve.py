@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from diorama_app.workspace import Workspace
     from diorama_core.library.record import ShapeLibrary
 
+SIGNALS_S = 1.0
+"""How often Ctrl+C and a request to end are looked for, in seconds."""
 MAX_START_S = 60.0
 """How long a browser waits that came before the editor was there."""
 
@@ -180,7 +182,7 @@ def serve(
     asked = threading.Event()
     signal.signal(signal.SIGTERM, lambda *_: asked.set())
     try:
-        while not asked.wait(3600):
+        while not asked.wait(SIGNALS_S):  # a signal that another thread takes does not wake this one
             pass
     except KeyboardInterrupt:
         print("Saving and stopping.", flush=True)
