@@ -55,8 +55,7 @@ install() {
     stamp=".venv/.installed-${extras:-core}-$(cat pyproject.toml constraints.txt | cksum | tr ' ' '-')"
     if [ ! -e "$stamp" ]; then
         say "Installing Diorama into .venv (once; a few minutes)…"
-        # Most modules of the packages are never imported; those that are compile themselves the first time.
-        .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-compile --constraint constraints.txt \
+        .venv/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt \
             --editable ".${extras:+[$extras]}" || { say "The installation failed; the lines above say why."; exit 1; }
         rm -f .venv/.installed-"${extras:-core}"-*
         touch "$stamp"
