@@ -139,11 +139,18 @@ def test_from_an_empty_room_to_an_exported_one(hand: Hand, tmp_path: Path) -> No
 
 def test_from_a_description_to_an_exported_room(hand: Hand, tmp_path: Path) -> None:
     editor, page = hand.editor, hand.editor.page
+    earlier = editor.session
     hand.click(page.get_by_label("Description of the room"), "the description")
     hand.write("a bed, a desk, two lamps")
     hand.click(editor.button("Create room"), "Create room")
     editor.until(
-        lambda: editor.session.jobs.status is None and len(editor.session.scene.objects) >= 4, "furnished", seconds=60
+        lambda: (
+            editor.session is not earlier
+            and editor.session.jobs.status is None
+            and len(editor.session.scene.objects) >= 4
+        ),
+        "furnished",
+        seconds=60,
     )
     editor.settle()
     page.screenshot(path=str(ARTEFACTS / "journey-described.png"))
