@@ -65,11 +65,14 @@ def pose_of(matrix: Float[np.ndarray, "4 4"]) -> tuple[Pose, bool]:
     """The nine-parameter pose nearest to a matrix, and whether shear or a mirror had to be given up.
 
     Raises:
-        InputError: when the matrix flattens its object.
+        InputError: when the matrix flattens its object, or is not finite.
     """
     linear = np.asarray(matrix, dtype=np.float64)[:3, :3]
-    scale = np.linalg.norm(linear, axis=0)
-    if not np.isfinite(matrix).all() or scale.min() < 1e-9:
+    with np.errstate(over="ignore", invalid="ignore"):
+        scale = np.linalg.norm(linear, axis=0)  # overflows where the numbers themselves are finite
+    if not (np.isfinite(matrix).all() and np.isfinite(scale).all()):
+        raise InputError("a node is placed or scaled by numbers that are too large or none")
+    if scale.min() < 1e-9:
         raise InputError("a node has no size along one axis; give it a scale other than zero")
     axes = linear / scale
     U, _, V = np.linalg.svd(axes)
