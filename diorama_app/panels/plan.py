@@ -1,6 +1,7 @@
 """The plan: the room from above, drawn in the page (`static/plan.js`), edited through the same document as the 3D view.
 
-Walls and corners are dragged, lengths are typed, furniture is moved; doors and windows slide along their wall.
+Walls and corners are dragged, lengths are typed, furniture is moved; doors and windows slide along their wall. Tools of
+the plan split walls, put doors and windows into them, and draw another room.
 """
 
 from __future__ import annotations
@@ -13,10 +14,12 @@ import numpy as np
 import viser
 
 from diorama_app.commands import edit as editing
+from diorama_app.commands.insert import put_opening
 from diorama_app.session.client import Client
 from diorama_app.session.units import Unit, format_length, parse_length
 from diorama_app.web.html import Action, LiveHtml, run_once
 from diorama_core.editing.plan_edits import corners, move_corner, set_wall_length, wall_feet
+from diorama_core.editing.wall_edits import draw_room, split_wall
 from diorama_core.errors import EditRefused
 from diorama_core.export.footprints import Outline, outline
 from diorama_core.export.plan import OVERHEAD_M, UNNAMED, RoomLines, room_lines
@@ -162,6 +165,15 @@ class Plan:
                     wall, metres = str(arg[0]), parse_length(str(arg[1]), client.preferences.unit)
                     name = editing.supporter_name(session.scene, wall)
                     session.edit(f"set the length of {name}", lambda s: set_wall_length(s, wall, metres), by=client)
+                case "split":
+                    wall, at = str(arg[0]), np.array([float(arg[1]), float(arg[2])])
+                    name = editing.supporter_name(session.scene, wall)
+                    session.edit(f"split {name}", lambda s: split_wall(s, wall, at), by=client)
+                case "door" | "window":
+                    put_opening(client, action.do, str(arg[0]), np.array([float(arg[1]), float(arg[2])]))
+                case "room":
+                    outline = np.array(arg, dtype=np.float64).reshape(-1, 2)
+                    session.edit("draw the room", lambda s: draw_room(s, outline), by=client)
         except (KeyError, TypeError, IndexError, json.JSONDecodeError) as error:
             raise EditRefused("that is not in the plan any more") from error
         finally:

@@ -2,8 +2,9 @@
 // follows the hand at once; the server hears when it is let go of. Metres; the page's y runs down, the world's up.
 (() => {
   const SVG = "http://www.w3.org/2000/svg";
-  const ROOM_PX = 74, TOP_PX = 64, GRID_M = 0.05, CORNER_PX = 6, AWAY_PX = 30, CLICK_PX = 4, TEXT_PX = 12, LETTER_PX = 6.8;
-  let about = null, view = null, held = null;
+  const ROOM_PX = 74, TOP_PX = 64, TOOLS_PX = 84, GRID_M = 0.05, CORNER_PX = 6, AWAY_PX = 30, CLICK_PX = 4, TEXT_PX = 12, LETTER_PX = 6.8;
+  const LEAST_ZOOM = 0.2, LARGEST_ZOOM = 12, WHEEL = 0.0015;
+  let about = null, view = null, held = null, zoom = 1, shift = [0, 0];
 
   const send = (what, arg) => {
     const button = document.getElementById("dio-plan-send");
@@ -26,11 +27,13 @@
   const plus = (a, b, by = 1) => [a[0] + by * b[0], a[1] + by * b[1]];
   const length = (metres) => about.feet ? null : `${metres.toFixed(2)} m`;
 
-  // The whole plan fits between the tools and the edges; the scale is pixels a metre.
+  // The whole plan fits between the tools and the edges, until it is zoomed and shifted; the scale is pixels a metre.
   const fit = (box) => {
-    const [[x0, y0], [x1, y1]] = about.bounds, width = box.width - 2 * ROOM_PX, height = box.height - TOP_PX - ROOM_PX;
-    const scale = Math.max(1, Math.min(width / Math.max(x1 - x0, 0.1), (height - ROOM_PX) / Math.max(y1 - y0, 0.1)));
-    return { scale, x: box.width / 2 - scale * (x0 + x1) / 2, y: (TOP_PX + box.height) / 2 + scale * (y0 + y1) / 2 };
+    const [[x0, y0], [x1, y1]] = about.bounds, width = box.width - 2 * ROOM_PX, height = box.height - TOP_PX - TOOLS_PX - ROOM_PX;
+    const scale = Math.max(1, Math.min(width / Math.max(x1 - x0, 0.1), height / Math.max(y1 - y0, 0.1)));
+    const x = box.width / 2 - scale * (x0 + x1) / 2, y = (TOP_PX + box.height - TOOLS_PX) / 2 + scale * (y0 + y1) / 2;
+    const middle = [box.width / 2, box.height / 2];
+    return { scale: scale * zoom, x: middle[0] + (x - middle[0]) * zoom + shift[0], y: middle[1] + (y - middle[1]) * zoom + shift[1] };
   };
   const toPage = ([x, y]) => [view.x + view.scale * x, view.y - view.scale * y];
   const metres = (event, from) => [(event.clientX - from[0]) / view.scale, -(event.clientY - from[1]) / view.scale];
@@ -59,6 +62,21 @@
       told: (d) => { const by = way(d); if (by[0] || by[1]) send("move", [p.id, ...by]); else node.removeAttribute("transform"); },
       clicked: (event) => send("select", [p.id, event.shiftKey || event.ctrlKey || event.metaKey]),
     };
+  };
+  const ground = (before) => ({
+    shown: (d) => { shift = [before[0] + d[0] * view.scale, before[1] - d[1] * view.scale]; draw(); },
+    told: () => {},
+    clicked: () => send("select", [null, false]),
+  });
+  // The point under the pointer stays where it is.
+  const zoomed = (event) => {
+    event.preventDefault();
+    const box = document.getElementById("dio-plan").getBoundingClientRect();
+    const after = Math.min(LARGEST_ZOOM, Math.max(LEAST_ZOOM, zoom * Math.exp(-event.deltaY * WHEEL)));
+    const at = [event.clientX - box.left - box.width / 2, event.clientY - box.top - box.height / 2];
+    shift = shift.map((v, k) => at[k] + (v - at[k]) * after / zoom);
+    zoom = after;
+    if (!held) draw();
   };
   const ghost = (group, d, at, words) => {
     group.querySelectorAll(".ghost, .ghost-length").forEach((old) => old.remove());
@@ -146,6 +164,7 @@
     const svg = document.createElementNS(SVG, "svg");
     const group = add(svg, "g");
     add(group, "path", { class: "floor", d: closed(about.floors) });
+    window.__dioPlanTools?.below(group);
     for (const p of about.pieces) {
       const node = add(group, "g", {
         class: ["piece", p.on && "on", p.overhead && "overhead", p.flat && "flat", p.along && "opening"].filter(Boolean).join(" "),
@@ -171,13 +190,33 @@
       node.dataset.walls = c.walls.join(" ");
       hold(node, corner(group, c));
     }
-    svg.addEventListener("pointerdown", (event) => { if (event.target === svg || event.target.matches(".floor")) send("select", [null, false]); });
+    svg.addEventListener("pointerdown", (event) => {
+      if (event.button !== 0 || !(event.target === svg || event.target.matches(".floor"))) return;
+      held = { what: ground(shift), from: [event.clientX, event.clientY], moved: false };
+    });
+    svg.addEventListener("wheel", zoomed, { passive: false });
     layer.querySelector("svg")?.remove();
     layer.prepend(svg);
+    window.__dioPlanTools?.over(layer, svg);
   };
   addEventListener("dio-measured", () => { if (about && !held) draw(); });
-  window.__dioPlan = { told: (news) => { about = news; if (!held) draw(); }, toPage: (point) => {
-    const box = document.getElementById("dio-plan").getBoundingClientRect(), [x, y] = toPage(point);
-    return [box.left + x, box.top + y];
-  } };
+  const toMetres = (event) => {
+    const box = document.getElementById("dio-plan").getBoundingClientRect();
+    return [(event.clientX - box.left - view.x) / view.scale, (view.y - event.clientY + box.top) / view.scale];
+  };
+  window.__dioPlan = {
+    add, send, snapped, toMetres,
+    about: () => about,
+    redraw: () => { if (about && !held) draw(); },
+    told: (news) => {
+      if (!about) [zoom, shift] = [1, [0, 0]];
+      about = news;
+      if (!held) draw();
+    },
+    inPlan: toPage,
+    toPage: (point) => {
+      const box = document.getElementById("dio-plan").getBoundingClientRect(), [x, y] = toPage(point);
+      return [box.left + x, box.top + y];
+    },
+  };
 })();

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 from playwright.sync_api import expect
 
+from diorama_app.serve import Running
 from diorama_app.session.units import format_length
 from diorama_core.editing.plan_edits import corners, wall_feet
+from tests.app.small_room import make_project
 from tests.e2e.browser import EditorPage
 
 pytestmark = pytest.mark.browser
@@ -91,7 +95,7 @@ def test_a_corner_is_dragged(plan: EditorPage) -> None:
 def test_a_length_is_typed(plan: EditorPage) -> None:
     corner = corners(plan.session.scene)[0]
     plan.page.locator(f'#dio-plan .length[data-wall="{corner.first}"]').click()
-    field = plan.page.locator("#dio-plan input")
+    field = plan.page.locator("#dio-plan input:not([type=file])")
     expect(field).to_be_focused()
     field.fill("3.4")
     plan.page.keyboard.press("Enter")
@@ -120,3 +124,94 @@ def test_views_lead_out_of_the_plan(editor: EditorPage) -> None:
     editor.tool("Photo").click()
     expect(editor.page.locator("#dio-plan")).to_have_count(0)
     editor.until(lambda: editor.client.view.camera.through_photo, "the photo's view")
+
+
+def on_foot(editor: EditorPage, wall: str, share: float) -> tuple[float, float]:
+    """A place on a wall, on the page."""
+    at = foot(editor, wall)
+    return on_plan(editor, at.start + share * (at.end - at.start))
+
+
+def test_a_wall_is_split_and_its_part_moved(plan: EditorPage) -> None:
+    page, session = plan.page, plan.session
+    wall, count = wall_feet(session.scene)[0].id, len(wall_feet(session.scene))
+    page.get_by_role("button", name="Split wall").click()
+    page.mouse.click(*on_foot(plan, wall, 0.4))
+    plan.until(lambda: len(wall_feet(session.scene)) == count + 1, "split")
+    plan.settle()
+    part = foot(plan, wall)
+    drag_by(plan, (part.start + part.end) / 2, tuple(0.5 * part.outward))
+    plan.until(lambda: len(wall_feet(session.scene)) == count + 2, "the gap is closed")
+    for _ in range(2):
+        page.keyboard.press("Control+z")
+    plan.until(lambda: len(wall_feet(session.scene)) == count, "undone")
+
+
+def test_a_door_and_a_window_are_put_into_a_wall(
+    serve: Callable[..., Running], visit: Callable[[Running], EditorPage], tmp_path: Path
+) -> None:
+    editor = visit(serve(project=make_project(tmp_path / "projects" / "demo").folder))
+    session = editor.session
+    wall = wall_feet(session.scene)[0].id
+    editor.page.keyboard.press("7")
+    expect(editor.page.locator("#dio-plan svg")).to_be_visible()
+    for category, share in (("door", 0.2), ("window", 0.7)):
+        count = len(session.scene.objects)
+        editor.page.get_by_role("button", name=category.capitalize(), exact=True).click()
+        editor.page.mouse.click(*on_foot(editor, wall, share))
+        editor.until(lambda many=count: len(session.scene.objects) == many + 1, "inserted")
+        new = session.scene.objects[-1]
+        assert new.category == category
+        assert session.scene.support_of(new.id).parent == wall
+        at = foot(editor, wall)
+        assert float((new.pose.position[:2] - at.start) @ at.along) == pytest.approx(share * at.length_m, abs=0.45)
+    expect(editor.page.locator("#dio-plan .piece.opening")).to_have_count(2)
+
+
+def test_a_room_is_drawn_corner_by_corner(plan: EditorPage) -> None:
+    page, session = plan.page, plan.session
+    before = session.scene
+    outline = [np.array(p) for p in ([-1.5, 1.5], [1.5, 1.5], [1.5, 4.0], [-1.5, 4.0])]
+    page.get_by_role("button", name="Draw room").click()
+    for corner in outline[:2]:
+        page.mouse.click(*on_plan(plan, corner))
+    page.keyboard.press("Enter")
+    expect(page.locator("#dio-plan-tools p")).to_have_text("A room has at least three corners.")
+    for corner in outline[2:]:
+        page.mouse.click(*on_plan(plan, corner))
+    page.keyboard.press("Enter")
+    plan.until(lambda: session.scene is not before, "drawn")
+    lengths = sorted(f.length_m for f in wall_feet(session.scene))
+    np.testing.assert_allclose(lengths, [2.5, 2.5, 3.0, 3.0], atol=0.06)
+    page.keyboard.press("Control+z")
+    plan.until(lambda: session.scene == before, "one undo step")
+
+
+def test_a_picture_lies_below_and_is_scaled_by_a_known_length(plan: EditorPage, tmp_path: Path) -> None:
+    page = plan.page
+    drawing = tmp_path / "plan.png"
+    Image.new("RGB", (400, 200), (230, 240, 250)).save(drawing)
+    page.locator("#dio-plan-tools input[type=file]").set_input_files(drawing)
+    picture = page.locator("#dio-plan image")
+    expect(picture).to_be_visible()
+    box = picture.bounding_box()
+    assert box is not None
+    for share in (0.25, 0.75):
+        page.mouse.click(box["x"] + share * box["width"], box["y"] + box["height"] / 2)
+    page.get_by_label("True length between the two points").fill("2 m")
+    page.keyboard.press("Enter")
+    metre = np.subtract(on_plan(plan, np.array([1.0, 0.0])), on_plan(plan, np.array([0.0, 0.0])))[0]
+    plan.until(lambda: abs(picture.bounding_box()["width"] - 4 * metre) < 0.02 * metre, "scaled")
+    page.get_by_role("button", name="Remove picture").click()
+    expect(picture).to_have_count(0)
+
+
+def test_the_plan_is_zoomed_and_shifted(plan: EditorPage) -> None:
+    page = plan.page
+    a, b = np.array([0.0, 2.0]), np.array([1.0, 2.0])
+    before = np.subtract(on_plan(plan, b), on_plan(plan, a))
+    page.mouse.move(*on_plan(plan, a))
+    held = on_plan(plan, a)
+    page.mouse.wheel(0, -400)
+    plan.until(lambda: np.subtract(on_plan(plan, b), on_plan(plan, a))[0] > 1.5 * before[0], "zoomed")
+    np.testing.assert_allclose(on_plan(plan, a), held, atol=1.5)

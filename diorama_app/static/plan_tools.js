@@ -1,0 +1,185 @@
+// Tools of the plan: walls are split, doors and windows put into them, a room is drawn corner by corner, and a picture of
+// a plan lies below, scaled by a length that is known. The picture is this browser's, for this project.
+(() => {
+  const P = window.__dioPlan, NEAR_PX = 26, CLOSE_PX = 12, ALONG_PX = 7, LARGEST_PX = 1600;
+  const TOOLS = {
+    split: ["Split wall", "Click a wall where it is split."],
+    door: ["Door", "Click a wall where the door goes."],
+    window: ["Window", "Click a wall where the window goes."],
+    room: ["Draw room", "Click the corners; Enter or the first corner closes the room, Backspace takes one back."],
+    scale: ["Scale picture", "Click both ends of a length that you know."],
+    shift: ["Move picture", "Drag the picture."],
+  };
+  let tool = null, points = [], hover = null, dragged = null;
+
+  // -- the picture below ---------------------------------------------------------------------------------------------
+  const key = () => `diorama-plan-picture ${new URLSearchParams(location.search).get("project") ?? ""}`;
+  let loaded = null, picture = null;
+  const recall = () => {
+    if (loaded === key()) return;
+    loaded = key();
+    try { picture = JSON.parse(localStorage.getItem(loaded)); } catch { picture = null; }
+  };
+  const remember = () => {
+    try {
+      if (picture) localStorage.setItem(key(), JSON.stringify(picture));
+      else localStorage.removeItem(key());
+    } catch { return; } // a full or forbidden store: the picture stays until the page is left
+  };
+  const take = (file) => {
+    const image = new Image(), url = URL.createObjectURL(file);
+    image.onload = () => {
+      URL.revokeObjectURL(url);
+      const share = Math.min(1, LARGEST_PX / Math.max(image.width, image.height));
+      const canvas = Object.assign(document.createElement("canvas"), { width: image.width * share, height: image.height * share });
+      canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
+      const [[x0, y0], [x1, y1]] = P.about().bounds, metres = Math.max((x1 - x0) / canvas.width, (y1 - y0) / canvas.height);
+      picture = { url: canvas.toDataURL("image/jpeg", 0.8), size: [canvas.width, canvas.height], at: [(x0 + x1) / 2, (y0 + y1) / 2], metres };
+      remember();
+      choose("scale");
+    };
+    image.onerror = () => { URL.revokeObjectURL(url); hint("This file is no picture; choose a JPEG, PNG or WebP of the plan."); };
+    image.src = url;
+  };
+  const known = (words) => {
+    const found = /^\s*(\d+(?:[.,]\d+)?)\s*(mm|cm|m|ft|')?\s*$/.exec(words);
+    return found && Number(found[1].replace(",", ".")) * { mm: 0.001, cm: 0.01, m: 1, ft: 0.3048, "'": 0.3048 }[found[2] ?? "m"];
+  };
+  const askLength = ([a, b]) => {
+    const layer = document.getElementById("dio-plan"), [x, y] = P.inPlan([(a[0] + b[0]) / 2, (a[1] + b[1]) / 2]);
+    const field = Object.assign(document.createElement("input"), { placeholder: "3.20 m" });
+    field.setAttribute("aria-label", "True length between the two points");
+    [field.style.left, field.style.top] = [`${x}px`, `${y}px`];
+    const end = () => { field.onblur = null; field.remove(); choose(null); };
+    field.onkeydown = (event) => {
+      event.stopPropagation();
+      if (event.key === "Escape") return end();
+      if (event.key !== "Enter") return;
+      const metres = known(field.value), now = Math.hypot(b[0] - a[0], b[1] - a[1]);
+      if (!(metres > 0.05)) return hint("Give a length such as 3.20 m.");
+      const factor = metres / now; // about the first point, which stays where it is
+      picture.metres *= factor;
+      picture.at = picture.at.map((v, k) => a[k] + (v - a[k]) * factor);
+      remember();
+      end();
+    };
+    field.onblur = end;
+    layer.append(field);
+    field.focus();
+  };
+
+  // -- tools ---------------------------------------------------------------------------------------------------------
+  const hint = (words) => { const line = document.querySelector("#dio-plan-tools p"); if (line) line.textContent = words; };
+  const choose = (name) => {
+    [tool, points, hover, dragged] = [tool === name ? null : name, [], null, null];
+    P.redraw();
+  };
+  const away = (point, a, b) => {
+    const d = [b[0] - a[0], b[1] - a[1]], t = ((point[0] - a[0]) * d[0] + (point[1] - a[1]) * d[1]) / (d[0] ** 2 + d[1] ** 2 || 1);
+    const s = Math.min(1, Math.max(0, t));
+    return Math.hypot(point[0] - a[0] - s * d[0], point[1] - a[1] - s * d[1]);
+  };
+  const pixels = (a, b) => { const [p, q] = [P.inPlan(a), P.inPlan(b)]; return Math.hypot(p[0] - q[0], p[1] - q[1]); };
+  const onWall = (at) => {
+    const near = P.about().walls.map((w) => [away(at, w.start, w.end), w]).sort((a, b) => a[0] - b[0])[0];
+    if (!near || pixels(at, [at[0] + near[0], at[1]]) > NEAR_PX) return hint(`No wall there. ${TOOLS[tool][1]}`);
+    P.send(tool, [near[1].id, ...at]);
+    choose(null);
+  };
+  // A corner is in line with the one before, or the first, where it nearly is.
+  const corner = (at) => {
+    const aligned = at.map(P.snapped);
+    for (const other of [points[0], points[points.length - 1]]) {
+      if (!other) continue;
+      for (const k of [0, 1]) if (pixels([other[0], 0], [other[0] + at[k] - other[k], 0]) < ALONG_PX) aligned[k] = other[k];
+    }
+    return aligned;
+  };
+  const close = () => {
+    if (points.length < 3) return hint("A room has at least three corners.");
+    P.send("room", points);
+    choose(null);
+  };
+  const clicked = (at) => {
+    if (tool === "room") {
+      if (points.length > 2 && pixels(at, points[0]) < CLOSE_PX) return close();
+      points.push(corner(at));
+    } else if (tool === "scale") {
+      points.push(at);
+      if (points.length === 2) askLength(points);
+    } else if (tool !== "shift") return onWall(at);
+    P.redraw();
+  };
+
+  const inside = (event) => tool && event.target.closest?.("#dio-plan svg");
+  addEventListener("pointerdown", (event) => {
+    if (!inside(event) || event.button !== 0) return;
+    event.stopImmediatePropagation();
+    if (tool === "shift") dragged = { from: P.toMetres(event), at: picture.at };
+  }, true);
+  addEventListener("pointermove", (event) => {
+    if (!inside(event)) return;
+    hover = P.toMetres(event);
+    if (dragged) picture.at = dragged.at.map((v, k) => v + hover[k] - dragged.from[k]);
+    if (dragged || points.length) P.redraw();
+  }, true);
+  addEventListener("pointerup", (event) => {
+    if (!inside(event) || event.button !== 0) return;
+    event.stopImmediatePropagation();
+    if (dragged) remember();
+    else clicked(P.toMetres(event));
+    dragged = null;
+  }, true);
+  addEventListener("keydown", (event) => {
+    if (!tool || !P.about() || event.target.matches?.("input, textarea")) return;
+    const act = { Escape: () => choose(null), Enter: tool === "room" && close,
+      Backspace: points.length && (() => { points.pop(); P.redraw(); }) }[event.key];
+    if (!act) return;
+    event.stopImmediatePropagation();
+    event.preventDefault();
+    act();
+  }, true);
+
+  // -- drawing -------------------------------------------------------------------------------------------------------
+  const buttons = () => {
+    const bar = Object.assign(document.createElement("div"), { id: "dio-plan-tools", className: "dio" });
+    const row = Object.assign(document.createElement("div"), { className: "bar tight" });
+    const press = (words, on, act) => {
+      const button = Object.assign(document.createElement("button"), { type: "button", textContent: words, onclick: act });
+      button.setAttribute("aria-pressed", String(on));
+      button.classList.toggle("on", on);
+      row.append(button);
+    };
+    for (const name of ["split", "door", "window", "room"]) press(TOOLS[name][0], tool === name, () => choose(name));
+    const file = Object.assign(document.createElement("input"), { type: "file", accept: "image/jpeg,image/png,image/webp", hidden: true });
+    file.onchange = () => { if (file.files[0]) take(file.files[0]); };
+    if (picture) {
+      for (const name of ["scale", "shift"]) press(TOOLS[name][0], tool === name, () => choose(name));
+      press("Remove picture", false, () => { picture = null; remember(); choose(null); });
+    } else press("Picture below", false, () => file.click());
+    bar.append(row, file, Object.assign(document.createElement("p"), { textContent: tool ? TOOLS[tool][1] : "" }));
+    bar.querySelector("p").setAttribute("role", "status");
+    return bar;
+  };
+  const below = (svg) => {
+    recall();
+    if (!picture) return;
+    const [w, h] = picture.size.map((v) => v * picture.metres), [x, y] = P.inPlan([picture.at[0] - w / 2, picture.at[1] + h / 2]);
+    const [right, low] = P.inPlan([picture.at[0] + w / 2, picture.at[1] - h / 2]);
+    const image = P.add(svg, "image", { x, y, width: right - x, height: low - y, opacity: 0.55, preserveAspectRatio: "none", href: picture.url });
+    image.style.pointerEvents = "none";
+  };
+  const over = (layer, svg) => {
+    layer.querySelector("#dio-plan-tools")?.remove();
+    layer.append(buttons());
+    svg.classList.toggle("tool", tool !== null);
+    const line = tool && points.length ? [...points, ...(hover ? [tool === "room" ? corner(hover) : hover] : [])].map(P.inPlan) : [];
+    if (line.length > 1) P.add(svg, "path", { class: "ghost", d: line.map((p, k) => `${k ? "L" : "M"}${p.join(" ")}`).join("") });
+    for (const [cx, cy] of points.map(P.inPlan)) P.add(svg, "circle", { class: "corner", cx, cy, r: 5 });
+    if (tool === "room" && line.length > 1) {
+      const [a, b] = [points[points.length - 1], corner(hover ?? points[0])], [x, y] = P.inPlan([(a[0] + b[0]) / 2, (a[1] + b[1]) / 2]);
+      P.add(svg, "text", { class: "length ghost-length", x, y: y - 12 }, `${Math.hypot(b[0] - a[0], b[1] - a[1]).toFixed(2)} m`);
+    }
+  };
+  window.__dioPlanTools = { below, over };
+})();
