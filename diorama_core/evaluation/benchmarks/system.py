@@ -27,8 +27,9 @@ from diorama_core.evaluation.metrics.scene import SceneScores, scene_scores
 from diorama_core.evaluation.reports.tables import Table
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import UNKNOWN
+from diorama_core.pipeline.acdc import acdc_stages
 from diorama_core.pipeline.run import Built, build_scene
-from diorama_core.pipeline.stages import embedded_stages
+from diorama_core.pipeline.stages import Stages, embedded_stages
 from diorama_core.progress import Progress
 from diorama_core.synthesis.artefacts import photo_only
 from diorama_core.synthesis.splits import split_library
@@ -51,6 +52,8 @@ class Way:
     inputs: Callable[[TruthView], Inputs]
     truth: frozenset[str] = frozenset()
     """Names of `substitution.SUBSTITUTES` that take the place of the stages' results."""
+    stages: Callable[[Stages, bool, ShapeLibrary], Stages] | None = None
+    """Replaces stages (with whether there is depth, and the library), for a system to compare with."""
 
 
 def masks_only(view: TruthView) -> Inputs:
@@ -85,6 +88,7 @@ WAYS: Mapping[str, Way] = {
     "photo": Way(PHOTO_ALONE, photo_only),
     "unnamed": Way(f"{PHOTO_ALONE}, without classes", unnamed),
     "jittered": Way(f"{PHOTO_ALONE}, boxes off by 4 %", jittered),
+    "acdc": Way(f"ACDC, {TRUE_INPUTS}", lambda view: view.inputs, stages=acdc_stages),
 }
 """What may be given, by the name that `--given` takes."""
 USUAL_WAYS = ("depth", "photo")
@@ -213,6 +217,8 @@ def build_case(
         if "masks" in way.truth:
             inputs = with_true_masks(inputs, view)
         stages = embedded_stages(inputs, searched)
+        if way.stages is not None:
+            stages = way.stages(stages, inputs.depth_m is not None, searched)
         if "shape" in way.truth:  # the true shapes are not among those searched
             everything = embedded_stages(inputs, library)
             stages = replace(stages, pose=everything.pose, layout=everything.layout)
