@@ -72,7 +72,7 @@ class Relation:
                 self.kind
             ]
         names = [scene.object(t).label for t in self.targets if scene.has_object(t)]
-        return f"{self.kind} {' and '.join(names)}"
+        return f"{self.kind} {' and '.join(names) or 'each other'}"
 
 
 @dataclass(frozen=True, eq=False)
