@@ -108,7 +108,9 @@ def with_options(stages: Stages, files: PhotoFiles, options: BuildOptions) -> St
     if options.room != "closed":
         if not has_depth:
             raise InputError(f"--room {options.room} reads depth: add --depth FILE or a profile with a depth network")
-        stages = replace(stages, architecture=room_solver(options.room))
+        from diorama_core.pipeline.published import with_room
+
+        stages = with_room(stages, room_solver(options.room))
     if options.pose is not None:
         stages = replace(stages, pose=pose_solver(options.pose, diorama.open_library(options.library)))
     return stages
