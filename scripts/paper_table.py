@@ -4,7 +4,8 @@ python scripts/paper_table.py [--scenes 20] [--seeds reporting] [--out DIR] [--y
 
 It checks that onnxruntime sees the card, fetches the networks of the set `paper` that are missing (6.5 GB; licences are
 shown and asked for, unless --yes), builds every rendered room by Diorama without networks, by the paper's system and
-by ACDC on the same networks, and writes `paper-table.md` and `paper-table.json` with the card's name and all times. Where DIORAMA_LMM_BASE_URL and DIORAMA_LMM_MODEL name a language model, the networks' rows ask it for the graph.
+by ACDC on the same networks, and writes `paper-table.md` and `paper-table.json` with the card's name and all times.
+Where DIORAMA_LMM_BASE_URL and DIORAMA_LMM_MODEL name a language model, the networks' rows ask it for the graph.
 """
 
 from __future__ import annotations
