@@ -121,7 +121,13 @@ def test_a_room_that_fails_counts_for_every_solver(view, library, solvers, monke
     assert len(bench.tables()) == len(CONDITIONS) + 6
     assert replace(bench, seed=1).to_json()["seed"] == 1
     rows = {name for name, _ in bench.ablation}
-    assert rows >= {"O, P, S, R", "true graph", "true architecture", "feasible, true graph", "feasible, true architecture"}
+    assert rows >= {
+        "O, P, S, R",
+        "true graph",
+        "true architecture",
+        "feasible, true graph",
+        "feasible, true architecture",
+    }
     after = dict(bench.groups_after)
     assert after
     assert all(group.every == 0 for group in after.values())
