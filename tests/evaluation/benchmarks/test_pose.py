@@ -135,3 +135,14 @@ def test_a_room_that_fails_counts_for_every_solver(view, library, solvers, monke
 
 def test_the_views_are_the_papers() -> None:
     assert len(HALF_GRID) == 180
+
+
+def test_groups_are_counted_after_the_papers_layout_too(view, library) -> None:
+    ablation: dict[str, list[PoseScores]] = {}
+    arranged = pose_bench._arrange(view, without_unasked(view), library, ablation, pose_bench.Progress())
+    assert pose_bench.PAPER_LAYOUT in arranged
+    assert ablation["true graph"][0].structure > 0.9
+    assert ablation["true graph"] != [] != ablation["feasible, true architecture"]
+    groups: dict[str, list[tuple[float, ...]]] = {}
+    pose_bench._count_groups(view, arranged[pose_bench.PAPER_LAYOUT], library, groups)
+    assert sum(len(rows) for name, rows in groups.items() if name in ("household", "furniture")) == len(view.asked)
