@@ -13,12 +13,11 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import settings
-from jaxtyping import config, install_import_hook
 
 from tests import typechecking
 
 if typechecking.wanted():  # before anything of Diorama is imported
-    install_import_hook(["diorama_core", "diorama_app"], f"{typechecking.__name__}.check")
+    typechecking.install()
 
 from diorama_core.artefacts import Inputs
 from diorama_core.perception.inputs import ReadInputs, read_inputs
@@ -125,8 +124,7 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
     """Shapes and types are checked as the test's folder and markers say, and the same items of lists every time."""
     folder = item.path.relative_to(Path(__file__).parent).parts[0]
     unchecked = folder in UNCHECKED_FOLDERS or item.get_closest_marker("unchecked") is not None
-    typechecking.items.seed(0)
-    config.update("jaxtyping_disable", unchecked)
+    typechecking.begin_test(unchecked=unchecked)
 
 
 @pytest.fixture

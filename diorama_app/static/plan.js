@@ -118,6 +118,21 @@
     words.addEventListener("click", () => typed(layer, w, middle));
   };
 
+  // Names lie over all furniture, the larger pieces' first; one that has no room, or would cover another, is left out.
+  const names = (group) => {
+    const layer = add(group, "g", { class: "names" }), taken = [];
+    const size = (p) => p.room[0] * p.room[1];
+    for (const p of [...about.pieces].sort((a, b) => size(b) - size(a))) {
+      const [across, up] = p.room.map((v) => v * view.scale), wide = p.label.length * LETTER_PX, [x, y] = toPage(p.at);
+      const turned = !(across > wide && up > 2 * TEXT_PX);
+      if (turned && !(up > wide && across > 2 * TEXT_PX)) continue;
+      const [w, h] = turned ? [TEXT_PX, wide] : [wide, TEXT_PX];
+      if (taken.some((t) => Math.abs(t.x - x) < (t.w + w) / 2 && Math.abs(t.y - y) < (t.h + h) / 2)) continue;
+      taken.push({ x, y, w, h });
+      label(layer, p.at, p.label, "label", turned ? -90 : 0);
+    }
+  };
+
   const draw = () => {
     const old = document.getElementById("dio-plan");
     if (!about) return old?.remove();
@@ -138,11 +153,9 @@
       node.dataset.id = p.id;
       add(node, "title", {}, p.label);
       add(node, "path", { d: closed(p.outlines) });
-      const [across, up] = p.room.map((v) => v * view.scale), wide = p.label.length * LETTER_PX;
-      if (across > wide && up > 2 * TEXT_PX) label(node, p.at, p.label, "label");
-      else if (up > wide && across > 2 * TEXT_PX) label(node, p.at, p.label, "label", -90);
       hold(node, piece(node, p));
     }
+    names(group);
     add(group, "path", { class: "wall", "fill-rule": "evenodd", d: closed(about.solid) });
     for (const line of about.swings) add(group, "path", { class: "line swing", d: path(line) });
     for (const line of about.panes) add(group, "path", { class: "line", d: path(line) });

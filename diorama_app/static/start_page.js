@@ -27,7 +27,10 @@
       event.preventDefault();
       event.target.click();
     }
-    if (event.key !== "Tab" || !open) return;
+    if (!open) return;
+    const own = ["Tab", "Escape", "Enter", " "].includes(event.key) || event.target.matches?.("input, textarea");
+    if (!own) event.stopImmediatePropagation(); // it would change the view behind
+    if (event.key !== "Tab") return;
     const reached = [...document.querySelectorAll("#dio-start :is(button, input, textarea, [tabindex])")];
     const first = reached[0], last = reached[reached.length - 1];
     if (event.shiftKey && document.activeElement === first) { event.preventDefault(); last?.focus(); }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from jaxtyping import Float
 
 from diorama_core.errors import EditRefused
 from diorama_core.scene.types import Architecture, Plane, PlaneRole, Scene, SurfaceFinish
@@ -34,12 +35,29 @@ def empty_room(width_m: float, depth_m: float, height_m: float) -> Scene:
     ):
         if not low <= length <= high:
             raise EditRefused(f"a room cannot have a {name} of {length:g} m; give {low:g} to {high:g} m")
-    x, y, up = width_m / 2, depth_m / 2, np.array([0.0, 0.0, height_m])
-    floor = np.array([[-x, -y, 0.0], [x, -y, 0.0], [x, y, 0.0], [-x, y, 0.0]])
-    near, right, far, left = (np.stack([b, a, a + up, b + up]) for a, b in zip(floor, np.roll(floor, -1, axis=0)))
-    walls = tuple(_finished(f"wall_{n}", "wall", w, WALLS) for n, w in enumerate((far, right, near, left), start=1))
+    x, y = width_m / 2, depth_m / 2
+    return Scene(architecture=room_of_outline(np.array([[x, y], [-x, y], [-x, -y], [x, -y]]), height_m))
+
+
+def room_of_outline(outline: Float[np.ndarray, "n 2"], height_m: float, floor_m: float = 0.0) -> Architecture:
+    """A boarded floor, painted walls and a ceiling over an outline.
+
+    Walls are numbered as one sees them from the middle, turning to the right from the outline's first side.
+
+    Args:
+        outline: Corners of the floor (world x and y), counter-clockwise seen from above.
+        height_m: Of the ceiling above the floor.
+        floor_m: z of the floor.
+    """
+    floor = np.column_stack([outline, np.full(len(outline), floor_m)])
+    up = np.array([0.0, 0.0, height_m])
+    sides = list(zip(floor, np.roll(floor, -1, axis=0), strict=True))
+    walls = (
+        _finished(f"wall_{n}", "wall", np.stack([b, a, a + up, b + up]), WALLS)
+        for n, (a, b) in enumerate((sides[0], *sides[:0:-1]), start=1)
+    )
     ceiling = Plane("ceiling", "ceiling", (floor + up)[::-1], colour=CEILING_COLOUR)
-    return Scene(architecture=Architecture((_finished("floor", "floor", floor, FLOOR), *walls, ceiling)))
+    return Architecture((_finished("floor", "floor", floor, FLOOR), *walls, ceiling))
 
 
 def _finished(plane_id: str, role: PlaneRole, polygon: np.ndarray, finish: SurfaceFinish) -> Plane:

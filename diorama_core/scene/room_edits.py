@@ -32,6 +32,8 @@ Points = Float[np.ndarray, "n 3"]
 def move_plane(scene: Scene, plane_id: str, distance_m: float) -> Scene:
     """Move a wall, the floor or the ceiling along its normal; the planes that meet it follow, so the room stays closed.
 
+    Where a wall goes on in the same plane, which it does after it was split, a new wall closes the gap.
+
     Args:
         scene: The scene.
         plane_id: The plane to move.
@@ -189,18 +191,53 @@ def _with_plane_moved(planes: tuple[Plane, ...], moved: Plane, distance_m: float
         # The least displacement that keeps the corner on every plane it belongs to.
         return corner + np.linalg.lstsq(np.array(rows), wanted, rcond=1e-6)[0]
 
+    edges = [_shared_edge(moved, p) for p in planes if _continues(moved, p)]
+    staying = np.concatenate([np.zeros((0, 3)), *edges])
+
     def adjusted(plane: Plane) -> Plane:
         if plane.id == moved.id:
             return replace(plane, polygon=np.array([slide(c) for c in plane.polygon]))
         if abs(float(plane.normal @ moved.normal)) >= PARALLEL:
             return plane
         on = _on_plane(plane.polygon, moved)
-        polygon = plane.polygon.copy()
-        for index in np.flatnonzero(on):
-            polygon[index] = slide(polygon[index])
-        return replace(plane, polygon=polygon)
+        corners: list[np.ndarray] = []
+        for index, corner in enumerate(plane.polygon):
+            stays = len(staying) > 0 and float(np.linalg.norm(staying - corner, axis=1).min()) < JOINED_M
+            if on[index] and stays and plane.role != "wall":  # the rim has a step there
+                step = [corner, slide(corner)]
+                corners += step if on[(index + 1) % len(on)] else step[::-1]
+            else:
+                corners.append(slide(corner) if on[index] else corner)
+        return replace(plane, polygon=np.array(corners))
 
-    return tuple(_sound(p, adjusted(p)) for p in planes)
+    closing, taken = [], {p.id for p in planes}
+    for edge in edges:
+        wall_id = next(name for n in range(1, len(taken) + 2) if (name := f"{moved.role}_{n}") not in taken)
+        taken.add(wall_id)
+        closing.append(_closing(moved, wall_id, edge, np.array([slide(c) for c in edge]), distance_m))
+    return (*(_sound(p, adjusted(p)) for p in planes), *closing)
+
+
+def _continues(wall: Plane, other: Plane) -> bool:
+    """Whether another wall goes on in the plane of this one, and both share an edge."""
+    both = wall.role == other.role == "wall" and wall.id != other.id
+    if not both or float(wall.normal @ other.normal) < PARALLEL or abs(wall.offset - other.offset) > JOINED_M:
+        return False
+    return len(_shared_edge(wall, other)) == 2
+
+
+def _shared_edge(wall: Plane, other: Plane) -> Points:
+    """The corners that two planes share, the lowest first."""
+    near = [c for c in wall.polygon if np.linalg.norm(other.polygon - c, axis=1).min() < JOINED_M]
+    return np.array(sorted(near, key=lambda c: float(c[2]))).reshape(-1, 3)
+
+
+def _closing(wall: Plane, wall_id: str, edge: Points, moved: Points, distance_m: float) -> Plane:
+    """The wall between an edge and where it moved to, in the wall's colour: it looks into the part that is deeper."""
+    polygon = np.array([edge[0], moved[0], moved[1], edge[1]])
+    inward = (wall.centre - edge.mean(axis=0)) * np.sign(distance_m)
+    made = replace(wall, id=wall_id, polygon=polygon, texture=None, photo_texture=None)
+    return made if float(made.normal @ inward) > 0 else replace(made, polygon=polygon[::-1])
 
 
 def _on_plane(points: Points, plane: Plane) -> Bool[np.ndarray, "n"]:

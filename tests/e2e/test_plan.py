@@ -54,6 +54,19 @@ def test_walls_furniture_doors_and_lengths_are_seen(plan: EditorPage) -> None:
         )
 
 
+def test_names_lie_over_furniture_and_cover_no_other(plan: EditorPage) -> None:
+    boxes = plan.page.evaluate("""[...document.querySelectorAll('#dio-plan .names text')].map((t) => {
+        const b = t.getBoundingClientRect();
+        return [b.left, b.top, b.right, b.bottom];
+    })""")
+    assert len(boxes) >= 2
+    for i, a in enumerate(boxes):
+        for b in boxes[:i]:
+            assert a[0] >= b[2] or b[0] >= a[2] or a[1] >= b[3] or b[1] >= a[3], (a, b)
+    after = "piece => piece.compareDocumentPosition(document.querySelector('#dio-plan .names')) & 4"
+    assert plan.page.locator("#dio-plan .piece:not(.opening)").first.evaluate(after)
+
+
 def test_a_wall_is_dragged_as_one_undo_step(plan: EditorPage) -> None:
     before = plan.session.scene
     wall = wall_feet(before)[0]

@@ -70,8 +70,11 @@ def test_keys_stay_in_the_start_page_and_escape_leads_to_the_room_behind(newcome
     with page.expect_file_chooser():
         page.get_by_text("Choose a photo").click()
     page.get_by_text("Choose a photo").focus()
+    page.keyboard.press("7")
     page.keyboard.press("Escape")
     expect(page.locator("#dio-start")).to_have_count(0)
+    newcomer.settle()
+    expect(page.locator("#dio-plan")).to_have_count(0)
     assert newcomer.session.project is not None
     assert newcomer.session.project.name == "Example"
 

@@ -10,6 +10,16 @@ import onnx
 from onnx import TensorProto, helper, numpy_helper
 
 TYPES = {"f": TensorProto.FLOAT, "i": TensorProto.INT64, "u": TensorProto.UINT8}
+HQ_SAM = {
+    "image_embeddings": ("f", 4),
+    "interm_embeddings": ("f", 5),
+    "point_coords": ("f", 3),
+    "point_labels": ("f", 2),
+    "mask_input": ("f", 4),
+    "has_mask_input": ("f", 1),
+    "orig_im_size": ("f", 1),
+}
+"""Inputs of HQ-SAM's decoder: kinds of number and numbers of dimensions."""
 HUGE = 1 << 44
 """Elements that exceed any address space once they are multiplied by a picture's dimensions."""
 

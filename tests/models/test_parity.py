@@ -23,7 +23,7 @@ from diorama_core.models.inpainting import Lama, Migan
 from diorama_core.models.owlv2 import Owlv2
 from diorama_core.models.runtime import SessionPool
 from diorama_core.models.segment_anything import Sam2, SlimSam, sam3_tracker
-from tests.models import tiny_networks
+from tests.models import tiny_networks, tiny_sams
 
 
 def _photo(height: int, width: int, seed: int = 0) -> np.ndarray:
@@ -52,12 +52,12 @@ def owlv2(folder: Path) -> tuple[Any, Path]:
 
 @pytest.fixture(scope="module")
 def sam2(folder: Path) -> tuple[Any, Path, Path]:
-    return tiny_networks.sam2(folder / "sam2")
+    return tiny_sams.sam2(folder / "sam2")
 
 
 @pytest.fixture(scope="module")
 def slimsam(folder: Path) -> tuple[Any, Path, Path]:
-    return tiny_networks.slimsam(folder / "slimsam")
+    return tiny_sams.slimsam(folder / "slimsam")
 
 
 @pytest.fixture(scope="module")
@@ -114,7 +114,7 @@ def test_sam2_draws_the_same_masks(sam2: tuple[Any, Path, Path], photo: np.ndarr
 
 
 def test_sam3s_tracker_draws_the_same_masks(tmp_path: Path, photo: np.ndarray) -> None:
-    model, encoder, decoder = tiny_networks.sam3_tracker(tmp_path)
+    model, encoder, decoder = tiny_sams.sam3_tracker(tmp_path)
     height, width = photo.shape[:2]
     boxes = np.array([[20.0, 30.0, 100.0, 110.0], [5.0, 5.0, width - 5.0, height - 5.0]])
     facade = sam3_tracker(encoder, decoder, pool=SessionPool())
@@ -136,7 +136,7 @@ def test_sam3s_tracker_draws_the_same_masks(tmp_path: Path, photo: np.ndarray) -
 
 
 def test_hq_sam_draws_the_same_masks(tmp_path: Path, photo: np.ndarray) -> None:
-    model, encoder, decoder = tiny_networks.hq_sam(tmp_path)
+    model, encoder, decoder = tiny_sams.hq_sam(tmp_path)
     facade = HqSam(encoder, decoder, pool=SessionPool())
     height, width = photo.shape[:2]
     boxes = np.array([[20.0, 30.0, 100.0, 110.0], [40.0, 10.0, 90.0, 60.0]])

@@ -51,15 +51,6 @@ def test_the_large_detector_is_given_the_side_that_its_patches_need(tmp_path: Pa
 
 
 PICTURE = {"image": ("f", 4)}
-SAM_INPUTS = {
-    "image_embeddings": ("f", 4),
-    "interm_embeddings": ("f", 5),
-    "point_coords": ("f", 3),
-    "point_labels": ("f", 2),
-    "mask_input": ("f", 4),
-    "has_mask_input": ("f", 1),
-    "orig_im_size": ("f", 1),
-}
 
 
 def _segmenter(folder: Path, logit: float) -> list[Path]:
@@ -67,7 +58,7 @@ def _segmenter(folder: Path, logit: float) -> list[Path]:
     masks = {"iou_predictions": np.full((1, 1), 0.9), "low_res_masks": np.full((1, 1, 256, 256), logit)}
     return [
         _answering(folder / "e.onnx", {"input_image": ("f", 3)}, features),
-        _answering(folder / "d.onnx", SAM_INPUTS, masks),
+        _answering(folder / "d.onnx", small_graphs.HQ_SAM, masks),
     ]
 
 

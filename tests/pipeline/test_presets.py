@@ -26,7 +26,7 @@ from diorama_core.pose import RenderAndCompare
 from diorama_core.progress import Progress
 from diorama_core.provenance import DepthSource, FocalSource, GraphMethod
 from diorama_core.synthesis.layout_rooms import box_library
-from tests.models import tiny_networks
+from tests.models import tiny_networks, tiny_sams
 from tests.models.test_depth import HEIGHT, WIDTH, _Moge
 from tests.models.tiny_networks import install
 from tests.perception.language.stub_lmm import StubLmm, answering
@@ -67,7 +67,7 @@ class _Nothing:
 @pytest.fixture(scope="module")
 def graphs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[Path]]:
     folder = tmp_path_factory.mktemp("graphs")
-    _, encoder, decoder = tiny_networks.slimsam(folder)
+    _, encoder, decoder = tiny_sams.slimsam(folder)
     moge = (torch.zeros(1, 3, HEIGHT, WIDTH), torch.tensor(1800))
     names = ["points", "normal", "mask", "metric_scale"]
     yolox = (torch.zeros(1, 3, 416, 416),)

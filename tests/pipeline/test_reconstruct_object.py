@@ -14,7 +14,7 @@ from diorama_core.pipeline.presets import stages_for
 from diorama_core.pipeline.reconstruct_object import reconstruct_object
 from diorama_core.pipeline.run import build_scene
 from diorama_core.synthesis.layout_rooms import box_library
-from tests.models import tiny_networks
+from tests.models import tiny_networks, tiny_sams
 from tests.models.test_depth import HEIGHT, WIDTH, _Moge
 from tests.pipeline.test_presets import BOX, install
 
@@ -31,7 +31,7 @@ def test_a_box_is_looked_at_with_what_built_the_scene(
         names = ["points", "normal", "mask", "metric_scale"]
         graph = tiny_networks.export(_Moge(), moge, tmp_path / "m.onnx", ["image", "num_tokens"], names)
         install(store, "moge-2-vits", [graph])
-        install(store, "slimsam", tiny_networks.slimsam(tmp_path)[1:])
+        install(store, "slimsam", tiny_sams.slimsam(tmp_path)[1:])
     rgb = rng.integers(100, 140, (HEIGHT, WIDTH, 3)).astype(np.uint8)
     rgb[48:82, 44:88] = (200, 60, 40)
     box = LabelledBox(BOX, "chair", "chair")

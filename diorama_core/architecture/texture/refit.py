@@ -43,7 +43,7 @@ def refitted_textures(
     for plane in after.architecture.planes:
         # Below a finish is the photo's picture, which follows; the finish itself is made anew for its new rectangle.
         name = plane.texture if plane.finish is None else plane.photo_texture
-        old = before.plane(plane.id) if before.has_plane(plane.id) else None
+        old = before.plane(plane.id) if before.has_plane(plane.id) else _cut_from(before, name)
         if name is None or old is None or name not in textures or not _resized(old, plane):
             planes.append(plane)
             continue
@@ -75,6 +75,12 @@ def refitted(picture: UInt8[np.ndarray, "h w 3"], before: Plane, after: Plane) -
     if seen.all() or not seen.any():
         return colours.round().astype(np.uint8)
     return completed(colours, seen, after.colour, pixel_m, seen, ground=after.role == "floor")
+
+
+def _cut_from(before: Scene, name: str | None) -> Plane | None:
+    """The plane that had the picture of a new one: a new plane with a picture is a part of it."""
+    planes = before.architecture.planes
+    return next((p for p in planes if name == (p.texture if p.finish is None else p.photo_texture)), None)
 
 
 def _resized(before: Plane, after: Plane) -> bool:

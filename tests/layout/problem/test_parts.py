@@ -1,4 +1,4 @@
-"""Convex parts of a shape: decomposed once, read back from disk, decomposed again when the file is damaged."""
+"""Convex parts of a shape: they come along, or are decomposed once, read back, and made again from a damaged file."""
 
 from __future__ import annotations
 
@@ -7,8 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from diorama_core.geometry.convex import convex_parts
 from diorama_core.io.cache import LruCache
 from diorama_core.layout.problem import parts
+from diorama_core.library.catalogue import built_in_library
 from tests.primitives import PrimitiveLibrary
 
 
@@ -37,3 +39,17 @@ def test_parts_come_from_memory_then_disk_then_geometry(tmp_path: Path, monkeypa
     file.write_bytes(file.read_bytes()[:100])
     assert len(asked(restarted=True)) == len(first)
     assert len(made) == 2
+
+
+def test_the_parts_of_all_built_in_shapes_come_along() -> None:
+    missing = [s.id for s in built_in_library().shapes() if not parts.is_built_in(s)]
+    assert not missing, f"{missing[:5]} and others changed: run `python scripts/make_convex_parts.py`"
+
+
+def test_the_parts_that_come_along_are_those_that_would_be_made() -> None:
+    library = built_in_library()
+    for shape in library.shapes()[::150]:
+        come, made = parts.parts_of_shape(library, library.shape(shape.id)), convex_parts(library.mesh(shape.id))
+        assert [len(p.vertices) for p in come] == [len(p.vertices) for p in made], shape.id
+        for a, b in zip(come, made, strict=True):
+            np.testing.assert_allclose(a.vertices, b.vertices, atol=1e-5)
