@@ -98,6 +98,10 @@ class RoomMethod(StrEnum):
     """The objects and usual room sizes; the photo shows few lines."""
     PLAINRECON = "plainrecon"
     """PlainRecon as published."""
+    RENDER_AND_COMPARE = "render and compare"
+    """A discrete search after Stekovic et al. 2020."""
+    ACDC = "acdc"
+    """A plane for each segment, as ACDC has them."""
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from diorama_app.cli.arguments import (
     view,
 )
 from diorama_app.projects.formats import EXPORT_FORMATS
-from diorama_app.projects.options import POSES, ROOMS, BuildOptions, PhotoFiles, build_files
+from diorama_app.projects.options import POSES, ROOMS, SYSTEMS, BuildOptions, PhotoFiles, build_files
 from diorama_core.errors import InputError
 
 if TYPE_CHECKING:
@@ -115,13 +115,20 @@ def add_build(commands: Any) -> None:
         "--room",
         choices=ROOMS,
         default=ROOMS[0],
-        help="how planes are found in depth; plainrecon: as published, floor and walls only (default: %(default)s)",
+        help="how planes are found in depth, to compare with: the paper's PlainRecon or the baselines RaC and ACDC "
+        "(default: %(default)s)",
     )
     p.add_argument(
         "--pose",
         choices=POSES,
         help="how shapes are posed, to compare with: the paper's correspondences or a baseline, with the embedded "
         "features (default: the profile's)",
+    )
+    p.add_argument(
+        "--system",
+        choices=SYSTEMS,
+        default=SYSTEMS[0],
+        help="acdc: room, retrieval, poses and layout as ACDC has them, to compare with (default: %(default)s)",
     )
     p.add_argument("--seed", type=int, default=0, help="seed of random stages (the built-in ones use none)")
     p.add_argument("--json", action="store_true", help="print the result as JSON")
@@ -140,6 +147,7 @@ def _build(a: argparse.Namespace) -> None:
         library=a.library,
         room=a.room,
         pose=a.pose,
+        system=a.system,
     )
     if a.poses is not None:
         from diorama_app.cli.posed import build_posed

@@ -16,11 +16,13 @@ if TYPE_CHECKING:
     from diorama_core.pipeline.choices import NetworkChoice
     from diorama_core.pipeline.stages import Stages
     from diorama_core.progress import Progress
-    from diorama_core.protocols import PoseStage
+    from diorama_core.protocols import ArchitectureStage, PoseStage
 
-Room = Literal["closed", "plainrecon"]
-ROOMS: tuple[Room, ...] = ("closed", "plainrecon")
+Room = Literal["closed", "plainrecon", "rac", "acdc"]
+ROOMS: tuple[Room, ...] = ("closed", "plainrecon", "rac", "acdc")
 POSES = ("render-and-compare", "correspondence", "zsp", "gigapose-like", "best-match")
+System = Literal["diorama", "acdc"]
+SYSTEMS: tuple[System, ...] = ("diorama", "acdc")
 
 
 @dataclass(frozen=True)
@@ -50,6 +52,8 @@ class BuildOptions:
     room: Room = "closed"
     pose: str | None = None
     """One of `POSES`; None for the profile's."""
+    system: System = "diorama"
+    """"acdc" replaces room, retrieval, poses and layout by those of the system that the paper compares with."""
 
     def networks(self, files: PhotoFiles) -> NetworkChoice:
         """The networks that these options name.
@@ -85,24 +89,44 @@ def build_files(
         networks=options.networks(files),
         recipe=options.recipe,
         library=options.library,
-        stages=lambda stages: _with_options(stages, files, options),
+        stages=lambda stages: with_options(stages, files, options),
         output=output,
         progress=progress,
         warn=warn,
     )
 
 
-def _with_options(stages: Stages, files: PhotoFiles, options: BuildOptions) -> Stages:
+def with_options(stages: Stages, files: PhotoFiles, options: BuildOptions) -> Stages:
     """The profile's stages with those that options name."""
-    if options.room == "plainrecon":
-        from diorama_core.architecture.plainrecon.stage import PlainRecon
+    has_depth = files.depth is not None or stages.depth_prediction is not None
+    if options.system == "acdc":
+        if options.room != "closed" or options.pose is not None:
+            raise InputError("--system acdc has a room and poses of its own; leave out --room and --pose")
+        from diorama_core.pipeline.acdc import acdc_stages
 
-        if files.depth is None and stages.depth_prediction is None:
-            raise InputError("--room plainrecon reads depth: add --depth FILE or a profile with a depth network")
-        stages = replace(stages, architecture=PlainRecon())
+        return acdc_stages(stages, has_depth, diorama.open_library(options.library))
+    if options.room != "closed":
+        if not has_depth:
+            raise InputError(f"--room {options.room} reads depth: add --depth FILE or a profile with a depth network")
+        from diorama_core.pipeline.published import with_room
+
+        stages = with_room(stages, room_solver(options.room))
     if options.pose is not None:
         stages = replace(stages, pose=pose_solver(options.pose, diorama.open_library(options.library)))
     return stages
+
+
+def room_solver(name: Room) -> ArchitectureStage:
+    """The solver that finds a room in depth by this name, one of `ROOMS`."""
+    from diorama_core.architecture.acdc import AcdcRoom
+    from diorama_core.architecture.from_depth import PlanarRoom
+    from diorama_core.architecture.plainrecon.stage import PlainRecon
+    from diorama_core.architecture.rac.stage import RenderAndCompareRoom
+
+    solvers: dict[Room, ArchitectureStage] = {
+        "closed": PlanarRoom(), "plainrecon": PlainRecon(), "rac": RenderAndCompareRoom(), "acdc": AcdcRoom()
+    }  # fmt: skip
+    return solvers[name]
 
 
 def pose_solver(name: str, library: ShapeLibrary) -> PoseStage:

@@ -11,9 +11,11 @@ from diorama_core.scene.types import Scene, SceneObject
 AT_WALLS = frozenset({
     "bed", "sofa", "wardrobe", "dresser", "cabinet", "sideboard", "console table", "tv stand", "bookshelf", "desk",
     "refrigerator", "stove", "washing machine", "kitchen counter", "sink", "toilet", "bathtub", "night stand", "piano",
-    "fireplace", "shower", "radiator", "grandfather clock",
+    "fireplace", "shower", "radiator", "grandfather clock", "floor mirror",
 })  # fmt: skip
 """Categories whose back belongs to a wall."""
+FREE_STANDING = frozenset({"kitchen island"})
+"""Special kinds of these that people walk around."""
 MID_WALL = frozenset(
     {"sofa", "bed", "tv stand", "fireplace", "sideboard", "console table", "dresser", "kitchen counter"}
 )

@@ -10,16 +10,18 @@ from jaxtyping import Float
 
 from diorama_core.editing.collisions import WALKED_ON_M
 from diorama_core.editing.footprints import Quads, footprint_of, footprints, overlapping, to_outline, within
-from diorama_core.editing.habits import AT_WALLS, MID_WALL, belongs_before, stands
+from diorama_core.editing.habits import AT_WALLS, FREE_STANDING, MID_WALL, belongs_before, stands
 from diorama_core.editing.placement_candidates import Candidates
-from diorama_core.editing.relations import Relation, Stances, relation_cost
+from diorama_core.editing.relations import NO_FRONT, Relation, Stances, is_long, relation_cost
 from diorama_core.editing.room_frame import RoomFrame, door_floors, front_floor
 from diorama_core.library.taxonomy import broad, category
 from diorama_core.scene.types import Pose, Scene, SceneObject
 
 USUAL_WEIGHT = 0.6
-SEATS_APART_M = 0.7
+SEATS_APART_M = 0.62
 """Seats around one table are at least so far apart, where there is room."""
+OTHER_SIDE_COST = 0.15
+"""Half of what it costs to sit in the same direction from a table's middle as another."""
 DOUBLE_BED_M, BEDSIDE_M = 1.2, 0.55
 """Wider beds are entered from both sides."""
 
@@ -90,7 +92,8 @@ def _habits(
         return cost + 0.05 * np.linalg.norm(stances.places - frame.middle, axis=1)
     cost += _in_the_way(scene, item, quads, relations)
     free = any(r.kind in ("in middle", "around", "facing", "between", "opposite") for r in relations)
-    walled = kind in AT_WALLS and not (free and kind == "desk")
+    walled = bool({kind, item.category} & AT_WALLS) and item.category not in FREE_STANDING
+    walled = walled and not (free and kind == "desk")
     wall_cost = relation_cost(Relation("against wall"), stances, item.category, {}, frame) if frame.walls else 0.0
     if walled:
         cost += 0.9 * np.minimum(wall_cost, 2.0)
@@ -98,7 +101,7 @@ def _habits(
             cost += 0.5 * _off_middle(stances, frame)
     elif kind in ("plant", "floor lamp", "basket", "trash can", "coat rack", "guitar"):
         cost += 0.25 * np.minimum(to_outline(stances.places, frame.outline), 2.0)
-    elif kind in ("table", "coffee table"):
+    elif kind in ("table", "coffee table") or item.category in FREE_STANDING:
         cost += 0.25 * np.linalg.norm(stances.places - frame.middle, axis=1) * (kind == "table")
         cost += 0.8 * np.maximum(
             0.9 - to_outline(stances.places, frame.outline) + 0.3 * float(item.size_m[:2].max()), 0.0
@@ -115,7 +118,10 @@ def _habits(
             cost += 1.5 * np.maximum(SEATS_APART_M - apart, 0.0)
     if kind == "bed" and float(item.size_m[1]) > DOUBLE_BED_M:
         roomy = item.size_m + np.array([0.0, 2 * BEDSIDE_M, 0.0])
-        cost += 0.6 * ~within(Stances(roomy, stances.places, stances.yaws_rad).quads, frame.outline)
+        sides = Stances(roomy, stances.places, stances.yaws_rad).quads
+        cost += 0.6 * ~within(sides, frame.outline)
+        for quad in door_floors(scene.objects):
+            cost += 0.6 * overlapping(sides, quad)
     return cost + _own_front(scene, item, stances, relations, frame)
 
 
@@ -157,10 +163,10 @@ def _own_front(
 def _beside_siblings(
     item: SceneObject, relation: Relation, stances: Stances, known: Mapping[str, SceneObject]
 ) -> Float[np.ndarray, "n"]:
-    """Of several of a kind, one stands on each side of what they are beside; opposite something, they are in a row."""
+    """Of several of a kind, one stands on each side of what they are beside or around; opposite something, in a row."""
     cost = np.zeros(len(stances.places))
     target = known.get(relation.targets[0]) if relation.targets else None
-    if target is None or relation.kind not in ("beside", "opposite", "in front of"):
+    if target is None or relation.kind not in ("beside", "opposite", "in front of", "around"):
         return cost
     R = target.pose.R_world_object[:2, :2]
     local = (stances.places - target.pose.position[:2]) @ R
@@ -170,6 +176,17 @@ def _beside_siblings(
         theirs = (other.pose.position[:2] - target.pose.position[:2]) @ R
         if relation.kind == "beside" and float(np.abs(theirs).max()) < float(target.size_m[:2].max()) / 2 + 1.0:
             cost += 0.5 * (np.sign(local[:, 1]) == np.sign(theirs[1]))
+            if broad(item.category) not in NO_FRONT:
+                cost += 0.25 * (1.0 - np.cos(stances.yaws_rad - other.pose.yaw_rad))
+        elif relation.kind == "around":
+            lengths = np.maximum(np.linalg.norm(local, axis=1) * float(np.linalg.norm(theirs)), 1e-6)
+            short = int(target.size_m[1] < target.size_m[0])  # seats are opposite one another across a long table
+            facing = (
+                np.sign(local[:, short]) * np.sign(theirs[short])
+                if is_long(target.size_m)
+                else local @ theirs / lengths
+            )
+            cost += OTHER_SIDE_COST * (1.0 + facing)
         elif relation.kind != "beside":
             cost += 0.6 * np.minimum(np.abs(local[:, 0] - theirs[0]), 2.0)
     return cost

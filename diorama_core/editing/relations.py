@@ -37,7 +37,15 @@ MIDDLE_SHARE = 0.2
 FACING_RAD = float(np.radians(30.0))
 FACING_REACH_M = 4.0
 SEATS_FACING_M = 1.1
+SEAT_COST = 1.5
+"""Of a metre from one's own place at a table; wishes are judged without it, so another place is as good for them."""
 SEATS = ("chair", "armchair", "stool", "office chair", "sofa", "bench", "ottoman")
+BEFORE_M = {"ottoman": 0.3, "bench": 0.3, "coffee table": 0.45, "stool": 0.5}
+"""How far before something these are used; farther off they are only somewhere in the room."""
+TOO_HOT_M = {"fireplace": 0.8}
+"""Before these nobody sits nearer."""
+LONG_RATIO = 1.25
+"""What is longer than wide by this has a long side, which lies along what it stands before."""
 NO_FRONT = frozenset({
     "plant", "rug", "ceiling lamp", "floor lamp", "lamp", "vase", "ottoman", "stool", "basket", "coffee table", "table",
     "side table", "trash can", "box",
@@ -52,6 +60,10 @@ class Relation:
     kind: RelationKind
     targets: tuple[str, ...] = ()
     """Ids of objects: two for "between", none for relations to the room."""
+    aside_m: float = 0.0
+    """Of several in a row before or opposite something: how far to the target's left this one's middle is."""
+    seat_m: tuple[float, float] | None = None
+    """Of several around a table: this one's place, from the table's middle along its own axes."""
 
     def words(self, scene: Scene) -> str:
         """In words: "beside sofa 1"."""
@@ -60,7 +72,7 @@ class Relation:
                 self.kind
             ]
         names = [scene.object(t).label for t in self.targets if scene.has_object(t)]
-        return f"{self.kind} {' and '.join(names)}"
+        return f"{self.kind} {' and '.join(names) or 'each other'}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,11 +121,16 @@ def relation_cost(
         return _between(stances, found)
     cost = np.zeros(len(stances.places))
     for target in found:
-        cost = cost + _to_target(relation.kind, stances, kind, target)
+        cost = cost + _to_target(relation.kind, stances, kind, target, relation.aside_m)
+        if relation.seat_m is not None:
+            local = (stances.places - target.pose.position[:2]) @ target.pose.R_world_object[:2, :2]
+            cost = cost + SEAT_COST * np.minimum(np.linalg.norm(local - np.array(relation.seat_m), axis=1), 1.0)
     return cost / len(found)
 
 
-def _to_target(kind: RelationKind, stances: Stances, category_name: str, target: SceneObject) -> Float[np.ndarray, "n"]:
+def _to_target(
+    kind: RelationKind, stances: Stances, category_name: str, target: SceneObject, aside_m: float = 0.0
+) -> Float[np.ndarray, "n"]:
     quad = footprint_of(target)
     local = (stances.places - target.pose.position[:2]) @ target.pose.R_world_object[:2, :2]
     half = target.size_m[:2] / 2
@@ -145,8 +162,14 @@ def _to_target(kind: RelationKind, stances: Stances, category_name: str, target:
         sign = 1.0 if kind == "in front of" else -1.0
         ahead = sign * local[:, 0] - half[0]
         aside = np.maximum(np.abs(local[:, 1]) - half[1], 0.0)
+        off = np.abs(local[:, 1] - aside_m)
         return (
-            np.maximum(-ahead, 0.0) / 0.2 + aside / 0.3 + np.maximum(gap - 1.0, 0.0) / 0.4 + 0.1 * np.abs(local[:, 1])
+            np.maximum(-ahead, 0.0) / 0.2
+            + aside / 0.3
+            + np.maximum(gap - 1.0, 0.0) / 0.4
+            + (0.1 if aside_m == 0.0 else 0.5) * off
+            + _at_use(category_name, target, gap)
+            + 0.4 * _across(stances, target)
         )
     if kind in ("left of", "right of"):  # as seen by whoever stands before the target
         sign = 1.0 if kind == "right of" else -1.0
@@ -154,12 +177,21 @@ def _to_target(kind: RelationKind, stances: Stances, category_name: str, target:
         ahead = np.maximum(np.abs(local[:, 0]) - half[0], 0.0)
         return np.maximum(-aside, 0.0) / 0.2 + ahead / 0.4 + np.maximum(gap - NEAR_M, 0.0) / 0.4 + 0.15 * gap
     if kind == "around":
-        seat = np.maximum(looking - FACING_RAD, 0.0) / FACING_RAD if _is_seat(category_name) else 0.0
-        at_front = 0.0
+        seat, at_front = np.zeros(len(local)), np.zeros(len(local))
+        if _is_seat(category_name):  # a long table is looked at across, not along to its middle
+            spine = half - half.min()
+            across = (np.clip(local, -spine, spine) - local) @ target.pose.R_world_object[:2, :2].T
+            seat = (
+                np.maximum(_angle(stances.yaws_rad, np.arctan2(across[:, 1], across[:, 0])) - FACING_RAD, 0.0)
+                / FACING_RAD
+            )
         if broad(target.category) == "desk":
             ahead = np.maximum(half[0] - local[:, 0], 0.0) / 0.3
             at_front = ahead + np.maximum(np.abs(local[:, 1]) - 0.5 * half[1], 0.0) / 0.3
-        return np.maximum(gap - 0.5, 0.0) / 0.3 + seat + 0.4 * gap + at_front
+        square = 0.5 * np.abs(np.sin(2.0 * (stances.yaws_rad - target.pose.yaw_rad))) if is_long(target.size_m) else 0.0
+        corner = np.maximum(np.abs(local) - half, 0.0).min(axis=1) / 0.3 if is_long(target.size_m) else 0.0
+        near = 1.0 if broad(target.category) in ("table", "desk") else 0.4
+        return np.maximum(gap - 0.5, 0.0) / 0.3 + seat + near * gap + at_front + square + corner
     if kind == "facing":
         return (
             np.maximum(looking - FACING_RAD, 0.0) / FACING_RAD
@@ -178,7 +210,7 @@ def _to_target(kind: RelationKind, stances: Stances, category_name: str, target:
             + aside / 0.5
             + turned
             + 0.3 * heading
-            + 0.3 * np.abs(local[:, 1])
+            + (0.3 if aside_m == 0.0 else 0.6) * np.abs(local[:, 1] - aside_m)
             + _too_far(apart)
             + _too_near(category_name, target, gap)
         )
@@ -188,6 +220,25 @@ def _to_target(kind: RelationKind, stances: Stances, category_name: str, target:
         edges = np.abs(own - np.abs(half - stances.size_m[:2] / 2))
         return np.minimum(own, edges).min(axis=1) / 0.15 * 0.6 + square
     return np.zeros(len(local))
+
+
+def _at_use(name: str, target: SceneObject, gap_m: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
+    """Footstools are before the seat, benches at the bed's foot, and nobody sits in the fire."""
+    far = 0.6 * np.maximum(gap_m - BEFORE_M.get(broad(name), np.inf), 0.0)
+    return far + 0.6 * np.maximum(TOO_HOT_M.get(broad(target.category), 0.0) - gap_m, 0.0)
+
+
+def is_long(size_m: Float[np.ndarray, "3"]) -> bool:
+    """Whether something of this size has long sides, seen from above."""
+    return float(size_m[:2].max()) > LONG_RATIO * float(size_m[:2].min())
+
+
+def _across(stances: Stances, target: SceneObject) -> Float[np.ndarray, "n"]:
+    """0 where an object's long side runs along the target's front, 1 where it stands out from it."""
+    if not is_long(stances.size_m):
+        return np.zeros(len(stances.places))
+    long_rad = stances.yaws_rad + (0.0 if stances.size_m[0] > stances.size_m[1] else np.pi / 2)
+    return np.abs(np.cos(long_rad - target.pose.yaw_rad))
 
 
 def _is_seat(name: str) -> bool:
@@ -213,8 +264,15 @@ def _between(stances: Stances, found: list[SceneObject]) -> Float[np.ndarray, "n
     a, b = found[0].pose.position[:2], found[1].pose.position[:2]
     along = (b - a) / max(float(np.linalg.norm(b - a)), 1e-6)
     t = (stances.places - a) @ along / max(float(np.linalg.norm(b - a)), 1e-6)
-    aside = np.abs((stances.places - a) @ np.array([-along[1], along[0]]))
-    return np.maximum(np.abs(t - 0.5) - 0.2, 0.0) / 0.2 + np.maximum(aside - 0.3, 0.0) / 0.3 + 0.2 * aside
+    across = np.array([-along[1], along[0]])
+    aside = np.abs((stances.places - a) @ across)
+    # Between two beds is also at their heads.
+    beside_both = min(float(np.ptp(footprint_of(o) @ across)) for o in found[:2]) / 2 - 0.1
+    return (
+        np.maximum(np.abs(t - 0.5) - 0.2, 0.0) / 0.2
+        + np.maximum(aside - max(beside_both, 0.3), 0.0) / 0.3
+        + 0.2 * aside
+    )
 
 
 def _against_wall(stances: Stances, frame: RoomFrame) -> Float[np.ndarray, "n"]:
@@ -224,7 +282,8 @@ def _against_wall(stances: Stances, frame: RoomFrame) -> Float[np.ndarray, "n"]:
         back = wall.off_of(stances.places) - stances.size_m[0] / 2
         t = wall.t_of(stances.places)
         off_end = np.maximum(np.maximum(-t, t - wall.length_m), 0.0)
-        best = np.minimum(best, np.maximum(np.abs(back) - AT_WALL_M, 0.0) / 0.3 + turned / FACING_RAD + off_end)
+        off = np.maximum(np.abs(back) - AT_WALL_M, 0.0) / 0.3 + 2.0 * np.clip(back, 0.0, AT_WALL_M)
+        best = np.minimum(best, off + turned / FACING_RAD + off_end)
     return best
 
 

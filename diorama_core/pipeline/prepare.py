@@ -17,6 +17,7 @@ from diorama_core.progress import Progress
 from diorama_core.render.image_search import ImageSearch
 from diorama_core.render.template_cache import TemplateCache
 from diorama_core.retrieval.appearance_similarity import EmbeddedSimilarity
+from diorama_core.retrieval.seen_forms import has_form, shape_form
 from diorama_core.workers import Workers, workers
 
 _CHUNK = 12
@@ -97,7 +98,7 @@ class _Wanted:
             (is_built is None or is_built(shape.id))
             and SHARED_APPEARANCES.has(shape.content_hash, _appearances())
             and (not self.parts or are_cached(shape))
-            and (not self.views or EmbeddedSimilarity(library).is_prepared(shape))
+            and (not self.views or (EmbeddedSimilarity(library).is_prepared(shape) and has_form(shape)))
             and (not self.templates or TemplateCache().has(shape))
         )
 
@@ -115,11 +116,12 @@ def _prepare(name: str, wanted: _Wanted, shape_ids: Sequence[str]) -> list[tuple
         try:
             shape = library.shape(shape_id)
             library.glb(shape_id)
-            SHARED_APPEARANCES.get(shape.content_hash, _appearances(), partial(library.parts, shape_id))
+            appearance = SHARED_APPEARANCES.get(shape.content_hash, _appearances(), partial(library.parts, shape_id))
             if wanted.parts:
                 parts_of_shape(library, shape)
             if wanted.views:
                 similarity.prepare(shape)
+                shape_form(shape, appearance)
             if wanted.templates:
                 retained.get(library, shape)
         except DioramaError as error:

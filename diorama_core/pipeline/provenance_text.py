@@ -115,6 +115,8 @@ def _room(source: RoomSource, words: _Words) -> str:
         RoomMethod.PHOTO_CUES: f"{count} from lines, edges and colours of the photo and the objects",
         RoomMethod.USUAL_SIZES: f"{count} from the objects and usual room sizes; few lines were seen",
         RoomMethod.PLAINRECON: f"PlainRecon as published: {clusters}",
+        RoomMethod.RENDER_AND_COMPARE: f"render and compare: {floor} and {source.walls_found} walls by discrete search",
+        RoomMethod.ACDC: f"as ACDC: {floor} and {source.walls_found} walls, a rectangle for each segment",
     }[source.method]
 
 

@@ -166,7 +166,7 @@ class HierarchicalRetrieval:
         return float((fit.max() + of_appearances * like) / (of_size + of_outline + of_appearances))
 
     def _appearance(self, shape: Shape) -> ShapeAppearance:
-        folder = default_cache_dir() / "appearance"
+        folder = default_cache_dir() / "appearances"
         return SHARED_APPEARANCES.get(shape.content_hash, folder, lambda: self.library.parts(shape.id))
 
     def _of_form(self, shape: Shape, item: DetectedObject) -> float:

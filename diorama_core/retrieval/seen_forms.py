@@ -3,31 +3,48 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 import trimesh
+from jaxtyping import Float
 
 from diorama_core.geometry.shape_appearance import ShapeAppearance
-from diorama_core.io.cache import LruCache
 from diorama_core.library.form import MEASURED, VALUES, form_of, value_indices
 from diorama_core.library.record import Shape
+from diorama_core.retrieval.feature_cache import cached_features, has_features
 
 _SAYS = 0.2
 """Power of the probability that multiplies a retrieval score: scores of good and bad shapes differ little."""
 _FLOOR = 0.03
 """Added to every probability: the namer learnt from rendered pictures and is too sure of itself on photos."""
 
-_FORM_OF: LruCache[str, Mapping[str, str | int]] = LruCache(4096)
+FORM_FEATURES = "form-1"
+"""Cache key; to be changed with what `library.form` measures."""
 
 
-def shape_form(shape: Shape, appearance: ShapeAppearance) -> Mapping[str, str | int]:
-    """The form of a shape at its own size (`library.form.form_of`)."""
+def shape_form(shape: Shape, appearance: ShapeAppearance, folder: Path | None = None) -> Mapping[str, str | int]:
+    """The form of a shape at its own size (`library.form.form_of`), values beyond those of `VALUES` left out.
 
-    def found() -> Mapping[str, str | int]:
+    It is kept on disk, since doors and drawers are counted on a shape that is built for this alone.
+
+    Args:
+        shape: whose.
+        appearance: its triangles.
+        folder: cache folder of features; `features` in Diorama's cache folder by default.
+    """
+
+    def found() -> Float[np.ndarray, "1 n"]:
         mesh = trimesh.Trimesh(appearance.vertices, appearance.faces, process=False)
-        return form_of(shape.id, shape.category, mesh, np.asarray(shape.size_m))
+        return value_indices(form_of(shape.id, shape.category, mesh, np.asarray(shape.size_m)))[None].astype(float)
 
-    return _FORM_OF.get(shape.content_hash, found)
+    indices = cached_features(FORM_FEATURES, shape, found, folder)[0].astype(int).tolist()
+    return {name: VALUES[name][k] for name, k in zip(MEASURED, indices, strict=True) if 0 <= k < len(VALUES[name])}
+
+
+def has_form(shape: Shape, folder: Path | None = None) -> bool:
+    """Whether the form of a shape is on disk."""
+    return has_features(FORM_FEATURES, shape, folder)
 
 
 def seen_form_factor(form: Mapping[str, str | int], seen_form: Sequence[float]) -> float:

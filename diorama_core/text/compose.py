@@ -25,7 +25,15 @@ from diorama_core.synthesis import furnished_room
 from diorama_core.text.customs import DECOR
 from diorama_core.text.edit_places import lifted_onto
 from diorama_core.text.prompt import RequestedObject, RoomRequest, Wish, understood_prompt
-from diorama_core.text.requested_relations import placement_order, targets_of, usual_relations
+from diorama_core.text.requested_relations import (
+    in_row,
+    is_sat_around,
+    placement_order,
+    seated,
+    stands_between,
+    targets_of,
+    usual_relations,
+)
 from diorama_core.text.requested_room import empty_room, with_essentials
 from diorama_core.text.requested_shapes import dressed, requested_shapes
 
@@ -105,6 +113,9 @@ class _Composer:
         wanted, added = with_essentials(self.request)
         shapes = {k: requested_shapes(self.library, self.rng, o, wanted) for k, o in enumerate(wanted)}
         self.scene = empty_room(self.request, self.library, self.rng, wanted, shapes, self.attempt)
+        if any("window" in w.targets for o in wanted for w in o.wishes):
+            heaters = [o.id for o in self.scene.objects if broad(o.category) == "radiator"]
+            self.scene = edits.remove(self.scene, heaters)  # they hang where that is to stand
         for k in placement_order(wanted):
             self._place(k, wanted[k], shapes[k], wanted)
         self._resolve_late(wanted)
@@ -133,15 +144,18 @@ class _Composer:
             relations = self._resolved(k, request, copy, object_id)
             usual = usual_relations(self.scene, request, copy)
             usual += self._face_to_face(request, copy, placed, object_id)
+            usual = seated(self.scene, usual, request, copy) + self._at_sides(request, wanted)
+            usual += [Relation("in middle")] if is_sat_around(request, wanted) else []
+            central = stands_between(request, wanted) or is_sat_around(request, wanted)
+            middle = np.array([*RoomFrame.of(self.scene).middle, 0.0]) if central else None
             for shape in (chosen,) if chosen is not None else shapes[:SHAPES_TRIED]:
                 number = sum(o.category == shape.category for o in self.scene.objects) + 1
                 blank = Pose.upright(np.zeros(3))
                 item = SceneObject(
                     object_id, f"{shape.category} {number}", shape.category, shape.id, shape.size_m, blank
                 )
-                spot = self.positioner.best(
-                    self.scene, item, [r for _, r in relations], usual=usual, others=self.relations
-                )
+                wishes = in_row(seated(self.scene, [r for _, r in relations], request, copy), request, copy, shape)
+                spot = self.positioner.best(self.scene, item, wishes, usual=usual, others=self.relations, near=middle)
                 if spot is None:
                     continue
                 self.scene = self.positioner.put(self.scene, item, spot)
@@ -183,13 +197,22 @@ class _Composer:
     ) -> list[Relation]:
         """Of some that stand so to each other, the first stands free, and wishes of the second what that wishes."""
         for wish in request.wishes:
-            if wish.each_other and copy == 0 and request.count > 1:
-                return [Relation("in middle")]
-            if wish.each_other and copy == 1 and placed:
+            if wish.each_other and wish.kind in ("facing", "opposite") and copy == 0 and request.count > 1:
+                at_walls = any(w.kind == "against wall" for w in request.wishes)
+                return [] if at_walls else [Relation("in middle")]
+            if wish.each_other and wish.kind in ("facing", "opposite") and copy == 1 and placed:
                 relation = Relation(wish.kind, (object_id,))
                 self.wishes[placed[0]].append((wish, relation))
                 self.relations[placed[0]].append(relation)
         return []
+
+    def _at_sides(self, request: RequestedObject, wanted: Sequence[RequestedObject]) -> list[Relation]:
+        """Beds stand on either side of what is wished between them, which is there before."""
+        return [
+            Relation("beside", (self.ids[k][0],))
+            for k, other in enumerate(wanted)
+            if self.ids.get(k) and stands_between(other, wanted) == request.category
+        ]
 
     def _unmet(self) -> list[tuple[str, Wish, Relation]]:
         frame = RoomFrame.of(self.scene)

@@ -7,7 +7,7 @@ scene as the clauses before it leave it.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Literal
 
 from diorama_core.editing.relations import RelationKind
@@ -55,6 +55,11 @@ _ANY_VERB = "|".join(words for words in _VERBS.values())
 _CLAUSES = re.compile(
     rf"\s*(?:;|\.(?!\d)|,?\s*\b(?:and )?then\b|,?\s*\band\s+(?=(?:{_ANY_VERB})\b)|,\s*(?=(?:{_ANY_VERB})\b))\s*"
 )
+_SHOULD = re.compile(
+    r"^(?:please )?((?:the|all|every|each|my|these|those) .+?) (?:should|must|ought to|ha(?:s|ve) to)(?: be)? "
+)
+_AND_SO = frozenset({"of", "more", "new", "another", "please", "also", "and", "pair", "set", "few", "some", "with"})
+"""Words that may stand beside what is named anew."""
 _SCALES = {"twice": 2.0, "double": 2.0, "half": 0.5}
 EXAMPLES = "make all chairs wooden; move the lamp beside the sofa; remove everything on the desk; a rug under the table"
 MAX_COMMAND_CHARS = 1000
@@ -90,6 +95,7 @@ def edits_of(
         EditRefused: the clause is not understood, or names what is not there; one line that says which.
     """
     selector = Selector(scene, library, last, selected)
+    clause = _SHOULD.sub(r"make \1 ", clause)
     found = _VERB.match(clause)
     verb = "" if found is None else str(found.lastgroup)
     rest = clause if found is None else clause[found.end() :].strip()
@@ -108,14 +114,41 @@ def edits_of(
     if verb in ("swap", "change"):
         return (_swap(selector, clause, rest),)
     if verb in ("paint", "make"):
-        return (_look(selector, clause, rest),)
+        return _each_alone(_look, selector, clause, rest)
     if verb in ("larger", "smaller"):
         return (Resize(objects=list(_subject(selector, rest)), factor=_factor(rest, verb == "larger")),)
     if verb == "move":
-        return (_move(selector, clause, rest),)
+        return _each_alone(_move, selector, clause, rest)
     if verb == "put":
-        return (_move(selector, clause, rest),) if _is_known(selector, rest) else _inserts(selector, clause, rest)
+        known = _is_known(selector, rest)
+        return _each_alone(_move, selector, clause, rest) if known else _inserts(selector, clause, rest)
+    if not verb and not _is_wish(rest):
+        raise EditRefused(f"“{clause}” is not understood; for example: {EXAMPLES}")
     return _inserts(selector, clause, rest)
+
+
+def _each_alone(
+    read: Callable[[Selector, str, str], Edit], selector: Selector, clause: str, rest: str
+) -> tuple[Edit, ...]:
+    """ "the desk white and the chair black" is two edits, "the desk and the chair black" is one of two objects."""
+    parts = [p for p in re.split(r",\s*(?:and\s+)?|\band\b", rest) if p.strip()]
+    if len(parts) > 1:
+        try:
+            return tuple(read(selector, clause, part.strip()) for part in parts)
+        except EditRefused:  # not all of them are whole by themselves
+            return (read(selector, clause, rest),)
+    return (read(selector, clause, rest),)
+
+
+def _is_wish(text: str) -> bool:
+    """Whether words without a verb name something new: "a rug under the table", not "hide the lamp"."""
+    head, _ = split_places(text)
+    if re.search(r"\b(?:the|this|that|these|those|my|our)\b", head):
+        return False
+    phrase, _ = noun_phrase(head)
+    named = {} if phrase is None else {*phrase.label.split(), *phrase.appearance}
+    others = [w for w in re.findall(r"[a-z0-9'-]+", head) if w not in named and w not in NUMBERS and not w.isdigit()]
+    return phrase is None or set(others) <= _AND_SO
 
 
 def _carried(scene: Scene, carrier: str) -> tuple[str, ...]:
@@ -165,7 +198,9 @@ def _places(selector: Selector, places: Sequence[Placing]) -> list[Place]:
             found.append(Place(relation="against wall", targets=[]))
         else:
             targets = list(selector.targets(place.words))
-            found.append(Place(relation=place.kind, targets=targets))
+            openings = all(selector.scene.object(t).category in ("window", "door") for t in targets)
+            by = place.kind == "under" and openings  # under a window is at it, on the floor
+            found.append(Place(relation="near" if by else place.kind, targets=targets))
     return found
 
 
@@ -180,7 +215,7 @@ def _move(selector: Selector, clause: str, rest: str) -> Edit:
     if not places:
         raise EditRefused(f"“{clause}”: where to? For example: move the lamp beside the sofa")
     qualifiers, goals = _split(selector, head, places)
-    ids = selector.objects(head, qualifiers)
+    ids = selector.objects(head, qualifiers, movable=True)
     wanted = _places(selector, goals)
     if not wanted:
         raise EditRefused(f"“{clause}”: where to? For example: beside the sofa, against the wall, in the corner")
@@ -293,6 +328,8 @@ def _look(selector: Selector, clause: str, rest: str) -> Edit:
     """ "make the chairs wooden", "paint the walls blue", "make the table bigger", "make the chair face the door"."""
     facing = re.match(r"(.*?)\s*\b(?:face|look at|point (?:at|to))\b\s+(.*)$", rest)
     if facing is not None and facing[1]:
+        if facing[2] in ("each other", "one another"):
+            return Move(objects=list(_subject(selector, facing[1])), places=[Place(relation="facing", targets=[])])
         return Turn(objects=list(_subject(selector, facing[1])), toward=selector.targets(facing[2])[0])
     resized = re.match(
         r"(.*?)\s*\b((?:a (?:bit|little) |much |\d+ ?(?:%|percent) |twice as |half as |\d+(?:\.\d+)? times )*"

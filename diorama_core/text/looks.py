@@ -40,6 +40,8 @@ HOME_COLOURS: dict[str, Colour] = {
 """Paints and cloths, less pure than the colours of screens that go by these names."""
 _SHADES = {"light": 0.55, "pale": 0.65, "pastel": 0.6, "bright": 0.0, "dark": -0.5, "deep": -0.4}
 _AROUND = ("a", "an", "the", "it", "into", "in", "to", "all", "be", "more", "look", "made", "of", "colour", "color")
+EVEN_SIDED, EVEN_RATIO = frozenset({"round", "square", "circular"}), 1.15
+"""Words for what is as wide as deep, and how far a shape may be from that."""
 ALIKE_RATIO = 1.35
 """Shapes whose sizes differ by no more are stretched into one another's box."""
 
@@ -106,6 +108,8 @@ def has_look(shape: Shape, word: str) -> bool:
     Colours and materials are those of most of the shape: a sofa in a black frame is not black.
     """
     asked = normal({"wooden": "wood", "metallic": "metal"}.get(word, word))
+    if asked in EVEN_SIDED and max(shape.size_m[:2]) > EVEN_RATIO * min(shape.size_m[:2]):
+        return False
     kinds = {asked, *narrower(asked)}
     said = main_words(shape) | set(tokens(shape.style))
     if look_of(word) is None:

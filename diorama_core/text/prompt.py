@@ -23,7 +23,7 @@ _COMPOUNDS = (
 )
 """After the name of a room, these name a piece of furniture."""
 _JOINTS = re.compile(
-    r",|;|\.|\band\b|\bwith\b(?! (?:its|their) backs?)|\bplus\b|\bcontaining\b|\bfeaturing\b|\bthat has\b|\bhas\b|\bhaving\b"
+    r",|;|\.|\band\b|(?<!aligned )(?<!in line )(?<!lined up )\bwith\b(?! (?:its|their) backs?)|\bplus\b|\bcontaining\b|\bfeaturing\b|\bthat has\b|\bhas\b|\bhaving\b"
     r"|\bwhile\b|\bincluding\b|\bfurnished\b|\bwhere\b|\bholding\b|\bcarrying\b"
 )
 _REWRITES = (
@@ -34,6 +34,7 @@ _REWRITES = (
         "facing",
     ),
     (r"\bopposite (?:each other|one another)\b", "facing each other"),
+    (r"\b(?:aligned|lined up|in a (?:row|line))\b(?! with)", "aligned with each other"),
     (r"\b(?:that|which|who)\b", " "),
     (
         r"\b(?:is|are|(?<!night )(?<!tv )(?<!television )(?<!coat )(?<!umbrella )(?<!hat )stands?|sits?|hangs?|lies|placed|positioned|located|standing|hanging|leaning|lying|arranged|mounted|set)\b",
@@ -168,6 +169,8 @@ def _place(reading: _Reading, index: int | None, place: Placing, clause: str) ->
     """Add a wish to a request; what it refers to is asked for, too, where it was not named before."""
     if place.kind in OF_ROOM:
         _wish(reading, index, Wish(place.kind))
+        if re.search(r"\bopposite walls\b", clause):
+            _wish(reading, index, Wish("opposite", each_other=True))
         return
     if re.search(r"\b(?:each other|one another)\b", place.words):
         _wish(reading, index, Wish(place.kind, each_other=True))

@@ -3,14 +3,39 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
-from diorama_core.editing.relations import SEATS, Relation
+from diorama_core.editing.relations import LONG_RATIO, SEATS, Relation
+from diorama_core.library.record import Shape
 from diorama_core.library.taxonomy import broad, category
 from diorama_core.scene.types import Scene
 from diorama_core.text.customs import USUAL
 from diorama_core.text.prompt import RequestedObject, Wish
 
 _FIRST = ("bed", "sofa", "kitchen counter", "bathtub", "desk", "table", "wardrobe", "tv stand", "piano", "bookshelf")
+
+
+ROW_GAP_M, ROW_MOST = 0.15, 3
+"""Between seats in a row, and how many make one."""
+
+
+SEAT_WIDTH_M, SEAT_OUT_M = 0.62, 0.1
+"""Of a long side, for each who sits there, and how far their seat's middle is from the edge."""
+
+
+def in_row(relations: Sequence[Relation], request: RequestedObject, copy: int, shape: Shape) -> list[Relation]:
+    """The relations of one of several seats that are wished before or opposite something: each has its place.
+
+    Args:
+        relations: of this copy, with ids.
+        request: what is asked for; how many of it are in the row.
+        copy: which of them, from 0.
+        shape: its width decides how far the places are apart.
+    """
+    if not 1 < request.count <= ROW_MOST or broad(request.category) not in ("armchair", "chair", "office chair"):
+        return list(relations)
+    aside = (copy - (request.count - 1) / 2) * (float(shape.size_m[1]) + ROW_GAP_M)
+    return [replace(r, aside_m=aside) if r.kind in ("opposite", "in front of") else r for r in relations]
 
 
 def placement_order(wanted: Sequence[RequestedObject]) -> list[int]:
@@ -29,13 +54,64 @@ def placement_order(wanted: Sequence[RequestedObject]) -> list[int]:
     )
 
 
+def seats_at(size_m: Sequence[float], count: int) -> tuple[tuple[float, float], ...]:
+    """Places around a table that is longer than wide, from its middle along its own axes: in pairs across it, the
+    ends last; none for a table without long sides.
+
+    Args:
+        size_m: of the table.
+        count: of seats.
+    """
+    length, width = max(size_m[:2]), min(size_m[:2])
+    if length <= LONG_RATIO * width:
+        return ()
+    across = max(int(length / SEAT_WIDTH_M), 1)
+    each = min(across, (count + 1) // 2) if count <= 2 * across else across
+    if count >= 6 and count % 2 == 0 and each * 2 == count:
+        each -= 1  # people take the ends before they sit close
+    along = [(k - (each - 1) / 2) * length / each for k in range(each)]
+    flat = [(x, side * (width / 2 + SEAT_OUT_M)) for x in along for side in (1.0, -1.0)]
+    flat += [(side * (length / 2 + SEAT_OUT_M), 0.0) for side in (1.0, -1.0)]
+    return tuple(p if size_m[0] >= size_m[1] else (p[1], p[0]) for p in flat[:count])
+
+
+def seated(scene: Scene, relations: Sequence[Relation], request: RequestedObject, copy: int) -> list[Relation]:
+    """The relations of one of several seats with its place at the long table that they are around."""
+
+    def placed(relation: Relation) -> Relation:
+        target = next((t for t in relation.targets if scene.has_object(t)), None)
+        if relation.kind != "around" or target is None or broad(scene.object(target).category) != "table":
+            return relation
+        places = seats_at(tuple(scene.object(target).size_m), request.count)
+        return replace(relation, seat_m=places[copy]) if copy < len(places) else relation
+
+    return [placed(r) for r in relations] if request.count > 1 else list(relations)
+
+
+def is_sat_around(request: RequestedObject, wanted: Sequence[RequestedObject]) -> bool:
+    """Whether seats are wished around a table, which then needs free floor on all sides."""
+    around = any(w.kind == "around" and request.category in w.targets for o in wanted for w in o.wishes)
+    return around and broad(request.category) in ("table", "coffee table") and not request.wishes
+
+
+def stands_between(request: RequestedObject, wanted: Sequence[RequestedObject]) -> str:
+    """The category of beds that something is wished between; they are placed at its sides, after it. Else empty."""
+    for wish in request.wishes:
+        for o in wanted if wish.kind == "between" and len(wish.targets) == 1 else ():
+            if o.category == wish.targets[0] and broad(o.category) == "bed" and o.count > 1:
+                return o.category
+    return ""
+
+
 def _depth(k: int, wanted: Sequence[RequestedObject], seen: tuple[int, ...]) -> int:
     """How many requests in a row have to be placed before one."""
     if k in seen:
         return 0
-    named = {t for w in wanted[k].wishes for t in w.targets}
+    own = stands_between(wanted[k], wanted)
+    named = {t for w in wanted[k].wishes for t in w.targets} - {own}
+    named |= {o.category for o in wanted if wanted[k].category == stands_between(o, wanted)}
     for _, targets in USUAL.get(wanted[k].category, USUAL.get(broad(wanted[k].category), ())):
-        named |= {t for t in targets if not _asks_for(t, wanted[k].category, wanted, ())}
+        named |= {t for t in targets if t != own and not _asks_for(t, wanted[k].category, wanted, ())}
     named -= {wanted[k].category}
     below = [_depth(j, wanted, (*seen, k)) for j, o in enumerate(wanted) if o.category in named and j != k]
     return 1 + max(below, default=-1)

@@ -53,7 +53,8 @@ def requested_shapes(
         roomy = tuple(s for s in shapes if 2.0 * float(sum(s.size_m[:2])) >= SEAT_WIDTH_M * seats)
         shapes = roomy or tuple(sorted(shapes, key=lambda s: -float(sum(s.size_m[:2])))[:3])
     asked = [w for w in request.appearance if look_of(w) is not None]
-    most = [sum(has_look(s, w) for w in asked) for s in shapes]
+    said = [w for w in request.appearance if size_request(w) is None]
+    most = [sum(has_look(s, w) for w in said) for s in shapes]
     named = [s for s, n in zip(shapes, most, strict=True) if n == max(most)]
     sized = any(size_request(w) is not None for w in request.appearance)
     if (request.label != request.category and not asked) or sized:

@@ -11,13 +11,14 @@ from diorama_core.editing.relations import Relation, is_met
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.errors import EditRefused
 from diorama_core.library.record import ShapeLibrary, record_of
-from diorama_core.library.taxonomy import with_kin
+from diorama_core.library.taxonomy import category, with_kin
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Scene, SceneObject
 from diorama_core.text.looks import has_look
 from diorama_core.text.phrases import NounPhrase, Placing, noun_phrase
 
 LISTED = 12
+_ORDINALS = {"first": 1, "second": 2, "third": 3, "fourth": 4, "fifth": 5, "sixth": 6, "last": 0}
 _LARGER = frozenset({"larger", "bigger", "largest", "biggest", "large", "big"})
 _SMALLER = frozenset({"smaller", "smallest", "small", "little", "tiny"})
 
@@ -39,8 +40,13 @@ class Selector:
         self.last, self.selected = tuple(last), tuple(selected)
         self._frame = RoomFrame.of(scene)
 
-    def objects(self, words: str, places: Sequence[Placing] = ()) -> tuple[str, ...]:
+    def objects(self, words: str, places: Sequence[Placing] = (), *, movable: bool = False) -> tuple[str, ...]:
         """Ids of the objects that a phrase means, with the phrases of place that tell them apart.
+
+        Args:
+            words: the phrase; "the second chair" is that of its label or order.
+            places: where it is.
+            movable: it is to go somewhere: of several, those on a ceiling are not meant.
 
         Raises:
             EditRefused: it means none, or one of several without saying which.
@@ -57,6 +63,13 @@ class Selector:
             return (exact,)
         found = self._named(phrase, words)
         found = self._in_place(found, places, words)
+        if movable and not phrase.every:
+            found = [o for o in found if category(o.category).mount != "ceiling"] or found
+        number = next((k for w, k in _ORDINALS.items() if w in words.lower().split()), None)
+        if number is not None and not phrase.plural:
+            if number > len(found):
+                raise EditRefused(f"there are only {len(found)} of these: {_names(found)}")
+            return (found[number - 1 if number else -1].id,)
         return self._counted(found, phrase, words)
 
     def targets(self, words: str) -> tuple[str, ...]:

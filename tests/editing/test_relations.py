@@ -57,3 +57,53 @@ def test_relations_to_the_room() -> None:
         assert relation_cost(Relation(kind), Stances.of(moved), one.category, {}, FRAME)[0] > MET
     assert len(FRAME.corners) == len(FRAME.walls) == 4
     assert FRAME.nearest_wall(middle) is wall
+
+
+def cost_of(kind: RelationKind, one, target, **more) -> float:
+    relation = Relation(kind, (target.id,), **more)
+    return float(relation_cost(relation, Stances.of(one), one.category, {target.id: target}, FRAME)[0])
+
+
+def test_a_bench_lies_across_the_foot_of_a_bed() -> None:
+    bed = item("bed", (2.0, 1.5, 0.5), 0.0, 0.0)
+    across, along = (
+        item("bench", (0.4, 1.2, 0.45), 1.3 + far, 0.0, yaw) for far, yaw in ((0.0, 0.0), (0.4, np.pi / 2))
+    )
+    assert cost_of("in front of", across, bed) + 0.3 < cost_of("in front of", along, bed)
+
+
+def test_footstools_are_near_and_nobody_sits_in_the_fire() -> None:
+    chair, fire = item("armchair", (0.8, 0.8, 0.9), 0.0, 0.0), item("fireplace", (0.4, 1.4, 1.2), 0.0, 0.0)
+    near, far = (item("ottoman", (0.5, 0.5, 0.4), x, 0.0) for x in (0.85, 1.5))
+    assert cost_of("in front of", near, chair) < cost_of("in front of", far, chair)
+    hot, warm = (item("armchair", (0.8, 0.8, 0.9), x, 0.0, np.pi) for x in (0.7, 1.5))
+    assert cost_of("in front of", warm, fire) < cost_of("in front of", hot, fire)
+
+
+def test_seats_look_across_a_long_table_and_not_at_its_corners() -> None:
+    table = item("table", (0.9, 2.4, 0.74), 0.0, 0.0)
+    straight = item("chair", (0.5, 0.45, 0.9), 0.72, 0.9, np.pi)
+    turned = item("chair", (0.5, 0.45, 0.9), 0.72, 0.9, np.pi + 0.8)
+    corner = item("chair", (0.5, 0.45, 0.9), 0.8, 1.5, np.pi)
+    assert cost_of("around", straight, table) <= MET
+    assert cost_of("around", straight, table) < min(cost_of("around", turned, table), cost_of("around", corner, table))
+    assert cost_of("around", corner, table) > MET
+
+
+def test_one_of_several_has_its_own_place() -> None:
+    table = item("table", (0.9, 2.4, 0.74), 0.0, 0.0)
+    here, there = (item("chair", (0.5, 0.45, 0.9), 0.72, y, np.pi) for y in (0.6, -0.6))
+    place = (0.6, 0.6)
+    assert cost_of("around", here, table, seat_m=place) < cost_of("around", there, table, seat_m=place) - 0.5
+    left, right = (item("armchair", (0.8, 0.8, 0.9), 2.5, y, np.pi) for y in (0.5, -0.5))
+    assert cost_of("opposite", left, SOFA, aside_m=0.5) < cost_of("opposite", right, SOFA, aside_m=0.5) - 0.3
+
+
+def test_between_two_beds_is_at_their_heads_too() -> None:
+    beds = {i: item("bed", (2.0, 1.0, 0.5), 0.0, y) for i, y in (("a", -0.9), ("b", 0.9))}
+    at_heads, off = (item("night stand", (0.4, 0.5, 0.5), x, 0.0) for x in (-0.75, -1.6))
+    costs = [
+        float(relation_cost(Relation("between", ("a", "b")), Stances.of(o), "night stand", beds, FRAME)[0])
+        for o in (at_heads, off)
+    ]
+    assert costs[0] <= MET < costs[1]

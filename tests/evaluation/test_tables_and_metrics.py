@@ -237,7 +237,20 @@ def test_the_recipe_is_long_enough_and_names_are_unique():
 def _tables():
     failed = PoseScores.failed(4)
     result = CaseResult("living-0-0", SceneScores.failed(4), 1.0, 1.0, "DioramaError: nothing")
-    item = ObjectResult("living-0-0", "a", "chair", ("furniture", "complete"), 5.0, 4.0, 9.0, 8.0, 2, True, False)
+    item = ObjectResult(
+        "living-0-0",
+        "a",
+        "chair",
+        ("furniture", "complete"),
+        5.0,
+        4.0,
+        9.0,
+        8.0,
+        2,
+        True,
+        False,
+        (("words alone", 6.0, 7.0),),
+    )
     room = room_box(4.0, 4.0).planes
     view = Camera(Intrinsics.from_fov(*SIZE, 1.2), moved_camera())
     scores = architecture_scores(room, room, view)

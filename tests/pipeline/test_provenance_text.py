@@ -152,6 +152,14 @@ def test_plainrecon_says_whether_it_found_a_floor() -> None:
     assert room(RoomSource(RoomMethod.PLAINRECON)) == assumed
 
 
+def test_baselines_say_who_they_are() -> None:
+    searched = RoomSource(RoomMethod.RENDER_AND_COMPARE, 3, floor_found=True)
+    assert room(searched) == "render and compare: floor and 3 walls by discrete search"
+    assert room(RoomSource(RoomMethod.ACDC, 1, floor_found=True)) == (
+        "as ACDC: floor and 1 walls, a rectangle for each segment"
+    )
+
+
 def test_a_graph_of_geometry_says_why_no_model_decided() -> None:
     assert graph(None) == "geometry: contact, containment and usual places"
     assert graph(LanguageModelUse("m", 0, 1, trouble="it is down")) == "geometry (it is down)"

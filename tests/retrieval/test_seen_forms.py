@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.geometry.shape_appearance import appearance_of
+from diorama_core.io.cache import LruCache
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.form import MEASURED, VALUES
-from diorama_core.retrieval.seen_forms import seen_form_factor, shape_form
+from diorama_core.retrieval import feature_cache, seen_forms
+from diorama_core.retrieval.seen_forms import has_form, seen_form_factor, shape_form
 
 LIBRARY = built_in_library()
 
@@ -58,3 +62,18 @@ def test_on_average_no_form_is_preferred(seed: int) -> None:
         smooth = (part + 0.03) / (part + 0.03).sum()
         logs = [np.log(seen_form_factor({name: value}, flat)) for value in VALUES[name]]
         assert float(smooth @ np.array(logs)) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_form_is_measured_once_for_all_processes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shape = LIBRARY.shape("night-stand-white-open")
+    appearance = appearance_of(LIBRARY.parts(shape.id))
+    assert not has_form(shape, tmp_path)
+    first = shape_form(shape, appearance, tmp_path)
+    assert has_form(shape, tmp_path)
+    monkeypatch.setattr(feature_cache, "_CACHE", LruCache(4))  # as another process
+
+    def never(*_: object) -> dict[str, str | int]:
+        raise AssertionError("the form is on disk")
+
+    monkeypatch.setattr(seen_forms, "form_of", never)
+    assert shape_form(shape, appearance, tmp_path) == first

@@ -10,6 +10,7 @@ from diorama_core.errors import EditRefused
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis.grammar import furnished_room
+from diorama_core.text.compose import composed_room
 from diorama_core.text.edit_grammar import clauses_of, edits_of
 from diorama_core.text.edit_plan import Insert, Move, Paint, Place, Remove, Resize, Restyle, Shift, Swap, Turn
 from diorama_core.text.looks import look_of
@@ -73,6 +74,38 @@ def test_commands_become_edits(command: str, living: Scene) -> None:
     assert edits_of(command, living, built_in_library()) == (LIVING[command],)
 
 
+def test_each_of_two_has_its_own_look_and_place(living: Scene) -> None:
+    library = built_in_library()
+    looks = edits_of("make the sofa white and the piano black", living, library)
+    assert looks == (Restyle(objects=["sofa_1"], look="white"), Restyle(objects=["piano_1"], look="black"))
+    both = edits_of("make the sofa and the piano black", living, library)
+    assert both == (Restyle(objects=["sofa_1", "piano_1"], look="black"),)
+    places = edits_of("move the plant in the corner and the side table beside the sofa", living, library)
+    assert places == (
+        Move(objects=["plant_1"], places=[Place(relation="in corner")]),
+        Move(objects=["side_table_1"], places=beside("sofa_1")),
+    )
+
+
+def test_what_should_be_is_made_so_and_ordinals_choose(living: Scene, dining: Scene) -> None:
+    library = built_in_library()
+    assert edits_of("the sofa should be black", living, library) == (Restyle(objects=["sofa_1"], look="black"),)
+    assert edits_of("remove the second picture", living, library) == (Remove(objects=["picture_2"]),)
+    assert edits_of("remove the last picture", living, library) == (Remove(objects=["picture_4"]),)
+    facing = edits_of("the sofa and the piano should face each other", living, library)
+    assert facing == (Move(objects=["sofa_1", "piano_1"], places=[Place(relation="facing", targets=[])]),)
+
+
+def test_a_lamp_that_goes_somewhere_is_none_of_the_ceiling() -> None:
+    scene = composed_room("a living room with a sofa and a floor lamp", built_in_library()).scene
+    assert {o.category for o in scene.objects} >= {"ceiling lamp", "floor lamp", "window"}
+    library = built_in_library()
+    moved = edits_of("move the lamp beside the sofa", scene, library)
+    assert moved == (Move(objects=["floor_lamp_1"], places=beside("sofa_1")),)
+    under = edits_of("move the sofa under the window", scene, library)
+    assert under == (Move(objects=["sofa_1"], places=[Place(relation="near", targets=["window_1"])]),)
+
+
 def test_lists_are_several_edits_and_clauses_follow_each_other(dining: Scene) -> None:
     found = edits_of("add a floor lamp and two plants", dining, built_in_library())
     assert [e.what for e in found if isinstance(e, Insert)] == ["floor lamp", "plants"]
@@ -110,6 +143,11 @@ REFUSED = {
     "turn the sofa": "which way",
     "swap the sofa": "for what",
     "whatever": "not understood",
+    "hide the lamp": "not understood",
+    "lock the sofa": "not understood",
+    "align the pictures with the sofa": "not understood",
+    "delete the ninth picture": "there are 4",
+    "delete the sixth picture": "only 4 of these",
     "remove it": "not clear",
     "add a window": "part of the room",
     "remove the vase on the sofa": "no vase",

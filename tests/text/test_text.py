@@ -224,3 +224,29 @@ def test_a_bad_image_endpoint_is_one_clear_line(case: str) -> None:
 def test_unusable_prompts_are_one_clear_line(prompt: str) -> None:
     with pytest.raises(InputError):
         scene_from_text(prompt, built_in_library())
+
+
+def test_desks_at_opposite_walls_look_at_each_other() -> None:
+    desks = understood_prompt("an office with two desks against opposite walls").objects[0]
+    assert Wish("against wall") in desks.wishes
+    assert Wish("opposite", each_other=True) in desks.wishes
+    shelves = understood_prompt("four bookshelves aligned along the wall").objects[0]
+    assert Wish("aligned with", each_other=True) in shelves.wishes
+
+
+def test_a_round_table_is_as_wide_as_deep() -> None:
+    scene = composed_room("a round coffee table and an armchair", built_in_library()).scene
+    table = next(o for o in scene.objects if o.category == "coffee table")
+    assert max(table.size_m[:2]) < 1.15 * min(table.size_m[:2])
+
+
+def test_night_stands_and_armchairs_are_where_people_put_them() -> None:
+    scene = composed_room("a bedroom with a double bed and two night stands beside the bed", built_in_library()).scene
+    bed = next(o for o in scene.objects if o.category == "bed")
+    sides = [
+        (bed.pose.R_world_object.T @ (o.pose.position - bed.pose.position))[1]
+        for o in scene.objects
+        if o.category == "night stand"
+    ]
+    assert len(sides) == 2
+    assert sides[0] * sides[1] < 0

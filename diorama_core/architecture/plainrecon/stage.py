@@ -47,12 +47,12 @@ class PlainRecon:
         progress.report(0.0, "Clustering the measured points by their normals")
         hidden = object_pixels((inputs.photo.height, inputs.photo.width), objects)
         surface = measured_surface(inputs.depth_m, geometry.camera, hidden)
-        floor, walls = self._sheets(surface)
+        floor, walls = floor_and_walls(surface, self.seed)
         progress.report(0.7, "Bounding the planes")
-        base = _assumed_floor(geometry.camera.position) if floor is None else floor
-        planes = [_plane("floor", base, GUESS_CONFIDENCE if floor is None else CONFIDENCE)]
+        base = assumed_floor(geometry.camera.position) if floor is None else floor
+        planes = [plane_of("floor", base, GUESS_CONFIDENCE if floor is None else CONFIDENCE)]
         standing = joined(base, [upright(w, base) for w in walls])
-        planes += [_plane(f"wall_{k}", w, CONFIDENCE) for k, w in enumerate(standing, 1)]
+        planes += [plane_of(f"wall_{k}", w, CONFIDENCE) for k, w in enumerate(standing, 1)]
         architecture = Architecture(coloured(tuple(planes), inputs.photo.rgb, geometry.camera, objects))
         progress.report(1.0, "Floor and walls are bounded")
         return ArchitectureEstimate(
@@ -62,30 +62,41 @@ class PlainRecon:
             source=RoomSource(RoomMethod.PLAINRECON, walls_found=len(walls), floor_found=floor is not None),
         )
 
-    def _sheets(self, surface: MeasuredSurface) -> tuple[Sheet | None, list[Sheet]]:
-        free = ~surface.is_object & (surface.normals != 0).any(axis=1)
-        points, normals = surface.points[free], surface.normals[free]
-        labels = planar_clusters(points, normals, self.seed)
-        sizes = np.bincount(labels[labels >= 0], minlength=1)
-        facing = [float(normals[labels == k][:, 2].mean()) if sizes[k] else 0.0 for k in range(len(sizes))]
-        level = [k for k in range(len(sizes)) if facing[k] > UP_COSINE]
-        standing = [k for k in range(len(sizes)) if abs(facing[k]) <= UP_COSINE and sizes[k] >= MIN_POINTS]
 
-        def sheet(k: int) -> Sheet:
-            return fitted_sheet(points[labels == k], surface.camera_position)
+def floor_and_walls(surface: MeasuredSurface, seed: int = 0) -> tuple[Sheet | None, list[Sheet]]:
+    """A rectangle around every planar piece that stands, and around the largest one that is level and looks up.
 
-        floor = sheet(max(level, key=lambda k: int(sizes[k]))) if level else None
-        return floor, [sheet(k) for k in standing]
+    Args:
+        surface: measured points; those of objects are left out.
+        seed: of K-means.
+    """
+    free = ~surface.is_object & (surface.normals != 0).any(axis=1)
+    points, normals = surface.points[free], surface.normals[free]
+    labels = planar_clusters(points, normals, seed)
+    sizes = np.bincount(labels[labels >= 0], minlength=1)
+    facing = [float(normals[labels == k][:, 2].mean()) if sizes[k] else 0.0 for k in range(len(sizes))]
+    level = [k for k in range(len(sizes)) if facing[k] > UP_COSINE]
+    standing = [k for k in range(len(sizes)) if abs(facing[k]) <= UP_COSINE and sizes[k] >= MIN_POINTS]
+
+    def sheet(k: int) -> Sheet:
+        return fitted_sheet(points[labels == k], surface.camera_position)
+
+    floor = sheet(max(level, key=lambda k: int(sizes[k]))) if level else None
+    return floor, [sheet(k) for k in standing]
 
 
-def _assumed_floor(eye: Float[np.ndarray, "3"]) -> Sheet:
+def assumed_floor(eye: Float[np.ndarray, "3"]) -> Sheet:
+    """A square of floor at height 0 around the camera."""
     reach = ASSUMED_FLOOR_M * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
     corners = np.concatenate([eye[:2] + reach, np.zeros((4, 1))], axis=1)
     return Sheet(np.array([0.0, 0.0, 1.0]), 0.0, corners)
 
 
-def _plane(name: str, sheet: Sheet, confidence: float) -> Plane:
-    """Corners counter-clockwise seen from inside; a wall starts at its lower left."""
+def plane_of(name: str, sheet: Sheet, confidence: float) -> Plane:
+    """The sheet as a plane of the room, a wall unless it is called "floor".
+
+    Corners counter-clockwise seen from inside; a wall starts at its lower left.
+    """
     corners = sheet.corners
     area = np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0)
     corners = corners if area @ sheet.normal > 0 else corners[::-1]

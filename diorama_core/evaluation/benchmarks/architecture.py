@@ -10,7 +10,9 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 from jaxtyping import Float32
 
+from diorama_core.architecture.acdc import AcdcRoom
 from diorama_core.architecture.plainrecon.stage import PlainRecon
+from diorama_core.architecture.rac.stage import RenderAndCompareRoom
 from diorama_core.artefacts import Inputs
 from diorama_core.errors import Cancelled
 from diorama_core.evaluation.benchmarks.cases import LeftOut, attempted, recipe
@@ -89,6 +91,10 @@ def run(
             ("PlainRecon as published, true masks and depth", view.inputs, PlainRecon()),
             ("PlainRecon as published, true masks, depth with 2 % noise", noisy, PlainRecon()),
             ("PlainRecon as published, depth of the empty room", _emptied(view), PlainRecon()),
+            ("RaC, true masks and depth", view.inputs, RenderAndCompareRoom()),
+            ("RaC, true masks, depth with 2 % noise", noisy, RenderAndCompareRoom()),
+            ("ACDC, true masks and depth", view.inputs, AcdcRoom()),
+            ("ACDC, true masks, depth with 2 % noise", noisy, AcdcRoom()),
             ("picture and boxes", photo_only(view), None),
         )
         for name, inputs, stage in rows:

@@ -54,6 +54,8 @@ from diorama_core.synthesis.truth import TruthView
 log = logging.getLogger(__name__)
 
 RETRIEVALS = (1, 4, 8)
+PAPER_LAYOUT = "O, P, S, R"
+"""The row of the optimiser's ablation in which all four stages run."""
 CATEGORY_NAMES = {"trash can": "bin", "television": "display", "monitor": "display", "desk": "table"}
 """Scan2CAD's names of categories, where they differ."""
 _PUBLISHED = {(TRUE_DEPTH, GIVEN): paper.POSE_TRUE_DEPTH, (ESTIMATED_DEPTH, GIVEN): paper.POSE_ESTIMATED_DEPTH}
@@ -73,6 +75,8 @@ class PoseBench:
     ablation: tuple[tuple[str, tuple[PoseScores, ...]], ...]
     groups: tuple[tuple[str, GroupCounts], ...]
     """With true depth and true shapes, by group and by "category: ..."."""
+    groups_after: tuple[tuple[str, GroupCounts], ...] = ()
+    """The same after the paper's four stages of layout."""
 
     def tables(self) -> tuple[Table, ...]:
         """The solvers under every condition, then the paper's group, retrieval-count, ablation and category tables."""
@@ -82,6 +86,7 @@ class PoseBench:
                 for depth, shapes, solvers in self.compared
             ),
             groups_table(self.groups),
+            groups_table(self.groups_after, "after the paper's layout"),
             retrievals_table(self.retrievals),
             ablation_table(self.ablation),
             all_in_one_table(self.ablation),
@@ -116,6 +121,7 @@ class _Tally:
         }
         self.ablation: dict[str, list[PoseScores]] = {}
         self.groups: dict[str, list[tuple[float, ...]]] = {}
+        self.groups_after: dict[str, list[tuple[float, ...]]] = {}
 
     def finished(self, seed: int) -> PoseBench:
         """All of them."""
@@ -130,6 +136,7 @@ class _Tally:
             retained,
             tuple((name, tuple(rows)) for name, rows in self.ablation.items()),
             tuple((name, _counted(rows)) for name, rows in sorted(self.groups.items())),
+            tuple((name, _counted(rows)) for name, rows in sorted(self.groups_after.items())),
         )
 
 
@@ -163,7 +170,8 @@ def _one_room(view: TruthView, solvers: SideBySide, tally: _Tally, progress: Pro
             rows.append(pose_scores(view, scenes.get(solver), library))
         if (depth, shapes) == (TRUE_DEPTH, GIVEN):
             _count_groups(view, scenes.get(OURS), library, tally.groups)
-            _arrange(view, scenes.get(OURS), library, tally.ablation, progress)
+            arranged = _arrange(view, scenes.get(OURS), library, tally.ablation, progress)
+            _count_groups(view, arranged.get(PAPER_LAYOUT), library, tally.groups_after)
     for depth, by_count in tally.retained.items():
         for k, rows in by_count.items():
             progress.report(0.8, f"{name}: {k} shapes kept, {depth}")
@@ -208,24 +216,34 @@ def _arrange(
     library: ShapeLibrary,
     ablation: dict[str, list[PoseScores]],
     progress: Progress,
-) -> None:
-    """Every row of the optimiser's ablation for one room."""
+) -> Mapping[str, Scene]:
+    """Every row of the optimiser's ablation for one room; the arranged scenes by row."""
     rows: list[tuple[str, LayoutStage, Scene | None]] = [("none", LeaveAsIs(), observed)]
     rows += [
         (name, PaperRecipe(library, stages=k), observed)
-        for k, name in enumerate(("O", "O, P", "O, P, S", "O, P, S, R"), start=1)
+        for k, name in enumerate(("O", "O, P", "O, P, S", PAPER_LAYOUT), start=1)
     ]
     feasible = layout_recipe("feasible", library)
     rows += [
         ("all-in-one", AllInOneRecipe(library), observed),
         ("feasible", feasible, observed),
-        ("true graph", feasible, None if observed is None else with_true_graph(view, observed)),
-        ("true architecture", feasible, None if observed is None else with_true_architecture(view, observed)),
     ]
+    if observed is not None:
+        graph, room = with_true_graph(view, observed), with_true_architecture(view, observed)
+        for name, stage in (("", PaperRecipe(library)), ("feasible, ", feasible)):
+            rows += [(f"{name}true graph", stage, graph), (f"{name}true architecture", stage, room)]
+    else:
+        rows += [
+            (f"{name}true {what}", feasible, None) for name in ("", "feasible, ") for what in ("graph", "architecture")
+        ]
+    found: dict[str, Scene] = {}
     for name, stage, scene in rows:
         progress.report(0.3, f"layout: {name}")
         arranged = None if scene is None else _tried(stage.optimise, scene, Progress())
         ablation.setdefault(name, []).append(pose_scores(view, None if arranged is None else arranged[0], library))
+        if arranged is not None:
+            found[name] = arranged[0]
+    return found
 
 
 def with_true_graph(view: TruthView, scene: Scene) -> Scene:

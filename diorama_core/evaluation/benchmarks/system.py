@@ -27,8 +27,10 @@ from diorama_core.evaluation.metrics.scene import SceneScores, scene_scores
 from diorama_core.evaluation.reports.tables import Table
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import UNKNOWN
+from diorama_core.pipeline.acdc import acdc_stages
+from diorama_core.pipeline.published import published_acdc_stages, published_stages
 from diorama_core.pipeline.run import Built, build_scene
-from diorama_core.pipeline.stages import embedded_stages
+from diorama_core.pipeline.stages import Stages, embedded_stages
 from diorama_core.progress import Progress
 from diorama_core.synthesis.artefacts import photo_only
 from diorama_core.synthesis.splits import split_library
@@ -51,6 +53,8 @@ class Way:
     inputs: Callable[[TruthView], Inputs]
     truth: frozenset[str] = frozenset()
     """Names of `substitution.SUBSTITUTES` that take the place of the stages' results."""
+    stages: Callable[[Inputs, ShapeLibrary], Stages] | None = None
+    """Other stages than the embedded ones, for a system to compare with."""
 
 
 def masks_only(view: TruthView) -> Inputs:
@@ -79,12 +83,20 @@ def _jittered(box: Box, view: TruthView, rng: np.random.Generator) -> Box:
     return float(x1), float(y1), float(min(max(x2, x1 + 2), k.width)), float(min(max(y2, y1 + 2), k.height))
 
 
+def _acdc(inputs: Inputs, library: ShapeLibrary) -> Stages:
+    """ACDC without networks: the embedded stages stand in for them."""
+    return acdc_stages(embedded_stages(inputs, library), inputs.depth_m is not None, library)
+
+
 WAYS: Mapping[str, Way] = {
     "depth": Way(TRUE_INPUTS, lambda view: view.inputs),
     "masks": Way("true masks, the photo's own depth", masks_only),
     "photo": Way(PHOTO_ALONE, photo_only),
     "unnamed": Way(f"{PHOTO_ALONE}, without classes", unnamed),
     "jittered": Way(f"{PHOTO_ALONE}, boxes off by 4 %", jittered),
+    "acdc": Way(f"ACDC, {TRUE_INPUTS}", lambda view: view.inputs, stages=_acdc),
+    "published": Way("the paper's system, true masks, networks", masks_only, stages=published_stages),
+    "published-acdc": Way("ACDC, true masks, networks", masks_only, stages=published_acdc_stages),
 }
 """What may be given, by the name that `--given` takes."""
 USUAL_WAYS = ("depth", "photo")
@@ -213,6 +225,8 @@ def build_case(
         if "masks" in way.truth:
             inputs = with_true_masks(inputs, view)
         stages = embedded_stages(inputs, searched)
+        if way.stages is not None:
+            stages = way.stages(inputs, searched)
         if "shape" in way.truth:  # the true shapes are not among those searched
             everything = embedded_stages(inputs, library)
             stages = replace(stages, pose=everything.pose, layout=everything.layout)

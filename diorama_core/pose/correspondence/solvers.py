@@ -112,14 +112,14 @@ class CorrespondencePose:
                 inputs.photo.rgb, obj.mask, obj.box, depth.depth_m, depth.normals_world, geometry.camera, self.grid
             )
             candidates = [records[i] for i, _ in ranked[obj.id]]
-            compared = self._compare(crop, candidates)
+            compared = self.compare(crop, candidates)
             for kind in kinds:
                 poses = [(s, self._solve(kind, c)) for s, c in zip(candidates, compared, strict=False)]
                 found[kind].append(_candidates(obj, geometry.camera, [(s, p) for s, p in poses if p is not None]))
         return {kind: tuple(f for f in of_kind if f.candidates) for kind, of_kind in found.items()}
 
-    def _compare(self, crop: Crop, shapes: Sequence[Shape]) -> list[Compared]:
-        """The picture against all views of all shapes; nothing where picture or depth are empty."""
+    def compare(self, crop: Crop, shapes: Sequence[Shape]) -> list[Compared]:
+        """The picture against all views of all shapes, in their order; nothing where picture or depth are empty."""
         inside = np.flatnonzero(crop.view.foreground[0])
         if len(inside) == 0 or not np.isfinite(crop.points_camera).all(axis=1).any():
             return []

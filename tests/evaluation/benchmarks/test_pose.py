@@ -105,6 +105,7 @@ def test_a_column_for_each_reading(view, library) -> None:
     )
     assert table.row("a")["Acc"] == table.row("a")["strict Acc"] == table.row("a")["own Acc"] == 0.5
     assert table.row("b")["own rAcc"] == 0
+    assert (table.row("a")["relation"], table.row("b")["relation"]) == (0.5, 0.0)
     assert "ZSP (paper, other dataset) | 0.10 | 0.20 | 0.30 | 0.40 | –" in table.to_markdown()
 
 
@@ -117,9 +118,31 @@ def test_a_room_that_fails_counts_for_every_solver(view, library, solvers, monke
     for _, _, named in bench.compared:
         assert [len(rows) for _, rows in named] == [1] * (1 + len(BASELINES))
         assert all(rows[0].pairs.acc == 0 and rows[0].asked == len(view.asked) for _, rows in named)
-    assert len(bench.tables()) == len(CONDITIONS) + 5
+    assert len(bench.tables()) == len(CONDITIONS) + 6
     assert replace(bench, seed=1).to_json()["seed"] == 1
+    rows = {name for name, _ in bench.ablation}
+    assert rows >= {
+        "O, P, S, R",
+        "true graph",
+        "true architecture",
+        "feasible, true graph",
+        "feasible, true architecture",
+    }
+    after = dict(bench.groups_after)
+    assert after
+    assert all(group.every == 0 for group in after.values())
 
 
 def test_the_views_are_the_papers() -> None:
     assert len(HALF_GRID) == 180
+
+
+def test_groups_are_counted_after_the_papers_layout_too(view, library) -> None:
+    ablation: dict[str, list[PoseScores]] = {}
+    arranged = pose_bench._arrange(view, without_unasked(view), library, ablation, pose_bench.Progress())
+    assert pose_bench.PAPER_LAYOUT in arranged
+    assert ablation["true graph"][0].structure > 0.9
+    assert ablation["true graph"] != [] != ablation["feasible, true architecture"]
+    groups: dict[str, list[tuple[float, ...]]] = {}
+    pose_bench._count_groups(view, arranged[pose_bench.PAPER_LAYOUT], library, groups)
+    assert sum(len(rows) for name, rows in groups.items() if name in ("household", "furniture")) == len(view.asked)

@@ -90,7 +90,7 @@ def test_the_scale_network_says_how_large_and_how_far_turned() -> None:
     crop = crop_object(
         room.inputs.photo.rgb, item.mask, item.box, depth.depth_m, depth.normals_world, room.camera, GRID
     )
-    compared = stage._compare(crop, [LIBRARY.shape("chair")])[0]
+    compared = stage.compare(crop, [LIBRARY.shape("chair")])[0]
     view = int(compared.by_belief[0])
     one, double = (from_one_match(compared, view, _Turner(s, 0.0)) for s in (1.0, 2.0))
     turned = from_one_match(compared, view, _Turner(1.0, 0.5))

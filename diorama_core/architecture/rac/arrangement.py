@@ -1,0 +1,131 @@
+"""The picture cut into convex cells by the lines at which planes meet.
+
+A plane's inverse depth is linear in the pixel: `a @ (x, y, 1)`. Two planes meet where theirs are equal, and a plane
+is in front of the camera where its own is positive, so all cuts are straight lines through the whole picture.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from diorama_core.scene.types import Camera
+
+MIN_AREA_PX = 0.5
+"""Smaller pieces are rounding, not cells."""
+MIN_INVERSE_M = 0.02
+"""A plane that is seen at more than 50 m is not in front of the camera."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cell:
+    """A convex piece of the picture that no line crosses."""
+
+    corners: Float[np.ndarray, "k 2"]
+    """Pixels."""
+    sides: tuple[bool, ...]
+    """For every line, on which side of it the cell lies."""
+
+
+@dataclass(frozen=True, eq=False)
+class Arrangement:
+    """Cells and lines of a set of planes."""
+
+    inverse: Float[np.ndarray, "p 3"]
+    """Per plane `a`: inverse depth 1/m at pixel (x, y) is `a @ (x, y, 1)`."""
+    lines: tuple[tuple[int, int], ...]
+    """(plane, plane) that meet at each line; (plane, plane) with one plane twice for its horizon."""
+    cells: tuple[Cell, ...]
+
+    def inverse_at(self, plane: int, pixels: Float[np.ndarray, "n 2"]) -> Float[np.ndarray, "n"]:
+        """Inverse depth of a plane, 1/m; not positive where it is behind the camera."""
+        a = self.inverse[plane]
+        return np.asarray(pixels @ a[:2] + a[2])
+
+    def neighbours(self) -> tuple[tuple[int, int, int], ...]:
+        """(cell, cell, line) for cells that touch along a line."""
+        known = {cell.sides: k for k, cell in enumerate(self.cells)}
+        found = []
+        for k, cell in enumerate(self.cells):
+            for line in range(len(self.lines)):
+                if cell.sides[line]:
+                    other = (*cell.sides[:line], False, *cell.sides[line + 1 :])
+                    if other in known:
+                        found.append((k, known[other], line))
+        return tuple(found)
+
+    def holds(self, pixels: Float[np.ndarray, "n 2"]) -> Int[np.ndarray, "n"]:
+        """The cell of every pixel; -1 for one in a piece too small to be a cell."""
+        forms = self._forms()
+        signs: Bool[np.ndarray, "n l"] = pixels @ forms[:, :2].T + forms[:, 2] > 0
+        known = {cell.sides: k for k, cell in enumerate(self.cells)}
+        return np.array([known.get(tuple(row.tolist()), -1) for row in signs], dtype=int)
+
+    def _forms(self) -> Float[np.ndarray, "l 3"]:
+        return line_forms(self.inverse, self.lines)
+
+
+def inverse_depths(
+    normals: Float[np.ndarray, "p 3"], offsets: Float[np.ndarray, "p"], camera: Camera
+) -> Float[np.ndarray, "p 3"]:
+    """Per plane `n . x = offset` in the world, its inverse depth as a linear form of the pixel."""
+    R, k = camera.T_world_camera[:3, :3], camera.intrinsics
+    local = (normals @ R) / np.where(
+        np.abs(offsets - normals @ camera.position) < 1e-9, 1e-9, offsets - normals @ camera.position
+    )[:, None]
+    x, y = local[:, 0] / k.fx, local[:, 1] / k.fy
+    return np.stack([x, y, local[:, 2] - x * k.cx - y * k.cy], axis=1)
+
+
+def line_forms(inverse: Float[np.ndarray, "p 3"], lines: tuple[tuple[int, int], ...]) -> Float[np.ndarray, "l 3"]:
+    """Every line as a form that is positive on one side of it."""
+    if not lines:
+        return np.zeros((0, 3))
+    return np.stack([inverse[i] - inverse[j] if i != j else inverse[i] - [0, 0, MIN_INVERSE_M] for i, j in lines])
+
+
+def arrangement(inverse: Float[np.ndarray, "p 3"], size_px: tuple[int, int]) -> Arrangement:
+    """The picture of this size (width, height) cut by all lines of the planes that cross it."""
+    width, height = size_px
+    frame = np.array([[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]])
+    count = len(inverse)
+    lines: list[tuple[int, int]] = []
+    for pair in [*combinations(range(count), 2), *((k, k) for k in range(count))]:
+        form = line_forms(inverse, (pair,))[0]
+        side = frame @ form[:2] + form[2]
+        if side.min() < 0 < side.max():
+            lines.append(pair)
+    forms = line_forms(inverse, tuple(lines))
+    pieces: list[tuple[np.ndarray, tuple[bool, ...]]] = [(frame, ())]
+    for form in forms:
+        cut: list[tuple[np.ndarray, tuple[bool, ...]]] = []
+        for corners, sides in pieces:
+            for positive in (True, False):
+                part = _part(corners, form if positive else -form)
+                if _area(part) > MIN_AREA_PX:
+                    cut.append((part, (*sides, positive)))
+        pieces = cut
+    return Arrangement(inverse, tuple(lines), tuple(Cell(corners, sides) for corners, sides in pieces))
+
+
+def _part(corners: Float[np.ndarray, "k 2"], form: Float[np.ndarray, "3"]) -> Float[np.ndarray, "m 2"]:
+    """What of a convex polygon lies where the form is positive (Sutherland-Hodgman)."""
+    side = corners @ form[:2] + form[2]
+    kept: list[np.ndarray] = []
+    for i in range(len(corners)):
+        j = (i + 1) % len(corners)
+        if side[i] >= 0:
+            kept.append(corners[i])
+        if (side[i] > 0 > side[j]) or (side[i] < 0 < side[j]):
+            kept.append(corners[i] + side[i] / (side[i] - side[j]) * (corners[j] - corners[i]))
+    return np.array(kept).reshape(-1, 2)
+
+
+def _area(corners: Float[np.ndarray, "k 2"]) -> float:
+    if len(corners) < 3:
+        return 0.0
+    x, y = corners.T
+    return float(abs(x @ np.roll(y, -1) - y @ np.roll(x, -1))) / 2

@@ -1,0 +1,53 @@
+"""Shapes as ACDC finds them (Dai et al. 2024, "digital cousins"): kinds by the label, then shapes by looks alone.
+
+The publication compares the label with the library's categories by CLIP and the masked crop with pictures of shapes
+by DINOv2, and lets a language model choose among the nearest. Here the taxonomy names the kinds, and looks are
+compared as the stage is told: in a joint embedding where networks are at hand, else by the embedded views, which
+stand in for it. No size, outline in place or neighbour has a say.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from diorama_core.artefacts import DetectedObject, Inputs, ObjectGeometry, RankedShapes
+from diorama_core.library.record import Shape, ShapeLibrary
+from diorama_core.progress import Progress
+from diorama_core.retrieval.appearance_similarity import AppearanceSimilarity, EmbeddedSimilarity, ObjectCrop
+from diorama_core.retrieval.pools import near_kinds
+
+TOP_KINDS = 3
+TOP_SHAPES = 6
+"""As in the publication's default configuration."""
+
+
+@dataclass(frozen=True)
+class MatchedByLooks:
+    """The shapes of an object's nearest kinds that look most like its crop."""
+
+    library: ShapeLibrary
+    similarity: AppearanceSimilarity | None = None
+    """Compares looks; by rendered views where None."""
+
+    def retrieve(
+        self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
+    ) -> tuple[RankedShapes, ...]:
+        """At most `TOP_SHAPES` of every object that was placed; nothing for kinds of which the library has none."""
+        similarity = self.similarity or EmbeddedSimilarity(self.library)
+        placed = {c.object_id for c in geometry.cuboids}
+        found = []
+        for index, item in enumerate(objects):
+            if item.id not in placed:
+                continue
+            progress.report(index / len(objects), f"Looking for shapes: {item.label}")
+            shapes = self._of_kind(item.category)
+            crop = ObjectCrop(inputs.photo.rgb, item.mask, item.label, 1.0, 1.0)
+            alike = similarity.of(crop, shapes)
+            order = sorted(range(len(shapes)), key=lambda k: (-alike[k], shapes[k].id))[:TOP_SHAPES]
+            found.append(RankedShapes(item.id, tuple((shapes[k].id, float(alike[k])) for k in order)))
+        return tuple(found)
+
+    def _of_kind(self, name: str) -> list[Shape]:
+        """Shapes of the category; of its nearest kinds where the library has none of itself."""
+        own = list(self.library.in_category(name))
+        return own or [s for kind in near_kinds(name)[:TOP_KINDS] for s in self.library.in_category(kind)]
