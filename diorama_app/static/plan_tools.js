@@ -178,7 +178,8 @@
     for (const [cx, cy] of points.map(P.inPlan)) P.add(svg, "circle", { class: "corner", cx, cy, r: 5 });
     if (tool === "room" && line.length > 1) {
       const [a, b] = [points[points.length - 1], corner(hover ?? points[0])], [x, y] = P.inPlan([(a[0] + b[0]) / 2, (a[1] + b[1]) / 2]);
-      P.add(svg, "text", { class: "length ghost-length", x, y: y - 12 }, `${Math.hypot(b[0] - a[0], b[1] - a[1]).toFixed(2)} m`);
+      const metres = Math.hypot(b[0] - a[0], b[1] - a[1]);
+      if (metres > 0.05) P.add(svg, "text", { class: "length ghost-length", x, y: y - 12 }, `${metres.toFixed(2)} m`);
     }
   };
   window.__dioPlanTools = { below, over };

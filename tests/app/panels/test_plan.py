@@ -75,7 +75,19 @@ def test_it_selects_moves_and_sets_lengths_with_undo(session, client, page: Page
 
 @pytest.mark.parametrize(
     ("what", "arg"),
-    [("move", ["gone", 1, 1]), ("move", None), ("wall", ["wall_1"]), ("corner", [1]), ("length", ["wall_1", "long"])],
+    [
+        ("move", ["gone", 1, 1]),
+        ("move", None),
+        ("wall", ["wall_1"]),
+        ("corner", [1]),
+        ("length", ["wall_1", "long"]),
+        ("split", ["wall_1"]),
+        ("split", ["gone", 0, 0]),
+        ("door", ["wall_1", 0, 0]),
+        ("window", ["gone", 0, 0]),
+        ("room", [[0, 0], [1, 0]]),
+        ("room", "all"),
+    ],
 )
 def test_what_is_no_edit_is_refused_and_changes_nothing(
     session, client, page: Page, plan: Plan, what: str, arg: object
