@@ -20,10 +20,11 @@ WHOLE_CELL = 0.95
 """Cells of which less shows the object are its outline."""
 SMOOTH, BLUR = 0.7, 1.0
 """Cells: of the picture before its gradient, and of the gradients, so that edges may lie a little off."""
-TURN, STEP = 60.0, 400.0
-"""Strength of an edge, in grey levels, where the normal turns by a radian, or the logarithm of depth steps by one."""
+TURN, STEP = 60.0, 2000.0
+"""Strength of an edge, in grey levels, where the normal turns by a radian, or inverse depth steps by its own size."""
 STRONGEST = 40.0
 """Grey levels a cell: an edge of a shape is one, however deep it is."""
+_NEAR_M = 0.05
 _NOTHING = 1e-6
 
 
@@ -56,7 +57,7 @@ class InnerEdges:
             return 0.0
         depth = np.where(covered, hits.depth_m[pose], 1.0)
         depth = np.where(covered, depth, np.median(depth[covered])).reshape(self.cells, self.cells)
-        edges = _gradients(STEP * np.log(np.maximum(depth, 1e-3)))
+        edges = STEP * _bends(1.0 / np.maximum(depth, _NEAR_M))
         for axis in range(3):
             edges = edges + _gradients(TURN * hits.normals_world[pose][:, axis].reshape(self.cells, self.cells))
         return float(_told(np.minimum(edges, STRONGEST), self.inside) @ self.photo)
@@ -67,6 +68,15 @@ def _gradients(picture: Float[np.ndarray, "c c"]) -> Float32[np.ndarray, "c c 2"
     smooth = cv2.GaussianBlur(picture.astype(np.float32), (0, 0), SMOOTH)
     along = [cv2.Sobel(smooth, cv2.CV_32F, dx, dy, scale=0.25) for dx, dy in ((1, 0), (0, 1))]
     return np.abs(np.stack(along, axis=-1))
+
+
+def _bends(inverse_depth: Float[np.ndarray, "c c"]) -> Float32[np.ndarray, "c c 2"]:
+    """How much inverse depth steps along rows and columns, as a share of itself; along planes it does not."""
+    padded = np.pad(inverse_depth, 1, mode="edge")
+    middle = padded[1:-1, 1:-1]
+    across = np.abs(padded[1:-1, 2:] - 2 * middle + padded[1:-1, :-2])
+    down = np.abs(padded[2:, 1:-1] - 2 * middle + padded[:-2, 1:-1])
+    return np.stack([across / middle, down / middle], axis=-1).astype(np.float32)
 
 
 def _told(edges: Float32[np.ndarray, "c c 2"], inside: Bool[np.ndarray, "c c"]) -> Float[np.ndarray, "m"]:

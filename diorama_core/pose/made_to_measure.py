@@ -44,11 +44,11 @@ OUTLINE, OUTLINE_WITH_DEPTH = 1.8, 2.0
 EDGES = 1.0
 """How much the inner edges say beside that."""
 WORTH, WORTH_WITH_DEPTH = 0.4, 0.15
-"""A changed parameter must agree better by so much: without depth it may only make up for a pose that is a little off."""
+"""A changed parameter must agree better by so much: without depth it may make up for a pose that is a little off."""
 SIZE_LOSS = 0.1
 """A shape stretched unevenly is rather built at that size, unless it agrees worse by so much."""
-MAX_VARIANTS = 24
-"""So many shapes are built and compared for one object or set."""
+PASSES, MAX_VARIANTS = 2, 32
+"""Times that all parameters are gone through, since one may hide another, and shapes built for one object or set."""
 MAX_TRIANGLES = 20_000
 """Designs of more triangles, such as plants, are not built again and again."""
 MIN_CELLS = 100.0
@@ -127,12 +127,17 @@ class MadeToMeasure:
             return None
         score, left = max(as_built, before), MAX_VARIANTS
         worth = WORTH if any(one.evidence.surface is None for one in seen) else WORTH_WITH_DEPTH
-        for name, values in varied(best.shape_id):
-            tried = {v: self._score(best.shape_id, size, {**changes, name: v}, seen) for v in values[:left]}
-            left -= len(tried)
-            value = max(tried, key=tried.__getitem__, default=None)
-            if value is not None and tried[value] > score + worth:
-                changes, score = {**changes, name: value}, tried[value]
+        for _ in range(PASSES):
+            before_pass = dict(changes)
+            for name, values in varied(best.shape_id):
+                others = [v for v in values if v != changes.get(name)][:left]
+                tried = {v: self._score(best.shape_id, size, {**changes, name: v}, seen) for v in others}
+                left -= len(tried)
+                value = max(tried, key=tried.__getitem__, default=None)
+                if value is not None and tried[value] > score + worth:
+                    changes, score = {**changes, name: value}, tried[value]
+            if changes == before_pass:
+                break
         return (made_id(best.shape_id, size, changes), size) if changes or uneven else None
 
     def _can_be_made(self, shape_id: str, size_m: Float[np.ndarray, "3"]) -> bool:
