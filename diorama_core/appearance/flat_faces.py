@@ -1,4 +1,4 @@
-"""Flat objects wear the photo: pictures, boards, screens that are on, windows' views, dials, rugs, doors, curtains.
+"""Flat objects wear the photo: pictures, boards, lit screens, windows' views, dials, rugs, doors, curtains, books.
 
 The rectangle of the slot that has the face is placed by the object's pose, brought in line with the object's box in
 the photo, and rectified. Frames, mats and stands stay what they are.
@@ -32,6 +32,11 @@ FACES: Mapping[str, tuple[tuple[str, ...], TextureLayout]] = {
     "window": (("pane",), "front"),
 }
 """By category: roles of the slots that have the face (or the main slot), and which way it faces."""
+COVERS = ("leather", "paint", "fabric", "paper", "material")
+"""Roles of what books are bound in."""
+UPRIGHT, LYING = 1.15, 0.35
+"""Books stand in a row when they are so many times as high as deep, and one lies flat when it is so high against its
+shorter side; stacks show too little of any one face."""
 SEEN_THROUGH = {"screen", "pane"}
 """A shape without a slot of these roles has no such face; of other flat things the main slot has it."""
 ROUGHNESS: Mapping[str, float] = {"screen": 0.2, "pane": 0.1, "picture": 0.6, "dial": 0.5, "fabric": 0.95}
@@ -73,9 +78,10 @@ def faces_of(
         found: The object in the photo.
         camera: The photo's.
     """
-    if item.category not in FACES:
+    kind = face_kind(item.category, item.size_m)
+    if kind is None:
         return ()
-    roles, layout = FACES[item.category]
+    roles, layout = kind
     slots = slots_of(parts)
     chosen = [s for s in slots if s.role in roles or (s.main and MAIN in roles)]
     if not chosen and not SEEN_THROUGH & set(roles):
@@ -84,6 +90,18 @@ def faces_of(
         hidden = hidden | ~found.mask
     made = [_face(item, parts, slot, layout, rgb, hidden, found, camera) for slot in chosen]
     return tuple(face for face in made if face is not None)
+
+
+def face_kind(category: str, size_m: Float[np.ndarray, "3"]) -> tuple[tuple[str, ...], TextureLayout] | None:
+    """Roles of the slots that have an object's face, and which way it faces; None where it has none.
+
+    Spines of a row of books face the front, the cover of one that lies flat faces up.
+    """
+    if category != "books":
+        return FACES.get(category)
+    if size_m[2] >= UPRIGHT * size_m[0]:
+        return COVERS, "front"
+    return (COVERS, "top") if size_m[2] <= LYING * min(size_m[:2]) else None
 
 
 def _face(
