@@ -24,12 +24,13 @@ from diorama_core.artefacts import (
 )
 from diorama_core.geometry.observed import observe_among
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
-from diorama_core.library.furniture.measures import Value, can_be_made, made_id, parameters, varied
+from diorama_core.library.furniture.measures import Value, can_be_made, made_id, varied
 from diorama_core.library.record import BUILT_IN, ShapeLibrary, record_of
 from diorama_core.library.stretch import EVEN, relative_scale
 from diorama_core.pose.facing import Facing
 from diorama_core.pose.inner_edges import InnerEdges
 from diorama_core.pose.mask_observations import Evidence
+from diorama_core.pose.outline_fit import fitted_pose
 from diorama_core.pose.surface import measured_surface, noise_of
 from diorama_core.progress import Progress
 from diorama_core.protocols import PoseStage
@@ -105,20 +106,23 @@ class MadeToMeasure:
         """The candidates with the first of each made to measure, where the picture tells how."""
         seen = _seen(posed, inputs, objects, geometry, depth)
         sets = _sets(posed)
-        made: dict[str, tuple[str, Float[np.ndarray, "3"]]] = {}
+        found: dict[str, Candidate] = {}
         for number, members in enumerate(sets):
             progress.report(number / len(sets), "Making shapes to measure")
+            shown = {m.object_id: seen[m.object_id] for m in members if m.object_id in seen}
+            if not shown:
+                continue
             best = members[0].candidates[0]
-            found = self._made(best, [seen[m.object_id] for m in members if m.object_id in seen])
-            if found is not None:
-                made |= {m.object_id: found for m in members}
-        return tuple(_with_made(p, *made[p.object_id]) if p.object_id in made else p for p in posed)
+            changes = self._changes(best, list(shown.values()))
+            for member in members:
+                one = shown.get(member.object_id)
+                found[member.object_id] = self._placed(member.candidates[0], changes, one, resize=len(members) == 1)
+        return tuple(_with_first(p, found[p.object_id]) if p.object_id in found else p for p in posed)
 
-    def _made(self, best: Candidate, seen: Sequence[_Seen]) -> tuple[str, Float[np.ndarray, "3"]] | None:
-        """Id and size of the shape as the picture shows it; None where the retrieved one stays."""
-        size = np.round(np.asarray(best.shape_size_m) * best.pose.scale, 3)
-        uneven = relative_scale(best.pose.scale) != EVEN
-        if not seen or not (uneven or parameters(best.shape_id)) or not self._can_be_made(best.shape_id, size):
+    def _changes(self, best: Candidate, seen: Sequence[_Seen]) -> dict[str, Value] | None:
+        """Parameters that differ in the picture; None where the retrieved shape is rather stretched than built."""
+        size = np.asarray(best.shape_size_m) * best.pose.scale
+        if not self._can_be_made(best.shape_id, size):
             return None
         before = _mean_score(seen, ShapeCaster(self.library.mesh(best.shape_id)), best.pose.scale)
         changes: dict[str, Value] = {}
@@ -138,7 +142,27 @@ class MadeToMeasure:
                     changes, score = {**changes, name: value}, tried[value]
             if changes == before_pass:
                 break
-        return (made_id(best.shape_id, size, changes), size) if changes or uneven else None
+        return changes
+
+    def _placed(
+        self, best: Candidate, changes: dict[str, Value] | None, seen: _Seen | None, *, resize: bool
+    ) -> Candidate:
+        """The candidate with these parameters, its pose fitted; shapes that are nearly as retrieved stay of its id."""
+        shape_id, size, pose = best.shape_id, np.asarray(best.shape_size_m), best.pose
+        if changes:
+            size = np.round(size * pose.scale, 3)
+            shape_id, pose = made_id(shape_id, size, changes), Pose(pose.R_world_object, pose.position, np.ones(3))
+        if seen is not None:
+            caster = ShapeCaster(self.library.mesh(shape_id))
+            pose = fitted_pose(seen.evidence, caster, pose, size, resize=resize)
+        whole = size * pose.scale
+        uneven = relative_scale(whole / np.asarray(best.shape_size_m)) != EVEN
+        if changes is None or not (changes or uneven) or not can_be_made(best.shape_id, whole):
+            return replace(best, pose=pose)
+        x, y, z = (float(v) for v in np.round(whole, 3))
+        made = made_id(best.shape_id, np.array([x, y, z]), changes)
+        pose = Pose(pose.R_world_object, pose.position, np.ones(3))
+        return replace(best, shape_id=made, shape_size_m=(x, y, z), pose=pose)
 
     def _can_be_made(self, shape_id: str, size_m: Float[np.ndarray, "3"]) -> bool:
         if record_of(self.library, shape_id).source != BUILT_IN or not can_be_made(shape_id, size_m):
@@ -195,10 +219,7 @@ def _seen(
     return found
 
 
-def _with_made(posed: PosedCandidates, made: str, size_m: Float[np.ndarray, "3"]) -> PosedCandidates:
-    best = posed.candidates[0]
-    pose = Pose(best.pose.R_world_object, best.pose.position, np.ones(3))
-    x, y, z = (float(v) for v in size_m)
-    return replace(
-        posed, candidates=(replace(best, shape_id=made, shape_size_m=(x, y, z), pose=pose), *posed.candidates)
-    )
+def _with_first(posed: PosedCandidates, first: Candidate) -> PosedCandidates:
+    """The candidates with another first one; what was retrieved stays second where its shape was another."""
+    others = posed.candidates if first.shape_id != posed.candidates[0].shape_id else posed.candidates[1:]
+    return replace(posed, candidates=(first, *others))

@@ -56,7 +56,7 @@ def fitted(true_id: str, found_id: str, scale=(1.0, 1.0, 1.0), library=LIBRARY, 
     stage = replace(STAGE, library=library)
     depth = DepthMap(seen.depth_m, seen.normals_world, source)
     (out,) = stage.fitted((posed,), inputs, (item,), geometry, depth, Progress())
-    assert out.candidates[-1] == posed.candidates[0]
+    assert out.candidates[-1].shape_id == found_id
     return out.candidates[0]
 
 
