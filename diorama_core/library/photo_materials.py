@@ -12,9 +12,13 @@ from PIL import Image
 from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
-from diorama_core.library.paint import in_colour, physically_based
+from diorama_core.io.srgb import srgb_to_linear
+from diorama_core.library.paint import Colour, in_colour, physically_based
 from diorama_core.library.slots import Slot, matched, placed_vertices, rectangle_of, slots_of
 from diorama_core.scene.types import PhotoMaterial
+
+WARM, WARM_PALE, PALE = 0.12, 0.22, 0.85
+"""By what share of red the blue of wood is lower at least; of pale colours, with red beyond the third, more."""
 
 Pictures = Mapping[str, UInt8[np.ndarray, "_ _ 3"]]
 
@@ -47,13 +51,23 @@ def with_photo_materials(parts: trimesh.Scene, materials: Sequence[PhotoMaterial
     return scene
 
 
+def shows_wood(colour: Colour) -> bool:
+    """Whether wood itself may have a colour (sRGB 0 to 1): white, grey, green or blue wood is painted."""
+    red, green, blue = colour
+    warm = WARM_PALE if red > PALE else WARM
+    return red >= green >= blue and red - blue >= warm * red
+
+
 def _recolour(scene: trimesh.Scene, slot: Slot, material: PhotoMaterial) -> None:
-    """A material without a pattern: the slot's own grain or weave, in the photo's colour."""
+    """A material without a pattern: the slot's own grain or weave in the photo's colour; painted wood has no grain."""
     meshes = [scene.geometry[name] for name in slot.geometry]
     own = physically_based(meshes[0])
     made = in_colour(own, material.colour)
     made.name = f"{material.slot} from the photo {zlib.crc32(repr((material, own.name)).encode()):08x}"
     made.metallicFactor, made.roughnessFactor = material.metallic, material.roughness
+    if slot.role == "wood" and not shows_wood(material.colour):
+        made.baseColorTexture = None
+        made.baseColorFactor = [*(round(255 * float(c)) for c in srgb_to_linear(np.array(material.colour))), 255]
     for mesh in meshes:
         mesh.visual = TextureVisuals(uv=getattr(mesh.visual, "uv", None), material=made)
 
