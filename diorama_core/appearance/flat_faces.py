@@ -43,9 +43,12 @@ ROUGHNESS: Mapping[str, float] = {"screen": 0.2, "pane": 0.1, "picture": 0.6, "d
 OTHER_ROUGHNESS = 0.6
 MIN_SEEN = 0.2
 """A face of which less is seen keeps its own picture."""
+MIN_IN_MASK = 0.4
+"""Of the face as it is posed; where less is the object's own, its picture would be of what is beside it."""
 MIN_BOX_IOU = 0.5
 """Boxes that overlap less tell nothing of where exactly the face is."""
 SURE_MASK = 0.95
+_FAR_PX = 20_000.0
 LIT_L, LIT_SPREAD_L = 30.0, 12.0
 """A screen is on when its typical lightness, or its lightness' deviation, is at least this."""
 
@@ -119,6 +122,8 @@ def _face(
     if corners is None:
         return None
     corners = aligned(corners, _outline_box(item, parts, camera), found.box, (rgb.shape[1], rgb.shape[0]))
+    if _share_in_mask(corners, hidden, found) < MIN_IN_MASK:
+        return None
     picture = rectified(rgb, hidden, corners)
     if picture is None or picture.seen.mean() < MIN_SEEN:
         return None
@@ -126,6 +131,16 @@ def _face(
         return None
     pixel_m = float(np.linalg.norm(rectangle.across * item.pose.scale)) / picture.seen.shape[1]
     return Face(slot, layout, completed_picture(picture, pixel_m), ROUGHNESS.get(slot.role, OTHER_ROUGHNESS))
+
+
+def _share_in_mask(
+    corners_px: Float[np.ndarray, "4 2"], hidden: Bool[np.ndarray, "h w"], found: DetectedObject
+) -> float:
+    """Share of a quadrilateral, as far as it is in the photo and not hidden, that is within the object's mask."""
+    region = np.zeros(found.mask.shape, np.uint8)
+    cv2.fillConvexPoly(region, np.rint(np.clip(corners_px, -_FAR_PX, _FAR_PX)).astype(np.int32), 1)
+    free = region.astype(bool) & ~hidden
+    return float((free & found.mask).sum() / max(int(free.sum()), 1))
 
 
 def aligned(
