@@ -1,4 +1,4 @@
-"""Flat objects wear the photo: pictures, boards, lit screens, windows' views, dials, rugs, doors, curtains, books.
+"""Flat objects wear the photo: pictures, boards, lit screens, dials, rugs, doors, curtains, books, pillows.
 
 The rectangle of the slot that has the face is placed by the object's pose, brought in line with the object's box in
 the photo, and rectified. Frames, mats and stands stay what they are.
@@ -27,11 +27,14 @@ FACES: Mapping[str, tuple[tuple[str, ...], TextureLayout]] = {
     **dict.fromkeys(("television", "monitor", "laptop", "tablet"), (("screen",), "front")),
     **dict.fromkeys(("clock", "mantel clock", "grandfather clock"), (("dial",), "front")),
     **dict.fromkeys(("whiteboard", "bulletin board", "curtain", "blinds"), ((MAIN,), "front")),
+    "pillow": ((MAIN,), "front"),
     **dict.fromkeys(("rug", "bath mat", "yoga mat"), ((MAIN,), "top")),
     "door": ((MAIN, "pane"), "front"),
     "window": (("pane",), "front"),
 }
 """By category: roles of the slots that have the face (or the main slot), and which way it faces."""
+NOT_RECTANGULAR = frozenset({"pillow"})
+"""Of their rectangle only what their mask holds is theirs."""
 COVERS = ("leather", "paint", "fabric", "paper", "material")
 """Roles of what books are bound in."""
 UPRIGHT, LYING = 1.15, 0.35
@@ -89,9 +92,9 @@ def faces_of(
     chosen = [s for s in slots if s.role in roles or (s.main and MAIN in roles)]
     if not chosen and not SEEN_THROUGH & set(roles):
         chosen = [s for s in slots if s.main]
-    if found.mask_confidence >= SURE_MASK:
-        hidden = hidden | ~found.mask
-    made = [_face(item, parts, slot, layout, rgb, hidden, found, camera) for slot in chosen]
+    by_mask = found.mask_confidence >= SURE_MASK or item.category in NOT_RECTANGULAR
+    unseen = hidden | ~found.mask if by_mask else hidden
+    made = [_face(item, parts, slot, layout, rgb, (hidden, unseen), found, camera) for slot in chosen]
     return tuple(face for face in made if face is not None)
 
 
@@ -113,18 +116,20 @@ def _face(
     slot: Slot,
     layout: TextureLayout,
     rgb: UInt8[np.ndarray, "h w 3"],
-    hidden: Bool[np.ndarray, "h w"],
+    hidden: tuple[Bool[np.ndarray, "h w"], Bool[np.ndarray, "h w"]],
     found: DetectedObject,
     camera: Camera,
 ) -> Face | None:
+    """The face of one slot; `hidden` is what others hide, and everything that is not to be read."""
+    others, unseen = hidden
     rectangle = rectangle_of(parts, slot, layout)
     corners = corners_in_photo(camera, item.pose.apply(rectangle.corners))
     if corners is None:
         return None
     corners = aligned(corners, _outline_box(item, parts, camera), found.box, (rgb.shape[1], rgb.shape[0]))
-    if _share_in_mask(corners, hidden, found) < MIN_IN_MASK:
+    if _share_in_mask(corners, others, found) < MIN_IN_MASK:
         return None
-    picture = rectified(rgb, hidden, corners)
+    picture = rectified(rgb, unseen, corners)
     if picture is None or picture.seen.mean() < MIN_SEEN:
         return None
     if slot.role == "screen" and not is_lit(picture):
