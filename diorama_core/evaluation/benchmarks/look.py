@@ -2,7 +2,8 @@
 
 The true shape of every object is removed from the library, so that the nearest other one is retrieved and fitted. What
 the two steps bring is measured on the same poses: how near the shape comes to the true one, how well its outline lies
-on the true outline, and how far the colours of the visible faces are from the photo's in a blurred picture.
+on the true outline, and how far the colours of the visible faces are from the photo's in a blurred picture. Pictures of
+scenes show white light (`render.lighting.room_lighting`), so the photo is compared as white light would have it.
 """
 
 from __future__ import annotations
@@ -182,15 +183,16 @@ def _one_room(
     made = fit.fitted(posed, seen.inputs, seen.objects, seen.geometry, seen.depth, Progress())
     made_s = time.process_time() - start
     before, after = _coloured(seen, posed, library), _coloured(seen, made, library)
+    balanced, light_rgb = _balanced(seen)
     start = time.process_time()
-    look = photo_appearance(_balanced(seen)[0], seen.objects, after, library, _balanced(seen)[1])
+    look = photo_appearance(balanced, seen.objects, after, library, light_rgb)
     materials_s = time.process_time() - start
     after = look.applied(after)
     flat = picture(replace(before, light=after.light), library, size=SIZE)
     dressed = picture(after, library, size=SIZE, textures=look.pictures)
     if show is not None:
-        show(f"{name}, {given}", cv2.resize(view.inputs.photo.rgb, SIZE, interpolation=cv2.INTER_AREA), flat, dressed)
-    differences = [_difference(view.inputs.photo.rgb, shown) for shown in (flat, dressed)]
+        show(f"{name}, {given}", cv2.resize(balanced, SIZE, interpolation=cv2.INTER_AREA), flat, dressed)
+    differences = [_difference(balanced, shown) for shown in (flat, dressed)]
     of_mask = {str(view.scene.objects[k].mask_id): k for k in view.asked}
     found = []
     for item in seen.objects:
