@@ -5,9 +5,12 @@ import trimesh
 from PIL import Image
 from trimesh.visual.material import PBRMaterial
 
+from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.photo_materials import PhotographedMaterial, shows_wood, with_photo_materials
+from diorama_core.library.slots import slots_of
 from diorama_core.scene.types import PhotoMaterial
 
+LIBRARY = built_in_library()
 ART = np.random.default_rng(0).integers(0, 255, (20, 30, 3)).astype(np.uint8)
 
 
@@ -61,6 +64,17 @@ def test_painted_wood_shows_no_grain_and_bare_wood_keeps_it() -> None:
         False,
         True,
     ]
+
+
+def test_the_librarys_patterns_give_way_to_plain_cloth_and_its_weaves_stay() -> None:
+    def worn(shape_id: str) -> PBRMaterial:
+        parts = LIBRARY.parts(shape_id)
+        slot = next(s for s in slots_of(parts) if s.main)
+        shown = with_photo_materials(parts, [PhotoMaterial(slot.name, (0.4, 0.3, 0.3), main=True)], {})
+        return shown.geometry[slot.geometry[0]].visual.material
+
+    assert worn("pillow-kilim").baseColorTexture is None
+    assert worn("curtain-linen-pair").baseColorTexture is not None
 
 
 def test_a_tiled_material_is_measured_in_metres() -> None:
