@@ -112,5 +112,6 @@ def pose_solver(name: str, library: ShapeLibrary) -> PoseStage:
     from diorama_core.pose.render_and_compare import RenderAndCompare
 
     kind = next((kind for kind in KINDS if kind == name), None)
-    solver = RenderAndCompare(library) if kind is None else CorrespondencePose(library, kind, grid=HALF_GRID)
-    return MadeToMeasure(solver, library)
+    if kind is None:
+        return MadeToMeasure(RenderAndCompare(library), library)
+    return CorrespondencePose(library, kind, grid=HALF_GRID)

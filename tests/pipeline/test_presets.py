@@ -179,7 +179,7 @@ def test_every_network_of_the_paper_takes_its_stage(photo: Photo, store: ModelSt
     for stage, ids in used.items():
         assert all(network_id in repr(getattr(stages, stage)) for network_id in ids.split()), stage
     assert "birefnet-lite" not in repr(stages.architecture)
-    assert isinstance(stages_for("auto", inputs, box_library(), store=store).pose, RenderAndCompare)
+    assert isinstance(stages_for("auto", inputs, box_library(), store=store).pose, MadeToMeasure)
     assert stages_for("embedded", inputs, box_library(), store=store).filler is None
 
 
