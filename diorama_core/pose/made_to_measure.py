@@ -52,6 +52,8 @@ PASSES, MAX_VARIANTS = 2, 32
 """Times that all parameters are gone through, since one may hide another, and shapes built for one object or set."""
 MAX_TRIANGLES = 20_000
 """Designs of more triangles, such as plants, are not built again and again."""
+MIN_PIXELS = 900
+"""Of objects of fewer pixels only place and size are fitted: their parts are a pixel or two."""
 MIN_CELLS = 100.0
 """Objects of which fewer cells are seen tell nothing of their parts."""
 
@@ -63,6 +65,8 @@ class _Seen:
     evidence: Evidence
     edges: InnerEdges
     pose: Pose
+    pixels: int
+    """Of its mask."""
 
     def score(self, caster: ShapeCaster, scale: Float[np.ndarray, "3"]) -> float:
         """How well a shape agrees: logarithm, higher is better."""
@@ -113,7 +117,8 @@ class MadeToMeasure:
             if not shown:
                 continue
             best = members[0].candidates[0]
-            changes = self._changes(best, list(shown.values()))
+            clear = [one for one in shown.values() if one.pixels >= MIN_PIXELS]
+            changes = self._changes(best, clear) if clear else None
             for member in members:
                 one = shown.get(member.object_id)
                 found[member.object_id] = self._placed(member.candidates[0], changes, one, resize=len(members) == 1)
@@ -215,7 +220,9 @@ def _seen(
             continue
         surface = measured_surface(depth, window, item.mask, noise)
         evidence = Evidence(geometry.camera, window, Facing(()), surface)
-        found[item.id] = _Seen(evidence, InnerEdges.of(inputs.photo.rgb, window), pose_of[item.id])
+        found[item.id] = _Seen(
+            evidence, InnerEdges.of(inputs.photo.rgb, window), pose_of[item.id], int(item.mask.sum())
+        )
     return found
 
 
