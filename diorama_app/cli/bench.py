@@ -6,10 +6,13 @@ import argparse
 import json
 import sys
 from pathlib import Path
-from typing import Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from diorama_app.cli.arguments import command, progress_bar
 from diorama_core.errors import InputError
+
+if TYPE_CHECKING:
+    from diorama_core.evaluation.benchmarks.look import Picture, Show
 
 
 @runtime_checkable
@@ -27,6 +30,7 @@ TABLES = (
     ("retrieval", 20, "Retrieval of shapes that are, and are not, in the library."),
     ("relations", 18, "Supports, from geometry alone."),
     ("pose", 6, "Poses with true and estimated depth, groups, ablations."),
+    ("look", 6, "Shapes made to measure and the photo's materials, the true shapes removed."),
     ("layout", 40, "The layout recipes compared with each other."),
     ("system", 20, "Images to scenes, end to end."),
     ("text", 60, "Rooms composed from prompts: what was asked for, and whether people could use the room."),
@@ -50,6 +54,8 @@ def add_bench(commands: Any) -> None:
         one.add_argument(
             "--markdown", type=Path, metavar="FILE", help="write the tables as Markdown, or replace them in a document"
         )
+        if name == "look":
+            one.add_argument("--sheet", type=Path, metavar="DIR", help="write photo, before and after of every room")
         if name in ("rooms", "text"):
             one.add_argument("--sheet", type=Path, metavar="FILE", help="write a sheet of all pictures (PNG or JPEG)")
         if name in ("system", "architecture"):
@@ -129,6 +135,7 @@ def _bench_layout(a: argparse.Namespace) -> None:
 def _bench_rooms(a: argparse.Namespace) -> None:
     """Run the architecture, retrieval, relations or pose benchmark on rendered rooms."""
     from diorama_core.evaluation.benchmarks import architecture as architecture_bench
+    from diorama_core.evaluation.benchmarks import look as look_bench
     from diorama_core.evaluation.benchmarks import pose as pose_bench
     from diorama_core.evaluation.benchmarks import relations as relations_bench
     from diorama_core.evaluation.benchmarks import retrieval as retrieval_bench
@@ -145,9 +152,29 @@ def _bench_rooms(a: argparse.Namespace) -> None:
             bench = retrieval_bench.run(library, a.scenes, a.seed, progress)
         elif a.table == "relations":
             bench = relations_bench.run(library, a.scenes, a.seed, progress)
+        elif a.table == "look":
+            bench = look_bench.run(library, a.scenes, a.seed, progress, _look_writer(a.sheet))
         else:
             bench = pose_bench.run(library, a.scenes, a.seed, progress)
     _show(bench, a)
+
+
+def _look_writer(folder: Path | None) -> Show | None:
+    """Writes a room's photo, its flat colours and its own look side by side."""
+    from diorama_core.evaluation.benchmarks.case_pictures import write_picture
+    from diorama_core.render.compare import side_by_side
+
+    if folder is None:
+        return None
+    folder.mkdir(parents=True, exist_ok=True)
+
+    def show(name: str, photo: Picture, before: Picture, after: Picture) -> None:
+        write_picture(
+            folder / f"{name.replace(', ', '-').replace(' ', '-')}.jpg",
+            side_by_side(side_by_side(photo, before), after),
+        )
+
+    return show
 
 
 def _bench_system(a: argparse.Namespace) -> None:

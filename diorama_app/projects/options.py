@@ -132,7 +132,10 @@ def room_solver(name: Room) -> ArchitectureStage:
 def pose_solver(name: str, library: ShapeLibrary) -> PoseStage:
     """The solver with this name, one of `POSES`."""
     from diorama_core.pose.correspondence.solvers import HALF_GRID, KINDS, CorrespondencePose
+    from diorama_core.pose.made_to_measure import MadeToMeasure
     from diorama_core.pose.render_and_compare import RenderAndCompare
 
     kind = next((kind for kind in KINDS if kind == name), None)
-    return RenderAndCompare(library) if kind is None else CorrespondencePose(library, kind, grid=HALF_GRID)
+    if kind is None:
+        return MadeToMeasure(RenderAndCompare(library), library)
+    return CorrespondencePose(library, kind, grid=HALF_GRID)

@@ -1,4 +1,4 @@
-"""Flat objects wear the photo: pictures, boards, screens that are on, windows' views, dials, rugs, doors, curtains.
+"""Flat objects wear the photo: pictures, boards, lit screens, dials, rugs, doors, curtains, books, pillows.
 
 The rectangle of the slot that has the face is placed by the object's pose, brought in line with the object's box in
 the photo, and rectified. Frames, mats and stands stay what they are.
@@ -27,20 +27,31 @@ FACES: Mapping[str, tuple[tuple[str, ...], TextureLayout]] = {
     **dict.fromkeys(("television", "monitor", "laptop", "tablet"), (("screen",), "front")),
     **dict.fromkeys(("clock", "mantel clock", "grandfather clock"), (("dial",), "front")),
     **dict.fromkeys(("whiteboard", "bulletin board", "curtain", "blinds"), ((MAIN,), "front")),
+    "pillow": ((MAIN,), "front"),
     **dict.fromkeys(("rug", "bath mat", "yoga mat"), ((MAIN,), "top")),
     "door": ((MAIN, "pane"), "front"),
     "window": (("pane",), "front"),
 }
 """By category: roles of the slots that have the face (or the main slot), and which way it faces."""
+NOT_RECTANGULAR = frozenset({"pillow"})
+"""Of their rectangle only what their mask holds is theirs."""
+COVERS = ("leather", "paint", "fabric", "paper", "material")
+"""Roles of what books are bound in."""
+UPRIGHT, LYING = 1.15, 0.35
+"""Books stand in a row when they are so many times as high as deep, and one lies flat when it is so high against its
+shorter side; stacks show too little of any one face."""
 SEEN_THROUGH = {"screen", "pane"}
 """A shape without a slot of these roles has no such face; of other flat things the main slot has it."""
 ROUGHNESS: Mapping[str, float] = {"screen": 0.2, "pane": 0.1, "picture": 0.6, "dial": 0.5, "fabric": 0.95}
 OTHER_ROUGHNESS = 0.6
 MIN_SEEN = 0.2
 """A face of which less is seen keeps its own picture."""
+MIN_IN_MASK = 0.4
+"""Of the face as it is posed; where less is the object's own, its picture would be of what is beside it."""
 MIN_BOX_IOU = 0.5
 """Boxes that overlap less tell nothing of where exactly the face is."""
 SURE_MASK = 0.95
+_FAR_PX = 20_000.0
 LIT_L, LIT_SPREAD_L = 30.0, 12.0
 """A screen is on when its typical lightness, or its lightness' deviation, is at least this."""
 
@@ -73,17 +84,30 @@ def faces_of(
         found: The object in the photo.
         camera: The photo's.
     """
-    if item.category not in FACES:
+    kind = face_kind(item.category, item.size_m)
+    if kind is None:
         return ()
-    roles, layout = FACES[item.category]
+    roles, layout = kind
     slots = slots_of(parts)
     chosen = [s for s in slots if s.role in roles or (s.main and MAIN in roles)]
     if not chosen and not SEEN_THROUGH & set(roles):
         chosen = [s for s in slots if s.main]
-    if found.mask_confidence >= SURE_MASK:
-        hidden = hidden | ~found.mask
-    made = [_face(item, parts, slot, layout, rgb, hidden, found, camera) for slot in chosen]
+    by_mask = found.mask_confidence >= SURE_MASK or item.category in NOT_RECTANGULAR
+    unseen = hidden | ~found.mask if by_mask else hidden
+    made = [_face(item, parts, slot, layout, rgb, (hidden, unseen), found, camera) for slot in chosen]
     return tuple(face for face in made if face is not None)
+
+
+def face_kind(category: str, size_m: Float[np.ndarray, "3"]) -> tuple[tuple[str, ...], TextureLayout] | None:
+    """Roles of the slots that have an object's face, and which way it faces; None where it has none.
+
+    Spines of a row of books face the front, the cover of one that lies flat faces up.
+    """
+    if category != "books":
+        return FACES.get(category)
+    if size_m[2] >= UPRIGHT * size_m[0]:
+        return COVERS, "front"
+    return (COVERS, "top") if size_m[2] <= LYING * min(size_m[:2]) else None
 
 
 def _face(
@@ -92,22 +116,36 @@ def _face(
     slot: Slot,
     layout: TextureLayout,
     rgb: UInt8[np.ndarray, "h w 3"],
-    hidden: Bool[np.ndarray, "h w"],
+    hidden: tuple[Bool[np.ndarray, "h w"], Bool[np.ndarray, "h w"]],
     found: DetectedObject,
     camera: Camera,
 ) -> Face | None:
+    """The face of one slot; `hidden` is what others hide, and everything that is not to be read."""
+    others, unseen = hidden
     rectangle = rectangle_of(parts, slot, layout)
     corners = corners_in_photo(camera, item.pose.apply(rectangle.corners))
     if corners is None:
         return None
     corners = aligned(corners, _outline_box(item, parts, camera), found.box, (rgb.shape[1], rgb.shape[0]))
-    picture = rectified(rgb, hidden, corners)
+    if _share_in_mask(corners, others, found) < MIN_IN_MASK:
+        return None
+    picture = rectified(rgb, unseen, corners)
     if picture is None or picture.seen.mean() < MIN_SEEN:
         return None
     if slot.role == "screen" and not is_lit(picture):
         return None
     pixel_m = float(np.linalg.norm(rectangle.across * item.pose.scale)) / picture.seen.shape[1]
     return Face(slot, layout, completed_picture(picture, pixel_m), ROUGHNESS.get(slot.role, OTHER_ROUGHNESS))
+
+
+def _share_in_mask(
+    corners_px: Float[np.ndarray, "4 2"], hidden: Bool[np.ndarray, "h w"], found: DetectedObject
+) -> float:
+    """Share of a quadrilateral, as far as it is in the photo and not hidden, that is within the object's mask."""
+    region = np.zeros(found.mask.shape, np.uint8)
+    cv2.fillConvexPoly(region, np.rint(np.clip(corners_px, -_FAR_PX, _FAR_PX)).astype(np.int32), 1)
+    free = region.astype(bool) & ~hidden
+    return float((free & found.mask).sum() / max(int(free.sum()), 1))
 
 
 def aligned(

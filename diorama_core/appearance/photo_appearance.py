@@ -21,10 +21,15 @@ from diorama_core.artefacts import DetectedObject
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.slots import slots_of
 from diorama_core.library.stretch import relative_scale, stretched_parts
+from diorama_core.library.taxonomy import with_kin
 from diorama_core.scene.types import Camera, PhotoMaterial, RoomLight, Scene, SceneObject
 
 MASK_MARGIN = 0.004
 """Widening of what stands before an object, as a share of the photo's longer side."""
+
+LAMPS = with_kin("lamp", "floor lamp", "ceiling lamp", "wall lamp", "chandelier")
+SHINING = 190
+"""Brightest channel, of 255, from which on pixels of a lamp are its light."""
 
 Picture = UInt8[np.ndarray, "_ _ 3"]
 
@@ -111,7 +116,15 @@ def _seen(
     view = surface_view(parts, slots, item.pose, camera, visible | unhidden)
     taken = {face.slot.name for face in faces}
     pixels = () if view is None else slot_pixels(view, slots, rgb, visible, unhidden)
-    return _Seen(item, faces, view, tuple(p for p in pixels if p.slot.name not in taken))
+    read = (p for p in pixels if p.slot.name not in taken)
+    return _Seen(item, faces, view, tuple(p for p in read if view is not None and not _shines(item, p, view, rgb)))
+
+
+def _shines(item: SceneObject, pixels: SlotPixels, view: SurfaceView, rgb: UInt8[np.ndarray, "h w 3"]) -> bool:
+    """Whether what is seen in place of a lamp's metal or wood is its light: that is no colour of a material."""
+    if item.category not in LAMPS or pixels.slot.role not in ("metal", "wood", "paint"):
+        return False
+    return bool(np.median(view.of(rgb)[pixels.near].max(axis=1)) >= SHINING)
 
 
 def _in_box(found: DetectedObject) -> Bool[np.ndarray, "h w"]:

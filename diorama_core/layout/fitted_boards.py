@@ -19,7 +19,7 @@ from scipy.optimize import lsq_linear
 from diorama_core.layout.problem.supports import is_soft
 from diorama_core.layout.sight import nearness
 from diorama_core.library import taxonomy
-from diorama_core.library.boards import BOARD_SHARE, MAX_SLOPE, MIN_SLOPE, base_id, levels_m, with_boards
+from diorama_core.library.boards import BOARD_SHARE, MAX_SLOPE, MIN_SLOPE, levels_m, with_boards, without_boards
 from diorama_core.library.record import BUILT_IN, Shape, ShapeLibrary
 from diorama_core.scene.frames import UP_WORLD
 from diorama_core.scene.types import Camera, Scene, SceneObject
@@ -77,7 +77,7 @@ def fitted_boards(scene: Scene, library: ShapeLibrary, *, reasoned: bool) -> tup
 
 def is_adjustable(item: SceneObject, shape: Shape) -> bool:
     """Whether the boards of an object can be hung at other heights; its library must derive such shapes."""
-    derived = base_id(shape.id) != shape.id
+    derived = without_boards(shape.id) != shape.id
     return item.category in _ADJUSTABLE and shape.source == BUILT_IN and not derived and len(levels_m(shape)) >= 3
 
 

@@ -16,6 +16,7 @@ import trimesh
 from jaxtyping import Float
 
 from diorama_core.errors import LibraryError
+from diorama_core.library.furniture.measures import MARK as MADE_MARK
 from diorama_core.library.record import Shape, SupportSurface
 from diorama_core.library.slots import placed_vertices, transform_of
 from diorama_core.library.stretch import AxisMap
@@ -31,7 +32,12 @@ MIN_SLOPE, MAX_SLOPE = 0.3, 3.0
 
 
 def base_id(shape_id: str) -> str:
-    """The shape that an id is derived from; the id itself where it is not derived."""
+    """The listed shape that an id is derived from, made to measure or not; the id itself where it is not derived."""
+    return shape_id.split(_MARK)[0].split(MADE_MARK)[0]
+
+
+def without_boards(shape_id: str) -> str:
+    """The shape whose boards an id says are elsewhere, which may be made to measure; the id itself otherwise."""
     return shape_id.split(_MARK)[0]
 
 
@@ -53,8 +59,8 @@ def with_boards(shape: Shape, heights_m: Float[np.ndarray, " k"]) -> str | None:
     """
     bottom, height = -shape.size_m[2] / 2, shape.size_m[2]
     shares = [round(_THOUSAND * (z - bottom) / height) for z in heights_m]
-    wanted = f"{base_id(shape.id)}{_MARK}{'-'.join(map(str, shares))}"
-    return wanted if shape.id == base_id(shape.id) and _map(shape, shares) is not None else None
+    wanted = f"{shape.id}{_MARK}{'-'.join(map(str, shares))}"
+    return wanted if shape.id == without_boards(shape.id) and _map(shape, shares) is not None else None
 
 
 @dataclass(frozen=True)

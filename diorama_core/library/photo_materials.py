@@ -12,9 +12,17 @@ from PIL import Image
 from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
-from diorama_core.library.paint import in_colour, physically_based
+from diorama_core.io.srgb import srgb_to_linear
+from diorama_core.library.paint import Colour, in_colour, physically_based
 from diorama_core.library.slots import Slot, matched, placed_vertices, rectangle_of, slots_of
 from diorama_core.scene.types import PhotoMaterial
+
+WARM, WARM_PALE, PALE = 0.12, 0.22, 0.85
+"""By what share of red the blue of wood is lower at least; of pale colours, with red beyond the third, more."""
+
+PATTERNED = 0.152
+"""Deviation of luminance, as a share of its mean: of the library's grains, weaves and wickers at most 0.148, of its
+stripes, checks, speckles and prints at least 0.155."""
 
 Pictures = Mapping[str, UInt8[np.ndarray, "_ _ 3"]]
 
@@ -47,15 +55,37 @@ def with_photo_materials(parts: trimesh.Scene, materials: Sequence[PhotoMaterial
     return scene
 
 
+def shows_wood(colour: Colour) -> bool:
+    """Whether wood itself may have a colour (sRGB 0 to 1): white, grey, green or blue wood is painted."""
+    red, green, blue = colour
+    warm = WARM_PALE if red > PALE else WARM
+    return red >= green >= blue and red - blue >= warm * red
+
+
 def _recolour(scene: trimesh.Scene, slot: Slot, material: PhotoMaterial) -> None:
-    """A material without a pattern: the slot's own grain or weave, in the photo's colour."""
+    """A material without a pattern: the slot's own grain or weave in the photo's colour.
+
+    Painted wood has no grain, and stripes, checks or speckles of the library that the photo does not show are left out.
+    """
     meshes = [scene.geometry[name] for name in slot.geometry]
     own = physically_based(meshes[0])
     made = in_colour(own, material.colour)
     made.name = f"{material.slot} from the photo {zlib.crc32(repr((material, own.name)).encode()):08x}"
     made.metallicFactor, made.roughnessFactor = material.metallic, material.roughness
+    painted = slot.role == "wood" and not shows_wood(material.colour)
+    if painted or (slot.tile_m is not None and _is_patterned(own)):
+        made.baseColorTexture = None
+        made.baseColorFactor = [*(round(255 * float(c)) for c in srgb_to_linear(np.array(material.colour))), 255]
     for mesh in meshes:
         mesh.visual = TextureVisuals(uv=getattr(mesh.visual, "uv", None), material=made)
+
+
+def _is_patterned(material: PBRMaterial) -> bool:
+    """Whether a repeating texture is a pattern rather than a grain or a weave."""
+    if material.baseColorTexture is None:
+        return False
+    luminance = np.asarray(material.baseColorTexture.convert("L"), dtype=np.float64)
+    return bool(luminance.std() > PATTERNED * max(float(luminance.mean()), 1.0))
 
 
 def _pictured(material: PhotoMaterial, picture: UInt8[np.ndarray, "h w 3"]) -> PBRMaterial:

@@ -18,7 +18,7 @@ from diorama_core.perception.masks import EmbeddedMasks
 from diorama_core.perception.measured import MeasuredGeometry
 from diorama_core.perception.metrology import SingleViewMetrology
 from diorama_core.perception.naming import own_naming
-from diorama_core.pose import RenderAndCompare
+from diorama_core.pose import MadeToMeasure, RenderAndCompare
 from diorama_core.protocols import (
     ArchitectureStage,
     CameraStage,
@@ -83,7 +83,7 @@ def embedded_stages(inputs: Inputs, library: ShapeLibrary, *, recipe: str = DEFA
         architecture=PlanarRoom() if measured else PhotoRoom(),
         depth=MeasuredDepth() if measured else RenderedDepth(),
         retrieval=HierarchicalRetrieval(library),
-        pose=RenderAndCompare(library),
+        pose=MadeToMeasure(RenderAndCompare(library), library),
         layout=layout_recipe(recipe, library, depth_measured=measured, sizes_reasoned=not measured),
         graph=GeometricGraph() if measured else None,
         naming=own_naming(),

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_core.appearance.flat_faces import FACES, aligned, is_lit
+from diorama_core.appearance.flat_faces import FACES, aligned, face_kind, is_lit
 from diorama_core.appearance.rectify import Rectified
 from diorama_core.library.taxonomy import CATEGORIES
 
@@ -35,3 +35,15 @@ def test_a_screen_that_is_off_is_dark(level: float, contrast: float, lit: bool) 
     colours = np.full((40, 60, 3), level, np.float32)
     colours[:, ::2] += contrast
     assert is_lit(Rectified(colours, np.ones((40, 60), dtype=bool))) == lit
+
+
+def test_books_show_their_spines_in_a_row_and_their_cover_when_one_lies_flat() -> None:
+    row, lying, stack = (
+        face_kind("books", np.array(size)) for size in ((0.2, 0.5, 0.3), (0.2, 0.3, 0.03), (0.2, 0.3, 0.2))
+    )
+    assert row is not None
+    assert row[1] == "front"
+    assert lying is not None
+    assert lying[1] == "top"
+    assert stack is None
+    assert face_kind("chair", np.ones(3)) is None

@@ -94,6 +94,25 @@ def test_without_a_camera_nothing_is_taken(photo) -> None:
     assert not photo_appearance(photo, detected(hung("picture-hills-oak", worn=False)), scene, LIBRARY).materials
 
 
+def test_other_books_wear_the_spines_of_the_photo() -> None:
+    def row(shape_id: str) -> Scene:
+        shape = LIBRARY.shape(shape_id)
+        scale = np.array(LIBRARY.shape("books-row-long").size_m) / shape.size_m
+        pose = Pose.upright((0.5, -0.6, 1.4), -np.pi / 2 + 0.2, scale)
+        item = SceneObject("books_1", "books", "books", shape.id, shape.size_m, pose)
+        return Scene(camera=camera(), objects=(item,))
+
+    seen = picture(row("books-row-long"), LIBRARY, size=SIZE)
+    other = row("books-row")
+    look = photo_appearance(seen, detected(row("books-row-long")), other, LIBRARY)
+    assert sum(m.layout == "front" for m in look.materials["books_1"]) >= 5
+    worn = picture(look.applied(other), LIBRARY, size=SIZE, textures=look.pictures)
+    plain = picture(other, LIBRARY, size=SIZE)
+    mask = detected(other)[0].mask & detected(row("books-row-long"))[0].mask
+    off = [float(np.abs(p.astype(float) - seen)[mask].mean()) for p in (worn, plain)]
+    assert off[0] < 0.6 * off[1]
+
+
 def test_names_tell_pictures_apart() -> None:
     first, second = texture_name("a b/1", "wood 2", art()), texture_name("a b/1", "wood 2", art() // 2)
     assert first != second

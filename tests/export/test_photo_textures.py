@@ -1,9 +1,17 @@
 from __future__ import annotations
 
+import contextlib
+import io
+import zipfile
+from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
+import pytest
+from PIL import Image
 
+from diorama_core.export import FORMATS, export_scene
 from diorama_core.export.gathering import ExportOptions, gather
 from diorama_core.export.gltf import write_gathered
 from diorama_core.export.photo_textures import bounded_pictures
@@ -56,3 +64,35 @@ def test_the_khronos_validator_finds_nothing(tmp_path) -> None:
     path = tmp_path / "scene.glb"
     write_gathered(gather(hung_picture(), built_in_library(), textures=pictures()), path)
     assert gltf_findings(path) == []
+
+
+TEXTURED = ("glb", "obj", "usda", "usdz", "mjcf", "urdf", "sdf", "sh3d")
+"""Formats that carry pictures (docs/export.md)."""
+
+
+def pictures_in(folder: Path) -> Iterator[np.ndarray]:
+    """Every PNG and JPEG in the files of a folder, also within archives and binary files."""
+    for path in folder.rglob("*"):
+        if path.is_file():
+            data = path.read_bytes()
+            parts = [data]
+            if zipfile.is_zipfile(path):
+                with zipfile.ZipFile(path) as archive:
+                    parts += [archive.read(name) for name in archive.namelist()]
+            for part in parts:
+                for mark in (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff"):
+                    start = part.find(mark)
+                    while start >= 0:
+                        with contextlib.suppress(OSError):
+                            yield np.asarray(Image.open(io.BytesIO(part[start:])).convert("RGB"))
+                        start = part.find(mark, start + 1)
+
+
+@pytest.mark.parametrize("name", TEXTURED)
+def test_every_format_with_pictures_has_the_photos(name: str, tmp_path: Path) -> None:
+    if FORMATS[name].missing:
+        pytest.skip(FORMATS[name].missing)
+    red = {"picture-1-picture-0": np.full((48, 64, 3), (200, 30, 40), np.uint8)}
+    export_scene(hung_picture(), built_in_library(), tmp_path / f"room{FORMATS[name].suffixes[0]}", name, textures=red)
+    found = [p.reshape(-1, 3).mean(axis=0) for p in pictures_in(tmp_path)]
+    assert min(np.abs(mean - (200, 30, 40)).max() for mean in found) < 8

@@ -2,11 +2,15 @@ from __future__ import annotations
 
 import numpy as np
 import trimesh
+from PIL import Image
 from trimesh.visual.material import PBRMaterial
 
-from diorama_core.library.photo_materials import PhotographedMaterial, with_photo_materials
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.library.photo_materials import PhotographedMaterial, shows_wood, with_photo_materials
+from diorama_core.library.slots import slots_of
 from diorama_core.scene.types import PhotoMaterial
 
+LIBRARY = built_in_library()
 ART = np.random.default_rng(0).integers(0, 255, (20, 30, 3)).astype(np.uint8)
 
 
@@ -39,6 +43,38 @@ def test_a_plain_material_is_its_colour() -> None:
         np.asarray(material.baseColorFactor)[:3], [255, 54, 0], atol=1
     )  # glTF factors are linear
     assert material.roughnessFactor == 0.3
+
+
+def test_painted_wood_shows_no_grain_and_bare_wood_keeps_it() -> None:
+    def worn(colour: tuple[float, float, float]) -> PBRMaterial:
+        parts = scene()
+        grain = PBRMaterial(name="oak", baseColorTexture=Image.fromarray(ART))
+        uv = np.zeros((len(parts.geometry["frame"].vertices), 2))
+        parts.geometry["frame"].visual = trimesh.visual.TextureVisuals(uv=uv, material=grain)
+        shown = with_photo_materials(parts, [PhotoMaterial("wood", colour, main=True)], {})
+        return shown.geometry["frame"].visual.material
+
+    assert worn((0.55, 0.4, 0.25)).baseColorTexture is not None
+    white = worn((0.9, 0.9, 0.87))
+    assert white.baseColorTexture is None
+    assert 240 > white.baseColorFactor[0] > 190
+    assert [shows_wood(c) for c in ((0.35, 0.25, 0.18), (0.5, 0.5, 0.5), (0.4, 0.5, 0.4), (0.8, 0.7, 0.57))] == [
+        True,
+        False,
+        False,
+        True,
+    ]
+
+
+def test_the_librarys_patterns_give_way_to_plain_cloth_and_its_weaves_stay() -> None:
+    def worn(shape_id: str) -> PBRMaterial:
+        parts = LIBRARY.parts(shape_id)
+        slot = next(s for s in slots_of(parts) if s.main)
+        shown = with_photo_materials(parts, [PhotoMaterial(slot.name, (0.4, 0.3, 0.3), main=True)], {})
+        return shown.geometry[slot.geometry[0]].visual.material
+
+    assert worn("pillow-kilim").baseColorTexture is None
+    assert worn("curtain-linen-pair").baseColorTexture is not None
 
 
 def test_a_tiled_material_is_measured_in_metres() -> None:

@@ -22,7 +22,7 @@ from diorama_core.pipeline.presets import propose_boxes, stages_for
 from diorama_core.pipeline.provenance_text import camera_sentence
 from diorama_core.pipeline.run import Built, build_scene
 from diorama_core.pipeline.stages import Stages
-from diorama_core.pose import RenderAndCompare
+from diorama_core.pose import MadeToMeasure
 from diorama_core.progress import Progress
 from diorama_core.provenance import DepthSource, FocalSource, GraphMethod
 from diorama_core.synthesis.layout_rooms import box_library
@@ -165,7 +165,7 @@ def test_every_network_of_the_paper_takes_its_stage(photo: Photo, store: ModelSt
     put("owlv2-large", "sam2.1-large", "metric3d-large")
     bare = stages_for("foundation", inputs, box_library(), store=store)
     assert isinstance(bare.architecture, PlanarRoom)
-    assert isinstance(bare.pose, RenderAndCompare)
+    assert isinstance(bare.pose, MadeToMeasure)
     put("lama", "birefnet", "birefnet-lite", "mvanet", "dinov2-large", "gigapose-scale")
     stages = stages_for("foundation", inputs, box_library(), store=store)
     used = {
@@ -179,7 +179,7 @@ def test_every_network_of_the_paper_takes_its_stage(photo: Photo, store: ModelSt
     for stage, ids in used.items():
         assert all(network_id in repr(getattr(stages, stage)) for network_id in ids.split()), stage
     assert "birefnet-lite" not in repr(stages.architecture)
-    assert isinstance(stages_for("auto", inputs, box_library(), store=store).pose, RenderAndCompare)
+    assert isinstance(stages_for("auto", inputs, box_library(), store=store).pose, MadeToMeasure)
     assert stages_for("embedded", inputs, box_library(), store=store).filler is None
 
 

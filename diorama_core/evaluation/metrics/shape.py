@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 
 import numpy as np
+import trimesh
 from jaxtyping import Float
 from scipy.spatial import cKDTree
 
@@ -16,8 +17,12 @@ SAMPLES = 2000
 
 def shape_points(library: ShapeLibrary, shape_id: str, count: int = SAMPLES) -> Float[np.ndarray, "n 3"]:
     """Points spread over a shape's surface, longest side 1, centred; always the same for the same shape."""
-    mesh = library.mesh(shape_id)
-    rng = np.random.default_rng(int.from_bytes(hashlib.sha256(shape_id.encode()).digest()[:4], "little"))
+    return points_of(library.mesh(shape_id), shape_id, count)
+
+
+def points_of(mesh: trimesh.Trimesh, seed: str, count: int = SAMPLES) -> Float[np.ndarray, "n 3"]:
+    """Points spread over a mesh's surface, longest side 1, centred; always the same for the same words."""
+    rng = np.random.default_rng(int.from_bytes(hashlib.sha256(seed.encode()).digest()[:4], "little"))
     corners = np.asarray(mesh.vertices)[np.asarray(mesh.faces)]
     area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     which = np.searchsorted(np.cumsum(area) / area.sum(), (np.arange(count) + rng.random(count)) / count)

@@ -13,6 +13,7 @@ from diorama_core.library import furniture
 from diorama_core.library.furniture.joints import Joint, Vector
 from diorama_core.library.furniture.latest import latest_parts
 from diorama_core.library.furniture.materials import Material
+from diorama_core.library.furniture.measures import MARK, is_made, made_by_id
 from diorama_core.library.furniture.model import Design, Part, joined, scene_of
 from diorama_core.library.furniture.roles import with_roles
 from diorama_core.library.furniture.solids import Solid, unit
@@ -46,9 +47,11 @@ def joint_of(geometry_name: str) -> int | None:
 
 @lru_cache(maxsize=1024)
 def articulation(shape_id: str) -> Articulation | None:
-    """The moving parts of a built-in shape; None where it has none, or is not built in."""
-    design = _designs().get(shape_id)
-    return None if design is None else _articulated(design)
+    """The moving parts of a built-in shape, made to measure or not; None where it has none, or is not built in."""
+    design = _designs().get(shape_id.split(MARK, 1)[0])
+    if design is None or not is_made(shape_id):
+        return None if design is None else _articulated(design)
+    return _articulated(made_by_id(shape_id, design))
 
 
 @lru_cache(maxsize=1)

@@ -1,0 +1,305 @@
+"""The photo's own look on rendered rooms: shapes made to measure, and the photo's materials against flat colours.
+
+The true shape of every object is removed from the library, so that the nearest other one is retrieved and fitted. What
+the two steps bring is measured on the same poses: how near the shape comes to the true one, how well its outline lies
+on the true outline, and how far the colours of the visible faces are from the photo's in a blurred picture. Pictures of
+scenes show white light (`render.lighting.room_lighting`), so the photo is compared as white light would have it.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+
+import cv2
+import numpy as np
+import trimesh
+from jaxtyping import Bool, Float, UInt8
+
+from diorama_core.appearance.photo_appearance import photo_appearance
+from diorama_core.artefacts import PosedCandidates
+from diorama_core.errors import Cancelled
+from diorama_core.evaluation.benchmarks.cases import attempted, recipe
+from diorama_core.evaluation.benchmarks.pose_comparison import (
+    ESTIMATED_DEPTH,
+    REMOVED,
+    TRUE_DEPTH,
+    Seen,
+    inputs_with,
+    predict,
+    shapes_of,
+)
+from diorama_core.evaluation.metrics.colour import delta_e_2000, lab_of
+from diorama_core.evaluation.metrics.shape import chamfer, points_of, shape_distance
+from diorama_core.evaluation.reports.tables import Column, Row, Table
+from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
+from diorama_core.geometry.window import Window
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.stretch import relative_scale, stretched_parts
+from diorama_core.pipeline.assemble import assemble
+from diorama_core.pipeline.colours import photo_colours, room_illuminant, shared_by_sets
+from diorama_core.pose import MadeToMeasure, RenderAndCompare
+from diorama_core.progress import Progress
+from diorama_core.render.picture import picture
+from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
+from diorama_core.scene.types import Camera, Pose, Scene, SceneObject
+from diorama_core.synthesis.artefacts import TrueShapes
+from diorama_core.synthesis.truth import TruthView
+
+log = logging.getLogger(__name__)
+
+GIVEN: Mapping[str, str] = {"measured depth": TRUE_DEPTH, "picture alone": ESTIMATED_DEPTH}
+"""What is given besides the picture and true masks."""
+KEPT = 8
+"""Retrieved shapes of every object, without the true one."""
+CELLS, MARGIN = 96, 0.3
+"""Of the window in which outlines are compared."""
+SIZE, BLUR_PX = (320, 240), 3.0
+"""Of the pictures in which colours are compared, and by how much they are blurred."""
+MIN_PIXELS = 30
+"""Faces of fewer pixels of such a picture are not compared."""
+
+Picture = UInt8[np.ndarray, "h w 3"]
+
+
+@dataclass(frozen=True)
+class ObjectLook:
+    """One object. Chamfer distances are of normalised shapes, times 1000; None where nothing can be said."""
+
+    case: str
+    given: str
+    category: str
+    chamfer_of_shape: float
+    """Of the retrieved shape in its own proportions."""
+    chamfer_before: float
+    """Of the retrieved shape as it stands, stretched by structure."""
+    chamfer_after: float
+    """Of the shape made to measure."""
+    outline_before: float
+    """Intersection over union of the whole outlines, in the photo."""
+    outline_after: float
+    colour_before: float | None
+    """Mean CIEDE2000 of the visible faces in blurred pictures, with flat colours on the retrieved shape."""
+    colour_after: float | None
+    """With the photo's materials on the shape made to measure."""
+
+
+@dataclass(frozen=True)
+class LookBench:
+    """All objects of all rooms."""
+
+    seed: int
+    objects: tuple[ObjectLook, ...]
+    seconds: tuple[tuple[str, float, float], ...]
+    """What was given, and the processor time that fitting and materials took for an object, on average."""
+
+    def tables(self) -> tuple[Table, ...]:
+        """One row for what was given."""
+        names = ("chamfer of shape", "chamfer before", "chamfer after", "median before", "median after")
+        columns = (
+            Column("objects", "d"),
+            *(Column(name, ".1f", "↓") for name in names),
+            *(Column(f"outline IoU {when}", ".3f", "↑") for when in ("before", "after")),
+            *(Column(f"delta E {when}", ".1f", "↓") for when in ("flat", "after")),
+            *(Column(f"s/object {step}", ".2f", "↓") for step in ("made", "materials")),
+        )
+        rows = [self._row(given, made, materials) for given, made, materials in self.seconds]
+        note = (
+            "True shapes removed, true masks, before any layout. Chamfer: two-way mean squared distance of normalised "
+            "shapes x 1000; before is the first shape as it stands, stretched by structure, after is made to measure."
+        )
+        return (Table("The photo's own look", columns, tuple(rows), note),)
+
+    def _row(self, given: str, made_s: float, materials_s: float) -> Row:
+        mine = [o for o in self.objects if o.given == given]
+        means = [_mean([getattr(o, f"chamfer_{k}") for o in mine]) for k in ("of_shape", "before", "after")]
+        medians = [float(np.median([getattr(o, f"chamfer_{k}") for o in mine])) for k in ("before", "after")]
+        outlines = [_mean([getattr(o, f"outline_{k}") for o in mine]) for k in ("before", "after")]
+        coloured = [o for o in mine if o.colour_before is not None and o.colour_after is not None]
+        colours = [_mean([getattr(o, f"colour_{k}") for o in coloured]) for k in ("before", "after")]
+        return Row(given, (len(mine), *means, *medians, *outlines, *colours, made_s, materials_s))
+
+    def to_json(self) -> dict[str, object]:
+        """Tables and every object."""
+        return {
+            "bench": "look",
+            "seed": self.seed,
+            "tables": [t.to_json() for t in self.tables()],
+            "objects": [asdict(o) for o in self.objects],
+        }
+
+
+Show = Callable[[str, Picture, Picture, Picture], None]
+"""Receives a case's name, its photo, and the pictures before and after."""
+
+
+def run(
+    library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progress | None = None, show: Show | None = None
+) -> LookBench:
+    """Fit and dress every object of some rooms. Rooms that fail are left out with a warning.
+
+    Args:
+        library: what rooms are furnished from.
+        scenes: how many rooms.
+        seed: of the first one.
+        progress: reports and cancellation.
+        show: receives the pictures of every room.
+    """
+    progress = progress or Progress()
+    objects: list[ObjectLook] = []
+    spent: dict[str, list[tuple[float, float, int]]] = {given: [] for given in GIVEN}
+    cases = recipe(scenes, 1, seed)
+    for number, (case, view) in enumerate(attempted(cases, library, [])):
+        for turn, given in enumerate(GIVEN):
+            progress.report((number + turn / len(GIVEN)) / len(cases), f"{case.name}: {given}")
+            try:
+                found, times = _one_room(case.name, view, given, library, show)
+            except Cancelled:
+                raise
+            except Exception as error:  # whatever goes wrong, the other rooms' results are worth keeping
+                log.warning("%s with %s is left out: %s", case.name, given, error)
+                continue
+            objects += found
+            spent[given].append(times)
+    progress.report(1.0, "done")
+    seconds = tuple((given, *_for_an_object(times)) for given, times in spent.items() if times)
+    return LookBench(seed, tuple(objects), seconds)
+
+
+def _one_room(
+    name: str, view: TruthView, given: str, library: ShapeLibrary, show: Show | None
+) -> tuple[list[ObjectLook], tuple[float, float, int]]:
+    seen = predict(inputs_with(view, GIVEN[given]), library)
+    retrieved = HierarchicalRetrieval(library, keep=KEPT + 1).retrieve(
+        seen.inputs, seen.objects, seen.geometry, Progress()
+    )
+    true = TrueShapes.of(view).retrieve(seen.inputs, seen.objects, seen.geometry, Progress())
+    offered = shapes_of(true, retrieved, REMOVED, KEPT)
+    fit = MadeToMeasure(RenderAndCompare(library), library)
+    posed = fit.stage.pose(seen.inputs, seen.objects, seen.geometry, seen.depth, offered, Progress())
+    start = time.process_time()
+    made = fit.fitted(posed, seen.inputs, seen.objects, seen.geometry, seen.depth, Progress())
+    made_s = time.process_time() - start
+    before, after = _coloured(seen, posed, library), _coloured(seen, made, library)
+    balanced, light_rgb = _balanced(seen)
+    start = time.process_time()
+    look = photo_appearance(balanced, seen.objects, after, library, light_rgb)
+    materials_s = time.process_time() - start
+    after = look.applied(after)
+    flat = picture(replace(before, light=after.light), library, size=SIZE)
+    dressed = picture(after, library, size=SIZE, textures=look.pictures)
+    if show is not None:
+        show(f"{name}, {given}", cv2.resize(balanced, SIZE, interpolation=cv2.INTER_AREA), flat, dressed)
+    differences = [_difference(balanced, shown) for shown in (flat, dressed)]
+    of_mask = {str(view.scene.objects[k].mask_id): k for k in view.asked}
+    found = []
+    for item in seen.objects:
+        index = of_mask.get(str(item.mask_id))
+        if index is not None and before.has_object(item.id):
+            pair = before.object(item.id), after.object(item.id)
+            colours = _colours(view, index, seen.geometry.camera, pair, differences, library)
+            found.append(_measured(name, given, view, index, pair, seen.geometry.camera, colours, library))
+    return found, (made_s, materials_s, len(seen.objects))
+
+
+def _balanced(seen: Seen) -> tuple[Picture, tuple[float, float, float]]:
+    """The photo in white light, and the colour of its light."""
+    illuminant = room_illuminant(seen.inputs, seen.objects, seen.room.architecture, seen.geometry.camera)
+    return illuminant.balanced(seen.inputs.photo.rgb), illuminant.rgb
+
+
+def _coloured(seen: Seen, posed: tuple[PosedCandidates, ...], library: ShapeLibrary) -> Scene:
+    """The scene in flat colours: that of each object's pixels on its main material."""
+    shapes = {p.object_id: p.candidates[0].shape_id for p in posed if p.candidates}
+    colours = shared_by_sets(photo_colours(_balanced(seen)[0], seen.objects), seen.objects, shapes)
+    return assemble(seen.objects, seen.geometry, seen.room, posed, library, colours)
+
+
+def _measured(
+    name: str,
+    given: str,
+    view: TruthView,
+    index: int,
+    pair: tuple[SceneObject, SceneObject],
+    camera: Camera,
+    colours: tuple[float | None, float | None],
+    library: ShapeLibrary,
+) -> ObjectLook:
+    true = view.scene.objects[index]
+    goal = points_of(_standing(true, library), true.id)
+    near = [1000.0 * chamfer(goal, points_of(_standing(o, library), o.id)) for o in pair]
+    outlines = [_outline_iou(true, view.camera, item, camera, library) for item in pair]
+    alone = shape_distance(library, true.shape_id, pair[0].shape_id)
+    return ObjectLook(name, given, true.category, alone, near[0], near[1], outlines[0], outlines[1], *colours)
+
+
+def _standing(item: SceneObject, library: ShapeLibrary) -> trimesh.Trimesh:
+    """The shape in the size at which it stands, stretched by structure as it is shown."""
+    parts = stretched_parts(library.parts(item.shape_id), relative_scale(item.pose.scale))
+    whole = parts.to_geometry()
+    return trimesh.Trimesh(np.asarray(whole.vertices) * item.pose.scale, whole.faces, process=False)
+
+
+def _outline_iou(
+    true: SceneObject, true_camera: Camera, item: SceneObject, camera: Camera, library: ShapeLibrary
+) -> float:
+    """Intersection over union of both whole outlines within the photo, each through its own camera."""
+    assert true.box_px is not None
+    window = Window.around(true.box_px, MARGIN, CELLS)
+    k = true_camera.intrinsics
+    inside = window.inside(k.width, k.height)
+    a, b = (
+        _outline(library.mesh(o.shape_id), o.pose, seen_by, window) & inside
+        for o, seen_by in ((true, true_camera), (item, camera))
+    )
+    return float((a & b).sum() / max((a | b).sum(), 1))
+
+
+def _outline(mesh: trimesh.Trimesh, pose: Pose, camera: Camera, window: Window) -> Bool[np.ndarray, "n"]:
+    batch = PoseBatch(pose.R_world_object[None], pose.position[None], np.asarray(pose.scale)[None])
+    return ShapeCaster(mesh).cast(camera.position, camera.rays(window.centres_px), batch).covered[0]
+
+
+def _difference(photo: Picture, shown: Picture) -> Float[np.ndarray, "h w"]:
+    """CIEDE2000 of two blurred pictures."""
+    small = cv2.resize(photo, SIZE, interpolation=cv2.INTER_AREA)
+    a, b = (lab_of(cv2.GaussianBlur(p, (0, 0), BLUR_PX) / 255.0) for p in (small, shown))
+    return delta_e_2000(a, b)
+
+
+def _colours(
+    view: TruthView,
+    index: int,
+    camera: Camera,
+    pair: tuple[SceneObject, SceneObject],
+    differences: Sequence[Float[np.ndarray, "h w"]],
+    library: ShapeLibrary,
+) -> tuple[float | None, float | None]:
+    """Mean differences where the photo shows the object and both models have it."""
+    mask = (view.object_ids == index).astype(np.uint8)
+    visible = cv2.resize(mask, SIZE, interpolation=cv2.INTER_NEAREST).astype(bool)
+    k = view.camera.intrinsics
+    rows, columns = np.nonzero(visible)
+    if len(rows) < MIN_PIXELS:
+        return None, None
+    pixels = (np.stack([columns, rows], axis=1) + 0.5) * (k.width / SIZE[0], k.height / SIZE[1])
+    there = np.ones(len(rows), dtype=bool)
+    for item in pair:
+        batch = PoseBatch(item.pose.R_world_object[None], item.pose.position[None], np.asarray(item.pose.scale)[None])
+        caster = ShapeCaster(library.mesh(item.shape_id))
+        there &= caster.cast(camera.position, camera.rays(pixels), batch).covered[0]
+    if there.sum() < MIN_PIXELS:
+        return None, None
+    before, after = (float(d[rows[there], columns[there]].mean()) for d in differences)
+    return before, after
+
+
+def _for_an_object(times: Sequence[tuple[float, float, int]]) -> tuple[float, float]:
+    made, materials, count = np.sum(times, axis=0)
+    return float(made / count), float(materials / count)
+
+
+def _mean(values: Sequence[float]) -> float | None:
+    return float(np.mean(values)) if values else None

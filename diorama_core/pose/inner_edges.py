@@ -1,0 +1,90 @@
+"""Inner edges of one object: the lines that drawers, doors, boards and cushions draw within its outline.
+
+The edges of the photo within the object's mask are compared with those of a posed shape: where its surface turns or
+steps back. Both are taken as strengths of horizontal and vertical gradients, slightly blurred, and correlated, so that
+neither the strength of the light nor the colours of materials count.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float, Float32, UInt8
+
+from diorama_core.geometry.observed import Observed
+from diorama_core.geometry.silhouette import Hits
+
+WHOLE_CELL = 0.95
+"""Cells of which less shows the object are its outline."""
+SMOOTH, BLUR = 0.7, 1.0
+"""Cells: of the picture before its gradient, and of the gradients, so that edges may lie a little off."""
+TURN, STEP = 60.0, 2000.0
+"""Strength of an edge, in grey levels, where the normal turns by a radian, or inverse depth steps by its own size."""
+STRONGEST = 40.0
+"""Grey levels a cell: an edge of a shape is one, however deep it is."""
+_NEAR_M = 0.05
+_NOTHING = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class InnerEdges:
+    """The photo's edges within one object, in the cells of its window."""
+
+    cells: int
+    inside: Bool[np.ndarray, "c c"]
+    """Cells that show the object and nothing else, without its rim."""
+    photo: Float[np.ndarray, "m"]
+    """Of zero mean and unit length; zeros where nothing is to be seen."""
+
+    @classmethod
+    def of(cls, rgb: UInt8[np.ndarray, "h w 3"], seen: Observed) -> InnerEdges:
+        """The edges of an object in the photo."""
+        cells = seen.window.cells
+        grey = seen.window.means(rgb) @ np.array([0.299, 0.587, 0.114])
+        whole = (seen.covered * seen.weight > WHOLE_CELL).reshape(cells, cells).astype(np.uint8)
+        inside = cv2.erode(whole, np.ones((3, 3), np.uint8), borderValue=0).astype(bool)
+        return cls(cells, inside, _told(_gradients(grey.reshape(cells, cells)), inside))
+
+    def agreement(self, hits: Hits) -> Float[np.ndarray, "p"]:
+        """Correlation, -1 to 1, with the edges of a shape under every pose; 0 where either has none."""
+        return np.array([self._of_pose(hits, k) for k in range(len(hits.poses))])
+
+    def _of_pose(self, hits: Hits, pose: int) -> float:
+        covered = hits.covered[pose]
+        if not self.inside.any() or not covered.any():
+            return 0.0
+        depth = np.where(covered, hits.depth_m[pose], 1.0)
+        depth = np.where(covered, depth, np.median(depth[covered])).reshape(self.cells, self.cells)
+        edges = STEP * _bends(1.0 / np.maximum(depth, _NEAR_M))
+        for axis in range(3):
+            edges = edges + _gradients(TURN * hits.normals_world[pose][:, axis].reshape(self.cells, self.cells))
+        return float(_told(np.minimum(edges, STRONGEST), self.inside) @ self.photo)
+
+
+def _gradients(picture: Float[np.ndarray, "c c"]) -> Float32[np.ndarray, "c c 2"]:
+    """How much a picture changes along its rows and its columns."""
+    smooth = cv2.GaussianBlur(picture.astype(np.float32), (0, 0), SMOOTH)
+    along = [cv2.Sobel(smooth, cv2.CV_32F, dx, dy, scale=0.25) for dx, dy in ((1, 0), (0, 1))]
+    return np.abs(np.stack(along, axis=-1))
+
+
+def _bends(inverse_depth: Float[np.ndarray, "c c"]) -> Float32[np.ndarray, "c c 2"]:
+    """How much inverse depth steps along rows and columns, as a share of itself; along planes it does not."""
+    padded = np.pad(inverse_depth, 1, mode="edge")
+    middle = padded[1:-1, 1:-1]
+    across = np.abs(padded[1:-1, 2:] - 2 * middle + padded[1:-1, :-2])
+    down = np.abs(padded[2:, 1:-1] - 2 * middle + padded[:-2, 1:-1])
+    return np.stack([across / middle, down / middle], axis=-1).astype(np.float32)
+
+
+def _told(edges: Float32[np.ndarray, "c c 2"], inside: Bool[np.ndarray, "c c"]) -> Float[np.ndarray, "m"]:
+    """The edges inside, both directions one after the other, of zero mean and unit length."""
+    blurred = cv2.GaussianBlur(np.sqrt(edges), (0, 0), BLUR)
+    told = blurred[inside].astype(np.float64)
+    if not len(told):
+        return np.zeros(0)
+    told = (told - told.mean(axis=0)).T.reshape(-1)
+    length = float(np.linalg.norm(told))
+    return told / length if length > _NOTHING else np.zeros_like(told)

@@ -1,0 +1,86 @@
+"""The last few percent of a pose: sides, place and turn moved in small steps until outline and depth agree best.
+
+Shapes are compared as wholes before they are made to measure; what fits them best may not be what fits the shape that
+was chosen in the end. Each side of the box is tried a little farther out or in with the opposite one in place, the base
+stays where it is, and every step is the best of all, as long as one agrees better.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
+from diorama_core.pose.mask_observations import Evidence
+from diorama_core.scene.types import Pose, yaw_rotation
+
+STEPS = (0.06, 0.03, 0.015)
+"""Of an extent, and radians, from coarse to fine."""
+ROUNDS = 2
+"""Moves at each of them."""
+GAIN = 0.002
+"""Of the disagreement, 0 to 1: less is no better."""
+MIN_TRUST = 0.5
+"""Masks that are trusted less do not say it so exactly, unless depth does."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Moves:
+    """Poses around one, all of them neighbours by one step."""
+
+    R: list[Float[np.ndarray, "3 3"]]
+    position: list[Float[np.ndarray, "3"]]
+    scale: list[Float[np.ndarray, "3"]]
+
+    def add(self, R: Float[np.ndarray, "3 3"], position: Float[np.ndarray, "3"], scale: Float[np.ndarray, "3"]) -> None:
+        """One more."""
+        self.R.append(R)
+        self.position.append(position)
+        self.scale.append(scale)
+
+
+def fitted_pose(
+    evidence: Evidence, caster: ShapeCaster, pose: Pose, shape_size_m: Float[np.ndarray, "3"], *, resize: bool
+) -> Pose:
+    """The pose near one with which the shape agrees best.
+
+    Args:
+        evidence: Outline, and depth where it was measured.
+        caster: The shape.
+        pose: Where it is so far.
+        shape_size_m: Its extents at scale 1.
+        resize: Whether its size may change; one of a set keeps it.
+    """
+    if evidence.surface is None and evidence.seen.mask_trust < MIN_TRUST:
+        return pose
+    error = float(evidence.errors(caster, _batch(_Moves([pose.R_world_object], [pose.position], [pose.scale])))[0])
+    for step in STEPS:
+        for _ in range(ROUNDS):
+            moves = _neighbours(pose, np.asarray(shape_size_m), step, resize)
+            errors = evidence.errors(caster, _batch(moves))
+            best = int(np.argmin(errors))
+            if errors[best] >= error - GAIN:
+                break
+            error, pose = float(errors[best]), Pose(moves.R[best], moves.position[best], moves.scale[best])
+    return pose
+
+
+def _neighbours(pose: Pose, shape_size_m: Float[np.ndarray, "3"], step: float, resize: bool) -> _Moves:
+    R, moves = pose.R_world_object, _Moves([], [], [])
+    reach = 0.5 * step * float((shape_size_m * pose.scale).max())
+    for sign in (1.0, -1.0):
+        moves.add(R @ yaw_rotation(sign * step), pose.position, pose.scale)
+        for axis in range(2):
+            moves.add(R, pose.position + sign * reach * R[:, axis], pose.scale)
+        for axis, fixed in ((0, 0), (0, 1), (0, -1), (1, 0), (1, 1), (1, -1), (2, -1)) if resize else ():
+            scale = pose.scale.copy()
+            scale[axis] *= 1.0 + sign * step
+            grown = 0.5 * (scale[axis] - pose.scale[axis]) * shape_size_m[axis]
+            moves.add(R, pose.position - fixed * grown * R[:, axis], scale)
+    return moves
+
+
+def _batch(moves: _Moves) -> PoseBatch:
+    return PoseBatch(np.array(moves.R), np.array(moves.position), np.array(moves.scale))

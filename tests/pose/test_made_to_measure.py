@@ -1,0 +1,91 @@
+"""Retrieved shapes made to measure against rendered pictures of other members of their families."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diorama_core.artefacts import (
+    Cuboid,
+    DepthMap,
+    DetectedObject,
+    Inputs,
+    ObjectGeometry,
+    Photo,
+    PosedCandidates,
+)
+from diorama_core.library.boards import base_id
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.library.furniture import designs
+from diorama_core.library.furniture.measures import made_by_id, values_of
+from diorama_core.pose import MadeToMeasure, RenderAndCompare
+from diorama_core.progress import Progress
+from diorama_core.provenance import DepthSource, ScaleSource
+from diorama_core.render.raycast import render_buffers
+from diorama_core.scene.types import Candidate, Pose
+from tests.pose.rooms import LIBRARY as BLOCKS
+from tests.pose.rooms import camera_at
+
+LIBRARY = built_in_library()
+STAGE = MadeToMeasure(RenderAndCompare(LIBRARY), LIBRARY)
+CAMERA = camera_at()
+DESIGNS = {d.id: d for d in designs()}
+
+
+def fitted(true_id: str, found_id: str, scale=(1.0, 1.0, 1.0), library=LIBRARY, measured: bool = True) -> Candidate:
+    """The first candidate for one object that looks like `true_id`, for which `found_id` was retrieved."""
+    size = np.array(library.shape(true_id).size_m)
+    pose = Pose.upright((0.0, 3.4, size[2] / 2), np.deg2rad(-65.0))
+    seen = render_buffers([(library.mesh(true_id), pose.matrix)], CAMERA)
+    mask = seen.instance == 0
+    rows, columns = np.nonzero(mask)
+    box = (float(columns.min()), float(rows.min()), float(columns.max() + 1), float(rows.max() + 1))
+    shade = np.where(mask, 128 + 90 * np.nan_to_num(seen.normals_world) @ np.array([0.3, -0.5, 0.4]), 40)
+    rgb = np.repeat(shade.clip(0, 255).astype(np.uint8)[..., None], 3, axis=2)
+    item = DetectedObject("o", "thing", "thing", box, mask, 1, 1.0)
+    cuboid = Cuboid("o", pose.R_world_object, pose.position, size, 0.9)
+    found_size = library.shape(found_id).size_m
+    start = Pose(pose.R_world_object, pose.position, size / np.array(found_size) * scale)
+    posed = PosedCandidates("o", (Candidate(found_id, found_size, 0.9, start),), 0.9)
+    k = CAMERA.intrinsics
+    source = DepthSource.MEASURED if measured else DepthSource.RENDERED
+    geometry = ObjectGeometry(CAMERA, (cuboid,), (), ScaleSource.GIVEN)
+    inputs = Inputs(Photo(rgb, "photo", (k.width, k.height)))
+    stage = replace(STAGE, library=library)
+    depth = DepthMap(seen.depth_m, seen.normals_world, source)
+    (out,) = stage.fitted((posed,), inputs, (item,), geometry, depth, Progress())
+    assert out.candidates[-1].shape_id == found_id
+    return out.candidates[0]
+
+
+@pytest.mark.parametrize(
+    ("true_id", "found_id", "name"),
+    [("bookshelf-white-five", "bookshelf-oak-four", "levels"), ("table-oval-walnut", "table-walnut-splay", "outline")],
+)
+def test_parameters_are_those_of_the_object_in_the_picture(true_id: str, found_id: str, name: str) -> None:
+    best = fitted(true_id, found_id)
+    assert base_id(best.shape_id) == found_id
+    made = made_by_id(best.shape_id, DESIGNS[found_id])
+    wanted, before = values_of(DESIGNS[true_id])[name], values_of(DESIGNS[found_id])[name]
+    assert before != wanted
+    assert values_of(made)[name] == wanted
+
+
+def test_the_right_design_stays_and_is_built_at_its_size_where_it_was_stretched() -> None:
+    assert fitted("dresser-white-four", "dresser-white-four").shape_id == "dresser-white-four"
+    taller = fitted("dresser-white-four", "dresser-white-four", scale=(1.0, 1.0, 1.5))
+    if taller.shape_id != "dresser-white-four":
+        assert taller.pose.scale == pytest.approx(np.ones(3))
+
+
+def test_a_made_shape_has_scale_one_and_the_extents_that_were_measured() -> None:
+    best = fitted("bookshelf-white-five", "bookshelf-oak-four")
+    assert best.pose.scale == pytest.approx(np.ones(3))
+    assert best.shape_size_m == pytest.approx(LIBRARY.shape("bookshelf-white-five").size_m, abs=1e-3)
+    assert LIBRARY.shape(best.shape_id).size_m == best.shape_size_m
+
+
+def test_peoples_own_models_stay_as_they_are() -> None:
+    assert fitted("sofa", "bed", library=BLOCKS).shape_id == "bed"

@@ -1,0 +1,64 @@
+"""Poses a little off that are fitted to a rendered outline."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diorama_core.artefacts import DepthMap
+from diorama_core.geometry.observed import observe
+from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
+from diorama_core.pose.facing import Facing
+from diorama_core.pose.mask_observations import Evidence
+from diorama_core.pose.outline_fit import fitted_pose
+from diorama_core.pose.surface import measured_surface
+from diorama_core.provenance import DepthSource
+from diorama_core.render.raycast import render_buffers
+from diorama_core.scene.types import Pose, yaw_rotation
+from tests.pose.rooms import LIBRARY, camera_at
+
+CAMERA = camera_at()
+SIZE = np.array(LIBRARY.shape("table").size_m)
+TRUE = Pose.upright((0.2, 3.2, SIZE[2] / 2), np.deg2rad(-60.0))
+CASTER = ShapeCaster(LIBRARY.mesh("table"))
+
+
+def evidence(measured: bool, trust: float = 1.0) -> Evidence:
+    seen = render_buffers([(LIBRARY.mesh("table"), TRUE.matrix)], CAMERA)
+    mask = seen.instance == 0
+    rows, columns = np.nonzero(mask)
+    box = (float(columns.min()), float(rows.min()), float(columns.max() + 1), float(rows.max() + 1))
+    window = observe(CAMERA, box, mask, trust, (), 56)
+    depth = DepthMap(seen.depth_m, seen.normals_world, DepthSource.MEASURED if measured else DepthSource.RENDERED)
+    return Evidence(CAMERA, window, Facing(()), measured_surface(depth, window, mask, 0.0))
+
+
+def error_of(of: Evidence, pose: Pose) -> float:
+    batch = PoseBatch(pose.R_world_object[None], pose.position[None], np.asarray(pose.scale)[None])
+    return float(of.errors(CASTER, batch)[0])
+
+
+def off() -> Pose:
+    """Turned, moved aside and too long, its base where it was."""
+    R = TRUE.R_world_object @ yaw_rotation(0.05)
+    return Pose(R, TRUE.position + np.array([0.05, 0.0, 0.0]), np.array([1.0, 1.08, 1.0]))
+
+
+@pytest.mark.parametrize("measured", [False, True])
+def test_a_pose_a_little_off_comes_nearer(measured: bool) -> None:
+    of = evidence(measured)
+    found = fitted_pose(of, CASTER, off(), SIZE, resize=True)
+    assert error_of(of, found) < 0.5 * error_of(of, off())
+    assert found.position[2] - 0.5 * SIZE[2] * found.scale[2] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_one_of_a_set_keeps_its_size() -> None:
+    found = fitted_pose(evidence(True), CASTER, off(), SIZE, resize=False)
+    assert found.scale == pytest.approx(off().scale)
+
+
+def test_the_best_pose_and_doubtful_masks_move_nothing() -> None:
+    best = fitted_pose(evidence(True), CASTER, TRUE, SIZE, resize=True)
+    assert np.abs(best.position - TRUE.position).max() < 0.02
+    doubtful = evidence(False, trust=0.3)
+    assert fitted_pose(doubtful, CASTER, off(), SIZE, resize=True) == off()
