@@ -111,7 +111,7 @@ def parameters(design_id: str) -> tuple[Parameter, ...]:
         if any(v is None for v in values):
             continue
         used = tuple(sorted({v for v in values if v is not None}, key=lambda v: (str(type(v)), v)))
-        if used == (False,) or used == (True,):
+        if len(used) == 1 and isinstance(used[0], bool):
             used = (False, True)
         parameter = Parameter(name, used)
         texture = parameter.is_count and parameter.limits[1] > MAX_COUNT
@@ -181,7 +181,7 @@ def made_to_measure(base: Design, size_m: Float[np.ndarray, "3"], changes: Mappi
         id=f"{base.id}{MARK}{';'.join(words)}",
         caption=f"{base.caption}, made to measure",
         size_m=(x, y, z),
-        options={**base.options, **{n: list(v) if isinstance(v, tuple) else v for n, v in changed.items()}},
+        options={**base.options, **{n: _as_given(base, n, v) for n, v in changed.items()}},
         symmetry=_symmetry(base, factors, bool(changed)),
         mass_kg=None if base.mass_kg is None else round(base.mass_kg * float(np.prod(factors)), 3),
     )
@@ -204,6 +204,11 @@ def made_by_id(shape_id: str, base: Design) -> Design:
     if design.id != shape_id:
         raise LibraryError(f"'{shape_id}' does not say how '{base.id}' is made")
     return design
+
+
+def _as_given(base: Design, name: str, value: Value) -> Any:
+    """The value as the design's builder takes it: what was a list is one."""
+    return list(value) if isinstance(value, tuple) and isinstance(base.options.get(name), list) else value
 
 
 def _millimetres(size_m: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
