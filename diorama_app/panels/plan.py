@@ -20,7 +20,7 @@ from diorama_app.session.units import Unit, format_length, parse_length
 from diorama_app.web.html import Action, LiveHtml, run_once
 from diorama_core.editing.plan_edits import corners, move_corner, set_wall_length, wall_feet
 from diorama_core.editing.wall_edits import draw_room, split_wall
-from diorama_core.errors import EditRefused
+from diorama_core.errors import EditRefused, LibraryError
 from diorama_core.export.footprints import Outline, outline
 from diorama_core.export.plan import OVERHEAD_M, UNNAMED, RoomLines, room_lines
 from diorama_core.geometry.openings import OPENING_CATEGORIES, wall_of
@@ -39,6 +39,7 @@ class ShapeOutlines:
     def __init__(self, library: ShapeLibrary) -> None:
         self._library = library
         self._found: dict[str, tuple[Outline, ...]] = {}
+        self._lost: set[str] = set()
         self._looking = False
 
     def of(self, item: SceneObject) -> tuple[Outline, ...]:
@@ -54,7 +55,7 @@ class ShapeOutlines:
 
     def look_for(self, scene: Scene, then: Any) -> None:
         """Find the outlines of a scene's shapes that are not known yet; `then()` is called when there are new ones."""
-        missing = {o.shape_id for o in scene.objects} - self._found.keys()
+        missing = {o.shape_id for o in scene.objects} - self._found.keys() - self._lost
         if not missing or self._looking:
             return
         self._looking = True
@@ -62,7 +63,11 @@ class ShapeOutlines:
         def look() -> None:
             try:
                 for shape_id in sorted(missing):
-                    mesh = self._library.mesh(shape_id)
+                    try:
+                        mesh = self._library.mesh(shape_id)
+                    except LibraryError:  # the list of objects says so; the others are drawn
+                        self._lost.add(shape_id)
+                        continue
                     triangles = np.asarray(mesh.vertices, dtype=np.float64)[:, :2][np.asarray(mesh.faces)]
                     self._found[shape_id] = outline(triangles)
             finally:

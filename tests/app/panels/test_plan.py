@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -109,3 +110,14 @@ def test_outlines_are_boxes_until_the_shapes_are_known(session) -> None:
     until(lambda: bool(found))
     shape = np.concatenate(outlines.of(table))
     np.testing.assert_allclose(np.stack([shape.min(axis=0), shape.max(axis=0)]), [low, high], atol=0.01)
+
+
+def test_a_shape_that_is_lost_stays_a_box_and_the_others_are_drawn(session) -> None:
+    first, *others = session.scene.objects
+    scene = replace(session.scene, objects=(replace(first, shape_id="gone"), *others))
+    outlines, found = ShapeOutlines(session.library), []
+    outlines.look_for(scene, lambda: found.append(True))
+    until(lambda: bool(found))
+    assert len(outlines.of(scene.objects[0])) == 1
+    outlines.look_for(scene, lambda: found.append(True))
+    assert len(found) == 1, "it is not looked for again"
