@@ -65,6 +65,7 @@ class PlainLibrary:
         return self.parts(shape_id).to_geometry()
 
     def parts(self, shape_id: str) -> trimesh.Scene:
+        self.shape(shape_id)  # says when there is none
         name, size, colour = SIZES[shape_id]
         boxes = _chair(size) if name == "chair" else _table(size) if name == "table" else [(size, (0, 0, 0))]
         scene = trimesh.Scene()
