@@ -9,20 +9,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from diorama_core.architecture.plainrecon.bounds import upright
-from diorama_core.architecture.plainrecon.stage import assumed_floor, floor_and_walls, plane_of
-from diorama_core.architecture.supports import resolve_supports
-from diorama_core.architecture.texture.colours import coloured, object_pixels
-from diorama_core.architecture.walls.closed_room import GUESS_CONFIDENCE
-from diorama_core.architecture.walls.surface import measured_surface
+from diorama_core.architecture.plainrecon.bounds import Sheet, upright
+from diorama_core.architecture.plainrecon.stage import room_of_pieces
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry
 from diorama_core.progress import Progress
-from diorama_core.provenance import RoomMethod, RoomSource
-from diorama_core.scene.types import Architecture
-
-CONFIDENCE = 0.6
+from diorama_core.provenance import RoomMethod
 
 
 @dataclass(frozen=True)
@@ -39,19 +30,10 @@ class AcdcRoom:
         Raises:
             ValueError: when the inputs hold no measured depth.
         """
-        if inputs.depth_m is None:
-            raise ValueError("ACDC's architecture needs measured depth; use PhotoRoom for a photo alone")
-        progress.report(0.0, "Fitting a plane to every segment")
-        hidden = object_pixels((inputs.photo.height, inputs.photo.width), objects)
-        floor, walls = floor_and_walls(measured_surface(inputs.depth_m, geometry.camera, hidden), self.seed)
-        base = assumed_floor(geometry.camera.position) if floor is None else floor
-        planes = [plane_of("floor", base, GUESS_CONFIDENCE if floor is None else CONFIDENCE)]
-        planes += [plane_of(f"wall_{k}", upright(w, base), CONFIDENCE) for k, w in enumerate(walls, 1)]
-        architecture = Architecture(coloured(tuple(planes), inputs.photo.rgb, geometry.camera, objects))
-        progress.report(1.0, "Floor and walls are fitted")
-        return ArchitectureEstimate(
-            architecture=architecture,
-            supports=resolve_supports(geometry, architecture),
-            confidence=float(np.mean([p.confidence for p in architecture.planes])),
-            source=RoomSource(RoomMethod.ACDC, walls_found=len(walls), floor_found=floor is not None),
+        return room_of_pieces(
+            inputs, objects, geometry, progress, seed=self.seed, method=RoomMethod.ACDC, bound=_upright_on
         )
+
+
+def _upright_on(floor: Sheet, walls: list[Sheet]) -> list[Sheet]:
+    return [upright(wall, floor) for wall in walls]

@@ -6,6 +6,7 @@ As published it gives floor and walls only: what faces down is left out.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,25 +43,56 @@ class PlainRecon:
         Raises:
             ValueError: when the inputs hold no measured depth.
         """
-        if inputs.depth_m is None:
-            raise ValueError("PlainRecon needs measured depth; use PhotoRoom for a photo alone")
-        progress.report(0.0, "Clustering the measured points by their normals")
-        hidden = object_pixels((inputs.photo.height, inputs.photo.width), objects)
-        surface = measured_surface(inputs.depth_m, geometry.camera, hidden)
-        floor, walls = floor_and_walls(surface, self.seed)
-        progress.report(0.7, "Bounding the planes")
-        base = assumed_floor(geometry.camera.position) if floor is None else floor
-        planes = [plane_of("floor", base, GUESS_CONFIDENCE if floor is None else CONFIDENCE)]
-        standing = joined(base, [upright(w, base) for w in walls])
-        planes += [plane_of(f"wall_{k}", w, CONFIDENCE) for k, w in enumerate(standing, 1)]
-        architecture = Architecture(coloured(tuple(planes), inputs.photo.rgb, geometry.camera, objects))
-        progress.report(1.0, "Floor and walls are bounded")
-        return ArchitectureEstimate(
-            architecture=architecture,
-            supports=resolve_supports(geometry, architecture),
-            confidence=float(np.mean([p.confidence for p in architecture.planes])),
-            source=RoomSource(RoomMethod.PLAINRECON, walls_found=len(walls), floor_found=floor is not None),
+        return room_of_pieces(
+            inputs, objects, geometry, progress, seed=self.seed, method=RoomMethod.PLAINRECON, bound=_joined_to
         )
+
+
+def _joined_to(floor: Sheet, walls: list[Sheet]) -> list[Sheet]:
+    return joined(floor, [upright(wall, floor) for wall in walls])
+
+
+def room_of_pieces(
+    inputs: Inputs,
+    objects: tuple[DetectedObject, ...],
+    geometry: ObjectGeometry,
+    progress: Progress,
+    *,
+    seed: int,
+    method: RoomMethod,
+    bound: Callable[[Sheet, list[Sheet]], list[Sheet]],
+) -> ArchitectureEstimate:
+    """A room of the planar pieces of measured depth that no object hides, as PlainRecon and ACDC make one.
+
+    Args:
+        inputs: with measured depth.
+        objects: what hides the room.
+        geometry: the camera, and the objects' supports.
+        progress: where it is reported and cancelling is noticed.
+        seed: of K-means.
+        method: what the room says it was made by.
+        bound: bounds walls, given the floor.
+
+    Raises:
+        ValueError: when the inputs hold no measured depth.
+    """
+    if inputs.depth_m is None:
+        raise ValueError(f"the room of {method.value} needs measured depth; use PhotoRoom for a photo alone")
+    progress.report(0.0, "Clustering the measured points by their normals")
+    hidden = object_pixels((inputs.photo.height, inputs.photo.width), objects)
+    floor, walls = floor_and_walls(measured_surface(inputs.depth_m, geometry.camera, hidden), seed)
+    progress.report(0.7, "Bounding the planes")
+    base = assumed_floor(geometry.camera.position) if floor is None else floor
+    planes = [plane_of("floor", base, GUESS_CONFIDENCE if floor is None else CONFIDENCE)]
+    planes += [plane_of(f"wall_{k}", w, CONFIDENCE) for k, w in enumerate(bound(base, walls), 1)]
+    architecture = Architecture(coloured(tuple(planes), inputs.photo.rgb, geometry.camera, objects))
+    progress.report(1.0, "Floor and walls are bounded")
+    return ArchitectureEstimate(
+        architecture=architecture,
+        supports=resolve_supports(geometry, architecture),
+        confidence=float(np.mean([p.confidence for p in architecture.planes])),
+        source=RoomSource(method, walls_found=len(walls), floor_found=floor is not None),
+    )
 
 
 def floor_and_walls(surface: MeasuredSurface, seed: int = 0) -> tuple[Sheet | None, list[Sheet]]:
