@@ -57,14 +57,14 @@ SHOWN = """([name, value]) => new Promise((done, fail) => {
     };
     look();
 })"""
-WATCH = """(name) => {
+WATCH = """(names) => {
     window.__frames = [];
     const mine = window.__watch = (window.__watch || 0) + 1;
     let last = null;
     const look = () => {
         if (mine !== window.__watch) return;  // another figure watches now
-        const n = window.__viserMutable.nodeRefFromName[name];
-        const at = n ? n.position.x + n.position.z : last;
+        const nodes = names.map((name) => window.__viserMutable.nodeRefFromName[name]).filter((n) => n);
+        const at = nodes.length ? nodes.map((n) => n.position.x + n.position.z).join() : last;
         if (at !== last) { last = at; window.__frames.push([Date.now(), at]); }
         requestAnimationFrame(look);
     };
@@ -267,7 +267,7 @@ class Bench:
         page.mouse.down()
         page.mouse.move(x + 12, y)
         page.wait_for_timeout(400)
-        page.evaluate(WATCH, node)
+        page.evaluate(WATCH, [node])
         taken, used = [], time.process_time()
         try:
             for k in range(30):
@@ -288,10 +288,8 @@ class Bench:
             o.id: o.pose.moved((0.05, 0.0, 0.08)) for o in self.session.scene.objects if not o.id.startswith("small")
         }
         self._do(lambda: self.session.edit("lift", lambda s: edits.place(s, lifted)))
-        table = next(o for o in self.session.scene.objects if o.id.startswith("table"))
-        node = self.session.viewport.node_name(table.id)
         self.page.settle()
-        page.evaluate(WATCH, node)
+        page.evaluate(WATCH, [self.session.viewport.node_name(o.id) for o in self.session.scene.objects])
         from diorama_app.commands.optimise import optimise
 
         self._do(lambda: optimise(self.page.client, "paper"))

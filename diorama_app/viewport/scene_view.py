@@ -29,6 +29,9 @@ MESH_NAMES = 8
 SHADOW_ON_PLANES = 0.25
 """How dark."""
 
+UNSEEN_M = 0.0002
+"""A preview that moves no point of an object further than this is not sent: nobody would see it."""
+
 Appearance = tuple[str, tuple[float, float, float] | None, Finish | None, tuple[PhotoMaterial, ...], Scale, float]
 Pick = Callable[[str, Any], None]
 Later = Callable[[Callable[[], None]], None]
@@ -101,7 +104,7 @@ class Viewport:
         with self._server.atomic():
             for object_id, pose in poses.items():
                 shown = self._objects.get(object_id)
-                if shown is not None:
+                if shown is not None and (shown.pose is None or _is_seen(shown.pose, pose, shown.item)):
                     shown.drawn = None
                     self._set_pose(shown, pose)
         self._server.flush()
@@ -235,6 +238,13 @@ class Viewport:
         """A name not in use. Names are used again: the server keeps a few messages for every name there ever was."""
         taken = {h.name for _, h in self._planes.values()} | {s.frame.name for s in self._objects.values()}
         return next(name for n in range(1, len(taken) + 2) if (name := f"{stem}/{n}") not in taken)
+
+
+def _is_seen(before: Pose, after: Pose, item: SceneObject) -> bool:
+    """Whether two poses of an object differ on the page."""
+    turned = np.abs(after.R_world_object - before.R_world_object).max() * np.linalg.norm(item.size_m) / 2
+    moved = np.abs(after.position - before.position).max()
+    return bool(moved + turned > UNSEEN_M or not np.array_equal(before.scale, after.scale))
 
 
 def _appearance(item: SceneObject) -> Appearance:

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import base64
+import io
+
+import numpy as np
 import pytest
+from PIL import Image
 
 from tests.e2e.browser import EditorPage
 
@@ -47,4 +52,48 @@ def test_what_moves_is_drawn_with_fewer_pixels_until_it_rests(editor: EditorPage
         page.page.wait_for_function(f"{PIXELS} === {sharp}", polling=20)
     finally:
         page.page.close()
+        editor.page.bring_to_front()
+
+
+PICTURE = "window.__viserMutable.canvas.toDataURL()"
+CALLS = "window.__viserTestpoints.rendererInfo.render.calls"
+
+
+def pixels(page: EditorPage) -> np.ndarray:
+    """What is on the canvas, 0 to 255."""
+    data = base64.b64decode(page.page.evaluate(PICTURE).partition(",")[2])
+    return np.asarray(Image.open(io.BytesIO(data)).convert("RGB"), dtype=int)
+
+
+@pytest.mark.parametrize("selected", [False, True], ids=["unmarked", "selected by another"])
+def test_of_a_moved_object_only_its_part_of_the_picture_is_drawn(editor: EditorPage, selected: bool) -> None:
+    session, mine = editor.session, editor.client
+    watching = EditorPage.open(editor.page.context, editor.running, query="")
+    try:
+        if selected:
+            session.ui_thread.post(lambda: mine.select(("lamp_1",)))
+        watching.page.wait_for_timeout(1000)
+        calls = watching.page.evaluate(CALLS)
+        sharp = watching.page.evaluate(PIXELS)
+        drawn = watching.page.evaluate(FRAME)
+        here = session.scene.object("lamp_1").pose
+        for step in range(1, 6):
+            pose = here.moved((0.0, 0.05 * step, 0.0))
+            session.ui_thread.post(lambda p=pose: session.preview({"lamp_1": p}))
+            watching.page.wait_for_function(f"{FRAME} > {drawn}")
+            drawn = watching.page.evaluate(FRAME)
+            assert watching.page.evaluate(CALLS) < calls, "what is elsewhere is not drawn"
+            assert watching.page.evaluate(PIXELS) == sharp, "and what is drawn is sharp"
+        watching.page.wait_for_timeout(600)
+        partly = pixels(watching)
+        assert watching.page.evaluate(FRAME) <= drawn + 2
+        watching.page.evaluate("window.__viserMutable.requestRender()")
+        watching.page.wait_for_timeout(900)
+        assert watching.page.evaluate(CALLS) == calls
+        assert np.abs(pixels(watching) - partly).max() <= 2, "it is the picture that drawing everything gives"
+        session.ui_thread.post(session.refresh)
+        watching.page.wait_for_timeout(600)
+        assert np.abs(pixels(watching) - partly).max() > 40, "the lamp was seen to move"
+    finally:
+        watching.page.close()
         editor.page.bring_to_front()

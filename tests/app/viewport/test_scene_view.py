@@ -105,6 +105,19 @@ def test_a_preview_is_taken_back_by_the_next_drawing(server, viewport) -> None:
     assert handle(server, viewport.mesh_name("chair_1")).scale == (1.0, 1.0, 1.0)
 
 
+def test_a_preview_sends_what_can_be_seen_to_move(server, viewport) -> None:
+    item = SCENE.object("chair_1")
+    frame = handle(server, viewport.node_name(item.id))
+    steps = [item.pose.moved((0.00005 * step, 0.0, 0.0)) for step in range(1, 7)]
+    sent = []
+    for pose in steps:
+        viewport.preview({item.id: pose})
+        sent.append(float(frame.position[0] - item.pose.position[0]))
+    np.testing.assert_allclose(sent, [0.0, 0.0, 0.0, 0.0, 0.00025, 0.00025], atol=1e-9)
+    viewport.show(edits.place(SCENE, {item.id: steps[-1]}), {})
+    np.testing.assert_allclose(frame.position, steps[-1].position, err_msg="the document's place is exact")
+
+
 def test_another_shape_is_previewed(server, viewport) -> None:
     before = viewport.mesh_name("chair_1")
     viewport.preview_item(replace(SCENE.object("chair_1"), shape_id="chair_c"))
