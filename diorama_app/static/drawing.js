@@ -16,6 +16,7 @@
   const OBJECT = /^\/objects\/\d+$/;
   const BESIDE = /^(Gui|Notification)/; // nothing of the view
   const MOST = 0.4; // of the canvas: beyond it all of it is drawn, with fewer pixels
+  const MANY = 12; // objects that move together are all over the room
   const original = HTMLCanvasElement.prototype.getContext;
   let software;
 
@@ -95,12 +96,16 @@
 
     const Region = window.__dioRegion;
     const noteMoves = (queue) => {
-      for (const { type, name } of queue) {
-        if (whole || BESIDE.test(type) || moved.has(name)) continue;
-        const was = MOVES_OBJECT.test(type) && OBJECT.test(name) ? Region.of(mutable, name) : null;
-        if (was) part = Region.union(part, was);
-        else whole = true;
+      const news = queue.filter(({ type }) => !BESIDE.test(type));
+      const names = new Set(news.map(({ name }) => name));
+      whole ||= names.size > MANY || news.some(({ type, name }) => !MOVES_OBJECT.test(type) || !OBJECT.test(name));
+      for (const name of names) {
+        if (whole) return;
+        if (moved.has(name)) continue;
         moved.add(name);
+        const was = Region.of(mutable, name);
+        if (was) part = Region.union(part, was);
+        whole = !was || Region.share(mutable, part) > MOST;
       }
     };
     // What the next picture is of; null: of everything.
