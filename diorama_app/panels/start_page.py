@@ -49,8 +49,9 @@ class StartPage:
         self._words = ""
         self._lengths_m = USUAL_ROOM_M
         gui.add_html(run_once(REMOVE))
-        self._photo_field = _hidden_upload(gui, client, self._left_by(take_photo))
-        self._file_field = _hidden_upload(gui, client, self._left_by(lambda n, c: open_file(client, n, c)))
+        self._opened_over: Project | None = None
+        self._photo_field = _hidden_upload(gui, client, take_photo)
+        self._file_field = _hidden_upload(gui, client, self._take_file)
         hidden = ", ".join(f"div:has(> #file_upload_{uuid})" for uuid in (self._photo_field, self._file_field))
         gui.add_html(f"<style>{hidden} {{ display: none; }}</style>")
         self._opener = LiveHtml(gui, self._act)
@@ -61,8 +62,14 @@ class StartPage:
         client.start_tour = self.start_tour
 
     def refresh(self) -> None:
-        """Draw it while it is open, and what lets the page open it."""
-        by_itself = "data-auto" if self._client.session.greets else ""
+        """Draw it while it is open, and what lets the page open it. It closes when a project takes the place of another.
+
+        So what cannot be read leaves it where it is, for another try.
+        """
+        session = self._client.session
+        if self._open and session.project is not self._opened_over:
+            self._open, self._client.dialog = False, None
+        by_itself = "data-auto" if session.greets else ""
         self._opener.show(f'<button type="button" id="dio-start-open" {by_itself} data-do="begin" hidden></button>')
         self._html.show(self._drawn() if self._open else "")
 
@@ -70,7 +77,7 @@ class StartPage:
         """Show it over the page; Esc closes it."""
         if self._client.dialog is not None:
             self._client.dialog()
-        self._open = True
+        self._open, self._opened_over = True, self._client.session.project
         self._client.dialog = self.close
         self.refresh()
 
@@ -85,12 +92,9 @@ class StartPage:
         self._tours += 1
         self._tour.content = run_once(f"window.__dioTour(); /* {self._tours} */")
 
-    def _left_by(self, take: Callable[[str, bytes], None]) -> Callable[[str, bytes], None]:
-        def taken(name: str, content: bytes) -> None:
-            self.close()
-            take(name, content)
-
-        return taken
+    def _take_file(self, name: str, content: bytes) -> None:
+        open_file(self._client, name, content)
+        self.close()
 
     def _act(self, action: Action) -> None:
         self._client.post(lambda: self._do(action))

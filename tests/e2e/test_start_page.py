@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 from playwright.sync_api import expect
 
 from diorama_app.serve import Running
@@ -49,6 +50,26 @@ def test_an_empty_room_is_begun_and_the_tour_comes_once(newcomer: EditorPage) ->
     page.wait_for_timeout(2500)
     expect(begun).to_have_count(0)
     expect(tour).to_have_count(0)
+
+
+def test_what_is_no_picture_is_said_and_the_start_page_stays(newcomer: EditorPage, tmp_path: Path) -> None:
+    page, begun = newcomer.page, newcomer.page.locator("#dio-start")
+    expect(begun).to_be_visible(timeout=30_000)
+    bad, good = tmp_path / "bad.jpg", tmp_path / "room.png"
+    bad.write_bytes(b"no picture")
+    Image.fromarray(np.full((240, 320, 3), 128, np.uint8)).save(good)
+    with page.expect_file_chooser() as chosen:
+        begun.locator("label.main").click()
+    chosen.value.set_files(str(bad))
+    newcomer.notice("not a picture")
+    expect(begun).to_be_visible()
+    with page.expect_file_chooser() as chosen:
+        begun.locator("label.main").click()
+    chosen.value.set_files(str(good))
+    newcomer.until(lambda: newcomer.session.unfinished, "a project of its own")
+    newcomer.at_board()
+    expect(begun).to_have_count(0)
+    expect(page.locator("#dio-tour")).to_have_count(0)
 
 
 def test_an_example_is_furnished_and_the_tour_is_skipped(newcomer: EditorPage) -> None:
