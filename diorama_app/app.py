@@ -74,8 +74,6 @@ Place = Callable[[str, Callable[[], Panel]], Panel]
 
 LEFT_WIDTH_PX, RIGHT_WIDTH_PX = 246, 254
 """Together at most 40 % of a screen of 1280 pixels."""
-FITTED_AGAIN_S = 0.6
-"""After a phone's sheet took its place."""
 LEFT_TABS = ("Scene", "Photo", "Arrange", "Project")
 RIGHT_TABS = ("Object", "Library", "Export")
 
@@ -228,15 +226,9 @@ class Editor:
             panels[:] = [p for p in panels if p not in on_the_right]
             self._right_side(client, place, left.add_tab)
             client.refresh()
-            # The view is smaller now than what the room was fitted into; by then it has told its shape.
-            self.session.ui_thread.post(lambda: self._fit_again(client), after_s=FITTED_AGAIN_S)
 
         panels.append(OnePanel(gui, client, one_panel))
         client.panels = panels
-
-    def _fit_again(self, client: Client) -> None:
-        if client.id in self.session.clients and not client.plan and not client.view.camera.through_photo:
-            self.views.room_view(client)
 
     def _right_side(self, client: Client, place: Place, add_tab: Callable[[str], viser.GuiTabHandle]) -> None:
         """Create what is about the selection, the library and the export, in tabs of their own."""

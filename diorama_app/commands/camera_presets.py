@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from diorama_app.session.client import Client
@@ -19,13 +21,12 @@ class Views:
     def room_view(self, client: Client) -> None:
         """Show the whole room."""
         self._plain(client)
-        client.view.camera.move(*room_view(self._session.scene, client.view.camera.aspect))
+        client.view.camera.frame(partial(room_view, self._session.scene))
 
     def along(self, client: Client, back: tuple[float, float, float]) -> None:
         """Show the room along an axis from far away, with hardly any perspective."""
         self._plain(client)
-        position, target = side_view(self._session.scene, np.array(back), client.view.camera.aspect)
-        client.view.camera.move(position, target, float(NARROW_FOV_RAD))
+        client.view.camera.frame(partial(side_view, self._session.scene, np.array(back)), float(NARROW_FOV_RAD))
 
     def photo(self, client: Client) -> None:
         """Look through the photo's camera, the photo behind the model."""

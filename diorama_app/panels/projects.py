@@ -109,8 +109,8 @@ class Projects:
         when = time.strftime("%d %b %H:%M", time.localtime(project_care.touched(folder)))
         name = text(project_care.name_of(folder))
         return (
-            f'<div class="row {"on" if current else ""}" data-do="open" data-arg="{text(folder.name)}">'
-            f'{self._picture(folder)}<span class="name">{name}<br><span class="dim">{when}</span></span>'
+            f'<div class="row tall {"on" if current else ""}" data-do="open" data-arg="{text(folder.name)}">'
+            f'{self._picture(folder)}<span class="name" title="{name}"><b>{name}</b><span class="dim">{when}</span></span>'
             + ("" if current else button("Open", "open", folder.name))
             + button(COPY, "copy", folder.name, title="Duplicate")
             + ("" if current else button("✕", "bin", folder.name, title="Move to the bin"))

@@ -17,7 +17,10 @@ _KEEPER = """
 const groups = %s, key = %s;
 const tabs = () => [...document.querySelectorAll('[role=tab]')];
 const named = (tab) => tab.textContent.trim();
-const enter = (tab) => tab.dispatchEvent(new KeyboardEvent('keydown', { key: 'Enter', bubbles: true }));
+const enter = (tab) => {
+  tab.dispatchEvent(new KeyboardEvent('keydown', { key: 'Enter', bubbles: true }));
+  tab.click();
+};
 const read = () => { try { return JSON.parse(localStorage.getItem(key)) || []; } catch { return []; } };
 const note = () => {
   const open = tabs().filter((t) => t.getAttribute('aria-selected') === 'true').map(named);
@@ -38,17 +41,21 @@ delete window.__dioTabWanted;
 window.__dioOpenTab = (name, left = 40) => {
   window.__dioTabWanted = name;
   const tab = tabs().find((t) => named(t) === name);
-  if (tab) enter(tab);
-  else if (left) setTimeout(() => window.__dioTabWanted === name && window.__dioOpenTab(name, left - 1), 50);
+  if (tab && tab.getAttribute('aria-selected') !== 'true') enter(tab);
+  if (left) setTimeout(() => window.__dioTabWanted === name && window.__dioOpenTab(name, left - 1), 50);
+  else if (window.__dioTabWanted === name) delete window.__dioTabWanted;
 };
 recall(%d);
 if (!window.__dioTabs) {
   window.__dioTabs = 'remembered';
+  for (const kind of ['pointerdown', 'keydown'])
+    document.addEventListener(kind, (e) => { if (e.isTrusted && e.target.closest('[role=tab]')) delete window.__dioTabWanted; }, true);
   for (const kind of ['pointerup', 'keyup'])
     document.addEventListener(kind, () => setTimeout(note, 200), true);
 }
 """
-"""viser's tabs answer to a press of the mouse, not to a click; a key does the same."""
+"""viser's tabs answer to a press of the mouse, not to a click; a key does the same. Those of a phone answer to a click
+only. A tab that is opened is opened again where others are made meanwhile (a phone's), until a person chooses one."""
 
 
 class Tabs:

@@ -10,6 +10,7 @@ import contextlib
 import logging
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -363,11 +364,20 @@ class EditorSession:
                 self.on_client(client)
             self.view.show_photo_camera(client)
             client.refresh()
-        client.view.camera.move(*room_view(self.scene, client.view.camera.aspect))
+        client.view.camera.frame(partial(room_view, self.scene))
+        self._follow_shape(client, viser_client)
         self._show_where_left(client)
         if self.greeting is not None:
             (message, kind), self.greeting = self.greeting, None
             client.notice(message, kind)
+
+    def _follow_shape(self, client: ConnectedClient, viser_client: viser.ClientHandle) -> None:
+        """What is framed in a browser stays in view when panels or the window change the view's shape."""
+
+        async def looked(_: viser.CameraHandle) -> None:
+            client.post(client.view.camera.frame_again, key="frame")
+
+        viser_client.camera.on_update(looked)
 
     def left(self, viser_client: viser.ClientHandle) -> None:
         """A browser went away."""

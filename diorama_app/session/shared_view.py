@@ -100,7 +100,7 @@ class SharedView:
             client.view.photo.show_backdrop(None, None, 1.0)
             client.view.photo.show_overlay(None, None, 0.0)
             if not client.view.canvas.is_open:
-                client.view.camera.move(*room_view(scene, client.view.camera.aspect))
+                client.view.camera.frame(partial(room_view, scene))
 
     def show_photo_camera(self, client: ConnectedClient) -> None:
         """Draw the photo's camera for one client; a click on it is told to `on_photo_camera`."""

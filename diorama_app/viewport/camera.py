@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 import viser
@@ -20,6 +21,24 @@ def fitting_fov(width: float, height: float, fx: float, fy: float, cx: float, cy
     return float(2 * np.arctan(max(half_up, half_across / max(aspect, 1e-6))))
 
 
+OTHER_SHAPE = 0.02
+"""A change of a view's width over height by this share is worth another look."""
+SAME_PLACE_M = 0.01
+
+Place = tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]
+"""Where the eye is, and the point that it looks at (m)."""
+
+
+@dataclass(frozen=True)
+class _Framed:
+    """A view that was fitted into the page."""
+
+    place: Callable[[float], Place]
+    fov_rad: float
+    position: Float[np.ndarray, "3"]
+    aspect: float
+
+
 class ViewCamera:
     """Moves a browser's camera and tells where it is. Used from the UI thread only."""
 
@@ -34,6 +53,8 @@ class ViewCamera:
         self._on_move = on_move
         self.through_photo = False
         """Whether the view was last sent to the photo's camera."""
+        self._framed: _Framed | None = None
+        """What is fitted into the view, until something else moves the camera."""
 
     @property
     def fov_rad(self) -> float:
@@ -88,6 +109,21 @@ class ViewCamera:
             camera.look_at = target
         self._viser_client.flush()
 
+    def frame(self, place: Callable[[float], Place], fov_rad: float = float(DEFAULT_FOV_RAD)) -> None:
+        """Look from the place that suits this view's width over height; `frame_again` follows when that changes."""
+        aspect = self.aspect
+        position, target = place(aspect)
+        self.move(position, target, fov_rad)
+        self._framed = _Framed(place, fov_rad, position, aspect)
+
+    def frame_again(self) -> None:
+        """Fit what was framed into a view of another shape, unless a person has moved the camera since."""
+        framed = self._framed
+        if framed is None or abs(self.aspect / framed.aspect - 1.0) < OTHER_SHAPE:
+            return
+        if np.allclose(self.position, framed.position, atol=SAME_PLACE_M):
+            self.frame(framed.place, framed.fov_rad)
+
     def look_through(self, camera: Camera, target_distance_m: float) -> None:
         """Look through the photo's camera, with the whole photo in view."""
         self._moves(through_photo=True)
@@ -120,4 +156,5 @@ class ViewCamera:
 
     def _moves(self, *, through_photo: bool) -> None:
         self.through_photo = through_photo
+        self._framed = None
         self._on_move(through_photo)

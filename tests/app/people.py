@@ -40,6 +40,7 @@ class LocalClient(viser.ClientHandle):
             up_direction=np.array([0.0, 0.0, 1.0]),
             fov=0.9,
             aspect=1.3,
+            on_update=lambda callback: callback,
         )
         self.told: list[str] = []
         self.local_storage = Drawer()

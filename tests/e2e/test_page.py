@@ -7,12 +7,15 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
+from PIL import Image
 from playwright.sync_api import Page, expect
 
+from diorama_app.projects.begin import begin_project
 from diorama_app.serve import Running
+from diorama_core.perception.inputs import read_inputs
 from diorama_core.progress import Progress
 from tests.app.small_room import PlainLibrary, make_project
-from tests.e2e.browser import PROJECT, SIZE, EditorPage
+from tests.e2e.browser import BEEN_HERE, PROJECT, SIZE, EditorPage
 
 pytestmark = pytest.mark.browser
 
@@ -107,6 +110,51 @@ def test_on_a_phone_the_panel_is_a_sheet_and_the_room_above_it(
         f"(points) => {{ const x = points.map({PROJECT}).map((p) => p[0]); return Math.max(...x) - Math.min(...x); }}"
     )
     page.wait_for_function(f"(points) => ({spread})(points) > 0.75 * 390", arg=corners.tolist())
+    page.close()
+
+
+@pytest.mark.parametrize(("width", "height"), [(1440, 900), (1280, 720)])
+def test_the_whole_room_is_seen_at_first_and_after_the_window_changed(
+    context, serve: Callable[..., Running], tmp_path, width: int, height: int
+) -> None:
+    running = serve(make_project(tmp_path / "projects" / "demo").folder, PlainLibrary())
+    corners = np.concatenate([p.polygon for p in running.session.scene.architecture.planes]).tolist()
+    in_view = f"""(points) => {{ const b = window.__viserMutable?.canvas?.getBoundingClientRect();
+        return b && document.querySelector("html.dio-ready") && points.map({PROJECT}).every(([x, y]) =>
+            x >= b.left && x <= b.right && y >= b.top && y <= b.bottom); }}"""
+    page = context.new_page()
+    page.add_init_script(BEEN_HERE)
+    page.set_viewport_size({"width": width, "height": height})
+    page.goto(f"http://127.0.0.1:{running.port}/?fixedDpr=1")
+    page.wait_for_selector("html.dio-ready")
+    page.wait_for_timeout(2500)
+    assert page.evaluate(in_view, corners)
+    page.set_viewport_size({"width": 900, "height": height})
+    page.wait_for_function(in_view, arg=corners, timeout=5000)
+    page.close()
+
+
+def test_on_a_phone_an_unfinished_project_opens_where_its_boxes_are_drawn(
+    context, serve: Callable[..., Running], tmp_path
+) -> None:
+    photo = tmp_path / "room.png"
+    Image.fromarray(np.full((240, 320, 3), 128, np.uint8)).save(photo)
+    content = photo.read_bytes()
+    running = serve(make_project(tmp_path / "projects" / "demo").folder, PlainLibrary())
+    read = read_inputs(content, name="room.png")
+    begin_project(tmp_path / "projects", "room.png", read, content)
+    page = context.new_page()
+    page.add_init_script(BEEN_HERE)
+    page.set_viewport_size({"width": 390, "height": 844})
+    page.goto(f"http://127.0.0.1:{running.port}/?project=room")
+    page.wait_for_selector("html.dio-ready.dio-phone")
+    expect(page.get_by_role("tab", name="Export", exact=True)).to_have_count(1)
+    page.wait_for_timeout(2500)
+    expect(page.locator(".dio-canvas-layer")).to_be_visible()
+    expect(page.get_by_role("tab", name="Photo", exact=True)).to_have_attribute("aria-selected", "true")
+    page.get_by_role("tab", name="Project", exact=True).click()
+    page.wait_for_timeout(1000)
+    expect(page.get_by_role("tab", name="Project", exact=True)).to_have_attribute("aria-selected", "true")
     page.close()
 
 

@@ -84,3 +84,20 @@ def test_directions_of_the_screen_are_axes_of_the_room(camera, eye, right, away)
     for side, (axis, backward) in (("right", right), ("away", away)):
         unit, flipped = camera.screen_axis(side)
         assert (int(unit.argmax()), flipped) == (axis, backward)
+
+
+def test_what_is_framed_stays_in_view_when_the_view_changes_its_shape_until_a_person_moves(camera) -> None:
+    scene, handle = furnished_scene(), camera._viser_client.camera
+    camera.frame(lambda aspect: room_view(scene, aspect))
+    np.testing.assert_allclose(camera.position, room_view(scene, 1.3)[0])
+    handle.aspect = 0.7
+    camera.frame_again()
+    np.testing.assert_allclose(camera.position, room_view(scene, 0.7)[0])
+    handle.position = here = camera.position + 0.5
+    handle.aspect = 1.3
+    camera.frame_again()
+    np.testing.assert_allclose(camera.position, here)
+    camera.move(room_view(scene, 1.3)[0], np.zeros(3))
+    handle.aspect = 0.7
+    camera.frame_again()
+    np.testing.assert_allclose(camera.position, room_view(scene, 1.3)[0], err_msg="another view took its place")
