@@ -14,7 +14,7 @@ from diorama_app.reconstruction.photo_outlines import PhotoOutlines
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_core.editing import aligning as arranging
-from diorama_core.editing.clipboard import copied, pasted, pasted_at
+from diorama_core.editing.clipboard import copied, free_offset, pasted, pasted_at
 from diorama_core.editing.placing import seated
 from diorama_core.errors import EditRefused
 from diorama_core.scene.room_edits import floor_height
@@ -138,7 +138,7 @@ def _objects(session: EditorSession) -> tuple[Command, ...]:
         clip, here = session.clip, session.scene
         original = all(here.has_object(o.id) and here.object(o.id) == o for o in clip.objects)
         scene, heads = (
-            pasted(here, clip)
+            pasted(here, clip, free_offset(here, clip))
             if original
             else pasted_at(here, clip, client.view.camera.point_on_level(floor_height(here)))
         )

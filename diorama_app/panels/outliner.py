@@ -204,8 +204,12 @@ def _row(tree: _Tree, item: SceneObject) -> str:
 
 
 def _chips(tree: _Tree, item: SceneObject) -> str:
-    chips = "".join(f'<span class="chip bad">{text(word)}</span>' for word in tree.badges.get(item.id, ()))
-    if is_unsure(item):
+    problems = tree.badges.get(item.id, ())
+    chips = ""
+    if problems:  # names need the room that a second chip would take
+        more = f" +{len(problems) - 1}" if len(problems) > 1 else ""
+        chips = f'<span class="chip bad" title="{text(", ".join(problems))}">{text(problems[0])}{more}</span>'
+    elif is_unsure(item):
         sure = f"{100 * item.confidence:.0f}% confidence in its pose; compare it with the photo"
         chips += f'<span class="chip" title="{sure}">unsure</span>'
     return chips

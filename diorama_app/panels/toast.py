@@ -41,7 +41,7 @@ class Toasts:
         elif isinstance(doing, Measuring) and len(doing.points) < 2:
             words = ("Click the first point", "Click the second point")[len(doing.points)]
         stop = button("Esc", "stop", title="Stop")
-        above = "bottom:calc(var(--dio-below, 0px) + 64px)"
+        above = "bottom:calc(var(--dio-below, 0px) + 112px)"
         line = f'<div class="dio-toast stay" style="{above}"><span>{words}</span>{stop}</div>'
         self._doing.show(line if words else "")
 

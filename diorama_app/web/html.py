@@ -122,7 +122,7 @@ STYLE = """
 .dio .drop { border: 2px dashed var(--line); border-radius: 10px; padding: 12px; text-align: center; }
 .dio .drop.over { border-color: var(--accent); background: var(--hover); }
 .dio-toast { position: fixed; left: calc(var(--dio-left, 0px) + var(--dio-width, 100vw) / 2);
-  bottom: calc(var(--dio-below, 0px) + 18px); transform: translateX(-50%); z-index: 900; display: flex;
+  bottom: calc(var(--dio-below, 0px) + 64px); transform: translateX(-50%); z-index: 900; display: flex;
   align-items: center; gap: 12px; max-width: calc(var(--dio-width, 100vw) - 24px); width: max-content;
   box-sizing: border-box; padding: 8px 12px; border-radius: 10px; font-size: 13px;
   color: #fff; background: #262b33ee; box-shadow: 0 4px 16px #0004; animation: dio-fade .7s 5.3s forwards; }

@@ -13,6 +13,13 @@ from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Scene, SceneObject, Support
 
 BESIDE_M = (0.3, 0.3, 0.0)
+GAP_M = 0.05
+"""Between copies and what they stand beside."""
+TOUCHING_M = 0.03
+"""Boxes that reach no further into each other only touch: a table on its rug."""
+SLACK_M = 0.02
+WAYS = ((0.0, -1.0), (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))
+"""In sizes of what is copied."""
 
 
 @dataclass(frozen=True)
@@ -71,6 +78,69 @@ def _moved(
         base = inner[base].parent
     lowest = next(float(o.corners_world[:, 2].min()) for o in clip.objects if o.id == base)
     return replace(item, pose=item.pose.moved(shift + np.array([0.0, 0.0, level - lowest])))
+
+
+def free_offset(scene: Scene, clip: Clip) -> Float[np.ndarray, "3"]:
+    """How far copies move to stand beside their originals, clear of everything and on the floor where that is possible.
+
+    Boxes along the axes of the room are compared; behind, beside, in front and across corners are tried, near ones first.
+
+    Returns:
+        World offset (m); `BESIDE_M` where all places are taken.
+    """
+    own = {o.id for o in clip.objects}
+    boxes = [(o.corners_world.min(axis=0), o.corners_world.max(axis=0)) for o in scene.objects if not o.hidden]
+    copies = [(o.corners_world.min(axis=0), o.corners_world.max(axis=0)) for o in clip.objects]
+    carried = {s.child: s.parent for s in clip.supports}
+    heads = [o for o in clip.objects if carried.get(o.id) not in own]
+    low = np.min([o.corners_world.min(axis=0) for o in heads], axis=0)
+    high = np.max([o.corners_world.max(axis=0) for o in heads], axis=0)
+    allowed = _extent_below(scene, heads, carried)
+    along = _along_wall(scene, heads, carried)
+    if along is None:
+        step = np.append((high - low)[:2] + GAP_M, 0.0)
+        ways = [np.append(way, 0.0) * step for way in WAYS]
+    else:
+        reached = np.concatenate([o.corners_world for o in heads]) @ along
+        ways = [side * (float(np.ptp(reached)) + GAP_M) * along for side in (1.0, -1.0)]
+    offsets = [reach * way for reach in (1.0, 1.5, 2.0) for way in ways]
+
+    def fits(offset: Float[np.ndarray, "3"]) -> bool:
+        within = allowed is None or bool(
+            ((low + offset)[:2] >= allowed[0] - SLACK_M).all() and ((high + offset)[:2] <= allowed[1] + SLACK_M).all()
+        )
+        return within and not any(
+            bool((np.minimum(high_a + offset, high_b) - np.maximum(low_a + offset, low_b) > TOUCHING_M).all())
+            for low_a, high_a in copies
+            for low_b, high_b in boxes
+        )
+
+    return next((offset for offset in offsets if fits(offset)), np.array(BESIDE_M))
+
+
+def _along_wall(scene: Scene, heads: list[SceneObject], carried: dict[str, str]) -> Float[np.ndarray, "3"] | None:
+    """The level direction of the wall that all copies hang on; None where they do not hang on one."""
+    parents = {carried.get(o.id) for o in heads}
+    parent = parents.pop() if len(parents) == 1 else None
+    if parent is None or not scene.has_plane(parent) or scene.plane(parent).role != "wall":
+        return None
+    direction = np.cross((0.0, 0.0, 1.0), scene.plane(parent).normal)
+    return np.asarray(direction / np.linalg.norm(direction), dtype=np.float64)
+
+
+def _extent_below(
+    scene: Scene, heads: list[SceneObject], carried: dict[str, str]
+) -> tuple[Float[np.ndarray, "2"], Float[np.ndarray, "2"]] | None:
+    """The extent (m) of what copies may stand on: their common supporter, or the floor; None where there is neither."""
+    parents = {carried.get(o.id) for o in heads}
+    parent = parents.pop() if len(parents) == 1 else None
+    if parent is not None and scene.has_object(parent):
+        corners = scene.object(parent).corners_world
+    elif scene.architecture.floor is not None:
+        corners = scene.architecture.floor.polygon
+    else:
+        return None
+    return corners[:, :2].min(axis=0), corners[:, :2].max(axis=0)
 
 
 def pasted(scene: Scene, clip: Clip, offset_world: object = BESIDE_M) -> tuple[Scene, tuple[str, ...]]:

@@ -46,6 +46,8 @@ _REWRITES = (
     ),
 )
 """Phrases that say the same in other words, brought to one form."""
+_ASKED = re.compile(r"(?:an?|one|two|three|four|five|six|\d+|some|several|many)\b")
+"""How a clause begins that asks for something of its own, and says nothing more of what came before."""
 _NOT_PLACES = re.compile(
     r"^(?:the |a |an |this )?(?:[a-z]+ )?(?:room|bedroom|kitchen|office|floor|ground|space|house|home|apartment|style|corner of .*)$"
 )
@@ -135,8 +137,9 @@ def _read(reading: _Reading, clause: str) -> None:
     head, places = split_places(clause)
     phrase, unknown = noun_phrase(head) if head else (None, "")
     index = _subject(reading, phrase)
+    asked = index is None or (phrase is None and _ASKED.match(head) is not None)
     if (
-        index is None
+        asked
         and unknown
         and not re.fullmatch(r"(?:there|i|we|want|need|would|like|please|room|one|two|three|some)(?: .*)?", unknown)
     ):

@@ -78,6 +78,22 @@ def test_panels_leave_the_room_and_the_tools_stay(editor: EditorPage, resized: P
         assert bar["y"] + bar["height"] - 6 <= y <= top + down
 
 
+def test_tabs_stay_while_what_is_below_them_scrolls(editor: EditorPage, resized: Page) -> None:
+    resized.set_viewport_size({"width": 1280, "height": 420})
+    editor.settle()
+    resized.get_by_text("Light", exact=True).first.scroll_into_view_if_needed()
+    viewport = resized.locator(".mantine-ScrollArea-viewport", has=resized.get_by_role("tab", name="Scene", exact=True))
+    viewport.first.hover()
+    resized.mouse.wheel(0, 3000)
+    resized.wait_for_function("(element) => element.scrollTop > 40", arg=viewport.first.element_handle(), timeout=5000)
+    editor.tab("Arrange")
+    top = viewport.first.bounding_box()
+    tab = resized.get_by_role("tab", name="Arrange", exact=True).bounding_box()
+    assert top is not None
+    assert tab is not None
+    assert abs(tab["y"] - top["y"]) < 12
+
+
 def test_on_a_phone_the_panel_is_a_sheet_and_the_room_above_it(
     context, serve: Callable[..., Running], tmp_path
 ) -> None:

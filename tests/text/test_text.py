@@ -250,3 +250,10 @@ def test_night_stands_and_armchairs_are_where_people_put_them() -> None:
     ]
     assert len(sides) == 2
     assert sides[0] * sides[1] < 0
+
+
+def test_what_is_unknown_is_named_wherever_it_is_listed() -> None:
+    request = understood_prompt("a bedroom with two lamps, a wardrobe and a helicopter, all facing the window")
+    assert [o.category for o in request.objects][:2] == ["lamp", "wardrobe"]
+    assert request.ignored == ("helicopter",)
+    assert understood_prompt("a sofa, cosy and bright, by the window").ignored == ()
