@@ -73,7 +73,7 @@ STYLE = """
 .dio .row.over { box-shadow: inset 0 0 0 2px var(--accent); }
 .dio .row .name { flex: 1 1 auto; min-width: 0; overflow-wrap: break-word; line-height: 1.25; }
 .dio .row.tall { flex-wrap: wrap; justify-content: flex-end; padding: 5px 4px; }
-.dio .row.tall .name { flex: 1 1 60%; }
+.dio .row.tall .name { flex: 1 0 calc(100% - 60px); }
 .dio .row.tall .name > * { display: block; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
 .dio .row.tall b { font-weight: 500; }
 .dio .row.off .name { opacity: .5; }

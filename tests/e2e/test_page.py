@@ -92,6 +92,12 @@ def test_tabs_stay_while_what_is_below_them_scrolls(editor: EditorPage, resized:
     assert top is not None
     assert tab is not None
     assert abs(tab["y"] - top["y"]) < 12
+    editor.tab("Project")
+    resized.get_by_label("Project name").fill("A bedroom with two lamps, a wardrobe, an armchair and a rug")
+    resized.keyboard.press("Enter")
+    expect(resized.locator(".dio .row.tall b", has_text="A bedroom")).to_be_visible()
+    across = resized.evaluate("(e) => [e.scrollWidth, e.clientWidth]", viewport.first.element_handle())
+    assert across[0] <= across[1] <= 260, "a long name is cut, and widens nothing"
 
 
 def test_on_a_phone_the_panel_is_a_sheet_and_the_room_above_it(
