@@ -108,8 +108,9 @@ class Projects:
         current = session.project is not None and session.project.folder.resolve() == folder.resolve()
         when = time.strftime("%d %b %H:%M", time.localtime(project_care.touched(folder)))
         name = text(project_care.name_of(folder))
+        on = "on" if current else ""
         return (
-            f'<div class="row tall {"on" if current else ""}" data-do="open" data-arg="{text(folder.name)}">'
+            f'<div class="row tall {on}" data-do="open" data-arg="{text(folder.name)}">'
             f'{self._picture(folder)}<span class="name" title="{name}"><b>{name}</b><span class="dim">{when}</span></span>'
             + ("" if current else button("Open", "open", folder.name))
             + button(COPY, "copy", folder.name, title="Duplicate")

@@ -174,8 +174,8 @@ class Properties:
     def _advice(self) -> str:
         if self._client.session.unfinished:
             return (
-                '<div class="card">There is no room yet. Mark the furniture in the photo, then <b>Build scene</b> in the '
-                "<b>Photo</b> tab.</div>"
+                '<div class="card">There is no room yet. Mark the furniture in the photo, then <b>Build scene</b> in '
+                "the <b>Photo</b> tab.</div>"
             )
         if not self._client.session.scene.objects:
             return '<div class="card">The room is empty. Insert furniture from the <b>Library</b> tab.</div>'

@@ -62,7 +62,7 @@ class StartPage:
         client.start_tour = self.start_tour
 
     def refresh(self) -> None:
-        """Draw it while it is open, and what lets the page open it. It closes when a project takes the place of another.
+        """Draw it while it is open, and what lets the page open it. It closes when another project is opened.
 
         So what cannot be read leaves it where it is, for another try.
         """

@@ -49,7 +49,9 @@ recall(%d);
 if (!window.__dioTabs) {
   window.__dioTabs = 'remembered';
   for (const kind of ['pointerdown', 'keydown'])
-    document.addEventListener(kind, (e) => { if (e.isTrusted && e.target.closest('[role=tab]')) delete window.__dioTabWanted; }, true);
+    document.addEventListener(kind, (e) => {
+      if (e.isTrusted && e.target.closest('[role=tab]')) delete window.__dioTabWanted;
+    }, true);
   for (const kind of ['pointerup', 'keyup'])
     document.addEventListener(kind, () => setTimeout(note, 200), true);
 }

@@ -83,7 +83,7 @@ def _moved(
 def free_offset(scene: Scene, clip: Clip) -> Float[np.ndarray, "3"]:
     """How far copies move to stand beside their originals, clear of everything and on the floor where that is possible.
 
-    Boxes along the axes of the room are compared; behind, beside, in front and across corners are tried, near ones first.
+    Boxes along the axes of the room are compared; places around are tried, near ones first.
 
     Returns:
         World offset (m); `BESIDE_M` where all places are taken.

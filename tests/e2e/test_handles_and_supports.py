@@ -45,6 +45,9 @@ def test_the_rotation_arc_turns_where_it_lies_over_the_body(editor: EditorPage) 
     gestures = next(p for p in editor.client.panels if isinstance(p, Gestures))
     assert gestures._gizmo_key is not None
     scale = gestures._gizmo_key[2]
+    # The first handles of a page take a while on a slow machine.
+    editor.page.wait_for_function("window.__viserMutable.nodeRefFromName['/gizmo']")
+    editor.page.wait_for_timeout(300)  # until they are lifted above bodies
     # The arc between the x and y arms, in the object's frame, two thirds out.
     at = 0.6 * scale
     start, end = (

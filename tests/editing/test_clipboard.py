@@ -13,7 +13,7 @@ SCENE = furnished_scene()
 def test_a_copy_stands_beside_its_original_clear_of_everything_and_inside(object_id: str) -> None:
     clip = copied(SCENE, [object_id])
     scene, heads = pasted(SCENE, clip, free_offset(SCENE, clip))
-    others = [o for o in SCENE.objects]
+    others = SCENE.objects
     for head in heads:
         copy = scene.object(head)
         for plane in scene.architecture.planes:
