@@ -261,8 +261,8 @@ class RenderAndCompare:
     def _try_shape(self, task: _Task, shape: Shape, liked: float) -> _Tried:
         appearance = self._compare(shape)
         name = task.item.category
-        limits = SizeLimits.of(shape.size_m, name, task.cuboid.size_m)
         depth_known = task.measured is not None
+        limits = SizeLimits.of(shape.size_m, name, task.cuboid.size_m, measured=depth_known)
         tried = hypotheses_for(task.cuboid, name, shape.symmetry, limits, task.anchor, sides_known=depth_known)
         if task.measured is not None:
             tried = tried.and_also(task.measured.hypotheses(shape.symmetry, limits))
