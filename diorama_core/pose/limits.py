@@ -62,10 +62,12 @@ class SizeLimits:
     ) -> SizeLimits:
         """Limits for a shape standing for an object of a category, by the size prior nearest to what was observed.
 
-        What was measured is plausible: a coffee table may be as tall as it is.
+        A measured height is plausible, however tall for its kind: what hides a thing leaves its top to be seen.
         """
         own = np.asarray(shape_size_m, dtype=np.float64)
-        least, most = _category_range(category_name, observed_m, own, measured)
+        least, most = _category_range(category_name, observed_m, own)
+        if measured:
+            most[2] = max(most[2], observed_m[2])
         stretch = _STRETCH_BOXY if category_name in BOXY else _STRETCH_SHAPED
         return cls(own, least, most, stretch)
 
@@ -95,9 +97,7 @@ class SizeLimits:
         return np.log(scale[..., shaped]).std(axis=-1)
 
 
-def _category_range(
-    category_name: str, observed_m: np.ndarray, own_m: np.ndarray, measured: bool
-) -> tuple[np.ndarray, np.ndarray]:
+def _category_range(category_name: str, observed_m: np.ndarray, own_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     if category_name == UNKNOWN.name:
         return np.full(3, 0.02), np.full(3, 4.0)
     prior = _nearest_prior(category(category_name).priors, np.log(np.clip(observed_m, 1e-3, 10.0)))
@@ -107,8 +107,6 @@ def _category_range(
     most = np.maximum(most, own_m * _OWN_SIZE_FACTOR)
     if category_name in _HARD_LIMITS_M:
         axis, low, high = _HARD_LIMITS_M[category_name]
-        if measured:
-            low, high = min(low, float(observed_m[axis])), max(high, float(observed_m[axis]))
         least[axis], most[axis] = max(least[axis], low), min(most[axis], high)
     return least, most
 

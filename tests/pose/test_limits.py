@@ -39,7 +39,7 @@ def test_many_wishes_at_once_are_the_same_as_one_by_one(rng) -> None:
     assert np.allclose(limits.scale_for(wanted), [limits.scale_for(w) for w in wanted])
 
 
-def test_a_measured_size_is_plausible_however_unusual() -> None:
+def test_a_measured_height_is_plausible_however_tall() -> None:
     tall = np.array([0.7, 0.7, 0.75])
     assert SizeLimits.of((0.7, 0.7, 0.42), "coffee table", tall).max_m[2] == pytest.approx(0.6)
     assert SizeLimits.of((0.7, 0.7, 0.42), "coffee table", tall, measured=True).max_m[2] == pytest.approx(0.75)
