@@ -111,7 +111,8 @@ class Projects:
         on = "on" if current else ""
         return (
             f'<div class="row tall {on}" data-do="open" data-arg="{text(folder.name)}">'
-            f'{self._picture(folder)}<span class="name" title="{name}"><b>{name}</b><span class="dim">{when}</span></span>'
+            f'{self._picture(folder)}<span class="name" title="{name}"><b>{name}</b>'
+            f'<span class="dim">{when}</span></span>'
             + ("" if current else button("Open", "open", folder.name))
             + button(COPY, "copy", folder.name, title="Duplicate")
             + ("" if current else button("✕", "bin", folder.name, title="Move to the bin"))
