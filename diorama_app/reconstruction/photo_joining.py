@@ -82,7 +82,7 @@ def join_photo(client: Client) -> None:
         note_placed(project, added.scene)
         client.post(lambda: _show(client, project, scene, photo, added))
 
-    session.jobs.start("photo", f"Adding {photo.name} to the scene", work)
+    session.jobs.start("join", f"Adding {photo.name} to the scene", work)
 
 
 def _joined(

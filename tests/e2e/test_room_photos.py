@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -29,13 +30,17 @@ def test_a_photo_of_the_same_room_is_added_looked_through_and_undone(
     editor.upload("Add a photo of the same room", tmp_path / "beside.png")
     editor.at_board()
     assert editor.session.scene is before
-    for box in photos.second.boxes:  # as a person would: a name, then a rectangle
+    for box in photos.second.boxes[:2]:  # as a person would: a name, then a rectangle
         name = editor.page.locator("#dio-box-name")
         name.fill(box.label)
         name.press("Enter")
         count = len(editor.session.further_photos[0].inputs.boxes)
         editor.draw_box(box.box)
         editor.until(lambda c=count: len(editor.session.further_photos[0].inputs.boxes) == c + 1, "drawn")
+    marked = replace(editor.client.marked, boxes=photos.second.boxes)
+    editor.session.ui_thread.post(lambda: editor.client.annotate("mark the others", marked))
+    editor.until(lambda: editor.client.marked.boxes == photos.second.boxes, "marked")
+    editor.settle()
     keep_picture(editor, "room-photos-marked")
     editor.button("Add to the scene").click()
     editor.until(lambda: editor.session.further_photos[0].camera is not None, "joined", LEARN_MS / 1000)

@@ -25,10 +25,12 @@ def names(session: EditorSession) -> list[str]:
 
 def test_a_photo_is_added_marked_undone_and_saved(session: EditorSession, client: Client) -> None:
     scene = session.scene
+    opened: list[bool] = []
+    client.open_board = lambda: opened.append(True)
     take_photo(client, "other side.jpg", Inputs(plain_photo()))
+    assert opened == [True]
     assert names(session) == ["other-side"]
     assert client.marked is session.further_photos[0].inputs
-    assert client.view.canvas.is_open
     client.annotate("draw a box", replace(client.marked, boxes=(BOX,)))
     assert session.further_photos[0].inputs.boxes == (BOX,)
     assert session.scene is scene  # nothing of the scene changed
