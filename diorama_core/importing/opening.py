@@ -13,6 +13,7 @@ from jaxtyping import UInt8
 from diorama_core.artefacts import Inputs, Photo
 from diorama_core.errors import InputError
 from diorama_core.importing.marked import MarkedFile
+from diorama_core.importing.point_files import CLOUD_SUFFIXES
 from diorama_core.importing.restore import restored
 from diorama_core.perception.input_photo import read_photo, read_source
 from diorama_core.scene.types import Architecture, Scene
@@ -59,10 +60,10 @@ def marked_file(path: Path) -> MarkedFile | None:
     """
     path = Path(path)
     if not path.is_file():
-        raise InputError(f"{path} does not exist; name a GLB, USD, Sweet Home 3D or RoomPlan file")
+        raise InputError(f"{path} does not exist or is no scan; name a GLB, USD, Sweet Home 3D, RoomPlan or point file")
     reader = _readers().get(path.suffix.lower())
     if reader is None:
-        raise InputError(f"{path}: scenes are read from {', '.join(SUFFIXES)}; export one of these")
+        raise InputError(f"{path}: scenes are read from {', '.join((*SUFFIXES, *CLOUD_SUFFIXES))}; export one of these")
     return reader(path)
 
 
