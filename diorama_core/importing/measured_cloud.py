@@ -9,6 +9,7 @@ not touch.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import cv2
 import numpy as np
@@ -213,7 +214,7 @@ def _lines(points: Float[np.ndarray, "n 3"], top_m: float, axis: int) -> list[fl
 def _walls(room: _Room) -> tuple[MeasuredWall, ...]:
     ring = np.asarray(room.outline.exterior.coords)[:, :2]
     walls = []
-    for number, (a, b) in enumerate(zip(ring[:-1], ring[1:], strict=True)):
+    for number, (a, b) in enumerate(pairwise(ring)):
         corners = [[*a, 0.0], [*b, 0.0], [*b, room.top_m], [*a, room.top_m]]
         walls.append(MeasuredWall(f"wall_{number + 1}", np.array(corners)))
     return tuple(walls)

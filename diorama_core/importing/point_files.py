@@ -2,8 +2,8 @@
 
 LAS and LAZ need laspy, E57 needs pye57 (extra `scan`). Folders hold ARKit frames: cameras (`posed_photos`), depth in
 16-bit PNGs of millimetres, and how sure each pixel's depth is; Polycam (raw data: `keyframes/depth` and
-`keyframes/confidence`, 0, 127, 255) and 3D Scanner App (all data: `depth_00000.png`, `conf_00000.png`, 0, 1, 2). Without
-depth, the mesh beside them is taken.
+`keyframes/confidence`, 0, 127, 255) and 3D Scanner App (all data: `depth_00000.png`, `conf_00000.png`, 0, 1, 2).
+Without depth, the mesh beside them is taken.
 """
 
 from __future__ import annotations

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import cv2
 import numpy as np
@@ -146,7 +147,7 @@ def placed_camera(common: Sequence[CommonPoints], k: Intrinsics, focal_log_sigma
     right = np.zeros(len(points), bool)
     right[inliers] = True
     ends = np.cumsum([0, *(len(c.points) for c in common)])
-    supported = [right[a:b] for a, b in zip(ends[:-1], ends[1:], strict=True)]
+    supported = [right[a:b] for a, b in pairwise(ends)]
     return _refined(common, supported, tried, turn, shift, focal_log_sigma)
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import trimesh
 from PIL import Image
+from shapely.geometry import Polygon
 
 from diorama_core.render.raycast import MeshCaster
 from diorama_core.scene.types import Camera, Intrinsics, yaw_rotation
@@ -39,7 +40,7 @@ def room_meshes(*, corner: bool = False) -> list[trimesh.Trimesh]:
     ring = [(-x, -y), (x, -y), (x, y), (-x, y)]
     if corner:
         ring = [(-x, -y), (x, -y), (x, 0.3), (0.6, 0.3), (0.6, y), (-x, y)]
-    plan = trimesh.creation.extrude_polygon(__import__("shapely").Polygon(ring), HEIGHT)
+    plan = trimesh.creation.extrude_polygon(Polygon(ring), HEIGHT)
     things = FURNITURE[:1] if corner else FURNITURE
     blocks = [trimesh.creation.box(f.size_m, trimesh.transformations.translation_matrix(f.centre)) for f in things]
     return [plan, *blocks]

@@ -1,4 +1,4 @@
-"""Point clouds and scanner apps' folders, written as their programs write them, become rooms through `diorama import`."""
+"""Point clouds and scanner apps' folders, written as their programs write them, become rooms."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def test_a_ply_is_imported_as_a_room(tmp_path: Path, capsys: pytest.CaptureFixtu
 @pytest.mark.parametrize("suffix", [".las", ".laz"])
 def test_las_and_laz_are_read(tmp_path: Path, suffix: str) -> None:
     laspy = pytest.importorskip("laspy", reason="needs laspy (pip install 'diorama[scan]')")
-    points = room_points() + [512_000.0, 5_400_000.0, 0.0]  # a national grid, as surveyors write
+    points = room_points() + np.array([512_000.0, 5_400_000.0, 0.0])  # a national grid, as surveyors write
     header = laspy.LasHeader(point_format=3, version="1.2")
     header.offsets, header.scales = points.min(axis=0), np.full(3, 0.001)
     made = laspy.LasData(header)
@@ -91,7 +91,7 @@ def test_without_depth_the_mesh_of_the_folder_is_taken(tmp_path: Path) -> None:
 
 def test_what_cannot_be_read_is_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "broken.ply").write_bytes(b"ply\nnothing")
-    with pytest.raises(InputError, match="broken.ply"):
+    with pytest.raises(InputError, match="broken"):
         read_points(tmp_path / "broken.ply")
     with pytest.raises(InputError, match="has 10 points"):
         read_points(write_ply(tmp_path / "few.ply", np.zeros((10, 3))))
