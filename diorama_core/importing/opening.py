@@ -20,7 +20,7 @@ from diorama_core.scene.types import Architecture, Scene
 
 GLTF_SUFFIXES = (".glb", ".gltf")
 USD_SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
-SUFFIXES = (*GLTF_SUFFIXES, *USD_SUFFIXES, ".sh3d", ".json")
+SUFFIXES = (*GLTF_SUFFIXES, *USD_SUFFIXES, ".sh3d", ".json", *CLOUD_SUFFIXES)
 """Endings of files that can be opened as scenes."""
 
 
@@ -63,7 +63,7 @@ def marked_file(path: Path) -> MarkedFile | None:
         raise InputError(f"{path} does not exist or is no scan; name a GLB, USD, Sweet Home 3D, RoomPlan or point file")
     reader = _readers().get(path.suffix.lower())
     if reader is None:
-        raise InputError(f"{path}: scenes are read from {', '.join((*SUFFIXES, *CLOUD_SUFFIXES))}; export one of these")
+        raise InputError(f"{path}: scenes are read from {', '.join(SUFFIXES)}; export one of these")
     return reader(path)
 
 
