@@ -42,10 +42,6 @@ MAX_SIGMAS = 2.5
 """So far may a size be from its kind's."""
 ODD_ANGLE_COST = 1.5
 """Of a heading off the room's axes."""
-RARE_ANGLE_COST = 8.0
-"""The same for kinds that nearly always stand along the axes."""
-TELLING_PHOTOS = 3
-"""So many photos tell a heading by themselves."""
 ODD_STARTS = np.radians((0.0, 30.0, 60.0, 90.0, 120.0, 150.0))
 NEAREST_M = 0.15
 
@@ -89,7 +85,7 @@ def fit_jointly(
         upright_m: expected height of the base, where it is not on the floor; that of the first start by default.
     """
     modes = size_modes(kind.name)
-    rows = [(mode, yaw, free) for mode in modes for yaw, free in _headings(kind, mode, len(sightings))]
+    rows = [(mode, yaw, free) for mode in modes for yaw, free in _headings(kind, mode)]
     batch = [(mode, yaw, free, start) for mode, yaw, free in rows for start in starts]
     unknowns = np.array([[*s[:2], *mode.log_size, 0.0 if on_floor else s[2], yaw] for mode, yaw, _, s in batch])
     if not on_floor:
@@ -97,8 +93,7 @@ def fit_jointly(
     fixed = np.array([[False] * 5 + [on_floor, not free] for _, _, free, _ in batch])
     base_m = float(np.median([s[2] for s in starts])) if upright_m is None else upright_m
     problem = _Joint(sightings, [b[0] for b in batch], starts[0][:2], None if on_floor else base_m)
-    odd = ODD_ANGLE_COST if kind.quarter_turns_free else RARE_ANGLE_COST
-    extra = np.array([mode.cost + (odd if free else 0.0) for mode, _, free, _ in batch])
+    extra = np.array([mode.cost + (ODD_ANGLE_COST if free else 0.0) for mode, _, free, _ in batch])
     unknowns, costs = _minimised(problem, unknowns, fixed, FIRST_ITERATIONS)
     last = np.argsort(costs + extra, kind="stable")[:FINALISTS]
     unknowns, costs = _minimised(problem.rows(last), unknowns[last], fixed[last], ITERATIONS)
@@ -109,10 +104,10 @@ def fit_jointly(
     return JointCuboid(np.array([x, y, base + size[2] / 2]), float(yaw), size, float(costs[best]))
 
 
-def _headings(kind: Category, mode: SizeMode, photos: int) -> list[tuple[float, bool]]:
-    """Headings to start from, and whether each may turn: of what stands along walls only where many photos show it."""
+def _headings(kind: Category, mode: SizeMode) -> list[tuple[float, bool]]:
+    """Headings to start from, and whether each may turn."""
     axes = [(0.0, False)] if mode.square else [(0.0, False), (np.pi / 2, False)]
-    return axes + [(float(a), True) for a in ODD_STARTS] if kind.quarter_turns_free or (photos >= TELLING_PHOTOS and kind.mount != "wall") else axes
+    return axes + [(float(a), True) for a in ODD_STARTS] if kind.quarter_turns_free else axes
 
 
 class _Joint:
