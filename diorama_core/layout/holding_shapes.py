@@ -38,7 +38,7 @@ def holding_shapes(scene: Scene, library: ShapeLibrary, noise: ObservationNoise)
         noise: of the observed positions.
     """
     reasons = []
-    for members in _of_one_shape(scene):
+    for members in of_one_shape(scene):
         if any(is_adjustable(o, library.shape(o.shape_id)) for o in members):  # their boards follow the loads
             continue
         loads = {o.id: _loads(scene, o.id) for o in members}
@@ -46,20 +46,20 @@ def holding_shapes(scene: Scene, library: ShapeLibrary, noise: ObservationNoise)
             continue
         common = set.intersection(*({c.shape_id for c in o.candidates} for o in members))
         options = [
-            (sum(_cost(o, _candidate(o, shape), loads[o.id], library, scene, noise) for o in members), shape)
+            (sum(_cost(o, candidate_of(o, shape), loads[o.id], library, scene, noise) for o in members), shape)
             for shape in sorted(common | {members[0].shape_id})
             if all(any(c.shape_id == shape for c in o.candidates) for o in members)
         ]
         if not options or min(options)[1] == members[0].shape_id:
             continue
         for o in members:
-            scene = _reshaped(scene, o, _candidate(o, min(options)[1]))
+            scene = reshaped(scene, o, candidate_of(o, min(options)[1]))
             loaded = f"has a place where {_names(loads[o.id])} seen" if loads[o.id] else "is of one shape with others"
             reasons.append(f"shape changed: {o.label} {loaded}")
     return scene, tuple(reasons)
 
 
-def _reshaped(scene: Scene, item: SceneObject, candidate: Candidate) -> Scene:
+def reshaped(scene: Scene, item: SceneObject, candidate: Candidate) -> Scene:
     """The scene with an object in another shape, and its loads where they were seen."""
     new = replace(item, shape_id=candidate.shape_id, shape_size_m=candidate.shape_size_m, pose=candidate.pose)
     edges = tuple(replace(s, parent_surface=None) if s.parent == item.id else s for s in scene.supports)
@@ -67,7 +67,8 @@ def _reshaped(scene: Scene, item: SceneObject, candidate: Candidate) -> Scene:
     return replace(scene, objects=objects, supports=edges)
 
 
-def _of_one_shape(scene: Scene) -> list[list[SceneObject]]:
+def of_one_shape(scene: Scene) -> list[list[SceneObject]]:
+    """The objects of a scene, those of one shape together."""
     groups: dict[str, list[SceneObject]] = {}
     for item in scene.objects:
         groups.setdefault(item.shape_id, []).append(item)
@@ -80,7 +81,8 @@ def _loads(scene: Scene, object_id: str) -> list[SceneObject]:
     return [item for s in edges if not is_soft(item := scene.object(s.child))]
 
 
-def _candidate(item: SceneObject, shape_id: str) -> Candidate:
+def candidate_of(item: SceneObject, shape_id: str) -> Candidate:
+    """The retrieved alternative of an object that is of this shape."""
     return next(c for c in item.candidates if c.shape_id == shape_id)
 
 

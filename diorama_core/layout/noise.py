@@ -18,6 +18,8 @@ class ObservationNoise:
     """Along the viewing ray, as a share of the distance."""
     across_m: float
     """Across it, and the least along it."""
+    measured: bool = False
+    """Whether distances were measured; those reasoned from a photo alone follow from what holds an object."""
 
     def tolerance_m(
         self, camera: Camera | None, position: Float[np.ndarray, "3"], direction: Float[np.ndarray, "3"]
@@ -29,7 +31,7 @@ class ObservationNoise:
         return 2.0 * float(np.hypot(self.along * float(sight @ direction), self.across_m))
 
 
-MEASURED = ObservationNoise(along=0.01, across_m=0.02)
+MEASURED = ObservationNoise(along=0.01, across_m=0.02, measured=True)
 """With measured depth; most of it is what the object itself hides."""
 REASONED = ObservationNoise(along=0.05, across_m=0.05)
 """From a photo alone, relative to what is beside or below: errors common to the room cancel."""

@@ -62,7 +62,8 @@ def checked_supports(scene: Scene, library: ShapeLibrary, noise: ObservationNois
             reasons.append(f"support changed: {item.label} stands on the floor; nothing of its kind hangs")
             scene = edits.attach(scene, Support(item.id, floor.id))
             continue
-        wall = _wall_in_sight(scene, item, edge, noise) if hangs else None
+        there = noise.measured and _gap(scene, library, item, edge) <= _tolerance(scene, item, edge, noise)
+        wall = _wall_in_sight(scene, item, edge, noise) if hangs and not there else None
         if wall is not None:
             reasons.append(f"support changed: {item.label} was seen on another wall than its own")
             scene = edits.attach(scene, replace(edge, parent=wall, adheres_to=()))
@@ -152,7 +153,7 @@ def _is_thin(scene: Scene, object_id: str, limit_m: float) -> bool:
 
 
 def _candidates(scene: Scene, library: ShapeLibrary, item: SceneObject) -> list[Support]:
-    """Usual supporter of a category: walls for mounted objects, the floor for furniture, surfaces otherwise."""
+    """Usual supporters of a category: walls for mounted objects, the floor for furniture, else surfaces too."""
     mount = taxonomy.resolve(item.category).category.mount
     roles = {"wall": ("wall", "floor") if item.category == "door" else ("wall",), "ceiling": ("ceiling",)}
     usual = roles.get(mount, ("floor",))
@@ -161,7 +162,7 @@ def _candidates(scene: Scene, library: ShapeLibrary, item: SceneObject) -> list[
         for plane in scene.architecture.planes
         if plane.role in usual
     ]
-    if mount in ("surface", "wall"):
+    if mount in ("surface", "wall") or (mount == "floor" and item.category not in _NEVER_HANGS):
         for other in scene.objects:
             edge, shape = Support(item.id, other.id), library.shape(other.shape_id)
             if surfaces_below(item, other, shape, under=1.0) and is_wide_enough(item, edge, other, shape):

@@ -22,6 +22,7 @@ from diorama_core.artefacts import (
     ObjectGeometry,
     SceneGraph,
 )
+from diorama_core.layout.clear_shapes import clear_shapes
 from diorama_core.layout.fitted_boards import fitted_boards
 from diorama_core.layout.holding_shapes import holding_shapes
 from diorama_core.layout.noise import MEASURED, REASONED
@@ -109,7 +110,9 @@ def build_scene(
     shaped = _observed({**found, "architecture": room}, balanced, library)
     reshaped: tuple[str, ...] = ()
     if inputs.depth_m is not None:  # heights reasoned from a photo alone do not tell boards from one another
-        shaped, reshaped = holding_shapes(shaped, library, noise)
+        shaped, holding = holding_shapes(shaped, library, noise)
+        shaped, clear = clear_shapes(shaped, library)
+        reshaped = holding + clear
     checked, changed = checked_supports(shaped, library, noise)
     fitted, moved = fitted_boards(checked, library, reasoned=inputs.depth_m is None)
     observed = _textured(containing_room(fitted), textures)

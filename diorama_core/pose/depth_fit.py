@@ -41,6 +41,10 @@ _SHAPE_SIGMA = 0.1
 _THIN_SHAPE_SIGMA = 0.8
 """The same for thin axes: frames and panels come in any thickness."""
 SURE_CONTACT_M = 0.02
+_SHAPE_FOOT_M = 0.03
+"""Usual distance of a shape's foot from that of the thing it stands for, beside the contact's own uncertainty."""
+_MOST_SIGMAS = 3.0
+"""Gaps of more deviations say no more: the contact may be wrong."""
 _YAW_SIGMA_RAD = float(np.deg2rad(10.0))
 
 
@@ -150,6 +154,16 @@ class Contact:
     anchor: Anchor
     sigma_m: float
     """How far from there its face may be: small where that end of it is seen."""
+
+    def gap_m(self, poses: PoseBatch, shape_size_m: Float[np.ndarray, "3"]) -> Float[np.ndarray, " p"]:
+        """How far poses are from touching, along the contact's axis; negative where they reach through."""
+        lever = 0.5 * np.abs(np.einsum("pij,i->pj", poses.R, self.anchor.axis_world)) * poses.scale * shape_size_m
+        return (poses.position - self.anchor.point_world) @ self.anchor.axis_world - lever.sum(axis=1)
+
+    def log_likelihood(self, poses: PoseBatch, shape_size_m: Float[np.ndarray, "3"]) -> Float[np.ndarray, " p"]:
+        """What the gap says of poses: the layout will close it, and they will agree less with the picture."""
+        sigma = np.hypot(self.sigma_m, _SHAPE_FOOT_M)
+        return -0.5 * np.minimum(np.abs(self.gap_m(poses, shape_size_m)) / sigma, _MOST_SIGMAS) ** 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -289,7 +303,7 @@ class DepthFit:
         axis, sigma = self.contact.anchor.axis_world, self.contact.sigma_m
         own = self.limits.shape_size_m
         lever = 0.5 * np.abs(np.einsum("pij,i->pj", poses.R, axis)) * poses.scale * own
-        gap = (poses.position - self.contact.anchor.point_world) @ axis - lever.sum(axis=1)
+        gap = self.contact.gap_m(poses, own)
         J, r = np.zeros((count, 6, PARAMETERS)), np.zeros((count, 6))
         J[:, 0, :3], J[:, 0, 4:] = axis, -lever
         J[:, 0], r[:, 0] = J[:, 0] / sigma, gap / sigma

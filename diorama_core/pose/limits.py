@@ -52,10 +52,22 @@ class SizeLimits:
     """How far the logarithm of one axis' scale may be from the mean of the three."""
 
     @classmethod
-    def of(cls, shape_size_m: tuple[float, float, float], category_name: str, observed_m: np.ndarray) -> SizeLimits:
-        """Limits for a shape standing for an object of a category, by the size prior nearest to what was observed."""
+    def of(
+        cls,
+        shape_size_m: tuple[float, float, float],
+        category_name: str,
+        observed_m: Float[np.ndarray, "3"],
+        *,
+        measured: bool = False,
+    ) -> SizeLimits:
+        """Limits for a shape standing for an object of a category, by the size prior nearest to what was observed.
+
+        A measured height is plausible, however tall for its kind: what hides a thing leaves its top to be seen.
+        """
         own = np.asarray(shape_size_m, dtype=np.float64)
         least, most = _category_range(category_name, observed_m, own)
+        if measured:
+            most[2] = max(most[2], observed_m[2])
         stretch = _STRETCH_BOXY if category_name in BOXY else _STRETCH_SHAPED
         return cls(own, least, most, stretch)
 

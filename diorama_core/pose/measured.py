@@ -7,17 +7,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Bool
 
-from diorama_core.artefacts import Cuboid
+from diorama_core.artefacts import Cuboid, DepthMap
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.record import SymmetryFold
 from diorama_core.pose.depth_fit import FEWEST_RAYS, NOISE_REACH, SURE_CONTACT_M, Contact, DepthFit, Outline, SeenPoints
 from diorama_core.pose.hypotheses import Anchor, Hypotheses
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.mask_observations import Evidence
-from diorama_core.scene.types import yaw_rotation
+from diorama_core.scene.types import Camera, yaw_rotation
 
 _TURNS = 24
 _ALL_WAYS = ((False, False), (True, False), (False, True), (True, True))
+_FOOT_PX = 8
+"""So many of a mask's pixels are its lowest."""
 _FLOATS_M = 0.05
 """A lower end that is seen this far from where the cuboid ends tells where the object stands."""
 
@@ -34,7 +36,12 @@ class MeasuredObject:
 
     @classmethod
     def of(
-        cls, mask: Bool[np.ndarray, "h w"], observations: Evidence, cuboid: Cuboid, anchor: Anchor, on_floor: bool
+        cls,
+        mask: Bool[np.ndarray, "h w"],
+        observations: Evidence,
+        cuboid: Cuboid,
+        anchor: Anchor,
+        floor_foot_m: float | None = None,
     ) -> MeasuredObject | None:
         """What can be used of the depth under a mask; None where hardly any was measured.
 
@@ -43,7 +50,8 @@ class MeasuredObject:
             observations: what is known of it.
             cuboid: its box.
             anchor: the face of the box that touches what holds it.
-            on_floor: whether that is the floor, whose height is known even where the object hides it.
+            floor_foot_m: for objects on the floor, whose height is known even where they hide it: the height at which
+                their lowest pixels were measured.
         """
         if observations.surface is None:
             return None
@@ -53,7 +61,7 @@ class MeasuredObject:
         if len(points.depth_m) < FEWEST_RAYS:
             return None
         outline = Outline.of(observations.seen, mask)
-        return cls(observations, cuboid, _contact(anchor, on_floor, points, outline), points, outline)
+        return cls(observations, cuboid, _contact(anchor, floor_foot_m, points, outline), points, outline)
 
     def fit(self, limits: SizeLimits) -> DepthFit:
         """The fit of a shape with these limits."""
@@ -89,16 +97,33 @@ class MeasuredObject:
         return PoseBatch(R, np.tile(best.position[0], (len(R), 1)), np.tile(scale, (len(R), 1)))
 
 
-def _contact(anchor: Anchor, on_floor: bool, points: SeenPoints, outline: Outline | None) -> Contact:
+def foot_height_m(depth: DepthMap, mask: Bool[np.ndarray, "h w"], camera: Camera) -> float | None:
+    """Height in the world of the lowest measured pixels of a mask; None where hardly any was measured.
+
+    Legs have too few points to count among those of the whole object, but their ends are the lowest of its mask.
+    """
+    rows, columns = np.nonzero(mask & (depth.depth_m > 0))
+    if len(rows) < _FOOT_PX:
+        return None
+    lowest = np.argsort(rows, kind="stable")[-_FOOT_PX:]
+    pixels = np.column_stack([columns[lowest] + 0.5, rows[lowest] + 0.5])
+    metres = depth.depth_m[rows[lowest], columns[lowest]].astype(np.float64)
+    return float(np.median(camera.position[2] + metres * camera.rays(pixels)[:, 2]))
+
+
+def _contact(anchor: Anchor, floor_foot_m: float | None, points: SeenPoints, outline: Outline | None) -> Contact:
     """Where the object stands: where the cuboid ends, unless its own lower end is seen elsewhere or is hidden."""
     if anchor.axis_world[2] < 0.5 or outline is None or len(points.depth_m) < 12:
         return Contact(anchor, SURE_CONTACT_M)
     lowest = float(points.span(np.eye(3)[None])[0][0, 2])
     gap = lowest - float(anchor.point_world[2])
-    noise_m = NOISE_REACH * float(np.median(points.spread_m)) if on_floor else 0.0
-    if abs(gap) < _FLOATS_M + noise_m or (on_floor and not outline.lower_end_seen):
+    noise_m = 0.0
+    if floor_foot_m is not None:
+        noise_m = NOISE_REACH * float(np.median(points.spread_m))
+        gap = min(gap, floor_foot_m - float(anchor.point_world[2]))
+    if abs(gap) < _FLOATS_M + noise_m or (floor_foot_m is not None and not outline.lower_end_seen):
         return Contact(anchor, SURE_CONTACT_M)
-    seen = replace(anchor, point_world=np.array([*anchor.point_world[:2], lowest]))
+    seen = replace(anchor, point_world=np.array([*anchor.point_world[:2], float(anchor.point_world[2]) + gap]))
     if outline.lower_end_seen or gap < 0:
         return Contact(seen, 1.5 * SURE_CONTACT_M)
     return Contact(anchor, 0.5 * gap)

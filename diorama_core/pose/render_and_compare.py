@@ -33,7 +33,7 @@ from diorama_core.pose.hypotheses import Anchor, Hypotheses, anchor_of, hypothes
 from diorama_core.pose.levels import level_cost
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.mask_observations import Evidence
-from diorama_core.pose.measured import MeasuredObject
+from diorama_core.pose.measured import MeasuredObject, foot_height_m
 from diorama_core.pose.refine import BoxFit
 from diorama_core.pose.sets import shared_scales
 from diorama_core.pose.surface import measured_surface, noise_of
@@ -224,7 +224,9 @@ class RenderAndCompare:
             ]
             surfaces = [measured_surface(depth, seen, item.mask, noise) for seen in windows]
             coarse, fine = (Evidence(geometry.camera, *of) for of in zip(windows[:2], [facing] * 2, surfaces[:2]))
-            measured = MeasuredObject.of(item.mask, fine, cuboids[i], anchor, parent_of.get(item.id) == "floor")
+            on_floor = parent_of.get(item.id) == "floor"
+            foot_m = foot_height_m(depth, item.mask, geometry.camera) if on_floor else None
+            measured = MeasuredObject.of(item.mask, fine, cuboids[i], anchor, foot_m)
             close = None
             if measured is not None and surfaces[2] is not None:
                 close = AppearanceLikelihood.of(inputs.photo.rgb, item.mask, windows[2], surfaces[2], cuboids[i].size_m)
@@ -259,8 +261,8 @@ class RenderAndCompare:
     def _try_shape(self, task: _Task, shape: Shape, liked: float) -> _Tried:
         appearance = self._compare(shape)
         name = task.item.category
-        limits = SizeLimits.of(shape.size_m, name, task.cuboid.size_m)
         depth_known = task.measured is not None
+        limits = SizeLimits.of(shape.size_m, name, task.cuboid.size_m, measured=depth_known)
         tried = hypotheses_for(task.cuboid, name, shape.symmetry, limits, task.anchor, sides_known=depth_known)
         if task.measured is not None:
             tried = tried.and_also(task.measured.hypotheses(shape.symmetry, limits))
@@ -285,8 +287,7 @@ class RenderAndCompare:
             nothing = np.zeros(len(turned))
             other = self._chosen(task, tried, Hypotheses(turned, nothing, nothing))
             poses, error, score = max((poses, error, score), other, key=lambda found: found[2])
-        similarity = task.fine.log_likelihood(error, poses.scale[0], tried.limits)
-        return _Posed(tried.shape, _only(poses), error, _RETRIEVAL_WITH_DEPTH * tried.liked + similarity)
+        return _Posed(tried.shape, _only(poses), error, _rank(task, measured, tried, poses, error))
 
     def _turned_all_around(self, task: _Task, measured: MeasuredObject, tried: _Tried, posed: _Posed) -> _Posed:
         """The pose with its turn compared closely."""
@@ -296,8 +297,7 @@ class RenderAndCompare:
         search = TurnSearch.of(task.close, task.fine, measured, tried.appearance, tried.limits, fold, start)
         poses, doubt = search.best(start)
         error = float(task.fine.errors(tried.appearance.caster, poses)[0])
-        similarity = task.fine.log_likelihood(error, poses.scale[0], tried.limits)
-        return _Posed(tried.shape, _only(poses), error, _RETRIEVAL_WITH_DEPTH * tried.liked + similarity, doubt)
+        return _Posed(tried.shape, _only(poses), error, _rank(task, measured, tried, poses, error), doubt)
 
     def _chosen(self, task: _Task, tried: _Tried, start: Hypotheses) -> tuple[PoseBatch, float, float]:
         """The best of some poses and their refinements, with its error and score."""
@@ -305,6 +305,8 @@ class RenderAndCompare:
         errors = task.fine.errors(tried.appearance.caster, both)
         off_axis, misfit = np.tile(start.off_axis_rad, 2), np.tile(start.misfit, 2)
         scores = task.fine.log_scores(errors, both, off_axis, misfit, tried.limits)
+        if task.measured is not None:
+            scores = scores + task.measured.contact.log_likelihood(both, tried.limits.shape_size_m)
         chosen = int(np.argmax(scores))
         return both[chosen : chosen + 1], float(errors[chosen]), float(scores[chosen])
 
@@ -313,6 +315,13 @@ class RenderAndCompare:
             return task.measured.fit(limits).refined(caster, start)
         yaw_sigma = np.deg2rad(9.0 if category(task.item.category).quarter_turns_free else 4.0)
         return BoxFit(task.fine.camera, task.fine.seen, task.anchor, limits, float(yaw_sigma)).refined(caster, start)
+
+
+def _rank(task: _Task, measured: MeasuredObject, tried: _Tried, poses: PoseBatch, error: float) -> float:
+    """What retrieval, the picture and what holds the object say about a posed shape, where depth was measured."""
+    similarity = task.fine.log_likelihood(error, poses.scale[0], tried.limits)
+    stands = float(measured.contact.log_likelihood(poses, tried.limits.shape_size_m)[0])
+    return _RETRIEVAL_WITH_DEPTH * tried.liked + similarity + stands
 
 
 def _worth_refining(

@@ -115,3 +115,28 @@ def test_what_is_seen_beside_its_wall_hangs_on_the_wall_in_sight(room: Room) -> 
     (wall,) = (w.id for w in scene.architecture.by_role("wall") if w.normal[0] < -0.9)
     assert checked.support_of(picture).parent == wall
     assert "another wall" in reasons[0]
+
+
+def test_a_measured_door_stays_on_its_wall_although_another_is_in_sight(room: Room) -> None:
+    walls = room_box(6.0, 5.0)
+    (own,) = (w.id for w in walls.by_role("wall") if w.normal[0] < -0.9)
+    door = room.put("picture_13", (2.98, 1.16, 1.5), on=own, relation="mounted on", yaw=np.pi)
+    shapes = {
+        own: lambda polygon: np.clip(polygon, -9.0, [9.0, 1.1, 9.0]),
+        "wall_2": lambda polygon: polygon * [2, 1, 1],
+    }
+    short = tuple(replace(p, polygon=shapes[p.id](p.polygon)) if p.id in shapes else p for p in walls.planes)
+    scene = room.scene(camera=looking_north(), architecture=replace(walls, planes=short))
+    reasoned = replace(MEASURED, measured=False)
+    assert checked_supports(scene, LIBRARY, reasoned)[0].support_of(door).parent == "wall_2"
+    assert checked_supports(scene, LIBRARY, MEASURED)[0].support_of(door).parent == own
+
+
+def test_a_plant_over_a_table_stands_on_it(room: Room) -> None:
+    table = room.put("table_0", (0.0, 0.0, 0.37))
+    top = room.objects[0].size_m[2]
+    plant = room.put("cup_21", (0.0, 0.1, top + 0.05))
+    scene = room.scene(camera=looking_north())
+    potted = tuple(replace(o, category="plant") if o.id == plant else o for o in scene.objects)
+    checked, _ = checked_supports(replace(scene, objects=potted), LIBRARY, MEASURED)
+    assert checked.support_of(plant).parent == table

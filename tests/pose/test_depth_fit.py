@@ -17,13 +17,15 @@ from diorama_core.pose.facing import Facing
 from diorama_core.pose.hypotheses import anchor_of
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.mask_observations import Evidence
-from diorama_core.pose.measured import MeasuredObject
+from diorama_core.pose.measured import MeasuredObject, foot_height_m
 from diorama_core.pose.surface import measured_surface, noise_of
 from diorama_core.scene.types import yaw_rotation
 from tests.pose.rooms import LIBRARY, Room, camera_at, standing, yaw_error_deg
 
 
-def measured(room: Room, index: int = 0, depth: DepthMap | None = None) -> MeasuredObject:
+def measured(
+    room: Room, index: int = 0, depth: DepthMap | None = None, floor_foot_m: float | None = None
+) -> MeasuredObject:
     """The first thing of a room as depth shows it, with its true cuboid."""
     item, cuboid = room.objects[index], room.geometry.cuboids[index]
     centres = np.array([c.centre for c in room.geometry.cuboids])
@@ -32,7 +34,7 @@ def measured(room: Room, index: int = 0, depth: DepthMap | None = None) -> Measu
     surface = measured_surface(depth, seen, item.mask, noise_of(depth))
     evidence = Evidence(room.camera, seen, Facing(()), surface)
     anchor = anchor_of(cuboid, False, room.camera.position[:2] - cuboid.centre[:2])
-    found = MeasuredObject.of(item.mask, evidence, cuboid, anchor, on_floor=False)
+    found = MeasuredObject.of(item.mask, evidence, cuboid, anchor, floor_foot_m)
     assert found is not None
     return found
 
@@ -139,4 +141,19 @@ def test_hardly_any_depth_is_no_measurement() -> None:
     mask = np.zeros_like(room.objects[0].mask)
     assert whole.observations.surface is not None
     blind = replace(whole.observations, surface=replace(whole.observations.surface, weight=np.zeros(56 * 56)))
-    assert MeasuredObject.of(mask, blind, whole.cuboid, whole.contact.anchor, on_floor=False) is None
+    assert MeasuredObject.of(mask, blind, whole.cuboid, whole.contact.anchor) is None
+
+
+def test_the_foot_of_a_table_is_where_its_thin_legs_end() -> None:
+    room = Room(camera_at(), (standing("table", 0.0, 3.0, 20.0),), (0,))
+    height = foot_height_m(room.depth(True), room.objects[0].mask, room.camera)
+    assert height == pytest.approx(0.0, abs=0.05)
+    assert foot_height_m(room.depth(True), np.zeros_like(room.objects[0].mask), room.camera) is None
+
+
+def test_an_object_that_is_measured_above_the_floor_does_not_stand_on_it() -> None:
+    room = Room(camera_at(), (standing("carton", 0.0, 3.0, 20.0),), (0,))
+    lifted = measured(room, floor_foot_m=0.3)
+    points = lifted.points.span(np.eye(3)[None])[0][0, 2]
+    assert lifted.contact.anchor.point_world[2] == pytest.approx(min(float(points), 0.3), abs=0.06)
+    assert measured(room, floor_foot_m=0.01).contact.anchor.point_world[2] == pytest.approx(0.0, abs=1e-6)

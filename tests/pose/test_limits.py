@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -36,3 +37,9 @@ def test_many_wishes_at_once_are_the_same_as_one_by_one(rng) -> None:
     limits = SizeLimits.of((0.5, 0.5, 0.9), "chair", np.array([0.5, 0.5, 0.9]))
     wanted = rng.uniform(0.1, 2.0, (20, 3))
     assert np.allclose(limits.scale_for(wanted), [limits.scale_for(w) for w in wanted])
+
+
+def test_a_measured_height_is_plausible_however_tall() -> None:
+    tall = np.array([0.7, 0.7, 0.75])
+    assert SizeLimits.of((0.7, 0.7, 0.42), "coffee table", tall).max_m[2] == pytest.approx(0.6)
+    assert SizeLimits.of((0.7, 0.7, 0.42), "coffee table", tall, measured=True).max_m[2] == pytest.approx(0.75)

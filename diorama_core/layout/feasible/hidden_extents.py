@@ -10,8 +10,15 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from jaxtyping import Float
 
-from diorama_core.layout.feasible.photo_observations import PhotoObservations
+from diorama_core.geometry.sat import pair_axes, place_bodies
+from diorama_core.layout.escape import exits
+from diorama_core.layout.feasible.photo_observations import (
+    BORDER_PX,
+    PhotoObservations,
+    posed_bounds_px,
+)
 from diorama_core.layout.feasible.separate import APART_M
 from diorama_core.layout.problem.problem import Problem
 from diorama_core.layout.report import part_overlaps
@@ -21,6 +28,8 @@ LEAST_SHARE = 0.5
 """An extent is reduced to no less than this share of what was retrieved."""
 LEAST_OVERLAP_M = 0.01
 """Overlaps that go less deep are left to moves."""
+LEAST_SEEN = 0.03
+"""Share of its box in the photo by which a shortened object may fall short of it."""
 AROUND_LOAD_M = 0.02
 """Left beside what stands on an object."""
 
@@ -45,9 +54,10 @@ def ending_before_neighbours(problem: Problem, observations: PhotoObservations) 
                     continue
                 cut = _overlap_m(problem, i, neighbours, p, scale, axis, outward)
                 cut = min(cut, _free_m(problem, i, float(face @ outward), outward), (1.0 - LEAST_SHARE) * extent)
-                if cut > LEAST_OVERLAP_M:
-                    scale[i, axis] *= 1.0 - cut / extent
-                    p[i] = p[i] - 0.5 * cut * outward
+                shorter = scale[i] * np.where(np.arange(3) == axis, 1.0 - cut / extent, 1.0)
+                nearer = p[i] - 0.5 * cut * outward
+                if cut > LEAST_OVERLAP_M and _covers_box(problem, observations, i, nearer, shorter):
+                    scale[i], p[i] = shorter, nearer
     return replace(problem, scale=scale, p=p)
 
 
@@ -62,6 +72,21 @@ def _is_hidden(observations: PhotoObservations, i: int, centre: np.ndarray, face
     return bool(observations.hidden[i, 0 if step[0] < 0 else 2])
 
 
+def _covers_box(
+    problem: Problem, observations: PhotoObservations, i: int, p: Float[np.ndarray, "3"], scale: Float[np.ndarray, "3"]
+) -> bool:
+    """Whether an object still reaches to the sides of its box in the photo to which it reached as observed."""
+    box = problem.box_px[i]
+    if not np.isfinite(box).all():
+        return True
+    before = posed_bounds_px(problem, observations.camera, i, problem.p[i], problem.scale[i])
+    after = posed_bounds_px(problem, observations.camera, i, p, scale)
+    slack = LEAST_SEEN * np.tile(box[2:] - box[:2], 2) + BORDER_PX
+    short = np.array([1.0, 1.0, -1.0, -1.0]) * (after - box)
+    was_short = np.array([1.0, 1.0, -1.0, -1.0]) * (before - box)
+    return bool((short <= np.maximum(slack, was_short + slack)).all())
+
+
 def _overlap_m(
     problem: Problem,
     i: int,
@@ -71,7 +96,11 @@ def _overlap_m(
     axis: int,
     outward: np.ndarray,
 ) -> float:
-    """How far the boxes of unrelated objects reach into an object's box from one of its sides, metres."""
+    """How far unrelated objects reach into an object from one of its sides, metres.
+
+    Where boxes overlap and parts hardly do, as those of a chair under a table, it is as far as the parts are from being
+    apart.
+    """
     R, half = problem.R[i], 0.5 * problem.shape_size[i] * scale[i]
     others = [k for k in range(3) if k != axis]
     deepest = 0.0
@@ -83,8 +112,18 @@ def _overlap_m(
         reaches = float(half[axis] - along.min())
         # What goes on beyond the face comes from outside; what is within the box does not.
         if not beside and reaches > 0.0 and float(along.max()) > half[axis]:
-            deepest = max(deepest, reaches + APART_M)
+            deepest = max(deepest, min(reaches + APART_M, _exit_m(problem, i, j, p, scale, outward)))
     return deepest
+
+
+def _exit_m(problem: Problem, i: int, j: int, p: np.ndarray, scale: np.ndarray, outward: np.ndarray) -> float:
+    """How far object j would have to go in a direction for its parts to be apart from those of object i."""
+    bodies = place_bodies(problem.packed, problem.R, p, scale)
+    ours, theirs = np.flatnonzero(bodies.owner == j), np.flatnonzero(bodies.owner == i)
+    a, b = (grid.ravel() for grid in np.meshgrid(ours, theirs, indexing="ij"))
+    blocks = pair_axes(bodies, a, b, faces_only=True)
+    offsets = [np.zeros((len(block.a), 3)) for block in blocks]
+    return float(exits(blocks, offsets, [np.ones(len(block.a)) for block in blocks], outward[None], APART_M)[0])
 
 
 def _free_m(problem: Problem, i: int, face: float, outward: np.ndarray) -> float:

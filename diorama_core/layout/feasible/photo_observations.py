@@ -10,7 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
+from scipy.optimize import linear_sum_assignment
 
 from diorama_core.artefacts import PhotoDisagreement
 from diorama_core.geometry.projection import box_iou
@@ -80,8 +81,12 @@ class PhotoObservations:
     """Outline points of each shape at scale 1, object frame."""
     corners_px: Float[np.ndarray, "n 8 2"]
     """Where the camera saw the corners of each object's box; NaN for those behind the camera."""
+    R: Float[np.ndarray, "n 3 3"]
+    """Rotations of those boxes."""
     contradicted: Bool[np.ndarray, " n"]
     """Objects whose posed shape is not where the photo's box is."""
+    pictured: Bool[np.ndarray, " n"]
+    """Objects that are still where the photo shows them; a person may have put others anywhere."""
 
     def limited(self, scale: Float[np.ndarray, "n 3"]) -> PhotoObservations:
         """The same with nothing larger than it is now where it has been made smaller."""
@@ -147,7 +152,7 @@ class PhotoObservations:
             anchor_local=local,
             arms=self.points[i] - local,
             corner_arms=box_corners(self.size[i]) - local,
-            corners_px=self.corners_px[i],
+            corners_px=self.corners_px[i][same_corners(self.R[i], R)],
             scale=scale,
             basis=basis,
             metres=float(self.camera.to_camera(observed)[2]) / self.camera.intrinsics.fx,
@@ -292,7 +297,9 @@ def photo_observations(problem: Problem, camera: Camera, *, depth_weight: float)
         size=problem.shape_size,
         points=points,
         corners_px=_corners_px(problem, camera, posed, bounds),
+        R=problem.R,
         contradicted=(np.abs(posed - bounds) > 0.0).any(axis=1),
+        pictured=_agrees(_bounds_in_picture_px(problem, camera), problem.box_px),
     )
 
 
@@ -313,19 +320,40 @@ def _loads(problem: Problem, i: int) -> Float[np.ndarray, "m 2"]:
 
 
 def _outline_points(problem: Problem) -> tuple[Float[np.ndarray, "_ 3"], ...]:
+    return tuple(_outline_points_of(problem, i) for i in range(problem.count))
+
+
+def _outline_points_of(problem: Problem, i: int) -> Float[np.ndarray, "_ 3"]:
     packed = problem.packed
-    return tuple(np.unique(packed.vertices[packed.owner == i].reshape(-1, 3), axis=0) for i in range(problem.count))
+    return np.unique(packed.vertices[packed.owner == i].reshape(-1, 3), axis=0)
 
 
 def _posed_bounds_px(problem: Problem, camera: Camera) -> Float[np.ndarray, "n 4"]:
     """Bounds of each posed shape in the picture, not cut at its border; NaN for those behind the camera."""
-    bounds = np.full((problem.count, 4), np.nan)
+    found = [posed_bounds_px(problem, camera, i, problem.p[i], problem.scale[i]) for i in range(problem.count)]
+    return np.array(found).reshape(-1, 4)
+
+
+def _bounds_in_picture_px(problem: Problem, camera: Camera) -> Float[np.ndarray, "n 4"]:
+    """Bounds of what the picture shows of each posed shape, cut at its border; NaN for those outside it."""
+    k, bounds = camera.intrinsics, np.full((problem.count, 4), np.nan)
     for i, own in enumerate(_outline_points(problem)):
         world = (own * problem.scale[i]) @ problem.R[i].T + problem.p[i]
-        if camera.to_camera(world)[:, 2].min() >= _NEAREST_M:
-            flat = camera.project(world)
-            bounds[i] = [*flat.min(axis=0), *flat.max(axis=0)]
+        flat = camera.project(world[camera.to_camera(world)[:, 2] >= _NEAREST_M])
+        if len(flat):
+            bounds[i] = np.clip([*flat.min(axis=0), *flat.max(axis=0)], 0, [k.width, k.height] * 2)
     return bounds
+
+
+def posed_bounds_px(
+    problem: Problem, camera: Camera, i: int, p: Float[np.ndarray, "3"], scale: Float[np.ndarray, "3"]
+) -> Float[np.ndarray, "4"]:
+    """Bounds in the picture of one object at another place or size, not cut at its border; NaN behind the camera."""
+    world = (_outline_points_of(problem, i) * scale) @ problem.R[i].T + p
+    if camera.to_camera(world)[:, 2].min() < _NEAREST_M:
+        return np.full(4, np.nan)
+    flat = camera.project(world)
+    return np.array([*flat.min(axis=0), *flat.max(axis=0)])
 
 
 def _corners_px(
@@ -342,6 +370,18 @@ def _corners_px(
     return found
 
 
+def same_corners(R_from: Float[np.ndarray, "3 3"], R_to: Float[np.ndarray, "3 3"]) -> Int[np.ndarray, "8"]:
+    """For every corner of a turned box the corner of the box before the turn that is in its place.
+
+    A mirror that was seen with its back to the room is turned round; what is left in the picture remains left.
+    """
+    nearest = R_from.T @ R_to
+    rows, columns = linear_sum_assignment(-np.abs(nearest))
+    before = np.zeros((8, 3))
+    before[:, rows] = np.sign(nearest[rows, columns]) * box_corners(np.ones(3))[:, columns]
+    return (before > 0) @ np.array([1, 2, 4])
+
+
 def _pictured(
     problem: Problem, camera: Camera, posed: Float[np.ndarray, "n 4"]
 ) -> tuple[Float[np.ndarray, "n 4"], Bool[np.ndarray, "n 4"]]:
@@ -351,11 +391,15 @@ def _pictured(
     shape says where it is.
     """
     boxes = problem.box_px
-    agrees = np.array([bool(box_iou(a, b) >= SAME_PLACE) for a, b in zip(posed, boxes)], dtype=bool).reshape(-1)
+    agrees = _agrees(posed, boxes)
     hidden = _hidden_sides(problem, camera) & agrees[:, None]
     extent = np.tile(boxes[:, 2:] - boxes[:, :2], (1, 2))
     contradicted = np.abs(posed - boxes) > DIFFERENT * extent + BORDER_PX
     return np.where(agrees[:, None] & contradicted & ~hidden, boxes, posed), hidden
+
+
+def _agrees(posed: Float[np.ndarray, "n 4"], boxes: Float[np.ndarray, "n 4"]) -> Bool[np.ndarray, " n"]:
+    return np.array([bool(box_iou(a, b) >= SAME_PLACE) for a, b in zip(posed, boxes)], dtype=bool).reshape(-1)
 
 
 def _hidden_sides(problem: Problem, camera: Camera) -> Bool[np.ndarray, "n 4"]:

@@ -82,7 +82,8 @@ class FeasibleRecipe:
         if observations is not None and not self.sizes_reasoned:  # reasoned distances overlap for other reasons
             wanted = ending_before_neighbours(problem, observations)
             observations = self._observations(wanted, scene.camera)
-        for attempt in range(self.attempts):
+        best: tuple[Problem, Program, Separation] | None = None
+        for _ in range(self.attempts):
             seen = None if observations is None else observations.limited(wanted.scale)
             eye = scene.camera.position if scene.camera is not None and self.sizes_reasoned else None
             structure = exact_structure(wanted, self._rays(wanted, scene.camera), seen, eye=eye)
@@ -91,9 +92,15 @@ class FeasibleRecipe:
                 structure = fitted_sizes(program, self._outline_cost(wanted))
                 program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
             found = _apart(program, self.rounds, self._watcher(scene, program, progress, preview))
-            if not found.stuck or attempt == self.attempts - 1:
+            # Smaller objects that overlap as much as before have become smaller in vain.
+            if best is None or len(found.stuck) < len(best[2].stuck):
+                best = (wanted, program, found)
+            if not found.stuck:
                 break
             wanted = _smaller(wanted, structure, found)
+        assert best is not None, "there is at least one attempt"
+        wanted, program, found = best
+        structure = program.structure
         p = structure.p + program.moves(found.y)
         after = measure(replace(problem, surface=structure.surface), structure.R, p, structure.scale)
         reasons = (

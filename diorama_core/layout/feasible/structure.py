@@ -14,7 +14,7 @@ from jaxtyping import Float
 from diorama_core.geometry.cross import cross
 from diorama_core.geometry.planes import plane_axes
 from diorama_core.layout.feasible.footprints import INSET_M, largest_share
-from diorama_core.layout.feasible.photo_observations import PhotoObservations
+from diorama_core.layout.feasible.photo_observations import MAX_STRETCH, PhotoObservations
 from diorama_core.layout.feasible.quadratic import HARD, least_distance
 from diorama_core.layout.problem.footing import reach_of
 from diorama_core.layout.problem.problem import Problem
@@ -144,6 +144,8 @@ def _settle(
     u, v = plane_axes(n)
     _before_walls(problem, walk, i)
     grown = 1.0 if eye is None else _from_the_eye(problem, walk, i, surface, eye)
+    if observations is not None and eye is None and observations.pictured[i]:
+        _reach_support(problem, walk, i, surface)
     _on_support(problem, walk, i, surface, None if ray is None else ray[i])
     grounded = problem.grounded[i] and is_wall_like(surface)
     walk.basis[i] = np.column_stack([u, np.zeros(3) if grounded else v])
@@ -258,6 +260,16 @@ def _contact_centre(problem: Problem, walk: _Walk, i: int) -> np.ndarray:
 def _lift(problem: Problem, walk: _Walk, i: int, surface: Surface) -> float:
     """How far the contact face is below the surface."""
     return surface.level - float(surface.normal @ _contact_centre(problem, walk, i))
+
+
+def _reach_support(problem: Problem, walk: _Walk, i: int, surface: Surface) -> None:
+    """Stretch the object so that its contact face is on its surface; its far face, which was measured, stays."""
+    axis = int(np.abs(problem.contact[i]).argmax())
+    extent = float(_size(problem, walk, i)[axis])
+    wanted = extent - _lift(problem, walk, i, surface)
+    factor = float(np.clip(wanted / extent, 1.0 / MAX_STRETCH, MAX_STRETCH))
+    walk.scale[i, axis] *= factor
+    walk.p[i] = walk.p[i] - 0.5 * (factor - 1.0) * extent * surface.normal
 
 
 def _on_support(problem: Problem, walk: _Walk, i: int, surface: Surface, ray: np.ndarray | None) -> None:

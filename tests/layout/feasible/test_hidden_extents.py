@@ -16,7 +16,9 @@ BOX = "box_24"
 """0.35 x 0.45 x 0.3 m."""
 
 
-def problem_of(room: Room, x: float, *, hidden: bool = True, load: bool = False) -> tuple[Problem, Problem]:
+def problem_of(
+    room: Room, x: float, *, hidden: bool = True, load: bool = False, amodal: bool = False
+) -> tuple[Problem, Problem]:
     """A box whose left end is behind a nearer one, and in it; before and after."""
     far = room.put(BOX, (x, 1.0, 0.15), yaw=-np.pi / 2, id="far")
     near = room.put(BOX, (0.0, 0.8, 0.15), yaw=-np.pi / 2, id="near")
@@ -24,8 +26,10 @@ def problem_of(room: Room, x: float, *, hidden: bool = True, load: bool = False)
         room.put("cup_21", (x - 0.2, 1.0, 0.35), on=far, id="load")
     camera = looking_north()
     scene = room.scene(camera=camera)
-    seen = {far, near} if hidden else {far}
-    boxed = tuple(replace(o, box_px=tuple(outline(scene, o.id)) if o.id in seen else None) for o in scene.objects)
+    boxes = {far: outline(scene, far), near: outline(scene, near)} if hidden else {far: outline(scene, far)}
+    if hidden and not amodal:  # a photo's box ends where something nearer begins
+        boxes[far][0] = max(boxes[far][0], boxes[near][2])
+    boxed = tuple(replace(o, box_px=tuple(boxes[o.id]) if o.id in boxes else None) for o in scene.objects)
     problem = build_problem(replace(scene, objects=boxed), room.library)
     return problem, ending_before_neighbours(problem, photo_observations(problem, camera, depth_weight=1.0))
 
@@ -42,6 +46,11 @@ def test_a_hidden_end_stops_before_what_hides_it(room: Room) -> None:
 
 def test_an_end_that_was_seen_stays(room: Room) -> None:
     before, after = problem_of(room, 0.3, hidden=False)
+    np.testing.assert_array_equal(after.scale, before.scale)
+
+
+def test_an_end_that_the_photo_shows_above_what_hides_it_stays(room: Room) -> None:
+    before, after = problem_of(room, 0.3, amodal=True)
     np.testing.assert_array_equal(after.scale, before.scale)
 
 

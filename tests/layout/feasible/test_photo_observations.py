@@ -8,11 +8,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from diorama_core.geometry.projection import box_iou
-from diorama_core.layout.feasible.photo_observations import MAX_STRETCH, PhotoObservations, photo_observations
+from diorama_core.layout.feasible.photo_observations import (
+    MAX_STRETCH,
+    PhotoObservations,
+    photo_observations,
+    same_corners,
+)
 from diorama_core.layout.feasible.recipe import FeasibleRecipe
 from diorama_core.layout.problem.problem import build_problem
 from diorama_core.progress import Progress
-from diorama_core.scene.types import Camera, Intrinsics, Scene
+from diorama_core.scene.types import Camera, Intrinsics, Pose, Scene, box_corners
 from diorama_core.synthesis.layout_rooms import box_library, generate_room
 from tests.layout.small_rooms import Room
 
@@ -180,3 +185,32 @@ def test_objects_that_left_the_picture_are_reported_as_data(room: Room) -> None:
     (found,) = [d for d in report.disagreements if d.object_id == shelf]
     assert found.moved_m > 0.2 or found.outline_shared < 0.6
     assert any(reason.startswith(f"agrees less with the photo: {found.label}") for reason in report.reasons)
+
+
+@pytest.mark.parametrize("turns", [0, 1, 2, 3])
+def test_corners_in_the_picture_stay_when_a_box_is_turned_by_quarters(turns: int) -> None:
+    seen = Pose.upright((0.0, 0.0, 0.0), 0.1).R_world_object
+    turned = Pose.upright((0.0, 0.0, 0.0), 0.05 + turns * np.pi / 2).R_world_object
+    before = box_corners(np.ones(3)) @ seen.T
+    after = box_corners(np.ones(3)) @ turned.T
+    assert np.abs(before[same_corners(seen, turned)] - after).max() < 0.1
+
+
+def test_a_picture_seen_from_behind_is_turned_round_and_stays_as_large(room: Room) -> None:
+    size = LIBRARY.shape("picture_13").size_m
+    at = (0.8, 2.5 - size[0] / 2 - 0.01, 1.5)
+    picture = room.put("picture_13", at, on="wall_2", relation="mounted on", yaw=np.pi / 2)
+    scene = room.scene(camera=looking_north())
+    hung = solve(scene, depth_weight=1.0).object(picture)
+    assert np.allclose(hung.size_m, scene.object(picture).size_m, rtol=0.02)
+    assert hung.pose.R_world_object[1, 0] == pytest.approx(-1.0)
+
+
+def test_a_measured_top_stays_where_the_foot_has_to_come_down(room: Room) -> None:
+    table = room.put("table_0", (0.0, 1.0, 0.43))
+    scene = room.scene(camera=looking_north())
+    seen = scene.object(table)
+    boxed = replace(seen, box_px=tuple(outline(scene, table)))
+    stood = solve(replace(scene, objects=(boxed,)), depth_weight=1.0).object(table)
+    assert stood.corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-9)
+    assert stood.corners_world[:, 2].max() == pytest.approx(seen.corners_world[:, 2].max(), abs=0.01)

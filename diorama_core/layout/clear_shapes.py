@@ -1,0 +1,90 @@
+"""Shapes that leave their neighbours room: of the retrieved alternatives, one that does not pass through what was
+measured beside or below it.
+
+A desk with a closed front and a computer below its top cannot both be right. Where the parts of two objects overlap at
+their measured places, one of the two has another shape than the thing it stands for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diorama_core.layout.holding_shapes import MIN_SCORE, candidate_of, of_one_shape, reshaped
+from diorama_core.layout.problem.problem import build_problem
+from diorama_core.layout.report import part_overlaps
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.scene.types import Scene, SceneObject
+
+CLEAR_M = 0.02
+"""Overlaps that go less deep are left to moves."""
+OVERLAP_M = 0.03
+"""Usual overlap of shapes that are a little larger than the things they stand for."""
+MAX_OVERLAP_COST = 6.0
+"""Most that one overlap says against a shape: the neighbour may be wrong instead."""
+
+
+def clear_shapes(scene: Scene, library: ShapeLibrary) -> tuple[Scene, tuple[str, ...]]:
+    """The scene with objects in the retrieved shapes that agree best with picture and neighbours, and what was changed.
+
+    Costs are negative logarithms of likelihoods: of the retrieval's score, and of each overlap's depth. Objects of one
+    shape stay of one shape; what is locked stays as it is. The deepest overlaps are looked at first.
+
+    Args:
+        scene: as measured, before any layout, with its support graph.
+        library: where shapes come from.
+    """
+    reasons: list[str] = []
+    looked_at: set[tuple[str, str]] = set()
+    while pairs := [pair for pair in _deepest_first(scene, library) if pair not in looked_at]:
+        looked_at.add(pairs[0])
+        _, changed = min((_better(scene, library, name) for name in pairs[0]), key=lambda option: option[0])
+        for item in scene.objects:
+            if changed.object(item.id).shape_id != item.shape_id:
+                reasons.append(f"shape changed: {item.label} {_why(scene, item, pairs[0])}")
+        scene = changed
+    return scene, tuple(reasons)
+
+
+def _why(scene: Scene, item: SceneObject, pair: tuple[str, str]) -> str:
+    if item.id not in pair:
+        return "is of one shape with others"
+    return f"leaves room for {scene.object(pair[item.id == pair[0]]).label}"
+
+
+def _deepest_first(scene: Scene, library: ShapeLibrary) -> list[tuple[str, str]]:
+    depths = _overlaps(scene, library)
+    return sorted(depths, key=lambda pair: (-depths[pair], pair))
+
+
+def _overlaps(scene: Scene, library: ShapeLibrary) -> dict[tuple[str, str], float]:
+    """Depth in metres by which parts of two objects overlap, by their ids, where that is more than nothing."""
+    problem = build_problem(scene, library)
+    found = part_overlaps(problem, problem.R, problem.p, problem.scale)
+    return {(problem.ids[a], problem.ids[b]): depth for (a, b), depth in found.items() if depth > CLEAR_M}
+
+
+def _better(scene: Scene, library: ShapeLibrary, name: str) -> tuple[float, Scene]:
+    """The gain (negative, in logarithms) and the scene of the best shape for an object and those of its shape."""
+    members = next(group for group in of_one_shape(scene) if any(o.id == name for o in group))
+    if any(o.locked for o in members):
+        return 0.0, scene
+    common = set.intersection(*({c.shape_id for c in o.candidates} for o in members))
+    now = _cost(scene, library, members)
+    options = [(0.0, "", scene)]
+    for shape in sorted(common - {members[0].shape_id}):
+        other = scene
+        for o in members:
+            other = reshaped(other, o, candidate_of(o, shape))
+        options.append((_cost(other, library, [other.object(o.id) for o in members]) - now, shape, other))
+    cost, _, best = min(options, key=lambda option: option[:2])
+    return cost, best
+
+
+def _cost(scene: Scene, library: ShapeLibrary, members: Sequence[SceneObject]) -> float:
+    names = {o.id for o in members}
+    depths = [depth for pair, depth in _overlaps(scene, library).items() if names & set(pair)]
+    scores = [next((c.score for c in o.candidates if c.shape_id == o.shape_id), 1.0) for o in members]
+    overlap = sum(min(0.5 * (depth / OVERLAP_M) ** 2, MAX_OVERLAP_COST) for depth in depths)
+    return overlap - float(np.log(np.maximum(scores, MIN_SCORE)).sum())
