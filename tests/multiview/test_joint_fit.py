@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from diorama_core.library.taxonomy import category
-from diorama_core.multiview.joint_fit import fit_jointly, meeting_point, lenient
+from diorama_core.multiview.joint_fit import fit_jointly, lenient, meeting_point
 from tests.multiview.rooms import CAMERAS, THINGS, camera, photo
 
 
