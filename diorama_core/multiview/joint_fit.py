@@ -36,8 +36,6 @@ BASE_SIGMA_M = 0.3
 """Of the height of what need not stand on the floor, about what one photo says."""
 PLACE_SIGMA_M = 0.5
 """Of the place that photos say each by itself: it decides where rays hardly cross."""
-HIDDEN_SIGMAS = 1.5
-"""A cuboid that reaches farther than this beyond a box may be hidden there by something that nobody marked."""
 MAX_SIGMAS = 2.5
 """So far may a size be from its kind's."""
 ODD_ANGLE_COST = 1.5
@@ -161,23 +159,13 @@ class _Joint:
         parts = []
         for camera, view, problems in self._views:
             rows = problems.rows(chosen).changed(yaw_rad=unknowns[:, 6])
-            parts.append(lenient(residuals(_as_seen(unknowns, camera, view), rows, view)[:, :EDGES]))
+            parts.append(residuals(_as_seen(unknowns, camera, view), rows, view)[:, :EDGES])
         size = np.einsum("nij,nj->ni", self._whitening[chosen], unknowns[:, 2:5] - self._log_size[chosen])
         parts += [size, (unknowns[:, :2] - self._place) / PLACE_SIGMA_M]
         if self._base_m is not None:
             middle = unknowns[:, 5:6] + np.exp(unknowns[:, 4:5]) / 2
             parts += [(middle - self._base_m) / BASE_SIGMA_M, np.minimum(unknowns[:, 5:6], 0.0) / 0.05]
         return np.concatenate(parts, axis=1)
-
-
-def lenient(edges: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n 4"]:
-    """Residuals of edges that count little where the cuboid reaches far beyond its box.
-
-    Boxes end where things are seen to end. What hides the rest is not always marked itself, and then one photo says
-    that a thing is smaller than the others do; that it is larger no photo says by mistake.
-    """
-    beyond = HIDDEN_SIGMAS * np.sqrt(np.log1p((edges / HIDDEN_SIGMAS) ** 2))
-    return np.where(edges > 0, beyond, edges)
 
 
 def _as_seen(unknowns: Float[np.ndarray, "n 7"], camera: Camera, view: View) -> Float[np.ndarray, "n 6"]:
