@@ -38,6 +38,7 @@ from diorama_app.panels.own_model import OwnModel
 from diorama_app.panels.photo import PhotoPanel
 from diorama_app.panels.photo_camera import PhotoCamera
 from diorama_app.panels.photo_correction import PhotoCorrection
+from diorama_app.panels.photo_strip import PhotoStrip
 from diorama_app.panels.picture import show_picture
 from diorama_app.panels.plan import Plan
 from diorama_app.panels.projects import Projects
@@ -93,7 +94,7 @@ class Editor:
         self._gestures: dict[int, Gestures] = {}
         session = self.session
         session.on_client = self._lay_out
-        session.view.on_photo_camera = self.views.photo
+        session.view.on_photo_camera = self.views.photo_of
         session.view.on_pick = lambda object_id, event: self._hand(event, lambda g: g.picked(object_id, event))
         session.view.on_drag = lambda object_id, event: self._hand(event, lambda g: g.dragged(object_id, event))
         self._outlines = PhotoOutlines(session)
@@ -198,6 +199,7 @@ class Editor:
             place("The size of the room", lambda: RoomSize(gui, client))
             place("The light", lambda: LightPanel(gui, client))
         with from_photo:
+            place("The photos of the room", lambda: PhotoStrip(gui, client, self.views))
             photo = place("The photo", lambda: PhotoPanel(gui, client, self.commands))
             place("The photo's camera", lambda: PhotoCamera(gui, client, self.views))
         with arrange:

@@ -84,6 +84,19 @@ class Inputs(ArrayValue):
 
 
 @dataclass(frozen=True, eq=False)
+class FurtherPhoto(ArrayValue):
+    """Another photo of the room, beside the one that the scene was built from."""
+
+    name: str
+    """Its own among the photos of the project, and a file name."""
+    inputs: Inputs
+    camera: Camera | None = None
+    """In the scene's world; None until the photo has joined."""
+    seen: tuple[tuple[str, Box], ...] = ()
+    """Objects of the scene by their ids, each with its box in this photo."""
+
+
+@dataclass(frozen=True, eq=False)
 class CameraHypothesis(ArrayValue):
     """One camera hypothesis."""
 

@@ -24,7 +24,8 @@ def add_import(commands: Any) -> None:
         "file",
         type=Path,
         metavar="FILE",
-        help="GLB, glTF, USD, USDZ, Sweet Home 3D (.sh3d), or a RoomPlan scan (.usdz, .json)",
+        help="GLB, glTF, USD, USDZ, Sweet Home 3D (.sh3d), a RoomPlan scan (.usdz, .json), a point cloud (.ply, .las, "
+        ".laz, .e57), or the folder of a scan of Polycam or 3D Scanner App",
     )
     p.add_argument("-o", "--output", type=Path, required=True, metavar="PROJECT", help="project folder to write")
     p.add_argument("--library", metavar="NAME", help="shape library (default: the one the file names, or built-in)")

@@ -29,8 +29,10 @@ class Views:
         client.view.camera.frame(partial(side_view, self._session.scene, np.array(back)), float(NARROW_FOV_RAD))
 
     def photo(self, client: Client) -> None:
-        """Look through the photo's camera, the photo behind the model."""
-        camera = self._session.scene.camera
+        """Look through the camera of the chosen photo, the photo behind the model."""
+        camera, photo = client.looked_through
+        if camera is None and client.further_photo is not None:
+            raise EditRefused(f"the camera of {client.photo_name} is not known yet; add the photo to the scene first")
         if camera is None:
             raise EditRefused("this scene has no photo; upload one in the Photo panel")
         self._plain(client)
@@ -38,13 +40,18 @@ class Views:
         far = float(np.linalg.norm(high - low)) + 2.0
         middle = float(np.clip(np.linalg.norm((low + high) / 2 - camera.position), 1.0, far))
         client.view.camera.look_through(camera, middle)
-        if self._session.photo is not None:
-            client.view.photo.show_backdrop(camera, self._session.photo.rgb, 2.0 * far)
+        if photo is not None:
+            client.view.photo.show_backdrop(camera, photo.rgb, 2.0 * far)
         client.refresh()
+
+    def photo_of(self, client: Client, name: str | None) -> None:
+        """Choose a photo (None: the scene's own) and look through its camera."""
+        client.choose_photo(name)
+        self.photo(client)
 
     def overlay(self, client: Client, opacity: float) -> None:
         """Overlay the photo on the model with the given opacity."""
-        photo, camera = self._session.photo, self._session.scene.camera
+        camera, photo = client.looked_through
         if photo is None or camera is None:
             raise EditRefused("this scene has no photo to lay over the model; upload one in the Photo panel")
         if opacity > 0.0 and (client.plan or not client.view.camera.through_photo):

@@ -24,8 +24,8 @@ class Compare:
 
     def refresh(self) -> None:
         """Offer it where there is a photo to compare with; show all or nothing where something else asked."""
-        session, canvas = self._client.session, self._client.view.canvas
-        if session.photo is None or session.scene.camera is None or canvas.is_open or self._client.plan:
+        canvas = self._client.view.canvas
+        if None in self._client.looked_through or canvas.is_open or self._client.plan:
             self._drawn = None
             self._html.show("")
             return

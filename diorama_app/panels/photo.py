@@ -28,6 +28,7 @@ from diorama_app.reconstruction.networks import (
     missing_networks,
 )
 from diorama_app.reconstruction.object_correction import add_from_photo
+from diorama_app.reconstruction.photo_joining import join_photo
 from diorama_app.reconstruction.text_to_scene import describe_room, how_pictures_come
 from diorama_app.session.client import Client
 from diorama_app.viewport.annotation_canvas import (
@@ -91,6 +92,12 @@ class PhotoPanel:
         on_press(self._add, lambda: client.post(self._add_selected))
         self._build = gui.add_button("Build scene", color=GO_COLOUR, hint="Builds a scene from the photo and its boxes")
         on_press(self._build, lambda: client.post(lambda: work.build(client)))
+        self._join = gui.add_button(
+            "Add to the scene",
+            color=GO_COLOUR,
+            hint="Finds where this photo was taken, joins its objects with the scene's and inserts the others",
+        )
+        on_press(self._join, lambda: client.post(lambda: join_photo(client)))
 
     def take(self, name: str, content: bytes) -> None:
         """Take a picture that was dropped somewhere on the page."""
@@ -98,11 +105,16 @@ class PhotoPanel:
 
     def refresh(self) -> None:
         """Draw what is known of the photo."""
-        client, inputs, idle = self._client, self._session.inputs, self._session.jobs.status is None
+        client, inputs, idle = self._client, self._client.marked, self._session.jobs.status is None
+        further = client.further_photo
         if inputs is None or client.selected_box is None or client.selected_box >= len(inputs.boxes):
             client.selected_box = None
         self._invitation.show(self._introduction(inputs))
-        show_if(inputs is not None, self._more, self._draw, self._find, self._build)
+        show_if(inputs is not None, self._draw, self._find)
+        show_if(inputs is not None and further is None, self._more, self._build)
+        show_if(further is not None, self._join)
+        enable(self._join, idle)
+        show_if(further is None, self._words, self._describe)
         self._drawn_by.show(f'<p class="dim">{text(how_pictures_come())}</p>' if self._words.value.strip() else "")
         enable(self._describe, idle and bool(self._words.value.strip()))
         finds, about = self._session.glances.of("detection", _detection)
@@ -110,7 +122,7 @@ class PhotoPanel:
         self._no_detector.show(about if inputs is not None else "")
         self._naming.show("" if inputs is None else self._boxes.name_field(inputs))
         self._list.show("" if inputs is None else box_list(inputs, client.selected_box))
-        show_if(inputs is not None and bool(self._session.scene.objects), self._add)
+        show_if(inputs is not None and further is None and bool(self._session.scene.objects), self._add)
         enable(self._add, idle and client.selected_box is not None)
         enable(self._build, idle and work.ready_to_build(inputs))
         show_label(self._draw, "Done drawing" if client.view.canvas.is_open else "Draw boxes")

@@ -38,7 +38,7 @@ class PhotoBoxes:
     """
 
     def __init__(self, client: Client, refresh: Callable[[], None]) -> None:
-        self._client, self._session, self._refresh = client, client.session, refresh
+        self._client, self._refresh = client, refresh
         self._next = COMMON[0]
         """What the next box is called."""
         self._suggestions: Suggestions | None = None
@@ -78,7 +78,7 @@ class PhotoBoxes:
 
     def open(self) -> None:
         """Put the photo on the canvas, to be marked; raises `InputError` where there is none."""
-        inputs = self._session.inputs
+        inputs = self._client.marked
         if inputs is None:
             raise InputError("there is no photo yet; upload one first")
         client = self._client
@@ -92,7 +92,7 @@ class PhotoBoxes:
 
     def happened(self, event: Event) -> None:
         """Something was done on the photo."""
-        inputs, client = self._session.inputs, self._client
+        inputs, client = self._client.marked, self._client
         if inputs is None:
             return
         index = getattr(event, "index", None)
@@ -132,7 +132,7 @@ class PhotoBoxes:
 
     def _meant(self, photo: Photo, box: LabelledBox | None) -> None:
         """What was clicked on is known: it becomes a box, or the one that is there already is selected."""
-        inputs = self._session.inputs
+        inputs = self._client.marked
         if inputs is None or inputs.photo is not photo:
             return  # another project was opened meanwhile
         known = None if box is None else same_object(inputs.boxes, box.box)
@@ -151,10 +151,10 @@ class PhotoBoxes:
         self._client.refresh()
 
     def _annotate(self, label: str, inputs: Inputs) -> None:
-        self._session.annotate(label, inputs, by=self._client)
+        self._client.annotate(label, inputs)
 
     def _rename(self, index: int, label: str) -> None:
-        inputs, words = self._session.inputs, " ".join(label.split())
+        inputs, words = self._client.marked, " ".join(label.split())
         if inputs is None or not words or inputs.boxes[index].label == words:
             return
         now = labelled_box(inputs.boxes[index].box, words)

@@ -46,7 +46,7 @@ class PhotoCamera:
         """Draw the camera's figures; typed ones wait for the button."""
         session = self._client.session
         camera = session.scene.camera
-        if camera is None or session.inputs is None:
+        if camera is None or session.inputs is None or self._client.further_photo is not None:
             self._html.show("")
             return
         if self._of != camera:

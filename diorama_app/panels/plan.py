@@ -15,6 +15,7 @@ import viser
 
 from diorama_app.commands import edit as editing
 from diorama_app.commands.insert import put_opening
+from diorama_app.panels.plan_picture import PicturesBelow
 from diorama_app.session.client import Client
 from diorama_app.session.units import Unit, format_length, parse_length
 from diorama_app.web.html import Action, LiveHtml, run_once
@@ -86,6 +87,7 @@ class Plan:
         self._outlines = ShapeOutlines(client.session.library)
         self._sender = LiveHtml(gui, lambda action: client.post(lambda: self._do(action)))
         self._sender.show(SEND)
+        self._picture = PicturesBelow(gui, client, self._everything)
         self._teller = gui.add_html("")
         self._tell("null")
 
@@ -97,7 +99,13 @@ class Plan:
             return
         scene = client.session.scene
         self._outlines.look_for(scene, lambda: client.post(self.refresh, key="plan"))
+        self._picture.refresh()
         self._tell(json.dumps(self._about(scene), separators=(",", ":")))
+
+    def _everything(self) -> list[list[float]]:
+        scene = self._client.session.scene
+        visible = [o for o in scene.objects if not o.hidden]
+        return _bounds(room_lines(scene.architecture.planes, visible, scene), [o.corners_world[:, :2] for o in visible])
 
     def _tell(self, told: str) -> None:
         if told != self._told:
@@ -176,6 +184,8 @@ class Plan:
                     session.edit(f"split {name}", lambda s: split_wall(s, wall, at), by=client)
                 case "door" | "window":
                     put_opening(client, action.do, str(arg[0]), np.array([float(arg[1]), float(arg[2])]))
+                case "picture":
+                    self._picture.placed(arg)
                 case "room":
                     outline = np.array(arg, dtype=np.float64).reshape(-1, 2)
                     session.edit("draw the room", lambda s: draw_room(s, outline), by=client)

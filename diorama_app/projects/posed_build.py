@@ -10,7 +10,7 @@ from pathlib import Path
 import diorama_core as diorama
 from diorama_app.projects.options import BuildOptions
 from diorama_app.projects.photo_folder import FolderPhoto
-from diorama_core.artefacts import Inputs
+from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.errors import InputError
 from diorama_core.layout.recipes import recipe
 from diorama_core.multiview.found_poses import UnposedPhoto, find_poses
@@ -20,6 +20,7 @@ from diorama_core.perception.inputs import read_inputs
 from diorama_core.pipeline.presets import stages_for
 from diorama_core.pipeline.stages import Stages
 from diorama_core.progress import Progress
+from diorama_core.project.further_photos import MAX_PHOTOS, note_placed, save_photos
 from diorama_core.project.lock import ProjectLock
 from diorama_core.project.storage import Project
 from diorama_core.scene.types import Camera
@@ -151,5 +152,12 @@ def _save(
     project.save_inputs(replace(room.main.inputs, intrinsics=placed[0].camera.intrinsics))
     project.save_textures(room.textures)
     project.save_scene(room.scene)
+    note_placed(project, room.scene)
+    further = [
+        FurtherPhoto(Path(name).stem, posed.inputs, posed.camera, seen)
+        for (name, _, _), posed, seen in zip(read[1:], placed[1:], room.seen[1:], strict=True)
+    ]
+    if len({p.name for p in further}) == len(further):  # photos of one stem and two endings have no names of their own
+        save_photos(project, further[:MAX_PHOTOS])
     project.save_stage_runs(room.main.runs)
     project.update_info(library=library, notes=list(notes), cameras=cameras)

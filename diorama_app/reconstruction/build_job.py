@@ -97,4 +97,7 @@ def show_built(session: EditorSession, project: Project, scene: Scene, *, label:
     session.read_notes()
     session.commit(label, scene, inputs=project.load_inputs())
     session.view.show_whole_room()
-    session.notice_all(message or f"The scene has {len(scene.objects)} objects. Click one to change it.", "good")
+    message = message or f"The scene has {len(scene.objects)} objects. Click one to change it."
+    if session.further_photos:
+        message += " The other photos of the room are to be added again."
+    session.notice_all(message, "good")

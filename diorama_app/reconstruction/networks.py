@@ -95,10 +95,10 @@ def find_furniture(client: Client) -> None:
 
 
 def _photo(client: Client) -> Photo:
-    photo = client.session.photo
-    if photo is None:
+    inputs = client.marked
+    if inputs is None:
         raise InputError("there is no photo yet; upload one first")
-    return photo
+    return inputs.photo
 
 
 def _find(client: Client, photo: Photo, progress: Progress) -> None:
@@ -111,8 +111,7 @@ def _find(client: Client, photo: Photo, progress: Progress) -> None:
 
 
 def _put_boxes(client: Client, photo: Photo, found: Sequence[LabelledBox]) -> None:
-    session = client.session
-    inputs = session.inputs
+    inputs = client.marked
     if inputs is None or inputs.photo is not photo:
         return  # somebody opened another project here meanwhile
     marked = with_boxes_added(inputs, found)
@@ -121,7 +120,7 @@ def _put_boxes(client: Client, photo: Photo, found: Sequence[LabelledBox]) -> No
         client.notice("No more furniture was detected in this photo.", "good")
         return
     client.selected_box = None
-    session.annotate("detect furniture", marked, by=client)
+    client.annotate("detect furniture", marked)
     client.open_board()
     client.refresh()
     client.notice(f"{'1 more box' if more == 1 else f'{more} more boxes'}: check the boxes, then build.", "good")

@@ -9,8 +9,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from diorama_app.session.recovery import Recovery
-from diorama_core.artefacts import Inputs
+from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.errors import DioramaError
+from diorama_core.project.further_photos import save_photos
 from diorama_core.project.storage import Project
 from diorama_core.scene.types import Scene
 
@@ -30,11 +31,14 @@ class Unwritten:
 
     scene: Scene | None = None
     inputs: Inputs | None = None
+    further: tuple[FurtherPhoto, ...] | None = None
 
     def with_newer(self, newer: Unwritten) -> Unwritten:
         """The newer of each."""
         return Unwritten(
-            self.scene if newer.scene is None else newer.scene, self.inputs if newer.inputs is None else newer.inputs
+            self.scene if newer.scene is None else newer.scene,
+            self.inputs if newer.inputs is None else newer.inputs,
+            self.further if newer.further is None else newer.further,
         )
 
 
@@ -67,22 +71,31 @@ class Autosave:
         self._writing = threading.RLock()
         """Locked from dequeuing until written, so that an older scene never overwrites a newer one."""
         self._waiting: dict[Project, Unwritten] = {}
+        self._photos_saved: dict[Project, tuple[FurtherPhoto, ...]] = {}
+        """Further photos as they are on disk."""
         self._new = self._stopping = False
         self.saved_at: float | None = None
         self._thread = threading.Thread(target=self._work, daemon=True, name="autosave")
         self._thread.start()
 
-    def save_soon(self, project: Project, scene: Scene | None, inputs: Inputs | None = None) -> None:
+    def save_soon(
+        self,
+        project: Project,
+        scene: Scene | None,
+        inputs: Inputs | None = None,
+        further: tuple[FurtherPhoto, ...] | None = None,
+    ) -> None:
         """Write this scene and what is said of the photo, unless newer ones of the same project come first.
 
         Args:
             project: where.
             scene: None where nothing was built yet.
             inputs: None where they are saved already.
+            further: the other photos of the room; None where they are saved already.
         """
         with self._condition:
             waiting = self._waiting.get(project, Unwritten())
-            self._waiting[project] = waiting.with_newer(Unwritten(scene, inputs))
+            self._waiting[project] = waiting.with_newer(Unwritten(scene, inputs, further))
             self._new = True
             self._condition.notify_all()
 
@@ -129,6 +142,9 @@ class Autosave:
         try:
             if unwritten.inputs is not None:
                 project.save_inputs(unwritten.inputs, project.info().get("warnings", ()))
+            if unwritten.further is not None:
+                save_photos(project, unwritten.further, self._photos_saved.get(project, ()))
+                self._photos_saved[project] = unwritten.further
             if scene is not None:
                 new_version = project.save_scene(scene)
         except Exception as error:  # whatever it is, the work must be retained and tried again

@@ -18,6 +18,7 @@ from diorama_app.session.preferences import Preferences, remember
 from diorama_app.session.session import EditorSession
 from diorama_app.viewport.client_view import ClientView, NoticeKind
 from diorama_app.viewport.decorations import Decorations
+from diorama_core.artefacts import FurtherPhoto, Inputs, Photo
 from diorama_core.errors import DioramaError, EditRefused
 from diorama_core.scene.types import Camera, Scene, SceneObject
 
@@ -86,10 +87,48 @@ class Client:
         self.open_tab: Callable[[str], None] = lambda name: None
         """Brings a tab of the panels to the front."""
         self.go_to: Callable[[str], None] = lambda name: None
+        self.photo_name: str | None = None
+        """The further photo that is marked and looked through; None for the scene's own."""
         self.selected_box: int | None = None
         """The box that is selected on the photo."""
         self.open_board: Callable[[], None] = lambda: None
         """Shows the photo with its boxes, to draw on."""
+
+    # -- photos -----------------------------------------------------------------------------------------------
+
+    @property
+    def further_photo(self) -> FurtherPhoto | None:
+        """The further photo that is chosen; None where it is the scene's own."""
+        return next((p for p in self.session.further_photos if p.name == self.photo_name), None)
+
+    @property
+    def marked(self) -> Inputs | None:
+        """The chosen photo with everything that is said of it; None without one."""
+        further = self.further_photo
+        return self.session.inputs if further is None else further.inputs
+
+    @property
+    def looked_through(self) -> tuple[Camera | None, Photo | None]:
+        """The chosen photo and its camera in the scene, where they are known."""
+        further = self.further_photo
+        if further is not None:
+            return further.camera, further.inputs.photo
+        return self.session.scene.camera, self.session.photo
+
+    def annotate(self, label: str, inputs: Inputs) -> None:
+        """Change what is said of the chosen photo, as one undo step."""
+        further = self.further_photo
+        if further is None:
+            self.session.annotate(label, inputs, by=self)
+            return
+        now = tuple(replace(p, inputs=inputs) if p is further else p for p in self.session.further_photos)
+        self.session.annotate_further(label, now, by=self)
+
+    def choose_photo(self, name: str | None) -> None:
+        """Mark and look through another photo."""
+        if name != self.photo_name:
+            self.photo_name, self.selected_box = name, None
+            self.view.canvas.close()
 
     # -- selection --------------------------------------------------------------------------------------------
 
@@ -133,6 +172,8 @@ class Client:
         self.selection = tuple(i for i in self.selection if self.session.scene.has_object(i))
         if self.surface is not None and not self.session.scene.has_plane(self.surface):
             self.surface = None
+        if self.photo_name is not None and self.further_photo is None:
+            self.choose_photo(None)
 
     # -- page -------------------------------------------------------------------------------------------------
 

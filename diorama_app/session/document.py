@@ -1,15 +1,26 @@
-"""The edited document: a history of scenes with their photo inputs. The single source of truth."""
+"""The edited document: a history of scenes with their photos. The single source of truth."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from diorama_core.artefacts import Inputs
+from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.errors import EditRefused
+from diorama_core.multiview.following import following
 from diorama_core.scene.history import Entry, History
 from diorama_core.scene.types import Scene
+
+
+@dataclass(frozen=True, eq=False)
+class Photos:
+    """What belongs to a scene besides itself."""
+
+    inputs: Inputs | None = None
+    """The photo that it was built from, with all corrections."""
+    further: tuple[FurtherPhoto, ...] = ()
+    """Other photos of the same room."""
 
 
 class Document:
@@ -26,12 +37,21 @@ class Document:
     @property
     def inputs(self) -> Inputs | None:
         """The current photo inputs with all corrections."""
-        beside = self.history.current.beside
-        return beside if isinstance(beside, Inputs) else None
+        return self._photos.inputs
 
-    def open(self, scene: Scene, inputs: Inputs | None = None) -> None:
+    @property
+    def further_photos(self) -> tuple[FurtherPhoto, ...]:
+        """The other photos of the room."""
+        return self._photos.further
+
+    @property
+    def _photos(self) -> Photos:
+        beside = self.history.current.beside
+        return beside if isinstance(beside, Photos) else Photos()
+
+    def open(self, scene: Scene, inputs: Inputs | None = None, further: tuple[FurtherPhoto, ...] = ()) -> None:
         """Replace the scene and clear the history."""
-        self.history = History(entries=(Entry("open", scene, beside=inputs),))
+        self.history = History(entries=(Entry("open", scene, beside=Photos(inputs, further)),))
 
     def commit(
         self,
@@ -39,6 +59,7 @@ class Document:
         scene: Scene,
         *,
         inputs: Inputs | None = None,
+        further: tuple[FurtherPhoto, ...] | None = None,
         selection: Iterable[str] = (),
         merge_key: str | None = None,
     ) -> None:
@@ -48,10 +69,13 @@ class Document:
             label: what was done.
             scene: what it led to.
             inputs: what is said of the photo from now on; as before when None.
+            further: the other photos of the room from now on; as before, following the scene's camera, when None.
             selection: what the person who did it has selected then: undo and redo select it again.
             merge_key: quick edits of the same key become one step.
         """
-        beside = self.inputs if inputs is None else inputs
+        if further is None:
+            further = following(self.further_photos, self.scene.camera, scene.camera)
+        beside = Photos(self.inputs if inputs is None else inputs, further)
         entry = Entry(label, scene, tuple(selection), merge_key, time.monotonic(), beside)
         self.history = self.history.commit(entry)
 

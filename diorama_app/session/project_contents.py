@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from diorama_app.session.textures import Textures
-from diorama_core.artefacts import Inputs
+from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.errors import ProjectError
 from diorama_core.io.bounded import shortened
+from diorama_core.project.further_photos import load_photos
 from diorama_core.project.storage import Project
 from diorama_core.scene.types import Scene
 
@@ -22,6 +23,8 @@ class ProjectContents:
     """The newest version that can be read; empty where nothing was built yet."""
     inputs: Inputs | None
     """What is known of the photo; None without one."""
+    further_photos: tuple[FurtherPhoto, ...]
+    """Other photos of the same room."""
     textures: Textures
     notes: tuple[str, ...]
     """What the build said about how the scene was made."""
@@ -38,8 +41,9 @@ def read_project(project: Project) -> ProjectContents:
     inputs, photo_damage = _inputs(project)
     unfinished = inputs is not None and not project.has_scene
     scene, scene_damage = (Scene(), "") if unfinished else project.newest_scene()
-    damage = tuple(line for line in (scene_damage, photo_damage) if line)
-    return ProjectContents(scene, inputs, project.textures(scene), build_notes(project), damage)
+    further, further_damage = load_photos(project)
+    damage = tuple(line for line in (scene_damage, photo_damage, *further_damage) if line)
+    return ProjectContents(scene, inputs, further, project.textures(scene), build_notes(project), damage)
 
 
 def build_notes(project: Project) -> tuple[str, ...]:

@@ -36,7 +36,7 @@ from diorama_app.viewport.framing import room_view
 from diorama_app.viewport.mesh_assets import ShapeBytes
 from diorama_app.viewport.scene_view import Viewport
 from diorama_app.viewport.thumbnails import Thumbnails
-from diorama_core.artefacts import Inputs, Photo
+from diorama_core.artefacts import FurtherPhoto, Inputs, Photo
 from diorama_core.editing.clipboard import Clip
 from diorama_core.errors import DioramaError, EditRefused
 from diorama_core.io.bounded import shortened
@@ -84,6 +84,7 @@ class EditorSession:
         self.project: Project | None = None
         self._inputs_saved: Inputs | None = None
         """Corrections of the photo as saved in the project's folder."""
+        self._further_saved: tuple[FurtherPhoto, ...] = ()
         self.photo: Photo | None = None
         self.notes: tuple[str, ...] = ()
         """Notes of the pipeline about how the scene was made."""
@@ -150,6 +151,17 @@ class EditorSession:
         """The photo with everything that is said of it; None without one."""
         return self.document.inputs
 
+    @property
+    def further_photos(self) -> tuple[FurtherPhoto, ...]:
+        """The other photos of the same room."""
+        return self.document.further_photos
+
+    def annotate_further(
+        self, label: str, further: Iterable[FurtherPhoto], *, by: ConnectedClient | None = None
+    ) -> None:
+        """Change the other photos of the room, as one undo step; the scene stays as it is."""
+        self.commit(label, self.scene, by=by, further=tuple(further))
+
     def annotate(
         self, label: str, inputs: Inputs, *, by: ConnectedClient | None = None, merge_key: str | None = None
     ) -> None:
@@ -215,13 +227,14 @@ class EditorSession:
         selection: Iterable[str] | None = None,
         merge_key: str | None = None,
         inputs: Inputs | None = None,
+        further: tuple[FurtherPhoto, ...] | None = None,
     ) -> None:
         """Make a whole scene the current state as one undo step, save it and show it."""
         self.need_writable()
         if by is not None and selection is not None:
             by.selection = tuple(selection)
         chosen = () if by is None else tuple(i for i in by.selection if scene.has_object(i))
-        self.document.commit(label, scene, selection=chosen, merge_key=merge_key, inputs=inputs)
+        self.document.commit(label, scene, selection=chosen, merge_key=merge_key, inputs=inputs, further=further)
         for client in self.clients.values():
             who = "" if client is by or by is None else f"{by.name}: "
             client.to_say = (f"{who}{label[:1].upper()}{label[1:]}", True)
@@ -260,8 +273,14 @@ class EditorSession:
         if self.project is not None:
             begun = bool(self.scene.objects or self.scene.architecture.planes) or self.project.has_scene
             unsaved = None if inputs is self._inputs_saved else inputs
-            self.autosave.save_soon(self.project, self.scene if begun else None, unsaved)
-        self._inputs_saved = inputs
+            further = self.further_photos
+            self.autosave.save_soon(
+                self.project,
+                self.scene if begun else None,
+                unsaved,
+                None if further is self._further_saved else further,
+            )
+        self._inputs_saved, self._further_saved = inputs, self.further_photos
         self.photo = None if inputs is None else inputs.photo
         self.refresh(by)
         self.checker.look_at(self.scene)
@@ -306,8 +325,8 @@ class EditorSession:
         self.photo = None if inputs is None else inputs.photo
         self.interrupted = project.info().get(BUILDING) is not None
         self.shapes.expect(len(scene.objects))
-        self.document.open(scene, inputs)
-        self._inputs_saved = inputs
+        self.document.open(scene, inputs, read.further_photos)
+        self._inputs_saved, self._further_saved = inputs, read.further_photos
         self.layout_run = None
         for client in self.clients.values():
             client.view.canvas.close()

@@ -21,8 +21,9 @@ from diorama_app.session.ui_thread import UiThread
 from diorama_app.viewport.client_view import NoticeKind
 from diorama_app.viewport.framing import DEFAULT_FOV_RAD, room_view
 from diorama_app.viewport.mesh_assets import ShapeBytes
+from diorama_app.viewport.photo_overlay import PhotoCamera
 from diorama_app.viewport.scene_view import Viewport
-from diorama_core.artefacts import Photo
+from diorama_core.artefacts import FurtherPhoto, Photo
 from diorama_core.errors import DioramaError
 from diorama_core.scene.types import Scene
 
@@ -47,6 +48,11 @@ class Shown(Protocol):
         """The scene as it is now."""
         ...
 
+    @property
+    def further_photos(self) -> tuple[FurtherPhoto, ...]:
+        """The other photos of the same room."""
+        ...
+
     def notice_all(self, message: str, kind: NoticeKind = "info") -> None:
         """Tell every browser."""
         ...
@@ -67,7 +73,8 @@ class SharedView:
         self._preparer = preparer
         self.viewport = Viewport(shown.server, shapes, pick=self._picked, drag=self._dragged, later=self._replace_later)
         self.redraws = Redraws(shown.ui_thread, lambda client_id: client_id in shown.clients)
-        self.on_photo_camera: Callable[[Any], None] | None = None
+        self.on_photo_camera: Callable[[Any, str | None], None] | None = None
+        """Given who clicked, and the name of the further photo, or None."""
         self.on_pick: Callable[[str, viser.SceneNodePointerEvent], None] | None = None
         self.on_drag: Callable[[str, viser.SceneNodeDragEvent], None] | None = None
 
@@ -103,15 +110,25 @@ class SharedView:
                 client.view.camera.frame(partial(room_view, scene))
 
     def show_photo_camera(self, client: ConnectedClient) -> None:
-        """Draw the photo's camera for one client; a click on it is told to `on_photo_camera`."""
-        photo = self._shown.photo
+        """Draw the cameras of all photos for one client; a click on one is told to `on_photo_camera`."""
+        camera, photo = self._shown.scene.camera, self._shown.photo
 
-        def through_it() -> None:
-            if self.on_photo_camera is not None:
-                ask = self.on_photo_camera
-                client.post(lambda: ask(client))
+        def through(name: str | None) -> Callable[[], None]:
+            def look() -> None:
+                if self.on_photo_camera is not None:
+                    ask = self.on_photo_camera
+                    client.post(lambda: ask(client, name))
 
-        client.view.photo.show_camera(self._shown.scene.camera, None if photo is None else photo.rgb, through_it)
+            return look
+
+        cameras = (
+            [] if camera is None else [PhotoCamera("", camera, None if photo is None else photo.rgb, through(None))]
+        )
+        for number, further in enumerate(self._shown.further_photos):
+            if further.camera is not None:
+                rgb = further.inputs.photo.rgb
+                cameras.append(PhotoCamera(f"_{number}", further.camera, rgb, through(further.name)))
+        client.view.photo.show_cameras(cameras)
 
     def _draw(self, what: str, draw: Callable[[], None]) -> None:
         """Draw a part of the page; an unexpected error costs that part only."""

@@ -1,7 +1,7 @@
 // Tools of the plan: walls are split, doors and windows put into them, a room is drawn corner by corner, and a picture of
-// a plan lies below, scaled by a length that is known. The picture is this browser's, for this project.
+// a plan lies below, scaled by a length that is known. The picture is the project's.
 (() => {
-  const P = window.__dioPlan, NEAR_PX = 26, CLOSE_PX = 12, ALONG_PX = 7, LARGEST_PX = 1600;
+  const P = window.__dioPlan, NEAR_PX = 26, CLOSE_PX = 12, ALONG_PX = 7;
   const TOOLS = {
     split: ["Split wall", "Click a wall where it is split."],
     door: ["Door", "Click a wall where the door goes."],
@@ -13,33 +13,21 @@
   let tool = null, points = [], hover = null, dragged = null;
 
   // -- the picture below ---------------------------------------------------------------------------------------------
-  const key = () => `diorama-plan-picture ${new URLSearchParams(location.search).get("project") ?? ""}`;
-  let loaded = null, picture = null;
-  const recall = () => {
-    if (loaded === key()) return;
-    loaded = key();
-    try { picture = JSON.parse(localStorage.getItem(loaded)); } catch { picture = null; }
-  };
-  const remember = () => {
-    try {
-      if (picture) localStorage.setItem(key(), JSON.stringify(picture));
-      else localStorage.removeItem(key());
-    } catch { return; } // a full or forbidden store: the picture stays until the page is left
+  let picture = null, upload = null, awaited = false;
+  const remember = () => P.send("picture", picture && { at: picture.at, metres: picture.metres });
+  const given = (news) => {
+    [picture, upload] = [news.picture, news.upload];
+    if (awaited && picture) [awaited, tool, points] = [false, "scale", []];
+    if (P.about()) P.redraw();
   };
   const take = (file) => {
-    const image = new Image(), url = URL.createObjectURL(file);
-    image.onload = () => {
-      URL.revokeObjectURL(url);
-      const share = Math.min(1, LARGEST_PX / Math.max(image.width, image.height));
-      const canvas = Object.assign(document.createElement("canvas"), { width: image.width * share, height: image.height * share });
-      canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
-      const [[x0, y0], [x1, y1]] = P.about().bounds, metres = Math.max((x1 - x0) / canvas.width, (y1 - y0) / canvas.height);
-      picture = { url: canvas.toDataURL("image/jpeg", 0.8), size: [canvas.width, canvas.height], at: [(x0 + x1) / 2, (y0 + y1) / 2], metres };
-      remember();
-      choose("scale");
-    };
-    image.onerror = () => { URL.revokeObjectURL(url); hint("This file is no picture; choose a JPEG, PNG or WebP of the plan."); };
-    image.src = url;
+    const field = document.getElementById(`file_upload_${upload}`), one = new DataTransfer();
+    if (!field) return;
+    one.items.add(file);
+    field.files = one.files;
+    field.dispatchEvent(new Event("change", { bubbles: true }));
+    awaited = true;
+    hint(`Reading ${file.name}…`);
   };
   const known = (words) => {
     const found = /^\s*(\d+(?:[.,]\d+)?)\s*(mm|cm|m|ft|')?\s*$/.exec(words);
@@ -151,7 +139,7 @@
       row.append(button);
     };
     for (const name of ["split", "door", "window", "room"]) press(TOOLS[name][0], tool === name, () => choose(name));
-    const file = Object.assign(document.createElement("input"), { type: "file", accept: "image/jpeg,image/png,image/webp", hidden: true });
+    const file = Object.assign(document.createElement("input"), { type: "file", accept: "image/jpeg,image/png,image/webp,application/pdf", hidden: true });
     file.onchange = () => { if (file.files[0]) take(file.files[0]); };
     if (picture) {
       for (const name of ["scale", "shift"]) press(TOOLS[name][0], tool === name, () => choose(name));
@@ -162,7 +150,6 @@
     return bar;
   };
   const below = (svg) => {
-    recall();
     if (!picture) return;
     const [w, h] = picture.size.map((v) => v * picture.metres), [x, y] = P.inPlan([picture.at[0] - w / 2, picture.at[1] + h / 2]);
     const [right, low] = P.inPlan([picture.at[0] + w / 2, picture.at[1] - h / 2]);
@@ -182,5 +169,5 @@
       if (metres > 0.05) P.add(svg, "text", { class: "length ghost-length", x, y: y - 12 }, `${metres.toFixed(2)} m`);
     }
   };
-  window.__dioPlanTools = { below, over };
+  window.__dioPlanTools = { below, over, given };
 })();

@@ -1,8 +1,9 @@
-"""The photo in one browser's 3D view: where it was taken, behind the model, over it, and pictures made on it."""
+"""The photos in one browser's 3D view: where they were taken, behind the model, over it, and pictures made on it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,26 @@ LAYER_DEPTH_M = 0.11
 """Just in front of the photo that is laid over the model."""
 
 
+@dataclass(frozen=True, eq=False)
+class PhotoCamera:
+    """Where a photo was taken."""
+
+    name: str
+    """Its own among those of the scene; empty for the scene's own photo, else a suffix like "_2"."""
+    camera: Camera
+    photo: UInt8[np.ndarray, "h w 3"] | None
+    on_click: Callable[[], None]
+
+
+@dataclass(frozen=True, eq=False)
+class _Pyramid:
+    of: PhotoCamera
+    handle: viser.CameraFrustumHandle
+
+    def shows(self, other: PhotoCamera | None) -> bool:
+        return other is not None and self.of.camera == other.camera and self.of.photo is other.photo
+
+
 class PhotoOverlay:
     """Places the photo in the room through its camera. Used from the UI thread only."""
 
@@ -27,8 +48,7 @@ class PhotoOverlay:
         self.opacity = 0.0
         """How much of the photo lies over the model, 0 to 1."""
         self._through_photo = False
-        self._pyramid: viser.CameraFrustumHandle | None = None
-        self._pyramid_of: tuple[Camera | None, UInt8[np.ndarray, "h w 3"] | None] = (None, None)
+        self._pyramids: dict[str, _Pyramid] = {}
         self._overlay: viser.ImageHandle | None = None
         self._backdrop: viser.ImageHandle | None = None
         self._layer: viser.ImageHandle | None = None
@@ -39,34 +59,34 @@ class PhotoOverlay:
         return self._overlay is not None
 
     def camera_moved(self, through_photo: bool) -> None:
-        """Hide the small pyramid in the view through it; take away the layer that only that view explains."""
+        """Hide the small pyramids in the view through one; take away the layer that only that view explains."""
         self._through_photo = through_photo
         if not through_photo:
             self.show_layer(None, None)
-        self._show_pyramid()
+        self._show_pyramids()
 
-    def show_camera(
-        self, camera: Camera | None, photo: UInt8[np.ndarray, "h w 3"] | None, on_click: Callable[[], None]
-    ) -> None:
-        """The photo in a small pyramid where it was taken, out of the way of the view through it."""
-        if self._pyramid is not None and self._pyramid_of[0] == camera and self._pyramid_of[1] is photo:
-            return
-        self._pyramid_of = (camera, photo)
-        if self._pyramid is not None:
-            self._pyramid.remove()
-            self._pyramid = None
-        if camera is None:
-            return
+    def show_cameras(self, cameras: Sequence[PhotoCamera]) -> None:
+        """Photos in small pyramids where they were taken, out of the way of the view through one of them."""
+        wanted = {c.name: c for c in cameras}
+        for name in [n for n, p in self._pyramids.items() if not p.shows(wanted.get(n))]:
+            self._pyramids.pop(name).handle.remove()
+        for name, camera in wanted.items():
+            if name not in self._pyramids:
+                self._pyramids[name] = _Pyramid(camera, self._add_pyramid(camera))
+        self._show_pyramids()
+
+    def _add_pyramid(self, shown: PhotoCamera) -> viser.CameraFrustumHandle:
+        camera = shown.camera
         k = camera.intrinsics
-        self._pyramid = self._viser_client.scene.add_camera_frustum(
-            "/photo_camera",
+        handle = self._viser_client.scene.add_camera_frustum(
+            f"/photo_camera{shown.name}",
             fov=k.vertical_fov_rad,
             aspect=k.width / k.height,
             scale=PYRAMID_SCALE,
             thickness=1.5,
             thickness_units="screen",
             color=(70, 78, 92),
-            image=None if photo is None else reduced(photo, 512),
+            image=None if shown.photo is None else reduced(shown.photo, 512),
             wxyz=quaternion_wxyz(camera.T_world_camera[:3, :3]),
             position=camera.position,
             cast_shadow=False,
@@ -74,14 +94,15 @@ class PhotoOverlay:
         )
 
         async def clicked(event: viser.SceneNodePointerEvent[Any]) -> None:
-            on_click()
+            shown.on_click()
 
-        self._pyramid.on_click(clicked)
-        self._show_pyramid()
+        handle.on_click(clicked)
+        return handle
 
-    def _show_pyramid(self) -> None:
-        if self._pyramid is not None and self._pyramid.visible == self._through_photo:
-            self._pyramid.visible = not self._through_photo
+    def _show_pyramids(self) -> None:
+        for pyramid in self._pyramids.values():
+            if pyramid.handle.visible == self._through_photo:
+                pyramid.handle.visible = not self._through_photo
 
     def show_backdrop(self, camera: Camera | None, photo: UInt8[np.ndarray, "h w 3"] | None, depth_m: float) -> None:
         """The photo as a backdrop at `depth_m` along its camera; none without a photo."""

@@ -13,13 +13,14 @@ from jaxtyping import UInt8
 from diorama_core.artefacts import Inputs, Photo
 from diorama_core.errors import InputError
 from diorama_core.importing.marked import MarkedFile
+from diorama_core.importing.point_files import CLOUD_SUFFIXES
 from diorama_core.importing.restore import restored
 from diorama_core.perception.input_photo import read_photo, read_source
 from diorama_core.scene.types import Architecture, Scene
 
 GLTF_SUFFIXES = (".glb", ".gltf")
 USD_SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
-SUFFIXES = (*GLTF_SUFFIXES, *USD_SUFFIXES, ".sh3d", ".json")
+SUFFIXES = (*GLTF_SUFFIXES, *USD_SUFFIXES, ".sh3d", ".json", *CLOUD_SUFFIXES)
 """Endings of files that can be opened as scenes."""
 
 
@@ -59,7 +60,7 @@ def marked_file(path: Path) -> MarkedFile | None:
     """
     path = Path(path)
     if not path.is_file():
-        raise InputError(f"{path} does not exist; name a GLB, USD, Sweet Home 3D or RoomPlan file")
+        raise InputError(f"{path} does not exist or is no scan; name a GLB, USD, Sweet Home 3D, RoomPlan or point file")
     reader = _readers().get(path.suffix.lower())
     if reader is None:
         raise InputError(f"{path}: scenes are read from {', '.join(SUFFIXES)}; export one of these")

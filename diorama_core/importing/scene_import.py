@@ -8,8 +8,10 @@ from pathlib import Path
 from diorama_core.errors import InputError, LibraryError
 from diorama_core.importing.foreign import open_foreign, take_missing_shapes
 from diorama_core.importing.marked import MarkedFile
+from diorama_core.importing.measured_cloud import measured_cloud
 from diorama_core.importing.measured_room import MeasuredRoom, opened_room
 from diorama_core.importing.opening import USD_SUFFIXES, Opened, marked_file, open_marked
+from diorama_core.importing.point_files import CLOUD_SUFFIXES, is_scan_folder, read_points
 from diorama_core.importing.roomplan import read_room_plan
 from diorama_core.library.boards import base_id
 from diorama_core.library.store import create_library, open_library, stored_libraries
@@ -40,6 +42,9 @@ def import_scene(path: Path, *, library_name: str | None = None, progress: Progr
     """
     progress = progress or Progress()
     progress.report(0.0, f"reading {path.name}")
+    if _holds_points(path):
+        name = library_name or "built-in"
+        return Imported(opened_room(measured_cloud(read_points(path)), open_library(name)), name)
     marked = marked_file(path)
     if marked is None:
         name = library_name or "built-in"
@@ -70,6 +75,8 @@ def read_scene(path: Path, known: frozenset[str], progress: Progress) -> Opened:
         LibraryError: models cannot be kept.
     """
     progress.report(0.0, f"reading {path.name}")
+    if _holds_points(path):
+        return opened_room(measured_cloud(read_points(path)), open_library("built-in"))
     marked = marked_file(path)
     if marked is None:
         measured = measured_room(path)
@@ -77,6 +84,10 @@ def read_scene(path: Path, known: frozenset[str], progress: Progress) -> Opened:
             return opened_room(measured, open_library("built-in"))
         return open_foreign(path, create_library(OWN), progress)
     return _with_shapes(path, marked, known, progress)
+
+
+def _holds_points(path: Path) -> bool:
+    return (path.is_file() and path.suffix.lower() in CLOUD_SUFFIXES) or is_scan_folder(path)
 
 
 def measured_room(path: Path) -> MeasuredRoom | None:

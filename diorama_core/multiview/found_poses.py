@@ -18,7 +18,7 @@ from typing import Any
 
 import cv2
 import numpy as np
-from jaxtyping import UInt8
+from jaxtyping import Float, UInt8
 from PIL import Image
 
 from diorama_core.errors import InputError, UnavailableError
@@ -66,11 +66,7 @@ def find_poses(photos: Sequence[UnposedPhoto], progress: Progress | None = None)
     with tempfile.TemporaryDirectory(prefix="diorama-photos-") as temporary:
         folder = Path(temporary)
         database, pictures = folder / "database.db", folder / "pictures"
-        names = _write_pictures(photos, pictures)
-        colmap.set_random_seed(SEED)
-        _extract(colmap, photos, names, database, pictures, progress.part(0.0, 0.5))
-        progress.report(0.5, "Matching the photos")
-        _cancellable(colmap, progress, partial(colmap.match_exhaustive, database))
+        names = _matched(colmap, photos, database, pictures, progress.part(0.0, 0.8))
         progress.report(0.8, "Placing the cameras")
         place = partial(colmap.incremental_mapping, database, pictures, folder, options=_mapping(colmap))
         models = _cancellable(colmap, progress, place)
@@ -86,6 +82,55 @@ def find_poses(photos: Sequence[UnposedPhoto], progress: Progress | None = None)
     note = (f"{', '.join(apart)}: too little in common with the other photos to find the camera; left out",)
     placed = tuple(replace(joined[p.name], name=p.name) for p in photos if p.name in joined)
     return replace(poses, photos=placed, notes=(*poses.notes, *(note if apart else ())))
+
+
+def common_points(
+    new: UnposedPhoto, photos: Sequence[UnposedPhoto], progress: Progress | None = None
+) -> tuple[Float[np.ndarray, "_ 4"], ...]:
+    """What a photo has in common with others: pixels of the same places, as far as epipolar geometry verifies them.
+
+    Args:
+        new: the photo.
+        photos: the others.
+        progress: reports and cancellation.
+
+    Returns:
+        For each of the others rows of x, y in it and x, y in the new one.
+
+    Raises:
+        UnavailableError: pycolmap is not installed.
+        Cancelled: on request.
+    """
+    progress = progress or Progress()
+    colmap = _pycolmap()
+    found = {p.name: np.zeros((0, 4)) for p in photos}
+    with tempfile.TemporaryDirectory(prefix="diorama-photos-") as temporary:
+        database = Path(temporary) / "database.db"
+        names = _matched(colmap, (*photos, new), database, Path(temporary) / "pictures", progress)
+        scales = {p.name: _scale(p) for p in (*photos, new)}
+        with colmap.Database.open(str(database)) as opened:
+            images = {i.image_id: names[i.name] for i in opened.read_all_images()}
+            points = {n: opened.read_keypoints(i)[:, :2] / scales[n] for i, n in images.items()}
+            for pair, geometry in zip(*opened.read_two_view_geometries(), strict=True):
+                a, b = (images[i] for i in colmap.pair_id_to_image_pair(pair))
+                matches = np.asarray(geometry.inlier_matches).reshape(-1, 2)
+                if a == new.name:
+                    a, b, matches = b, a, matches[:, ::-1]
+                if b == new.name:
+                    found[a] = np.hstack([points[a][matches[:, 0]], points[b][matches[:, 1]]]).astype(np.float64)
+    return tuple(found[p.name] for p in photos)
+
+
+def _matched(
+    colmap: ModuleType, photos: Sequence[UnposedPhoto], database: Path, pictures: Path, progress: Progress
+) -> Mapping[str, str]:
+    """Features of all photos and matches of all pairs in a database; the name of each photo by its picture's."""
+    names = _write_pictures(photos, pictures)
+    colmap.set_random_seed(SEED)
+    _extract(colmap, photos, names, database, pictures, progress.part(0.0, 0.6))
+    progress.report(0.6, "Matching the photos")
+    _cancellable(colmap, progress, partial(colmap.match_exhaustive, database))
+    return names
 
 
 def _pycolmap() -> ModuleType:

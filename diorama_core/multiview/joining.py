@@ -95,13 +95,12 @@ class _Joining:
         """The tracks with the boxes of one more photo."""
         photo = self._photos[number]
         count = len(photo.alone)
-        overlap = np.zeros((len(tracks), count))
+        shared = np.zeros((len(tracks), count))
         for k, track in enumerate(tracks):
             for box in range(count):
                 if broad(track.kind.name) == broad(photo.alone[box].kind.name):
-                    overlap[k, box] = self._overlap(track, number, box)
-        rows, columns = linear_sum_assignment(-overlap) if overlap.size else ((), ())
-        claimed = {int(c): int(r) for r, c in zip(rows, columns, strict=True) if overlap[r, c] >= MIN_OVERLAP}
+                    shared[k, box] = self._overlap(track, number, box)
+        claimed = claims(shared)
         found = list(tracks)
         for box in range(count):
             if box in claimed:
@@ -117,24 +116,45 @@ class _Joining:
         return [self._fitted(boxes) for boxes in left if boxes]
 
     def _overlap(self, track: Track, number: int, box: int) -> float:
-        """Of the track's outline with a box: of a thing seen once also at other distances along its ray, and the other
-        way round, of the box's own reading with the track's only box."""
-        photo = self._photos[number]
-        if len(track.boxes) > 1:
-            return _shared(track.cuboid, photo, box)
-        first, index = self._photos[track.boxes[0][0]], track.boxes[0][1]
-        one = photo.alone[box]
-        there = JointCuboid(one.centre, one.yaw_rad, one.size_m, 0.0)
-        return max(
-            penalty
-            * max(_shared(_pushed(track.cuboid, first, f), photo, box), _shared(_pushed(there, photo, f), first, index))
-            for f, penalty in zip(FARTHER, FARTHER_PENALTY, strict=True)
-        )
+        only = track.boxes[0] if len(track.boxes) == 1 else None
+        first = None if only is None else (self._photos[only[0]], only[1])
+        return overlap(track.cuboid, first, self._photos[number], box)
 
     def _fitted(self, boxes: Boxes) -> Track:
         if boxes not in self._fits:
-            self._fits[boxes] = _fitted(boxes, self._photos)
+            self._fits[boxes] = fitted_track(boxes, self._photos)
         return self._fits[boxes]
+
+
+def claims(shared: Float[np.ndarray, "t b"]) -> dict[int, int]:
+    """Which object claims each box: the number of the one by the number of the other.
+
+    Args:
+        shared: how much of each object's outline is each box's (`overlap`); 0 where their kinds differ.
+    """
+    rows, columns = linear_sum_assignment(-shared) if shared.size else ((), ())
+    return {int(c): int(r) for r, c in zip(rows, columns, strict=True) if shared[r, c] >= MIN_OVERLAP}
+
+
+def overlap(cuboid: JointCuboid, only: tuple[RoomPhoto, int] | None, photo: RoomPhoto, box: int) -> float:
+    """How much of an object's outline is a box's: intersection over union.
+
+    Args:
+        cuboid: the object.
+        only: the one photo and box that the cuboid is known from: then it may be nearer or farther along its ray, and
+            what the other box says by itself may be, too. None where its place is known.
+        photo: another photo.
+        box: a box of it.
+    """
+    if only is None:
+        return _shared(cuboid, photo, box)
+    first, index = only
+    one = photo.alone[box]
+    there = JointCuboid(one.centre, one.yaw_rad, one.size_m, 0.0)
+    return max(
+        penalty * max(_shared(_pushed(cuboid, first, f), photo, box), _shared(_pushed(there, photo, f), first, index))
+        for f, penalty in zip(FARTHER, FARTHER_PENALTY, strict=True)
+    )
 
 
 def _pushed(cuboid: JointCuboid, photo: RoomPhoto, factor: float) -> JointCuboid:
@@ -151,7 +171,7 @@ def _shared(cuboid: JointCuboid, photo: RoomPhoto, box: int) -> float:
     return float(box_iou(bounds[0], photo.boxes.observations.box_px[box])) if visible[0] else 0.0
 
 
-def _fitted(boxes: Boxes, photos: Sequence[RoomPhoto]) -> Track:
+def fitted_track(boxes: Boxes, photos: Sequence[RoomPhoto]) -> Track:
     """The cuboid of some boxes: of one box what its photo says, of more the joint fit."""
     alone = [photos[photo].alone[box] for photo, box in boxes]
     names = [a.kind.name for a in alone]

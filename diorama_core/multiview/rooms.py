@@ -15,6 +15,7 @@ from jaxtyping import Float, UInt8
 
 from diorama_core.architecture.room_extent import containing_room
 from diorama_core.artefacts import (
+    Box,
     CameraEstimate,
     CameraHypothesis,
     Cuboid,
@@ -98,16 +99,20 @@ class JoinedRoom:
     textures: dict[str, UInt8[np.ndarray, "_ _ 3"]]
     layout: LayoutReport | None
     notes: tuple[str, ...]
+    seen: tuple[tuple[tuple[str, Box], ...], ...] = ()
+    """For each photo the objects of the scene that it shows, each with its box there."""
 
 
 @dataclass(frozen=True, eq=False)
-class _Read:
+class ReadPhoto:
     """One photo, read by itself."""
 
     posed: PosedInputs
     stages: Stages
     inputs: Inputs
+    """With boxes that were given or found."""
     objects: tuple[DetectedObject, ...]
+    """One for each box."""
     T_room_photo: Float[np.ndarray, "4 4"]
     """From the photo's own world (origin on the floor below its camera, +Y the axis it faces) to the room."""
 
@@ -147,15 +152,15 @@ def build_room(
     read = []
     for number, photo in enumerate(photos):
         part = progress.part(0.2 * number / len(photos), 0.2 * (number + 1) / len(photos))
-        read.append(_read(photo, choose(photo.inputs), part))
-    room_photos = [_alone(r) for r in read]
+        read.append(read_photo(photo, choose(photo.inputs), part))
+    room_photos = [said_alone(r) for r in read]
     tracks = joined_objects(room_photos, progress.part(0.2, 0.45))
     best = [max(t.boxes, key=lambda b: (_shown(room_photos[b[0]], b[1]), -b[0]))[0] for t in tracks]
     used = sorted({0, *best})
     built: dict[int, Built] = {}
     for number, index in enumerate(used):
         part = progress.part(0.45 + 0.45 * number / len(used), 0.45 + 0.45 * (number + 1) / len(used))
-        built[index] = _built(read[index], index, tracks, library, part)
+        built[index] = built_alone(read[index], index, tracks, library, part)
     scene, textures = _merged(read, built, tracks, best)
     report = None
     if scene.objects:
@@ -163,16 +168,26 @@ def build_room(
         scene = set_metrics(scene, report.after)
     several = sum(len(t.boxes) > 1 for t in tracks)
     notes = (f"{len(photos)} photos: {several} of {len(tracks)} objects are seen in more than one",)
-    return JoinedRoom(scene, tracks, built[0], textures, report, (*notes, *built[0].notes))
+    seen = tuple(
+        tuple(
+            (track_name(number), r.objects[box].box)
+            for number, track in enumerate(tracks)
+            for photo, box in track.boxes
+            if photo == index and scene.has_object(track_name(number))
+        )
+        for index, r in enumerate(read)
+    )
+    return JoinedRoom(scene, tracks, built[0], textures, report, (*notes, *built[0].notes), seen)
 
 
-def _read(photo: PosedInputs, stages: Stages, progress: Progress) -> _Read:
+def read_photo(photo: PosedInputs, stages: Stages, progress: Progress) -> ReadPhoto:
+    """A photo's boxes and outlines, its camera being known."""
     given = replace(photo.inputs, intrinsics=photo.camera.intrinsics)
     T = photo_world(photo.camera)
     camera = Camera(photo.camera.intrinsics, np.linalg.inv(T) @ photo.camera.T_world_camera)
     known = {"given": given, "camera": _estimate(camera)}
     found = evaluate(stages, known, ("inputs", "objects"), Runner(None), progress)
-    return _Read(photo, stages, found["inputs"], found["objects"], T)
+    return ReadPhoto(photo, stages, found["inputs"], found["objects"], T)
 
 
 def photo_world(camera: Camera) -> Float[np.ndarray, "4 4"]:
@@ -190,7 +205,7 @@ def _estimate(camera: Camera) -> CameraEstimate:
     return CameraEstimate((reading,), 1.0, CameraSource.given(), height_m=float(camera.position[2]))
 
 
-def _alone(read: _Read) -> RoomPhoto:
+def said_alone(read: ReadPhoto) -> RoomPhoto:
     """What a photo says of its objects by itself, with its camera known."""
     camera = read.camera
     k, R, t = camera.intrinsics, read.T_room_photo[:3, :3], read.T_room_photo[:3, 3]
@@ -214,15 +229,18 @@ def _shown(photo: RoomPhoto, box: int) -> float:
     return float((x2 - x1) * (y2 - y1) / (k.width * k.height)) * UNSEEN_EDGE_FACTOR**unseen
 
 
-def _name(number: int) -> str:
+def track_name(number: int) -> str:
+    """The id of a track's object."""
     return f"object-{number + 1}"
 
 
-def _built(read: _Read, index: int, tracks: Sequence[Track], library: ShapeLibrary, progress: Progress) -> Built:
+def built_alone(
+    read: ReadPhoto, index: int, tracks: Sequence[Track], library: ShapeLibrary, progress: Progress
+) -> Built:
     """The scene of one photo with the joint cuboids, before any layout."""
     named = {box: number for number, track in enumerate(tracks) for photo, box in track.boxes if photo == index}
-    objects = tuple(replace(item, id=_name(named[k])) for k, item in enumerate(read.objects))
-    cuboids = tuple(_cuboid(_name(named[k]), tracks[named[k]].cuboid, read) for k in range(len(objects)))
+    objects = tuple(replace(item, id=track_name(named[k])) for k, item in enumerate(read.objects))
+    cuboids = tuple(_cuboid(track_name(named[k]), tracks[named[k]].cuboid, read) for k in range(len(objects)))
     stages = replace(
         read.stages,
         camera=_GivenCamera(read.camera),
@@ -233,7 +251,7 @@ def _built(read: _Read, index: int, tracks: Sequence[Track], library: ShapeLibra
     return build_scene(read.inputs, library, stages=stages, progress=progress)
 
 
-def _cuboid(name: str, joint: JointCuboid, read: _Read) -> Cuboid:
+def _cuboid(name: str, joint: JointCuboid, read: ReadPhoto) -> Cuboid:
     """A joint cuboid in a photo's own world; its front is the side that faces the camera most."""
     R, t = read.T_room_photo[:3, :3], read.T_room_photo[:3, 3]
     yaw = joint.yaw_rad - float(np.arctan2(R[1, 0], R[0, 0]))
@@ -284,26 +302,26 @@ class _AsObserved:
 
 
 def _merged(
-    read: Sequence[_Read],
+    read: Sequence[ReadPhoto],
     built: dict[int, Built],
     tracks: Sequence[Track],
     best: Sequence[int],
 ) -> tuple[Scene, dict[str, UInt8[np.ndarray, "_ _ 3"]]]:
     """All objects in the first photo's room, each from the photo that shows it best."""
-    scenes = {k: _in_room(b.scene, read[k].T_room_photo) for k, b in built.items()}
+    scenes = {k: moved_to_room(b.scene, read[k].T_room_photo) for k, b in built.items()}
     main = scenes[0]
     objects: list[SceneObject] = []
     textures = dict(built[0].textures)
     supports: list[Support] = []
     for number, (track, index) in enumerate(zip(tracks, best, strict=True)):
-        name = _name(number)
+        name = track_name(number)
         source = next((k for k in (index, *scenes) if scenes[k].has_object(name)), None)
         if source is None:
             continue  # nothing of the library is like it, or it is an open doorway
         item = scenes[source].object(name)
         in_main = main.object(name) if main.has_object(name) else None
         if len(track.boxes) > 1:
-            item = _filling(item, track.cuboid)
+            item = filling(item, track.cuboid)
         box = None if in_main is None else in_main.box_px
         objects.append(replace(item, box_px=box, mask_id=None if in_main is None else in_main.mask_id))
         textures |= {
@@ -313,16 +331,16 @@ def _merged(
         }
         edge = scenes[source].support_of(name)
         if edge is not None:
-            supports.append(_in_main_room(edge, scenes[source], main.architecture))
+            supports.append(edge_in_room(edge, scenes[source], main.architecture))
     known = {o.id for o in objects} | {p.id for p in main.architecture.planes}
     held = tuple(s for s in supports if s.parent in known)
-    scene = containing_room(replace(main, objects=tuple(objects), supports=_acyclic(held)))
+    scene = containing_room(replace(main, objects=tuple(objects), supports=acyclic(held)))
     check_scene(scene)
     return scene, textures
 
 
-def _acyclic(edges: Sequence[Support]) -> tuple[Support, ...]:
-    """Without edges that would close a circle: different photos may disagree about what stands on what."""
+def acyclic(edges: Sequence[Support]) -> tuple[Support, ...]:
+    """The edges without edges that would close a circle: different photos may disagree about what stands on what."""
     parent: dict[str, str] = {}
     retained = []
     for edge in edges:
@@ -336,7 +354,7 @@ def _acyclic(edges: Sequence[Support]) -> tuple[Support, ...]:
     return tuple(retained)
 
 
-def _in_main_room(edge: Support, scene: Scene, room: Architecture) -> Support:
+def edge_in_room(edge: Support, scene: Scene, room: Architecture) -> Support:
     """An edge whose plane is the first photo's plane of the same role that is nearest."""
     if not scene.has_plane(edge.parent):
         return replace(edge, adheres_to=())
@@ -347,7 +365,8 @@ def _in_main_room(edge: Support, scene: Scene, room: Architecture) -> Support:
     return replace(edge, parent=min(alike)[1] if alike else "", adheres_to=())
 
 
-def _in_room(scene: Scene, T: Float[np.ndarray, "4 4"]) -> Scene:
+def moved_to_room(scene: Scene, T: Float[np.ndarray, "4 4"]) -> Scene:
+    """A scene of a photo's own world, and all candidates' poses, in the room: `p_room = T @ p`, rigid."""
     R, t = T[:3, :3], T[:3, 3]
 
     def there(pose: Pose) -> Pose:
@@ -362,7 +381,7 @@ def _in_room(scene: Scene, T: Float[np.ndarray, "4 4"]) -> Scene:
     return replace(scene, camera=camera, objects=objects, architecture=replace(scene.architecture, planes=planes))
 
 
-def _filling(item: SceneObject, joint: JointCuboid) -> SceneObject:
+def filling(item: SceneObject, joint: JointCuboid) -> SceneObject:
     """The object with every candidate filling the joint cuboid, its front on the side where its photo saw it."""
 
     def fitted(pose: Pose, shape_size_m: tuple[float, float, float]) -> Pose:

@@ -35,6 +35,7 @@ _CLASSES: dict[str, type] = {
         artefacts.Photo,
         artefacts.LabelledBox,
         artefacts.Inputs,
+        artefacts.FurtherPhoto,
         artefacts.CameraHypothesis,
         artefacts.CameraEstimate,
         artefacts.DetectedObject,

@@ -14,6 +14,7 @@ from diorama_core.pipeline.presets import stages_for
 from diorama_core.pipeline.run import Built, build_scene
 from diorama_core.pipeline.stages import Stages
 from diorama_core.progress import Progress
+from diorama_core.project.further_photos import note_placed
 from diorama_core.project.storage import Project
 from diorama_core.protocols import Preview
 
@@ -75,5 +76,6 @@ def save_built(project: Project, built: Built, given: Inputs, warnings: Sequence
         project.save_inputs(replace(given, boxes=built.inputs.boxes), warnings)
     project.save_textures(built.textures)
     project.save_scene(built.scene)
+    note_placed(project, built.scene)
     project.save_stage_runs(built.runs)
     project.update_info(notes=[*warnings, *built.notes])

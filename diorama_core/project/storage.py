@@ -124,7 +124,7 @@ class Project:
     def save_inputs(self, inputs: Inputs, warnings: Sequence[str] = ()) -> None:
         """Keep what the user gave, the photo also as a picture for people."""
         write_atomically(self.stages_folder / "inputs.zip", codec.dump(inputs), error=ProjectError)
-        write_atomically(self.folder / "photo.jpg", _jpeg(inputs.photo.rgb), error=ProjectError)
+        write_atomically(self.folder / "photo.jpg", jpeg(inputs.photo.rgb), error=ProjectError)
         self.update_info(photo=inputs.photo.name, warnings=list(warnings))
 
     def load_inputs(self) -> Inputs | None:
@@ -205,7 +205,7 @@ class Project:
     def save_textures(self, textures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]]) -> None:
         """Keep the pictures of planes and objects under their names."""
         for name, picture in textures.items():
-            write_atomically(self._texture_path(name), _jpeg(picture), error=ProjectError)
+            write_atomically(self._texture_path(name), jpeg(picture), error=ProjectError)
 
     def texture(self, name: str) -> UInt8[np.ndarray, "h w 3"] | None:
         """A picture, or None when it is missing."""
@@ -294,7 +294,8 @@ def _is_leftover(path: Path) -> bool:
     return path.name.startswith(".") and path.suffix in (".part", ".lock")
 
 
-def _jpeg(rgb: UInt8[np.ndarray, "h w 3"]) -> bytes:
+def jpeg(rgb: UInt8[np.ndarray, "h w 3"]) -> bytes:
+    """A picture as a JPEG file of high quality."""
     buffer = io.BytesIO()
     Image.fromarray(rgb).save(buffer, "JPEG", quality=92)
     return buffer.getvalue()

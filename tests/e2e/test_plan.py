@@ -15,6 +15,8 @@ from diorama_app.session.units import format_length
 from diorama_core.editing.plan_edits import corners, wall_feet
 from tests.app.small_room import make_project
 from tests.e2e.browser import EditorPage
+from tests.e2e.conftest import keep_picture
+from tests.importing.test_plan_pages import write_pdf
 
 pytestmark = pytest.mark.browser
 
@@ -201,8 +203,30 @@ def test_a_picture_lies_below_and_is_scaled_by_a_known_length(plan: EditorPage, 
     page.get_by_label("True length between the two points").fill("2 m")
     page.keyboard.press("Enter")
     metre = np.subtract(on_plan(plan, np.array([1.0, 0.0])), on_plan(plan, np.array([0.0, 0.0])))[0]
-    plan.until(lambda: abs(picture.bounding_box()["width"] - 4 * metre) < 0.02 * metre, "scaled")
+
+    def width() -> float:
+        box = picture.bounding_box()  # none while it is drawn anew
+        return 0.0 if box is None else float(box["width"])
+
+    plan.until(lambda: abs(width() - 4 * metre) < 0.02 * metre, "scaled")
+    plan.load()  # it is the project's, not this page's
+    page.keyboard.press("7")
+    expect(picture).to_be_visible()
+    plan.until(lambda: abs(width() - 4 * metre) < 0.02 * metre, "as it was scaled")
     page.get_by_role("button", name="Remove picture").click()
+    expect(picture).to_have_count(0)
+
+
+def test_a_pdf_page_lies_below(plan: EditorPage, tmp_path: Path) -> None:
+    pytest.importorskip("pypdfium2", reason="needs pypdfium2 (pip install 'diorama[plan]')")
+    write_pdf(tmp_path / "plan.pdf")
+    plan.page.locator("#dio-plan-tools input[type=file]").set_input_files(tmp_path / "plan.pdf")
+    picture = plan.page.locator("#dio-plan image")
+    expect(picture).to_be_visible()
+    keep_picture(plan, "plan-pdf-below")
+    box = picture.bounding_box()
+    assert box["width"] / box["height"] == pytest.approx(842 / 595, rel=0.01)
+    plan.page.get_by_role("button", name="Remove picture").click()
     expect(picture).to_have_count(0)
 
 

@@ -6,8 +6,10 @@ import pytest
 from diorama_app.session.client import Client, Placing
 from diorama_app.session.session import EditorSession
 from diorama_app.viewport.framing import room_view
+from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.errors import LibraryError
 from tests.app import pointer
+from tests.app.small_room import photo_camera, plain_photo
 from tests.waiting import until
 
 
@@ -69,11 +71,17 @@ def test_clicks_and_drags_are_told_to_who_listens(session: EditorSession, client
 def test_who_clicks_the_photos_camera_asks_to_look_through_it(
     session: EditorSession, client: Client, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    clicks: list = []
-    monkeypatch.setattr(client.view.photo, "show_camera", lambda camera, photo, clicked: clicks.append(clicked))
-    asked: list[Client] = []
-    session.view.on_photo_camera = asked.append
+    shown: list = []
+    monkeypatch.setattr(client.view.photo, "show_cameras", shown.extend)
+    asked: list[tuple[Client, str | None]] = []
+    session.view.on_photo_camera = lambda who, name: asked.append((who, name))
+    beside = FurtherPhoto("beside", Inputs(plain_photo()), photo_camera())
+    unjoined = FurtherPhoto("elsewhere", Inputs(plain_photo()))
+    session.annotate_further("add photos", (unjoined, beside))
+    shown.clear()
     session.view.show_photo_camera(client)
-    clicks[0]()
+    assert [camera.name for camera in shown] == ["", "_1"]
+    for camera in shown:
+        camera.on_click()
     assert session.ui_thread.wait(20.0)
-    assert asked == [client]
+    assert asked == [(client, None), (client, "beside")]

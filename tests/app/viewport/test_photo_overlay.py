@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_app.viewport.photo_overlay import LAYER_DEPTH_M, OVERLAY_DEPTH_M, PhotoOverlay
+from diorama_app.viewport.photo_overlay import LAYER_DEPTH_M, OVERLAY_DEPTH_M, PhotoCamera, PhotoOverlay
 from tests.app.people import LocalClient
 from tests.app.small_room import photo_camera, plain_photo
 
@@ -47,7 +47,7 @@ def test_the_backdrop_stands_where_it_is_asked_and_goes_without_a_photo(server, 
 
 
 def test_leaving_the_photo_takes_its_layer_away_and_shows_where_it_was_taken(server, overlay) -> None:
-    overlay.show_camera(CAMERA, RGB, lambda: None)
+    overlay.show_cameras([PhotoCamera("", CAMERA, RGB, lambda: None)])
     assert node(server, "/photo_camera").visible
     overlay.camera_moved(through_photo=True)
     assert not node(server, "/photo_camera").visible
@@ -59,17 +59,17 @@ def test_leaving_the_photo_takes_its_layer_away_and_shows_where_it_was_taken(ser
 
 
 def test_the_pyramid_is_drawn_anew_only_for_another_camera_or_photo(server, overlay, monkeypatch) -> None:
-    overlay.show_camera(CAMERA, RGB, lambda: None)
+    overlay.show_cameras([PhotoCamera("", CAMERA, RGB, lambda: None)])
     first = node(server, "/photo_camera")
-    overlay.show_camera(CAMERA, RGB, lambda: None)
+    overlay.show_cameras([PhotoCamera("", CAMERA, RGB, lambda: None)])
     assert node(server, "/photo_camera") is first
-    overlay.show_camera(CAMERA, RGB.copy(), lambda: None)
+    overlay.show_cameras([PhotoCamera("", CAMERA, RGB.copy(), lambda: None)])
     assert node(server, "/photo_camera") is not first
-    overlay.show_camera(None, None, lambda: None)
+    overlay.show_cameras([])
     assert node(server, "/photo_camera") is None
 
 
 def test_a_pyramid_made_in_the_view_through_it_is_hidden(server, overlay) -> None:
     overlay.camera_moved(through_photo=True)
-    overlay.show_camera(CAMERA, None, lambda: None)
+    overlay.show_cameras([PhotoCamera("", CAMERA, None, lambda: None)])
     assert not node(server, "/photo_camera").visible

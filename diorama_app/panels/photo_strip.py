@@ -1,0 +1,122 @@
+"""The photos of the room, side by side: a click looks through one, and another is added."""
+
+from __future__ import annotations
+
+import base64
+import io
+
+import numpy as np
+import viser
+from jaxtyping import UInt8
+from PIL import Image
+
+from diorama_app.commands.camera_presets import Views
+from diorama_app.projects.uploads import Upload
+from diorama_app.reconstruction.photo_joining import take_out, take_photo
+from diorama_app.session.client import Client
+from diorama_app.viewport.mesh_assets import reduced
+from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_core.artefacts import FurtherPhoto
+
+TILE_PX = 200
+"""Of the pictures, which are shown at half of it."""
+KEPT = 128
+"""Encoded pictures."""
+
+
+class PhotoStrip:
+    """Shown once a scene was built from a photo."""
+
+    def __init__(self, gui: viser.GuiApi, client: Client, views: Views) -> None:
+        self._client, self._views = client, views
+        self._pictures: dict[int, tuple[object, str]] = {}
+        self._html = LiveHtml(gui, self._act)
+        self._upload = gui.add_upload_button(
+            "Add a photo of the same room",
+            mime_type="image/*",
+            hint="Take it from a step or two aside, with much of the same in view. What is there stays",
+        )
+
+        async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
+            file = event.target.value
+            client.post(lambda: self._received(file.name, file.content))
+
+        self._upload.on_upload(uploaded)
+
+    def refresh(self) -> None:
+        """Draw the photos."""
+        session, client = self._client.session, self._client
+        inputs, camera = session.inputs, session.scene.camera
+        shown = inputs is not None and camera is not None
+        if self._upload.visible != shown:
+            self._upload.visible = shown
+        if inputs is None or camera is None or not session.further_photos:
+            self._html.show("")
+            return
+        own = self._tile("", "First photo", inputs.photo.rgb, on=client.further_photo is None, joined=True)
+        rest = "".join(
+            self._tile(p.name, p.name, p.inputs.photo.rgb, on=p is client.further_photo, joined=p.camera is not None)
+            for p in session.further_photos
+        )
+        further = client.further_photo
+        about = "" if further is None else _about(further)
+        self._html.show(f'<h4>Photos of this room</h4><div class="grid">{own}{rest}</div>{about}')
+
+    def _tile(self, name: str, label: str, rgb: UInt8[np.ndarray, "h w 3"], *, on: bool, joined: bool) -> str:
+        state = "" if joined else "<small>not in the scene yet</small>"
+        title = f"Look through {label}" if joined else f"Mark what {label} shows"
+        return (
+            f'<button type="button" class="tile {"on" if on else ""}" data-do="choose" data-arg="{text(name)}" '
+            f'title="{text(title)}" aria-pressed="{"true" if on else "false"}">'
+            f'<img alt="" style="aspect-ratio:4/3;object-fit:cover" src="{self._picture(rgb)}">'
+            f'<b style="height:auto;white-space:nowrap;text-overflow:ellipsis">{text(label)}</b>{state}</button>'
+        )
+
+    def _picture(self, rgb: UInt8[np.ndarray, "h w 3"]) -> str:
+        """A small picture, encoded once for every photo."""
+        known = self._pictures.get(id(rgb))
+        if known is None or known[0] is not rgb:
+            buffer = io.BytesIO()
+            Image.fromarray(reduced(rgb, TILE_PX)).save(buffer, "JPEG", quality=75)
+            uri = "data:image/jpeg;base64," + base64.b64encode(buffer.getvalue()).decode()
+            if len(self._pictures) >= KEPT:
+                self._pictures.clear()
+            known = self._pictures[id(rgb)] = (rgb, uri)
+        return known[1]
+
+    def _received(self, name: str, content: bytes) -> None:
+        client = self._client
+        client.session.reader.read(
+            Upload(content, name), client.id, client.post, lambda read: take_photo(client, name, read.inputs)
+        )
+
+    def _act(self, action: Action) -> None:
+        def do() -> None:
+            client = self._client
+            if action.do == "choose":
+                self._choose(action.arg or None)
+            elif action.do == "out" and client.photo_name is not None:
+                take_out(client, client.photo_name)
+
+        self._client.post(do)
+
+    def _choose(self, name: str | None) -> None:
+        client = self._client
+        client.choose_photo(name)
+        camera, _ = client.looked_through
+        if camera is not None:
+            self._views.photo(client)
+        else:
+            client.open_board()
+        client.refresh()
+
+
+def _about(photo: FurtherPhoto) -> str:
+    """What is to do with the chosen photo."""
+    if photo.camera is None:
+        said = "Mark what it shows, as far as it is not in the first photo or stands better here, then add it."
+    else:
+        count = len(photo.seen)
+        said = "1 object of the scene is seen in it." if count == 1 else f"{count} objects of the scene are seen in it."
+    out = button("Take out", "out", title="Takes the photo away; its objects stay. One undo step")
+    return f'<p class="dim" style="margin-top:6px">{text(said)}</p><div class="bar tight">{out}</div>'

@@ -1,0 +1,132 @@
+"""Another photo of the same room: it is marked, its camera is found, and what it shows comes into the scene.
+
+The photo is part of the document from the moment it is uploaded: its boxes, its camera and the objects that it brought
+are undone and saved like everything else. A photo that does not join changes nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from diorama_app.session.client import Client
+from diorama_core.artefacts import FurtherPhoto, Inputs
+from diorama_core.errors import EditRefused, InputError
+from diorama_core.progress import Progress
+from diorama_core.project.further_photos import MAX_PHOTOS, note_placed, still_placed
+from diorama_core.project.storage import Project
+from diorama_core.scene.types import Scene
+
+if TYPE_CHECKING:
+    from diorama_core.multiview.adding import Added  # the whole pipeline; opening a project does without it
+
+SCENES_OWN = "the scene's own photo"
+
+
+def take_photo(client: Client, file_name: str, inputs: Inputs) -> None:
+    """Put another photo of the room beside the scene, to be marked; the scene stays as it is.
+
+    Raises:
+        EditRefused: the scene has no photo to join, or as many photos as it can have.
+    """
+    session = client.session
+    need_joinable(session.scene, session.inputs)
+    photos = session.further_photos
+    if len(photos) >= MAX_PHOTOS:
+        raise EditRefused(f"a room takes {MAX_PHOTOS} further photos; take one out first")
+    name = fresh_name(file_name, [p.name for p in photos])
+    session.annotate_further(f"add the photo {name}", (*photos, FurtherPhoto(name, inputs)), by=client)
+    client.choose_photo(name)
+    client.open_tab("Photo")
+    client.open_board()
+    client.refresh()
+
+
+def need_joinable(scene: Scene, inputs: Inputs | None) -> None:
+    """Raises `EditRefused` where there is nothing that another photo could join."""
+    if inputs is None or scene.camera is None:
+        raise EditRefused("build a scene from a first photo; then add others of the same room")
+
+
+def fresh_name(file_name: str, taken: Sequence[str]) -> str:
+    """A name of its own for a photo, from its file's."""
+    stem = "".join(c if c.isalnum() or c in "-_" else "-" for c in Path(file_name).stem).strip("-")[:40] or "photo"
+    return next(n for k in range(1, len(taken) + 3) for n in (stem if k == 1 else f"{stem}-{k}",) if n not in taken)
+
+
+def take_out(client: Client, name: str) -> None:
+    """Take a further photo away; the objects that it brought stay."""
+    photos = client.session.further_photos
+    client.session.annotate_further(f"take out the photo {name}", (p for p in photos if p.name != name), by=client)
+    client.choose_photo(None)
+    client.refresh()
+
+
+def join_photo(client: Client) -> None:
+    """Find the camera of the chosen photo, and bring what it shows into the scene, as one undo step."""
+    session, photo = client.session, client.further_photo
+    if photo is None:
+        raise InputError("choose a photo that was added first")
+    session.need_writable()
+    need_joinable(session.scene, session.inputs)
+    project, scene, inputs, photos = session.project, session.scene, session.inputs, session.further_photos
+    if project is None or inputs is None:
+        raise EditRefused("no project is open")
+    client.view.canvas.close()
+
+    def work(progress: Progress) -> None:
+        session.autosave.flush()
+        added = _joined(scene, inputs, photos, photo, project, client, progress)
+        note_placed(project, added.scene)
+        client.post(lambda: _show(client, project, scene, photo, added))
+
+    session.jobs.start("join", f"Adding {photo.name} to the scene", work)
+
+
+def _joined(
+    scene: Scene,
+    inputs: Inputs,
+    photos: Sequence[FurtherPhoto],
+    photo: FurtherPhoto,
+    project: Project,
+    client: Client,
+    progress: Progress,
+) -> Added:
+    from diorama_core.layout.recipes import recipe
+    from diorama_core.multiview.adding import with_photo
+    from diorama_core.multiview.finding import camera_of, photos_of_scene
+    from diorama_core.pipeline.presets import stages_for
+
+    library = client.session.library
+    known = [p for p in photos_of_scene(scene, inputs, photos) if p.name != photo.name]
+    if photo.camera is None:
+        photo = replace(photo, camera=camera_of(photo, known, scene, library, progress.part(0.0, 0.3)))
+    return with_photo(
+        scene,
+        known,
+        photo,
+        still_placed(project, scene),
+        library,
+        lambda given: stages_for("auto", given, library),
+        lambda free: recipe("feasible", library, free, depth_measured=True),
+        progress.part(0.3, 1.0),
+    )
+
+
+def _show(client: Client, project: Project, before: Scene, photo: FurtherPhoto, added: Added) -> None:
+    """The scene with the photo; refused where somebody changed the scene meanwhile."""
+    session = client.session
+    now = session.further_photos
+    if session.project != project:
+        return  # another project was opened here meanwhile
+    if session.scene is not before or not any(p is photo for p in now):
+        raise EditRefused("the scene was changed while the photo was added, so it stays as it is; add the photo again")
+    session.add_textures(dict(added.textures))
+    further = tuple(added.photo if p is photo else p for p in now)
+    session.commit(f"add what {photo.name} shows", added.scene, by=client, selection=added.new, further=further)
+    news = f"{len(added.new)} new" if added.new else "nothing new"
+    session.notice_all(
+        f"{photo.name} joined: {news}, {len(added.joined)} seen again. Click it to look through it.", "good"
+    )

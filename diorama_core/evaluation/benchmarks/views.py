@@ -1,0 +1,208 @@
+"""Several photos of a rendered room with given cameras: how much each further photo tells of the first one's objects.
+
+A room is photographed from eight places. The scene is built from the first photo alone, with nothing known of its
+camera, and then from the first one, two, four and eight photos with their cameras. Boxes and classes are given, the
+room's own shapes are not in the library that is searched, and always the same objects are counted: those of the first
+photo.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+
+from diorama_core.artefacts import Inputs
+from diorama_core.errors import Cancelled
+from diorama_core.evaluation.benchmarks.cases import MIN_ASKED, SIZE, Case, LeftOut, furnished, recipe
+from diorama_core.evaluation.metrics.pose import Alignment, object_alignment, pooled
+from diorama_core.evaluation.metrics.scene import as_placed, in_true_world, matched
+from diorama_core.evaluation.reports.intervals import bootstrap_interval
+from diorama_core.evaluation.reports.tables import Column, Row, Table
+from diorama_core.layout.recipes import recipe as layout_recipe
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.multiview.rooms import PosedInputs, build_room
+from diorama_core.pipeline.run import build_scene
+from diorama_core.pipeline.stages import Stages, embedded_stages
+from diorama_core.progress import Progress
+from diorama_core.scene.types import Camera, Scene
+from diorama_core.synthesis import sample_cameras
+from diorama_core.synthesis.artefacts import photo_only
+from diorama_core.synthesis.splits import split_library
+from diorama_core.synthesis.truth import Studio, TruthView
+
+log = logging.getLogger(__name__)
+
+COUNTS = (1, 2, 4, 8)
+"""Photos that a scene is built from."""
+ALONE = "one photo, nothing known of its camera"
+
+
+@dataclass(frozen=True)
+class ViewsResult:
+    """One scene."""
+
+    case: str
+    way: str
+    own: Alignment
+    """Each object of the first photo against its own truth."""
+    seconds: float
+    """Processor time of the build."""
+    failure: str = ""
+
+
+@dataclass(frozen=True)
+class ViewsBench:
+    """Results of all rooms, room by room."""
+
+    results: tuple[ViewsResult, ...]
+    left_out: tuple[LeftOut, ...] = ()
+
+    def tables(self) -> tuple[Table, ...]:
+        """One row for each number of photos."""
+        columns = (
+            Column("own Acc", better="↑"), Column("rotation", better="↑"), Column("place", better="↑"),
+            Column("size", better="↑"), Column("objects", "d"), Column("time s", ".1f", "↓"),
+        )  # fmt: skip
+        rows = []
+        for way in dict.fromkeys(r.way for r in self.results):
+            found = [r for r in self.results if r.way == way]
+            p = pooled([r.own for r in found])
+            span = bootstrap_interval([r.own.acc for r in found], [r.own.count for r in found])
+            seconds = sum(r.seconds for r in found) / len(found)
+            values = (p.acc, p.r_acc, p.t_acc, p.s_acc, p.count, seconds)
+            rows.append(Row(way, values, intervals=(span, None, None, None, None, None)))
+        rooms = len({r.case for r in self.results})
+        failed = sum(bool(r.failure) for r in self.results)
+        note = (
+            f"{rooms} rooms, {failed} builds failed. own Acc: each object of the first photo within 20 cm, 20 degrees "
+            "and 20 % (mean over the axes) of its truth; rotation, place and size are the three by themselves. "
+            "In brackets the 90 % interval of the mean (bootstrap over rooms). Time: processor seconds a scene."
+        )
+        if self.left_out:
+            said = "; ".join(f"{r.case} ({r.reason})" for r in self.left_out)
+            note += f" Left out because they could not be made: {said}."
+        return (Table("Several photos of one room", columns, tuple(rows), note),)
+
+    def to_json(self) -> dict[str, object]:
+        """Tables and every scene."""
+        return {
+            "bench": "views",
+            "tables": [t.to_json() for t in self.tables()],
+            "scenes": [asdict(r) for r in self.results],
+            "left_out": [asdict(r) for r in self.left_out],
+        }
+
+
+def run(
+    library: ShapeLibrary,
+    scenes: int = 6,
+    seed: int = 0,
+    progress: Progress | None = None,
+    *,
+    counts: Sequence[int] = COUNTS,
+) -> ViewsBench:
+    """Build every room from each number of photos.
+
+    Args:
+        library: rooms are furnished from its test shapes; the others are searched.
+        scenes: rooms.
+        seed: of the series of rooms.
+        progress: reports, and cancels between builds.
+        counts: numbers of photos.
+    """
+    progress = progress or Progress()
+    tested, searched = split_library(library, "test"), split_library(library, "train", "validation")
+    results: list[ViewsResult] = []
+    left_out: list[LeftOut] = []
+    cases = recipe(scenes, 1, seed)
+    for k, case in enumerate(cases):
+        part = progress.part(k / len(cases), (k + 1) / len(cases))
+        part.report(0.0, f"photographing {case.name}")
+        try:
+            views = photographed(case, tested, max(counts))
+        except Cancelled:
+            raise
+        except Exception as error:  # whatever goes wrong, the other rooms' results are worth keeping
+            log.warning("%s is left out: %s", case.name, error)
+            left_out.append(LeftOut(case.name, f"{type(error).__name__}: {error}"))
+            continue
+        room = _Room(case, library, searched, progress)
+        results.append(room.scored(ALONE, views[:1], room.from_one_photo))
+        for turn, n in enumerate(counts):
+            part.report(0.2 + 0.8 * turn / len(counts), f"{case.name}: {n} photos")
+            name = "one photo with its camera" if n == 1 else f"{n} photos with their cameras"
+            results.append(room.scored(name, views[:n], room.from_photos))
+    progress.report(1.0, "done")
+    return ViewsBench(tuple(results), tuple(left_out))
+
+
+@dataclass(frozen=True, eq=False)
+class RoomView:
+    """A picture of a room, and its camera in the room's own frame."""
+
+    truth: TruthView
+    camera: Camera
+
+
+def photographed(case: Case, library: ShapeLibrary, count: int) -> tuple[RoomView, ...]:
+    """Pictures of a case's room from different places: first one with enough objects, then those that share most of
+    its objects.
+
+    Raises:
+        SceneError: there is no room for so many cameras.
+    """
+    scene = furnished(case, library)
+    studio = Studio(scene, library)
+    cameras = sample_cameras(scene, library, case.seed, count, SIZE)
+    views = [RoomView(studio.view(c, SIZE, with_empty_room=False), c) for c in cameras]
+    first = next((v for v in views if len(v.truth.asked) >= MIN_ASKED), views[0])
+    rest = [v for v in views if v is not first]
+    rest.sort(key=lambda v: -len(set(v.truth.asked) & set(first.truth.asked)))
+    return (first, *rest)
+
+
+@dataclass(frozen=True, eq=False)
+class _Room:
+    """A case and what its scenes are built with."""
+
+    case: Case
+    library: ShapeLibrary
+    """Knows the true shapes too."""
+    searched: ShapeLibrary
+    progress: Progress
+
+    def from_one_photo(self, views: Sequence[RoomView]) -> Scene:
+        """The scene of a photo and its boxes."""
+        given = photo_only(views[0].truth)
+        stages = embedded_stages(given, self.searched)
+        return build_scene(given, self.searched, stages=stages, progress=Progress(token=self.progress.token)).scene
+
+    def from_photos(self, views: Sequence[RoomView]) -> Scene:
+        """The scene of photos with their cameras and boxes."""
+        photos = [PosedInputs(photo_only(v.truth), v.camera) for v in views]
+        layout = layout_recipe("feasible", self.searched, depth_measured=True)
+
+        def choose(inputs: Inputs) -> Stages:
+            return embedded_stages(inputs, self.searched)
+
+        return build_room(photos, self.searched, choose, layout, Progress(token=self.progress.token)).scene
+
+    def scored(self, way: str, views: Sequence[RoomView], build: Callable[[Sequence[RoomView]], Scene]) -> ViewsResult:
+        """The own alignment of the first photo's objects; a build that fails has none right."""
+        begun, truth = time.process_time(), views[0].truth
+        items = [truth.scene.objects[k] for k in truth.asked]
+        try:
+            scene = in_true_world(build(views), truth)
+        except Cancelled:
+            raise
+        except Exception as error:  # whatever goes wrong, the scene counts as failed
+            log.warning("%s, %s failed: %s", self.case.name, way, error)
+            failed = Alignment("object-focus", len(items), 0.0, 0.0, 0.0, 0.0)
+            reason = f"{type(error).__name__}: {error}"
+            return ViewsResult(self.case.name, way, failed, time.process_time() - begun, reason)
+        seconds = time.process_time() - begun
+        true = [as_placed(t, self.library.shape(t.shape_id).symmetry) for t in items]
+        found = [None if m is None else as_placed(m) for m in matched(items, scene)]
+        return ViewsResult(self.case.name, way, object_alignment(true, found), seconds)

@@ -1,0 +1,286 @@
+"""A room in measured points: floor and ceiling, walls at right angles, and a box around everything that stands between.
+
+Floor and ceiling are where heights are densest. Walls are lines along the room's two axes above which points reach up;
+the lines divide the plan into cells, and those that were scanned are the room (as in Mura et al., Automatic room
+detection and reconstruction in cluttered indoor environments, 2014, for two axes). What is left is split where it does
+not touch.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import cv2
+import numpy as np
+from jaxtyping import Float
+from scipy import ndimage
+from shapely.geometry import MultiPolygon, Polygon, box
+from shapely.ops import unary_union
+
+from diorama_core.errors import InputError
+from diorama_core.importing.measured_room import MeasuredBox, MeasuredRoom, MeasuredWall
+from diorama_core.importing.point_files import PointCloud
+from diorama_core.library.taxonomy import CATEGORIES
+from diorama_core.scene.types import yaw_rotation
+
+VOXEL_M = 0.03
+LEVEL_M = 0.02
+"""Of the histogram of heights."""
+LEVEL_SHARE = 0.3
+"""Of the densest level that another one has to be a floor or a ceiling."""
+LOWEST_ROOM_M = 1.8
+LINE_M = 0.03
+"""Of the histograms across walls."""
+SPAN_M = 0.1
+"""Along walls."""
+REACH_SHARE = 0.45
+"""Of the height above furniture that points of a wall cover."""
+FURNITURE_M = 1.0
+"""Lines are looked for above this height."""
+MIN_WALL_M = 0.5
+APART_M = 0.15
+"""Nearer parallel lines are one wall."""
+SCANNED_SHARE = 0.45
+"""Of a cell of the plan, to be of the room."""
+OFF_M = 0.06
+"""Points nearer to floor, ceiling or walls are theirs."""
+CELL_M = 0.06
+"""Things are apart where so much is free between them."""
+MIN_SIZE_M, MIN_CELLS = 0.15, 12
+STANDS_M = 0.35
+"""So far above the floor thin legs may go unseen."""
+SQUARE_RAD = float(np.radians(10.0))
+MAX_BOXES = 200
+AT_WALL_M = 0.4
+GUESS = 0.4
+"""Confidence in a kind that size alone tells."""
+UNLIKELY = ("object", "door", "window", "curtain", "rug", "wall", "ceiling lamp")
+
+
+@dataclass(frozen=True, eq=False)
+class _Room:
+    """The room's shell, its axes along x and y."""
+
+    outline: Polygon
+    floor_m: float
+    top_m: float
+
+
+def measured_cloud(cloud: PointCloud) -> MeasuredRoom:
+    """Walls, floor and boxes of a cloud; the world is +Z up, the floor at 0, axes along x and y.
+
+    Raises:
+        InputError: there is no floor in it.
+    """
+    points = _thinned(_upright(cloud))
+    floor_m, top_m, closed = _levels(points[:, 2])
+    points = points - [0.0, 0.0, floor_m]
+    top_m -= floor_m
+    points = points @ yaw_rotation(-_heading(points, top_m)).T
+    outline = _outline(points, top_m)
+    room = _Room(outline, 0.0, top_m)
+    boxes, left_out = _boxes(points, room)
+    notes = [*cloud.notes, "kinds of things are guessed by their sizes; correct them where they are wrong"]
+    if not closed:
+        notes.append("no ceiling was scanned; walls end where points end")
+    if left_out:
+        notes.append(f"{left_out} smaller things were left out")
+    return MeasuredRoom(
+        _walls(room), boxes, floor=np.asarray(outline.exterior.coords)[:-1], floor_m=0.0, notes=tuple(notes)
+    )
+
+
+def _upright(cloud: PointCloud) -> Float[np.ndarray, "n 3"]:
+    """The points with +Z up: as the format says, or along the axis across which levels are densest."""
+    up = cloud.up
+    if up is None:
+        up = np.eye(3)[max((2, 1), key=lambda axis: _sharpness(cloud.points[:, axis], LEVEL_M))]
+    z = up / np.linalg.norm(up)
+    x = np.array([1.0, 0.0, 0.0]) if abs(z[0]) < 0.9 else np.array([0.0, 0.0, 1.0])
+    x = x - (x @ z) * z
+    x /= np.linalg.norm(x)
+    return cloud.points @ np.stack([x, np.cross(z, x), z]).T
+
+
+def _sharpness(values: Float[np.ndarray, "n"], step: float) -> float:
+    """How much of all values lies in few bins."""
+    low, high = np.quantile(values, [0.005, 0.995])
+    counts, _ = np.histogram(values, np.arange(low - 0.1, high + 0.1 + step, step))
+    return float((counts.astype(float) ** 2).sum()) / max(len(values), 1) ** 2
+
+
+def _thinned(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 3"]:
+    """One point for each occupied voxel, so that what was scanned from near does not outweigh the rest."""
+    low, high = np.quantile(points, [0.001, 0.999], axis=0)
+    if not (high - low < 60.0).all():
+        raise InputError("the points reach over more than 60 m; cut out one room, in metres")
+    points = points[((points > low - 0.5) & (points < high + 0.5)).all(axis=1)]
+    cells = np.floor((points - points.min(axis=0)) / VOXEL_M).astype(np.int64)
+    counts = cells.max(axis=0) + 1
+    keys = (cells[:, 0] * counts[1] + cells[:, 1]) * counts[2] + cells[:, 2]
+    order = np.argsort(keys, kind="stable")
+    starts = np.flatnonzero(np.append(True, np.diff(keys[order]) > 0))
+    sums = np.add.reduceat(points[order], starts, axis=0)
+    return sums / np.diff(np.append(starts, len(points)))[:, None]
+
+
+def _levels(heights: Float[np.ndarray, "n"]) -> tuple[float, float, bool]:
+    """Heights of the floor and the room's top, and whether that is a ceiling."""
+    low, high = float(heights.min()), float(heights.max())
+    counts, edges = np.histogram(heights, np.arange(low, high + 2 * LEVEL_M, LEVEL_M))
+    smooth = np.convolve(counts, [1, 1, 1], "same")
+    strong = np.flatnonzero(smooth >= LEVEL_SHARE * smooth.max())
+    floor_bin = int(strong[0])
+    floor_m = _at(heights, float(edges[floor_bin]), 2.5 * LEVEL_M)
+    above = [int(b) for b in strong if edges[b] > floor_m + LOWEST_ROOM_M]
+    if above:
+        return floor_m, _at(heights, float(edges[above[-1]]), 2.5 * LEVEL_M), True
+    top = float(np.quantile(heights, 0.999))
+    if top < floor_m + 0.5:
+        raise InputError("there is no room in the points: nothing rises from their lowest level; check that up is up")
+    return floor_m, top, False
+
+
+def _at(values: Float[np.ndarray, "n"], near: float, within: float) -> float:
+    return float(np.median(values[np.abs(values - near) <= within]))
+
+
+def _heading(points: Float[np.ndarray, "n 3"], top_m: float) -> float:
+    """The turn of the room's axes, modulo a quarter: where walls are sharpest."""
+    plan = _band(points, top_m)[:, :2]
+
+    def sharp(angle: float) -> float:
+        turned = plan @ yaw_rotation(-angle)[:2, :2].T
+        return sum(_sharpness(turned[:, axis], LINE_M) for axis in (0, 1))
+
+    coarse = max(np.radians(np.arange(0.0, 90.0, 1.0)), key=sharp)
+    return float(max(coarse + np.radians(np.arange(-1.0, 1.01, 0.1)), key=sharp))
+
+
+def _band(points: Float[np.ndarray, "n 3"], top_m: float) -> Float[np.ndarray, "m 3"]:
+    """What is above furniture and below the ceiling."""
+    inside = (points[:, 2] > min(FURNITURE_M, 0.4 * top_m)) & (points[:, 2] < top_m - OFF_M)
+    return points[inside] if inside.sum() >= 200 else points
+
+
+def _outline(points: Float[np.ndarray, "n 3"], top_m: float) -> Polygon:
+    """The room seen from above: cells between wall lines that were scanned."""
+    lines = [_lines(points, top_m, axis) for axis in (0, 1)]
+    plan = points[:, :2]
+    cells = []
+    for x0, x1 in zip(lines[0][:-1], lines[0][1:], strict=True):
+        for y0, y1 in zip(lines[1][:-1], lines[1][1:], strict=True):
+            inside = plan[((plan > [x0, y0]) & (plan < [x1, y1])).all(axis=1)]
+            grid = np.unique(np.floor((inside - [x0, y0]) / SPAN_M).astype(int), axis=0)
+            if len(grid) * SPAN_M**2 >= SCANNED_SHARE * (x1 - x0) * (y1 - y0):
+                cells.append(box(x0, y0, x1, y1))
+    whole = unary_union(cells)
+    largest = max(whole.geoms, key=lambda p: p.area) if isinstance(whole, MultiPolygon) else whole
+    if not isinstance(largest, Polygon) or largest.is_empty:
+        low, high = np.quantile(plan, [0.005, 0.995], axis=0)
+        return box(*low, *high)
+    return Polygon(largest.exterior).simplify(0.01)
+
+
+def _lines(points: Float[np.ndarray, "n 3"], top_m: float, axis: int) -> list[float]:
+    """Coordinates of the walls across an axis, with the ends of what was scanned."""
+    band = _band(points, top_m)
+    low, high = (float(v) for v in np.quantile(points[:, axis], [0.003, 0.997]))
+    base, other = min(FURNITURE_M, 0.4 * top_m), 1 - axis
+    count = max(1, round((high - low + 2 * APART_M) / LINE_M))
+    column = np.clip(((band[:, axis] - low + APART_M) / LINE_M).astype(int), 0, count - 1)
+    along = ((band[:, other] - band[:, other].min()) / SPAN_M).astype(int)
+    level = ((band[:, 2] - base) / SPAN_M).astype(int)
+    filled = np.zeros((count, along.max() + 1, level.max() + 1), bool)
+    filled[column, along, level] = True
+    filled[1:] |= filled[:-1]  # a wall may lie on the border of two columns
+    length = (filled.mean(axis=2) >= REACH_SHARE).sum(axis=1) * SPAN_M
+    found: list[tuple[float, float]] = []
+    for index in np.argsort(-length, kind="stable"):
+        if length[index] < MIN_WALL_M:
+            break
+        near = float(low - APART_M + index * LINE_M)
+        at = _at(band[:, axis], near, LINE_M) if (np.abs(band[:, axis] - near) <= LINE_M).any() else near
+        if all(abs(at - other_at) > APART_M for other_at, _ in found):
+            found.append((at, float(length[index])))
+    lines = [at for at, _ in found]
+    for end in (low, high):
+        if all(abs(end - at) > 2 * APART_M for at in lines) and (not lines or not min(lines) < end < max(lines)):
+            lines.append(end)
+    return sorted(lines)
+
+
+def _walls(room: _Room) -> tuple[MeasuredWall, ...]:
+    ring = np.asarray(room.outline.exterior.coords)[:, :2]
+    walls = []
+    for number, (a, b) in enumerate(pairwise(ring)):
+        corners = [[*a, 0.0], [*b, 0.0], [*b, room.top_m], [*a, room.top_m]]
+        walls.append(MeasuredWall(f"wall_{number + 1}", np.array(corners)))
+    return tuple(walls)
+
+
+def _boxes(points: Float[np.ndarray, "n 3"], room: _Room) -> tuple[tuple[MeasuredBox, ...], int]:
+    """Boxes of what stands in the room, the largest first, and how many more there are."""
+    import shapely
+
+    inner = room.outline.buffer(-OFF_M)
+    inside = shapely.contains_xy(inner, points[:, 0], points[:, 1])
+    inside &= (points[:, 2] > OFF_M) & (points[:, 2] < room.top_m - OFF_M)
+    left = points[inside]
+    if not len(left):
+        return (), 0
+    low = left.min(axis=0)
+    cells = np.floor((left - low) / CELL_M).astype(int)
+    grid = np.zeros(cells.max(axis=0) + 1, bool)
+    grid[tuple(cells.T)] = True
+    labels, count = ndimage.label(grid, np.ones((3, 3, 3)))
+    which = labels[tuple(cells.T)]
+    sizes = ndimage.sum_labels(grid, labels, np.arange(1, count + 1))
+    found = []
+    for number in np.argsort(-sizes, kind="stable"):
+        own = left[which == number + 1]
+        extent = np.ptp(own, axis=0)
+        if sizes[number] >= MIN_CELLS and np.sort(extent)[1] >= MIN_SIZE_M:
+            found.append(_box(own, room))
+    return tuple(found[:MAX_BOXES]), max(0, len(found) - MAX_BOXES)
+
+
+def _box(points: Float[np.ndarray, "n 3"], room: _Room) -> MeasuredBox:
+    """The upright box around a thing, its back at the wall that it stands at."""
+    low, high = float(points[:, 2].min()), float(points[:, 2].max())
+    if low < STANDS_M:
+        low = 0.0
+    plan = points[:, :2]
+    (cx, cy), (a, b), degrees = cv2.minAreaRect(plan.astype(np.float32))
+    turn = np.radians(degrees)
+    quarter = np.pi / 2
+    off = (turn + quarter / 2) % quarter - quarter / 2
+    if abs(off) < SQUARE_RAD or min(a, b) > 0.8 * max(a, b):
+        lower, upper = plan.min(axis=0), plan.max(axis=0)
+        (cx, cy), (a, b), turn = (lower + upper) / 2, upper - lower, 0.0
+    best = max(range(4), key=lambda k: _likely_front(np.array([cx, cy]), turn + k * quarter, (a, b)[k % 2], room))
+    depth, width = (a, b) if best % 2 == 0 else (b, a)
+    size = np.maximum(np.array([depth, width, high - low]), 0.02)
+    return MeasuredBox(
+        "object",
+        _kinds(),
+        yaw_rotation(turn + best * quarter),
+        np.array([cx, cy, (low + high) / 2]),
+        size,
+        confidence=GUESS,
+    )
+
+
+def _likely_front(centre: Float[np.ndarray, "2"], yaw: float, depth_m: float, room: _Room) -> tuple[bool, float]:
+    """How likely a thing faces that way: its back at a wall; else its longer side in front."""
+    import shapely
+
+    back = centre - (depth_m / 2 + AT_WALL_M) * np.array([np.cos(yaw), np.sin(yaw)])
+    at_wall = not shapely.contains_xy(room.outline, *back)
+    return bool(at_wall), -depth_m
+
+
+def _kinds() -> dict[str, float]:
+    """Everything that stands or hangs in rooms; sizes decide."""
+    return {c.name: 1.0 for c in CATEGORIES if c.name not in UNLIKELY and c.mount in ("floor", "wall")}

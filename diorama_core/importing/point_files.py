@@ -1,0 +1,195 @@
+"""Measured points: point clouds in PLY, LAS, LAZ and E57, and the folders that Polycam and 3D Scanner App export.
+
+LAS and LAZ need laspy, E57 needs pye57 (extra `scan`). Folders hold ARKit frames: cameras (`posed_photos`), depth in
+16-bit PNGs of millimetres, and how sure each pixel's depth is; Polycam (raw data: `keyframes/depth` and
+`keyframes/confidence`, 0, 127, 255) and 3D Scanner App (all data: `depth_00000.png`, `conf_00000.png`, 0, 1, 2).
+Without depth, the mesh beside them is taken.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from jaxtyping import Float
+from PIL import Image
+
+from diorama_core.errors import DioramaError, InputError, UnavailableError
+from diorama_core.io.bounded import megabytes, shortened
+from diorama_core.multiview.posed_photos import PosedPhoto, read_poses
+
+CLOUD_SUFFIXES = (".ply", ".las", ".laz", ".e57")
+MESH_NAMES = ("raw.glb", "export.obj", "export_refined.obj", "textured_output.obj", "*.glb", "*.obj", "*.ply")
+"""Of a scanner app's mesh, the likeliest first."""
+MAX_BYTES = 2_000_000_000
+MAX_POINTS = 4_000_000
+"""More are thinned out evenly."""
+MESH_POINTS_M2 = 1500.0
+"""Points that stand for a square metre of a mesh."""
+MIN_POINTS = 2000
+MAX_DEPTH_M = 6.0
+"""Of a phone's depth: what is farther is guessed."""
+MAX_FRAMES = 400
+SURE_SMALL, SURE_LARGE = 1, 100
+"""Least confidence of a pixel, where it is a level (0 to 2) and where it is a grey value (0 to 255)."""
+Up = Float[np.ndarray, "3"]
+
+
+@dataclass(frozen=True, eq=False)
+class PointCloud:
+    """Points of surfaces, in metres."""
+
+    points: Float[np.ndarray, "n 3"]
+    up: Up | None
+    """Direction against gravity, where the format says it."""
+    notes: tuple[str, ...] = ()
+
+
+def is_scan_folder(path: Path) -> bool:
+    """Whether a folder is what a scanner app exports."""
+    return path.is_dir() and (bool(_frames(path)) or _mesh_in(path) is not None)
+
+
+def read_points(path: Path) -> PointCloud:
+    """The points of a file or of a scanner app's folder.
+
+    Raises:
+        InputError: it cannot be read, or holds too few points.
+        UnavailableError: an optional library is missing.
+    """
+    reader = _from_folder if path.is_dir() else _readers().get(path.suffix.lower())
+    if reader is None:
+        raise InputError(f"{path}: point clouds are read from {', '.join(CLOUD_SUFFIXES)}")
+    if path.is_file() and path.stat().st_size > MAX_BYTES:
+        raise InputError(f"{path.name} has more than the {megabytes(MAX_BYTES)} that are read; thin it out first")
+    try:
+        cloud = reader(path)
+    except DioramaError:
+        raise
+    except Exception as error:  # readers of damaged files raise almost anything; it means the same
+        reason = shortened(str(error), 120) or type(error).__name__
+        raise InputError(f"{path.name}: the points cannot be read ({reason}); export them again") from error
+    points = cloud.points[np.isfinite(cloud.points).all(axis=1)]
+    if len(points) < MIN_POINTS:
+        raise InputError(f"{path.name} has {len(points)} points; a room needs {MIN_POINTS} or more")
+    step = -(-len(points) // MAX_POINTS)
+    return PointCloud(points[::step], cloud.up, cloud.notes)
+
+
+def _readers() -> Mapping[str, Callable[[Path], PointCloud]]:
+    return {".ply": _from_ply, ".las": _from_las, ".laz": _from_las, ".e57": _from_e57}
+
+
+def _from_ply(path: Path) -> PointCloud:
+    loaded = trimesh.load(path, process=False)
+    return PointCloud(_points_of(loaded), None)
+
+
+def _points_of(loaded: object) -> Float[np.ndarray, "n 3"]:
+    """Vertices of a point cloud; of a mesh, points spread evenly over its faces."""
+    if isinstance(loaded, trimesh.Scene):
+        loaded = loaded.to_geometry()
+    if isinstance(loaded, trimesh.Trimesh) and len(loaded.faces):
+        count = int(np.clip(loaded.area * MESH_POINTS_M2, MIN_POINTS, MAX_POINTS))
+        return np.asarray(trimesh.sample.sample_surface(loaded, count, seed=20)[0], np.float64)
+    return np.asarray(getattr(loaded, "vertices", np.zeros((0, 3))), np.float64).reshape(-1, 3)
+
+
+def _from_las(path: Path) -> PointCloud:
+    try:
+        import laspy
+    except ImportError as error:
+        raise UnavailableError("LAS and LAZ need laspy: pip install 'diorama[scan]'") from error
+    rows = []
+    with laspy.open(path) as reader:
+        step = max(1, -(-reader.header.point_count // MAX_POINTS))
+        for chunk in reader.chunk_iterator(2_000_000):
+            rows.append(np.column_stack([chunk.x, chunk.y, chunk.z])[::step])
+    points = np.vstack(rows).astype(np.float64)
+    return PointCloud(points - np.append(np.median(points[:, :2], axis=0), 0.0), np.array([0.0, 0.0, 1.0]))
+
+
+def _from_e57(path: Path) -> PointCloud:
+    try:
+        import pye57
+    except ImportError as error:
+        raise UnavailableError("E57 needs pye57: pip install 'diorama[scan]'") from error
+    opened = pye57.E57(str(path))
+    try:
+        rows = []
+        for index in range(opened.scan_count):
+            scan = opened.read_scan(index, ignore_missing_fields=True)  # in the file's common frame
+            rows.append(np.column_stack([scan[f"cartesian{axis}"] for axis in "XYZ"]))
+    finally:
+        opened.close()
+    points = np.vstack(rows).astype(np.float64)
+    return PointCloud(points - np.append(np.median(points[:, :2], axis=0), 0.0), np.array([0.0, 0.0, 1.0]))
+
+
+@dataclass(frozen=True)
+class _Frame:
+    depth: Path
+    confidence: Path | None
+
+
+def _frames(folder: Path) -> dict[str, _Frame]:
+    """Depth by the name of its photo."""
+    found = {}
+    for path in sorted((folder / "keyframes" / "depth").glob("*.png")):
+        sure = folder / "keyframes" / "confidence" / path.name
+        found[path.stem] = _Frame(path, sure if sure.is_file() else None)
+    for path in sorted(folder.glob("depth_*.png")):
+        number = path.stem.removeprefix("depth_")
+        sure = folder / f"conf_{number}.png"
+        found[f"frame_{number}"] = _Frame(path, sure if sure.is_file() else None)
+    return found
+
+
+def _mesh_in(folder: Path) -> Path | None:
+    return next((path for name in MESH_NAMES for path in sorted(folder.glob(name))), None)
+
+
+def _from_folder(folder: Path) -> PointCloud:
+    frames = _frames(folder)
+    if frames:
+        return _from_depth(folder, frames)
+    mesh = _mesh_in(folder)
+    if mesh is None:
+        raise InputError(f"{folder} holds neither depth nor a mesh of a scanner app; export 'raw data' or 'all data'")
+    up = np.array([0.0, 1.0, 0.0])  # glTF by its standard, the apps' OBJ as ARKit's world
+    return PointCloud(_points_of(trimesh.load(mesh, process=False)), None if mesh.suffix == ".ply" else up)
+
+
+def _from_depth(folder: Path, frames: Mapping[str, _Frame]) -> PointCloud:
+    """Points of all frames whose cameras are known, as far as the sensor was sure of them."""
+    poses = read_poses(folder)
+    used = [p for p in poses.photos if Path(p.name).stem in frames]
+    if not used:
+        raise InputError(f"{folder}: no depth has a camera of its name; export the scan again")
+    used = used[:: -(-len(used) // MAX_FRAMES)]
+    step = max(1, round(np.sqrt(len(used) * 256 * 192 / MAX_POINTS)))
+    rows = [_points_of_frame(p, frames[Path(p.name).stem], step) for p in used]
+    return PointCloud(np.vstack(rows), poses.up, (f"{len(used)} frames with depth", *poses.notes))
+
+
+def _points_of_frame(photo: PosedPhoto, frame: _Frame, step: int) -> Float[np.ndarray, "n 3"]:
+    with Image.open(frame.depth, formats=("PNG",)) as opened:
+        depth = np.asarray(opened).astype(np.float64) / 1000.0
+    good = (depth > 0.05) & (depth < MAX_DEPTH_M)
+    if frame.confidence is not None:
+        with Image.open(frame.confidence, formats=("PNG",)) as opened:
+            sure = np.asarray(opened)
+        if sure.shape != depth.shape:
+            raise InputError(f"{frame.confidence.name} has another size than its depth; export the scan again")
+        good &= sure >= (SURE_SMALL if sure.max() <= 2 else SURE_LARGE)
+    rows, columns = np.nonzero(good)
+    rows, columns = rows[::step], columns[::step]
+    height, width = depth.shape
+    camera = photo.camera
+    k = camera.intrinsics.scaled(width, height)
+    z = depth[rows, columns]
+    local = np.column_stack([(columns + 0.5 - k.cx) / k.fx * z, (rows + 0.5 - k.cy) / k.fy * z, z])
+    return local @ camera.T_world_camera[:3, :3].T + camera.position

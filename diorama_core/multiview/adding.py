@@ -1,0 +1,269 @@
+"""One more photo of a room that is a scene already, and perhaps changed by hand since.
+
+Objects of the scene claim the new photo's boxes by where their cuboids project. What nobody claims is new and comes
+from the new photo, through the same stages as from any photo. Objects that are where the program had put them are
+fitted to all photos that show them; what a person moved stays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import UInt8
+
+from diorama_core.architecture.room_extent import containing_room
+from diorama_core.artefacts import Box, FurtherPhoto, Inputs
+from diorama_core.errors import InputError
+from diorama_core.geometry.projection import box_iou
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.taxonomy import broad, category
+from diorama_core.multiview.joining import RoomPhoto, Sighted, Track, claims, fitted_track, overlap
+from diorama_core.multiview.joint_fit import JointCuboid
+from diorama_core.multiview.rooms import (
+    PosedInputs,
+    ReadPhoto,
+    acyclic,
+    built_alone,
+    edge_in_room,
+    filling,
+    moved_to_room,
+    photo_world,
+    read_photo,
+    said_alone,
+    track_name,
+)
+from diorama_core.pipeline.stages import Stages
+from diorama_core.progress import Progress
+from diorama_core.protocols import LayoutStage
+from diorama_core.scene.edits import fresh_id, set_metrics
+from diorama_core.scene.support import check_scene
+from diorama_core.scene.types import Camera, Scene, SceneObject, Support
+
+MIN_PAIRS = 3
+DISTANCES = tuple(float(f) for f in np.geomspace(0.7, 1.43, 13))
+"""Factors on the distance between two photos that are tried."""
+DISTANCE_LOG_SIGMA = 0.15
+"""How sure the scene's surfaces are of it."""
+MAX_COST = 40.0
+"""Of one object in the choice among distances: one that was joined wrongly does not decide."""
+SAME_BOX = 0.5
+"""Intersection over union from which a read box is the one that an object was seen in."""
+
+
+@dataclass(frozen=True, eq=False)
+class Added:
+    """A scene with what one more photo shows."""
+
+    scene: Scene
+    photo: FurtherPhoto
+    """The added one, with the boxes that were used and the objects that they are of."""
+    new: tuple[str, ...]
+    """Ids of objects that were not there before."""
+    joined: tuple[str, ...]
+    """Ids of objects that were there and are seen in the new photo, too."""
+    textures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]]
+    """Pictures that new objects name."""
+
+
+def with_photo(
+    scene: Scene,
+    known: Sequence[FurtherPhoto],
+    new: FurtherPhoto,
+    movable: frozenset[str],
+    library: ShapeLibrary,
+    choose: Callable[[Inputs], Stages],
+    layout: Callable[[frozenset[str]], LayoutStage],
+    progress: Progress | None = None,
+) -> Added:
+    """The scene with one more photo whose camera is known.
+
+    Args:
+        scene: as it is now, floor at 0.
+        known: photos of the scene with their cameras, and which objects are seen in them.
+        new: the photo; where nothing is marked in it, what a detector finds counts.
+        movable: ids of objects that may be put elsewhere: those where the program had put them.
+        library: where shapes come from.
+        choose: the stages for a photo.
+        layout: the optimiser, given the ids that are free to move.
+        progress: reports and cancellation.
+
+    Raises:
+        InputError: nothing is marked in the photo or found in it.
+        Cancelled: on request.
+        DioramaError: when a stage cannot do its work.
+    """
+    if new.camera is None:
+        raise InputError(f"{new.name}: its camera is not known yet")
+    progress = progress or Progress()
+    read = read_photo(PosedInputs(new.inputs, new.camera), choose(new.inputs), progress.part(0.0, 0.15))
+    if not read.objects:
+        raise InputError(f"nothing is marked in {new.name} and nothing was found; draw a box around each object first")
+    own = said_alone(read)
+    others = [
+        (p, r, said_alone(r))
+        for number, p in enumerate(known)
+        for r in (_read_again(p, choose, progress.part(0.15 + 0.15 * number / len(known), 0.3)),)
+        if r is not None
+    ]
+    sightings = {o.id: _boxes_of(o.id, others) for o in scene.objects}
+    objects = [o for o in scene.objects if not o.hidden]
+    claimed = _claimed(objects, sightings, [photo for _, _, photo in others], own, movable)
+    progress.report(0.35, "joining objects")
+    if len(others) == 1:
+        pairs = [(sightings[item.id][0][1], box) for box, item in claimed.items() if sightings[item.id]]
+        read, own = _at_likeliest_distance(read, own, others[0][2], pairs)
+    photos = (*(photo for _, _, photo in others), own)
+    fitted: dict[str, JointCuboid] = {}
+    for box, item in claimed.items():
+        if item.id in movable and sightings[item.id]:
+            rows = (*sightings[item.id], (len(others), box))
+            fitted[item.id] = fitted_track(tuple(rows), photos).cuboid
+    scene = replace(scene, objects=tuple(filling(o, fitted[o.id]) if o.id in fitted else o for o in scene.objects))
+    scene, names, textures = _with_new(scene, read, own, claimed, library, progress.part(0.4, 0.85))
+    ids = {**{box: item.id for box, item in claimed.items()}, **names}
+    if names:
+        scene = containing_room(scene)
+    free = (movable & {o.id for o in scene.objects}) | frozenset(names.values())
+    if free:
+        scene, report = layout(frozenset(free)).optimise(scene, progress.part(0.85, 1.0), None)
+        scene = set_metrics(scene, report.after)
+    check_scene(scene)
+    seen = tuple((ids[k], item.box) for k, item in enumerate(read.objects) if k in ids)
+    inputs = replace(new.inputs, boxes=read.inputs.boxes)
+    photo = replace(new, inputs=inputs, camera=read.posed.camera, seen=seen)
+    joined = tuple(item.id for item in claimed.values())
+    return Added(scene, photo, tuple(names.values()), joined, textures)
+
+
+def _at_likeliest_distance(
+    read: ReadPhoto, own: RoomPhoto, known: RoomPhoto, pairs: Sequence[tuple[int, int]]
+) -> tuple[ReadPhoto, RoomPhoto]:
+    """The new photo so far from the only known one that the objects of both have the likeliest sizes and places.
+
+    Two photos tell the direction from one to the other well, but how far they are apart only by what they show.
+
+    Args:
+        read: the new photo.
+        own: what it says by itself.
+        known: the known photo.
+        pairs: boxes of the known and of the new photo that are of one object.
+    """
+    if len(pairs) < MIN_PAIRS:
+        return read, own
+    eye = known.boxes.camera.position
+
+    def at(factor: float) -> tuple[ReadPhoto, RoomPhoto]:
+        T = read.posed.camera.T_world_camera.copy()
+        T[:3, 3] = eye + factor * (T[:3, 3] - eye)
+        camera = Camera(read.posed.camera.intrinsics, T)
+        moved = replace(read, posed=replace(read.posed, camera=camera), T_room_photo=photo_world(camera))
+        return moved, said_alone(moved)
+
+    def against(photo: RoomPhoto) -> float:
+        costs = [fitted_track(((0, a), (1, b)), (known, photo)).cuboid.cost for a, b in pairs]
+        return float(np.minimum(costs, MAX_COST).sum())
+
+    tried = [at(float(f)) for f in DISTANCES]
+    costs = [
+        against(photo) + (np.log(f) / DISTANCE_LOG_SIGMA) ** 2 for f, (_, photo) in zip(DISTANCES, tried, strict=True)
+    ]
+    return tried[int(np.argmin(costs))]
+
+
+def _read_again(photo: FurtherPhoto, choose: Callable[[Inputs], Stages], progress: Progress) -> ReadPhoto | None:
+    """A known photo with the boxes that objects of the scene are seen in; None without any."""
+    if photo.camera is None or not photo.seen:
+        return None
+    return read_photo(PosedInputs(photo.inputs, photo.camera), choose(photo.inputs), progress)
+
+
+def _boxes_of(
+    object_id: str, others: Sequence[tuple[FurtherPhoto, ReadPhoto, RoomPhoto]]
+) -> tuple[tuple[int, int], ...]:
+    """The boxes of an object in the known photos: numbers of photo and box."""
+    found = []
+    for number, (photo, read, _) in enumerate(others):
+        for name, box in photo.seen:
+            index = _same(box, read) if name == object_id else None
+            if index is not None:
+                found.append((number, index))
+    return tuple(found)
+
+
+def _same(box: Box, read: ReadPhoto) -> int | None:
+    shares = [float(box_iou(np.array(box), np.array(o.box))) for o in read.objects]
+    best = max(range(len(shares)), key=lambda k: shares[k], default=None)
+    return best if best is not None and shares[best] >= SAME_BOX else None
+
+
+def _claimed(
+    objects: Sequence[SceneObject],
+    sightings: Mapping[str, tuple[tuple[int, int], ...]],
+    others: Sequence[RoomPhoto],
+    own: RoomPhoto,
+    movable: frozenset[str],
+) -> dict[int, SceneObject]:
+    """By box of the new photo, the object of the scene that it shows."""
+    shared = np.zeros((len(objects), len(own.alone)))
+    for k, item in enumerate(objects):
+        seen = sightings[item.id]
+        only = (others[seen[0][0]], seen[0][1]) if len(seen) == 1 and item.id in movable else None
+        cuboid = JointCuboid(_middle(item), item.pose.yaw_rad, item.size_m, 0.0)
+        for box, one in enumerate(own.alone):
+            if broad(item.category) == broad(one.kind.name):
+                shared[k, box] = overlap(cuboid, only, own, box)
+    return {box: objects[k] for box, k in claims(shared).items()}
+
+
+def _middle(item: SceneObject) -> np.ndarray:
+    corners = item.corners_world
+    return (corners.min(axis=0) + corners.max(axis=0)) / 2
+
+
+def _with_new(
+    scene: Scene,
+    read: ReadPhoto,
+    own: RoomPhoto,
+    claimed: Mapping[int, SceneObject],
+    library: ShapeLibrary,
+    progress: Progress,
+) -> tuple[Scene, dict[int, str], dict[str, UInt8[np.ndarray, "_ _ 3"]]]:
+    """The scene with the objects of boxes that nobody claims; their ids by box, and the pictures that they name."""
+    left = [k for k in range(len(read.objects)) if k not in claimed]
+    if not left:
+        return scene, {}, {}
+    tracks = [_track(k, one, claimed.get(k)) for k, one in enumerate(own.alone)]
+    built = built_alone(read, 0, tracks, library, progress)
+    there = moved_to_room(built.scene, read.T_room_photo)
+    ids: dict[str, str] = {track_name(k): item.id for k, item in claimed.items()}
+    names: dict[int, str] = {}
+    textures: dict[str, UInt8[np.ndarray, "_ _ 3"]] = {}
+    for k in left:
+        if not there.has_object(track_name(k)):
+            continue  # nothing of the library is like it, or it is an open doorway
+        item = there.object(track_name(k))
+        names[k] = ids[track_name(k)] = fresh_id(scene, item.category)
+        # The boxes and masks of objects are those of the scene's own photo.
+        scene = replace(scene, objects=(*scene.objects, replace(item, id=names[k], box_px=None, mask_id=None)))
+        used = [m.texture for m in item.photo_materials if m.texture is not None and m.texture in built.textures]
+        textures |= {name: built.textures[name] for name in used}
+    edges = [there.support_of(track_name(k)) for k in names]
+    held = [_held(edge, ids, there, scene) for edge in edges if edge is not None]
+    known = {o.id for o in scene.objects} | {p.id for p in scene.architecture.planes}
+    supports = (*scene.supports, *(e for e in held if e.parent in known))
+    return replace(scene, supports=acyclic(supports)), names, textures
+
+
+def _track(number: int, one: Sighted, item: SceneObject | None) -> Track:
+    """What a box is of: an object of the scene as it is there, or what the photo says by itself."""
+    if item is None:
+        return Track(((0, number),), one.kind, JointCuboid(one.centre, one.yaw_rad, one.size_m, 0.0))
+    cuboid = JointCuboid(_middle(item), item.pose.yaw_rad, item.size_m, 0.0)
+    return Track(((0, number),), category(item.category), cuboid)
+
+
+def _held(edge: Support, ids: Mapping[str, str], there: Scene, scene: Scene) -> Support:
+    edge = edge_in_room(edge, there, scene.architecture)
+    return replace(edge, child=ids[edge.child], parent=ids.get(edge.parent, edge.parent))

@@ -1,0 +1,210 @@
+"""The camera of one more photo of a room that is a scene already.
+
+Points that the new photo has in common with photos whose cameras are known lie on the scene's surfaces as these see
+them, which gives the camera by its projection of points (EPnP in RANSAC: Lepetit et al. 2009, Fischler and Bolles
+1981). Surfaces of a reconstruction are not where they are in the room, but the pairs of pixels are exact: the camera is
+then refined so that they lie on each other's epipolar lines, and the surfaces only say how far it is from the others.
+Unlike structure from motion (`found_poses`) this works with one known photo and where a wall is most of what is seen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float
+from scipy.optimize import least_squares
+from scipy.spatial.transform import Rotation
+
+from diorama_core.errors import InputError
+from diorama_core.multiview.found_poses import LIKELY_FOV_RAD, UnposedPhoto, common_points
+from diorama_core.progress import Progress
+from diorama_core.scene.types import Camera, Intrinsics
+
+NEAR_SHARE = 0.025
+"""Of the photo's width: so near to its pixel a point of the scene's surfaces is projected where these are right."""
+MIN_POINTS = 30
+MIN_SHARE = 0.2
+"""Of the common points, whose surfaces must be right."""
+RANSAC_TURNS = 3000
+EPIPOLAR_PX = 1.5
+SURFACE_SHARE = 0.01
+"""Of the photo's width: how far off points of the surfaces usually are."""
+FOCAL_LOG_SIGMA = 0.03
+"""Of a focal length that is another photo's of the same size."""
+GUESSED_LOG_SIGMA = 0.25
+MAX_TERMS = 1500
+SCALES = (0.1, 0.1, 0.1, 1.0, 1.0, 1.0, 0.1)
+"""Of the unknowns: turn (rad), shift (m), logarithm of the focal length."""
+SEED = 20
+
+DepthAlong = Callable[[Camera, Float[np.ndarray, "n 2"]], Float[np.ndarray, "n"]]
+"""Depth (m, z in camera) of the scene at pixels of a camera; not finite where nothing is hit."""
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedPhoto:
+    """A photo whose camera in the room is known."""
+
+    photo: UnposedPhoto
+    camera: Camera
+
+
+@dataclass(frozen=True, eq=False)
+class CommonPoints:
+    """What the new photo has in common with one known photo."""
+
+    camera: Camera
+    """Of the known one."""
+    known_px: Float[np.ndarray, "n 2"]
+    new_px: Float[np.ndarray, "n 2"]
+    points: Float[np.ndarray, "n 3"]
+    """On the scene's surfaces, in the room."""
+
+    def rows(self, which: Bool[np.ndarray, "n"]) -> CommonPoints:
+        """Some of the points."""
+        return replace(self, known_px=self.known_px[which], new_px=self.new_px[which], points=self.points[which])
+
+
+def registered_camera(
+    new: UnposedPhoto, known: Sequence[PlacedPhoto], depth_along: DepthAlong, progress: Progress | None = None
+) -> Camera:
+    """The camera of a new photo, in the room.
+
+    Args:
+        new: the photo; without a focal length it is taken to be of the same camera as a known one of its size.
+        known: photos of the same room with their cameras.
+        depth_along: how far the scene is.
+        progress: reports and cancellation.
+
+    Raises:
+        UnavailableError: pycolmap is not installed.
+        InputError: the photo does not join.
+        Cancelled: on request.
+    """
+    common = [
+        _on_surfaces(p.camera, pixels, depth_along)
+        for p, pixels in zip(known, common_points(new, [p.photo for p in known], progress), strict=True)
+    ]
+    height, width = new.rgb.shape[:2]
+    alike = [p.camera.intrinsics for p in known if p.photo.rgb.shape == new.rgb.shape]
+    if new.focal_px is not None:
+        focal, sigma = new.focal_px, FOCAL_LOG_SIGMA
+    elif alike:
+        focal, sigma = alike[0].fx, FOCAL_LOG_SIGMA
+    else:
+        focal, sigma = width / (2 * float(np.tan(LIKELY_FOV_RAD / 2))), GUESSED_LOG_SIGMA
+    k = Intrinsics(width, height, focal, focal, width / 2, height / 2)
+    camera = placed_camera([c for c in common if len(c.points)], k, sigma)
+    if camera is None:
+        raise InputError(
+            f"{new.name} does not join: it has too little in common with the photos that are there; "
+            "take it from a step or two beside one of them, with much of the same in view"
+        )
+    return camera
+
+
+def _on_surfaces(camera: Camera, pixels: Float[np.ndarray, "n 4"], depth_along: DepthAlong) -> CommonPoints:
+    depth = depth_along(camera, pixels[:, :2])
+    hit = np.isfinite(depth) & (depth > 0)
+    points = camera.position + depth[hit, None] * camera.rays(pixels[hit, :2])
+    return CommonPoints(camera, pixels[hit, :2], pixels[hit, 2:], points)
+
+
+def placed_camera(common: Sequence[CommonPoints], k: Intrinsics, focal_log_sigma: float) -> Camera | None:
+    """The camera that sees common points where they are seen; None where too few agree on one.
+
+    Args:
+        common: by known photo.
+        k: intrinsics to begin with; only the focal length may change.
+        focal_log_sigma: how sure it is.
+    """
+    if sum(len(c.points) for c in common) < MIN_POINTS:
+        return None
+    points, pixels = np.vstack([c.points for c in common]), np.vstack([c.new_px for c in common])
+    best: tuple[int, Intrinsics, np.ndarray, np.ndarray, np.ndarray] | None = None
+    factors = np.exp(np.linspace(-1.5, 1.5, 7) * focal_log_sigma) if focal_log_sigma > FOCAL_LOG_SIGMA else (1.0,)
+    for factor in factors:
+        tried = replace(k, fx=k.fx * float(factor), fy=k.fy * float(factor))
+        cv2.setRNGSeed(SEED)
+        found, turn, shift, inliers = cv2.solvePnPRansac(
+            points,
+            pixels,
+            _matrix(tried),
+            None,
+            iterationsCount=RANSAC_TURNS,
+            reprojectionError=NEAR_SHARE * k.width,
+            flags=cv2.SOLVEPNP_EPNP,
+        )
+        if found and inliers is not None and (best is None or len(inliers) > best[0]):
+            best = (len(inliers), tried, turn.ravel(), shift.ravel(), inliers.ravel())
+    if best is None or best[0] < max(MIN_POINTS, MIN_SHARE * len(points)):
+        return None
+    _, tried, turn, shift, inliers = best
+    right = np.zeros(len(points), bool)
+    right[inliers] = True
+    ends = np.cumsum([0, *(len(c.points) for c in common)])
+    supported = [right[a:b] for a, b in pairwise(ends)]
+    return _refined(common, supported, tried, turn, shift, focal_log_sigma)
+
+
+def _refined(
+    common: Sequence[CommonPoints],
+    supported: Sequence[Bool[np.ndarray, "_"]],
+    k: Intrinsics,
+    turn: Float[np.ndarray, "3"],
+    shift: Float[np.ndarray, "3"],
+    focal_log_sigma: float,
+) -> Camera:
+    """The camera by epipolar lines and, much less, by the surfaces; robust against what is wrong of either."""
+    thin = [max(1, len(c.points) * len(common) // MAX_TERMS) for c in common]
+    lines = [c.rows(np.arange(len(c.points)) % t == 0) for c, t in zip(common, thin, strict=True)]
+    surfaces = [c.rows(s) for c, s in zip(common, supported, strict=True)]
+    anchors = np.vstack([c.points for c in surfaces]), np.vstack([c.new_px for c in surfaces])
+    count = sum(len(c.points) for c in lines)
+    # The surfaces' errors are alike over whole pieces of furniture: together they count as a few dozen points.
+    weight = np.sqrt(MIN_POINTS / len(anchors[0]))
+
+    def off(unknowns: np.ndarray) -> np.ndarray:
+        camera = _camera(k, unknowns)
+        seen = camera.to_camera(anchors[0])
+        kc = camera.intrinsics
+        pixels = seen[:, :2] / np.maximum(seen[:, 2:], 0.05) * [kc.fx, kc.fy] + [kc.cx, kc.cy]
+        surface = weight * ((pixels - anchors[1]) / (SURFACE_SHARE * k.width)).ravel()
+        epipolar = np.concatenate([sampson_px(c.camera, camera, c.known_px, c.new_px) for c in lines]) / EPIPOLAR_PX
+        return np.concatenate([epipolar, surface, [unknowns[6] / focal_log_sigma * np.sqrt(count) * 0.1]])
+
+    unknowns = np.array([*turn, *shift, 0.0])
+    for loss in ("soft_l1", "cauchy"):  # what is still far off then is another place
+        unknowns = least_squares(off, unknowns, loss=loss, x_scale=SCALES, max_nfev=40).x
+    return _camera(k, unknowns)
+
+
+def _camera(k: Intrinsics, unknowns: Float[np.ndarray, "7"]) -> Camera:
+    T = np.eye(4)
+    T[:3, :3] = Rotation.from_rotvec(unknowns[:3]).as_matrix()
+    T[:3, 3] = unknowns[3:6]
+    focal = float(np.exp(unknowns[6]))
+    return Camera(replace(k, fx=k.fx * focal, fy=k.fy * focal), np.linalg.inv(T))
+
+
+def sampson_px(
+    a: Camera, b: Camera, pixels_a: Float[np.ndarray, "n 2"], pixels_b: Float[np.ndarray, "n 2"]
+) -> Float[np.ndarray, "n"]:
+    """Signed distance (px, first order) of pairs of pixels from being views of one place (Sampson)."""
+    T = np.linalg.inv(b.T_world_camera) @ a.T_world_camera
+    x, y, z = T[:3, 3]
+    E = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]) @ T[:3, :3]
+    F = np.linalg.inv(_matrix(b.intrinsics)).T @ E @ np.linalg.inv(_matrix(a.intrinsics))
+    one = np.ones((len(pixels_a), 1))
+    p, q = np.hstack([pixels_a, one]), np.hstack([pixels_b, one])
+    line_b, line_a = p @ F.T, q @ F
+    steep = (line_b[:, :2] ** 2).sum(axis=1) + (line_a[:, :2] ** 2).sum(axis=1)
+    return (q * line_b).sum(axis=1) / np.sqrt(np.maximum(steep, 1e-18))
+
+
+def _matrix(k: Intrinsics) -> Float[np.ndarray, "3 3"]:
+    return np.array([[k.fx, 0.0, k.cx], [0.0, k.fy, k.cy], [0.0, 0.0, 1.0]])

@@ -1,0 +1,87 @@
+"""Another photo of the room is part of the document: added, marked, joined, taken out, undone and saved."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diorama_app.reconstruction.photo_joining import fresh_name, join_photo, take_out, take_photo
+from diorama_app.session.client import Client
+from diorama_app.session.session import EditorSession
+from diorama_core.artefacts import Inputs, LabelledBox, Photo
+from diorama_core.errors import EditRefused, InputError
+from diorama_core.project.further_photos import load_photos
+from diorama_core.scene.types import Scene
+from tests.app.small_room import plain_photo
+
+BOX = LabelledBox((10.0, 20.0, 60.0, 80.0), "chair", "chair")
+
+
+def names(session: EditorSession) -> list[str]:
+    return [p.name for p in session.further_photos]
+
+
+def test_a_photo_is_added_marked_undone_and_saved(session: EditorSession, client: Client) -> None:
+    scene = session.scene
+    opened: list[bool] = []
+    client.open_board = lambda: opened.append(True)
+    take_photo(client, "other side.jpg", Inputs(plain_photo()))
+    assert opened == [True]
+    assert names(session) == ["other-side"]
+    assert client.marked is session.further_photos[0].inputs
+    client.annotate("draw a box", replace(client.marked, boxes=(BOX,)))
+    assert session.further_photos[0].inputs.boxes == (BOX,)
+    assert session.scene is scene  # nothing of the scene changed
+    assert len(session.inputs.boxes) == 1
+    session.autosave.flush()
+    found, _ = load_photos(session.project)
+    assert found[0].inputs.boxes == (BOX,)
+    session.undo(client)
+    assert session.further_photos[0].inputs.boxes == ()
+    session.undo(client)
+    assert names(session) == []
+    assert client.photo_name is None
+    session.redo(client)
+    session.autosave.flush()
+    session.open_project(session.project)
+    assert names(session) == ["other-side"]
+
+
+def test_a_photo_is_taken_out_with_its_objects_left(session: EditorSession, client: Client) -> None:
+    take_photo(client, "a.jpg", Inputs(plain_photo()))
+    count = len(session.scene.objects)
+    take_out(client, "a")
+    assert names(session) == []
+    assert len(session.scene.objects) == count
+    assert client.marked is session.inputs
+
+
+def test_names_are_their_own() -> None:
+    assert fresh_name("IMG 1.jpg", ["IMG-1"]) == "IMG-1-2"
+    assert fresh_name("../..", []) == "photo"
+    assert fresh_name("a.png", []) == "a"
+
+
+def test_without_a_scene_from_a_photo_nothing_joins(session: EditorSession, client: Client) -> None:
+    with pytest.raises(InputError, match="choose a photo"):
+        join_photo(client)
+    session.commit("no camera", Scene())
+    with pytest.raises(EditRefused, match="first photo"):
+        take_photo(client, "a.jpg", Inputs(plain_photo()))
+
+
+def test_a_photo_that_does_not_join_is_one_line_and_nothing_is_lost(session: EditorSession, client: Client) -> None:
+    pytest.importorskip("pycolmap", reason="needs pycolmap (pip install 'diorama[photos]')")
+    grey = Photo(np.full((120, 160, 3), 120, np.uint8), "grey.png", (160, 120))
+    take_photo(client, "grey.png", Inputs(grey, (BOX,)))
+    scene, photos = session.scene, session.further_photos
+    said: list[str] = []
+    client.view.notice = lambda message, kind: said.append(message)
+    join_photo(client)
+    assert session.jobs.wait(60.0)
+    assert session.ui_thread.wait(20.0)
+    assert any(line.startswith("grey does not join") for line in said), said
+    assert session.scene is scene
+    assert session.further_photos == photos

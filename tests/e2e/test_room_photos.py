@@ -1,0 +1,62 @@
+"""Add a photo of the same room: it joins the scene, its camera is in the view, and one undo takes it back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from PIL import Image
+from playwright.sync_api import expect
+
+from tests.e2e.browser import LEARN_MS, EditorPage
+from tests.e2e.conftest import StartServer, keep_picture
+from tests.multiview.two_photos import project_of, two_photos
+
+pytest.importorskip("pycolmap", reason="needs pycolmap (pip install 'diorama[photos]')")
+pytestmark = pytest.mark.browser
+
+
+def test_a_photo_of_the_same_room_is_added_looked_through_and_undone(
+    serve: StartServer, visit: Callable[..., EditorPage], tmp_path: Path
+) -> None:
+    photos = two_photos()
+    project = project_of(photos, tmp_path / "projects" / "room")
+    Image.fromarray(photos.second.photo.rgb).save(tmp_path / "beside.png")
+    editor = visit(serve(project.folder))
+    before = editor.session.scene
+    editor.tab("Photo")
+    editor.upload("Add a photo of the same room", tmp_path / "beside.png")
+    editor.at_board()
+    assert editor.session.scene is before
+    for box in photos.second.boxes[:2]:  # as a person would: a name, then a rectangle
+        name = editor.page.locator("#dio-box-name")
+        name.fill(box.label)
+        name.press("Enter")
+        count = len(editor.session.further_photos[0].inputs.boxes)
+        editor.draw_box(box.box)
+        editor.until(lambda c=count: len(editor.session.further_photos[0].inputs.boxes) == c + 1, "drawn")
+    marked = replace(editor.client.marked, boxes=photos.second.boxes)
+    editor.session.ui_thread.post(lambda: editor.client.annotate("mark the others", marked))
+    editor.until(lambda: editor.client.marked.boxes == photos.second.boxes, "marked")
+    editor.settle()
+    keep_picture(editor, "room-photos-marked")
+    editor.button("Add to the scene").click()
+    editor.until(lambda: editor.session.further_photos[0].camera is not None, "joined", LEARN_MS / 1000)
+    scene = editor.session.scene
+    new = [o for o in scene.objects if not before.has_object(o.id)]
+    assert {o.category for o in new} >= set(photos.missing)
+    assert {o.id for o in before.objects} <= {o.id for o in scene.objects}
+    editor.settle()
+    keep_picture(editor, "room-photos-joined")
+    editor.page.locator('.dio .tile[data-arg="beside"]').click()
+    editor.until(lambda: editor.client.view.camera.through_photo, "looked through")
+    editor.settle()
+    keep_picture(editor, "room-photos-through")
+    editor.tool("Room").click()
+    editor.settle()
+    keep_picture(editor, "room-photos-cameras")
+    editor.page.keyboard.press("Control+z")
+    editor.until(lambda: editor.session.scene == before, "undone in one step")
+    expect(editor.page.locator('.dio .tile[data-arg="beside"]')).to_contain_text("not in the scene yet")

@@ -1,0 +1,41 @@
+"""Several photos of a room: the rows of the table, the pictures, and a whole run of one room."""
+
+from __future__ import annotations
+
+import pytest
+
+from diorama_core.evaluation.benchmarks.cases import Case, LeftOut
+from diorama_core.evaluation.benchmarks.views import ALONE, ViewsBench, ViewsResult, photographed, run
+from diorama_core.evaluation.metrics.pose import Alignment
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.synthesis.splits import split_library
+
+
+def result(case: str, way: str, acc: float, count: int, failure: str = "") -> ViewsResult:
+    return ViewsResult(case, way, Alignment("object-focus", count, 0.9, 0.8, 0.7, acc), 2.0, failure)
+
+
+def test_rooms_count_by_their_objects_and_failures_are_told() -> None:
+    rows = (result("a", ALONE, 0.2, 10), result("b", ALONE, 0.5, 5), result("a", "2 photos", 0.0, 10, "it broke"))
+    (table,) = ViewsBench(rows, (LeftOut("c", "too small"),)).tables()
+    assert [r.name for r in table.rows] == [ALONE, "2 photos"]
+    assert table.rows[0].values[0] == pytest.approx(0.3)
+    assert table.rows[0].values[4] == 15
+    assert "1 builds failed" in table.note
+    assert "c (too small)" in table.note
+    assert ViewsBench(rows).to_json()["scenes"][2]["failure"] == "it broke"
+
+
+def test_pictures_show_one_room_from_different_places() -> None:
+    views = photographed(Case(3, "kitchen"), split_library(built_in_library(), "test"), 2)
+    first, second = views
+    assert set(first.truth.asked) & set(second.truth.asked)
+    assert ((first.camera.position - second.camera.position) ** 2).sum() > 0.04
+
+
+@pytest.mark.slow
+def test_a_room_is_built_from_two_photos() -> None:
+    bench = run(built_in_library(), 1, 3, counts=(2,))
+    assert [r.way for r in bench.results] == [ALONE, "2 photos with their cameras"]
+    assert all(not r.failure for r in bench.results)
+    assert bench.results[1].own.count >= 4

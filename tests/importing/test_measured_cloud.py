@@ -1,0 +1,67 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from shapely.geometry import Polygon
+
+from diorama_core.errors import InputError
+from diorama_core.importing.measured_cloud import measured_cloud
+from diorama_core.importing.measured_room import opened_room
+from diorama_core.importing.point_files import PointCloud
+from diorama_core.library.catalogue import built_in_library
+from tests.importing.scans import DEPTH, FURNITURE, HEIGHT, WIDTH, room_points
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def sides(polygon: Polygon) -> list[float]:
+    ring = np.asarray(polygon.exterior.coords)
+    return sorted(np.linalg.norm(np.diff(ring, axis=0), axis=1))
+
+
+def test_walls_floor_and_boxes_are_where_the_points_are() -> None:
+    room = measured_cloud(PointCloud(room_points(), UP))
+    assert len(room.walls) == 4
+    assert sides(Polygon(room.floor)) == pytest.approx([DEPTH, DEPTH, WIDTH, WIDTH], abs=0.02)
+    assert max(w.polygon[:, 2].max() for w in room.walls) == pytest.approx(HEIGHT, abs=0.02)
+    assert len(room.boxes) == len(FURNITURE)
+    found = sorted((sorted(b.size_m) for b in room.boxes), key=max)
+    true = sorted((sorted(f.size_m) for f in FURNITURE), key=max)
+    assert np.abs(np.array(found) - np.array(true)).max() < 0.08
+
+
+def test_the_axis_that_points_up_is_found() -> None:
+    lying = room_points() @ np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]]).T  # +Y up, as phones write
+    room = measured_cloud(PointCloud(lying, None))
+    assert max(w.polygon[:, 2].max() for w in room.walls) == pytest.approx(HEIGHT, abs=0.02)
+    assert len(room.boxes) == len(FURNITURE)
+
+
+def test_a_corner_that_is_not_of_the_room_is_left_out() -> None:
+    room = measured_cloud(PointCloud(room_points(corner=True), UP))
+    assert len(room.walls) == 6
+    area = WIDTH * DEPTH - (WIDTH / 2 - 0.6) * (DEPTH / 2 - 0.3)
+    assert Polygon(room.floor).area == pytest.approx(area, rel=0.02)
+
+
+def test_the_room_opens_as_a_scene_whose_things_stand_with_their_backs_to_walls() -> None:
+    opened = opened_room(measured_cloud(PointCloud(room_points(), UP)), built_in_library())
+    scene = opened.scene
+    assert [len(scene.architecture.by_role(r)) for r in ("floor", "wall", "ceiling")] == [1, 4, 1]
+    assert len(scene.objects) == len(FURNITURE)
+    for item in scene.objects:
+        assert item.corners_world[:, 2].min() == pytest.approx(0.0, abs=0.01)
+        assert scene.support_of(item.id).parent == "floor"
+    tall = max(scene.objects, key=lambda o: o.size_m[2])
+    back = tall.pose.position - tall.pose.R_world_object[:, 0] * tall.size_m[0] / 2
+    assert min(abs(w.normal @ back - w.offset) for w in scene.architecture.by_role("wall")) < 0.1
+    assert any("guessed by their sizes" in line for line in opened.changes)
+
+
+def test_what_is_no_room_is_one_line() -> None:
+    rng = np.random.default_rng(0)
+    flat = np.column_stack([rng.uniform(0, 4, (5000, 2)), rng.normal(0, 0.002, 5000)])
+    with pytest.raises(InputError, match="no room in the points"):
+        measured_cloud(PointCloud(flat, UP))
+    with pytest.raises(InputError, match="more than 60 m"):
+        measured_cloud(PointCloud(1000 * flat, UP))

@@ -1,0 +1,65 @@
+"""One more photo comes into a scene: seen things join, new ones are inserted, what a person moved stays."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diorama_core.artefacts import FurtherPhoto, Inputs, Photo
+from diorama_core.errors import InputError
+from diorama_core.layout.recipes import recipe
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.multiview.adding import Added, with_photo
+from diorama_core.multiview.finding import photos_of_scene
+from diorama_core.pipeline.stages import Stages, embedded_stages
+from diorama_core.scene.edits import move
+from diorama_core.scene.types import Scene
+from tests.multiview.two_photos import two_photos, with_camera
+
+
+def choose(inputs: Inputs) -> Stages:
+    return embedded_stages(inputs, built_in_library())
+
+
+def added(scene: Scene, movable: frozenset[str]) -> Added:
+    photos, library = two_photos(), built_in_library()
+    known = photos_of_scene(scene, photos.first, ())
+    return with_photo(
+        scene, known, with_camera(photos), movable, library, choose,
+        lambda free: recipe("feasible", library, free, depth_measured=True),
+    )  # fmt: skip
+
+
+@pytest.mark.slow
+def test_seen_things_join_new_ones_come_and_what_was_moved_stays() -> None:
+    photos = two_photos()
+    first = next(o for o in photos.scene.objects if o.box_px is not None and o.category == "table")
+    scene = move(photos.scene, first.id, replace(first.pose, position=first.pose.position + np.array([0.05, 0.0, 0.0])))
+    found = added(scene, frozenset(o.id for o in scene.objects if o.id != first.id))
+    new = [found.scene.object(i) for i in found.new]
+    assert {o.category for o in new} >= set(photos.missing)
+    assert len(found.joined) >= 5
+    assert {o.id for o in scene.objects} <= {o.id for o in found.scene.objects}  # nothing is lost
+    assert found.scene.object(first.id).pose == scene.object(first.id).pose
+    for item in new:
+        assert item.box_px is None
+    assert {name for name, _ in found.photo.seen} == {*found.new, *found.joined}
+    inside = np.array([p.polygon[:, :2] for p in found.scene.architecture.by_role("floor")]).reshape(-1, 2)
+    for item in new:
+        assert (item.pose.position[:2] > inside.min(axis=0) - 0.3).all()
+        assert (item.pose.position[:2] < inside.max(axis=0) + 0.3).all()
+
+
+def test_a_photo_in_which_nothing_is_found_is_one_line() -> None:
+    photos, library = two_photos(), built_in_library()
+    grey = Inputs(Photo(np.full((60, 80, 3), 128, np.uint8), "grey.png", (80, 60)))
+    new = FurtherPhoto("grey", grey, replace(photos.camera, intrinsics=photos.camera.intrinsics.scaled(80, 60)))
+    with pytest.raises(InputError, match="nothing is marked in grey"):
+        with_photo(photos.scene, (), new, frozenset(), library, choose, lambda free: recipe("feasible", library, free))
+    with pytest.raises(InputError, match="camera is not known"):
+        with_photo(
+            photos.scene, (), replace(new, camera=None), frozenset(), library, choose,
+            lambda free: recipe("feasible", library, free),
+        )  # fmt: skip

@@ -1,0 +1,73 @@
+"""A rendered room photographed from two places side by side; the scene is the truth without two things."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from diorama_core.artefacts import FurtherPhoto, Inputs
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.project.further_photos import note_placed
+from diorama_core.project.storage import Project
+from diorama_core.scene.edits import remove
+from diorama_core.scene.types import Camera, Scene
+from diorama_core.synthesis import furnished_room
+from diorama_core.synthesis.artefacts import photo_only
+from diorama_core.synthesis.cameras import level_pose, sample_cameras
+from diorama_core.synthesis.truth import Studio
+
+SIZE = (640, 480)
+ASIDE_M = 0.45
+
+
+@dataclass(frozen=True, eq=False)
+class TwoPhotos:
+    scene: Scene
+    """In the first photo's world, with its camera, without what is missing."""
+    first: Inputs
+    second: Inputs
+    camera: Camera
+    """The second photo's, in that world."""
+    missing: tuple[str, ...]
+    """Categories of what both photos show and the scene has not."""
+
+
+@cache
+def two_photos() -> TwoPhotos:
+    library = built_in_library()
+    room = furnished_room(7006, "dining", library, clutter=8)
+    camera = sample_cameras(room, library, 7006, 1, SIZE)[0]
+    studio, eye, ahead = Studio(room, library), camera.position, camera.T_world_camera[:3, 2]
+    yaw, target = float(np.arctan2(ahead[1], ahead[0])), eye + 2.5 * ahead
+    place = eye + ASIDE_M * np.array([np.sin(yaw), -np.cos(yaw), 0.0])
+    turned = float(np.arctan2(target[1] - place[1], target[0] - place[0]))
+    beside = Camera(camera.intrinsics, level_pose(place, turned, -float(np.arcsin(ahead[2]))))
+    views = [studio.view(c, SIZE, with_empty_room=False) for c in (camera, beside)]
+    there = views[0].camera.T_world_camera @ np.linalg.inv(camera.T_world_camera) @ beside.T_world_camera
+    seen = set(views[0].asked) & set(views[1].asked)
+    items = views[0].scene.objects
+    gone = [items[k] for k in sorted(seen) if items[k].category in ("chair", "picture")][:2]
+    scene = remove(views[0].scene, [o.id for o in gone])
+    return TwoPhotos(
+        scene,
+        photo_only(views[0]),
+        photo_only(views[1]),
+        Camera(beside.intrinsics, there),
+        tuple(o.category for o in gone),
+    )
+
+
+def project_of(photos: TwoPhotos, folder: Path) -> Project:
+    """A project as a build of the first photo leaves it."""
+    project = Project.create(folder, name=folder.name)
+    project.save_inputs(photos.first)
+    project.save_scene(photos.scene)
+    note_placed(project, photos.scene)
+    return project
+
+
+def with_camera(photos: TwoPhotos) -> FurtherPhoto:
+    return FurtherPhoto("beside", replace(photos.second, intrinsics=photos.camera.intrinsics), photos.camera)

@@ -1,0 +1,66 @@
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from diorama_core.artefacts import FurtherPhoto, Inputs
+from diorama_core.project.further_photos import load_photos, note_placed, save_photos, still_placed
+from diorama_core.scene.edits import move
+from tests.app.small_room import make_project, photo_camera, plain_photo
+
+
+def test_photos_come_back_as_they_were_saved(tmp_path: Path) -> None:
+    project = make_project(tmp_path / "demo")
+    assert load_photos(project) == ((), ())
+    one = FurtherPhoto("one", Inputs(plain_photo()), photo_camera(), (("table_1", (1.0, 2.0, 3.0, 4.0)),))
+    two = FurtherPhoto("two", Inputs(plain_photo(320, 240)))
+    save_photos(project, (one, two))
+    found, damage = load_photos(project)
+    assert damage == ()
+    assert [p.name for p in found] == ["one", "two"]
+    assert found[0].camera == one.camera
+    assert found[0].seen == one.seen
+    assert np.array_equal(found[1].inputs.photo.rgb, two.inputs.photo.rgb)
+    assert (project.folder / "photos" / "one.jpg").exists()
+
+
+def test_a_photo_that_is_saved_is_not_written_again_and_one_taken_out_is_gone(tmp_path: Path) -> None:
+    project = make_project(tmp_path / "demo")
+    one, two = (FurtherPhoto(n, Inputs(plain_photo())) for n in ("one", "two"))
+    save_photos(project, (one, two))
+    path = project.folder / "photos" / "one.zip"
+    before = path.stat().st_mtime_ns
+    save_photos(project, (one,), (one, two))
+    assert path.stat().st_mtime_ns == before
+    assert [p.name for p in load_photos(project)[0]] == ["one"]
+
+
+def test_a_damaged_photo_is_named_and_the_others_are_read(tmp_path: Path) -> None:
+    project = make_project(tmp_path / "demo")
+    one, two = (FurtherPhoto(n, Inputs(plain_photo())) for n in ("one", "two"))
+    save_photos(project, (one, two))
+    (project.folder / "photos" / "one.zip").write_bytes(b"nothing")
+    found, damage = load_photos(project)
+    assert [p.name for p in found] == ["two"]
+    assert len(damage) == 1
+    assert "one.zip" in damage[0]
+    project.update_info(photos=["../../scene", 5])
+    assert load_photos(project)[0] == ()
+
+
+def test_what_a_person_moved_or_locked_is_not_where_it_was_put(tmp_path: Path) -> None:
+    project = make_project(tmp_path / "demo")
+    scene = project.load_scene()
+    assert still_placed(project, scene) == frozenset()  # an older project: nothing was noted
+    note_placed(project, scene)
+    ids = {o.id for o in scene.objects}
+    assert still_placed(project, scene) == ids
+    chair = scene.object("chair_1")
+    moved = move(scene, "chair_1", replace(chair.pose, position=chair.pose.position + np.array([0.2, 0.0, 0.0])))
+    assert still_placed(project, moved) == ids - {"chair_1"}
+    locked = replace(scene, objects=tuple(replace(o, locked=o.id == "table_1") for o in scene.objects))
+    assert still_placed(project, locked) == ids - {"table_1"}
+    note_placed(project, moved)
+    assert still_placed(project, scene) == ids  # after an undo
