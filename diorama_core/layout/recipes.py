@@ -37,7 +37,14 @@ def recipe(
     """
     if name == "feasible":
         depth_weight = MEASURED_WEIGHT if depth_measured else REASONED_WEIGHT
-        return FeasibleRecipe(library, only, depth_weight=depth_weight, sizes_reasoned=sizes_reasoned, weights=weights)
+        return FeasibleRecipe(
+            library,
+            only,
+            depth_measured=depth_measured,
+            depth_weight=depth_weight,
+            sizes_reasoned=sizes_reasoned,
+            weights=weights,
+        )
     # torch takes two seconds to load, and the default recipe does without it.
     from diorama_core.layout.published.recipes import AllInOneRecipe, PaperRecipe
 

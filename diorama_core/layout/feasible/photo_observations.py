@@ -85,8 +85,8 @@ class PhotoObservations:
     """Rotations of those boxes."""
     contradicted: Bool[np.ndarray, " n"]
     """Objects whose posed shape is not where the photo's box is."""
-    pictured: Bool[np.ndarray, " n"]
-    """Objects that are still where the photo shows them; a person may have put others anywhere."""
+    measured: Bool[np.ndarray, " n"]
+    """Objects at measured places that are still where the photo shows them; a person may have put others anywhere."""
 
     def limited(self, scale: Float[np.ndarray, "n 3"]) -> PhotoObservations:
         """The same with nothing larger than it is now where it has been made smaller."""
@@ -280,8 +280,10 @@ def _bounded_step(J: np.ndarray, residual: np.ndarray, low: np.ndarray, high: np
     return step
 
 
-def photo_observations(problem: Problem, camera: Camera, *, depth_weight: float) -> PhotoObservations:
-    """What the camera sees of the observed layout."""
+def photo_observations(
+    problem: Problem, camera: Camera, *, depth_weight: float, measured: bool = False
+) -> PhotoObservations:
+    """What the camera sees of the observed layout, whose distances were measured or only reasoned."""
     points = _outline_points(problem)
     posed = _posed_bounds_px(problem, camera)
     bounds, hidden = _pictured(problem, camera, posed)
@@ -299,7 +301,7 @@ def photo_observations(problem: Problem, camera: Camera, *, depth_weight: float)
         corners_px=_corners_px(problem, camera, posed, bounds),
         R=problem.R,
         contradicted=(np.abs(posed - bounds) > 0.0).any(axis=1),
-        pictured=_agrees(_bounds_in_picture_px(problem, camera), problem.box_px),
+        measured=_agrees(_bounds_in_picture_px(problem, camera), problem.box_px) & measured,
     )
 
 

@@ -55,6 +55,8 @@ class FeasibleRecipe:
     """How often stuck objects are made a little smaller before giving up."""
     observations: float = 4.0
     """Cost of moving across the viewing ray relative to along it, when the scene has a camera; 1 is indifferent."""
+    depth_measured: bool = False
+    """Whether the observed distances were measured: an object then reaches its support by its size, not its place."""
     depth_weight: float = REASONED_WEIGHT
     """How much leaving the observed distance counts against leaving the observed outline; for the objects that their
     support or wall moved, when the scene has a camera."""
@@ -149,7 +151,8 @@ class FeasibleRecipe:
     def _observations(self, problem: Problem, camera: Camera | None) -> PhotoObservations | None:
         if camera is None or self._across <= 1.0:
             return None
-        return photo_observations(problem, camera, depth_weight=self.depth_weight * self.weights.distance)
+        weight = self.depth_weight * self.weights.distance
+        return photo_observations(problem, camera, depth_weight=weight, measured=self.depth_measured)
 
     def _outline_cost(self, problem: Problem) -> Float[np.ndarray, " n"]:
         """What a metre of outline counts, by object: moving it across the viewing ray."""

@@ -144,7 +144,7 @@ def _settle(
     u, v = plane_axes(n)
     _before_walls(problem, walk, i)
     grown = 1.0 if eye is None else _from_the_eye(problem, walk, i, surface, eye)
-    if observations is not None and eye is None and observations.pictured[i]:
+    if observations is not None and observations.measured[i]:
         _reach_support(problem, walk, i, surface)
     _on_support(problem, walk, i, surface, None if ray is None else ray[i])
     grounded = problem.grounded[i] and is_wall_like(surface)

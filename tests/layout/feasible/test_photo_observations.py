@@ -211,6 +211,14 @@ def test_a_measured_top_stays_where_the_foot_has_to_come_down(room: Room) -> Non
     scene = room.scene(camera=looking_north())
     seen = scene.object(table)
     boxed = replace(seen, box_px=tuple(outline(scene, table)))
-    stood = solve(replace(scene, objects=(boxed,)), depth_weight=1.0).object(table)
+    stood = solve(replace(scene, objects=(boxed,)), depth_weight=1.0, depth_measured=True).object(table)
     assert stood.corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-9)
     assert stood.corners_world[:, 2].max() == pytest.approx(seen.corners_world[:, 2].max(), abs=0.01)
+
+
+def test_a_table_that_a_person_lifted_comes_down_as_it_is(room: Room) -> None:
+    table = room.put("table_0", (0.0, 1.0, 0.43))
+    scene = room.scene(camera=looking_north())
+    stood = solve(scene).object(table)
+    assert stood.corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-9)
+    assert stood.size_m[2] == pytest.approx(scene.object(table).size_m[2], rel=0.08)
