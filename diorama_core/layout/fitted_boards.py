@@ -115,6 +115,9 @@ def _adjusted(shape: Shape, feet: Sequence[_Feet], scale: float) -> str | None:
     inside = len(levels) - 1
     if before <= AGREES_M * counts.sum() or comb(inside + len(feet) - 1, len(feet)) > MOST_WAYS:
         return None
+    least, most = _free_lengths(shape, levels)
+    if (least >= most).any():  # boards that lie on one another
+        return None
     found: list[tuple[float, str]] = []
     for boards in combinations_with_replacement(range(inside), len(feet)):
         heights = _reaching(shape, levels, np.array(boards), wanted, counts)
@@ -135,7 +138,7 @@ def _reaching(
     """Heights of all levels with some of them as near to wanted ones as the free lengths between boards allow."""
     half, board = shape.size_m[2] / 2, BOARD_SHARE * shape.size_m[2]
     tops = np.array([*levels[:-1], half])
-    free = np.diff(np.concatenate([[-half], tops])) - board
+    free = _between(shape, levels)
     steps = np.tril(np.ones((len(tops), len(tops))))
     kept = (np.arange(len(tops)) + 1) * board - half
     rows = [
@@ -144,6 +147,17 @@ def _reaching(
         FIXED * steps[-1:],
     ]
     sought = [np.sqrt(counts) * (wanted - kept[boards]), KEEP * free, FIXED * np.array([half - kept[-1]])]
-    bounds = (MIN_SLOPE * free + _SLACK_M, MAX_SLOPE * free - _SLACK_M)
-    lengths = lsq_linear(np.vstack(rows), np.concatenate(sought), bounds).x
+    lengths = lsq_linear(np.vstack(rows), np.concatenate(sought), _free_lengths(shape, levels)).x
     return np.concatenate([(kept + steps @ lengths)[:-1], levels[-1:]])
+
+
+def _between(shape: Shape, levels: Sequence[float]) -> Float[np.ndarray, " k"]:
+    """Free lengths from the foot to the lowest board and from board to board, metres."""
+    half, board = shape.size_m[2] / 2, BOARD_SHARE * shape.size_m[2]
+    return np.diff(np.array([-half, *levels[:-1], half])) - board
+
+
+def _free_lengths(shape: Shape, levels: Sequence[float]) -> tuple[Float[np.ndarray, " k"], Float[np.ndarray, " k"]]:
+    """The least and most that they may become."""
+    free = _between(shape, levels)
+    return MIN_SLOPE * free + _SLACK_M, MAX_SLOPE * free - _SLACK_M

@@ -69,3 +69,18 @@ def test_what_is_locked_or_soft_or_no_bookcase_changes_nothing() -> None:
     assert not is_adjustable(replace(scene.objects[0], category="table"), LIBRARY.shape(table.id))
     boxes = box_library()
     assert not is_adjustable(scene.objects[0], boxes.shape("bookshelf_6"))
+
+
+@pytest.mark.parametrize("share", [0.31, 0.47])
+def test_no_shape_of_the_library_is_too_crowded_to_be_asked(share: float) -> None:
+    for shape in LIBRARY.shapes():
+        item = SceneObject(
+            "shelf", "shelf", shape.category, shape.id, shape.size_m, Pose.upright((0.0, 2.0, shape.size_m[2] / 2), 0.0)
+        )
+        if is_adjustable(item, shape):
+            pose = Pose.upright((0.0, 2.0, share * shape.size_m[2] + BOOKS.size_m[2] / 2), 0.0)
+            load = SceneObject("books", "books", "books", BOOKS.id, BOOKS.size_m, pose)
+            edges = (Support("shelf", "floor"), Support("books", "shelf"))
+            scene = Scene(architecture=room_box(6.0, 8.0), objects=(item, load), supports=edges)
+            changed, _ = fitted_boards(scene, LIBRARY, reasoned=False)
+            assert base_id(changed.object("shelf").shape_id) == shape.id
