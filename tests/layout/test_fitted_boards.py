@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diorama_core.layout.fitted_boards import fitted_boards, is_adjustable
-from diorama_core.library.boards import base_id, levels_m
+from diorama_core.library.boards import BOARD_SHARE, base_id, levels_m
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Pose, Scene, SceneObject, Support
 from diorama_core.synthesis.layout_rooms import box_library, room_box
@@ -71,16 +71,11 @@ def test_what_is_locked_or_soft_or_no_bookcase_changes_nothing() -> None:
     assert not is_adjustable(scene.objects[0], boxes.shape("bookshelf_6"))
 
 
-@pytest.mark.parametrize("share", [0.31, 0.47])
-def test_no_shape_of_the_library_is_too_crowded_to_be_asked(share: float) -> None:
-    for shape in LIBRARY.shapes():
-        item = SceneObject(
-            "shelf", "shelf", shape.category, shape.id, shape.size_m, Pose.upright((0.0, 2.0, shape.size_m[2] / 2), 0.0)
-        )
-        if is_adjustable(item, shape):
-            pose = Pose.upright((0.0, 2.0, share * shape.size_m[2] + BOOKS.size_m[2] / 2), 0.0)
-            load = SceneObject("books", "books", "books", BOOKS.id, BOOKS.size_m, pose)
-            edges = (Support("shelf", "floor"), Support("books", "shelf"))
-            scene = Scene(architecture=room_box(6.0, 8.0), objects=(item, load), supports=edges)
-            changed, _ = fitted_boards(scene, LIBRARY, reasoned=False)
-            assert base_id(changed.object("shelf").shape_id) == shape.id
+def test_boards_that_lie_on_one_another_stay(monkeypatch: pytest.MonkeyPatch) -> None:
+    low, *higher = SHELF.surfaces
+    twice = replace(low, polygon=low.polygon + np.array([0.0, 0.0, 0.5 * BOARD_SHARE * SHELF.size_m[2]]))
+    crowded = replace(SHELF, surfaces=(low, twice, *higher))
+    assert len(levels_m(crowded)) == len(levels_m(SHELF)) + 1
+    monkeypatch.setattr(type(LIBRARY), "shape", lambda library, shape_id: crowded)
+    scene = shelf_with_books(0.55)
+    assert fitted_boards(scene, LIBRARY, reasoned=False) == (scene, ())
