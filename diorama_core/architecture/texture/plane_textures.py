@@ -17,7 +17,9 @@ from diorama_core.geometry.casting import cast_planes
 from diorama_core.geometry.planes import plane_rectangle
 from diorama_core.scene.types import Architecture, Camera, Plane
 
-MAX_SIDE_PX = 512
+MAX_SIDE_PX = 1024
+MAX_CEILING_PX = 512
+"""Of a ceiling's picture: little of it is in a photo, and what is there is plain."""
 PIXELS_PER_M = 150.0
 MIN_SEEN_SHARE = 0.06
 """Minimum visible share of a plane's area for a texture; below it the plane keeps its plain colour."""
@@ -215,7 +217,8 @@ def _of_texels(
 def _texel_points(plane: Plane) -> tuple[Float[np.ndarray, "h w 3"], float]:
     """World points of the texels' centres, top row first, and a texel's size in metres."""
     origin, axes, extents = plane_rectangle(plane)
-    pixel_m = max(1.0 / PIXELS_PER_M, float(extents.max()) / MAX_SIDE_PX)
+    most = MAX_CEILING_PX if plane.role == "ceiling" else MAX_SIDE_PX
+    pixel_m = max(1.0 / PIXELS_PER_M, float(extents.max()) / most)
     width, height = np.maximum(np.ceil(extents / pixel_m - 1e-6), 2).astype(int)
     across = (np.arange(width) + 0.5) / width * extents[0]
     up = (1.0 - (np.arange(height) + 0.5) / height) * extents[1]
