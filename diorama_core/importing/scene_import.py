@@ -8,7 +8,6 @@ from pathlib import Path
 from diorama_core.errors import InputError, LibraryError
 from diorama_core.importing.foreign import open_foreign, take_missing_shapes
 from diorama_core.importing.marked import MarkedFile
-from diorama_core.importing.measured_cloud import measured_cloud
 from diorama_core.importing.measured_room import MeasuredRoom, opened_room
 from diorama_core.importing.opening import USD_SUFFIXES, Opened, marked_file, open_marked
 from diorama_core.importing.point_files import CLOUD_SUFFIXES, is_scan_folder, read_points
@@ -44,7 +43,7 @@ def import_scene(path: Path, *, library_name: str | None = None, progress: Progr
     progress.report(0.0, f"reading {path.name}")
     if _holds_points(path):
         name = library_name or "built-in"
-        return Imported(opened_room(measured_cloud(read_points(path)), open_library(name)), name)
+        return Imported(_room_of_points(path, name), name)
     marked = marked_file(path)
     if marked is None:
         name = library_name or "built-in"
@@ -76,7 +75,7 @@ def read_scene(path: Path, known: frozenset[str], progress: Progress) -> Opened:
     """
     progress.report(0.0, f"reading {path.name}")
     if _holds_points(path):
-        return opened_room(measured_cloud(read_points(path)), open_library("built-in"))
+        return _room_of_points(path, "built-in")
     marked = marked_file(path)
     if marked is None:
         measured = measured_room(path)
@@ -123,3 +122,10 @@ def _known(name: str) -> str:
     except LibraryError:
         return "built-in"
     return name
+
+
+def _room_of_points(path: Path, library: str) -> Opened:
+    # OpenCV and SciPy: the editor starts without them.
+    from diorama_core.importing.measured_cloud import measured_cloud
+
+    return opened_room(measured_cloud(read_points(path)), open_library(library))
