@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import TypeVar
 
 from diorama_core.errors import Cancelled, InputError
 from diorama_core.library.record import ShapeLibrary
@@ -13,6 +14,8 @@ from diorama_core.synthesis import ROOM_KINDS, RoomKind, TruthView, furnished_ro
 from diorama_core.synthesis.truth import Studio
 
 log = logging.getLogger(__name__)
+
+Made = TypeVar("Made")
 
 SIZE = (640, 480)
 SEEDS: Mapping[str, tuple[int, ...]] = {"development": (0, 91, 1000), "reporting": (2000, 3000, 4000)}
@@ -93,16 +96,27 @@ def attempted(
         library: What rooms are furnished from.
         left_out: Receives what could not be made.
     """
+    return ((case, view) for case, (_, view) in made(cases, lambda case: next(views_of((case,), library)), left_out))
+
+
+def made(cases: tuple[Case, ...], make: Callable[[Case], Made], left_out: list[LeftOut]) -> Iterator[tuple[Case, Made]]:
+    """Whatever is made of each case, going on with the next one where that fails.
+
+    Args:
+        cases: The pictures.
+        make: Makes something of one.
+        left_out: Receives what could not be made.
+    """
     for case in cases:
         try:
-            found = next(views_of((case,), library))
+            found = make(case)
         except Cancelled:
             raise
         except Exception as error:  # whatever goes wrong, the other rooms' results are worth keeping
             log.warning("%s is left out: %s", case.name, error)
             left_out.append(LeftOut(case.name, f"{type(error).__name__}: {error}"))
             continue
-        yield found
+        yield case, found
 
 
 def views_of(cases: tuple[Case, ...], library: ShapeLibrary) -> Iterator[tuple[Case, TruthView]]:

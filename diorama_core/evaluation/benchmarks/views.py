@@ -15,7 +15,7 @@ from dataclasses import asdict, dataclass
 
 from diorama_core.artefacts import Inputs
 from diorama_core.errors import Cancelled
-from diorama_core.evaluation.benchmarks.cases import MIN_ASKED, SIZE, Case, LeftOut, furnished, recipe
+from diorama_core.evaluation.benchmarks.cases import MIN_ASKED, SIZE, Case, LeftOut, furnished, made, recipe
 from diorama_core.evaluation.metrics.pose import Alignment, object_alignment, pooled
 from diorama_core.evaluation.metrics.scene import as_placed, in_true_world, matched
 from diorama_core.evaluation.reports.intervals import bootstrap_interval
@@ -117,17 +117,14 @@ def run(
     results: list[ViewsResult] = []
     left_out: list[LeftOut] = []
     cases = recipe(scenes, 1, seed)
-    for k, case in enumerate(cases):
+
+    def photos_of(case: Case) -> tuple[RoomView, ...]:
+        progress.report(cases.index(case) / len(cases), f"photographing {case.name}")
+        return photographed(case, tested, max(counts))
+
+    for case, views in made(cases, photos_of, left_out):
+        k = cases.index(case)
         part = progress.part(k / len(cases), (k + 1) / len(cases))
-        part.report(0.0, f"photographing {case.name}")
-        try:
-            views = photographed(case, tested, max(counts))
-        except Cancelled:
-            raise
-        except Exception as error:  # whatever goes wrong, the other rooms' results are worth keeping
-            log.warning("%s is left out: %s", case.name, error)
-            left_out.append(LeftOut(case.name, f"{type(error).__name__}: {error}"))
-            continue
         room = _Room(case, library, searched, progress)
         results.append(room.scored(ALONE, views[:1], room.from_one_photo))
         for turn, n in enumerate(counts):
