@@ -18,6 +18,7 @@ from diorama_core.layout.problem.supports import (
     is_wide_enough,
     label_of,
     misfit,
+    object_surfaces,
     outside_m,
     plane_surface,
     resting_cost,
@@ -27,7 +28,7 @@ from diorama_core.library import taxonomy
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene import edits
 from diorama_core.scene.frames import UP_WORLD
-from diorama_core.scene.types import Scene, SceneObject, Support
+from diorama_core.scene.types import Pose, Scene, SceneObject, Support
 
 CLEARLY = 0.5
 """Another supporter is taken only where its gap is at most this share of the contradicted one."""
@@ -39,6 +40,10 @@ _NEVER_HANGS = taxonomy.with_kin(
 )
 _SOMETIMES_HANGS = frozenset({"television", "monitor", "lamp", "clock", "speaker", "plant", "towel", "utensils"})
 """Of the kinds that are set down on things."""
+BEHIND = 0.9
+"""An object is behind a wall that is nearer than this share of its distance."""
+UPRIGHT = 0.98
+"""Surfaces whose normals have a smaller z carry nothing."""
 UNUSUAL_M = 0.3
 """Objects that people put on surfaces hang on a wall only where nothing is below them: this is added to their gap."""
 
@@ -67,6 +72,15 @@ def checked_supports(scene: Scene, library: ShapeLibrary, noise: ObservationNois
         if wall is not None:
             reasons.append(f"support changed: {item.label} was seen on another wall than its own")
             scene = edits.attach(scene, replace(edge, parent=wall, adheres_to=()))
+            continue
+        behind = None if noise.measured or floor is None or edge.parent != floor.id else _wall_before(scene, item)
+        if behind is not None and (nearer := _nearer_in_sight(scene, library, item, noise)) is not None:
+            share, parent = nearer
+            reasons.append(
+                f"support changed: {item.label} would be behind {label_of(scene, behind)} and rests on "
+                f"{label_of(scene, parent)}"
+            )
+            scene = edits.attach(_along_sight(scene, item, share), Support(item.id, parent))
             continue
         better = _better(scene, library, item, edge, noise)
         if better is None and floor is not None and _belongs_on_floor(scene, library, item, edge, noise):
@@ -107,6 +121,62 @@ def _wall_in_sight(scene: Scene, item: SceneObject, edge: Support, noise: Observ
         if share > 0.0 and beside == 0.0:
             met.append((share, wall.id))
     return min(met)[1] if met else None
+
+
+def _wall_before(scene: Scene, item: SceneObject) -> str | None:
+    """The seen wall that the line of sight to an object's centre goes through; None where the object is in the room."""
+    if scene.camera is None:
+        return None
+    eye, sight = scene.camera.position, item.pose.position - scene.camera.position
+    for wall in scene.architecture.by_role("wall"):
+        closing = float(wall.normal @ sight)
+        if wall.seen and closing < 0.0:
+            share = (wall.offset - float(wall.normal @ eye)) / closing
+            if 0.0 < share < BEHIND and outside_m(plane_surface(wall), eye + share * sight) == 0.0:
+                return wall.id
+    return None
+
+
+def _nearer_in_sight(
+    scene: Scene, library: ShapeLibrary, item: SceneObject, noise: ObservationNoise
+) -> tuple[float, str] | None:
+    """The object on which the line of sight to an object's foot ends, and at which share of the distance.
+
+    It ends on one of its places, or beside it but in the object's box in the photo: shapes are not what they stand for.
+    """
+    if scene.camera is None or item.category in _NEVER_HANGS:
+        return None
+    eye = scene.camera.position
+    sight = item.pose.apply(np.array([[0.0, 0.0, -0.5 * item.shape_size_m[2]]]))[0] - eye
+    pixel = scene.camera.project(eye + sight)
+    found: list[tuple[float, float, str]] = []
+    for other in scene.objects:
+        if other.id == item.id or not _carries(scene, other.id):
+            continue
+        x1, y1, x2, y2 = other.box_px or (np.inf, np.inf, -np.inf, -np.inf)
+        in_box = bool(x1 <= pixel[0] <= x2 and y1 <= pixel[1] <= y2)
+        for surface in object_surfaces(library.shape(other.shape_id), other):
+            world = surface.in_world(other.pose)
+            if float(world.normal @ UP_WORLD) < UPRIGHT or float(sight @ world.normal) >= 0.0:
+                continue
+            share = (world.level - float(eye @ world.normal)) / float(sight @ world.normal)
+            beside = outside_m(world, eye + share * sight)
+            if 0.0 < share < 1.0 and (in_box or beside <= 2.0 * noise.across_m):
+                found.append((beside, share, other.id))
+    return min(found)[1:] if found else None
+
+
+def _along_sight(scene: Scene, item: SceneObject, share: float) -> Scene:
+    """The scene with an object so much nearer and smaller: it looks alike in the photo."""
+    assert scene.camera is not None, "there is a line of sight"
+    eye = scene.camera.position
+
+    def nearer(pose: Pose) -> Pose:
+        return Pose(pose.R_world_object, eye + share * (pose.position - eye), share * pose.scale)
+
+    candidates = tuple(replace(c, pose=nearer(c.pose)) for c in item.candidates)
+    moved = replace(item, pose=nearer(item.pose), candidates=candidates)
+    return replace(scene, objects=tuple(moved if o.id == item.id else o for o in scene.objects))
 
 
 def _belongs_on_floor(
