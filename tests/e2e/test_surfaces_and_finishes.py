@@ -91,9 +91,10 @@ def test_esc_puts_a_pulled_handle_back_and_snapping_keeps_to_the_grid(editor: Ed
 
 
 def test_three_are_spread_evenly_mirrored_and_turned(editor: EditorPage) -> None:
-    for label, more in (("chair", []), ("dining table", ["Shift"]), ("chair <b>by the window</b>", ["Shift"])):
+    rows = (("chair", []), ("dining table", ["Shift"]), ("chair <b>by the window</b>", ["Shift"]))
+    for count, (label, more) in enumerate(rows, start=1):
         editor.row(label).click(modifiers=more)
-    editor.until(lambda: len(editor.selection) == 3)
+        editor.until(lambda wanted=count: len(editor.selection) == wanted)
     editor.page.get_by_role("button", name="Distribute evenly").click()
     editor.until(lambda: editor.running.session.document.history.current.label == "distribute evenly")
     spans = sorted(
