@@ -142,6 +142,8 @@ class DetectedObject(ArrayValue):
     """Kinds with the probabilities that its picture gives them; empty where it was not looked at."""
     seen_form: tuple[float, ...] = ()
     """`SeenKinds.form`; empty where it was not looked at."""
+    meanings: tuple[tuple[str, float], ...] = ()
+    """Kinds that its word may mean here with their probabilities, likeliest first; empty where it means one."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -292,6 +292,32 @@ def with_kin(*names: str) -> frozenset[str]:
     return frozenset(names) | {c.name for c in CATEGORIES if c.kin in names}
 
 
+PORTABLE = with_kin("plant", "box", "basket", "speaker", "fan", "heater", "wine rack") - {"hanging plant", "suitcase"}
+"""What stands on the floor or on furniture, by its size."""
+
+
+_OTHER_THINGS = frozenset({
+    "beam", "belt", "bird", "bolt", "boot", "bread", "cable", "cake", "car", "cat", "coat", "coin", "cord", "corn",
+    "cow", "deer", "dress", "face", "fence", "fish", "flag", "food", "foot", "glove", "goat", "grass", "hammer",
+    "hand", "hat", "head", "hook", "horse", "leaf", "letter", "lid", "man", "meat", "menu", "nail", "pen", "person",
+    "pet", "pipe", "plug", "rail", "road", "rope", "sign", "skateboard", "sky", "snow", "socket", "step", "switch",
+    "tent", "tile", "train", "truck", "vent", "wall", "wheel", "wire",
+})  # fmt: skip
+"""Words of other things that are a letter or two away from words of the table."""
+_SLIP_LETTERS, _SLIP_RATIO = 8, 0.75
+"""A word of fewer letters is misspelt by one letter too many or too few; and how alike both must be."""
+
+
+def _misspelt(key: str, words: tuple[str, ...]) -> str | None:
+    """The word that a misspelt one stands for: people get the first letter right, and other words are not slips."""
+    if len(key) < 4 or _OTHER_THINGS.intersection(_singulars(key)):
+        return None
+    off = 1 if len(key) < _SLIP_LETTERS else 2
+    alike = [w for w in words if w[:1] == key[:1] and abs(len(w) - len(key)) <= off]
+    near = difflib.get_close_matches(key, alike, n=1, cutoff=_SLIP_RATIO)
+    return near[0] if near else None
+
+
 @cache
 def resolve(word: str) -> Resolution:
     """Understand a word that a person or a detector used.
@@ -306,8 +332,8 @@ def resolve(word: str) -> Resolution:
         for form in _singulars(" ".join(parts[start:])):
             if form in table:
                 return Resolution(table[form], exact=True)
-    near = difflib.get_close_matches(key, list(table), n=1, cutoff=0.75)
-    if near:
-        found = table[near[0]]
+    near = _misspelt(key, tuple(table))
+    if near is not None:
+        found = table[near]
         return Resolution(found, exact=False, note=f"'{word}' is not a known class; read as '{found.name}'")
     return Resolution(UNKNOWN, exact=False, note=f"'{word}' is not a known class; treated as an unnamed object")

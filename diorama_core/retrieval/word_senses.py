@@ -77,10 +77,15 @@ def with_word_senses(objects: tuple[DetectedObject, ...], camera: CameraEstimate
     """
     best = camera.best
     senses = sense_probabilities(objects, best.intrinsics, best.R_world_camera, camera.height_m)
-    chosen = [_chosen(item.category, of_word) for item, of_word in zip(objects, senses, strict=True)]
     return tuple(
-        o if name == o.category else replace(o, category=name) for o, name in zip(objects, chosen, strict=True)
+        replace(item, category=_chosen(item.category, of_word), meanings=_listed(of_word))
+        for item, of_word in zip(objects, senses, strict=True)
     )
+
+
+def _listed(senses: Mapping[str, float]) -> tuple[tuple[str, float], ...]:
+    """Several senses, likeliest first."""
+    return tuple(sorted(senses.items(), key=lambda pair: (-pair[1], pair[0]))) if len(senses) > 1 else ()
 
 
 def sense_probabilities(

@@ -14,7 +14,7 @@ from jaxtyping import Bool, Float, Float32, Int
 
 from diorama_core.artefacts import Cuboid, DetectedObject
 from diorama_core.geometry.segments import line_segments_px
-from diorama_core.library.taxonomy import CATEGORIES, category
+from diorama_core.library.taxonomy import CATEGORIES, PORTABLE, category
 from diorama_core.scene.types import Camera
 
 AXIS_TOLERANCE_RAD = np.deg2rad(4.0)
@@ -71,6 +71,9 @@ class RoomCues:
     """Least corner of each standing object's cuboid along the room's axes."""
     object_high: Float[np.ndarray, "k 3"]
     object_weights: Float[np.ndarray, "k"]
+    object_portable: Bool[np.ndarray, "k"]
+    """Whether people put such objects on furniture, too: then they are nearer than where their line of sight meets the
+    floor."""
     hung_top_m: float
     """Top of the highest object that hangs from the ceiling; 0 when nothing does."""
     slants_rad: tuple[float, ...] = ()
@@ -244,6 +247,7 @@ def gather_room_cues(
         object_low=corners.min(axis=1),
         object_high=corners.max(axis=1),
         object_weights=np.array([max(c.confidence, 0.1) for c in solid]),
+        object_portable=np.array([_is_portable(c, objects) for c in solid], dtype=bool),
         hung_top_m=max((float(c.corners_world[:, 2].max()) for c in cuboids if c.object_id in hung), default=0.0),
         slants_rad=tuple(angle for angle, _ in slants),
         slant_maps=tuple(_edge_map(oblique[own], objects, rgb.shape[:2], map_scale) for _, own in slants),
@@ -279,6 +283,11 @@ def _slants(
 
 def _on_wall(cuboid: Cuboid, objects: tuple[DetectedObject, ...]) -> bool:
     return any(o.id == cuboid.object_id and o.category in _WALL_CATEGORIES for o in objects)
+
+
+def _is_portable(cuboid: Cuboid, objects: tuple[DetectedObject, ...]) -> bool:
+    names = [o.category for o in objects if o.id == cuboid.object_id]
+    return any(name in PORTABLE or category(name).mount == "surface" for name in names)
 
 
 def _inside_masks(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 
 from diorama_core.architecture.single_view.box_search import find_box
 from diorama_core.architecture.single_view.level_view import level_view
@@ -40,9 +40,10 @@ CEILINGS_M = np.geomspace(2.1, MAX_CEILING_M, 28)
 FLOOR_CONFIDENCE = 0.6
 LINES = 14
 """Number of longest lines per axis that are tried as feet of walls."""
-SURE = 0.4
-MAX_PUSH_M, MAX_SURE_PUSH_M = 2.0, 1.0
-"""Walls give way to objects by at most this, those that are clearly seen by less; what is farther out is a mistake."""
+MAX_PUSH_M = 2.0
+"""Walls give way to objects by at most this: what is farther out is a mistake."""
+PUSH_WEIGHT, ENOUGH_OUT_M = 0.5, 0.5
+"""How much a sure wall's place counts beside a sure object's; and the protrusion beyond which more says no more."""
 CLEARANCE_M = 0.02
 MEASURED = 0.95
 """A wall candidate's confidence is this less what is seen through it."""
@@ -132,7 +133,7 @@ def _pieces(chain: Chain, scorer: ChainScorer, sure: Float[np.ndarray, "r"]) -> 
     view = scorer.view
     eye = scorer.cues.camera.position[:2]
     ends = view.edges_rad[chain.borders]
-    walls = _with_room(chain, scorer, sure > SURE)
+    walls = _with_room(chain, scorer, sure)
     runs = [
         Run(_as_candidate(walls, k, float(sure[k])), float(ends[k]), float(ends[k + 1]))
         for k in range(len(chain.walls))
@@ -150,15 +151,15 @@ def _as_candidate(walls: PhotoWalls, k: int, sure: float = 0.0) -> WallCandidate
     return WallCandidate(walls.normals[k], float(walls.offsets[k]), np.zeros(0, dtype=bool), MEASURED - sure, 1.0)
 
 
-def _with_room(chain: Chain, scorer: ChainScorer, sure: Bool[np.ndarray, "r"]) -> PhotoWalls:
-    """The chain's walls, moved outward until no reliable object within their headings protrudes through them.
+def _with_room(chain: Chain, scorer: ChainScorer, sure: Float[np.ndarray, "r"]) -> PhotoWalls:
+    """The chain's walls, moved outward where the objects that protrude through them weigh more than what was seen.
 
     A wall that moves alone takes its corners out of the line of sight in which they were seen; moved as far in
     proportion, its neighbours retain them. That is done unless it contradicts the photo by more than a corner is worth.
     """
     ends, eye = scorer.view.edges_rad[chain.borders], scorer.cues.camera.position[:2]
     out = [
-        _protrusion(_as_candidate(chain.walls, k), float(ends[k]), float(ends[k + 1]), scorer.cues, sure=bool(sure[k]))
+        _push(_as_candidate(chain.walls, k), float(ends[k]), float(ends[k + 1]), scorer.cues, float(sure[k]))
         for k in range(len(chain.walls))
     ]
     apart = replace(chain.walls, offsets=chain.walls.offsets - np.array(out))
@@ -180,18 +181,27 @@ def _joined(chain: Chain, k: int, ends: Float[np.ndarray, "r1"], eye: Float[np.n
     return corner is not None and bool(abs(heading(corner, eye) - ends[k + 1]) <= CORNER_SLACK_RAD)
 
 
-def _protrusion(wall: WallCandidate, first: float, last: float, cues: RoomCues, *, sure: bool) -> float:
-    """How far, in metres, reliable objects within a wall's headings protrude through it."""
+def _push(wall: WallCandidate, first: float, last: float, cues: RoomCues, sure: float) -> float:
+    """How far, in metres, a wall gives way to the objects within its headings.
+
+    Every object pulls by its confidence as far as it protrudes, the wall resists by how sure it is. What could stand
+    on furniture and would be wholly behind the wall is not where it seems to be.
+    """
     eye = cues.camera.position[:2]
-    out = 0.0
-    for low, high in zip(cues.object_low, cues.object_high, strict=True):
+    outs, weights = [0.0], [0.0]
+    known = zip(cues.object_low, cues.object_high, cues.object_weights, cues.object_portable, strict=True)
+    for low, high, weight, portable in known:
         corners = np.array([[x, y] for x in (low[0], high[0]) for y in (low[1], high[1])])
         towards = heading(corners, eye)
         through = wall.offset - corners @ wall.normal
         beside = towards.max() < first or towards.min() > last or np.ptp(towards) > np.pi
-        if not beside and through.max() < (MAX_SURE_PUSH_M if sure else MAX_PUSH_M):
-            out = max(out, float(through.max()) + CLEARANCE_M)
-    return out
+        elsewhere = portable and through.min() > 0.0
+        if not beside and not elsewhere and 0.0 < through.max() < MAX_PUSH_M:
+            outs.append(float(through.max()) + CLEARANCE_M)
+            weights.append(float(weight))
+    out = np.array(outs)
+    left = np.clip(out - out[:, None], 0.0, ENOUGH_OUT_M)
+    return outs[int(np.argmin(left @ np.array(weights) + PUSH_WEIGHT * sure * out))]
 
 
 def _highest(cues: RoomCues) -> float:

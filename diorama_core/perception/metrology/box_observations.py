@@ -9,6 +9,7 @@ from jaxtyping import Bool, Float
 
 from diorama_core.artefacts import DetectedObject
 from diorama_core.library.taxonomy import Category, category
+from diorama_core.perception.metrology.priors import SizeMode, size_modes
 from diorama_core.perception.metrology.silhouette import CORNER_EDGES, GUESSED_TRUST, mask_reach
 
 _SHARE_SIGMA = 0.03
@@ -51,9 +52,15 @@ class BoxObservations:
     """How much of both sides of object i's lower end is object j, 0 to 1: then i is on j or in front of it."""
     fill: Float[np.ndarray, "n"]
     """Share of the box that the user's own mask fills; 1 where there is only a guess."""
+    meanings: tuple[tuple[tuple[str, float], ...], ...]
+    """`DetectedObject.meanings` of every object."""
 
     def __len__(self) -> int:
         return len(self.categories)
+
+    def size_modes(self, index: int) -> tuple[SizeMode, ...]:
+        """The sizes that an object may have, of its category and of what else its word may mean."""
+        return size_modes(self.categories[index].name, self.meanings[index])
 
     def hidden(self, index: int, parent: int | None = None) -> Bool[np.ndarray, "4"]:
         """Edges of an object that others hide.
@@ -86,7 +93,10 @@ def gather(objects: tuple[DetectedObject, ...], width: int, height: int) -> BoxO
     area = np.array([float(o.mask.sum()) for o in objects]) / (boxes[:, 2:] - boxes[:, :2]).prod(axis=1)
     fill = np.where(exact, np.minimum(area, 1.0), 1.0)
     in_front, before = _bottom_lower(boxes, height), _before(objects, boxes)
-    return BoxObservations(categories, boxes, sigma, covered, in_front, truncated, reach, weight, exact, before, fill)
+    meanings = tuple(o.meanings for o in objects)
+    return BoxObservations(
+        categories, boxes, sigma, covered, in_front, truncated, reach, weight, exact, before, fill, meanings
+    )
 
 
 def _before(objects: tuple[DetectedObject, ...], boxes: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n n"]:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.library.taxonomy import UNKNOWN, Category, with_kin
+from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, Category, with_kin
 from diorama_core.perception.metrology.box_observations import BoxObservations
-from diorama_core.perception.metrology.priors import PORTABLE, SizeMode, size_modes, standing_costs
+from diorama_core.perception.metrology.priors import SizeMode, standing_costs
 from diorama_core.perception.metrology.problem import UNKNOWNS, UNTOLD, Problems, View, stacked
 from diorama_core.perception.metrology.rows import contact_start, row, size_start
 from diorama_core.perception.metrology.solver import Solutions, solve
@@ -74,7 +74,7 @@ def place_on_floor(
     `modes` are the sizes it may have, those of its category by default.
     """
     category, rows = observations.categories[index], []
-    for mode in modes or size_modes(category.name):
+    for mode in modes or observations.size_modes(index):
         raised = standing_costs(category.name, mode)[0]
         for yaw, cost in _headings(category):
             extra = mode.cost + cost + raised
@@ -102,10 +102,9 @@ def _headings(category: Category) -> list[tuple[float, float]]:
 
 def _scan_rows(observations: BoxObservations, index: int) -> list[Problems]:
     """Rows for one object at every height; the cut is left out, it would draw the camera up and away."""
-    category = observations.categories[index]
     return [
         row(observations, index, mode, camera_height_m=float(height), yaw_rad=yaw, cut_sigma=UNTOLD)
-        for mode in size_modes(category.name)
+        for mode in observations.size_modes(index)
         for yaw in ((0.0,) if mode.square else (0.0, np.pi / 2))
         for height in HEIGHTS_M
     ]

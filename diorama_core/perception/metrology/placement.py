@@ -9,11 +9,11 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.geometry.projection import cuboid_corners
-from diorama_core.library.taxonomy import UNKNOWN, Category, with_kin
+from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, Category, with_kin
 from diorama_core.perception.metrology.arrangement import arrange, distinct
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.floor import place_on_floor, solve_all
-from diorama_core.perception.metrology.priors import PORTABLE, SizeMode, plain_mode
+from diorama_core.perception.metrology.priors import SizeMode, plain_mode
 from diorama_core.perception.metrology.problem import Cuboids, Problems, View, cuboids
 from diorama_core.perception.metrology.silhouette import corner_costs
 from diorama_core.perception.metrology.solver import Solutions, joined

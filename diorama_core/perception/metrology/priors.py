@@ -6,14 +6,14 @@ most likely one of the usual kinds of furniture; each such reading is a further 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
 from jaxtyping import Float
 
 from diorama_core.library.kinds import modes_of_kind, outline_of
-from diorama_core.library.taxonomy import UNKNOWN, SizePrior, category, with_kin
+from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, SizePrior, category
 
 _ALSO = {
     "table": (("coffee table", 1.5), ("side table", 2.5)),
@@ -42,6 +42,8 @@ _UNNAMED_ANYTHING_COST = 6.0
 BROAD_SHARE = 0.3
 """Of the mixture that is the taxonomy's: of things unlike all in the library."""
 MAX_MODES = 3
+MIN_SHARE, MAX_MEANINGS = 0.03, 4
+"""Of what a word may mean, what counts for the size."""
 _USUAL_SPREAD = 3 * np.log(0.16)
 """Sum of the logarithms of the sigmas of an ordinary category: wider ones explain anything, and pay for it."""
 
@@ -67,22 +69,51 @@ class SizeMode:
 
 
 @cache
-def size_modes(name: str) -> tuple[SizeMode, ...]:
-    """The modes of a canonical category, the most usual first."""
+def size_modes(name: str, meanings: tuple[tuple[str, float], ...] = ()) -> tuple[SizeMode, ...]:
+    """The modes of a canonical category, the most usual first, then those of what else its word may mean.
+
+    Args:
+        name: of the category.
+        meanings: kinds that the word may mean with their probabilities; what it is generally said of when empty.
+    """
     if name == UNKNOWN.name:
         kinds = tuple(
             _mode(kind, cost + _breadth_cost(category(kind).priors[0]), _UNNAMED_WIDENED)
             for kind, cost in _UNNAMED.items()
         )
         return (*kinds, _mode(UNKNOWN.name, _UNNAMED_ANYTHING_COST))
-    own = _own_modes(name)
-    also = tuple(_mode(kind, cost) for kind, cost in _ALSO.get(name, ()))
-    return own + also
+    if meanings:
+        return _own_modes(name) + _modes_of_meanings(name, meanings)
+    return _own_modes(name) + tuple(_mode(kind, cost) for kind, cost in _ALSO.get(name, ()))
+
+
+def _modes_of_meanings(name: str, meanings: tuple[tuple[str, float], ...]) -> tuple[SizeMode, ...]:
+    """The likeliest mode of every other kind that a word may mean and that is held alike, dearer where it is rarer."""
+    shares = dict(meanings)
+    own, held = max(shares.get(name, 0.0), MIN_SHARE), _held(name)
+    others = [(kind, share) for kind, share in meanings if kind != name and share >= MIN_SHARE and _held(kind) == held]
+    usual = _log_breadth(_own_modes(name)[0])
+    found = []
+    for kind, share in others[:MAX_MEANINGS]:
+        mode = _own_modes(kind)[0]
+        rarer = 2.0 * (float(np.log(own / share)) + _log_breadth(mode) - usual)
+        found.append(replace(mode, cost=max(0.0, rarer)))
+    return tuple(found)
+
+
+def _log_breadth(mode: SizeMode) -> float:
+    """Logarithm of the volume of one sigma: a wide mode explains more, each size less well."""
+    return -float(np.linalg.slogdet(mode.whitening)[1])
+
+
+def _held(name: str) -> str:
+    """What holds things of a kind: a wall, the ceiling, or what they stand on."""
+    mount = category(name).mount
+    return mount if mount in ("wall", "ceiling") else "stands"
 
 
 SMALL_M, SMALL_SIGMA_M = 0.55, 0.12
 """Portable things lower than this are more often found on furniture than on the floor."""
-PORTABLE = with_kin("plant", "box", "basket", "speaker", "fan", "heater", "wine rack") - {"hanging plant", "suitcase"}
 
 
 def standing_costs(name: str, mode: SizeMode) -> tuple[float, float]:

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.library.taxonomy import UNKNOWN, with_kin
+from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, with_kin
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.priors import (
-    PORTABLE,
     SizeMode,
     hanging_modes,
     hung_modes,
