@@ -23,10 +23,15 @@ _CONTACT_BAND = (0.012, 0.06)
 """Before the feet of things, beyond their contact shadows: distances below masks, as shares of the photo's height."""
 _WITHOUT_CONTACT = 0.2
 """How much a colour counts that is seen at nobody's feet, beside one that is at all of them."""
-_USUAL_LAB = np.array([52.0, 5.0, 12.0])
+_USUAL_LAB = np.array([58.0, 5.0, 12.0])
 """Floors' colours in a photo whose brightest parts are white: wood, carpet, tiles; hardly black, white or blue."""
-_USUAL_AXES = np.array([[1.0, 0.0, 0.0], [0.0, 0.45, 0.89], [0.0, 0.89, -0.45]]) / np.array([[20.0], [17.0], [9.0]])
+_USUAL_AXES = np.array([[1.0, 0.0, 0.0], [0.0, 0.45, 0.89], [0.0, 0.89, -0.45]]) / np.array([[24.0], [20.0], [9.0]])
 """They vary in lightness, from grey to the orange of pine boards, and less across: by these deviations."""
+_SHADE_LAB, _SHADE_COVER = np.array([6.0, 6.0]), 1.5
+"""A dark colour is another's shade when its a and b are this near to those of the lighter one, darkened, which covers
+so many times as much."""
+_BLACK_L = 16.0
+"""Darkening moves a colour of CIELAB towards L = -16, a = b = 0: the cube root of its definition."""
 _WHITE_SHARE = 95.0
 """Percentile of the photo's lightness that is about white."""
 _SPREADS = 3.0
@@ -139,18 +144,26 @@ def _main_colour(
 ) -> Float[np.ndarray, "3"]:
     """The colour that covers much of the photo, lies far apart, is at the feet of things, and is usual for floors."""
     at_feet = max(float(weight[contact].sum()), 1e-12)
-    best, main = -1.0, np.median(lab, axis=0)
+    found, covers, scores = [], [], []
     for cell in _cells(lab, weight):
         alike = (np.abs(lab - cell) < _CELL_LAB).all(axis=1)
         spread = float(places[alike].var(axis=0).sum()) ** 0.5 if alike.sum() > 1 else 0.0
         touched = float(weight[alike & contact].sum()) / at_feet
         middle = np.median(lab[alike], axis=0) if alike.any() else cell
         off = _USUAL_AXES @ (middle * np.array([100.0 / white, 1.0, 1.0]) - _USUAL_LAB)
-        usual = float(np.exp(-0.5 * (off**2).sum()))
-        score = float(weight[alike].sum()) * spread * (_WITHOUT_CONTACT + touched) * usual
-        if score > best:
-            best, main = score, middle
-    return main
+        found.append(middle)
+        covers.append(float(weight[alike].sum()) * spread * (_WITHOUT_CONTACT + touched))
+        scores.append(covers[-1] * float(np.exp(-0.5 * (off**2).sum())))
+    return _lit(int(np.argmax(scores)), np.array(found), np.array(covers))
+
+
+def _lit(best: int, found: Float[np.ndarray, "k 3"], covers: Float[np.ndarray, "k"]) -> Float[np.ndarray, "3"]:
+    """A colour, or the lighter one that it is a shade of and that covers clearly more."""
+    main = found[best]
+    darkened = found[:, 1:] * ((main[0] + _BLACK_L) / (found[:, :1] + _BLACK_L))
+    shade = (np.abs(darkened - main[1:]) < _SHADE_LAB).all(axis=1) & (found[:, 0] > main[0] + _SHADOW_L)
+    lighter = shade & (covers > _SHADE_COVER * covers[best])
+    return np.asarray(found[int(np.argmax(np.where(lighter, covers, 0.0)))] if lighter.any() else main)
 
 
 def _cells(lab: Float[np.ndarray, "n 3"], weight: Float[np.ndarray, "n"]) -> Float[np.ndarray, "k 3"]:
