@@ -21,7 +21,7 @@ _CELLS_TRIED = 8
 _SAMPLES = 4000
 _CONTACT_BAND = (0.012, 0.06)
 """Before the feet of things, beyond their contact shadows: distances below masks, as shares of the photo's height."""
-_WITHOUT_CONTACT = 0.2
+_WITHOUT_CONTACT = 0.15
 """How much a colour counts that is seen at nobody's feet, beside one that is at all of them."""
 _USUAL_LAB = np.array([58.0, 5.0, 12.0])
 """Floors' colours in a photo whose brightest parts are white: wood, carpet, tiles; hardly black, white or blue."""
