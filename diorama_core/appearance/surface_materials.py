@@ -85,27 +85,69 @@ def slot_pixels(
     shown = view.of(unhidden) & (cv2.erode((view.slot >= 0).astype(np.uint8), np.ones((5, 5), np.uint8)) > 0)
     together = seen.sum() >= MIN_OUTLINED * shown.sum()
     lab = cv2.cvtColor(np.ascontiguousarray(colours, dtype=np.float32) / 255.0, cv2.COLOR_RGB2Lab)
-    found = []
+    of_slots: dict[int, Bool[np.ndarray, "gh gw"]] = {}
     for index, slot in enumerate(slots):
         mine, posed = seen & (view.slot == index), shown & (view.slot == index)
         if together and mine.sum() < MIN_OUTLINED * posed.sum():
             mine = posed
         count = int(mine.sum())
         read = slot.role in READ_ROLES or (slot.main and slot.role == "glass")
-        if not read or count * view.step**2 < MIN_PIXELS or count < MIN_VISIBLE * max(seen.sum(), shown.sum()):
-            continue
-        near = _main_pixels(lab, mine)
-        if near.sum() >= MIN_SHARE * count:
-            found.append(SlotPixels(slot, index, near, mine))
+        if read and count * view.step**2 >= MIN_PIXELS and count >= MIN_VISIBLE * max(seen.sum(), shown.sum()):
+            of_slots[index] = mine
+    beside = view.of(unhidden) & ~view.of(visible) & (view.slot < 0)
+    seeds = _own_colours(lab, of_slots, beside)
+    found = []
+    for index, mine in of_slots.items():
+        near = mine & _alike(lab, seeds[index])
+        if near.sum() >= MIN_SHARE * mine.sum():
+            found.append(SlotPixels(slots[index], index, near, mine))
     return tuple(found)
 
 
-def _main_pixels(lab: Float32[np.ndarray, "gh gw 3"], mine: Bool[np.ndarray, "gh gw"]) -> Bool[np.ndarray, "gh gw"]:
-    """Pixels about the fullest bin of a coarse Lab grid: shade varies over one surface, hue hardly."""
+def _own_colours(
+    lab: Float32[np.ndarray, "gh gw 3"],
+    of_slots: Mapping[int, Bool[np.ndarray, "gh gw"]],
+    beside: Bool[np.ndarray, "gh gw"],
+) -> dict[int, Float32[np.ndarray, "3"]]:
+    """The colour of every slot: of those that cover much of it, the first that is not rather its neighbour's.
+
+    A pose a little off, a duvet that hangs over its bed, and the floor between legs put other colours on a slot. Such
+    a colour covers more of another slot, or of what is `beside` the object; where a slot has no other it keeps it.
+    """
+    options = {index: _colours_of(lab, mine) for index, mine in of_slots.items()}
+    seeds = {index: own[0] for index, own in options.items()}
+    for index, mine in of_slots.items():
+        others = [(of_slots[k], seeds[k]) for k in of_slots if k != index]
+        for seed in options[index]:
+            share = _share(lab, mine, seed)
+            elsewhere = [_share(lab, where, seed) for where, main in others if _is_near(main - seed)]
+            elsewhere += [_share(lab, beside, seed)] if beside.sum() >= MIN_PIXELS else []
+            if share >= max(elsewhere, default=0.0):
+                seeds[index] = seed
+                break
+    return seeds
+
+
+def _colours_of(lab: Float32[np.ndarray, "gh gw 3"], mine: Bool[np.ndarray, "gh gw"]) -> list[Float32[np.ndarray, "3"]]:
+    """Medians of the bins of a coarse Lab grid that hold much of a slot, the fullest first."""
     pixels = lab[mine]
     _, label, counts = np.unique(np.floor(pixels / BIN_LAB), axis=0, return_inverse=True, return_counts=True)
-    seed = np.median(pixels[label.ravel() == int(np.argmax(counts))], axis=0)
-    return mine & (np.linalg.norm((lab - seed) / (2.0, 1.0, 1.0), axis=-1) < NEAR_LAB)
+    order = np.argsort(-counts, kind="stable")
+    much = [k for k in order if k == order[0] or counts[k] >= MIN_SHARE * len(pixels)]
+    return [np.median(pixels[label.ravel() == k], axis=0) for k in much]
+
+
+def _share(lab: Float32[np.ndarray, "gh gw 3"], where: Bool[np.ndarray, "gh gw"], seed: np.ndarray) -> float:
+    return float(_alike(lab, seed)[where].mean())
+
+
+def _alike(lab: Float32[np.ndarray, "gh gw 3"], seed: np.ndarray) -> Bool[np.ndarray, "gh gw"]:
+    """Pixels of about one colour: shade varies over one surface, hue hardly."""
+    return np.asarray(_is_near(lab - seed))
+
+
+def _is_near(difference: np.ndarray) -> np.ndarray:
+    return np.asarray(np.linalg.norm(difference / (2.0, 1.0, 1.0), axis=-1) < NEAR_LAB)
 
 
 def shade_of(view: SurfaceView, pixels: SlotPixels, rgb: UInt8[np.ndarray, "h w 3"]) -> Shade:

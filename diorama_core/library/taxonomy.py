@@ -299,7 +299,7 @@ PORTABLE = with_kin("plant", "box", "basket", "speaker", "fan", "heater", "wine 
 _OTHER_THINGS = frozenset({
     "beam", "belt", "bird", "bolt", "boot", "bread", "cable", "cake", "car", "cat", "coat", "coin", "cord", "corn",
     "cow", "deer", "dress", "face", "fence", "fish", "flag", "food", "foot", "glove", "goat", "grass", "hammer",
-    "hand", "hat", "head", "hook", "horse", "leaf", "letter", "lid", "man", "meat", "menu", "nail", "pen", "person",
+    "hand", "hat", "head", "hook", "horse", "ladder", "leaf", "letter", "lid", "man", "meat", "menu", "nail", "pen", "person",
     "pet", "pipe", "plug", "rail", "road", "rope", "sign", "skateboard", "sky", "snow", "socket", "step", "switch",
     "tent", "tile", "train", "truck", "vent", "wall", "wheel", "wire",
 })  # fmt: skip

@@ -66,3 +66,23 @@ def test_a_mask_that_is_elsewhere_is_not_replaced_by_the_shape() -> None:
     little[70:84, 90:112] = True
     (body,) = slot_pixels(view, slots, rgb, mask & little, mask)
     assert body.mine.sum() <= little.sum()
+
+
+def test_a_duvet_that_hangs_over_the_frame_is_no_colour_of_the_frame() -> None:
+    view, slots, rgb, mask, light = seen()
+    body, wood = (next(k for k, s in enumerate(slots) if s.role == role) for role in ("fabric", "wood"))
+    rows = np.argwhere(view.slot == wood)
+    over = rows[rows[:, 0] < np.quantile(rows[:, 0], 0.6)]
+    hung = rgb.copy()
+    hung[over[:, 0] + view.top, over[:, 1] + view.left] = np.median(view.of(rgb)[view.slot == body], axis=0)
+    (_, frame) = slot_pixels(view, slots, hung, mask, mask)
+    assert frame.slot.role == "wood"
+    found = appearance_of(view, frame, hung, light)
+    np.testing.assert_allclose(found.colour, linear_to_srgb(np.array(ALBEDO["wood"])), atol=0.02)
+
+
+def test_an_object_of_one_colour_keeps_it_on_all_its_slots() -> None:
+    view, slots, rgb, mask, _ = seen()
+    rgb[mask] = (200, 190, 180)
+    (body, frame) = slot_pixels(view, slots, rgb, mask, mask)
+    np.testing.assert_allclose(*(np.median(view.of(rgb)[p.near], axis=0) for p in (body, frame)))

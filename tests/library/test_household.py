@@ -28,7 +28,7 @@ from diorama_core.library.furniture import materials as m
 from diorama_core.library.furniture.materials import Material, pbr, picture_bytes
 from diorama_core.library.furniture.model import Design, built
 from diorama_core.library.furniture.prints import PRINTS
-from diorama_core.library.taxonomy import resolve
+from diorama_core.library.taxonomy import UNKNOWN, resolve
 from diorama_core.render.appearance import shape_surfaces
 from diorama_core.render.world import Placed, World
 
@@ -125,3 +125,22 @@ def test_light_passes_through_glass_but_not_through_clay(tmp_path: Path) -> None
         world = World([Placed(shape_surfaces(library, shape_id), np.eye(4), 0)])
         assert world.caster.first_hits(across).found.all()
         assert bool(world.shadow_caster().occluded(across, far=1.0)[0]) is blocked
+
+
+@pytest.mark.parametrize(
+    ("word", "category"),
+    [("chiar", "chair"), ("tabel", "table"), ("lmap", "lamp"), ("wardrob", "wardrobe"), ("nightsand", "night stand"),
+     ("armchiar", "armchair"), ("refridgerator", "refrigerator")],
+)  # fmt: skip
+def test_slips_are_understood(word: str, category: str) -> None:
+    found = resolve(word)
+    assert found.category.name == category
+    assert "read as" in found.note
+
+
+@pytest.mark.parametrize(
+    "word",
+    ["cat", "cats", "dog", "person", "wall", "floor", "cable", "fish", "car", "boots", "ladder", "food", "hammer"],
+)
+def test_words_of_other_things_are_no_slips(word: str) -> None:
+    assert resolve(word).category is UNKNOWN

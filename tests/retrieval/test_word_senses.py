@@ -30,13 +30,17 @@ def seen(word: str, kind: str, bottom_m: float, place=(0.0, 4.0), height_m: floa
     return DetectedObject(name, resolve(word).category.name, word, tuple(map(float, box)), mask, number, 1.0)
 
 
-def kind_of(*objects) -> list[str]:
+def understood(*objects) -> tuple[DetectedObject, ...]:
     estimate = CameraEstimate(
         (CameraHypothesis(K, LEVEL, 1.0),),
         1.0,
         CameraSource(FocalSource.GIVEN, AttitudeSource.GIVEN, HeadingSource.GIVEN),
     )
-    return [o.category for o in with_word_senses(objects, estimate)]
+    return with_word_senses(objects, estimate)
+
+
+def kind_of(*objects) -> list[str]:
+    return [o.category for o in understood(*objects)]
 
 
 @pytest.mark.parametrize(
@@ -72,3 +76,13 @@ def test_probabilities_add_up_whatever_the_cameras_height(height_m) -> None:
 
 def test_words_that_mean_one_kind_stay() -> None:
     assert kind_of(seen("refrigerator", "lamp", 2.0)) == ["refrigerator"]
+
+
+def test_geometry_is_told_what_else_a_word_may_mean() -> None:
+    cabinet, fridge = understood(
+        seen("cabinet", "sideboard", 0.0), seen("refrigerator", "refrigerator", 0.0, (1, 3), number=2)
+    )
+    kinds, shares = zip(*cabinet.meanings, strict=True)
+    assert {"cabinet", "sideboard"} <= set(kinds)
+    assert list(shares) == sorted(shares, reverse=True)
+    assert fridge.meanings == ()

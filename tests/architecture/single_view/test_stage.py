@@ -94,6 +94,35 @@ def test_a_corner_stays_where_it_is_seen_when_something_stands_through_one_of_it
     assert corner == pytest.approx(np.degrees(np.arctan2(-2.0, 4.0)), abs=0.2)
 
 
+def test_what_could_stand_on_furniture_does_not_move_the_wall_that_it_would_be_behind():
+    shot = shoot(look(10, 10), box_room(-2.0, 2.0, 4.0, 2.6), FURNITURE)
+    before = wall_facing(reconstruct(shot), (0, -1, 0))
+    behind = cuboid("plant", (0.3, 5.2, 0), (0.6, 0.6, 1.0))
+    item = replace(shot.objects[0], id=behind.object_id, category="plant", mask=np.zeros_like(shot.objects[0].mask))
+    geometry = replace(shot.geometry, cuboids=(*shot.geometry.cuboids, behind))
+    after = wall_facing(reconstruct(replace(shot, objects=(*shot.objects, item)), geometry), (0, -1, 0))
+    assert before is not None
+    assert after is not None
+    assert after.polygon[0, 1] == pytest.approx(before.polygon[0, 1], abs=0.05)
+
+
+def test_one_doubtful_thing_far_behind_a_clear_wall_does_not_move_it_but_several_sure_ones_do():
+    shot = shoot(look(10, 10), box_room(-2.0, 2.0, 4.0, 2.6), FURNITURE)
+    there = wall_facing(reconstruct(shot), (0, -1, 0))
+    assert there is not None
+
+    def wall_with(*things):
+        geometry = replace(shot.geometry, cuboids=(*shot.geometry.cuboids, *things))
+        found = wall_facing(reconstruct(shot, geometry), (0, -1, 0))
+        assert found is not None
+        return float(found.polygon[0, 1])
+
+    doubtful = replace(cuboid("sofa", (0.2, 5.0, 0), (0.9, 1.8, 0.8)), confidence=0.15)
+    assert wall_with(doubtful) == pytest.approx(there.polygon[0, 1], abs=0.05)
+    row = [replace(cuboid(f"shelf_{k}", (-0.9 + 0.7 * k, 4.1, 0), (0.5, 0.6, 1.8)), confidence=0.9) for k in range(3)]
+    assert wall_with(*row) > max(c.corners_world[:, 1].max() for c in row)
+
+
 def test_every_pixel_sees_the_room():
     from diorama_core.geometry.casting import camera_rays, cast_planes
 

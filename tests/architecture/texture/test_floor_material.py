@@ -87,3 +87,16 @@ def test_contact_is_a_little_below_masks_and_in_no_other():
 
 def test_the_white_of_a_dark_photo_is_dark():
     assert white_level(np.full((50, 50, 3), 60, np.uint8)) < 30 < white_level(np.full((50, 50, 3), 250, np.uint8))
+
+
+@pytest.mark.parametrize(("light", "dark"), [((236, 196, 140), (133, 106, 72)), ((205, 200, 190), (110, 107, 101))])
+def test_a_dark_colour_that_a_lighter_one_covers_more_is_its_shade(light, dark):
+    rgb = np.concatenate([np.full((900, 3), light), np.full((400, 3), dark)]).astype(np.uint8)
+    places = np.random.default_rng(0).uniform(0, 100, (1300, 2))
+    assert np.allclose(np.array(floor_colour(rgb, places, 95.0)) * 255, light, atol=2)
+
+
+def test_a_dark_floor_beside_as_much_of_a_light_thing_stays_dark():
+    rgb = np.concatenate([np.full((500, 3), (236, 196, 140)), np.full((450, 3), (133, 106, 72))]).astype(np.uint8)
+    places = np.random.default_rng(0).uniform(0, 100, (950, 2))
+    assert np.allclose(np.array(floor_colour(rgb, places, 95.0)) * 255, (133, 106, 72), atol=2)

@@ -78,3 +78,14 @@ def test_unnamed_objects_are_furniture_on_the_floor_small_on_top_flat_on_walls_a
 @pytest.mark.parametrize(("depth", "square"), [(0.5, True), (0.54, True), (0.6, False)])
 def test_square_sizes_need_no_quarter_turn(depth: float, square: bool) -> None:
     assert plain_mode(np.log([depth, 0.5, 0.9]), np.ones(3), 0.0, "chair").square is square
+
+
+def test_what_a_word_may_mean_here_takes_the_place_of_what_it_is_said_of() -> None:
+    meanings = (("cabinet", 0.6), ("sideboard", 0.3), ("wall cabinet", 0.08), ("locker", 0.001))
+    own = len(own_modes(category("cabinet")))
+    extra = size_modes("cabinet", meanings)[own:]
+    assert len(extra) == 1, "what hangs on walls does not stand here, and lockers are too rare"
+    np.testing.assert_array_equal(extra[0].log_size, size_modes("sideboard")[0].log_size)
+    assert extra[0].cost >= 0
+    likelier = size_modes("cabinet", (("sideboard", 0.6), ("cabinet", 0.3)))[own:]
+    assert likelier[0].cost <= extra[0].cost
