@@ -165,11 +165,10 @@ class Editor:
         gui = client.viser_client.gui
         gui.main_panel.dock_left()
         gui.main_panel.set_width(LEFT_WIDTH_PX)
-        gestures = self._gestures[client.id] = Gestures(client, self._collisions)
+        client.handles = self._gestures[client.id] = Gestures(client, self._collisions)
         toolbar = Toolbar(gui, client, self.commands)
         client.job_panel = job_strip = JobStrip(gui, client)
         panels: list[Panel] = [
-            gestures,
             toolbar,
             job_strip,
             UnsavedChanges(gui, client),

@@ -1,9 +1,11 @@
-"""Compose the bundled example: a furnished room of built-in shapes, photographed from eye height.
+"""Compose the bundled example: a furnished room of built-in shapes, path-traced by day from eye height.
 
-Writes `assets/example/photo.jpg`, `boxes.json` (what a person would draw, from what is truly visible) and
-`intrinsics.json`. The same picture every time.
+Writes `assets/example/photo.jpg` (a rendering through the model of a camera: exposure, white balance, fall-off and
+noise), `boxes.json` (what a person would draw, from what is truly visible), `intrinsics.json` and `project/`, the scene
+that the pipeline makes of them. The picture needs Blender's Python module (`DIORAMA_BLENDER_PYTHON`, see
+`docs/export.md`) and six minutes of a free core; with `--project-only` the picture stays and Blender is not needed.
 
-    python scripts/make_example.py [--out assets/example] [--draft]
+    python scripts/make_example.py [--out assets/example] [--draft] [--project-only]
 """
 
 from __future__ import annotations
@@ -12,24 +14,42 @@ import argparse
 import json
 import shutil
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 from PIL import Image
 from scipy.ndimage import gaussian_filter
 
+from diorama_app.projects.example import PHOTO_NAME
+from diorama_core.errors import UnavailableError
+from diorama_core.export.blender import missing_blender
+from diorama_core.export.cycles import Lens, Opening, Outdoors, cycles_radiance
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.inputs import read_inputs
 from diorama_core.project.build import build_project
 from diorama_core.project.storage import Project
-from diorama_core.render.lighting import Effort, Lighting
-from diorama_core.render.picture import looking_along, picture
+from diorama_core.render.picture import looking_along
 from diorama_core.render.raycast import MeshCaster, OrthographicView, render_buffers
 from diorama_core.scene.types import Architecture, Camera, Intrinsics, Plane, Pose, Scene, SceneObject, yaw_rotation
+from diorama_core.synthesis.photograph import photographed
 
-SIZE = (1280, 960)
+SIZE, DRAFT = (1280, 960), (640, 480)
 LEFT, RIGHT, NEAR, FAR, HEIGHT = -2.9, 2.9, -1.6, 5.55, 2.55
+SEED = 7
+SKY = np.array([6.0, 6.9, 8.0])
+"""Radiance of a bright, lightly clouded sky, W/(m2 sr)."""
+SUN = np.array([16.0, 13.5, 10.0])
+"""Irradiance of the low sun through net curtains, W/m2."""
+SUN_FROM = np.array([-0.74, -0.30, 0.60])
+SUN_ANGLE_RAD = 0.03
+WHITE = np.array([1.0, 0.89, 0.80])
+"""Colour of the daylight between the room's own walls and boards."""
+LENS = Lens(focus_m=4.2, aperture_m=0.004)
+"""Of a compact camera at f/2.8: what is near is a little soft."""
+FRAME_M = 0.05
+"""Width of a window's frame and bars."""
 HANGING = float("inf")
 """Height of what hangs from the ceiling."""
 TO_VIEWER, TO_RIGHT, TO_LEFT = -90.0, 0.0, 180.0
@@ -56,38 +76,39 @@ class Item:
 
 ITEMS = (
     Item("rug", "rug-persian-red", 1.05, 3.6, TO_RIGHT),
-    Item("sofa", "sofa-blue-two", 1.3, 5.07),
-    Item("pillow", "pillow-rust", 0.86, 5.1, -80.0, lean_deg=14.0),
-    Item("pillow", "pillow-striped", 1.76, 5.1, -98.0, lean_deg=14.0),
-    Item("coffee table", "coffee-table-walnut-oval", 0.98, 3.4),
+    Item("sofa", "sofa-blue-two", 1.5, 5.07),
+    Item("pillow", "pillow-rust", 1.06, 5.1, -80.0, lean_deg=14.0),
+    Item("pillow", "pillow-striped", 1.96, 5.1, -98.0, lean_deg=14.0),
+    Item("coffee table", "coffee-table-waterfall-walnut", 0.98, 3.4),
     Item("plant", "plant-flowering", 1.26, 3.43),
-    Item("books", "books-stack-large", 0.74, 3.38, -65.0),
-    Item("mug", "cup-mug-white", 0.99, 3.24, 40.0),
-    Item("armchair", "armchair-lounge-oak", 2.2, 4.0, 165.0),
-    Item("side table", "side-table-tripod-oak", 2.52, 5.2),
-    Item("lamp", "lamp-urn-blue", 2.52, 5.2),
-    Item("floor lamp", "floor-lamp-tripod-oak", 0.25, 5.2),
-    Item("picture", "picture-seascape-gilt", 1.3, FAR - 0.02, base_m=1.3),
-    Item("picture", "picture-botanic", 2.3, FAR - 0.015, base_m=1.38),
-    Item("clock", "clock-round-oak", -1.0, FAR - 0.025, base_m=1.7),
-    Item("bookshelf", "bookshelf-oak-four", -0.45, 5.38),
-    Item("books", "books-row", -0.62, 5.4, base_m=1.23, drawn=False),
-    Item("vase", "vase-moon-stone", -0.18, 5.38, base_m=1.23, drawn=False),
-    Item("books", "books-row-long", -0.45, 5.4, base_m=0.856, drawn=False),
-    Item("books", "books-stack-small", -0.7, 5.38, -70.0, base_m=0.476, drawn=False),
-    Item("books", "books-row", -0.32, 5.4, base_m=0.476, drawn=False),
-    Item("basket", "basket-shelf", -0.63, 5.38, base_m=0.1, drawn=False),
-    Item("basket", "basket-shelf", -0.24, 5.38, base_m=0.1, drawn=False),
-    Item("plant", "plant-aloe", -0.45, 5.38),
-    Item("mirror", "mirror-round-brass", -1.75, FAR - 0.02, base_m=0.85),
+    Item("bowl", "bowl-stoneware", 0.7, 3.36),
+    Item("mug", "cup-mug-white", 1.0, 3.24, 40.0),
+    Item("armchair", "armchair-lounge-oak", 2.08, 3.95, 165.0),
+    Item("side table", "side-table-tripod-oak", 2.6, 5.2),
+    Item("lamp", "lamp-urn-blue", 2.6, 5.2),
+    Item("floor lamp", "floor-lamp-tripod-oak", -0.74, 5.22),
+    Item("picture", "picture-seascape-gilt", 1.48, FAR - 0.02, base_m=1.3),
+    Item("picture", "picture-botanic", 2.4, FAR - 0.015, base_m=1.38),
+    Item("clock", "clock-round-oak", -1.1, FAR - 0.025, base_m=1.75),
+    Item("bookshelf", "bookshelf-oak-four", 0.2, 5.38),
+    Item("books", "books-row", 0.03, 5.4, base_m=1.23),
+    Item("vase", "vase-moon-stone", 0.47, 5.38, base_m=1.23),
+    Item("vase", "vase-bottle-white", -0.05, 5.38, base_m=0.856),
+    Item("books", "books-row", 0.34, 5.4, base_m=0.856),
+    Item("books", "books-stack-small", -0.05, 5.38, -70.0, base_m=0.476),
+    Item("books", "books-row", 0.3, 5.4, base_m=0.476, drawn=False),
+    Item("basket", "basket-shelf", 0.02, 5.38, base_m=0.1),
+    Item("basket", "basket-shelf", 0.41, 5.38, base_m=0.1),
+    Item("plant", "plant-aloe", 0.2, 5.38),
+    Item("mirror", "mirror-round-brass", -1.8, FAR - 0.02, base_m=0.85),
     Item("plant", "plant-fiddle", -2.42, 4.85),
-    Item("dining table", "table-round-oak", -1.12, 3.5),
-    Item("vase", "vase-moon-stone", -1.22, 3.58),
-    Item("bowl", "bowl-wood", -0.88, 3.38),
-    Item("chair", "chair-windsor-oak", -0.42, 3.6, 186.0),
-    Item("chair", "chair-windsor-oak", -1.0, 4.22, -95.0),
-    Item("chair", "chair-windsor-oak", -1.76, 3.74, -22.0),
-    Item("ceiling lamp", "ceiling-lamp-wicker-bell", -1.12, 3.5, base_m=HANGING),
+    Item("dining table", "table-oak-classic", -1.1, 3.6, TO_RIGHT),
+    Item("vase", "vase-moon-stone", -1.18, 3.9),
+    Item("bowl", "bowl-wood", -1.02, 3.3),
+    Item("chair", "chair-slat-oak", -0.44, 3.5, 184.0),
+    Item("chair", "chair-slat-oak", -1.74, 3.95, 2.0),
+    Item("chair", "chair-slat-oak", -1.12, 4.66, -91.0),
+    Item("ceiling lamp", "ceiling-lamp-wicker-bell", -1.1, 3.6, base_m=HANGING),
 )
 
 
@@ -114,25 +135,90 @@ def ground_below(library: ShapeLibrary, placed: list[SceneObject], x: float, y: 
     return 4.0 - float(depth) if depth > 0 else 0.0
 
 
+@dataclass(frozen=True)
+class Window:
+    """A hole in a wall, from left to right as seen from inside (metres along the wall) and from bottom to top."""
+
+    start: float
+    stop: float
+    sill: float
+    head: float
+
+
+WINDOWS = {
+    "left": (Window(1.5, 2.9, 0.8, 2.25), Window(3.9, 5.3, 0.8, 2.25)),
+    "behind": (Window(0.9, 2.7, 0.5, 2.25),),
+}
+
+
 def room() -> Architecture:
-    """Warm white walls, one of them sage, and an oak floor."""
+    """Warm white walls, one of them sage, and an oak floor; windows to the left and behind the camera, out of sight."""
     floor = np.array([[LEFT, NEAR, 0], [RIGHT, NEAR, 0], [RIGHT, FAR, 0], [LEFT, FAR, 0]])
     white, sage = (0.93, 0.915, 0.885), (0.70, 0.735, 0.68)
-
-    def wall(name: str, a: tuple[float, float], b: tuple[float, float], colour: tuple[float, float, float]) -> Plane:
-        polygon = np.array([[*a, 0], [*b, 0], [*b, HEIGHT], [*a, HEIGHT]])
-        return Plane(name, "wall", polygon, colour=colour)
-
     return Architecture(
         (
             Plane("floor", "floor", floor, texture="planks"),
             Plane("ceiling", "ceiling", floor[::-1] + np.array([0, 0, HEIGHT]), colour=(0.96, 0.955, 0.945)),
-            wall("back", (LEFT, FAR), (RIGHT, FAR), sage),
-            wall("left", (LEFT, NEAR), (LEFT, FAR), white),
-            wall("right", (RIGHT, FAR), (RIGHT, NEAR), white),
-            wall("behind", (RIGHT, NEAR), (LEFT, NEAR), white),
+            *wall("back", sage),
+            *wall("left", white),
+            *wall("right", white),
+            *wall("behind", white),
         )
     )
+
+
+CORNERS = {
+    "back": ((LEFT, FAR), (RIGHT, FAR)),
+    "left": ((LEFT, NEAR), (LEFT, FAR)),
+    "right": ((RIGHT, FAR), (RIGHT, NEAR)),
+    "behind": ((RIGHT, NEAR), (LEFT, NEAR)),
+}
+"""Where each wall starts and stops, from left to right as seen from inside."""
+
+
+def wall(name: str, colour: tuple[float, float, float]) -> list[Plane]:
+    """A wall as rectangles around its windows, and the bars of these."""
+    start, stop = (np.array([*corner, 0.0]) for corner in CORNERS[name])
+    length = float(np.linalg.norm(stop - start))
+    along, up = (stop - start) / length, np.array([0.0, 0.0, 1.0])
+    pieces, at = [], 0.0
+    for window in WINDOWS.get(name, ()):
+        pieces += [(at, window.start, 0.0, HEIGHT), (window.start, window.stop, 0.0, window.sill)]
+        pieces += [(window.start, window.stop, window.head, HEIGHT), *bars(window)]
+        at = window.stop
+    pieces.append((at, length, 0.0, HEIGHT))
+    return [
+        Plane(
+            f"{name}-{number}",
+            "wall",
+            np.array([start + along * x + up * z for x, z in ((a, low), (b, low), (b, high), (a, high))]),
+            colour=colour,
+        )
+        for number, (a, b, low, high) in enumerate(pieces)
+    ]
+
+
+def bars(window: Window) -> list[tuple[float, float, float, float]]:
+    """The frame of a window and a cross in it, as start, stop, bottom and top."""
+    x = (window.start, (window.start + window.stop - FRAME_M) / 2, window.stop - FRAME_M)
+    z = (window.sill, 0.35 * window.sill + 0.65 * window.head, window.head - FRAME_M)
+    upright = [(a, a + FRAME_M, window.sill, window.head) for a in x]
+    level = [(a + FRAME_M, b, low, low + FRAME_M) for a, b in pairwise(x) for low in z]
+    return upright + level
+
+
+def openings() -> tuple[Opening, ...]:
+    """The windows as holes through which daylight comes, just outside the walls."""
+    found = []
+    for name, windows in WINDOWS.items():
+        start, stop = (np.array([*corner, 0.0]) for corner in CORNERS[name])
+        along = (stop - start) / np.linalg.norm(stop - start)
+        inward = np.array([along[1], -along[0], 0.0])
+        for window in windows:
+            middle = start + along * (window.start + window.stop) / 2 - inward * 0.08
+            middle = middle + np.array([0.0, 0.0, (window.sill + window.head) / 2])
+            found.append(Opening(middle, inward, window.stop - window.start, window.head - window.sill))
+    return tuple(found)
 
 
 def planks(pixels_per_metre: int = 260, seed: int = 7) -> np.ndarray:
@@ -156,35 +242,27 @@ def planks(pixels_per_metre: int = 260, seed: int = 7) -> np.ndarray:
     return np.clip(np.array([190, 155, 120]) * value[..., None], 0, 255).astype(np.uint8)
 
 
-def camera() -> Camera:
+def camera(size: tuple[int, int]) -> Camera:
     """Eye height, a little to the left, looking slightly down."""
     yaw, tilt = np.radians(2.5), np.radians(7.5)
     z = np.array([np.sin(yaw) * np.cos(tilt), np.cos(yaw) * np.cos(tilt), -np.sin(tilt)])
     x = np.array([np.cos(yaw), -np.sin(yaw), 0.0])
     T = np.eye(4)
     T[:3, :3], T[:3, 3] = np.stack([x, np.cross(z, x), z], axis=1), [0.0, 0.0, 1.5]
-    return Camera(Intrinsics.from_fov(*SIZE, np.radians(62.0)), T)
+    return Camera(Intrinsics.from_fov(*size, np.radians(62.0)), T)
 
 
-def daylight() -> Lighting:
-    """Low sun through the windows of the left wall, and light from the room's own white walls."""
-    return Lighting(
-        window_centre=np.array([LEFT - 0.6, 2.05, 2.0]),
-        window_edges=np.array([[0.0, 0.95, 0.0], [0.0, 0.0, 0.6]]),
-        window_irradiance=np.array([1.5, 1.34, 1.08]) * 1.15,
-        reference_m=3.6,
-        sky=np.array([0.56, 0.57, 0.585]),
-        ground=np.array([0.47, 0.435, 0.395]),
-        reach_m=1.6,
-    )
+def outdoors() -> Outdoors:
+    """A bright sky and a low sun to the left of the camera."""
+    return Outdoors(SKY, SUN, SUN_FROM / np.linalg.norm(SUN_FROM), SUN_ANGLE_RAD, openings())
 
 
-def compose(library: ShapeLibrary) -> Scene:
+def compose(library: ShapeLibrary, size: tuple[int, int] = SIZE) -> Scene:
     """The furnished room."""
     placed: list[SceneObject] = []
     for number, item in enumerate(ITEMS):
         placed.append(standing(library, item, placed, number))
-    return Scene(camera(), room(), tuple(placed))
+    return Scene(camera(size), room(), tuple(placed))
 
 
 def visible_boxes(scene: Scene, library: ShapeLibrary) -> list[dict]:
@@ -205,15 +283,21 @@ def visible_boxes(scene: Scene, library: ShapeLibrary) -> list[dict]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, default=Path(__file__).resolve().parents[1] / "assets" / "example")
-    parser.add_argument("--draft", action="store_true", help="a quick look at half size")
+    parser.add_argument("--draft", action="store_true", help="a quick look at half size, without the project")
     parser.add_argument("--project-only", action="store_true", help="keep the picture, build its project again")
     options = parser.parse_args()
+    if not options.project_only and missing_blender():
+        parser.error(f"{missing_blender()}; or keep the picture with --project-only")
     library = built_in_library()
-    if not options.project_only:
-        draw(library, options.out, options.draft)
-    build(library, options.out)
+    try:
+        if not options.project_only:
+            draw(library, options.out, options.draft)
+    except UnavailableError as error:
+        parser.error(str(error))
+    if not options.draft:
+        build(library, options.out)
 
 
 def build(library: ShapeLibrary, out: Path) -> None:
@@ -222,7 +306,7 @@ def build(library: ShapeLibrary, out: Path) -> None:
     shutil.rmtree(folder, ignore_errors=True)
     k = json.loads((out / "intrinsics.json").read_text())
     read = read_inputs(
-        out / "photo.jpg", boxes=out / "boxes.json", intrinsics=(k["fx"], k["fy"], k["cx"], k["cy"]), name="photo.jpg"
+        out / "photo.jpg", boxes=out / "boxes.json", intrinsics=(k["fx"], k["fy"], k["cx"], k["cy"]), name=PHOTO_NAME
     )
     project = Project.create(folder, name="Example")
     build_project(project, read.inputs, library, warnings=read.warnings)
@@ -234,13 +318,16 @@ def build(library: ShapeLibrary, out: Path) -> None:
 
 def draw(library: ShapeLibrary, out: Path, draft: bool) -> None:
     """The picture, its boxes and its camera."""
-    scene = compose(library)
-    size, effort = ((640, 480), Effort(2, 4)) if draft else (SIZE, Effort(8, 20))
-    look = {"textures": {"planks": planks()}, "photographed": False, "light": daylight()}
-    image = picture(scene, library, size=size, effort=effort, **look)
+    size, samples = (DRAFT, 12) if draft else (SIZE, 24)
+    scene = compose(library, size)
+    assert scene.camera is not None
+    k = scene.camera.intrinsics
+    light = cycles_radiance(
+        scene, library, outdoors(), lens=LENS, textures={"planks": planks()}, samples=samples, seed=SEED
+    )
+    image = photographed(light, k, WHITE, seed=SEED)
     out.mkdir(parents=True, exist_ok=True)
-    Image.fromarray(image).save(out / "photo.jpg", quality=90, optimize=True, subsampling=0)
-    k = camera().intrinsics
+    Image.fromarray(image).save(out / "photo.jpg", quality=88, optimize=True)
     numbers = {"width": k.width, "height": k.height, "fx": k.fx, "fy": k.fy, "cx": k.cx, "cy": k.cy}
     (out / "intrinsics.json").write_text(json.dumps(numbers, indent=1) + "\n")
     rows = ",\n ".join(json.dumps(box) for box in visible_boxes(scene, library))

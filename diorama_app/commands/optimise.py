@@ -26,6 +26,9 @@ from diorama_core.scene.types import Pose, Scene
 PREVIEW_EVERY_S = 0.05
 """A browser receives at most twenty frames a second."""
 
+CURVES_EVERY_S = 0.5
+"""The curves of a running optimiser: drawn with every picture they would be a third of what the page has to do."""
+
 GLIDE_S = 0.9
 """Duration of the animation of a layout that was computed at once."""
 
@@ -153,6 +156,10 @@ def _between(a: Pose, b: Pose, share: float) -> Pose:
 
 def _show_step(session: EditorSession, scene: Scene, run: LayoutRun, samples: Samples) -> None:
     session.preview(untouched(session.scene, run.start, scene))
+    now = time.monotonic()
+    if now - run.drawn_at < CURVES_EVERY_S:
+        return
+    run.drawn_at = now
     run.read(samples)
     for client in session.clients.values():
         if client.curves is not None:

@@ -1,4 +1,4 @@
-"""The bundled example: the scene that `scripts/make_example.py` built from its own photo, copied to be edited."""
+"""The bundled example: the scene that `scripts/make_example.py` built from its own rendering, copied to be edited."""
 
 from __future__ import annotations
 
@@ -14,6 +14,8 @@ from diorama_core.project.storage import Project
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "assets" / "example"
 NAME = "example"
+PHOTO_NAME = "rendering.jpg"
+"""What the editor calls the picture: it is no photo."""
 
 
 def example_project(projects_dir: Path) -> Project | None:
@@ -44,7 +46,7 @@ def example_project(projects_dir: Path) -> Project | None:
 
 
 def example_inputs() -> ReadInputs:
-    """The example's photo with its boxes and camera."""
+    """The example's rendering with its boxes and camera."""
     k = json.loads((EXAMPLE / "intrinsics.json").read_text())
     camera = (k["fx"], k["fy"], k["cx"], k["cy"])
-    return read_inputs(EXAMPLE / "photo.jpg", boxes=EXAMPLE / "boxes.json", intrinsics=camera)
+    return read_inputs(EXAMPLE / "photo.jpg", boxes=EXAMPLE / "boxes.json", intrinsics=camera, name=PHOTO_NAME)

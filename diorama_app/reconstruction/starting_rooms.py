@@ -9,7 +9,7 @@ from diorama_core.errors import InputError, ProjectError
 from diorama_core.progress import Progress
 
 LIVING_ROOM = "living"
-"""The bundled example, which was made from its photo."""
+"""The bundled example, which was made from its rendering."""
 
 
 def start_empty_room(client: Client, width_m: float, depth_m: float, height_m: float) -> None:

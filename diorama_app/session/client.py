@@ -64,6 +64,8 @@ class Client:
         self.plan = False
         """Whether the plan is shown in place of the 3D view."""
         self.doing: Doing = None
+        self.handles: Panel | None = None
+        """What one takes hold of in the 3D view; drawn ahead of the panels."""
         self.panels: list[Panel] = []
         self.failing: dict[str, str] = {}
         """Panels whose last redraw failed, and why."""
@@ -190,9 +192,16 @@ class Client:
         self.refresh()
 
     def refresh(self) -> None:
-        """Update this browser's marks and panels to the document."""
+        """Update this browser's marks, handles and panels to the document.
+
+        What is in the 3D view leaves at once: a hand goes there next, and the panels take several times as long.
+        """
         with self.viser_client.atomic():  # one parcel: every one of them would wake the thread that sends
             self._draw("marks", self.show_marks)
+            if self.handles is not None:
+                self._draw("handles", self.handles.refresh)
+        self.viser_client.flush()
+        with self.viser_client.atomic():
             if self.to_say is not None:
                 (message, undo), self.to_say = self.to_say, None
                 self._draw("toast", lambda: self.toast(message, undo))

@@ -31,6 +31,8 @@ class LayoutRun:
     worse: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Problems that objects have after the run and did not have before it, by id."""
     showing_before: bool = False
+    drawn_at: float = 0.0
+    """When its curves were drawn last while it ran, on the monotonic clock."""
     going: threading.Event = field(default_factory=threading.Event)
     """Clear while the run pauses."""
 

@@ -17,4 +17,20 @@
     setValue.call(field, JSON.stringify(latest));
     field.dispatchEvent(new Event("input", { bubbles: true }));
   };
+
+  // Where a redraw takes away what is pressed before it is let go, browsers send its click to what is around it: the
+  // same action in the new drawing gets one instead.
+  const ACTION = ".dio [data-do]";
+  let pressed = null;
+  addEventListener("pointerdown", (event) => {
+    pressed = event.button === 0 ? (event.target.closest?.(ACTION) ?? null) : null;
+  }, true);
+  addEventListener("pointerup", (event) => {
+    const gone = pressed && !pressed.isConnected ? pressed.dataset : null;
+    pressed = null;
+    const same = gone && event.target.closest?.(ACTION);
+    if (!same || same.disabled || same.dataset.do !== gone.do || same.dataset.arg !== gone.arg) return;
+    const { shiftKey, ctrlKey, metaKey } = event;
+    same.dispatchEvent(new MouseEvent("click", { bubbles: true, cancelable: true, shiftKey, ctrlKey, metaKey }));
+  }, true);
 })();

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-from jaxtyping import UInt8
+from jaxtyping import Float, UInt8
 from PIL import Image
 
 from diorama_core.errors import SceneError
@@ -23,6 +24,43 @@ WINDOW_W_PER_M2 = 45.0
 LAMP_W_PER_M2 = 20.0
 """Of the broad light under the ceiling of a room without windows."""
 LAMP_BY_DAY_W_PER_M2 = 4.0
+
+
+@dataclass(frozen=True, eq=False)
+class Opening:
+    """A hole in the room's walls through which daylight comes: paths that leave the room are sent there first."""
+
+    centre: Float[np.ndarray, "3"]
+    """In the world, metres."""
+    inward: Float[np.ndarray, "3"]
+    """Unit, horizontal, into the room."""
+    width_m: float
+    height_m: float
+
+
+@dataclass(frozen=True, eq=False)
+class Outdoors:
+    """What lies outside a room: a sky that is equally bright everywhere, and the sun."""
+
+    sky: Float[np.ndarray, "3"]
+    """Radiance, W/(m2 sr) in linear red, green and blue."""
+    sun: Float[np.ndarray, "3"]
+    """Irradiance of a surface that faces it, W/m2."""
+    sun_direction: Float[np.ndarray, "3"]
+    """Unit, toward the sun."""
+    sun_angle_rad: float
+    """Across its disc: 0.0093 in a clear sky, more through haze or a net curtain."""
+    openings: tuple[Opening, ...]
+
+
+@dataclass(frozen=True)
+class Lens:
+    """Depth of field."""
+
+    focus_m: float
+    """Distance, along the optical axis, of what is sharp."""
+    aperture_m: float
+    """Diameter of the entrance pupil."""
 
 
 def cycles_picture(
@@ -56,21 +94,103 @@ def cycles_picture(
     camera = camera or scene.camera
     if camera is None:
         raise SceneError("the scene has no camera; choose a view such as front or orbit:30")
-    blender_python()
-    k = camera.intrinsics
     seen = replace(scene, camera=camera, architecture=facing(scene, camera))
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        write_glb(seen, library, folder / "room.glb", textures=textures)
-        job = {
-            "glb": str(folder / "room.glb"), "png": str(folder / "room.png"), "width": k.width, "height": k.height,
-            "fx": k.fx, "fy": k.fy, "cx": k.cx, "cy": k.cy, "samples": samples, "seed": seed,
-            "lights": room_lights(scene),
-        }  # fmt: skip
-        worker = Path(__file__).with_name("cycles_worker.py")
-        run_in_blender(worker, job, name="Cycles", progress=progress, timeout_s=timeout_s)
+        job = _job(seen, library, folder, textures, samples, seed)
+        job |= {"png": str(folder / "room.png"), "lights": room_lights(scene)}
+        _traced(job, progress, timeout_s)
         with Image.open(folder / "room.png", formats=("PNG",)) as drawn:
             return np.asarray(drawn.convert("RGB"))
+
+
+def cycles_radiance(
+    scene: Scene,
+    library: ShapeLibrary,
+    outdoors: Outdoors,
+    *,
+    lens: Lens | None = None,
+    textures: Mapping[str, Picture] | None = None,
+    samples: int = 256,
+    seed: int = 0,
+    timeout_s: float = 7200.0,
+    progress: Progress | None = None,
+) -> Float[np.ndarray, "h w 3"]:
+    """Light that reaches the scene's camera by day: path-traced, linear, before any exposure; minutes on a processor.
+
+    Args:
+        scene: What to draw, with its camera; hidden objects are left out, lamps that are on shine.
+        library: Where its shapes are.
+        outdoors: Sky and sun, and the holes in the walls that they come through.
+        lens: Depth of field; None draws everything sharp.
+        textures: Pictures of the planes by `Plane.texture`.
+        samples: Paths per pixel before the denoiser.
+        seed: Of the paths.
+        timeout_s: When to give up.
+        progress: Told which sample it is at; a cancel ends Blender.
+
+    Returns:
+        Radiance, W/(m2 sr) in linear red, green and blue.
+
+    Raises:
+        UnavailableError: when Blender's module is not installed, or fails.
+        SceneError: when there is no camera.
+        Cancelled: when asked to stop.
+    """
+    if scene.camera is None:
+        raise SceneError("the scene has no camera; give it one")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        job = _job(scene, library, folder, textures, samples, seed)
+        portals = [_portal(o) for o in outdoors.openings]
+        job |= {"exr": str(folder / "room.exr"), "npy": str(folder / "room.npy"), "lights": portals}
+        sun = _rectangle(outdoors.sun_direction, _across(outdoors.sun_direction), np.zeros(3), 1.0, 1.0, 0.0)
+        job["outdoors"] = {
+            "sky": outdoors.sky.tolist(), "sun": outdoors.sun.tolist(), "sun_angle_rad": outdoors.sun_angle_rad,
+            "sun_matrix": sun["matrix"],
+        }  # fmt: skip
+        if lens is not None:
+            job["lens"] = {"focus_m": lens.focus_m, "aperture_m": lens.aperture_m}
+        _traced(job, progress, timeout_s)
+        return np.load(folder / "room.npy")
+
+
+def _job(
+    scene: Scene,
+    library: ShapeLibrary,
+    folder: Path,
+    textures: Mapping[str, Picture] | None,
+    samples: int,
+    seed: int,
+) -> dict[str, Any]:
+    """What the worker is told of a scene and its camera, whose GLB is written in the folder."""
+    blender_python()
+    assert scene.camera is not None
+    k = scene.camera.intrinsics
+    write_glb(scene, library, folder / "room.glb", textures=textures)
+    return {
+        "glb": str(folder / "room.glb"), "width": k.width, "height": k.height,
+        "fx": k.fx, "fy": k.fy, "cx": k.cx, "cy": k.cy, "samples": samples, "seed": seed,
+    }  # fmt: skip
+
+
+def _traced(job: Mapping[str, Any], progress: Progress | None, timeout_s: float) -> None:
+    worker = Path(__file__).with_name("cycles_worker.py")
+    run_in_blender(worker, job, name="Cycles", progress=progress, timeout_s=timeout_s)
+
+
+def _portal(opening: Opening) -> dict[str, object]:
+    """The hole as a light that gives none of its own: it says where daylight comes from."""
+    up = np.array([0.0, 0.0, 1.0])
+    across = np.cross(up, -opening.inward)
+    light = _rectangle(-opening.inward, across, opening.centre, opening.width_m, opening.height_m, 1.0)
+    return light | {"portal": True}
+
+
+def _across(direction: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
+    """A unit vector at right angles to one that is not vertical."""
+    across = np.cross([0.0, 0.0, 1.0], direction)
+    return across / np.linalg.norm(across)
 
 
 def facing(scene: Scene, camera: Camera) -> Architecture:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cache
+from math import fsum
 
 import numpy as np
 from jaxtyping import Float
@@ -72,15 +73,18 @@ def _in_room(own: Float[np.ndarray, "n k"], carrier_of: Sequence[int | None]) ->
     together = _together()
     upward, inward = np.ones_like(own), own.copy()
     order = _children_first(carrier_of)
-    log = 0.0
+    logs: list[float] = []
+    said: list[list[np.ndarray]] = [[] for _ in own]
     for i in order:  # what everything on a thing says of it, up to the things that nothing carries
+        if said[i]:  # sorted: the order of the objects must not show in a bit
+            inward[i] *= np.sort(np.stack(said[i]), axis=0).prod(axis=0)
         total = inward[i].sum()
         inward[i] /= total
-        log += float(np.log(total))
+        logs.append(float(np.log(total)))
         parent = carrier_of[i]
         if parent is not None:
             upward[i] = inward[i] @ together
-            inward[parent] *= upward[i]
+            said[parent].append(upward[i])
     beliefs = inward.copy()
     for i in reversed(order):  # and back down again
         parent = carrier_of[i]
@@ -88,7 +92,7 @@ def _in_room(own: Float[np.ndarray, "n k"], carrier_of: Sequence[int | None]) ->
             without = beliefs[parent] / upward[i]
             beliefs[i] = inward[i] * (together @ (without / without.sum()))
             beliefs[i] /= beliefs[i].sum()
-    return beliefs, log
+    return beliefs, fsum(logs)
 
 
 def _children_first(carrier_of: Sequence[int | None]) -> list[int]:

@@ -112,9 +112,10 @@ def sense_probabilities(
     ]
     likely = [{kind: _likelihood(view, kind) for kind in of_word} for view, of_word in zip(views, senses, strict=True)]
     usual, sigma = (_USUAL_HEIGHT_M, _HEIGHT_SIGMA_M) if height_m is None else (height_m, _MEASURED_SIGMA_M)
-    log_height = -0.5 * ((_HEIGHTS_M - np.clip(usual, _HEIGHTS_M[0], _HEIGHTS_M[-1])) / sigma) ** 2
+    said = [-0.5 * ((_HEIGHTS_M - np.clip(usual, _HEIGHTS_M[0], _HEIGHTS_M[-1])) / sigma) ** 2]
     for of_word, of_view in zip(senses, likely, strict=True):
-        log_height = log_height + np.log(sum(share * of_view[kind] for kind, share in of_word.items()))
+        said.append(np.log(sum(share * of_view[kind] for kind, share in of_word.items())))
+    log_height = np.sort(np.stack(said), axis=0).sum(axis=0)  # the order of the objects must not show in a bit
     height = np.exp(log_height - log_height.max())
     found: list[Mapping[str, float]] = []
     for of_word, of_view in zip(senses, likely, strict=True):

@@ -42,7 +42,8 @@ def test_the_rotation_arc_turns_where_it_lies_over_the_body(editor: EditorPage) 
     editor.settle()
     table = session.scene.object("table_1")
     at_rest(editor, table.pose.position)
-    gestures = next(p for p in editor.client.panels if isinstance(p, Gestures))
+    gestures = editor.client.handles
+    assert isinstance(gestures, Gestures)
     assert gestures._gizmo_key is not None
     scale = gestures._gizmo_key[2]
     # The first handles of a page take a while on a slow machine.

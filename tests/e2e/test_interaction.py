@@ -180,6 +180,31 @@ def test_supports_are_dragged_in_the_list_and_refused_with_the_reason(editor: Ed
     assert gap == pytest.approx(0.0, abs=1e-6)
 
 
+@pytest.mark.parametrize("modifiers", [(), ("Shift",)])
+def test_a_row_that_is_drawn_anew_while_it_is_pressed_is_chosen_once(
+    editor: EditorPage, modifiers: tuple[str, ...]
+) -> None:
+    session = editor.running.session
+    editor.row("dining table").click()
+    editor.until(lambda: editor.selection == ("table_1",), "the table")
+    editor.settle()
+    row = editor.page.locator('.dio .row[data-arg="chair_1"]')
+    row.evaluate("(node) => { window.__pressedRow = node; }")
+    row.locator(".name").hover()
+    for key in modifiers:
+        editor.page.keyboard.down(key)
+    editor.page.mouse.down()
+    session.ui_thread.post(lambda: session.edit("rename", lambda s: edits.rename(s, "lamp_1", "night lamp")))
+    editor.page.wait_for_function("!window.__pressedRow.isConnected")
+    editor.page.mouse.up()
+    for key in modifiers:
+        editor.page.keyboard.up(key)
+    wanted = ("table_1", "chair_1") if modifiers else ("chair_1",)
+    editor.until(lambda: editor.selection == wanted, "the row under the pointer")
+    editor.page.wait_for_timeout(300)
+    assert editor.selection == wanted  # a second click would take it out again
+
+
 def test_only_the_selection_is_optimised_compared_and_put_back(editor: EditorPage) -> None:
     session = editor.running.session
 

@@ -36,6 +36,18 @@ WATCH = """(name) => {
 }"""
 """Notes every height at which a node is drawn."""
 
+WATCH_PRAISE = """() => {
+    window.__praise = { made: false, seen: false };
+    new MutationObserver(() => {
+        for (const notice of document.querySelectorAll('.mantine-Notification-root')) {
+            if (!notice.textContent.includes('uploaded successfully')) continue;
+            window.__praise.made = true;
+            if (notice.getClientRects().length) window.__praise.seen = true;
+        }
+    }).observe(document.body, { childList: true, subtree: true, characterData: true });
+}"""
+"""Notes whether viser's notice that a file was uploaded was made, and whether it was seen."""
+
 
 def test_what_cannot_be_used_is_one_clear_notice_and_nothing_is_lost(
     editor: EditorPage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -47,12 +59,14 @@ def test_what_cannot_be_used_is_one_clear_notice_and_nothing_is_lost(
     empty = tmp_path / "empty.jpg"
     empty.write_bytes(b"")
     editor.tab("Photo")
+    editor.page.evaluate(WATCH_PRAISE)
     for path in (words, empty):
         editor.upload("Upload a photo", path)
         editor.notice(path.name)
         assert session.scene is scene
         assert session.inputs is inputs
         editor.dismiss_notices()
+    assert editor.page.evaluate("window.__praise") == {"made": True, "seen": False}
     monkeypatch.setattr(upload_limits, "MAX_UPLOAD_BYTES", 1000)
     large = tmp_path / "large.jpg"
     large.write_bytes(b"\xff" * 5000)

@@ -13,6 +13,7 @@ def test_the_example_is_copied_with_its_photo_and_retained_as_edited(tmp_path: P
     assert len(scene.objects) >= 0.9 * len(example_inputs().inputs.boxes)
     assert scene.architecture.floor is not None
     assert scene.architecture.by_role("wall")
+    assert inputs.photo.name == "rendering.jpg"  # it is called what it is where the editor shows it
     assert (inputs.photo.width, inputs.photo.height) == (
         scene.camera.intrinsics.width,
         scene.camera.intrinsics.height,
