@@ -13,6 +13,7 @@ from jaxtyping import Float, TypeCheckError
 from diorama_app.web import html
 from diorama_core.geometry.planes import fit_plane
 from diorama_core.geometry.projection import cuboid_corners
+from diorama_core.io.limited import LimitedProcess
 from diorama_core.scene.types import Architecture, Plane, Pose
 from tests import typechecking
 
@@ -62,13 +63,14 @@ def test_a_whole_number_is_a_float() -> None:
     [
         (Architecture.by_role, False),
         (html.run_once, False),
+        (LimitedProcess.call, False),
         (cuboid_corners, True),
         (fit_plane, True),
         (Pose.__init__, True),
     ],
 )
 def test_what_names_no_shapes_is_left_to_beartype(function: Any, expected: bool) -> None:
-    assert typechecking._names_shapes(function.__wrapped__) is expected
+    assert (typechecking._plain_annotations(function.__wrapped__) is None) is expected
 
 
 def test_shapes_are_found_within_other_annotations() -> None:

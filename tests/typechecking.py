@@ -15,6 +15,7 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import is_dataclass
 from functools import cache, wraps
+from types import FunctionType
 from typing import Any, get_args, get_type_hints
 from unittest import mock
 
@@ -80,25 +81,34 @@ def _alternating(unchecked: Callable[..., Any], checking: Callable[[Any], Any]) 
         if _calls[key] > CHECKED_CALLS or jaxtyping.config.jaxtyping_disable:
             return unchecked(*args, **kwargs)
         if checked is None:
-            checked = checking(unchecked) if _names_shapes(unchecked) else check(unchecked)
+            plain = _plain_annotations(unchecked)
+            checked = checking(unchecked) if plain is None else check(_annotated(unchecked, plain))
         return checked(*args, **kwargs)
 
     setattr(called, _MARK, True)
     return called
 
 
-def _names_shapes(function: Callable[..., Any]) -> bool:
-    """Whether annotations may name shapes, which jaxtyping compares with one another; beartype alone knows the others.
-
-    Annotations that cannot be read, and those of generators, are left to jaxtyping.
+def _plain_annotations(function: Callable[..., Any]) -> dict[str, Any] | None:
+    """What parameters and result are, where beartype alone can tell: shapes, which jaxtyping compares with one another,
+    annotations that cannot be read, and those of generators are left to jaxtyping (None).
     """
     if inspect.isgeneratorfunction(function) or inspect.isasyncgenfunction(function):
-        return True
+        return None
     try:
-        annotations = get_type_hints(function, include_extras=True).values()
+        annotations = get_type_hints(function, include_extras=True)
     except Exception:
-        return True
-    return any(_holds_shapes(annotation) for annotation in annotations)
+        return None
+    return None if any(_holds_shapes(annotation) for annotation in annotations.values()) else annotations
+
+
+def _annotated(function: Callable[..., Any], annotations: dict[str, Any]) -> Callable[..., Any]:
+    """The same function with the annotations themselves in place of their text."""
+    code, names = function.__code__, function.__globals__
+    same = FunctionType(code, names, function.__name__, function.__defaults__, function.__closure__)
+    same.__kwdefaults__, same.__annotations__ = function.__kwdefaults__, annotations
+    same.__module__, same.__qualname__ = function.__module__, function.__qualname__
+    return same
 
 
 def _holds_shapes(annotation: Any) -> bool:
