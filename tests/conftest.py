@@ -112,11 +112,21 @@ def derived_files(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session", autouse=True)
 def _own_folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Caches and libraries of this run go to temporary folders."""
+    """Caches and libraries of this run go to temporary folders, and no file waits until it has reached the disk: what
+    is written need not outlast the machine's power. That it is asked for is tested in `tests/io/test_atomic.py`.
+    """
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(os, "fsync", lambda descriptor: None)
         patch.setenv("DIORAMA_CACHE", str(derived_files(tmp_path_factory)))
         patch.setenv("DIORAMA_LIBRARIES", str(tmp_path_factory.mktemp("libraries")))
         yield
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Files with slow tests come first: of two processes that share the files, none is left with one at the end."""
+    slow = {item.path for item in items if item.get_closest_marker("slow") is not None}
+    items.sort(key=lambda item: item.path not in slow)
 
 
 @pytest.hookimpl(tryfirst=True)

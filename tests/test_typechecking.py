@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
-from jaxtyping import TypeCheckError
+from jaxtyping import Float, TypeCheckError
 
 from diorama_app.web import html
+from diorama_core.geometry.planes import fit_plane
 from diorama_core.geometry.projection import cuboid_corners
+from diorama_core.io.limited import LimitedProcess
 from diorama_core.scene.types import Architecture, Plane, Pose
 from tests import typechecking
 
@@ -53,6 +56,28 @@ def test_wrong_results_raise() -> None:
 
 def test_a_whole_number_is_a_float() -> None:
     assert Plane("floor", "floor", SQUARE, thickness=1).thickness == 1
+
+
+@pytest.mark.parametrize(
+    ("function", "expected"),
+    [
+        (Architecture.by_role, False),
+        (html.run_once, False),
+        (LimitedProcess.call, False),
+        (cuboid_corners, True),
+        (fit_plane, True),
+        (Pose.__init__, True),
+    ],
+)
+def test_what_names_no_shapes_is_left_to_beartype(function: Any, expected: bool) -> None:
+    assert (typechecking._plain_annotations(function.__wrapped__) is None) is expected
+
+
+def test_shapes_are_found_within_other_annotations() -> None:
+    array = Float[np.ndarray, "n 3"]
+    for holder in (array, array | None, tuple[int, array], list[array], Callable[[array], int], Callable[[int], array]):
+        assert typechecking._holds_shapes(holder), holder
+    assert not any(map(typechecking._holds_shapes, (int, list[int], Callable[[int], str], np.ndarray, Any, None)))
 
 
 @pytest.mark.unchecked

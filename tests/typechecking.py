@@ -13,8 +13,10 @@ import os
 import random
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import is_dataclass
 from functools import cache, wraps
-from typing import Any
+from types import FunctionType
+from typing import Any, get_args, get_type_hints
 from unittest import mock
 
 import jaxtyping
@@ -25,7 +27,7 @@ items = random.Random(0)
 with mock.patch("random.getrandbits", items.getrandbits):  # beartype takes it when it is imported, and only then
     from beartype import BeartypeConf, beartype
 
-CONFIGURATION = BeartypeConf(is_pep484_tower=True)
+CONFIGURATION = BeartypeConf(is_pep484_tower=True, violation_type=jaxtyping.TypeCheckError)
 """A whole number is a `float` too, as static checkers have it."""
 
 
@@ -53,24 +55,67 @@ def begin_test(*, unchecked: bool) -> None:
 
 
 def _first_calls_checked(item: Any, checking: Callable[[Any], Any]) -> Any:
-    """A function, or the constructor of a class, whose first calls are checked."""
-    if inspect.isclass(item):
-        unchecked = item.__init__
-        made = checking(item)
-        if made.__init__ is not unchecked:
-            made.__init__ = _alternating(unchecked, made.__init__)
-        return made
-    return _alternating(item, checking(item))
+    """A function, or the constructor of a dataclass, whose first calls are checked."""
+    if not inspect.isclass(item):
+        return _alternating(item, checking)
+    if is_dataclass(item) and "__init__" in vars(item) and not hasattr(item.__init__, _MARK):
+        item.__init__ = _alternating(item.__init__, checking)  # type: ignore[misc]  # as `jaxtyping.jaxtyped` does
+    return item
 
 
-def _alternating(unchecked: Callable[..., Any], checked: Callable[..., Any]) -> Callable[..., Any]:
+_MARK = "first_calls_are_checked"
+
+
+def _alternating(unchecked: Callable[..., Any], checking: Callable[[Any], Any]) -> Callable[..., Any]:
+    """The function, checked in its first calls: what checks it is made at the first, since most are never called.
+
+    Calls of a function within another are counted for all that the other makes of it.
+    """
+    checked: Callable[..., Any] | None = None
+    key = id(unchecked.__code__)
+
     @wraps(unchecked)
     def called(*args: Any, **kwargs: Any) -> Any:
+        nonlocal checked
         _calls[key] += 1
-        return (checked if _calls[key] <= CHECKED_CALLS else unchecked)(*args, **kwargs)
+        if _calls[key] > CHECKED_CALLS or jaxtyping.config.jaxtyping_disable:
+            return unchecked(*args, **kwargs)
+        if checked is None:
+            plain = _plain_annotations(unchecked)
+            checked = checking(unchecked) if plain is None else check(_annotated(unchecked, plain))
+        return checked(*args, **kwargs)
 
-    key = id(called)
+    setattr(called, _MARK, True)
     return called
+
+
+def _plain_annotations(function: Callable[..., Any]) -> dict[str, Any] | None:
+    """What parameters and result are, where beartype alone can tell: shapes, which jaxtyping compares with one another,
+    annotations that cannot be read, and those of generators are left to jaxtyping (None).
+    """
+    if inspect.isgeneratorfunction(function) or inspect.isasyncgenfunction(function):
+        return None
+    try:
+        annotations = get_type_hints(function, include_extras=True)
+    except Exception:
+        return None
+    return None if any(_holds_shapes(annotation) for annotation in annotations.values()) else annotations
+
+
+def _annotated(function: Callable[..., Any], annotations: dict[str, Any]) -> Callable[..., Any]:
+    """The same function with the annotations themselves in place of their text."""
+    code, names = function.__code__, function.__globals__
+    same = FunctionType(code, names, function.__name__, function.__defaults__, function.__closure__)
+    same.__kwdefaults__, same.__annotations__ = function.__kwdefaults__, annotations
+    same.__module__, same.__qualname__ = function.__module__, function.__qualname__
+    return same
+
+
+def _holds_shapes(annotation: Any) -> bool:
+    if isinstance(annotation, list):  # the parameters of a `Callable`
+        return any(map(_holds_shapes, annotation))
+    is_array = inspect.isclass(annotation) and issubclass(annotation, jaxtyping.AbstractArray)
+    return is_array or any(map(_holds_shapes, get_args(annotation)))
 
 
 def wanted() -> bool:

@@ -62,15 +62,20 @@ def without_doubles(found: Detections, iou: float, *, across_classes: bool) -> D
         across_classes: whether boxes of different classes suppress one another.
     """
     order = np.argsort(-found.scores, kind="stable")
-    area = areas(found.boxes)
-    retained: list[int] = []
-    for i in order:
-        rivals = np.array([k for k in retained if across_classes or found.labels[k] == found.labels[i]], dtype=int)
-        shared = intersections(found.boxes[i], found.boxes[rivals])
-        union = area[rivals] + area[i] - shared
-        if not (shared > iou * np.maximum(union, 1e-9)).any():
-            retained.append(int(i))
-    return found.rows(np.array(retained, dtype=int))
+    ranked = found.rows(order)
+    area = areas(ranked.boxes)
+    stays = np.ones(len(order), dtype=bool)
+    for i in range(len(order)):
+        if not stays[i]:
+            continue
+        worse = slice(i + 1, None)
+        shared = intersections(ranked.boxes[i], ranked.boxes[worse])
+        union = area[worse] + area[i] - shared
+        same = shared > iou * np.maximum(union, 1e-9)
+        if not across_classes:
+            same &= ranked.labels[worse] == ranked.labels[i]
+        stays[worse] &= ~same
+    return ranked.rows(stays)
 
 
 def joined(parts: Sequence[Detections]) -> Detections:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import trimesh
@@ -170,11 +172,20 @@ def plain_photo(width: int = 640, height: int = 480) -> Photo:
 def make_project(folder: Path, scene: Scene | None = None) -> Project:
     """A project on disk with the furnished scene and its photo."""
     project = Project.create(folder, name=folder.name)
-    photo = plain_photo()
-    box = LabelledBox((240.0, 200.0, 440.0, 420.0), "table", "dining table")
-    project.save_inputs(Inputs(photo, (box,)))
+    saved = Project(Path(_saved_photo().name))
+    shutil.copytree(saved.folder, project.folder, ignore=lambda *_: ["project.json"], dirs_exist_ok=True)
+    project.update_info(**{key: value for key, value in saved.info().items() if key in ("photo", "warnings")})
     project.save_scene(scene or furnished_scene())
     return project
+
+
+@cache
+def _saved_photo() -> TemporaryDirectory:
+    """A project with the photo alone: to pack it takes longer than most tests."""
+    folder = TemporaryDirectory(prefix="diorama-tests-")
+    box = LabelledBox((240.0, 200.0, 440.0, 420.0), "table", "dining table")
+    Project.create(Path(folder.name)).save_inputs(Inputs(plain_photo(), (box,)))
+    return folder
 
 
 def without_candidates(scene: Scene) -> Scene:

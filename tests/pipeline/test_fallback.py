@@ -41,23 +41,38 @@ def _choose(profile: Profile, inputs: Inputs):
     return choose
 
 
-def _build(profile: Profile, inputs: Inputs, store: ModelStore) -> tuple[Built, tuple[str, ...]]:
-    return with_usable_networks(
-        _choose(profile, inputs), lambda stages: build_scene(inputs, box_library(), stages=stages), store=store
-    )
+def _build(
+    profile: Profile, inputs: Inputs, store: ModelStore, cache: Path | None = None
+) -> tuple[Built, tuple[str, ...]]:
+    def build(stages: Stages) -> Built:
+        return build_scene(inputs, box_library(), stages=stages, cache=cache)
+
+    return with_usable_networks(_choose(profile, inputs), build, store=store)
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where stages are kept for all tests: what whole networks make of the photo is the same beside any broken one."""
+    return tmp_path_factory.mktemp("stages")
 
 
 @pytest.mark.parametrize("how", ["noise", "other outputs", "answers that are no numbers", "out of memory"])
 @pytest.mark.parametrize("network_id", IN_STORE)
 def test_a_network_that_fails_is_left_out_and_named(
-    network_id: str, how: str, photo: Photo, store: ModelStore, graphs: dict[str, list[Path]], tmp_path: Path
+    network_id: str,
+    how: str,
+    photo: Photo,
+    store: ModelStore,
+    graphs: dict[str, list[Path]],
+    finished: Path,
+    tmp_path: Path,
 ) -> None:
     for other, files in graphs.items():
         install(store, other, files)
     broken = tmp_path / "broken.onnx"
     BROKEN[how](CASES[IN_STORE[network_id]], broken)
     install(store, network_id, [broken, *graphs[network_id][1:]])
-    built, left_out = _build("auto", Inputs(photo), store)
+    built, left_out = _build("auto", Inputs(photo), store, finished)
     assert [line.split(" was left out: ")[0] for line in left_out] == [network(network_id).title]
     assert all("\n" not in line and len(line) < 600 for line in left_out)
     assert built.scene.architecture.planes

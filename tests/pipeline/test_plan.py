@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from diorama_core.editing.reconstructed import replaced
 from diorama_core.pipeline.plan import PLAN, StageStep, evaluate
 from diorama_core.pipeline.presets import stages_for
 from diorama_core.pipeline.reconstruct_object import reconstruct_object
+from diorama_core.pipeline.run import Built
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import Stages, embedded_stages
 from diorama_core.progress import Progress
@@ -25,10 +27,12 @@ from tests.synthetic_rooms import box_room, cuboid, look, shoot
 LIBRARY = box_library()
 
 
-@pytest.fixture(autouse=True)
-def _embedded_only(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setenv("DIORAMA_MODELS", str(tmp_path / "models"))
-    monkeypatch.delenv("DIORAMA_LMM_BASE_URL", raising=False)
+@pytest.fixture(scope="module", autouse=True)
+def _embedded_only(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("DIORAMA_MODELS", str(tmp_path_factory.mktemp("models")))
+        patch.delenv("DIORAMA_LMM_BASE_URL", raising=False)
+        yield
 
 
 def room_inputs(*, depth: bool) -> Inputs:
@@ -44,10 +48,23 @@ def room_inputs(*, depth: bool) -> Inputs:
     return replace(shot.inputs, boxes=boxes, instances=None, depth_m=shot.inputs.depth_m if depth else None)
 
 
-@pytest.mark.parametrize("depth", [False, True], ids=["photo", "depth"])
-def test_correcting_nothing_gives_the_same_scene_byte_for_byte(depth: bool, tmp_path: Path) -> None:
-    project = Project.create(tmp_path / "room")
-    built = build_project(project, room_inputs(depth=depth), LIBRARY)
+@dataclass(frozen=True, eq=False)
+class Room:
+    """A project and what its build gave."""
+
+    inputs: Inputs
+    project: Project
+    built: Built
+
+
+@pytest.fixture(scope="module", params=[False, True], ids=["photo", "depth"])
+def room(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Room:
+    inputs, project = room_inputs(depth=request.param), Project.create(tmp_path_factory.mktemp("plan") / "room")
+    return Room(inputs, project, build_project(project, inputs, LIBRARY))
+
+
+def test_correcting_nothing_gives_the_same_scene_byte_for_byte(room: Room) -> None:
+    project, built = room.project, room.built
     scene_file = project.scene_path.read_bytes()
     inputs = project.load_inputs()
     assert inputs is not None
@@ -66,11 +83,9 @@ def test_correcting_nothing_gives_the_same_scene_byte_for_byte(depth: bool, tmp_
         assert np.allclose(here.position, there.position, atol=1e-9)
 
 
-@pytest.mark.parametrize("depth", [False, True], ids=["photo", "depth"])
-def test_a_corrected_object_is_measured_in_the_room_that_the_build_had(depth: bool, tmp_path: Path) -> None:
-    inputs, cache = room_inputs(depth=depth), tmp_path / "stages"
+def test_a_corrected_object_is_measured_in_the_room_that_the_build_had(room: Room, tmp_path: Path) -> None:
+    inputs, built, cache = room.inputs, room.built, tmp_path / "stages"
     stages = stages_for("auto", inputs, LIBRARY)
-    built = build_project(Project.create(tmp_path / "room"), inputs, LIBRARY)
     x1, y1, x2, y2 = inputs.boxes[2].box
     box = LabelledBox((x1 + 2, y1 + 1, x2 - 2, y2), "chair", "chair")
     found = reconstruct_object(built.scene, inputs, LIBRARY, box, built.objects[2].id, cache=cache)

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import struct
-import zlib
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -26,6 +24,7 @@ from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
 from tests.app.people import join
 from tests.app.small_room import PlainLibrary, make_project
+from tests.io.test_bombs import png
 
 
 @pytest.fixture
@@ -113,18 +112,6 @@ def test_the_scene_is_saved_when_the_view_cannot_be_drawn(
     assert saved_label(session) == "throne"
 
 
-def bomb_png(width: int, height: int) -> bytes:
-    """A picture of many pixels in few bytes."""
-
-    def chunk(kind: bytes, data: bytes) -> bytes:
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    packer = zlib.compressobj(9)
-    rows = b"".join(packer.compress(bytes(1 + width * 3)) for _ in range(height)) + packer.flush()
-    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", rows) + chunk(b"IEND", b"")
-
-
 DAMAGED = {
     "no text": b"\xff\xfe\x00format",
     "version in words": json.dumps({"format": "diorama-project", "version": "1"}).encode(),
@@ -147,7 +134,7 @@ def test_another_projects_damaged_file_is_that_projects_matter(session: EditorSe
     assert client.viser_client.told == []
 
 
-@pytest.mark.parametrize("photo", [bomb_png(20_000, 12_000), b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 9 9\n"])
+@pytest.mark.parametrize("photo", [png(20_000, 12_000, 8, 2, 3), b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 9 9\n"])
 def test_another_projects_photo_that_cannot_be_shown_is_left_out(session: EditorSession, photo: bytes) -> None:
     other = make_project(session.projects_dir / "other").folder
     (other / "photo.jpg").write_bytes(photo)
