@@ -36,8 +36,9 @@ _BASES: tuple[tuple[frozenset[str], Mapping[str, float]], ...] = (
 _TOPS: Mapping[str, float] = {"rectangular": 0.6, "square": 0.6, "round": 0.25, "oval": 0.1}
 _TABLES = with_kin("table", "desk", "coffee table", "side table", "console table", "night stand")
 _FLAT = {"rectangular": 0.93, "other": 0.07}
-"""Of what hangs flat on walls or stands in frames: round, oval and free outlines."""
+"""Of what hangs flat on walls or stands in frames: round, oval and free outlines, and several in a row."""
 _FLAT_KINDS = with_kin("picture", "window") | {"mirror", "floor mirror"}
+_DRAWN_PX = 128
 _RARE = 0.02
 _SAYS = 0.08
 """Power of the share that multiplies a retrieval score: scores of shapes that fit well and badly differ little."""
@@ -65,11 +66,22 @@ def _form(shape: Shape, appearance: ShapeAppearance) -> tuple[str, str]:
 
 
 def _outline(shape: Shape, appearance: ShapeAppearance) -> str:
-    """From the front: whether it fills the rectangle around it."""
+    """From the front: whether it is one piece that fills the rectangle around it."""
 
     def found() -> str:
         outline = cv2.convexHull(np.ascontiguousarray(appearance.vertices[:, 1:], np.float32))
         around = max(float(np.prod(np.ptp(outline[:, 0], axis=0))), 1e-9)
-        return "rectangular" if cv2.contourArea(outline) >= FULL_RECTANGLE * around else "other"
+        full = cv2.contourArea(outline) >= FULL_RECTANGLE * around and _pieces(appearance) == 1
+        return "rectangular" if full else "other"
 
     return _OUTLINE_OF.get(shape.content_hash, found)
+
+
+def _pieces(appearance: ShapeAppearance) -> int:
+    """How many separate pieces are seen from the front: a row of prints is several."""
+    yz = appearance.vertices[:, 1:]
+    drawn = np.zeros((_DRAWN_PX, _DRAWN_PX), np.uint8)
+    at = (yz - yz.min(axis=0)) / np.maximum(np.ptp(yz, axis=0), 1e-9) * (_DRAWN_PX - 1)
+    for triangle in np.rint(at[appearance.faces]).astype(np.int32):
+        cv2.fillConvexPoly(drawn, triangle, 1)
+    return int(cv2.connectedComponents(drawn)[0]) - 1

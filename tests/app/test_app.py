@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from diorama_app.app import LEFT_TABS, RIGHT_TABS, Editor
+from diorama_app.interaction.gestures import Gestures
 from diorama_app.panels.in_place import InPlace
 from diorama_app.session import autosave
 from diorama_app.session.connected_client import ConnectedClient, Panel
@@ -48,7 +49,6 @@ def test_the_page_has_every_panel_and_shows_the_project(editor: Editor, tmp_path
     assert all(isinstance(p, Panel) for p in client.panels)
     kinds = {type(p.panel if isinstance(p, InPlace) else p).__name__ for p in client.panels}
     assert {
-        "Gestures",
         "Toolbar",
         "Outliner",
         "PhotoPanel",
@@ -57,6 +57,7 @@ def test_the_page_has_every_panel_and_shows_the_project(editor: Editor, tmp_path
         "Properties",
         "LibraryPanel",
     } <= kinds
+    assert isinstance(client.handles, Gestures)
     assert "dining table" in page.html
     for tab in (*LEFT_TABS, *RIGHT_TABS):
         assert f"&quot;{tab}&quot;" in page.html

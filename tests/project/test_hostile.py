@@ -92,6 +92,9 @@ def test_files_get_the_mode_of_any_new_file(tmp_path: Path) -> None:
     old = os.umask(0o027)
     try:
         project = make_project(tmp_path / "demo")
+        inputs = project.load_inputs()
+        assert inputs is not None
+        project.save_inputs(inputs)
         project.save_textures({"fine": np.full((8, 8, 3), 120, np.uint8)})
     finally:
         os.umask(old)

@@ -35,3 +35,8 @@ def test_tables_are_usually_rectangular():
 def test_pictures_are_usually_rectangular():
     assert factor("picture-hills-oak") == 1.0
     assert 0.7 < factor("mirror-pebble") < 0.95
+
+
+@pytest.mark.parametrize("several", ["picture-column", "picture-triptych", "picture-gallery"])
+def test_a_row_of_prints_is_rarer_than_one(several):
+    assert factor(several) == factor("mirror-pebble")

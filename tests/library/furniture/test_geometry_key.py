@@ -126,6 +126,8 @@ def test_all_that_runs_while_a_shape_is_made_is_in_its_key(design: Design) -> No
         module = str(frame.f_globals.get("__name__", ""))
         if event != "call" or not module.startswith(PACKAGE) or module == PACKAGE:
             return
+        if not Path(frame.f_code.co_filename).is_file():  # what checks types while tests run
+            return
         top = frame.f_code.co_qualname.split(".")[0]
         if top in frame.f_globals:
             ran.add((module.removeprefix(f"{PACKAGE}."), top))
