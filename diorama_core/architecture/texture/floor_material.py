@@ -27,9 +27,8 @@ _USUAL_LAB = np.array([58.0, 5.0, 12.0])
 """Floors' colours in a photo whose brightest parts are white: wood, carpet, tiles; hardly black, white or blue."""
 _USUAL_AXES = np.array([[1.0, 0.0, 0.0], [0.0, 0.45, 0.89], [0.0, 0.89, -0.45]]) / np.array([[24.0], [20.0], [9.0]])
 """They vary in lightness, from grey to the orange of pine boards, and less across: by these deviations."""
-_SHADE_LAB, _SHADE_COVER = np.array([6.0, 6.0]), 1.5
-"""A dark colour is another's shade when its a and b are this near to those of the lighter one, darkened, which covers
-so many times as much."""
+_SHADE_COVER = 1.5
+"""A dark colour is another's shade when the lighter one, darkened, is about the same and covers so much more."""
 _BLACK_L = 16.0
 """Darkening moves a colour of CIELAB towards L = -16, a = b = 0: the cube root of its definition."""
 _WHITE_SHARE = 95.0
@@ -148,8 +147,8 @@ def _main_colour(
     for cell in _cells(lab, weight):
         alike = (np.abs(lab - cell) < _CELL_LAB).all(axis=1)
         spread = float(places[alike].var(axis=0).sum()) ** 0.5 if alike.sum() > 1 else 0.0
-        touched = float(weight[alike & contact].sum()) / at_feet
         middle = np.median(lab[alike], axis=0) if alike.any() else cell
+        touched = float(weight[contact & (alike | _shades_of(middle, lab))].sum()) / at_feet
         off = _USUAL_AXES @ (middle * np.array([100.0 / white, 1.0, 1.0]) - _USUAL_LAB)
         found.append(middle)
         covers.append(float(weight[alike].sum()) * spread * (_WITHOUT_CONTACT + touched))
@@ -159,11 +158,15 @@ def _main_colour(
 
 def _lit(best: int, found: Float[np.ndarray, "k 3"], covers: Float[np.ndarray, "k"]) -> Float[np.ndarray, "3"]:
     """A colour, or the lighter one that it is a shade of and that covers clearly more."""
-    main = found[best]
-    darkened = found[:, 1:] * ((main[0] + _BLACK_L) / (found[:, :1] + _BLACK_L))
-    shade = (np.abs(darkened - main[1:]) < _SHADE_LAB).all(axis=1) & (found[:, 0] > main[0] + _SHADOW_L)
+    shade = np.array([bool(_shades_of(lighter, found[best : best + 1])[0]) for lighter in found])
     lighter = shade & (covers > _SHADE_COVER * covers[best])
-    return np.asarray(found[int(np.argmax(np.where(lighter, covers, 0.0)))] if lighter.any() else main)
+    return np.asarray(found[int(np.argmax(np.where(lighter, covers, 0.0))) if lighter.any() else best])
+
+
+def _shades_of(colour: Float[np.ndarray, "3"], lab: Float[np.ndarray, "n 3"]) -> Bool[np.ndarray, "n"]:
+    """Which colours are what a shadow makes of one: before the feet of things most are."""
+    darkened = colour[1:] * ((lab[:, :1] + _BLACK_L) / (colour[0] + _BLACK_L))
+    return np.asarray((np.abs(darkened - lab[:, 1:]) < _CELL_LAB[1:]).all(axis=1) & (lab[:, 0] < colour[0] - _SHADOW_L))
 
 
 def _cells(lab: Float[np.ndarray, "n 3"], weight: Float[np.ndarray, "n"]) -> Float[np.ndarray, "k 3"]:
