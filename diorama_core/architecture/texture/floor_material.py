@@ -27,6 +27,8 @@ _USUAL_LAB = np.array([58.0, 5.0, 12.0])
 """Floors' colours in a photo whose brightest parts are white: wood, carpet, tiles; hardly black, white or blue."""
 _USUAL_AXES = np.array([[1.0, 0.0, 0.0], [0.0, 0.45, 0.89], [0.0, 0.89, -0.45]]) / np.array([[24.0], [20.0], [9.0]])
 """They vary in lightness, from grey to the orange of pine boards, and less across: by these deviations."""
+_OF_SHADE = 0.75
+"""What a shade of a colour at the feet of things says for it, beside the colour itself."""
 _SHADE_COVER = 1.5
 """A dark colour is another's shade when the lighter one, darkened, is about the same and covers so much more."""
 _BLACK_L = 16.0
@@ -148,7 +150,8 @@ def _main_colour(
         alike = (np.abs(lab - cell) < _CELL_LAB).all(axis=1)
         spread = float(places[alike].var(axis=0).sum()) ** 0.5 if alike.sum() > 1 else 0.0
         middle = np.median(lab[alike], axis=0) if alike.any() else cell
-        touched = float(weight[contact & (alike | _shades_of(middle, lab))].sum()) / at_feet
+        shaded = _OF_SHADE * float(weight[contact & ~alike & _shades_of(middle, lab)].sum())
+        touched = (float(weight[contact & alike].sum()) + shaded) / at_feet
         off = _USUAL_AXES @ (middle * np.array([100.0 / white, 1.0, 1.0]) - _USUAL_LAB)
         found.append(middle)
         covers.append(float(weight[alike].sum()) * spread * (_WITHOUT_CONTACT + touched))
