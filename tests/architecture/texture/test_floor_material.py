@@ -45,6 +45,16 @@ def test_the_floor_is_what_shows_at_the_feet_of_objects():
     assert texels(colours, contact)[:, :50].mean() > 0.9
 
 
+def test_shadows_at_the_feet_of_objects_speak_for_the_floor_that_they_lie_on():
+    colours = floor((150, 135, 95))
+    colours[30:170, 30:170] = floor((58, 51, 33))[30:170, 30:170]
+    contact = np.zeros((SIZE, SIZE), dtype=bool)
+    contact[40:160, 40:160] = True
+    own = texels(colours, contact)
+    assert own[:25].mean() > 0.95
+    assert own[40:160, 40:160].mean() < 0.05
+
+
 def test_a_pattern_belongs_to_the_floor():
     rows, columns = np.indices((SIZE, SIZE)) // 10
     colours = np.where(((rows + columns) % 2 == 0)[..., None], floor((90, 80, 70)), floor((190, 180, 165), 1))
