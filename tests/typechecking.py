@@ -54,16 +54,16 @@ def begin_test(*, unchecked: bool) -> None:
     jaxtyping.config.update("jaxtyping_disable", unchecked)
 
 
+_MARK = "first_calls_are_checked"
+
+
 def _first_calls_checked(item: Any, checking: Callable[[Any], Any]) -> Any:
     """A function, or the constructor of a dataclass, whose first calls are checked."""
     if not inspect.isclass(item):
         return _alternating(item, checking)
     if is_dataclass(item) and "__init__" in vars(item) and not hasattr(item.__init__, _MARK):
-        item.__init__ = _alternating(item.__init__, checking)  # type: ignore[misc]  # as `jaxtyping.jaxtyped` does
+        item.__init__ = _alternating(item.__init__, checking)  # as `jaxtyping.jaxtyped` does
     return item
-
-
-_MARK = "first_calls_are_checked"
 
 
 def _alternating(unchecked: Callable[..., Any], checking: Callable[[Any], Any]) -> Callable[..., Any]:

@@ -19,7 +19,7 @@ def save(job: dict[str, Any]) -> None:
         job: `glb`, `blend`, and where there are any, `camera` (`width`, `height`, `fx`, `fy`, `cx`, `cy`, in pixels)
             and `photo` (a picture's file); `lights` as those of `cycles_worker`.
     """
-    import bpy  # type: ignore[import-not-found,unused-ignore]  # Blender's Python has it, ours rarely
+    import bpy  # Blender's Python has it, ours rarely
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.import_scene.gltf(filepath=job["glb"])
@@ -42,7 +42,7 @@ def save(job: dict[str, Any]) -> None:
 
 def _room_lights(bpy: Any, lights: list[dict[str, Any]]) -> None:
     """Rectangles before the windows and under the ceiling, so that the room is lit when it is rendered."""
-    from mathutils import Matrix  # type: ignore[import-not-found,unused-ignore]  # as bpy
+    from mathutils import Matrix  # as bpy
 
     for number, light in enumerate(lights):
         data = bpy.data.lights.new(f"room light {number + 1}", "AREA")

@@ -19,7 +19,7 @@ def render(job: dict[str, Any]) -> None:
             linear light; those ask for `outdoors` (`sky`, `sun`, `sun_angle_rad`, `sun_matrix`) and take a `lens`
             (`focus_m`, `aperture_m`).
     """
-    import bpy  # type: ignore[import-not-found,unused-ignore]  # Blender's Python has it, ours rarely
+    import bpy  # Blender's Python has it, ours rarely
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.import_scene.gltf(filepath=job["glb"])
@@ -67,7 +67,7 @@ def _add_rectangle(bpy: Any, name: str, light: dict[str, Any]) -> None:
 
 
 def _add_lamp(bpy: Any, name: str, data: Any, matrix: list[list[float]]) -> None:
-    from mathutils import Matrix  # type: ignore[import-not-found,unused-ignore]  # as bpy
+    from mathutils import Matrix  # as bpy
 
     lamp = bpy.data.objects.new(name, data)
     lamp.matrix_world = Matrix(matrix)
