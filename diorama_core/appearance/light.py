@@ -22,6 +22,8 @@ MAX_LENGTH = 0.85
 ROBUST = 0.15
 """Differences of log luminance beyond about this are shadows and other materials."""
 MIN_SAMPLES = 3
+SHINING = 190
+"""Brightest channel, of 255, from which on pixels of a lamp are its light."""
 
 
 @dataclass(frozen=True, eq=False)

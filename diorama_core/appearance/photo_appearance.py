@@ -14,22 +14,18 @@ from jaxtyping import Bool, Float32, UInt8
 
 from diorama_core.appearance.flat_faces import Face, faces_of
 from diorama_core.appearance.irradiance import irradiance_map
-from diorama_core.appearance.light import estimated_light
+from diorama_core.appearance.light import SHINING, estimated_light
 from diorama_core.appearance.surface_materials import ROUGHNESS, SlotPixels, appearance_of, shade_of, slot_pixels
 from diorama_core.appearance.surface_view import SurfaceView, surface_view
 from diorama_core.artefacts import DetectedObject
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.slots import slots_of
 from diorama_core.library.stretch import relative_scale, stretched_parts
-from diorama_core.library.taxonomy import with_kin
+from diorama_core.library.taxonomy import LAMPS
 from diorama_core.scene.types import Camera, PhotoMaterial, RoomLight, Scene, SceneObject
 
 MASK_MARGIN = 0.004
 """Widening of what stands before an object, as a share of the photo's longer side."""
-
-LAMPS = with_kin("lamp", "floor lamp", "ceiling lamp", "wall lamp", "chandelier")
-SHINING = 190
-"""Brightest channel, of 255, from which on pixels of a lamp are its light."""
 
 Picture = UInt8[np.ndarray, "_ _ 3"]
 

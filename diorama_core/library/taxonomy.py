@@ -292,6 +292,8 @@ def with_kin(*names: str) -> frozenset[str]:
     return frozenset(names) | {c.name for c in CATEGORIES if c.kin in names}
 
 
+LAMPS = with_kin("lamp", "floor lamp", "ceiling lamp", "wall lamp", "chandelier")
+
 PORTABLE = with_kin("plant", "box", "basket", "speaker", "fan", "heater", "wine rack") - {"hanging plant", "suitcase"}
 """What stands on the floor or on furniture, by its size."""
 

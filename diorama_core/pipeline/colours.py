@@ -8,15 +8,16 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, UInt8
 
+from diorama_core.appearance.light import SHINING
 from diorama_core.architecture.texture.colours import GRID_PX, object_pixels, visible_planes
 from diorama_core.artefacts import DetectedObject, Inputs
-from diorama_core.library.taxonomy import with_kin
+from diorama_core.library.taxonomy import LAMPS, with_kin
 from diorama_core.perception.illuminant import Illuminant, estimate_illuminant
 from diorama_core.scene.types import Architecture, Camera
 
 KEEP_THEIR_OWN = frozenset({"picture", "mirror", "window", "plant", "books", "clock"})
 """Categories whose look is not one colour of one main material."""
-SETS = with_kin("chair", "office chair", "stool")
+SETS = with_kin("chair", "office chair", "stool") | LAMPS
 """Categories whose equal shapes in one room are a set."""
 _BIN = 20.0
 _FEWEST_PIXELS = 60
@@ -46,7 +47,8 @@ def room_illuminant(
 def photo_colours(rgb: UInt8[np.ndarray, "h w 3"], objects: tuple[DetectedObject, ...]) -> dict[str, Colour]:
     """Main colour (sRGB 0 to 1) of every object that has a clear one; others are left out.
 
-    Pixels near the mask's border and those of smaller objects in front are no evidence.
+    Pixels near the mask's border and those of smaller objects in front are no evidence, and a lamp's light is no
+    colour of its material.
     """
     kernel = np.ones((5, 5), np.uint8)
     by_area = sorted(objects, key=lambda o: int(o.mask.sum()))
@@ -55,6 +57,8 @@ def photo_colours(rgb: UInt8[np.ndarray, "h w 3"], objects: tuple[DetectedObject
     for item in by_area:
         inner = cv2.erode(item.mask.astype(np.uint8), kernel).astype(bool) & ~nearer
         nearer |= item.mask
+        if item.category in LAMPS:
+            inner &= rgb.max(axis=2) < SHINING
         colour = None if item.category in KEEP_THEIR_OWN else _main_colour(rgb, inner)
         if colour is not None:
             colours[item.id] = colour

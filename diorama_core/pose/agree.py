@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from diorama_core.library.taxonomy import UNKNOWN, with_kin
+from diorama_core.library.taxonomy import LAMPS, UNKNOWN, with_kin
 
 _OWN_SHARE = 0.35
 _ABSENT = -0.7
@@ -13,7 +13,7 @@ _TIE = 0.15
 """Two shapes whose log ranks differ by less are as good for one thing of a set: then it takes what the set likes."""
 MAX_LOSS_WITH_DEPTH = 1.0
 """Maximum cost of agreement where depth was measured, since depth shows when objects differ."""
-SETS = with_kin("chair", "office chair", "stool", "armchair", "night stand", "ottoman", "lamp")
+SETS = with_kin("chair", "office chair", "stool", "armchair", "night stand", "ottoman") | LAMPS
 """What comes in sets; books and pictures of one room are different ones."""
 
 

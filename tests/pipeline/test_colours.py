@@ -68,3 +68,19 @@ def test_chairs_that_differ_keep_their_colours_and_lend_them_to_their_like() -> 
     assert shared["a"] == shared["c"]
     assert shared["d"] in (blue, shared["a"])
     assert shared["e"] in (blue, shared["a"])
+
+
+def test_the_light_of_a_lamp_is_no_colour_of_it() -> None:
+    rgb, lamp, _ = _masks()
+    rgb[lamp] = (250, 240, 190)
+    assert photo_colours(rgb, (_object("lit", "floor lamp", lamp),)) == {}
+    rgb[15:50, 10:30] = (40, 90, 60)
+    colours = photo_colours(rgb, (_object("lit", "floor lamp", lamp),))
+    np.testing.assert_allclose(colours["lit"], np.array([40, 90, 60]) / 255, atol=0.02)
+
+
+def test_lamps_of_one_shape_are_of_one_colour() -> None:
+    _, big, small = _masks()
+    objects = (_object("a", "lamp", small), _object("b", "lamp", big))
+    colours = {"a": (0.2, 0.24, 0.2), "b": (0.25, 0.25, 0.24)}
+    assert set(shared_by_sets(colours, objects, {"a": "bell", "b": "bell"}).values()) == {colours["b"]}
