@@ -15,9 +15,11 @@ from jaxtyping import Bool, Float32, UInt8
 from diorama_core.appearance.flat_faces import Face, faces_of
 from diorama_core.appearance.irradiance import irradiance_map
 from diorama_core.appearance.light import SHINING, estimated_light
+from diorama_core.appearance.sets import SETS, shared_materials
 from diorama_core.appearance.surface_materials import ROUGHNESS, SlotPixels, appearance_of, shade_of, slot_pixels
 from diorama_core.appearance.surface_view import SurfaceView, surface_view
 from diorama_core.artefacts import DetectedObject
+from diorama_core.library.furniture.measures import MARK
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.slots import slots_of
 from diorama_core.library.stretch import relative_scale, stretched_parts
@@ -89,7 +91,28 @@ def photo_appearance(
         made = [(_face_material(one.item, face), face.picture) for face in one.faces] + _surfaces(one, rgb, falls)
         materials[one.item.id] = tuple(material for material, _ in made)
         pictures |= {m.texture: picture for m, picture in made if m.texture is not None and picture is not None}
+    materials = shared_materials(
+        materials,
+        _sets(scene),
+        {
+            (s.item.id, p.slot.name): float(p.near.sum()) * s.view.step**2
+            for s in seen
+            if s.view is not None
+            for p in s.pixels
+        },
+    )
+    used = {m.texture for of_one in materials.values() for m in of_one}
+    pictures = {name: picture for name, picture in pictures.items() if name in used}
     return PhotoAppearance({key: value for key, value in materials.items() if value}, pictures, light)
+
+
+def _sets(scene: Scene) -> list[list[str]]:
+    """Ids of objects that are of one design, of kinds that come in sets."""
+    sets: dict[str, list[str]] = {}
+    for item in scene.objects:
+        if item.category in SETS:
+            sets.setdefault(item.shape_id.partition(MARK)[0], []).append(item.id)
+    return [members for members in sets.values() if len(members) > 1]
 
 
 def _parts(library: ShapeLibrary, item: SceneObject) -> trimesh.Scene:

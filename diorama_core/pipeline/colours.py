@@ -9,27 +9,19 @@ import numpy as np
 from jaxtyping import Bool, UInt8
 
 from diorama_core.appearance.light import SHINING
+from diorama_core.appearance.sets import SETS, Colour, leaders
 from diorama_core.architecture.texture.colours import GRID_PX, object_pixels, visible_planes
 from diorama_core.artefacts import DetectedObject, Inputs
-from diorama_core.library.taxonomy import LAMPS, with_kin
+from diorama_core.library.taxonomy import LAMPS
 from diorama_core.perception.illuminant import Illuminant, estimate_illuminant
 from diorama_core.scene.types import Architecture, Camera
 
 KEEP_THEIR_OWN = frozenset({"picture", "mirror", "window", "plant", "books", "clock"})
 """Categories whose look is not one colour of one main material."""
-SETS = with_kin("chair", "office chair", "stool") | LAMPS
-"""Categories whose equal shapes in one room are a set."""
 _BIN = 20.0
 _FEWEST_PIXELS = 60
 _MIN_SHARE = 0.25
 """An object without a colour that covers this much of it is not painted."""
-
-_AGREE = 18.0
-"""Colours of a set this near each other (CIELAB, lightness at half weight) are one colour in other light."""
-_OWN_VOICE = 0.4
-"""A member sees well enough to differ from its set when it is seen this well beside the one that is seen best."""
-
-Colour = tuple[float, float, float]
 
 
 def room_illuminant(
@@ -80,22 +72,8 @@ def shared_by_sets(
             sets.setdefault((item.category, shape_of[item.id]), []).append(item.id)
     shared = dict(colours)
     for members in sets.values():
-        order = sorted((m for m in members if m in colours), key=sure.__getitem__, reverse=True)
-        leaders = order[:1]
-        for member in order[1:]:
-            alike = [leader for leader in leaders if _agree(colours[member], colours[leader])]
-            if not alike and sure[member][0] >= _OWN_VOICE * sure[leaders[0]][0]:
-                leaders.append(member)
-                continue
-            shared[member] = colours[(alike or leaders)[0]]
-        if leaders:
-            shared.update({m: colours[leaders[0]] for m in members if m not in colours})
+        shared.update({m: colours[leader] for m, leader in leaders(members, colours, sure).items()})
     return shared
-
-
-def _agree(one: Colour, other: Colour) -> bool:
-    lab = cv2.cvtColor(np.array([[one, other]], np.float32), cv2.COLOR_RGB2Lab)[0]
-    return float(np.linalg.norm((lab[0] - lab[1]) / (2.0, 1.0, 1.0))) < _AGREE
 
 
 def _main_colour(rgb: UInt8[np.ndarray, "h w 3"], mask: Bool[np.ndarray, "h w"]) -> Colour | None:
