@@ -292,6 +292,12 @@ def with_kin(*names: str) -> frozenset[str]:
     return frozenset(names) | {c.name for c in CATEGORIES if c.kin in names}
 
 
+AGAINST_WALLS = with_kin(
+    *("bed", "dresser", "cabinet", "sideboard", "console table", "tv stand", "bookshelf", "wardrobe", "refrigerator"),
+    *("stove", "night stand", "kitchen counter", "washing machine", "toilet", "piano"),
+) - {"kitchen island", "bar cart"}
+"""Categories whose backs stand at walls."""
+
 LAMPS = with_kin("lamp", "floor lamp", "ceiling lamp", "wall lamp", "chandelier")
 
 PORTABLE = with_kin("plant", "box", "basket", "speaker", "fan", "heater", "wine rack") - {"hanging plant", "suitcase"}

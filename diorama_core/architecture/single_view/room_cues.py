@@ -14,7 +14,7 @@ from jaxtyping import Bool, Float, Float32, Int
 
 from diorama_core.artefacts import Cuboid, DetectedObject
 from diorama_core.geometry.segments import line_segments_px
-from diorama_core.library.taxonomy import CATEGORIES, PORTABLE, category
+from diorama_core.library.taxonomy import AGAINST_WALLS, CATEGORIES, PORTABLE, UNKNOWN, category, with_kin
 from diorama_core.scene.types import Camera
 
 AXIS_TOLERANCE_RAD = np.deg2rad(4.0)
@@ -46,6 +46,8 @@ PRIOR_MEDIAN_M = np.array([4.2, 3.5, 2.6])
 PRIOR_LOG_SIGMA = np.array([0.45, 0.5, 0.18])
 PROTRUSION_SCALE_M = 0.25
 
+BACKED = AGAINST_WALLS | with_kin("desk")
+"""What usually has a wall behind it."""
 _WALL_CATEGORIES = frozenset(c.name for c in CATEGORIES if c.mount in ("wall", "ceiling"))
 
 
@@ -74,6 +76,10 @@ class RoomCues:
     object_portable: Bool[np.ndarray, "k"]
     """Whether people put such objects on furniture, too: then they are nearer than where their line of sight meets the
     floor."""
+    backed_low: Float[np.ndarray, "b 3"]
+    """Least corner of the cuboid of each object that has a wall behind it, or is in one."""
+    backed_high: Float[np.ndarray, "b 3"]
+    backed_weights: Float[np.ndarray, "b"]
     hung_top_m: float
     """Top of the highest object that hangs from the ceiling; 0 when nothing does."""
     slants_rad: tuple[float, ...] = ()
@@ -233,6 +239,8 @@ def gather_room_cues(
     hung = {o.id for o in objects if category(o.category).mount == "ceiling"}
     solid = [c for c in cuboids if not _on_wall(c, objects)]
     corners = np.array([c.corners_world for c in solid]).reshape(-1, 8, 3)
+    backed = [c for c in cuboids if _category_of(c, objects) in BACKED]
+    backs = np.array([c.corners_world for c in backed]).reshape(-1, 8, 3)
     oblique = oblique[~_inside_masks(oblique, standing, rgb.shape[:2])]
     slants = _slants(oblique, segments[free], camera)
     return RoomCues(
@@ -248,6 +256,9 @@ def gather_room_cues(
         object_high=corners.max(axis=1),
         object_weights=np.array([max(c.confidence, 0.1) for c in solid]),
         object_portable=np.array([_is_portable(c, objects) for c in solid], dtype=bool),
+        backed_low=backs.min(axis=1),
+        backed_high=backs.max(axis=1),
+        backed_weights=np.array([c.confidence for c in backed]),
         hung_top_m=max((float(c.corners_world[:, 2].max()) for c in cuboids if c.object_id in hung), default=0.0),
         slants_rad=tuple(angle for angle, _ in slants),
         slant_maps=tuple(_edge_map(oblique[own], objects, rgb.shape[:2], map_scale) for _, own in slants),
@@ -282,12 +293,16 @@ def _slants(
 
 
 def _on_wall(cuboid: Cuboid, objects: tuple[DetectedObject, ...]) -> bool:
-    return any(o.id == cuboid.object_id and o.category in _WALL_CATEGORIES for o in objects)
+    return _category_of(cuboid, objects) in _WALL_CATEGORIES
 
 
 def _is_portable(cuboid: Cuboid, objects: tuple[DetectedObject, ...]) -> bool:
-    names = [o.category for o in objects if o.id == cuboid.object_id]
-    return any(name in PORTABLE or category(name).mount == "surface" for name in names)
+    name = _category_of(cuboid, objects)
+    return name in PORTABLE or category(name).mount == "surface"
+
+
+def _category_of(cuboid: Cuboid, objects: tuple[DetectedObject, ...]) -> str:
+    return next((o.category for o in objects if o.id == cuboid.object_id), UNKNOWN.name)
 
 
 def _inside_masks(

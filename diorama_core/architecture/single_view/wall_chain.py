@@ -29,6 +29,9 @@ UPRIGHT_WEIGHT = 1.5
 OBJECT_WEIGHT = 0.5
 PRIOR_WEIGHT = 0.1
 PROTRUSION_M = 0.25
+BACK_WEIGHT, BACK_LOG_SIGMA, BACK_CAP = 0.1, 0.12, 4.0
+"""Of a sure object's back against everything that the picture shows of the room; how well its place is known; and the
+squared sigmas beyond which it says no more: it may stand elsewhere."""
 UNSURE_SHARE = 0.2
 """Of its distance, by which an object may be nearer than its cuboid."""
 CORNER_COST, PROTRUDING_COST, JUMP_COST = 0.05, 0.2, 0.3
@@ -46,6 +49,8 @@ ENOUGH_COLOUR, COLOUR_TRUST = 0.004, 0.45
 GRAZING = 0.06
 """Walls are not looked for where they are seen more aslant than this, nor beyond"""
 REACH_M = 15.0
+FAR_M, FAR_LOG_SIGMA = 7.0, 0.25
+"""What is seen of a wall is rarely farther away than this: another wall comes first."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +98,7 @@ class ChainScorer:
         foot, top = -eye[2] / near, (ceiling_m - eye[2]) / near
         total = self._surfaces(walls, foot, top)
         total -= EDGE_WEIGHT * (self._edge(walls, near, 0.0)[0] + self._edge(walls, near, ceiling_m)[0])
-        total += self._objects(near) + self._usual(walls, near)
+        total += self._objects(near) + self._backs(near) + self._usual(walls, near)
         return np.where(met & (near > NEAREST_M * 0.5), total, 1e3)
 
     def reach(self, walls: PhotoWalls) -> Float[np.ndarray, "w m"]:
@@ -194,13 +199,28 @@ class ChainScorer:
                     total[:, column] += OBJECT_WEIGHT * weight / 4.0 * np.clip(out / PROTRUSION_M, 0.0, 2.0)
         return total
 
+    def _backs(self, near: Float[np.ndarray, "w m"]) -> Float[np.ndarray, "w m"]:
+        """Beds, storage and stoves stand at walls: a wall is where the sight through one leaves it."""
+        e, v = self.cues, self.view
+        total = np.zeros(near.shape)
+        across = np.stack([np.sin(v.middles_rad), np.cos(v.middles_rad)], axis=-1)
+        backed = zip(e.backed_low, e.backed_high, e.backed_weights, strict=True)
+        for low, high, weight in backed:
+            left = leaves(e.camera.position[:2], across, low[:2], high[:2])
+            behind = np.flatnonzero(np.isfinite(left))
+            if len(behind):
+                apart = np.log(near[:, behind] / left[behind]) / BACK_LOG_SIGMA
+                total[:, behind] += BACK_WEIGHT * weight / len(behind) * np.minimum(apart**2, BACK_CAP)
+        return total
+
     def _usual(self, walls: PhotoWalls, near: Float[np.ndarray, "w m"]) -> Float[np.ndarray, "w m"]:
-        """Walls of rooms are so far away."""
+        """Walls of rooms are so far away, and rarely led to their ends much farther."""
         gap = np.abs(walls.offsets - walls.normals @ self.cues.camera.position[:2])
         sideways = np.abs(walls.normals[:, 0]) > np.abs(walls.normals[:, 1])
         usual = np.where(sideways, 0.5 * PRIOR_MEDIAN_M[0], PRIOR_MEDIAN_M[1])
         odd = 0.5 * np.minimum((np.log(gap / usual) / 0.5) ** 2, 9.0)
-        return np.broadcast_to((PRIOR_WEIGHT * odd / near.shape[1])[:, None], near.shape)
+        beyond = np.log(np.maximum(near / FAR_M, 1.0)) / FAR_LOG_SIGMA
+        return PRIOR_WEIGHT / near.shape[1] * (odd[:, None] + 0.5 * np.minimum(beyond**2, 9.0))
 
     def ceiling_prior(self, ceiling_m: float) -> float:
         """Cost of a height, and of objects that hang from above it."""
@@ -280,6 +300,19 @@ def best_ceiling(scorer: ChainScorer, chain: Chain, heights_m: Float[np.ndarray,
         return float(scorer.costs(chain.walls, height)[runs, columns].sum()) + scorer.ceiling_prior(height)
 
     return float(min(possible, key=cost))
+
+
+def leaves(
+    eye: Float[np.ndarray, "2"],
+    across: Float[np.ndarray, "m 2"],
+    low: Float[np.ndarray, "2"],
+    high: Float[np.ndarray, "2"],
+) -> Float[np.ndarray, "m"]:
+    """Distance at which sights along the unit directions `across` leave a footprint; `inf` for those that miss it."""
+    safe = np.where(np.abs(across) < 1e-9, 1e-9, across)
+    ends = np.stack([(low - eye) / safe, (high - eye) / safe])
+    first, last = ends.min(axis=0).max(axis=1), ends.max(axis=0).min(axis=1)
+    return np.where((last > np.maximum(first, 0.0)), last, np.inf)
 
 
 def _summed(cells: Float[np.ndarray, "m k"]) -> Float[np.ndarray, "m k1"]:

@@ -228,7 +228,9 @@ def _beyond_view(run: Run, side: float, origin: Float[np.ndarray, "2"], *, left:
     if at_side is None or np.linalg.norm(at_side - origin) > 2.5 * _range(run, origin):
         at_side = point_at(run.wall, seen, origin)
     if at_side is None:
-        at_side = _nearest_on(run.wall, origin)
+        nearest = _nearest_on(run.wall, origin)
+        away = float(np.linalg.norm(nearest - origin))
+        at_side = nearest + np.sqrt(max(MAX_RANGE_M**2 - away**2, 0.0)) * outward
     return at_side + BEYOND_VIEW_M * outward
 
 

@@ -16,6 +16,7 @@ _SHARE_SIGMA = 0.03
 _PIXEL_SIGMA = 3.0
 """Of a picture 640 pixels wide."""
 _MIN_BOX_PX = 2.0
+_OUTWARD = np.array([-1.0, -1.0, 1.0, 1.0])
 _COVERED = 0.65
 """Share of an edge that something in front must cover to hide it."""
 _STRIP, _LOWER_END = 0.15, 0.25
@@ -63,12 +64,17 @@ class BoxObservations:
         return size_modes(self.categories[index].name, self.meanings[index])
 
     def hidden(self, index: int, parent: int | None = None) -> Bool[np.ndarray, "4"]:
-        """Edges of an object that others hide.
+        """Edges of an object that others hide."""
+        return self.hidden_px(index, parent) > 0
+
+    def hidden_px(self, index: int, parent: int | None = None) -> Float[np.ndarray, "4"]:
+        """How far beyond each edge of an object others hide what is there.
 
         What rests on a parent is not hidden by it, nor by things on the floor that are not in front of the parent.
         """
         others = [j for j in range(len(self)) if j != index and (parent is None or self._may_hide(j, parent))]
-        return self.covered_by[index][others].any(axis=0) if others else np.zeros(4, dtype=bool)
+        beyond = (self.box_px[others] - self.box_px[index]) * _OUTWARD
+        return np.where(self.covered_by[index][others], beyond, 0.0).max(axis=0, initial=0.0)
 
     def _may_hide(self, other: int, parent: int) -> bool:
         on_floor = self.categories[other].mount == "floor"

@@ -15,7 +15,7 @@ from diorama_core.perception.metrology.rows import contact_start, row, size_star
 from diorama_core.perception.metrology.solver import Solutions, solve
 
 HEIGHT_PRIOR_M = 1.4
-HEIGHT_LOG_SIGMA = 0.25
+HEIGHT_LOG_SIGMA = 0.18
 HEIGHTS_M: Float[np.ndarray, "13"] = np.geomspace(0.5, 2.3, 13)
 _CAP = 25.0
 """No object counts more than this: it may be mislabelled."""

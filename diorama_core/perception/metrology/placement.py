@@ -9,16 +9,16 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.geometry.projection import cuboid_corners
-from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, Category, with_kin
+from diorama_core.library.taxonomy import AGAINST_WALLS, PORTABLE, UNKNOWN, Category, with_kin
 from diorama_core.perception.metrology.arrangement import arrange, distinct
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.floor import place_on_floor, solve_all
 from diorama_core.perception.metrology.priors import SizeMode, plain_mode
-from diorama_core.perception.metrology.problem import Cuboids, Problems, View, cuboids
+from diorama_core.perception.metrology.problem import Cuboids, Problems, View, cuboids, stacked
+from diorama_core.perception.metrology.seats import APART_COST, at_table, tables_of_seats
 from diorama_core.perception.metrology.silhouette import corner_costs
-from diorama_core.perception.metrology.solver import Solutions, joined
+from diorama_core.perception.metrology.solver import Solutions, joined, solve
 from diorama_core.perception.metrology.supported_objects import (
-    AGAINST_WALLS,
     FLOOR_OBJECT_COST,
     Extent,
     extent_of,
@@ -137,12 +137,21 @@ def _on_floor(observations: BoxObservations, view: View, height_m: float) -> dic
     solved = solve_all(rows, view)
     placed = _arranged(solved, observations, view, height_m)
     sets = set_sizes(placed, observations)
-    if not sets:
-        return placed
-    shared = [p for i, mode in sets.items() for p in place_on_floor(observations, i, height_m, (mode,))]
-    alone = np.isin(solved.problems.item, list(sets))
-    solved = joined(solved.dearer(np.where(alone, ODD_ONE_COST, 0.0)), solve_all(shared, view))
-    return _arranged(solved, observations, view, height_m)
+    if sets:
+        shared = [p for i, mode in sets.items() for p in place_on_floor(observations, i, height_m, (mode,))]
+        alone = np.isin(solved.problems.item, list(sets))
+        solved = joined(solved.dearer(np.where(alone, ODD_ONE_COST, 0.0)), solve_all(shared, view))
+        placed = _arranged(solved, observations, view, height_m)
+    boxes = {i: p.cuboid for i, p in placed.items()}
+    table_of = tables_of_seats(boxes, observations)
+    if table_of:
+        seats = [solved.rows(solved.problems.item == i) for i in table_of]
+        seated = stacked([at_table(s.problems, boxes[j]) for s, j in zip(seats, table_of.values(), strict=True)])
+        moved = solve(seated, np.concatenate([s.unknowns for s in seats]), view)
+        apart = np.isin(solved.problems.item, list(table_of))
+        solved = joined(solved.dearer(np.where(apart, APART_COST, 0.0)), moved)
+        placed = _arranged(solved, observations, view, height_m)
+    return placed
 
 
 def _arranged(solved: Solutions, observations: BoxObservations, view: View, height_m: float) -> dict[int, Placement]:
@@ -155,16 +164,25 @@ def _arranged(solved: Solutions, observations: BoxObservations, view: View, heig
 
 
 def set_sizes(placed: Mapping[int, Placement], observations: BoxObservations) -> dict[int, SizeMode]:
-    """For every member of a set the size that the well-seen members have, as a narrow mode."""
+    """For every member of a set the size that the well-seen members have, as a narrow mode.
+
+    Of a member that is cut or hidden above or below nothing is taken of its height, nor of its sides' extents of one
+    that is cut or hidden at a side; an extent that no member shows stays as open as it is.
+    """
     found: dict[int, SizeMode] = {}
     for name in sorted({observations.categories[i].name for i in placed} & SETS):
         members = [i for i in placed if observations.categories[i].name == name]
-        unseen = np.array([int((observations.hidden(i) | observations.truncated[i]).sum()) for i in members])
-        if len(members) < 2 or unseen.min() > MAX_UNSEEN:
+        whole = np.array([~(observations.hidden(i) | observations.truncated[i]) for i in members])
+        if len(members) < 2 or (~whole).sum(axis=1).min() > MAX_UNSEEN:
             continue
+        upright, across = whole[:, 1] & whole[:, 3], whole[:, 0] & whole[:, 2]
         sizes = np.log([placed[i].cuboid.size_m[0] for i in members])
-        best = [k for k in np.argsort(unseen, kind="stable") if unseen[k] <= MAX_UNSEEN]
-        found |= {i: plain_mode(np.median(sizes[best], axis=0), np.full(3, SET_SIGMA), 0.0, name) for i in members}
+        usual = placed[members[0]].problem
+        size, sigma = usual.log_size[0].copy(), usual.log_size_sigma[0].copy()
+        for axes, seen in (([0, 1], across), ([2], upright)):
+            if seen.any():
+                size[axes], sigma[axes] = np.median(sizes[seen][:, axes], axis=0), SET_SIGMA
+        found |= dict.fromkeys(members, plain_mode(size, sigma, 0.0, name))
     return found
 
 

@@ -18,7 +18,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 
 from diorama_core.geometry.projection import NEAR_M, cuboid_corners, visible_bounds
 from diorama_core.scene.types import Intrinsics
@@ -26,8 +26,8 @@ from diorama_core.scene.types import Intrinsics
 UNKNOWNS = 6
 ROBUST_BEYOND = 2.0
 """Residuals beyond this many sigmas count linearly."""
-OCCLUDED_WEIGHT = 0.22
-"""Weight of an edge on the side that something in front hides."""
+OCCLUDED_WEIGHT = 0.08
+"""Weight of an edge as far as something in front hides what goes on behind it."""
 INVISIBLE_PENALTY = 12.0
 """Sigmas per edge for a cuboid that is not in the picture at all."""
 WALL_NEARER_LOG_SIGMA = 0.06
@@ -63,8 +63,8 @@ class Problems:
     yaw_rad: Float[np.ndarray, "n"]
     box_px: Float[np.ndarray, "n 4"]
     edge_sigma_px: Float[np.ndarray, "n 4"]
-    hidden_beyond: Bool[np.ndarray, "n 4"]
-    """Edges behind which the object may go on, hidden by something in front."""
+    hidden_px: Float[np.ndarray, "n 4"]
+    """How far beyond each edge the object may go on, hidden by something in front; 0 where nothing is in front."""
     log_size: Float[np.ndarray, "n 3"]
     """Prior of the logarithms of depth, width, height."""
     log_size_sigma: Float[np.ndarray, "n 3"]
@@ -220,15 +220,15 @@ def _unfilled(
 def _edges(
     corners: Float[np.ndarray, "n 8 3"], unfilled: Float[np.ndarray, "n 4"], problems: Problems, view: View
 ) -> Float[np.ndarray, "n 4"]:
-    """How far the projected box is from the observed one, edge by edge; lenient where something hides the rest."""
+    """How far the projected box is from the observed one, edge by edge; lenient as far as something hides the rest."""
     bounds, visible = visible_bounds(corners, view.intrinsics)
     k = view.intrinsics
     border = np.abs(bounds - [0.0, 0.0, k.width, k.height]) < 1e-6
     inward = np.array([1.0, 1.0, -1.0, -1.0])
     bounds = bounds + np.where(border, 0.0, unfilled) * inward
     outward = (bounds - problems.box_px) * -inward
-    off = outward / problems.edge_sigma_px
-    off = np.where(problems.hidden_beyond & (outward > 0), OCCLUDED_WEIGHT * off, off)
+    behind = np.clip(outward, 0.0, problems.hidden_px)
+    off = (outward - (1 - OCCLUDED_WEIGHT) * behind) / problems.edge_sigma_px
     robust = np.where(
         np.abs(off) > ROBUST_BEYOND,
         np.sign(off) * np.sqrt(np.maximum(2 * ROBUST_BEYOND * np.abs(off) - ROBUST_BEYOND**2, 0.0)),

@@ -41,7 +41,7 @@ def row(
         "yaw_rad": yaw_rad,
         "box_px": observations.box_px[index],
         "edge_sigma_px": observations.edge_sigma_px[index],
-        "hidden_beyond": observations.hidden(index, parent),
+        "hidden_px": observations.hidden_px(index, parent),
         "log_size": mode.log_size,
         "log_size_sigma": mode.sigma,
         "whitening": mode.whitening,

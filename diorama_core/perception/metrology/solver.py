@@ -34,7 +34,7 @@ class Solutions:
 
     def dearer(self, by: Float[np.ndarray, "n"]) -> Solutions:
         """The same rows with more against each."""
-        return Solutions(self.problems, self.unknowns, self.cost + by)
+        return Solutions(self.problems.changed(extra=self.problems.extra + by), self.unknowns, self.cost + by)
 
 
 def joined(a: Solutions, b: Solutions) -> Solutions:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, with_kin
+from diorama_core.library.taxonomy import AGAINST_WALLS, PORTABLE, UNKNOWN, with_kin
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.priors import (
     SizeMode,
@@ -31,11 +31,6 @@ _BACK_COST, _ODD_ON_BACK_COST = 2.5, 10.0
 """Of a pillow or toy that lies on a backrest or headboard, and of anything else there."""
 _ABOVE_PARENT = 0.5
 """Share of a thing's width that must lie within its supporter's box."""
-AGAINST_WALLS = with_kin(
-    *("bed", "dresser", "cabinet", "sideboard", "console table", "tv stand", "bookshelf", "wardrobe", "refrigerator"),
-    *("stove", "night stand", "kitchen counter", "washing machine", "toilet", "piano"),
-) - {"kitchen island", "bar cart"}
-"""Categories whose backs stand at walls."""
 _SEATS_WITHOUT_SUPPORT_FLAG_COST = 2.0
 _FLAT_M = 0.2
 """A door thinner than this along an axis is in the wall across that axis."""

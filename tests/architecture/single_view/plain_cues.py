@@ -24,6 +24,9 @@ def cues(**given) -> RoomCues:
         "object_low": np.zeros((0, 3)),
         "object_high": np.zeros((0, 3)),
         "object_weights": np.zeros(0),
+        "backed_low": np.zeros((0, 3)),
+        "backed_high": np.zeros((0, 3)),
+        "backed_weights": np.zeros(0),
         "hung_top_m": 0.0,
     }
     neutral["object_portable"] = np.zeros(len(given.get("object_weights", ())), dtype=bool)

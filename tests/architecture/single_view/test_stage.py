@@ -91,7 +91,7 @@ def test_a_corner_stays_where_it_is_seen_when_something_stands_through_one_of_it
     assert left is not None
     assert left.polygon[0, 0] < too_far_left.corners_world[:, 0].min(), "the wall has moved out"
     corner = np.degrees(np.arctan2(left.polygon[0, 0], far.polygon[0, 1]))
-    assert corner == pytest.approx(np.degrees(np.arctan2(-2.0, 4.0)), abs=0.2)
+    assert corner == pytest.approx(np.degrees(np.arctan2(-2.0, 4.0)), abs=0.5)
 
 
 def test_what_could_stand_on_furniture_does_not_move_the_wall_that_it_would_be_behind():

@@ -9,6 +9,8 @@ import pytest
 from diorama_core.architecture.single_view.level_view import level_view
 from diorama_core.architecture.single_view.room_cues import PRIOR_MEDIAN_M, gather_room_cues
 from diorama_core.architecture.single_view.wall_chain import (
+    BACK_CAP,
+    BACK_WEIGHT,
     CORNER_COST,
     FINE,
     JUMP_COST,
@@ -20,6 +22,7 @@ from diorama_core.architecture.single_view.wall_chain import (
     around,
     best_ceiling,
     best_chain,
+    leaves,
     refined,
 )
 from tests.architecture.single_view.plain_cues import cues
@@ -90,6 +93,31 @@ def test_objects_push_walls_away_in_the_headings_of_their_corners() -> None:
     assert extra[0].sum() == pytest.approx(2.0 * OBJECT_WEIGHT, rel=1e-6)
     assert np.flatnonzero(extra[0][0]).size <= 4
     np.testing.assert_allclose(extra[1], 0.0, atol=1e-12)
+
+
+def test_sights_leave_a_footprint_where_it_ends_behind() -> None:
+    across = np.array([[0.0, 1.0], [1.0, 0.0], [np.sqrt(0.5), np.sqrt(0.5)]])
+    found = leaves(np.zeros(2), across, np.array([-0.5, 2.0]), np.array([3.0, 3.5]))
+    np.testing.assert_allclose(found, [3.5, np.inf, 3.0 * np.sqrt(2.0)])
+    within = leaves(np.array([0.0, 2.5]), across[:1], np.array([-0.5, 2.0]), np.array([3.0, 3.5]))
+    np.testing.assert_allclose(within, [1.0])
+
+
+def test_what_stands_at_walls_draws_the_wall_to_its_back() -> None:
+    at = {"backed_low": np.array([[-0.5, 2.6, 0.0]]), "backed_high": np.array([[0.5, 3.0, 2.0]])}
+    scorer = blank(backed_weights=np.array([0.8]), **at)
+    near, behind, far = (
+        scorer.costs(walls(((0.0, -1.0), -y)), 2.6).sum() - blank().costs(walls(((0.0, -1.0), -y)), 2.6).sum()
+        for y in (2.4, 3.0, 4.5)
+    )
+    assert behind < 0.1 * near
+    assert behind < 0.1 * far
+    assert far <= BACK_WEIGHT * 0.8 * BACK_CAP + 1e-9, "it may stand elsewhere"
+
+
+def test_walls_that_lead_far_away_cost_more() -> None:
+    far, farther = blank().costs(walls(((0.0, -1.0), -6.0), ((0.0, -1.0), -11.0)), 2.6).sum(axis=1)
+    assert farther > far + 0.3
 
 
 def test_usual_heights_and_objects_below_them_cost_nothing() -> None:

@@ -91,19 +91,20 @@ def test_sizes_and_heights_are_measured_in_their_sigmas() -> None:
     assert raised[TOP] == pytest.approx(3.0)
 
 
-def test_edges_are_robust_and_lenient_where_something_hides_the_rest() -> None:
+def test_edges_are_robust_and_lenient_as_far_as_something_hides_the_rest() -> None:
     true = problem().box_px[0]
     sigma = problem().edge_sigma_px[0, 0]
 
-    def left(shift: float, hidden: bool = False) -> float:
+    def left(shift: float, hidden_px: float = 0.0) -> float:
         moved = problem(box=true).changed(box_px=true + np.array([shift, 0.0, 0.0, 0.0]))
-        return float(residuals(unknowns(), moved.changed(hidden_beyond=[hidden] * 4), VIEW)[0, 0])
+        return float(residuals(unknowns(), moved.changed(hidden_px=[hidden_px] * 4), VIEW)[0, 0])
 
     assert left(sigma) == pytest.approx(1.0)
     assert left(-sigma) == pytest.approx(-1.0)
     assert left(10 * sigma) == pytest.approx(np.sqrt(20.0 * ROBUST_BEYOND - ROBUST_BEYOND**2))
-    assert left(sigma, hidden=True) == pytest.approx(OCCLUDED_WEIGHT)
-    assert left(-sigma, hidden=True) == pytest.approx(-1.0)
+    assert left(sigma, hidden_px=3 * sigma) == pytest.approx(OCCLUDED_WEIGHT)
+    assert left(3 * sigma, hidden_px=2 * sigma) == pytest.approx(1.0 + 2 * OCCLUDED_WEIGHT)
+    assert left(-sigma, hidden_px=3 * sigma) == pytest.approx(-1.0)
 
 
 def test_a_cuboid_that_the_camera_cannot_see_is_refused_dearly() -> None:

@@ -27,9 +27,9 @@ def test_a_row_is_an_object_on_the_floor_unless_told_otherwise() -> None:
     assert made.wall_m[0] == 3.0
     assert made.footprint_sigma_m[0] == made.wall_sigma[0] == made.top_sigma_m[0] == UNTOLD
     np.testing.assert_array_equal(made.box_px[0], observations.box_px[0])
-    assert made.hidden_beyond[0].tolist() == [False, False, False, True]
+    assert made.hidden_px[0].tolist() == [0.0, 0.0, 0.0, 150.0]
     resting = row(observations, 0, mode, camera_height_m=1.4, yaw_rad=0.2, parent=1)
-    assert not resting.hidden_beyond.any()
+    assert not resting.hidden_px.any()
 
 
 def test_contact_starts_where_the_bottom_meets_the_floor() -> None:
