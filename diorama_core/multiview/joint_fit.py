@@ -42,6 +42,8 @@ ODD_ANGLE_COST = 1.5
 """Of a heading off the room's axes."""
 ODD_STARTS = np.radians((0.0, 30.0, 60.0, 90.0, 120.0, 150.0))
 NEAREST_M = 0.15
+MAX_HIDDEN = 1.0
+"""Sigmas that a cuboid which goes on behind something costs at most for each hidden edge."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +53,8 @@ class PhotoBoxes:
     camera: Camera
     """In a world with +Z up, the floor at 0 and the room's axes along x and y."""
     observations: BoxObservations
+    cut_short: Bool[np.ndarray, "n 4"]
+    """Edges behind which an object may go on, hidden by something nearer: they bound its size from below only."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,6 +135,7 @@ class _Joint:
                     yaw_rad=0.0,
                     base_sigma_m=1.0,
                     cut_sigma=UNTOLD,
+                    hidden_beyond=photo.cut_short[index],
                 )
                 for mode in modes
             ]
@@ -159,13 +164,19 @@ class _Joint:
         parts = []
         for camera, view, problems in self._views:
             rows = problems.rows(chosen).changed(yaw_rad=unknowns[:, 6])
-            parts.append(residuals(_as_seen(unknowns, camera, view), rows, view)[:, :EDGES])
+            edges = residuals(_as_seen(unknowns, camera, view), rows, view)[:, :EDGES]
+            parts.append(np.where(rows.hidden_beyond & (edges > 0), _bounded(edges), edges))
         size = np.einsum("nij,nj->ni", self._whitening[chosen], unknowns[:, 2:5] - self._log_size[chosen])
         parts += [size, (unknowns[:, :2] - self._place) / PLACE_SIGMA_M]
         if self._base_m is not None:
             middle = unknowns[:, 5:6] + np.exp(unknowns[:, 4:5]) / 2
             parts += [(middle - self._base_m) / BASE_SIGMA_M, np.minimum(unknowns[:, 5:6], 0.0) / 0.05]
         return np.concatenate(parts, axis=1)
+
+
+def _bounded(edges: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n 4"]:
+    """Residuals that reach a limit: how much more something hides does not matter, however many photos say it."""
+    return np.asarray(edges / np.sqrt(1.0 + (edges / MAX_HIDDEN) ** 2))
 
 
 def _as_seen(unknowns: Float[np.ndarray, "n 7"], camera: Camera, view: View) -> Float[np.ndarray, "n 6"]:
