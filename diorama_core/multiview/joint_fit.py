@@ -42,6 +42,7 @@ ODD_ANGLE_COST = 1.5
 """Of a heading off the room's axes."""
 ODD_STARTS = np.radians((0.0, 30.0, 60.0, 90.0, 120.0, 150.0))
 NEAREST_M = 0.15
+SURE = (0.0, 0.0, 0.0)
 MAX_HIDDEN = 1.0
 """Sigmas that a cuboid which goes on behind something costs at most for each hidden edge."""
 
@@ -67,6 +68,8 @@ class JointCuboid:
     size_m: Float[np.ndarray, "3"]
     cost: float
     """Everything that speaks against it, in squared sigmas."""
+    log_size_sigma: tuple[float, float, float] = SURE
+    """How far off the logarithms of its extents may be: depths of thin things hardly show in boxes."""
 
 
 def fit_jointly(
@@ -103,7 +106,21 @@ def fit_jointly(
     best = int(np.argmin(costs))
     x, y, *log_size, base, yaw = unknowns[best]
     size = np.exp(np.array(log_size))
-    return JointCuboid(np.array([x, y, base + size[2] / 2]), float(yaw), size, float(costs[best]))
+    row = np.array([best])
+    sigma = _size_sigma(problem.rows(last).rows(row), unknowns[row], fixed[last][row])
+    return JointCuboid(np.array([x, y, base + size[2] / 2]), float(yaw), size, float(costs[best]), sigma)
+
+
+def _size_sigma(
+    problem: _Joint, unknowns: Float[np.ndarray, "1 7"], fixed: Bool[np.ndarray, "1 7"]
+) -> tuple[float, float, float]:
+    """Deviations of the logarithms of depth, width and height, from the curvature of the cost."""
+    moves = STEP * np.concatenate([np.zeros((1, UNKNOWNS)), np.eye(UNKNOWNS)])
+    values = problem((unknowns + moves).reshape(-1, UNKNOWNS), UNKNOWNS + 1)
+    jacobian = ((values[1:] - values[0]) / STEP).T * ~fixed
+    normal = jacobian.T @ jacobian + np.diag(np.where(fixed[0], 1.0, 1e-6))
+    depth, width, height = (float(v) for v in np.sqrt(np.diag(np.linalg.inv(normal))[2:5]))
+    return depth, width, height
 
 
 def _headings(kind: Category, mode: SizeMode) -> list[tuple[float, bool]]:

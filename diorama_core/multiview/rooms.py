@@ -54,6 +54,8 @@ from diorama_core.scene.types import Architecture, Camera, Pose, Scene, SceneObj
 
 UNSEEN_EDGE_FACTOR = 0.5
 """Of a box's area, for each of its edges that is hidden or cut: how well a photo shows an object."""
+PROPORTION_SIGMA = 0.12
+"""Of the logarithms of a shape's proportions, about those of what it stands for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,7 +163,7 @@ def build_room(
         read.append(read_photo(photo, choose(photo.inputs), part))
     room_photos = [said_alone(r) for r in read]
     tracks = joined_objects(room_photos, progress.part(0.2, 0.45))
-    best = [max(t.boxes, key=lambda b: (_shown(room_photos[b[0]], b[1]), -b[0]))[0] for t in tracks]
+    best = [max(t.boxes, key=lambda b: (shown(room_photos[b[0]], b[1]), -b[0]))[0] for t in tracks]
     used = sorted({0, *best})
     built: dict[int, Built] = {}
     single = len(photos) == 1
@@ -235,7 +237,7 @@ def said_alone(read: ReadPhoto) -> RoomPhoto:
     return RoomPhoto(PhotoBoxes(read.posed.camera, observations, short), tuple(alone))
 
 
-def _shown(photo: RoomPhoto, box: int) -> float:
+def shown(photo: RoomPhoto, box: int) -> float:
     """How well a photo shows an object: the area of its box, less where edges are hidden or cut."""
     seen = photo.boxes.observations
     x1, y1, x2, y2 = seen.box_px[box]
@@ -412,13 +414,32 @@ def moved_to_room(scene: Scene, T: Float[np.ndarray, "4 4"]) -> Scene:
 
 
 def filling(item: SceneObject, joint: JointCuboid) -> SceneObject:
-    """The object with every candidate filling the joint cuboid, its front on the side where its photo saw it."""
+    """The object with every candidate filling the joint cuboid, its front on the side where its photo saw it.
+
+    Extents that boxes hardly tell are those that the shape has in proportion to the others.
+    """
 
     def fitted(pose: Pose, shape_size_m: tuple[float, float, float]) -> Pose:
         turn = round((pose.yaw_rad - joint.yaw_rad) / (np.pi / 2))
-        size = joint.size_m[[1, 0, 2]] if turn % 2 else joint.size_m
+        axes = [1, 0, 2] if turn % 2 else [0, 1, 2]
+        shape = np.array(shape_size_m)
+        size = in_proportion(np.maximum(joint.size_m, 1e-3)[axes], np.array(joint.log_size_sigma)[axes], shape)
         R = yaw_rotation(joint.yaw_rad + turn * np.pi / 2)
-        return Pose(R, joint.centre, np.maximum(size, 1e-3) / np.array(shape_size_m))
+        base = joint.centre[2] - joint.size_m[2] / 2
+        return Pose(R, np.array([*joint.centre[:2], base + size[2] / 2]), size / shape)
 
     candidates = tuple(replace(c, pose=fitted(c.pose, c.shape_size_m)) for c in item.candidates)
     return replace(item, pose=fitted(item.pose, item.shape_size_m), candidates=candidates)
+
+
+def in_proportion(
+    size_m: Float[np.ndarray, "3"], log_sigma: Float[np.ndarray, "3"], shape_size_m: Float[np.ndarray, "3"]
+) -> Float[np.ndarray, "3"]:
+    """Extents by a measurement and by the proportions of a shape, of unknown scale, each as sure as it is."""
+    measured, shape = np.log(size_m), np.log(shape_size_m)
+    known = 1.0 / np.maximum(log_sigma, 1e-3) ** 2
+    weight = 1.0 / (np.maximum(log_sigma, 1e-3) ** 2 + PROPORTION_SIGMA**2)
+    scale = float(weight @ (measured - shape) / weight.sum())
+    own = 1.0 / PROPORTION_SIGMA**2
+    extents: Float[np.ndarray, "3"] = np.exp((known * measured + own * (shape + scale)) / (known + own))
+    return extents
