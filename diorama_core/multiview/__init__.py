@@ -9,4 +9,6 @@ joint_room.py     walls and floor of all photos
 given_stages.py   what is known of all photos, as stages of one
 room_pictures.py  floor, walls and ceiling as all photos show them
 rooms.py          from posed photos to one scene
+better_seen.py    what an object is, by a photo that shows it better
+rebuilding.py     a scene built anew, with the photos that had joined
 """
