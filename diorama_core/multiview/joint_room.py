@@ -15,6 +15,7 @@ import manifold3d
 import numpy as np
 from jaxtyping import Bool, Float
 
+from diorama_core.architecture.texture.colours import visible_planes
 from diorama_core.architecture.walls.closed_room import GUESS_CONFIDENCE
 from diorama_core.architecture.walls.openings import Opening, with_openings
 from diorama_core.architecture.walls.passages import with_passages
@@ -40,6 +41,8 @@ STANDING = 4.0
 """Where objects stand and cameras are is the room."""
 AROUND_M = 0.2
 MIN_EDGE_M = 0.05
+VIEW_STEP = 8
+"""Every so many pixels it is looked whether a photo shows the ceiling."""
 MIN_COVERED = 0.25
 """Share of an edge along which photos see a wall, for it to be a wall that was seen."""
 
@@ -112,10 +115,18 @@ def with_open_doorways(
 
 
 def _top(photos: Sequence[SeenRoom]) -> float:
-    """Height of the room: of the photos whose ceilings show the median, else of all."""
-    seen = [float(c.polygon[:, 2].mean()) for p in photos for c in p.architecture.by_role("ceiling") if c.seen]
-    walls = [float(w.polygon[:, 2].max()) for p in photos for w in p.architecture.by_role("wall")]
-    return float(np.median(seen or walls))
+    """Height of the room: as the photos say that see much of a ceiling, else the middle of all walls' tops."""
+    levels, weights = [], []
+    for photo in photos:
+        planes = photo.architecture.planes
+        seen = visible_planes(planes, photo.camera, VIEW_STEP)
+        for index, plane in enumerate(planes):
+            if plane.role == "ceiling":
+                levels.append(float(plane.polygon[:, 2].mean()))
+                weights.append(float((seen == index).mean()))
+    if sum(weights) > 0:
+        return _weighted_median(np.array(levels), np.array(weights))
+    return float(np.median([w.polygon[:, 2].max() for p in photos for w in p.architecture.by_role("wall")]))
 
 
 def _lines(photos: Sequence[SeenRoom]) -> tuple[_Line, ...]:
