@@ -8,16 +8,22 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 from diorama_app.reconstruction.networks import can_find_furniture
 from diorama_app.session.client import Client
 from diorama_app.session.session import BUILDING, EditorSession
-from diorama_core.artefacts import Inputs
+from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.errors import DioramaError, EditRefused, InputError
+from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
-from diorama_core.scene.types import Scene
+from diorama_core.scene.types import Camera, Scene
+
+if TYPE_CHECKING:
+    from diorama_core.multiview.rebuilding import Rebuilt  # the whole pipeline; opening a project does without it
+    from diorama_core.pipeline.run import Built
 
 
 def ready_to_build(inputs: Inputs | None) -> bool:
@@ -58,17 +64,57 @@ def start_build(session: EditorSession, inputs: Inputs, title: str, label: str, 
     if project is None:
         raise EditRefused("no project is open")
 
+    before, others = session.scene.camera, session.further_photos
+
     def work(progress: Progress) -> None:
         from diorama_core.project.build import build_project
 
         session.autosave.flush()
+        joined = [p for p in others if p.camera is not None]
+        alone = 1.0 / (1 + len(joined))
         with _noted(project):
             warnings = project.info().get("warnings", ())
-            built = build_project(project, inputs, session.library, warnings=warnings, progress=progress)
-        session.ui_thread.post(lambda: show_built(session, project, built.scene, label=label, message=message))
+            built = build_project(
+                project, inputs, session.library, warnings=warnings, progress=progress.part(0.0, alone)
+            )
+            again = None
+            if joined:
+                again = _with_others(project, built, before, others, session.library, progress.part(alone, 1.0))
+        scene = built.scene if again is None else again.scene
+        session.ui_thread.post(lambda: show_built(session, project, scene, label=label, message=message, again=again))
 
     session.interrupted = False
     session.jobs.start("build", title, work)
+
+
+def _with_others(
+    project: Project,
+    built: Built,
+    before: Camera | None,
+    others: Sequence[FurtherPhoto],
+    library: ShapeLibrary,
+    progress: Progress,
+) -> Rebuilt:
+    """The other photos join the scene that was built anew; it is saved with what they show."""
+    from diorama_core.layout.recipes import recipe
+    from diorama_core.multiview.rebuilding import with_photos_again
+    from diorama_core.pipeline.presets import stages_for
+    from diorama_core.project.further_photos import note_placed
+
+    found = with_photos_again(
+        built.scene,
+        built.inputs,
+        before,
+        others,
+        library,
+        lambda given: stages_for("auto", given, library),
+        lambda free: recipe("feasible", library, free, depth_measured=True),
+        progress,
+    )
+    project.save_textures(found.textures)
+    project.save_scene(found.scene)
+    note_placed(project, found.scene)
+    return found
 
 
 @contextlib.contextmanager
@@ -87,17 +133,37 @@ def forget_build(project: Project) -> None:
         project.update_info(**{BUILDING: None})
 
 
-def show_built(session: EditorSession, project: Project, scene: Scene, *, label: str, message: str = "") -> None:
-    """Show the built scene of the open project to all clients, as one undo step."""
+def show_built(
+    session: EditorSession,
+    project: Project,
+    scene: Scene,
+    *,
+    label: str,
+    message: str = "",
+    again: Rebuilt | None = None,
+) -> None:
+    """Show the built scene of the open project to all clients, as one undo step.
+
+    Args:
+        session: where.
+        project: the project that was built.
+        scene: its scene.
+        label: what the undo step is called.
+        message: what is said instead of the number of objects.
+        again: the other photos, where some had joined the scene before.
+    """
     if project != session.project:
         return  # it is on disk; somebody opened another project here meanwhile
     for client in session.clients.values():
         client.view.canvas.close()
     session.textures = {**session.textures, **project.textures(scene)}  # undo shows what earlier ones name
     session.read_notes()
-    session.commit(label, scene, inputs=project.load_inputs())
+    # Photos that were added or taken out meanwhile are as the person left them.
+    known = {} if again is None else {p.name: p for p in again.photos}
+    further = tuple(known.get(p.name, p) for p in session.further_photos)
+    session.commit(label, scene, inputs=project.load_inputs(), further=further if again is not None else None)
     session.view.show_whole_room()
     message = message or f"The scene has {len(scene.objects)} objects. Click one to change it."
-    if session.further_photos:
-        message += " The other photos of the room are to be added again."
+    if again is not None and again.left_out:
+        message += f" To be added again: {', '.join(again.left_out)}."
     session.notice_all(message, "good")

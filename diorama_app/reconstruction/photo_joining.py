@@ -15,7 +15,7 @@ from diorama_app.session.client import Client
 from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.progress import Progress
-from diorama_core.project.further_photos import MAX_PHOTOS, note_placed, still_placed
+from diorama_core.project.further_photos import MAX_PHOTOS, note_placed, still_made, still_placed
 from diorama_core.project.storage import Project
 from diorama_core.scene.types import Scene
 
@@ -108,6 +108,7 @@ def _joined(
         known,
         photo,
         still_placed(project, scene),
+        still_made(project, scene),
         library,
         lambda given: stages_for("auto", given, library),
         lambda free: recipe("feasible", library, free, depth_measured=True),

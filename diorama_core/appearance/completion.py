@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Float32, UInt8
 
 from diorama_core.appearance.rectify import Rectified
-from diorama_core.architecture.texture.plane_textures import completed
+from diorama_core.architecture.texture.continuation import completed
 
 MIN_OVERLAP = 0.12
 """Share of a picture that must be seen together with its mirror image to tell whether they are alike."""

@@ -19,8 +19,10 @@ from diorama_core.errors import InputError
 from diorama_core.geometry.projection import box_iou
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import broad, category
+from diorama_core.multiview.better_seen import CLEARLY_BETTER, better_seen
 from diorama_core.multiview.joining import RoomPhoto, Sighted, Track, claims, fitted_track, overlap
 from diorama_core.multiview.joint_fit import JointCuboid
+from diorama_core.multiview.room_pictures import room_pictures, with_pictures
 from diorama_core.multiview.rooms import (
     PosedInputs,
     ReadPhoto,
@@ -30,8 +32,10 @@ from diorama_core.multiview.rooms import (
     filling,
     moved_to_room,
     photo_world,
+    placed_picture,
     read_photo,
     said_alone,
+    shown,
     track_name,
 )
 from diorama_core.pipeline.stages import Stages
@@ -72,6 +76,7 @@ def with_photo(
     known: Sequence[FurtherPhoto],
     new: FurtherPhoto,
     movable: frozenset[str],
+    changeable: frozenset[str],
     library: ShapeLibrary,
     choose: Callable[[Inputs], Stages],
     layout: Callable[[frozenset[str]], LayoutStage],
@@ -83,7 +88,10 @@ def with_photo(
         scene: as it is now, floor at 0.
         known: photos of the scene with their cameras, and which objects are seen in them.
         new: the photo; where nothing is marked in it, what a detector finds counts.
-        movable: ids of objects that may be put elsewhere: those where the program had put them.
+        movable: ids of objects that may be put elsewhere, and of planes that may get new pictures: those where the
+            program had put them.
+        changeable: ids of objects that may get another shape and other colours: those that have what the program gave
+            them.
         library: where shapes come from.
         choose: the stages for a photo.
         layout: the optimiser, given the ids that are free to move.
@@ -121,14 +129,24 @@ def with_photo(
             rows = (*sightings[item.id], (len(others), box))
             fitted[item.id] = fitted_track(tuple(rows), photos).cuboid
     scene = replace(scene, objects=tuple(filling(o, fitted[o.id]) if o.id in fitted else o for o in scene.objects))
-    scene, names, textures = _with_new(scene, read, own, claimed, library, progress.part(0.4, 0.85))
+    shares = {
+        box: share
+        for box, item in claimed.items()
+        if item.id in changeable and (share := _share_of_new(sightings[item.id], others, own, box)) is not None
+    }
+    scene, names, textures = _with_new(scene, read, own, claimed, shares, library, progress.part(0.4, 0.8))
     ids = {**{box: item.id for box, item in claimed.items()}, **names}
     if names:
         scene = containing_room(scene)
     free = (movable & {o.id for o in scene.objects}) | frozenset(names.values())
     if free:
-        scene, report = layout(frozenset(free)).optimise(scene, progress.part(0.85, 1.0), None)
+        scene, report = layout(frozenset(free)).optimise(scene, progress.part(0.8, 0.92), None)
         scene = set_metrics(scene, report.after)
+    progress.report(0.92, "pictures of floor and walls")
+    placed = [placed_picture(r, _ids_of(p, r)) for p, r, _ in others] + [placed_picture(read, ids)]
+    pictures = room_pictures(scene, placed, library, {p.id for p in scene.architecture.planes if p.id in movable})
+    scene, named = with_pictures(scene, pictures)
+    textures |= named
     check_scene(scene)
     seen = tuple((ids[k], item.box) for k, item in enumerate(read.objects) if k in ids)
     inputs = replace(new.inputs, boxes=read.inputs.boxes)
@@ -198,6 +216,23 @@ def _same(box: Box, read: ReadPhoto) -> int | None:
     return best if best is not None and shares[best] >= SAME_BOX else None
 
 
+def _ids_of(photo: FurtherPhoto, read: ReadPhoto) -> dict[int, str]:
+    """The ids of a known photo's objects, by box."""
+    return {index: name for name, box in photo.seen if (index := _same(box, read)) is not None}
+
+
+def _share_of_new(
+    sightings: Sequence[tuple[int, int]],
+    others: Sequence[tuple[FurtherPhoto, ReadPhoto, RoomPhoto]],
+    own: RoomPhoto,
+    box: int,
+) -> float | None:
+    """How much a new photo counts for what an object is; None where a known one shows it about as well."""
+    known = max((shown(others[number][2], index) for number, index in sightings), default=0.0)
+    new = shown(own, box)
+    return new / (new + known) if known > 0.0 and new > CLEARLY_BETTER * known else None
+
+
 def _claimed(
     objects: Sequence[SceneObject],
     sightings: Mapping[str, tuple[tuple[int, int], ...]],
@@ -227,14 +262,29 @@ def _with_new(
     read: ReadPhoto,
     own: RoomPhoto,
     claimed: Mapping[int, SceneObject],
+    shares: Mapping[int, float],
     library: ShapeLibrary,
     progress: Progress,
 ) -> tuple[Scene, dict[int, str], dict[str, UInt8[np.ndarray, "_ _ 3"]]]:
-    """The scene with the objects of boxes that nobody claims; their ids by box, and the pictures that they name."""
+    """The scene with the objects of boxes that nobody claims, and those better that the photo shows better.
+
+    Args:
+        scene: as it is.
+        read: the new photo.
+        own: what it says by itself.
+        claimed: objects of the scene by box.
+        shares: how much the photo counts for those that it shows better, by box.
+        library: where shapes come from.
+        progress: reports and cancellation.
+
+    Returns:
+        The scene, ids of new objects by box, and the pictures that new and better seen objects name.
+    """
     left = [k for k in range(len(read.objects)) if k not in claimed]
-    if not left:
+    if not left and not shares:
         return scene, {}, {}
-    tracks = [_track(k, one, claimed.get(k)) for k, one in enumerate(own.alone)]
+    there_now = {box: scene.object(item.id) for box, item in claimed.items()}
+    tracks = [_track(k, one, there_now.get(k)) for k, one in enumerate(own.alone)]
     built = built_alone(read, 0, tracks, library, progress)
     there = moved_to_room(built.scene, read.T_room_photo)
     ids: dict[str, str] = {track_name(k): item.id for k, item in claimed.items()}
@@ -249,6 +299,12 @@ def _with_new(
         scene = replace(scene, objects=(*scene.objects, replace(item, id=names[k], box_px=None, mask_id=None)))
         used = [m.texture for m in item.photo_materials if m.texture is not None and m.texture in built.textures]
         textures |= {name: built.textures[name] for name in used}
+    for k, share in shares.items():
+        if there.has_object(track_name(k)):
+            item = better_seen(there_now[k], there.object(track_name(k)), share)
+            scene = replace(scene, objects=tuple(item if o.id == item.id else o for o in scene.objects))
+            used = [m.texture for m in item.photo_materials if m.texture is not None and m.texture in built.textures]
+            textures |= {name: built.textures[name] for name in used}
     edges = [there.support_of(track_name(k)) for k in names]
     held = [_held(edge, ids, there, scene) for edge in edges if edge is not None]
     known = {o.id for o in scene.objects} | {p.id for p in scene.architecture.planes}

@@ -10,7 +10,7 @@ from jaxtyping import Float
 from scipy.optimize import linear_sum_assignment
 
 from diorama_core.geometry.projection import box_iou, cuboid_corners, visible_bounds
-from diorama_core.library.taxonomy import Category, broad
+from diorama_core.library.taxonomy import PORTABLE, Category, broad
 from diorama_core.multiview.joint_fit import JointCuboid, PhotoBoxes, fit_jointly, meeting_point
 from diorama_core.perception.metrology.placement import FLOOR
 from diorama_core.progress import Progress
@@ -20,6 +20,8 @@ MIN_OVERLAP = 0.1
 FARTHER = tuple(float(f) for f in np.geomspace(0.6, 1.67, 9))
 FARTHER_PENALTY = tuple(float(np.exp(-0.5 * (np.log(f) / 0.3) ** 2)) for f in FARTHER)
 """Distances at which a thing that one photo shows is looked for in another, and how unlikely each is."""
+RAISED_COST = 6.0
+"""Of a portable thing that stands on something which no photo says it stands on."""
 ROUNDS = 2
 """How often all boxes are claimed anew by cuboids that know the others."""
 
@@ -168,7 +170,14 @@ def _shared(cuboid: JointCuboid, photo: RoomPhoto, box: int) -> float:
     camera = photo.boxes.camera
     corners = cuboid_corners(cuboid.centre[None], np.array([cuboid.yaw_rad]), cuboid.size_m[None])
     bounds, visible = visible_bounds(camera.to_camera(corners), camera.intrinsics)
-    return float(box_iou(bounds[0], photo.boxes.observations.box_px[box])) if visible[0] else 0.0
+    if not visible[0]:
+        return 0.0
+    seen = photo.boxes.observations.box_px[box]
+    # What goes on behind something nearer is compared as far as it can be seen.
+    low, high = np.maximum(bounds[0], seen), np.minimum(bounds[0], seen)
+    short = photo.boxes.cut_short[box]
+    shown = np.where(short, np.where([True, True, False, False], low, high), bounds[0])
+    return float(box_iou(shown, seen)) if (shown[2:] > shown[:2]).all() else 0.0
 
 
 def fitted_track(boxes: Boxes, photos: Sequence[RoomPhoto]) -> Track:
@@ -186,4 +195,7 @@ def fitted_track(boxes: Boxes, photos: Sequence[RoomPhoto]) -> Track:
     middle = np.median([a.centre for a in alone], axis=0)
     starts = [middle, meeting_point(sightings)]
     found = fit_jointly(sightings, kind, starts, on_floor=standing, upright_m=float(middle[2]))
+    if standing and kind.name in PORTABLE and found.cost > RAISED_COST:
+        raised = fit_jointly(sightings, kind, starts[1:], on_floor=False)
+        found = raised if raised.cost + RAISED_COST < found.cost else found
     return Track(boxes, kind, found)

@@ -42,6 +42,9 @@ ODD_ANGLE_COST = 1.5
 """Of a heading off the room's axes."""
 ODD_STARTS = np.radians((0.0, 30.0, 60.0, 90.0, 120.0, 150.0))
 NEAREST_M = 0.15
+SURE = (0.0, 0.0, 0.0)
+MAX_HIDDEN = 1.0
+"""Sigmas that a cuboid which goes on behind something costs at most for each hidden edge."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +54,8 @@ class PhotoBoxes:
     camera: Camera
     """In a world with +Z up, the floor at 0 and the room's axes along x and y."""
     observations: BoxObservations
+    cut_short: Bool[np.ndarray, "n 4"]
+    """Edges behind which an object may go on, hidden by something nearer: they bound its size from below only."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +68,8 @@ class JointCuboid:
     size_m: Float[np.ndarray, "3"]
     cost: float
     """Everything that speaks against it, in squared sigmas."""
+    log_size_sigma: tuple[float, float, float] = SURE
+    """How far off the logarithms of its extents may be: depths of thin things hardly show in boxes."""
 
 
 def fit_jointly(
@@ -99,7 +106,21 @@ def fit_jointly(
     best = int(np.argmin(costs))
     x, y, *log_size, base, yaw = unknowns[best]
     size = np.exp(np.array(log_size))
-    return JointCuboid(np.array([x, y, base + size[2] / 2]), float(yaw), size, float(costs[best]))
+    row = np.array([best])
+    sigma = _size_sigma(problem.rows(last).rows(row), unknowns[row], fixed[last][row])
+    return JointCuboid(np.array([x, y, base + size[2] / 2]), float(yaw), size, float(costs[best]), sigma)
+
+
+def _size_sigma(
+    problem: _Joint, unknowns: Float[np.ndarray, "1 7"], fixed: Bool[np.ndarray, "1 7"]
+) -> tuple[float, float, float]:
+    """Deviations of the logarithms of depth, width and height, from the curvature of the cost."""
+    moves = STEP * np.concatenate([np.zeros((1, UNKNOWNS)), np.eye(UNKNOWNS)])
+    values = problem((unknowns + moves).reshape(-1, UNKNOWNS), UNKNOWNS + 1)
+    jacobian = ((values[1:] - values[0]) / STEP).T * ~fixed
+    normal = jacobian.T @ jacobian + np.diag(np.where(fixed[0], 1.0, 1e-6))
+    depth, width, height = (float(v) for v in np.sqrt(np.diag(np.linalg.inv(normal))[2:5]))
+    return depth, width, height
 
 
 def _headings(kind: Category, mode: SizeMode) -> list[tuple[float, bool]]:
@@ -131,6 +152,7 @@ class _Joint:
                     yaw_rad=0.0,
                     base_sigma_m=1.0,
                     cut_sigma=UNTOLD,
+                    hidden_beyond=photo.cut_short[index],
                 )
                 for mode in modes
             ]
@@ -159,13 +181,19 @@ class _Joint:
         parts = []
         for camera, view, problems in self._views:
             rows = problems.rows(chosen).changed(yaw_rad=unknowns[:, 6])
-            parts.append(residuals(_as_seen(unknowns, camera, view), rows, view)[:, :EDGES])
+            edges = residuals(_as_seen(unknowns, camera, view), rows, view)[:, :EDGES]
+            parts.append(np.where(rows.hidden_beyond & (edges > 0), _bounded(edges), edges))
         size = np.einsum("nij,nj->ni", self._whitening[chosen], unknowns[:, 2:5] - self._log_size[chosen])
         parts += [size, (unknowns[:, :2] - self._place) / PLACE_SIGMA_M]
         if self._base_m is not None:
             middle = unknowns[:, 5:6] + np.exp(unknowns[:, 4:5]) / 2
             parts += [(middle - self._base_m) / BASE_SIGMA_M, np.minimum(unknowns[:, 5:6], 0.0) / 0.05]
         return np.concatenate(parts, axis=1)
+
+
+def _bounded(edges: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n 4"]:
+    """Residuals that reach a limit: how much more something hides does not matter, however many photos say it."""
+    return np.asarray(edges / np.sqrt(1.0 + (edges / MAX_HIDDEN) ** 2))
 
 
 def _as_seen(unknowns: Float[np.ndarray, "n 7"], camera: Camera, view: View) -> Float[np.ndarray, "n 6"]:

@@ -7,7 +7,7 @@ through the same stages as a single photo. The room is that of the first photo, 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,38 +16,46 @@ from jaxtyping import Float, UInt8
 from diorama_core.architecture.room_extent import containing_room
 from diorama_core.artefacts import (
     Box,
-    CameraEstimate,
-    CameraHypothesis,
     Cuboid,
     DetectedObject,
     Inputs,
     LayoutReport,
-    ObjectGeometry,
 )
 from diorama_core.errors import InputError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import category
 from diorama_core.multiview.alignment import Alignment, PhotoReading, align
+from diorama_core.multiview.cut_short import edges_cut_short
+from diorama_core.multiview.given_stages import (
+    AsObserved,
+    GivenCamera,
+    GivenCuboids,
+    GivenObjects,
+    GivenRoom,
+    given_camera,
+)
 from diorama_core.multiview.joining import RoomPhoto, Sighted, Track, joined_objects
 from diorama_core.multiview.joint_fit import JointCuboid, PhotoBoxes
+from diorama_core.multiview.joint_room import SeenRoom, joint_room, with_open_doorways
+from diorama_core.multiview.room_pictures import PlacedPicture, room_pictures
 from diorama_core.perception.metrology.box_observations import gather
 from diorama_core.perception.metrology.placement import place_all
 from diorama_core.perception.metrology.problem import View
 from diorama_core.perception.metrology.reading import heading_and_size
-from diorama_core.perception.metrology.stage import supports_of
 from diorama_core.pipeline.plan import evaluate
 from diorama_core.pipeline.run import Built, build_scene
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import Stages
 from diorama_core.progress import Progress
 from diorama_core.protocols import LayoutStage, Preview
-from diorama_core.provenance import CameraSource, ScaleSource
 from diorama_core.scene.edits import set_metrics
 from diorama_core.scene.support import check_scene
 from diorama_core.scene.types import Architecture, Camera, Pose, Scene, SceneObject, Support, yaw_rotation
 
 UNSEEN_EDGE_FACTOR = 0.5
 """Of a box's area, for each of its edges that is hidden or cut: how well a photo shows an object."""
+PROPORTION_SIGMA = 0.12
+"""Of the logarithms of a shape's proportions, about those of what it stands for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,17 +163,26 @@ def build_room(
         read.append(read_photo(photo, choose(photo.inputs), part))
     room_photos = [said_alone(r) for r in read]
     tracks = joined_objects(room_photos, progress.part(0.2, 0.45))
-    best = [max(t.boxes, key=lambda b: (_shown(room_photos[b[0]], b[1]), -b[0]))[0] for t in tracks]
+    best = [max(t.boxes, key=lambda b: (shown(room_photos[b[0]], b[1]), -b[0]))[0] for t in tracks]
     used = sorted({0, *best})
     built: dict[int, Built] = {}
+    single = len(photos) == 1
+    rooms = (None,) * len(read) if single else _room_of_all(read, tracks, progress.part(0.45, 0.55))
     for number, index in enumerate(used):
-        part = progress.part(0.45 + 0.45 * number / len(used), 0.45 + 0.45 * (number + 1) / len(used))
-        built[index] = built_alone(read[index], index, tracks, library, part)
+        part = progress.part(0.55 + 0.3 * number / len(used), 0.55 + 0.3 * (number + 1) / len(used))
+        built[index] = built_alone(read[index], index, tracks, library, part, room=rooms[index], plane_pictures=single)
     scene, textures = _merged(read, built, tracks, best)
     report = None
     if scene.objects:
-        scene, report = layout.optimise(scene, progress.part(0.9, 1.0), preview)
+        scene, report = layout.optimise(scene, progress.part(0.85, 0.95), preview)
         scene = set_metrics(scene, report.after)
+    if not single:
+        progress.report(0.95, "pictures of floor and walls")
+        placed = [placed_picture(r, _ids_in(tracks, index)) for index, r in enumerate(read)]
+        pictures = room_pictures(scene, placed, library)
+        planes = tuple(replace(p, texture=p.id if p.id in pictures else None) for p in scene.architecture.planes)
+        scene, textures = replace(scene, architecture=Architecture(planes)), {**textures, **pictures}
+    progress.report(1.0, "done")
     several = sum(len(t.boxes) > 1 for t in tracks)
     notes = (f"{len(photos)} photos: {several} of {len(tracks)} objects are seen in more than one",)
     seen = tuple(
@@ -185,7 +202,7 @@ def read_photo(photo: PosedInputs, stages: Stages, progress: Progress) -> ReadPh
     given = replace(photo.inputs, intrinsics=photo.camera.intrinsics)
     T = photo_world(photo.camera)
     camera = Camera(photo.camera.intrinsics, np.linalg.inv(T) @ photo.camera.T_world_camera)
-    known = {"given": given, "camera": _estimate(camera)}
+    known = {"given": given, "camera": given_camera(camera)}
     found = evaluate(stages, known, ("inputs", "objects"), Runner(None), progress)
     return ReadPhoto(photo, stages, found["inputs"], found["objects"], T)
 
@@ -200,11 +217,6 @@ def photo_world(camera: Camera) -> Float[np.ndarray, "4 4"]:
     return T
 
 
-def _estimate(camera: Camera) -> CameraEstimate:
-    reading = CameraHypothesis(camera.intrinsics, camera.T_world_camera[:3, :3], 1.0)
-    return CameraEstimate((reading,), 1.0, CameraSource.given(), height_m=float(camera.position[2]))
-
-
 def said_alone(read: ReadPhoto) -> RoomPhoto:
     """What a photo says of its objects by itself, with its camera known."""
     camera = read.camera
@@ -217,10 +229,15 @@ def said_alone(read: ReadPhoto) -> RoomPhoto:
         yaw, size = heading_and_size(placement, category(item.category))
         centre = R @ placement.cuboid.centre[0] + t
         alone.append(Sighted(category(item.category), centre, yaw + turn, size, placement.supporter))
-    return RoomPhoto(PhotoBoxes(read.posed.camera, observations), tuple(alone))
+    away = np.array([np.linalg.norm(a.centre - read.posed.camera.position) for a in alone])
+    on = [p.supporter if p.supporter >= 0 else None for p in placements]
+    # Boxes before an object say what may hide it, outlines whether something is there.
+    covered = np.array([observations.hidden(i, parent) for i, parent in enumerate(on)]).reshape(-1, 4)
+    short = covered & edges_cut_short(read.objects, observations.box_px, away)
+    return RoomPhoto(PhotoBoxes(read.posed.camera, observations, short), tuple(alone))
 
 
-def _shown(photo: RoomPhoto, box: int) -> float:
+def shown(photo: RoomPhoto, box: int) -> float:
     """How well a photo shows an object: the area of its box, less where edges are hidden or cut."""
     seen = photo.boxes.observations
     x1, y1, x2, y2 = seen.box_px[box]
@@ -234,21 +251,76 @@ def track_name(number: int) -> str:
     return f"object-{number + 1}"
 
 
+def _ids_in(tracks: Sequence[Track], index: int) -> dict[int, str]:
+    """The ids of a photo's objects, by box."""
+    return {
+        box: track_name(number) for number, track in enumerate(tracks) for photo, box in track.boxes if photo == index
+    }
+
+
+def placed_picture(read: ReadPhoto, ids: Mapping[int, str]) -> PlacedPicture:
+    """A read photo with the ids that its objects have in the scene, by box."""
+    named = tuple(replace(item, id=ids.get(k, f"mark-{k}")) for k, item in enumerate(read.objects))
+    k = read.posed.camera.intrinsics.scaled(read.inputs.photo.width, read.inputs.photo.height)
+    camera = Camera(k, read.posed.camera.T_world_camera)
+    return PlacedPicture(read.inputs, named, camera, read.stages.filler)
+
+
 def built_alone(
-    read: ReadPhoto, index: int, tracks: Sequence[Track], library: ShapeLibrary, progress: Progress
+    read: ReadPhoto,
+    index: int,
+    tracks: Sequence[Track],
+    library: ShapeLibrary,
+    progress: Progress,
+    *,
+    room: GivenRoom | None = None,
+    plane_pictures: bool = False,
 ) -> Built:
-    """The scene of one photo with the joint cuboids, before any layout."""
+    """The scene of one photo with the joint cuboids, in a room that is known where it is given, before any layout."""
+    stages = _with_joint_cuboids(read, index, tracks)
+    stages = stages if room is None else replace(stages, architecture=room)
+    return build_scene(read.inputs, library, stages=stages, progress=progress, plane_pictures=plane_pictures)
+
+
+def room_alone(read: ReadPhoto, index: int, tracks: Sequence[Track], progress: Progress | None = None) -> Architecture:
+    """The room as one photo shows it around the joint cuboids, in the room's frame."""
+    stages = _with_joint_cuboids(read, index, tracks)
+    found = evaluate(stages, {"given": read.inputs}, ("architecture",), Runner(None), progress)
+    architecture: Architecture = found["architecture"].architecture
+    return moved_to_room(Scene(architecture=architecture), read.T_room_photo).architecture
+
+
+def _room_of_all(read: Sequence[ReadPhoto], tracks: Sequence[Track], progress: Progress) -> tuple[GivenRoom, ...]:
+    """The room of all photos, for each photo in its own world."""
+    seen = []
+    for index, r in enumerate(read):
+        part = progress.part(index / len(read), (index + 1) / len(read))
+        objects = placed_picture(r, _ids_in(tracks, index)).objects
+        seen.append(SeenRoom(room_alone(r, index, tracks, part), r.posed.camera, objects))
+    standing = [_footprint(t.cuboid) for t in tracks if t.kind.mount == "floor" and len(t.boxes) > 1]
+    room, passages = with_open_doorways(joint_room(seen, standing), seen)
+    worlds = [moved_to_room(Scene(architecture=room), np.linalg.inv(r.T_room_photo)).architecture for r in read]
+    return tuple(GivenRoom(world, marks) for world, marks in zip(worlds, passages, strict=True))
+
+
+def _footprint(cuboid: JointCuboid) -> Float[np.ndarray, "4 2"]:
+    half = cuboid.size_m[:2] / 2 * np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]])
+    corners: Float[np.ndarray, "4 2"] = cuboid.centre[:2] + half @ yaw_rotation(cuboid.yaw_rad)[:2, :2].T
+    return corners
+
+
+def _with_joint_cuboids(read: ReadPhoto, index: int, tracks: Sequence[Track]) -> Stages:
+    """A photo's stages with everything that is known given."""
     named = {box: number for number, track in enumerate(tracks) for photo, box in track.boxes if photo == index}
     objects = tuple(replace(item, id=track_name(named[k])) for k, item in enumerate(read.objects))
     cuboids = tuple(_cuboid(track_name(named[k]), tracks[named[k]].cuboid, read) for k in range(len(objects)))
-    stages = replace(
+    return replace(
         read.stages,
-        camera=_GivenCamera(read.camera),
-        objects=_GivenObjects(objects),
-        geometry=_GivenCuboids(read.camera, cuboids),
-        layout=_AsObserved(),
+        camera=GivenCamera(read.camera),
+        objects=GivenObjects(objects),
+        geometry=GivenCuboids(read.camera, cuboids),
+        layout=AsObserved(),
     )
-    return build_scene(read.inputs, library, stages=stages, progress=progress)
 
 
 def _cuboid(name: str, joint: JointCuboid, read: ReadPhoto) -> Cuboid:
@@ -259,46 +331,6 @@ def _cuboid(name: str, joint: JointCuboid, read: ReadPhoto) -> Cuboid:
     if np.array([np.cos(yaw), np.sin(yaw)]) @ centre[:2] > 0:
         yaw += np.pi
     return Cuboid(name, yaw_rotation(yaw), centre, joint.size_m, 1.0 / (1.0 + joint.cost / 20.0))
-
-
-@dataclass(frozen=True, eq=False)
-class _GivenCamera:
-    camera: Camera
-
-    def estimate(self, inputs: Inputs, progress: Progress) -> CameraEstimate:
-        return _estimate(self.camera)
-
-
-@dataclass(frozen=True, eq=False)
-class _GivenObjects:
-    objects: tuple[DetectedObject, ...]
-
-    def segment(self, inputs: Inputs, progress: Progress) -> tuple[DetectedObject, ...]:
-        return self.objects
-
-
-@dataclass(frozen=True, eq=False)
-class _GivenCuboids:
-    """The cuboids of all photos, with the supports that the photo itself suggests."""
-
-    camera: Camera
-    cuboids: tuple[Cuboid, ...]
-
-    def measure(
-        self, inputs: Inputs, camera: CameraEstimate, objects: tuple[DetectedObject, ...], progress: Progress
-    ) -> ObjectGeometry:
-        observations = gather(objects, inputs.photo.width, inputs.photo.height)
-        view = View(self.camera.intrinsics, self.camera.T_world_camera[:3, :3])
-        supports = supports_of(place_all(observations, view, float(self.camera.position[2])), objects)
-        return ObjectGeometry(self.camera, self.cuboids, supports, ScaleSource.GIVEN, 1.0)
-
-
-@dataclass(frozen=True)
-class _AsObserved:
-    """No layout: that runs once, on the whole room."""
-
-    def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
-        return scene, LayoutReport("none", {}, {}, 0.0)
 
 
 def _merged(
@@ -382,13 +414,32 @@ def moved_to_room(scene: Scene, T: Float[np.ndarray, "4 4"]) -> Scene:
 
 
 def filling(item: SceneObject, joint: JointCuboid) -> SceneObject:
-    """The object with every candidate filling the joint cuboid, its front on the side where its photo saw it."""
+    """The object with every candidate filling the joint cuboid, its front on the side where its photo saw it.
+
+    Extents that boxes hardly tell are those that the shape has in proportion to the others.
+    """
 
     def fitted(pose: Pose, shape_size_m: tuple[float, float, float]) -> Pose:
         turn = round((pose.yaw_rad - joint.yaw_rad) / (np.pi / 2))
-        size = joint.size_m[[1, 0, 2]] if turn % 2 else joint.size_m
+        axes = [1, 0, 2] if turn % 2 else [0, 1, 2]
+        shape = np.array(shape_size_m)
+        size = in_proportion(np.maximum(joint.size_m, 1e-3)[axes], np.array(joint.log_size_sigma)[axes], shape)
         R = yaw_rotation(joint.yaw_rad + turn * np.pi / 2)
-        return Pose(R, joint.centre, np.maximum(size, 1e-3) / np.array(shape_size_m))
+        base = joint.centre[2] - joint.size_m[2] / 2
+        return Pose(R, np.array([*joint.centre[:2], base + size[2] / 2]), size / shape)
 
     candidates = tuple(replace(c, pose=fitted(c.pose, c.shape_size_m)) for c in item.candidates)
     return replace(item, pose=fitted(item.pose, item.shape_size_m), candidates=candidates)
+
+
+def in_proportion(
+    size_m: Float[np.ndarray, "3"], log_sigma: Float[np.ndarray, "3"], shape_size_m: Float[np.ndarray, "3"]
+) -> Float[np.ndarray, "3"]:
+    """Extents by a measurement and by the proportions of a shape, of unknown scale, each as sure as it is."""
+    measured, shape = np.log(size_m), np.log(shape_size_m)
+    known = 1.0 / np.maximum(log_sigma, 1e-3) ** 2
+    weight = 1.0 / (np.maximum(log_sigma, 1e-3) ** 2 + PROPORTION_SIGMA**2)
+    scale = float(weight @ (measured - shape) / weight.sum())
+    own = 1.0 / PROPORTION_SIGMA**2
+    extents: Float[np.ndarray, "3"] = np.exp((known * measured + own * (shape + scale)) / (known + own))
+    return extents

@@ -80,6 +80,7 @@ def build_scene(
     cache: Path | None = None,
     progress: Progress | None = None,
     preview: Preview | None = None,
+    plane_pictures: bool = True,
 ) -> Built:
     """Run every stage.
 
@@ -90,6 +91,7 @@ def build_scene(
         cache: folder for stage results; an interrupted run resumes from it.
         progress: reports and cancellation.
         preview: receives the layout optimiser's intermediate scenes.
+        plane_pictures: whether floor, walls and ceiling get pictures.
 
     Raises:
         Cancelled: on request; finished stages stay in the cache.
@@ -105,7 +107,10 @@ def build_scene(
     room = replace(room, architecture=_in_white_light(room.architecture, illuminant))
     floors = {p.id for p in room.architecture.by_role("floor")}
     standing = {edge.child for edge in room.supports if edge.parent in floors}
-    textures = plane_textures(balanced, found["objects"], geometry.camera, room.architecture, stages.filler, standing)
+    only = None if plane_pictures else ()
+    textures = plane_textures(
+        balanced, found["objects"], geometry.camera, room.architecture, stages.filler, standing, only
+    )
     noise = REASONED if inputs.depth_m is None else MEASURED
     shaped = _observed({**found, "architecture": room}, balanced, library)
     reshaped: tuple[str, ...] = ()

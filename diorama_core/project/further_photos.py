@@ -2,7 +2,8 @@
 
 `photos/NAME.zip` holds a photo with its boxes and its camera, `photos/NAME.jpg` is the picture for people, and
 `project.json` lists the names that belong to the scene as it is. `stages/placed.json` holds the poses that a build gave
-every object: an object at another pose was moved by a person.
+every object and the corners that it gave every plane: an object at another pose was moved by a person.
+`stages/looks.json` holds what a build made of every object, its shape and its colours.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -19,12 +21,14 @@ from diorama_core.io.atomic import write_atomically
 from diorama_core.io.bounded import read_bytes, read_json
 from diorama_core.pipeline import codec
 from diorama_core.project.storage import Project, jpeg
-from diorama_core.scene.types import Pose, Scene
+from diorama_core.scene.types import Plane, Pose, Scene, SceneObject
 
 MAX_PHOTOS = 64
 MAX_POSES = 8
 """Of one object: after an undo, those of earlier builds are the program's, too."""
 SAME_M = 1e-4
+PLANE = "plane "
+"""Before the ids of planes among those of objects, which have no blanks."""
 
 
 def save_photos(project: Project, photos: Sequence[FurtherPhoto], saved: Sequence[FurtherPhoto] = ()) -> None:
@@ -59,29 +63,57 @@ def load_photos(project: Project) -> tuple[tuple[FurtherPhoto, ...], tuple[str, 
 
 
 def note_placed(project: Project, scene: Scene) -> None:
-    """Remember where the program put the objects of a scene.
+    """Remember where the program put the objects and planes of a scene, and what it made of the objects.
 
     Raises:
         ProjectError: the folder cannot be written.
     """
-    known = _placed(project)
+    known = _noted(project, "placed.json")
     now = {o.id: _with(_row(o.pose), known.get(o.id, [])) for o in scene.objects}
+    now |= {PLANE + p.id: _with(_corners(p), known.get(PLANE + p.id, [])) for p in scene.architecture.planes}
     path = project.stages_folder / "placed.json"
     write_atomically(path, json.dumps({**known, **now}).encode(), error=ProjectError)
+    looks = _noted(project, "looks.json")
+    made = {o.id: _with(_look(o), looks.get(o.id, [])) for o in scene.objects}
+    path = project.stages_folder / "looks.json"
+    write_atomically(path, json.dumps({**looks, **made}).encode(), error=ProjectError)
 
 
 def still_placed(project: Project, scene: Scene) -> frozenset[str]:
-    """Ids of the objects that are where the program put them, and not locked; none where that was not noted."""
-    known = _placed(project)
-    return frozenset(o.id for o in scene.objects if not o.locked and _is_at(o.pose, known.get(o.id, ())))
+    """Ids of the objects and planes that are where the program put them, not locked; none where none were noted."""
+    known = _noted(project, "placed.json")
+    objects = [o.id for o in scene.objects if not o.locked and _is_at(_row(o.pose), known.get(o.id, ()))]
+    planes = [p.id for p in scene.architecture.planes if _is_at(_corners(p), known.get(PLANE + p.id, ()))]
+    return frozenset((*objects, *planes))
 
 
-def _placed(project: Project) -> dict[str, list[list[float]]]:
-    path = project.stages_folder / "placed.json"
+def still_made(project: Project, scene: Scene) -> frozenset[str]:
+    """Ids of the objects that have the shape and the colours that the program gave them, and are not locked."""
+    known = _noted(project, "looks.json")
+    return frozenset(o.id for o in scene.objects if not o.locked and _look(o) in known.get(o.id, ()))
+
+
+def _noted(project: Project, name: str) -> dict[str, list[list[Any]]]:
+    path = project.stages_folder / name
     if not path.exists():
         return {}
     document = read_json(path, ProjectError, most=32_000_000, advice="build the scene again")
     return document if isinstance(document, dict) else {}
+
+
+def _look(item: SceneObject) -> list[str]:
+    """What a person may have chosen of an object, as text."""
+    materials = [f"{m.slot}={m.texture or _colour(m.colour)}" for m in item.photo_materials]
+    own = (item.label, item.category, item.shape_id, _colour(item.colour), str(item.finish), item.material_source)
+    return [*own, *materials]
+
+
+def _colour(colour: tuple[float, float, float] | None) -> str:
+    return "none" if colour is None else " ".join(f"{c:.2f}" for c in colour)
+
+
+def _corners(plane: Plane) -> list[float]:
+    return [round(float(v), 6) for v in plane.polygon.ravel()]
 
 
 def _row(pose: Pose) -> list[float]:
@@ -89,13 +121,13 @@ def _row(pose: Pose) -> list[float]:
     return [round(float(v), 6) for v in values]
 
 
-def _with(row: list[float], rows: list[list[float]]) -> list[list[float]]:
+def _with(row: list[Any], rows: list[list[Any]]) -> list[list[Any]]:
     """The newest first, each once."""
     return [row, *(r for r in rows if r != row)][:MAX_POSES]
 
 
-def _is_at(pose: Pose, rows: Iterable[object]) -> bool:
-    own = np.array(_row(pose))
+def _is_at(row_now: list[float], rows: Iterable[object]) -> bool:
+    own = np.array(row_now)
     for row in rows:
         there = np.array(row, dtype=float) if isinstance(row, list) else np.zeros(0)
         if there.shape == own.shape and np.abs(there - own).max() < SAME_M:

@@ -120,6 +120,10 @@ class World:
             photographed=table.photographed.take(surface),
         )
 
+    def instances(self, triangle: Int[np.ndarray, "n"]) -> Int32[np.ndarray, "n"]:
+        """The instances that triangles are of."""
+        return self._instance_of_face.take(triangle)
+
     def rough_appearance(self, hits: Hits) -> tuple[Float32[np.ndarray, "n 3"], Float32[np.ndarray, "n 3"]]:
         """Face normals (as modelled) and mean colours of what was hit: enough for light that bounces."""
         surface = self._surface_of_face.take(hits.triangle)

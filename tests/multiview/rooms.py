@@ -59,4 +59,5 @@ def photo(seen: Camera, things: tuple[Thing, ...] = THINGS, error_m: float = 0.2
         centre = np.array(thing.centre) + error_m * ray / np.linalg.norm(ray)
         alone.append(Sighted(category(thing.kind), centre, thing.yaw_rad, np.array(thing.size_m), FLOOR))
         whose.append(number)
-    return RoomPhoto(PhotoBoxes(seen, gather(tuple(objects), 640, 480)), tuple(alone)), whose
+    observations = gather(tuple(objects), 640, 480)
+    return RoomPhoto(PhotoBoxes(seen, observations, np.zeros((len(objects), 4), dtype=bool)), tuple(alone)), whose

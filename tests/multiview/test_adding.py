@@ -27,7 +27,7 @@ def added(scene: Scene, movable: frozenset[str]) -> Added:
     photos, library = two_photos(), built_in_library()
     known = photos_of_scene(scene, photos.first, ())
     return with_photo(
-        scene, known, with_camera(photos), movable, library, choose,
+        scene, known, with_camera(photos), movable, movable, library, choose,
         lambda free: recipe("feasible", library, free, depth_measured=True),
     )  # fmt: skip
 
@@ -57,9 +57,12 @@ def test_a_photo_in_which_nothing_is_found_is_one_line() -> None:
     grey = Inputs(Photo(np.full((60, 80, 3), 128, np.uint8), "grey.png", (80, 60)))
     new = FurtherPhoto("grey", grey, replace(photos.camera, intrinsics=photos.camera.intrinsics.scaled(80, 60)))
     with pytest.raises(InputError, match="nothing is marked in grey"):
-        with_photo(photos.scene, (), new, frozenset(), library, choose, lambda free: recipe("feasible", library, free))
+        with_photo(
+            photos.scene, (), new, frozenset(), frozenset(), library, choose,
+            lambda free: recipe("feasible", library, free),
+        )  # fmt: skip
     with pytest.raises(InputError, match="camera is not known"):
         with_photo(
-            photos.scene, (), replace(new, camera=None), frozenset(), library, choose,
+            photos.scene, (), replace(new, camera=None), frozenset(), frozenset(), library, choose,
             lambda free: recipe("feasible", library, free),
         )  # fmt: skip

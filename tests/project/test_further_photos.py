@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from diorama_core.artefacts import FurtherPhoto, Inputs
-from diorama_core.project.further_photos import load_photos, note_placed, save_photos, still_placed
-from diorama_core.scene.edits import move
+from diorama_core.project.further_photos import load_photos, note_placed, save_photos, still_made, still_placed
+from diorama_core.scene.edits import move, recolour, rename
+from diorama_core.scene.room_edits import move_plane
 from tests.app.small_room import make_project, photo_camera, plain_photo
 
 
@@ -55,7 +56,7 @@ def test_what_a_person_moved_or_locked_is_not_where_it_was_put(tmp_path: Path) -
     scene = project.load_scene()
     assert still_placed(project, scene) == frozenset()  # an older project: nothing was noted
     note_placed(project, scene)
-    ids = {o.id for o in scene.objects}
+    ids = {o.id for o in scene.objects} | {p.id for p in scene.architecture.planes}
     assert still_placed(project, scene) == ids
     chair = scene.object("chair_1")
     moved = move(scene, "chair_1", replace(chair.pose, position=chair.pose.position + np.array([0.2, 0.0, 0.0])))
@@ -64,3 +65,23 @@ def test_what_a_person_moved_or_locked_is_not_where_it_was_put(tmp_path: Path) -
     assert still_placed(project, locked) == ids - {"table_1"}
     note_placed(project, moved)
     assert still_placed(project, scene) == ids  # after an undo
+    wall = scene.architecture.by_role("wall")[0].id
+    assert wall not in still_placed(project, move_plane(scene, wall, 0.3))
+
+
+def test_what_a_person_swapped_painted_or_named_is_not_as_it_was_made(tmp_path: Path) -> None:
+    project = make_project(tmp_path / "demo")
+    scene = project.load_scene()
+    assert still_made(project, scene) == frozenset()
+    note_placed(project, scene)
+    ids = frozenset(o.id for o in scene.objects)
+    assert still_made(project, scene) == ids
+    assert still_made(project, recolour(scene, "chair_1", (0.9, 0.1, 0.1))) == ids - {"chair_1"}
+    assert still_made(project, rename(scene, "chair_1", "throne")) == ids - {"chair_1"}
+    chair = scene.object("chair_1")
+    moved = move(scene, "chair_1", replace(chair.pose, position=chair.pose.position + np.array([0.2, 0.0, 0.0])))
+    assert still_made(project, moved) == ids
+    locked = replace(scene, objects=tuple(replace(o, locked=o.id == "table_1") for o in scene.objects))
+    assert still_made(project, locked) == ids - {"table_1"}
+    swapped = tuple(replace(o, shape_id="another") if o.id == "chair_1" else o for o in scene.objects)
+    assert still_made(project, replace(scene, objects=swapped)) == ids - {"chair_1"}

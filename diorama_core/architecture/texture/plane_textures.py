@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.architecture.texture.colours import object_pixels
+from diorama_core.architecture.texture.continuation import completed
 from diorama_core.architecture.texture.empty_room import EmptyRoomFiller
 from diorama_core.architecture.texture.floor_material import contact_pixels, floor_texels, white_level
-from diorama_core.architecture.texture.quilting import broad_shading, detail_continued
 from diorama_core.artefacts import DetectedObject, Inputs
 from diorama_core.geometry.casting import cast_planes
 from diorama_core.geometry.planes import plane_rectangle
@@ -39,6 +40,8 @@ ISLAND_SHARE = 0.04
 RIM = 0.008
 """Widening of what hides the room beyond its masks' own margin, as a share of the picture's longer side."""
 SURE_MASK = 0.95
+PAINTED = 1e-3
+"""How much what an inpainting network painted counts beside what another photo shows."""
 COLOUR_CELL_LAB = np.array([14.0, 8.0, 8.0])
 """Colours within about this much are one material in light and shade."""
 EXPECTED_LAB = 8.0
@@ -46,10 +49,6 @@ EXPECTED_LAB = 8.0
 FOREIGN_SPREADS = 2.5
 FOREIGN_MIN_LAB = np.array([14.0, 9.0, 9.0])
 """A texel is foreign when it differs by more than this many typical deviations, and by this much at least."""
-FADE_M = 1.2
-"""Far from what is seen, shading fades to the plane's plain colour over this length."""
-FLOOR_SHADING_M, WALL_SHADING_M = 0.10, 0.08
-"""Variation broader than this is light and shade, finer is the material's own."""
 SMALL_M2, CUT_SHARE = 0.4, 0.1
 """A foreign piece smaller than this is given up where so much of its outline borders on what was not seen."""
 STANDING_M2, FOOT_SHARE = 0.8, 0.25
@@ -60,16 +59,40 @@ STRAY_RIM_M = 0.03
 """So much around them is given up too."""
 EDGE_M, SKIRTING = 0.18, 4.0
 """Except skirtings and mouldings: within so much of a wall's foot or top, so many times as long as high."""
-SEAM_M = 0.25
-"""Over about this length beside what is seen, what is made up has its light and shade."""
-SEAM_LEVELS = 40.0
-"""Not that of what differs by more levels of 255 from the plane's own."""
-CALM_LEVELS = 20.0
-"""A floor's light and shade within so many levels of its main colour is carried on."""
 MIN_TYPICAL = 0.06
 """Where less than this share of what is seen has about one colour, all of it is continued."""
-FLOOR_DETAIL, WALL_DETAIL = 45.0, 14.0
-"""Detail that deviates by more levels of 255 is no part of the material."""
+
+
+@dataclass(frozen=True, eq=False)
+class RoomPicture:
+    """One photo of the room, with what hides the room in it."""
+
+    rgb: UInt8[np.ndarray, "h w 3"]
+    """In white light."""
+    objects: tuple[DetectedObject, ...]
+    """Their masks are left out."""
+    camera: Camera
+    standing: Collection[str] | None = None
+    """Ids of the objects on the floor, at whose feet it is seen; all objects where it is None."""
+    filler: EmptyRoomFiller | None = None
+    """Paints what stands in the room out of the photo; without one every plane is continued by itself."""
+    unmarked: Bool[np.ndarray, "h w"] | None = None
+    """Where things hide the room that nobody marked in this photo."""
+
+
+@dataclass(frozen=True, eq=False)
+class PlaneView:
+    """What one photo shows of a plane, on the texels of its picture."""
+
+    colours: Float32[np.ndarray, "h w 3"]
+    """0 to 255, meaningful where seen."""
+    seen: Bool[np.ndarray, "h w"]
+    own: Bool[np.ndarray, "h w"]
+    """Those seen that show the plane's own material."""
+    shown: Bool[np.ndarray, "h w"]
+    """Those seen, and those before which something was seen that nobody marked."""
+    share: Float[np.ndarray, "h w"]
+    """How much of the photo a texel covers, up to a factor; hardly any where it was painted."""
 
 
 def plane_textures(
@@ -94,37 +117,74 @@ def plane_textures(
         standing: Ids of the objects on the floor, at whose feet it is seen; all objects by default.
         only: Ids of the planes to make pictures of; all by default.
     """
-    shape = (inputs.photo.height, inputs.photo.width)
-    unsure = [o for o in objects if o.mask_confidence < SURE_MASK]
-    masked = _grown(object_pixels(shape, objects))
-    hidden = masked | _boxes(shape, unsure)
-    rgb = inputs.photo.rgb
-    if filler is not None and hidden.any():
-        rgb, unsure = filler.fill(rgb, hidden), []
-        masked = hidden = np.zeros(shape, dtype=bool)
-    on_floor = [o for o in objects if standing is None or o.id in standing]
-    contact, white = contact_pixels(shape, on_floor) & ~masked, white_level(rgb)
+    view = PhotoView(RoomPicture(inputs.photo.rgb, objects, camera, standing, filler))
     found: dict[str, np.ndarray] = {}
     for plane in architecture.planes:
         if only is not None and plane.id not in only:
             continue
-        ground = plane.role == "floor"
-        points, pixel_m = _texel_points(plane)
-        # Boxes of objects hide nearly all of a floor; there, what an unsure mask left over is told by its colour.
-        colours, seen = _seen_colours(rgb, masked if ground else hidden, camera, architecture.planes, plane, points)
-        weight = _photo_share(points, plane, camera)
-        if ground:
-            seen = floor_texels(colours, seen, weight, _of_texels(contact, camera, points) & seen, pixel_m, white)
-        seen = _without_islands(seen, (FLOOR_ISLAND_M if ground else ISLAND_M) / pixel_m)
-        enough_m2 = MIN_FLOOR_M2 if ground else np.inf
-        if seen.sum() < MIN_SEEN_PX or (seen.mean() < MIN_SEEN_SHARE and seen.sum() * pixel_m**2 < enough_m2):
-            continue
-        own = seen
-        if not ground:
-            own = _own(colours, seen, weight, plane.colour)
-            seen = _without_islands(seen & ~strays(seen, own, pixel_m, wall=plane.role == "wall"), ISLAND_M / pixel_m)
-        found[plane.id] = completed(colours, seen, plane.colour, pixel_m, own & seen, ground=ground)
+        points, pixel_m = texel_points(plane)
+        seen = view.of_plane(plane, architecture.planes, points, pixel_m)
+        if seen is not None and is_enough(seen.shown, pixel_m, plane):
+            ground = plane.role == "floor"
+            found[plane.id] = completed(seen.colours, seen.seen, plane.colour, pixel_m, seen.own, ground=ground)
     return found
+
+
+class PhotoView:
+    """A photo ready to be looked at plane by plane."""
+
+    def __init__(self, picture: RoomPicture) -> None:
+        shape = picture.rgb.shape[:2]
+        unsure = [o for o in picture.objects if o.mask_confidence < SURE_MASK]
+        masked = object_pixels(shape, picture.objects)
+        masked = _grown(masked if picture.unmarked is None else masked | picture.unmarked)
+        hidden = masked | _boxes(shape, unsure)
+        rgb, painted = picture.rgb, np.zeros(shape, dtype=bool)
+        if picture.filler is not None and hidden.any():
+            rgb, painted = picture.filler.fill(rgb, hidden), hidden
+            masked = hidden = np.zeros(shape, dtype=bool)
+        standing = picture.standing
+        on_floor = [o for o in picture.objects if standing is None or o.id in standing]
+        self._rgb, self._camera = rgb, picture.camera
+        self._masked, self._hidden, self._painted = masked, hidden, painted
+        self._contact = contact_pixels(shape, on_floor) & ~masked
+        self._white = white_level(rgb)
+
+    def of_plane(
+        self, plane: Plane, planes: tuple[Plane, ...], points: Float[np.ndarray, "h w 3"], pixel_m: float
+    ) -> PlaneView | None:
+        """What the photo shows of a plane; None where that is too little to tell its material.
+
+        Args:
+            plane: One of the room's.
+            planes: All of them.
+            points: The texels' centres (`texel_points`).
+            pixel_m: Their size.
+        """
+        ground = plane.role == "floor"
+        # Boxes of objects hide nearly all of a floor; there, what an unsure mask left over is told by its colour.
+        hidden = self._masked if ground else self._hidden
+        colours, seen = _seen_colours(self._rgb, hidden, self._camera, planes, plane, points)
+        share = _photo_share(points, plane, self._camera)
+        if ground:
+            contact = _of_texels(self._contact, self._camera, points) & seen
+            seen = floor_texels(colours, seen, share, contact, pixel_m, self._white)
+        seen = _without_islands(seen, (FLOOR_ISLAND_M if ground else ISLAND_M) / pixel_m)
+        if seen.sum() < MIN_SEEN_PX:
+            return None
+        own = shown = seen
+        if not ground:
+            own = _own(colours, seen, share, plane.colour)
+            seen = _without_islands(seen & ~strays(seen, own, pixel_m, wall=plane.role == "wall"), ISLAND_M / pixel_m)
+        if self._painted.any():
+            share = np.where(_of_texels(self._painted, self._camera, points), PAINTED * share, share)
+        return PlaneView(colours, seen, own & seen, shown, share)
+
+
+def is_enough(seen: Bool[np.ndarray, "h w"], pixel_m: float, plane: Plane) -> bool:
+    """Whether so much of a plane is seen that it gets a picture."""
+    enough_m2 = MIN_FLOOR_M2 if plane.role == "floor" else np.inf
+    return bool(seen.sum() >= MIN_SEEN_PX and (seen.mean() >= MIN_SEEN_SHARE or seen.sum() * pixel_m**2 >= enough_m2))
 
 
 def _without_islands(seen: Bool[np.ndarray, "h w"], width_px: float) -> Bool[np.ndarray, "h w"]:
@@ -214,7 +274,7 @@ def _of_texels(
     return np.asarray(photo[rows, np.clip(pixels[..., 0], 0, photo.shape[1] - 1).astype(int)])
 
 
-def _texel_points(plane: Plane) -> tuple[Float[np.ndarray, "h w 3"], float]:
+def texel_points(plane: Plane) -> tuple[Float[np.ndarray, "h w 3"], float]:
     """World points of the texels' centres, top row first, and a texel's size in metres."""
     origin, axes, extents = plane_rectangle(plane)
     most = MAX_CEILING_PX if plane.role == "ceiling" else MAX_SIDE_PX
@@ -292,73 +352,3 @@ def strays(
     stray[0] = False
     rim = round(STRAY_RIM_M / pixel_m)
     return cv2.dilate(stray[labels].astype(np.uint8), np.ones((2 * rim + 1,) * 2, np.uint8)).astype(bool)
-
-
-def completed(
-    colours: Float32[np.ndarray, "h w 3"],
-    seen: Bool[np.ndarray, "h w"],
-    plain: tuple[float, float, float],
-    pixel_m: float,
-    own: Bool[np.ndarray, "h w"],
-    *,
-    ground: bool = False,
-) -> UInt8[np.ndarray, "h w 3"]:
-    """The plane's picture: as seen, and where it was not seen, its shading spread smoothly and its detail continued.
-
-    Shading spreads through an image pyramid (pull-push, Gortler et al. 1996), which leaves no streaks, and fades to
-    the plain colour; detail is quilted, where enough was seen to copy from.
-
-    Args:
-        colours: 0 to 255, meaningful where seen.
-        seen: Which texels are.
-        plain: The plane's colour, 0 to 1.
-        pixel_m: Size of a texel.
-        own: Which of the seen texels show the plane's material: what may be continued.
-        ground: Whether it is a floor: boards and rugs vary more, and more broadly, than walls.
-    """
-    breadth_m, strongest = (FLOOR_SHADING_M, FLOOR_DETAIL) if ground else (WALL_SHADING_M, WALL_DETAIL)
-    if ground:
-        red, green, blue = (float(c) / 255.0 for c in np.median(colours[own], axis=0))
-        plain = (red, green, blue)
-    shading = broad_shading(colours, own, breadth_m / pixel_m)
-    even = own
-    if ground:
-        # Shadows and glow at the feet of things are not carried on over the floor.
-        calm = own & (np.abs(shading - np.array(plain, np.float32) * 255.0).max(axis=-1) < CALM_LEVELS)
-        even = calm if calm.any() else own
-    smooth = _pull_push(shading * even[..., None], even.astype(np.float32))
-    distance = cv2.distanceTransform((~seen).astype(np.uint8), cv2.DIST_L2, 5)
-    keep = np.exp(-distance * pixel_m / FADE_M)[..., None]
-    filled = keep * smooth + (1.0 - keep) * (np.array(plain, np.float32) * 255.0)
-    near = np.exp(-distance * pixel_m / SEAM_M)[..., None]
-    beside = broad_shading(colours, seen, breadth_m / pixel_m)
-    alike = seen & (np.abs(beside - smooth).max(axis=-1) < (CALM_LEVELS if ground else SEAM_LEVELS))
-    filled = near * _pull_push(beside * alike[..., None], alike.astype(np.float32)) + (1.0 - near) * filled
-    detail = detail_continued(colours - shading, own, strongest)
-    if detail is not None:
-        filled = filled + detail
-    # The first texels inside a mask's border still carry its rim; a soft seam hides the step.
-    inner = cv2.erode(seen.astype(np.float32), np.ones((5, 5), np.uint8))
-    mixed = cv2.GaussianBlur(inner, (0, 0), 2.0)[..., None] * seen[..., None]
-    return (mixed * colours + (1.0 - mixed) * filled).clip(0, 255).astype(np.uint8)
-
-
-def _pull_push(
-    weighted: Float32[np.ndarray, "h w 3"], weight: Float32[np.ndarray, "h w"]
-) -> Float32[np.ndarray, "h w 3"]:
-    """Average colours from ever coarser levels where finer ones know none."""
-    height, width = weight.shape
-    average = weighted / np.maximum(weight, 1e-6)[..., None]
-    if min(height, width) <= 2:
-        total = float(weight.sum())
-        mean = weighted.reshape(-1, 3).sum(axis=0) / max(total, 1e-6)
-        return np.where(weight[..., None] > 1e-3, average, mean).astype(np.float32)
-    size = ((width + 1) // 2, (height + 1) // 2)
-    share = cv2.resize(weight, size, interpolation=cv2.INTER_AREA)
-    # One known texel of four makes a coarser one known: what is near the seam must not be thinned by what is far.
-    sure = np.minimum(4.0 * share, 1.0)
-    total_colour = cv2.resize(weighted, size, interpolation=cv2.INTER_AREA)
-    coarse = _pull_push(total_colour * (sure / np.maximum(share, 1e-6))[..., None], sure)
-    above = cv2.resize(coarse, (width, height), interpolation=cv2.INTER_LINEAR)
-    known = np.clip(weight, 0.0, 1.0)[..., None]
-    return (known * average + (1.0 - known) * above).astype(np.float32)

@@ -10,7 +10,8 @@ import cv2
 import numpy as np
 from jaxtyping import UInt8
 
-from diorama_core.architecture.texture.plane_textures import MAX_SIDE_PX, completed
+from diorama_core.architecture.texture.continuation import completed
+from diorama_core.architecture.texture.plane_textures import MAX_SIDE_PX
 from diorama_core.geometry.planes import plane_axes, plane_rectangle
 from diorama_core.scene.types import Plane, Scene
 

@@ -1,0 +1,92 @@
+"""A surface's picture continued where nobody saw it: shading spreads smoothly, fine detail is quilted."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float32, UInt8
+
+from diorama_core.architecture.texture.quilting import broad_shading, detail_continued
+
+FADE_M = 1.2
+"""Far from what is seen, shading fades to the plane's plain colour over this length."""
+FLOOR_SHADING_M, WALL_SHADING_M = 0.10, 0.08
+"""Variation broader than this is light and shade, finer is the material's own."""
+SEAM_M = 0.25
+"""Over about this length beside what is seen, what is made up has its light and shade."""
+SEAM_LEVELS = 40.0
+"""Not that of what differs by more levels of 255 from the plane's own."""
+CALM_LEVELS = 20.0
+"""A floor's light and shade within so many levels of its main colour is carried on."""
+FLOOR_DETAIL, WALL_DETAIL = 45.0, 14.0
+"""Detail that deviates by more levels of 255 is no part of the material."""
+
+
+def completed(
+    colours: Float32[np.ndarray, "h w 3"],
+    seen: Bool[np.ndarray, "h w"],
+    plain: tuple[float, float, float],
+    pixel_m: float,
+    own: Bool[np.ndarray, "h w"],
+    *,
+    ground: bool = False,
+) -> UInt8[np.ndarray, "h w 3"]:
+    """The plane's picture: as seen, and where it was not seen, its shading spread smoothly and its detail continued.
+
+    Shading spreads through an image pyramid (pull-push, Gortler et al. 1996), which leaves no streaks, and fades to
+    the plain colour; detail is quilted, where enough was seen to copy from.
+
+    Args:
+        colours: 0 to 255, meaningful where seen.
+        seen: Which texels are.
+        plain: The plane's colour, 0 to 1.
+        pixel_m: Size of a texel.
+        own: Which of the seen texels show the plane's material: what may be continued.
+        ground: Whether it is a floor: boards and rugs vary more, and more broadly, than walls.
+    """
+    breadth_m, strongest = (FLOOR_SHADING_M, FLOOR_DETAIL) if ground else (WALL_SHADING_M, WALL_DETAIL)
+    if ground:
+        red, green, blue = (float(c) / 255.0 for c in np.median(colours[own], axis=0))
+        plain = (red, green, blue)
+    shading = broad_shading(colours, own, breadth_m / pixel_m)
+    even = own
+    if ground:
+        # Shadows and glow at the feet of things are not carried on over the floor.
+        calm = own & (np.abs(shading - np.array(plain, np.float32) * 255.0).max(axis=-1) < CALM_LEVELS)
+        even = calm if calm.any() else own
+    smooth = _pull_push(shading * even[..., None], even.astype(np.float32))
+    distance = cv2.distanceTransform((~seen).astype(np.uint8), cv2.DIST_L2, 5)
+    keep = np.exp(-distance * pixel_m / FADE_M)[..., None]
+    filled = keep * smooth + (1.0 - keep) * (np.array(plain, np.float32) * 255.0)
+    near = np.exp(-distance * pixel_m / SEAM_M)[..., None]
+    beside = broad_shading(colours, seen, breadth_m / pixel_m)
+    alike = seen & (np.abs(beside - smooth).max(axis=-1) < (CALM_LEVELS if ground else SEAM_LEVELS))
+    filled = near * _pull_push(beside * alike[..., None], alike.astype(np.float32)) + (1.0 - near) * filled
+    detail = detail_continued(colours - shading, own, strongest)
+    if detail is not None:
+        filled = filled + detail
+    # The first texels inside a mask's border still carry its rim; a soft seam hides the step.
+    inner = cv2.erode(seen.astype(np.float32), np.ones((5, 5), np.uint8))
+    mixed = cv2.GaussianBlur(inner, (0, 0), 2.0)[..., None] * seen[..., None]
+    return (mixed * colours + (1.0 - mixed) * filled).clip(0, 255).astype(np.uint8)
+
+
+def _pull_push(
+    weighted: Float32[np.ndarray, "h w 3"], weight: Float32[np.ndarray, "h w"]
+) -> Float32[np.ndarray, "h w 3"]:
+    """Average colours from ever coarser levels where finer ones know none."""
+    height, width = weight.shape
+    average = weighted / np.maximum(weight, 1e-6)[..., None]
+    if min(height, width) <= 2:
+        total = float(weight.sum())
+        mean = weighted.reshape(-1, 3).sum(axis=0) / max(total, 1e-6)
+        return np.where(weight[..., None] > 1e-3, average, mean).astype(np.float32)
+    size = ((width + 1) // 2, (height + 1) // 2)
+    share = cv2.resize(weight, size, interpolation=cv2.INTER_AREA)
+    # One known texel of four makes a coarser one known: what is near the seam must not be thinned by what is far.
+    sure = np.minimum(4.0 * share, 1.0)
+    total_colour = cv2.resize(weighted, size, interpolation=cv2.INTER_AREA)
+    coarse = _pull_push(total_colour * (sure / np.maximum(share, 1e-6))[..., None], sure)
+    above = cv2.resize(coarse, (width, height), interpolation=cv2.INTER_LINEAR)
+    known = np.clip(weight, 0.0, 1.0)[..., None]
+    return (known * average + (1.0 - known) * above).astype(np.float32)

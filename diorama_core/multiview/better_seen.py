@@ -1,0 +1,72 @@
+"""Kind, shape and colours of an object that another photo shows better."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from diorama_core.scene.types import Candidate, SceneObject
+
+CLEARLY_BETTER = 1.25
+"""Times as much of the picture, less what is hidden or cut, that an object must cover in another photo."""
+UNSEEN = 0.9
+"""Of the least score that a photo gives: what a shape gets that is not among those it finds."""
+
+
+def better_seen(item: SceneObject, there: SceneObject, share: float) -> SceneObject:
+    """The object with its shape by all photos, and the colours that go with it.
+
+    Args:
+        item: as the photos so far have it.
+        there: as the new photo alone has it, in the same place.
+        share: how much the new photo counts, 0 to 1; those so far count for the rest.
+    """
+    candidates = joint_candidates(item.candidates, there.candidates, share)
+    if not candidates:
+        return item
+    best = candidates[0]
+    alike = replace(item, candidates=candidates, confidence=max(item.confidence, there.confidence))
+    if best.shape_id == there.shape_id:
+        return replace(
+            alike,
+            category=there.category,
+            shape_id=best.shape_id,
+            shape_size_m=best.shape_size_m,
+            pose=there.pose,
+            colour=there.colour,
+            photo_materials=there.photo_materials,
+        )
+    if best.shape_id == item.shape_id:
+        return alike
+    # Materials are of the slots of one shape; of another one only the main colour is known.
+    return replace(
+        alike,
+        shape_id=best.shape_id,
+        shape_size_m=best.shape_size_m,
+        pose=best.pose,
+        colour=there.colour if there.colour is not None else item.colour,
+        photo_materials=(),
+    )
+
+
+def joint_candidates(known: Sequence[Candidate], new: Sequence[Candidate], share: float) -> tuple[Candidate, ...]:
+    """The candidates of both by their scores together, best first; poses are the new photo's where it has one.
+
+    Scores are compared with the best of their own photo.
+    """
+    so_far, now = _relative(known), _relative(new)
+    posed = {c.shape_id: c for c in (*known, *new)}
+
+    def score(shape_id: str) -> float:
+        a = so_far.get(shape_id, UNSEEN * min(so_far.values(), default=0.0))
+        b = now.get(shape_id, UNSEEN * min(now.values(), default=0.0))
+        return (1.0 - share) * a + share * b
+
+    ranked = sorted(posed, key=lambda shape_id: (-score(shape_id), shape_id))
+    most = max(len(known), len(new))
+    return tuple(replace(posed[shape_id], score=score(shape_id)) for shape_id in ranked[:most])
+
+
+def _relative(candidates: Sequence[Candidate]) -> dict[str, float]:
+    best = max((c.score for c in candidates), default=0.0)
+    return {c.shape_id: c.score / best if best > 0 else 0.0 for c in candidates}

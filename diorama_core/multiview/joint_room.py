@@ -1,0 +1,299 @@
+"""One room from what several photos say of its walls.
+
+Walls that several photos see become one line, where they agree. The lines divide the plan into cells; a cell is in the
+room when photos look into it rather than find it behind a wall (labelling of an arrangement of walls, as Ochmann et al.
+2016 do for point clouds). The outline of those cells is the floor; its edges are walls as far as photos saw one there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import manifold3d
+import numpy as np
+from jaxtyping import Bool, Float
+
+from diorama_core.architecture.texture.colours import visible_planes
+from diorama_core.architecture.walls.closed_room import GUESS_CONFIDENCE
+from diorama_core.architecture.walls.openings import Opening, with_openings
+from diorama_core.architecture.walls.passages import with_passages
+from diorama_core.architecture.walls.wall_sequence import WallPiece
+from diorama_core.artefacts import DetectedObject
+from diorama_core.geometry.planes import clip_polygon, in_polygon
+from diorama_core.scene.types import Architecture, Camera, Plane
+
+SAME_COSINE = float(np.cos(np.radians(8.0)))
+SAME_M, SAME_SHARE = 0.25, 0.08
+"""Walls nearer to one another than this, plus this share of their distance from the farther camera, are one."""
+GRID_M = 0.1
+RANGE_M = 2.5
+"""Over about this distance a photo says less and less of where its floor ends."""
+SHADOW = 1.0
+"""What a photo says against places that a wall hides from it, beside what it says for those that it looks into."""
+BEHIND = 0.35
+"""And what the wall says against all places behind its line."""
+BESIDE_VIEW = 0.15
+"""Of the floor that a photo only assumes, beside what it looks into."""
+UNKNOWN = -0.02
+STANDING = 4.0
+"""Where objects stand and cameras are is the room."""
+AROUND_M = 0.2
+MIN_EDGE_M = 0.05
+VIEW_STEP = 8
+"""Every so many pixels it is looked whether a photo shows the ceiling."""
+MIN_COVERED = 0.25
+"""Share of an edge along which photos see a wall, for it to be a wall that was seen."""
+
+
+@dataclass(frozen=True, eq=False)
+class SeenRoom:
+    """What one photo says of the room, in the room's frame."""
+
+    architecture: Architecture
+    camera: Camera
+    objects: tuple[DetectedObject, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class _Line:
+    """A wall's line in plan: `normal . p = offset`, the room before it."""
+
+    normal: Float[np.ndarray, "2"]
+    offset: float
+    walls: tuple[Plane, ...]
+
+
+def joint_room(photos: Sequence[SeenRoom], standing: Sequence[Float[np.ndarray, "_ 2"]]) -> Architecture:
+    """Floor, walls and ceiling of all photos; the first photo's where no photo sees a wall.
+
+    Args:
+        photos: at least one.
+        standing: footprints of the objects on the floor.
+    """
+    lines, floor = _lines(photos), photos[0].architecture.floor
+    outline = None if not lines or floor is None else _outline(photos, lines, standing)
+    if outline is None or floor is None:
+        return photos[0].architecture
+    top_m = _top(photos)
+    level = float(floor.polygon[:, 2].mean())
+    base = np.column_stack([outline, np.full(len(outline), level)])
+    planes = [replace(floor, polygon=base)]
+    for start, end in pairwise([*outline, outline[0]]):
+        wall = _wall(start, end, lines, level, top_m)
+        if wall is not None:
+            planes.append(replace(wall, id=f"wall_{len(planes)}"))
+    ceiling = max(
+        (c for p in photos for c in p.architecture.by_role("ceiling")), key=lambda c: c.confidence, default=None
+    )
+    if ceiling is not None:
+        lid = np.column_stack([outline[::-1], np.full(len(outline), top_m)])
+        planes.append(replace(ceiling, id="ceiling", polygon=lid))
+    return Architecture(tuple(planes))
+
+
+def with_open_doorways(
+    room: Architecture, photos: Sequence[SeenRoom]
+) -> tuple[Architecture, tuple[tuple[str, ...], ...]]:
+    """The room with the open doorways that any photo points at, and for each photo the ids of its marks of them.
+
+    Args:
+        room: walls whose polygons begin with their feet, from left to right.
+        photos: with what is marked in them.
+    """
+    walls = room.by_role("wall")
+    pieces = tuple(WallPiece(w.polygon[0, :2], w.polygon[1, :2], None) for w in walls)
+    top_m = max((float(w.polygon[:, 2].max()) for w in walls), default=0.0)
+    openings: tuple[tuple[Opening, ...], ...] = ((),) * len(walls)
+    marks = []
+    for photo in photos:
+        openings, ids = with_passages(openings, photo.objects, pieces, photo.camera, top_m)
+        marks.append(ids)
+    cut = {w.id: replace(w, polygon=with_openings(w.polygon, o)) for w, o in zip(walls, openings, strict=True) if o}
+    return Architecture(tuple(cut.get(p.id, p) for p in room.planes)), tuple(marks)
+
+
+def _top(photos: Sequence[SeenRoom]) -> float:
+    """Height of the room: as the photos say that see much of a ceiling, else the middle of all walls' tops."""
+    levels, weights = [], []
+    for photo in photos:
+        planes = photo.architecture.planes
+        seen = visible_planes(planes, photo.camera, VIEW_STEP)
+        for index, plane in enumerate(planes):
+            if plane.role == "ceiling":
+                levels.append(float(plane.polygon[:, 2].mean()))
+                weights.append(float((seen == index).mean()))
+    if sum(weights) > 0:
+        return _weighted_median(np.array(levels), np.array(weights))
+    return float(np.median([w.polygon[:, 2].max() for p in photos for w in p.architecture.by_role("wall")]))
+
+
+def _lines(photos: Sequence[SeenRoom]) -> tuple[_Line, ...]:
+    """The seen walls of all photos, those that agree as one line, the surest first."""
+    found: list[tuple[Plane, float, float]] = []
+    for photo in photos:
+        for wall in photo.architecture.by_role("wall"):
+            if wall.seen:
+                away = abs(float(photo.camera.position @ wall.normal) - wall.offset)
+                weight = wall.confidence * _length(wall) / max(away, 0.5)
+                found.append((wall, weight, away))
+    left = sorted(found, key=lambda row: -row[1])
+    lines = []
+    while left:
+        wall, _, away = left[0]
+        same = [r for r in left if _agree(wall, r[0], max(away, r[2]))]
+        left = [r for r in left if not any(r is s for s in same)]
+        weights = np.array([w for _, w, _ in same])
+        normal = (weights[:, None] * [r[0].normal[:2] for r in same]).sum(axis=0)
+        normal /= np.linalg.norm(normal)
+        offsets = np.array([float(normal @ r[0].centre[:2]) for r in same])
+        lines.append(_Line(normal, _weighted_median(offsets, weights), tuple(r[0] for r in same)))
+    return tuple(lines)
+
+
+def _agree(a: Plane, b: Plane, away_m: float) -> bool:
+    """Whether two walls are pieces of one: in one line, and side by side no farther apart than a door."""
+    if float(a.normal @ b.normal) < SAME_COSINE:
+        return False
+    apart = abs(float(a.normal @ b.centre) - a.offset)
+    return apart < SAME_M + SAME_SHARE * away_m
+
+
+def _weighted_median(values: Float[np.ndarray, "n"], weights: Float[np.ndarray, "n"]) -> float:
+    order = np.argsort(values)
+    share = np.cumsum(weights[order]) / weights.sum()
+    return float(values[order][np.searchsorted(share, 0.5)])
+
+
+def _length(wall: Plane) -> float:
+    return float(np.ptp(wall.polygon @ np.cross([0.0, 0.0, 1.0], wall.normal)))
+
+
+def _outline(
+    photos: Sequence[SeenRoom], lines: Sequence[_Line], standing: Sequence[Float[np.ndarray, "_ 2"]]
+) -> Float[np.ndarray, "n 2"] | None:
+    """The outline of the cells in the room, counter-clockwise."""
+    floors = [f.polygon[:, :2] for p in photos if (f := p.architecture.floor) is not None]
+    low, high = np.min([f.min(axis=0) for f in floors], axis=0), np.max([f.max(axis=0) for f in floors], axis=0)
+    corners = np.array([low, [high[0], low[1]], high, [low[0], high[1]]])
+    cells = [np.column_stack([corners, np.zeros(4)])]
+    for line in lines:
+        normal = np.array([*line.normal, 0.0])
+        halves = [clip_polygon(c, s * normal, s * line.offset) for c in cells for s in (1.0, -1.0)]
+        cells = [h for h in halves if len(h) >= 3 and _area(h[:, :2]) > GRID_M**2]
+    xs, ys = np.arange(low[0], high[0], GRID_M) + GRID_M / 2, np.arange(low[1], high[1], GRID_M) + GRID_M / 2
+    grid = np.stack(np.meshgrid(xs, ys), axis=-1).reshape(-1, 2)
+    says = _evidence(grid, photos, lines, standing)
+    inside = [c[:, :2] for c in cells if (here := in_polygon(grid, c[:, :2])).any() and says[here].sum() > 0]
+    if not inside:
+        return None
+    sections = [manifold3d.CrossSection([c], manifold3d.FillRule.NonZero).offset(1e-4) for c in map(_turned, inside)]
+    union = manifold3d.CrossSection.batch_boolean(sections, manifold3d.OpType.Add).simplify(1e-2)
+    outlines = [o for o in union.to_polygons() if _signed(o) > 0]
+    eyes = np.array([p.camera.position[:2] for p in photos])
+    best = max(outlines, key=lambda o: (int(in_polygon(eyes, o).sum()), _area(o)))
+    return np.asarray(best, dtype=np.float64)
+
+
+def _evidence(
+    grid: Float[np.ndarray, "n 2"],
+    photos: Sequence[SeenRoom],
+    lines: Sequence[_Line],
+    standing: Sequence[Float[np.ndarray, "_ 2"]],
+) -> Float[np.ndarray, "n"]:
+    """What speaks for each place being in the room, and against it."""
+    says = np.full(len(grid), UNKNOWN)
+    placed = {id(w): line for line in lines for w in line.walls}
+    for photo in photos:
+        floor = photo.architecture.floor
+        if floor is None:
+            continue
+        within, seen = in_polygon(grid, floor.polygon[:, :2]), _in_view(grid, photo.camera)
+        near = np.exp(-np.linalg.norm(grid - photo.camera.position[:2], axis=1) / RANGE_M)
+        says += np.where(within, np.where(seen, near, BESIDE_VIEW * near), 0.0)
+        for wall in photo.architecture.by_role("wall"):
+            if wall.seen:
+                line = placed[id(wall)]
+                behind = grid @ line.normal < line.offset
+                hidden = behind & seen & _behind_piece(grid, photo.camera, wall)
+                says -= wall.confidence * (np.where(hidden, SHADOW, 0.0) + np.where(behind, BEHIND, 0.0))
+    for footprint in standing:
+        says[in_polygon(grid, footprint)] += STANDING
+    for photo in photos:
+        says[np.linalg.norm(grid - photo.camera.position[:2], axis=1) < AROUND_M] += STANDING
+    return says
+
+
+def _behind_piece(grid: Float[np.ndarray, "n 2"], camera: Camera, wall: Plane) -> Bool[np.ndarray, "n"]:
+    """Which places lie in the directions of a wall."""
+    eye, along = camera.position[:2], np.cross([0.0, 0.0, 1.0], wall.normal)[:2]
+    reach = wall.polygon[:, :2] @ along
+    away = (grid - eye) @ wall.normal[:2]
+    height = wall.offset - float(eye @ wall.normal[:2])
+    met = eye @ along + ((grid - eye) @ along) * height / np.where(np.abs(away) < 1e-6, 1e-6, away)
+    return np.asarray((met > reach.min()) & (met < reach.max()))
+
+
+def _in_view(grid: Float[np.ndarray, "n 2"], camera: Camera) -> Bool[np.ndarray, "n"]:
+    """Which places of the plan are between the left and the right side of the picture."""
+    k = camera.intrinsics
+    ahead = camera.T_world_camera[:2, 2] / max(float(np.linalg.norm(camera.T_world_camera[:2, 2])), 1e-9)
+    right = np.array([ahead[1], -ahead[0]])
+    away = grid - camera.position[:2]
+    forward, aside = away @ ahead, away @ right
+    return (forward > 0) & (aside > -forward * k.cx / k.fx) & (aside < forward * (k.width - k.cx) / k.fx)
+
+
+def _wall(
+    start: Float[np.ndarray, "2"], end: Float[np.ndarray, "2"], lines: Sequence[_Line], level_m: float, top_m: float
+) -> Plane | None:
+    """The wall over an edge of the floor; None where no line of walls runs there."""
+    length = float(np.linalg.norm(end - start))
+    if length < MIN_EDGE_M:
+        return None
+    along = (end - start) / length
+    normal = np.array([-along[1], along[0]])  # the outline runs counter-clockwise: the room is to its left
+    for line in lines:
+        if (
+            float(normal @ line.normal) < SAME_COSINE
+            or abs(float(line.normal @ (start + end)) / 2 - line.offset) > GRID_M
+        ):
+            continue
+        # Seen from the room, a wall's foot from left to right runs against the outline.
+        polygon = np.array([[*end, level_m], [*start, level_m], [*start, top_m], [*end, top_m]])
+        covering = [w for w in line.walls if _covered(w, start, along, length) > 0]
+        seen = np.zeros(max(2, round(length / GRID_M)), dtype=bool)
+        for wall in covering:
+            seen |= _covers(wall, start, along, length, len(seen))
+        model = max(covering or line.walls, key=lambda w: w.confidence)
+        sure = model.confidence if seen.mean() >= MIN_COVERED else GUESS_CONFIDENCE
+        return replace(model, polygon=polygon, confidence=sure)
+    return None
+
+
+def _covers(
+    wall: Plane, start: Float[np.ndarray, "2"], along: Float[np.ndarray, "2"], length: float, count: int
+) -> Bool[np.ndarray, "n"]:
+    reach = (wall.polygon[:, :2] - start) @ along
+    at = (np.arange(count) + 0.5) / count * length
+    return np.asarray((at > reach.min()) & (at < reach.max()))
+
+
+def _covered(wall: Plane, start: Float[np.ndarray, "2"], along: Float[np.ndarray, "2"], length: float) -> float:
+    reach = (wall.polygon[:, :2] - start) @ along
+    return float(min(reach.max(), length) - max(reach.min(), 0.0))
+
+
+def _turned(polygon: Float[np.ndarray, "n 2"]) -> Float[np.ndarray, "n 2"]:
+    """The polygon counter-clockwise."""
+    return polygon if _signed(polygon) > 0 else polygon[::-1]
+
+
+def _area(polygon: Float[np.ndarray, "n 2"]) -> float:
+    return abs(_signed(polygon))
+
+
+def _signed(polygon: Float[np.ndarray, "n 2"]) -> float:
+    x, y = polygon[:, 0], polygon[:, 1]
+    return 0.5 * float(x @ np.roll(y, -1) - np.roll(x, -1) @ y)
