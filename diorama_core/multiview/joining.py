@@ -175,7 +175,7 @@ def _shared(cuboid: JointCuboid, photo: RoomPhoto, box: int) -> float:
     seen = photo.boxes.observations.box_px[box]
     # What goes on behind something nearer is compared as far as it can be seen.
     low, high = np.maximum(bounds[0], seen), np.minimum(bounds[0], seen)
-    short = photo.boxes.cut_short[box]
+    short = photo.boxes.hidden_px[box] > 0
     shown = np.where(short, np.where([True, True, False, False], low, high), bounds[0])
     return float(box_iou(shown, seen)) if (shown[2:] > shown[:2]).all() else 0.0
 

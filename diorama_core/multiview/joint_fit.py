@@ -54,8 +54,8 @@ class PhotoBoxes:
     camera: Camera
     """In a world with +Z up, the floor at 0 and the room's axes along x and y."""
     observations: BoxObservations
-    cut_short: Bool[np.ndarray, "n 4"]
-    """Edges behind which an object may go on, hidden by something nearer: they bound its size from below only."""
+    hidden_px: Float[np.ndarray, "n 4"]
+    """How far beyond each edge an object may go on, hidden by something nearer: they bound its size from below."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,7 +152,7 @@ class _Joint:
                     yaw_rad=0.0,
                     base_sigma_m=1.0,
                     cut_sigma=UNTOLD,
-                    hidden_beyond=photo.cut_short[index],
+                    hidden_px=photo.hidden_px[index],
                 )
                 for mode in modes
             ]
@@ -182,7 +182,7 @@ class _Joint:
         for camera, view, problems in self._views:
             rows = problems.rows(chosen).changed(yaw_rad=unknowns[:, 6])
             edges = residuals(_as_seen(unknowns, camera, view), rows, view)[:, :EDGES]
-            parts.append(np.where(rows.hidden_beyond & (edges > 0), _bounded(edges), edges))
+            parts.append(np.where((rows.hidden_px > 0) & (edges > 0), _bounded(edges), edges))
         size = np.einsum("nij,nj->ni", self._whitening[chosen], unknowns[:, 2:5] - self._log_size[chosen])
         parts += [size, (unknowns[:, :2] - self._place) / PLACE_SIGMA_M]
         if self._base_m is not None:

@@ -232,9 +232,9 @@ def said_alone(read: ReadPhoto) -> RoomPhoto:
     away = np.array([np.linalg.norm(a.centre - read.posed.camera.position) for a in alone])
     on = [p.supporter if p.supporter >= 0 else None for p in placements]
     # Boxes before an object say what may hide it, outlines whether something is there.
-    covered = np.array([observations.hidden(i, parent) for i, parent in enumerate(on)]).reshape(-1, 4)
-    short = covered & edges_cut_short(read.objects, observations.box_px, away)
-    return RoomPhoto(PhotoBoxes(read.posed.camera, observations, short), tuple(alone))
+    covered = np.array([observations.hidden_px(i, parent) for i, parent in enumerate(on)]).reshape(-1, 4)
+    hidden_px = np.where(edges_cut_short(read.objects, observations.box_px, away), covered, 0.0)
+    return RoomPhoto(PhotoBoxes(read.posed.camera, observations, hidden_px), tuple(alone))
 
 
 def shown(photo: RoomPhoto, box: int) -> float:

@@ -60,4 +60,4 @@ def photo(seen: Camera, things: tuple[Thing, ...] = THINGS, error_m: float = 0.2
         alone.append(Sighted(category(thing.kind), centre, thing.yaw_rad, np.array(thing.size_m), FLOOR))
         whose.append(number)
     observations = gather(tuple(objects), 640, 480)
-    return RoomPhoto(PhotoBoxes(seen, observations, np.zeros((len(objects), 4), dtype=bool)), tuple(alone)), whose
+    return RoomPhoto(PhotoBoxes(seen, observations, np.zeros((len(objects), 4))), tuple(alone)), whose
