@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from jaxtyping import Float
 
 from diorama_core.artefacts import ArchitectureEstimate, Cuboid, ObjectGeometry
 from diorama_core.scene.types import Camera, Plane
@@ -48,9 +49,18 @@ def _raised(cuboid: Cuboid, level: float, walls: tuple[Plane, ...], camera: Came
     for wall in walls:
         toward = float(((cuboid.corners_world - eye) @ wall.normal).min())
         room = wall.offset + CLEAR_OF_WALL_M - float(eye @ wall.normal)
-        if toward < -1e-6 and room < 0:
+        if toward < -1e-6 and room < 0 and _ahead(cuboid, wall, eye):
             scale = min(scale, max(room / toward, 1.0))
     return replace(cuboid, centre=eye + scale * (cuboid.centre - eye), size_m=scale * cuboid.size_m)
+
+
+def _ahead(cuboid: Cuboid, wall: Plane, eye: Float[np.ndarray, "3"]) -> bool:
+    """Whether the sight through a cuboid meets the wall, and not only the plane that it is part of."""
+    sight = cuboid.centre - eye
+    along = np.array([-wall.normal[1], wall.normal[0], 0.0])
+    met = eye + (wall.offset - float(eye @ wall.normal)) / min(float(sight @ wall.normal), -1e-6) * sight
+    ends, half = wall.polygon @ along, 0.5 * float(np.linalg.norm(cuboid.size_m[:2]))
+    return bool(ends.min() - half <= met @ along <= ends.max() + half)
 
 
 def _drawn_up(cuboid: Cuboid, level: float) -> Cuboid:

@@ -25,7 +25,7 @@ _CASES = {
     "night stand": 0.06, "filing cabinet": 0.06, "display cabinet": 0.04, "wardrobe": 0.04, "bookshelf": 0.03,
     "pantry cabinet": 0.02, "shoe cabinet": 0.01, "locker": 0.01,
 }  # fmt: skip
-_LAMPS = {"lamp": 0.42, "floor lamp": 0.2, "ceiling lamp": 0.18, "wall lamp": 0.09, "chandelier": 0.11}
+_LAMPS = {"lamp": 0.42, "floor lamp": 0.2, "ceiling lamp": 0.2, "wall lamp": 0.1, "chandelier": 0.08}
 _SHELVES = {"shelves": 0.4, "bookshelf": 0.45, "wall cabinet": 0.04, "tv stand": 0.04, "display cabinet": 0.03}
 _PICTURES = {"picture": 0.85, "photo frame": 0.09, "whiteboard": 0.02, "bulletin board": 0.02, "mirror": 0.02}
 
@@ -58,10 +58,10 @@ MEANINGS: Mapping[str, Mapping[str, float]] = {
     "partition": {"room divider": 1.0},
     "oven": {"stove": 0.6, "wall oven": 0.25, "microwave": 0.15},
     "lamp": _LAMPS,
-    "light": {"ceiling lamp": 0.55, "wall lamp": 0.14, "chandelier": 0.13, "lamp": 0.12, "floor lamp": 0.06},
+    "light": {"ceiling lamp": 0.6, "wall lamp": 0.14, "chandelier": 0.08, "lamp": 0.12, "floor lamp": 0.06},
     "lampshade": _LAMPS,
-    "light fixture": {"ceiling lamp": 0.65, "wall lamp": 0.15, "chandelier": 0.2},
-    "ceiling lamp": {"ceiling lamp": 0.8, "chandelier": 0.2},
+    "light fixture": {"ceiling lamp": 0.7, "wall lamp": 0.15, "chandelier": 0.15},
+    "ceiling lamp": {"ceiling lamp": 0.85, "chandelier": 0.15},
     "picture": _PICTURES,
     "picture frame": {"picture": 0.7, "photo frame": 0.3},
     "frame": {"picture": 0.65, "photo frame": 0.25, "mirror": 0.1},

@@ -8,7 +8,7 @@ import pytest
 from diorama_core.architecture.mounting import MAX_SCALE, mounted_on_ceiling, mounted_on_walls
 from diorama_core.artefacts import ArchitectureEstimate, ObjectGeometry
 from diorama_core.provenance import RoomMethod, RoomSource, ScaleSource
-from diorama_core.scene.types import Architecture, Support
+from diorama_core.scene.types import Architecture, Plane, Support
 from tests.synthetic_rooms import box_room, cuboid, look
 
 CAMERA = look(10, 5)
@@ -57,3 +57,21 @@ def test_a_lamp_reaches_the_ceiling_inside_the_room(z):
     assert found.corners_world[:, 2].max() == pytest.approx(2.6, abs=1e-9)
     assert found.corners_world[:, 1].max() < 4.0
     assert (found.size_m <= 1.8 * MAX_SCALE * lamp.size_m).all()
+
+
+def test_a_lamp_rises_past_a_wall_that_ends_beside_its_line_of_sight():
+    lamp = cuboid("lamp", (-1.0, 2.6, 1.9), (0.4, 0.4, 0.3))
+    edge = Support("lamp", "ceiling", "mounted on")
+    geometry = ObjectGeometry(CAMERA, (lamp,), (edge,), ScaleSource.GIVEN)
+    corners = np.array([[0.8, 3.0, 0.0], [2.0, 3.0, 0.0], [2.0, 3.0, 2.6], [0.8, 3.0, 2.6]])
+
+    def depth(*more: Plane) -> float:
+        room = Architecture((*ROOM, *more))
+        estimate = ArchitectureEstimate(room, (edge,), 1.0, RoomSource(RoomMethod.GIVEN))
+        return float(mounted_on_ceiling(geometry, estimate).cuboids[0].centre[1])
+
+    beside = Plane("fold", "wall", corners)
+    before = Plane("fold", "wall", corners - np.array([2.4, 0.0, 0.0]))
+    assert depth(beside) == pytest.approx(depth())
+    assert depth() > 3.0
+    assert depth(before) < 3.0

@@ -29,7 +29,7 @@ UPRIGHT_WEIGHT = 1.5
 OBJECT_WEIGHT = 0.5
 PRIOR_WEIGHT = 0.1
 PROTRUSION_M = 0.25
-BACK_WEIGHT, BACK_LOG_SIGMA, BACK_CAP = 0.1, 0.12, 4.0
+BACK_WEIGHT, BACK_LOG_SIGMA, BACK_CAP = 0.1, 0.12, 2.0
 """Of a sure object's back against everything that the picture shows of the room; how well its place is known; and the
 squared sigmas beyond which it says no more: it may stand elsewhere."""
 UNSURE_SHARE = 0.2
