@@ -59,13 +59,23 @@ def box_iou(a: Real[np.ndarray, "*#n 4"], b: Real[np.ndarray, "*#n 4"]) -> Float
     return np.asarray(overlap / np.maximum(union, 1e-12))
 
 
+def least(values: Float[np.ndarray, "..."], axis: int) -> Float[np.ndarray, "..."]:
+    """The least along an axis: as `values.min(axis)`, several times as fast along a short one of many."""
+    return np.ascontiguousarray(np.moveaxis(values, axis, 0)).min(axis=0)
+
+
+def greatest(values: Float[np.ndarray, "..."], axis: int) -> Float[np.ndarray, "..."]:
+    """The greatest along an axis: as `values.max(axis)`, several times as fast along a short one of many."""
+    return np.ascontiguousarray(np.moveaxis(values, axis, 0)).max(axis=0)
+
+
 def _project(points: Float[np.ndarray, "*n 3"], k: Intrinsics) -> Float[np.ndarray, "*n 2"]:
     z = np.maximum(points[..., 2], 1e-9)
     return np.stack([k.fx * points[..., 0] / z + k.cx, k.fy * points[..., 1] / z + k.cy], axis=-1)
 
 
 def _point_bounds(pixels: Float[np.ndarray, "n p 2"]) -> Float[np.ndarray, "n 4"]:
-    return np.concatenate([pixels.min(axis=1), pixels.max(axis=1)], axis=-1)
+    return np.concatenate([least(pixels, 1), greatest(pixels, 1)], axis=-1)
 
 
 def frustum_slack(points: Float[np.ndarray, "n p 3"], k: Intrinsics) -> Float[np.ndarray, "n p 5"]:
@@ -100,8 +110,8 @@ def _clipped_bounds(
         high[straddling] = np.maximum(high[straddling], cut_high)
     picture = np.array([[0.0, 0.0], [k.width, 0.0], [0.0, k.height], [k.width, k.height]])
     covered = _covers_rays(corners, (picture - [k.cx, k.cy]) / [k.fx, k.fy])[..., None]
-    low = np.minimum(low, np.where(covered, picture, np.inf).min(axis=1))
-    high = np.maximum(high, np.where(covered, picture, -np.inf).max(axis=1))
+    low = np.minimum(low, least(np.where(covered, picture, np.inf), 1))
+    high = np.maximum(high, greatest(np.where(covered, picture, -np.inf), 1))
     visible = np.isfinite(low).all(axis=1)
     nearest = np.clip(_project(corners.mean(axis=1), k), 0.0, [k.width, k.height])
     bounds = np.where(visible[:, None], np.concatenate([low, high], -1), np.concatenate([nearest, nearest], -1))
@@ -118,12 +128,12 @@ def _segment_bounds(
     """Least and greatest pixels of the parts of segments inside the frustum; infinite where nothing is."""
     span = start_slack - end_slack
     crossing = start_slack / np.where(np.abs(span) < 1e-12, 1e-12, span)
-    enter = np.where(start_slack < 0, np.where(end_slack < 0, 2.0, crossing), 0.0).max(axis=-1)[..., None]
-    leave = np.where(end_slack < 0, np.where(start_slack < 0, -1.0, crossing), 1.0).min(axis=-1)[..., None]
+    enter = greatest(np.where(start_slack < 0, np.where(end_slack < 0, 2.0, crossing), 0.0), -1)[..., None]
+    leave = least(np.where(end_slack < 0, np.where(start_slack < 0, -1.0, crossing), 1.0), -1)[..., None]
     retained = np.concatenate([enter <= leave] * 2, axis=1)
     way = end - start
     pixels = _project(np.concatenate([start + enter * way, start + leave * way], axis=1), k)
-    return np.where(retained, pixels, np.inf).min(axis=1), np.where(retained, pixels, -np.inf).max(axis=1)
+    return least(np.where(retained, pixels, np.inf), 1), greatest(np.where(retained, pixels, -np.inf), 1)
 
 
 def _near_cut_bounds(
@@ -151,8 +161,8 @@ def _covers_rays(corners: Float[np.ndarray, "n 8 3"], rays_xy: Float[np.ndarray,
     along = np.where(np.abs(along) < 1e-12, 1e-12, along)
     first = -origin[:, None] / along
     second = (lengths - origin)[:, None] / along
-    enter = np.minimum(first, second).max(axis=-1)
-    leave = np.maximum(first, second).min(axis=-1)
+    enter = greatest(np.minimum(first, second), -1)
+    leave = least(np.maximum(first, second), -1)
     return (enter <= leave + _INSIDE_TOLERANCE) & (leave > NEAR_M)
 
 

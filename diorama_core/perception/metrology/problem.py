@@ -20,7 +20,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from jaxtyping import Bool, Float
 
-from diorama_core.geometry.projection import NEAR_M, cuboid_corners, visible_bounds
+from diorama_core.geometry.projection import NEAR_M, cuboid_corners, greatest, visible_bounds
 from diorama_core.scene.types import Intrinsics
 
 UNKNOWNS = 6
@@ -185,7 +185,7 @@ def _cut_off(corners: Float[np.ndarray, "n 8 3"], problems: Problems, view: View
     k = view.intrinsics
     depth = np.maximum(corners[..., 2:], CUT_NEAR_M)
     pixels = corners[..., :2] / depth * [k.fx, k.fy] + [k.cx, k.cy]
-    outside = np.maximum(-pixels, pixels - [k.width, k.height]).max(axis=1)
+    outside = greatest(np.maximum(-pixels, pixels - [k.width, k.height]), 1)
     extent = problems.box_px[:, 2:] - problems.box_px[:, :2]
     return np.log1p(np.maximum(outside, 0.0) / extent) / problems.cut_sigma[:, None]
 
