@@ -32,9 +32,10 @@ def colour_layout(rgb: UInt8[np.ndarray, "h w 3"], mask: Bool[np.ndarray, "h w"]
     window = window_around(mask)
     if window is None:
         return np.zeros(LAYOUT_WIDTH, np.float32)
-    rgb, mask = rgb[window], mask[window]
-    lab = cv2.cvtColor(rgb.astype(np.float32) / 255.0, cv2.COLOR_RGB2Lab)
-    square = squared_around(mask, np.where(mask[..., None], np.dstack([lab, np.ones_like(lab[..., 0])]), 0))
+    lab = cv2.cvtColor(rgb[window].astype(np.float32) / 255.0, cv2.COLOR_RGB2Lab)
+    picture = np.zeros((*mask.shape, 4), np.float32)
+    picture[window] = np.where(mask[window][..., None], np.dstack([lab, np.ones_like(lab[..., 0])]), 0)
+    square = squared_around(mask, picture)
     assert square is not None
     cells = cv2.resize(square, (CELLS, CELLS), interpolation=cv2.INTER_AREA).reshape(-1, 4)
     cells[:, :3] /= np.maximum(cells[:, 3:], 1e-3)

@@ -73,12 +73,9 @@ def outline_and_edges(
     gray: UInt8[np.ndarray, "h w"], mask: Bool[np.ndarray, "h w"]
 ) -> tuple[Float[np.ndarray, "outline"], Float[np.ndarray, "edges"]] | None:
     """The outline and the inner edges of one picture of an object, each of unit length; None for an empty mask."""
-    window = window_around(mask)
-    if window is None:
-        return None
-    gray, mask = gray[window], mask[window]
     box = _box(mask)
-    assert box is not None
+    if box is None:
+        return None
     covered = _squared(mask.astype(np.float32), box, cv2.BORDER_CONSTANT)
     brightness = _squared(np.where(mask, gray, gray[mask].mean()).astype(np.float32), box, cv2.BORDER_REPLICATE)
     return _unit(_outline(covered)), _unit(_edges(brightness, covered))
@@ -95,8 +92,10 @@ def squared_around(
 def window_around(mask: Bool[np.ndarray, "h w"]) -> tuple[slice, slice] | None:
     """Rows and columns of all that the square around what a mask covers depends on; None for an empty mask."""
     box = _box(mask)
-    if box is None:
-        return None
+    return None if box is None else _window(box)
+
+
+def _window(box: tuple[int, int, int, int]) -> tuple[slice, slice]:
     x1, y1, x2, y2 = box
     half = (0.5 + _MARGIN) * max(x2 - x1, y2 - y1)
     reach = half * (1 + _BLUR_REACH * 2 * _BLUR / _SIDE) + 2
@@ -129,7 +128,9 @@ def _squared(
     scale = _SIDE / (2 * half)
     to_square = np.array([[scale, 0, _SIDE / 2 - scale * (x1 + x2) / 2], [0, scale, _SIDE / 2 - scale * (y1 + y2) / 2]])
     if scale < 1:  # smooth first, so that thin parts do not fall between the samples
-        picture = cv2.GaussianBlur(picture, (0, 0), _BLUR / scale)
+        window, whole = _window(box), picture
+        picture = np.zeros(whole.shape, np.float32)
+        picture[window] = cv2.GaussianBlur(whole[window], (0, 0), _BLUR / scale)
     return cv2.warpAffine(picture, to_square, (_SIDE, _SIDE), flags=cv2.INTER_LINEAR, borderMode=border)
 
 
