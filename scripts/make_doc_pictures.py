@@ -44,7 +44,7 @@ def editor(out: Path) -> None:
         browser = driver.chromium.launch(executable_path=chromium(), headless=True, args=list(FLAGS))
         try:
             context = browser.new_context(viewport={"width": PAGE[0], "height": PAGE[1]}, device_scale_factor=1)
-            page = EditorPage.open(context, running, 120_000)
+            page = EditorPage.open(context, running, 120_000, query="?fixedDpr=1")
             page.page.wait_for_timeout(2000)
             page.row(SELECTED).click()
             page.until(lambda: len(page.selection) == 1, "selected")

@@ -71,24 +71,29 @@ def _continued(colours: Picture, seen: Bool[np.ndarray, "h w"], pixel_m: float) 
 
 def mirrored(colours: Picture, seen: Bool[np.ndarray, "h w"]) -> tuple[Picture, Bool[np.ndarray, "h w"]]:
     """What is hidden filled in from mirror images of the picture that it is alike."""
+    smooth = None
     for mirror in MIRRORS:
         other, there = mirror(colours), mirror(seen)
-        if not (there & ~seen).any() or not _alike(colours, other, seen & there):
+        both = seen & there
+        if not (there & ~seen).any() or both.mean() < MIN_OVERLAP:
+            continue
+        smooth = _smoothed(colours) if smooth is None else smooth
+        if not _alike(smooth[both], mirror(smooth)[both]):
             continue
         gained = there & ~seen
         share = cv2.GaussianBlur(cv2.erode(seen.astype(np.float32), np.ones((3, 3))), (0, 0), 1.5)[..., None]
         blended = np.where(seen[..., None], colours, other)
-        both = (seen & there)[..., None]
-        colours = np.where(both, share * colours + (1 - share) * other, blended).astype(np.float32)
-        seen = seen | gained
+        colours = np.where(both[..., None], share * colours + (1 - share) * other, blended).astype(np.float32)
+        seen, smooth = seen | gained, None
     return colours, seen
 
 
-def _alike(colours: Picture, other: Picture, both: Bool[np.ndarray, "h w"]) -> bool:
-    if both.mean() < MIN_OVERLAP:
-        return False
-    width = max(1.0, 0.01 * max(both.shape))
-    a, b = (cv2.GaussianBlur(np.ascontiguousarray(p), (0, 0), width)[both] for p in (colours, other))
+def _smoothed(colours: Picture) -> Picture:
+    return cv2.GaussianBlur(colours, (0, 0), max(1.0, 0.01 * max(colours.shape)))
+
+
+def _alike(a: Float32[np.ndarray, "n 3"], b: Float32[np.ndarray, "n 3"]) -> bool:
+    """Whether the smoothed colours of places and of their mirror images are nearly the same."""
     spread = float(a.std(axis=0).mean())
     difference = float(np.abs(a - b).mean())
     return difference < MAX_LEVELS and difference < ALIKE * max(spread, 1.0)

@@ -24,6 +24,7 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.slots import slots_of
 from diorama_core.library.stretch import relative_scale, stretched_parts
 from diorama_core.library.taxonomy import LAMPS
+from diorama_core.render.grid import each
 from diorama_core.scene.types import Camera, PhotoMaterial, RoomLight, Scene, SceneObject
 
 MASK_MARGIN = 0.004
@@ -76,11 +77,11 @@ def photo_appearance(
     if scene.camera is None:
         return PhotoAppearance({}, {})
     found = {o.id: o for o in objects}
-    seen = [
-        _seen(item, _parts(library, item), rgb, found[item.id], objects, scene.camera)
-        for item in scene.objects
-        if item.id in found
-    ]
+    camera = scene.camera
+    seen = each(
+        lambda item: _seen(item, _parts(library, item), rgb, found[item.id], objects, camera),
+        [item for item in scene.objects if item.id in found],
+    )
     light = estimated_light([shade_of(s.view, p, rgb) for s in seen if s.view is not None for p in s.pixels])
     red, green, blue = (float(c) / max(illuminant_rgb) for c in illuminant_rgb)
     light = replace(light, colour=(red, green, blue))
@@ -178,10 +179,10 @@ def _surfaces(
 
 def hiding(found: DetectedObject, objects: tuple[DetectedObject, ...]) -> Bool[np.ndarray, "h w"]:
     """Where other objects stand before one: smaller ones wherever they are, larger ones beside its own mask."""
-    hidden, area = np.zeros(found.mask.shape, dtype=bool), int(found.mask.sum())
+    hidden, area = np.zeros(found.mask.shape, dtype=bool), np.count_nonzero(found.mask)
     for other in objects:
         if other.id != found.id:
-            hidden |= other.mask if other.mask.sum() < area else other.mask & ~found.mask
+            hidden |= other.mask if np.count_nonzero(other.mask) < area else other.mask & ~found.mask
     radius = max(1, round(MASK_MARGIN * max(hidden.shape)))
     return cv2.dilate(hidden.astype(np.uint8), np.ones((2 * radius + 1,) * 2, np.uint8)).astype(bool)
 

@@ -39,15 +39,15 @@ def visible_bounds(
         The bounds, and whether anything is visible. Where nothing is, the bounds are the point of the picture nearest
         to the cuboid's centre.
     """
-    slack = frustum_slack(corners_camera, intrinsics)
-    inside = (slack >= 0).all(axis=(1, 2))
-    bounds = np.empty((len(corners_camera), 4))
+    points = _by_coordinate(corners_camera)
+    slack = _slack(points, intrinsics)
+    inside = (slack >= 0).all(axis=(0, 1))
+    u, v = _project(points, intrinsics)
+    bounds = np.stack([u.min(axis=0), v.min(axis=0), u.max(axis=0), v.max(axis=0)], axis=-1)
     visible = np.ones(len(corners_camera), dtype=bool)
-    if inside.any():
-        bounds[inside] = _point_bounds(_project(corners_camera[inside], intrinsics))
-    cut = ~inside
-    if cut.any():
-        bounds[cut], visible[cut] = _clipped_bounds(corners_camera[cut], slack[cut], intrinsics)
+    cut = np.flatnonzero(~inside)
+    if len(cut):
+        bounds[cut], visible[cut] = _clipped_bounds(corners_camera[cut], slack.take(cut, axis=-1), intrinsics)
     return bounds, visible
 
 
@@ -59,13 +59,15 @@ def box_iou(a: Real[np.ndarray, "*#n 4"], b: Real[np.ndarray, "*#n 4"]) -> Float
     return np.asarray(overlap / np.maximum(union, 1e-12))
 
 
-def _project(points: Float[np.ndarray, "*n 3"], k: Intrinsics) -> Float[np.ndarray, "*n 2"]:
-    z = np.maximum(points[..., 2], 1e-9)
-    return np.stack([k.fx * points[..., 0] / z + k.cx, k.fy * points[..., 1] / z + k.cy], axis=-1)
+def _by_coordinate(points: Float[np.ndarray, "n p 3"]) -> Float[np.ndarray, "3 p n"]:
+    """Coordinate by coordinate, the cuboids side by side in memory: numpy is several times as fast along many."""
+    return np.ascontiguousarray(points.transpose(2, 1, 0))
 
 
-def _point_bounds(pixels: Float[np.ndarray, "n p 2"]) -> Float[np.ndarray, "n 4"]:
-    return np.concatenate([pixels.min(axis=1), pixels.max(axis=1)], axis=-1)
+def _project(points: Float[np.ndarray, "3 *n"], k: Intrinsics) -> Float[np.ndarray, "2 *n"]:
+    x, y, z = points
+    z = np.maximum(z, 1e-9)
+    return np.stack([k.fx * x / z + k.cx, k.fy * y / z + k.cy])
 
 
 def frustum_slack(points: Float[np.ndarray, "n p 3"], k: Intrinsics) -> Float[np.ndarray, "n p 5"]:
@@ -73,7 +75,11 @@ def frustum_slack(points: Float[np.ndarray, "n p 3"], k: Intrinsics) -> Float[np
 
     The near plane is in metres, the side planes are times the focal length; positive inside.
     """
-    x, y, z = points[..., 0], points[..., 1], points[..., 2]
+    return np.moveaxis(_slack(np.moveaxis(points, -1, 0), k), 0, -1)
+
+
+def _slack(points: Float[np.ndarray, "3 *n"], k: Intrinsics) -> Float[np.ndarray, "5 *n"]:
+    x, y, z = points
     return np.stack(
         [
             z - NEAR_M,
@@ -81,63 +87,65 @@ def frustum_slack(points: Float[np.ndarray, "n p 3"], k: Intrinsics) -> Float[np
             (k.width - k.cx) * z - k.fx * x,
             k.fy * y + k.cy * z,
             (k.height - k.cy) * z - k.fy * y,
-        ],
-        axis=-1,
+        ]
     )
 
 
 def _clipped_bounds(
-    corners: Float[np.ndarray, "n 8 3"], slack: Float[np.ndarray, "n 8 5"], k: Intrinsics
+    corners: Float[np.ndarray, "n 8 3"], slack: Float[np.ndarray, "5 8 n"], k: Intrinsics
 ) -> tuple[Float[np.ndarray, "n 4"], Bool[np.ndarray, "n"]]:
     """Bounds of the clipped edges, of the near plane's cut, and of the picture's corners that the cuboid covers."""
+    points = _by_coordinate(corners)
     a, b = _edges().T
-    low, high = _segment_bounds(corners[:, a], corners[:, b], slack[:, a], slack[:, b], k)
-    near = slack[..., 0]
-    straddling = (near < 0).any(axis=1) & (near > 0).any(axis=1)
+    low, high = _segment_bounds(points[:, a], points[:, b], slack[:, a], slack[:, b], k)
+    near = slack[0]
+    straddling = (near < 0).any(axis=0) & (near > 0).any(axis=0)
     if straddling.any():
-        cut_low, cut_high = _near_cut_bounds(corners[straddling], near[straddling], k)
-        low[straddling] = np.minimum(low[straddling], cut_low)
-        high[straddling] = np.maximum(high[straddling], cut_high)
+        cut_low, cut_high = _near_cut_bounds(points[..., straddling], near[:, straddling], k)
+        low[:, straddling] = np.minimum(low[:, straddling], cut_low)
+        high[:, straddling] = np.maximum(high[:, straddling], cut_high)
     picture = np.array([[0.0, 0.0], [k.width, 0.0], [0.0, k.height], [k.width, k.height]])
-    covered = _covers_rays(corners, (picture - [k.cx, k.cy]) / [k.fx, k.fy])[..., None]
-    low = np.minimum(low, np.where(covered, picture, np.inf).min(axis=1))
-    high = np.maximum(high, np.where(covered, picture, -np.inf).max(axis=1))
-    visible = np.isfinite(low).all(axis=1)
-    nearest = np.clip(_project(corners.mean(axis=1), k), 0.0, [k.width, k.height])
-    bounds = np.where(visible[:, None], np.concatenate([low, high], -1), np.concatenate([nearest, nearest], -1))
-    return np.clip(bounds, 0.0, [k.width, k.height, k.width, k.height]), visible
+    covered = _covers_rays(corners, (picture - [k.cx, k.cy]) / [k.fx, k.fy]).T
+    for corner, (x, y) in zip(covered, picture, strict=True):
+        low = np.where(corner, np.minimum(low, [[x], [y]]), low)
+        high = np.where(corner, np.maximum(high, [[x], [y]]), high)
+    visible = np.isfinite(low).all(axis=0)
+    size = np.array([k.width, k.height])
+    nearest = np.clip(_project(corners.mean(axis=1).T, k), 0.0, size[:, None])
+    bounds = np.where(visible, np.concatenate([low, high]), np.concatenate([nearest, nearest])).T
+    return np.clip(bounds, 0.0, np.tile(size, 2)), visible
 
 
 def _segment_bounds(
-    start: Float[np.ndarray, "n s 3"],
-    end: Float[np.ndarray, "n s 3"],
-    start_slack: Float[np.ndarray, "n s 5"],
-    end_slack: Float[np.ndarray, "n s 5"],
+    start: Float[np.ndarray, "3 s n"],
+    end: Float[np.ndarray, "3 s n"],
+    start_slack: Float[np.ndarray, "5 s n"],
+    end_slack: Float[np.ndarray, "5 s n"],
     k: Intrinsics,
-) -> tuple[Float[np.ndarray, "n 2"], Float[np.ndarray, "n 2"]]:
+) -> tuple[Float[np.ndarray, "2 n"], Float[np.ndarray, "2 n"]]:
     """Least and greatest pixels of the parts of segments inside the frustum; infinite where nothing is."""
     span = start_slack - end_slack
     crossing = start_slack / np.where(np.abs(span) < 1e-12, 1e-12, span)
-    enter = np.where(start_slack < 0, np.where(end_slack < 0, 2.0, crossing), 0.0).max(axis=-1)[..., None]
-    leave = np.where(end_slack < 0, np.where(start_slack < 0, -1.0, crossing), 1.0).min(axis=-1)[..., None]
-    retained = np.concatenate([enter <= leave] * 2, axis=1)
+    enter = np.where(start_slack < 0, np.where(end_slack < 0, 2.0, crossing), 0.0).max(axis=0)
+    leave = np.where(end_slack < 0, np.where(start_slack < 0, -1.0, crossing), 1.0).min(axis=0)
+    retained = np.concatenate([enter <= leave] * 2)
     way = end - start
     pixels = _project(np.concatenate([start + enter * way, start + leave * way], axis=1), k)
     return np.where(retained, pixels, np.inf).min(axis=1), np.where(retained, pixels, -np.inf).max(axis=1)
 
 
 def _near_cut_bounds(
-    corners: Float[np.ndarray, "n 8 3"], near: Float[np.ndarray, "n 8"], k: Intrinsics
-) -> tuple[Float[np.ndarray, "n 2"], Float[np.ndarray, "n 2"]]:
+    points: Float[np.ndarray, "3 8 n"], near: Float[np.ndarray, "8 n"], k: Intrinsics
+) -> tuple[Float[np.ndarray, "2 n"], Float[np.ndarray, "2 n"]]:
     """Bounds of the polygon in which the near plane cuts cuboids: its sides are no edges of the cuboids."""
     a, b = _edges().T
-    cut = (near[:, a] < 0) != (near[:, b] < 0)
-    share = near[:, a] / np.where(cut, near[:, a] - near[:, b], 1.0)
-    points = corners[:, a] + share[..., None] * (corners[:, b] - corners[:, a])
-    slack = frustum_slack(points, k)
-    slack[..., 0] = np.where(cut, 0.0, -1.0)
+    cut = (near[a] < 0) != (near[b] < 0)
+    share = near[a] / np.where(cut, near[a] - near[b], 1.0)
+    ends = points[:, a] + share * (points[:, b] - points[:, a])
+    slack = _slack(ends, k)
+    slack[0] = np.where(cut, 0.0, -1.0)
     first, second = _edge_pairs_of_faces().T
-    return _segment_bounds(points[:, first], points[:, second], slack[:, first], slack[:, second], k)
+    return _segment_bounds(ends[:, first], ends[:, second], slack[:, first], slack[:, second], k)
 
 
 def _covers_rays(corners: Float[np.ndarray, "n 8 3"], rays_xy: Float[np.ndarray, "r 2"]) -> Bool[np.ndarray, "n r"]:

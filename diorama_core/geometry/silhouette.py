@@ -8,7 +8,7 @@ that map, so with directions of unit depth (`Camera.rays`) the hit parameter is 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -130,6 +130,7 @@ class ShapeCaster:
         return clipped_bounds(camera, points, self.hull_edges)
 
 
+@cache
 def _directions() -> Float[np.ndarray, "d 3"]:
     """Evenly spread directions (a Fibonacci sphere), after the six axes."""
     index = np.arange(_HULL_DIRECTIONS) + 0.5

@@ -19,6 +19,8 @@ from diorama_core.scene.types import Architecture, Camera
 KEEP_THEIR_OWN = frozenset({"picture", "mirror", "window", "plant", "books", "clock"})
 """Categories whose look is not one colour of one main material."""
 _BIN = 20.0
+_BINS = 16
+"""More than there are along either axis of hue, which reach from -127 to 127."""
 _FEWEST_PIXELS = 60
 _MIN_SHARE = 0.25
 """An object without a colour that covers this much of it is not painted."""
@@ -83,10 +85,9 @@ def _main_colour(rgb: UInt8[np.ndarray, "h w 3"], mask: Bool[np.ndarray, "h w"])
         return None
     lab = cv2.cvtColor(pixels[None].astype(np.float32) / 255.0, cv2.COLOR_RGB2Lab)[0]
     # Shade varies over one surface, hue hardly: lightness gets wider bins.
-    _, label, counts = np.unique(
-        np.floor(lab / (2 * _BIN, _BIN, _BIN)), axis=0, return_inverse=True, return_counts=True
-    )
-    seed = np.median(lab[label.ravel() == int(np.argmax(counts))], axis=0)
+    light, green_red, blue_yellow = np.floor(lab / (2 * _BIN, _BIN, _BIN)).astype(int).T
+    bins = (light * _BINS + green_red + _BINS // 2) * _BINS + blue_yellow + _BINS // 2
+    seed = np.median(lab[bins == int(np.argmax(np.bincount(bins)))], axis=0)
     near = np.linalg.norm((lab - seed) / (2.0, 1.0, 1.0), axis=1) < _BIN
     if near.mean() < _MIN_SHARE:
         return None

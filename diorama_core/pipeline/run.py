@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -100,17 +101,28 @@ def build_scene(
     stages = stages or embedded_stages(inputs, library)
     progress = progress or Progress()
     runner = Runner(cache)
-    found = evaluate(stages, {"given": inputs}, ("graph", "posed"), runner, progress.part(0.0, 0.85))
-    inputs, geometry, room = found["inputs"], found["geometry"], found["architecture"]
+    found = evaluate(stages, {"given": inputs}, ("graph", "furniture"), runner, progress.part(0.0, 0.45))
+    inputs, room = found["inputs"], found["architecture"]
+    geometry: ObjectGeometry = found["furniture"][1]
     illuminant = room_illuminant(inputs, found["objects"], room.architecture, geometry.camera)
     balanced = replace(inputs, photo=replace(inputs.photo, rgb=illuminant.balanced(inputs.photo.rgb)))
     room = replace(room, architecture=_in_white_light(room.architecture, illuminant))
     floors = {p.id for p in room.architecture.by_role("floor")}
     standing = {edge.child for edge in room.supports if edge.parent in floors}
     only = None if plane_pictures else ()
-    textures = plane_textures(
-        balanced, found["objects"], geometry.camera, room.architecture, stages.filler, standing, only
-    )
+    with ThreadPoolExecutor(1) as beside:  # the planes' pictures need nothing of the shapes
+        painted = beside.submit(
+            plane_textures,
+            balanced,
+            found["objects"],
+            geometry.camera,
+            room.architecture,
+            stages.filler,
+            standing,
+            only,
+        )
+        found = evaluate(stages, found, ("posed",), runner, progress.part(0.45, 0.85))
+        textures = painted.result()
     noise = REASONED if inputs.depth_m is None else MEASURED
     shaped = _observed({**found, "architecture": room}, balanced, library)
     reshaped: tuple[str, ...] = ()

@@ -8,7 +8,7 @@ share shape and size are fitted together and stay alike.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -34,6 +34,7 @@ from diorama_core.pose.outline_fit import fitted_pose
 from diorama_core.pose.surface import measured_surface, noise_of
 from diorama_core.progress import Progress
 from diorama_core.protocols import PoseStage
+from diorama_core.render.grid import each
 from diorama_core.scene.types import Candidate, Pose
 
 CELLS = 56
@@ -109,20 +110,22 @@ class MadeToMeasure:
     ) -> tuple[PosedCandidates, ...]:
         """The candidates with the first of each made to measure, where the picture tells how."""
         seen = _seen(posed, inputs, objects, geometry, depth)
-        sets = _sets(posed)
-        found: dict[str, Candidate] = {}
-        for number, members in enumerate(sets):
-            progress.report(number / len(sets), "Making shapes to measure")
-            shown = {m.object_id: seen[m.object_id] for m in members if m.object_id in seen}
-            if not shown:
-                continue
-            best = members[0].candidates[0]
-            clear = [one for one in shown.values() if one.pixels >= MIN_PIXELS]
-            changes = self._changes(best, clear) if clear else None
-            for member in members:
-                one = shown.get(member.object_id)
-                found[member.object_id] = self._placed(member.candidates[0], changes, one, resize=len(members) == 1)
+        progress.report(0.0, "Making shapes to measure")
+        made = each(lambda members: self._of_set(members, seen), _sets(posed), progress, "Making shapes to measure")
+        found = {object_id: candidate for of_set in made for object_id, candidate in of_set.items()}
         return tuple(_with_first(p, found[p.object_id]) if p.object_id in found else p for p in posed)
+
+    def _of_set(self, members: Sequence[PosedCandidates], seen: Mapping[str, _Seen]) -> dict[str, Candidate]:
+        """The first candidates of objects of one shape and size; none where none of them is seen well enough."""
+        shown = {m.object_id: seen[m.object_id] for m in members if m.object_id in seen}
+        if not shown:
+            return {}
+        clear = [one for one in shown.values() if one.pixels >= MIN_PIXELS]
+        changes = self._changes(members[0].candidates[0], clear) if clear else None
+        alone = len(members) == 1
+        return {
+            m.object_id: self._placed(m.candidates[0], changes, shown.get(m.object_id), resize=alone) for m in members
+        }
 
     def _changes(self, best: Candidate, seen: Sequence[_Seen]) -> dict[str, Value] | None:
         """Parameters that differ in the picture; None where the retrieved shape is rather stretched than built."""

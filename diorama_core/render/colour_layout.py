@@ -12,7 +12,7 @@ from jaxtyping import Bool, Float, Float32, Int32, UInt8
 
 from diorama_core.geometry.shape_appearance import ShapeAppearance
 from diorama_core.render.templates import Templates
-from diorama_core.render.view_features import squared_around
+from diorama_core.render.view_features import squared_around, window_around
 
 CELLS = 6
 LAYOUT_WIDTH = CELLS**2 * 4
@@ -29,10 +29,14 @@ _COLOURLESS = 140
 
 def colour_layout(rgb: UInt8[np.ndarray, "h w 3"], mask: Bool[np.ndarray, "h w"]) -> Float32[np.ndarray, "width"]:
     """The mean colour of what the mask covers, cell by cell, in a square around it; zeros for an empty mask."""
-    lab = cv2.cvtColor(rgb.astype(np.float32) / 255.0, cv2.COLOR_RGB2Lab)
-    square = squared_around(mask, np.where(mask[..., None], np.dstack([lab, np.ones_like(lab[..., 0])]), 0))
-    if square is None:
+    window = window_around(mask)
+    if window is None:
         return np.zeros(LAYOUT_WIDTH, np.float32)
+    lab = cv2.cvtColor(rgb[window].astype(np.float32) / 255.0, cv2.COLOR_RGB2Lab)
+    picture = np.zeros((*mask.shape, 4), np.float32)
+    picture[window] = np.where(mask[window][..., None], np.dstack([lab, np.ones_like(lab[..., 0])]), 0)
+    square = squared_around(mask, picture)
+    assert square is not None
     cells = cv2.resize(square, (CELLS, CELLS), interpolation=cv2.INTER_AREA).reshape(-1, 4)
     cells[:, :3] /= np.maximum(cells[:, 3:], 1e-3)
     return cells.ravel()

@@ -23,6 +23,8 @@ _DIRECTIONS = 6
 _SIDE = 60
 """Pixels of the square in which edges are measured: a multiple of `_CELLS` and `_EDGE_CELLS`."""
 _MARGIN = 0.04
+_BLUR, _BLUR_REACH = 0.4, 5
+"""Pixels of the square by which a larger picture is smoothed first, and times so much that this takes in around one."""
 _COLOUR_SPREAD = 22.0
 _GRADIENT_FLOOR = 3.0
 """Gray levels a pixel below which a gradient is noise."""
@@ -87,6 +89,20 @@ def squared_around(
     return None if box is None else _squared(picture, box, cv2.BORDER_CONSTANT)
 
 
+def window_around(mask: Bool[np.ndarray, "h w"]) -> tuple[slice, slice] | None:
+    """Rows and columns of all that the square around what a mask covers depends on; None for an empty mask."""
+    box = _box(mask)
+    return None if box is None else _window(box)
+
+
+def _window(box: tuple[int, int, int, int]) -> tuple[slice, slice]:
+    x1, y1, x2, y2 = box
+    half = (0.5 + _MARGIN) * max(x2 - x1, y2 - y1)
+    reach = half * (1 + _BLUR_REACH * 2 * _BLUR / _SIDE) + 2
+    columns, rows = (slice(max(0, int(c - reach)), int(c + reach) + 1) for c in ((x1 + x2) / 2, (y1 + y2) / 2))
+    return rows, columns
+
+
 def _box(mask: Bool[np.ndarray, "h w"]) -> tuple[int, int, int, int] | None:
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     return (int(columns[0]), int(rows[0]), int(columns[-1]) + 1, int(rows[-1]) + 1) if len(rows) else None
@@ -112,7 +128,9 @@ def _squared(
     scale = _SIDE / (2 * half)
     to_square = np.array([[scale, 0, _SIDE / 2 - scale * (x1 + x2) / 2], [0, scale, _SIDE / 2 - scale * (y1 + y2) / 2]])
     if scale < 1:  # smooth first, so that thin parts do not fall between the samples
-        picture = cv2.GaussianBlur(picture, (0, 0), 0.4 / scale)
+        window, whole = _window(box), picture
+        picture = np.zeros(whole.shape, np.float32)
+        picture[window] = cv2.GaussianBlur(whole[window], (0, 0), _BLUR / scale)
     return cv2.warpAffine(picture, to_square, (_SIDE, _SIDE), flags=cv2.INTER_LINEAR, borderMode=border)
 
 

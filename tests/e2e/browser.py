@@ -30,6 +30,9 @@ FLAGS = (
     "--disable-extensions",
 )
 SIZE = (1100, 640)
+QUERY = "?fixedDpr=0.5"
+"""Of a page's address: the 3D view has half the screen's pixels a side, which software draws in half the time. What is
+asked of the picture is its colours; everything else on the page is as sharp as ever."""
 PATIENCE_MS = 30_000
 LEARN_MS = 300_000
 """The first model of one's own is compared with all built-in shapes, which takes half a minute of a free core once."""
@@ -78,8 +81,7 @@ class EditorPage:
     running: Running
     errors: list[str] = field(default_factory=list)
     client_id: int = -1
-    query: str = "?fixedDpr=1"
-    """Of the address: as many pixels as the screen has, whatever the machine can afford."""
+    query: str = QUERY
 
     @property
     def client(self) -> Client:
@@ -131,7 +133,7 @@ class EditorPage:
     def settle(self) -> None:
         """Wait until the page has handled every message and drawn two frames since."""
         self.page.evaluate("window.__quietFrom = null")
-        self.page.wait_for_function(SETTLED, polling=50)
+        self.page.wait_for_function(SETTLED, polling=20)
 
     def at_board(self) -> None:
         """Wait until the photo is there to draw on."""

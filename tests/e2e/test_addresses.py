@@ -12,7 +12,7 @@ from playwright.sync_api import expect
 from diorama_app.serve import Running
 from diorama_core.scene import edits
 from tests.app.small_room import PlainLibrary, furnished_scene, make_project
-from tests.e2e.browser import EditorPage
+from tests.e2e.browser import QUERY, EditorPage
 
 pytestmark = pytest.mark.browser
 
@@ -52,7 +52,7 @@ def test_a_link_leads_to_its_project_and_back_leads_back(
     running: Running, visit: Callable[[Running], EditorPage]
 ) -> None:
     editor = visit(running)
-    editor.page.goto(f"http://127.0.0.1:{running.port}/?fixedDpr=1&project=second")
+    editor.page.goto(f"http://127.0.0.1:{running.port}/{QUERY}&project=second")
     editor.page.wait_for_function(f"window.__viserMutable && {OBJECTS} === 3")
     second = running.workspace.editors[1].session
     second.ui_thread.post(lambda: second.edit("move out", lambda s: edits.remove(s, ("chair_1",))))
@@ -67,6 +67,6 @@ def test_a_link_leads_to_its_project_and_back_leads_back(
 
 def test_a_link_to_no_project_says_so(running: Running, visit: Callable[[Running], EditorPage]) -> None:
     editor = visit(running)
-    editor.page.goto(f"http://127.0.0.1:{running.port}/?fixedDpr=1&project=..%2F..%2Fetc")
+    editor.page.goto(f"http://127.0.0.1:{running.port}/{QUERY}&project=..%2F..%2Fetc")
     editor.settle()
     editor.notice("There is no project called")

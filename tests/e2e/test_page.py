@@ -15,7 +15,7 @@ from diorama_app.serve import Running
 from diorama_core.perception.inputs import read_inputs
 from diorama_core.progress import Progress
 from tests.app.small_room import PlainLibrary, make_project
-from tests.e2e.browser import BEEN_HERE, PROJECT, SIZE, EditorPage
+from tests.e2e.browser import BEEN_HERE, PROJECT, QUERY, SIZE, EditorPage
 
 pytestmark = pytest.mark.browser
 
@@ -33,7 +33,7 @@ def resized(editor: EditorPage) -> Iterator[Page]:
 def test_the_first_thing_seen_is_ours(context, serve: Callable[..., Running], tmp_path) -> None:
     running = serve(make_project(tmp_path / "projects" / "demo").folder, PlainLibrary())
     page = context.new_page()
-    page.goto(f"http://127.0.0.1:{running.port}/?fixedDpr=1", wait_until="commit")
+    page.goto(f"http://127.0.0.1:{running.port}/{QUERY}", wait_until="commit")
     page.wait_for_selector("#dio-loading, #dio-toolbar", state="attached")
     assert page.title() == "Diorama"
     while not page.evaluate("document.documentElement.classList.contains('dio-ready')"):
@@ -106,7 +106,7 @@ def test_on_a_phone_the_panel_is_a_sheet_and_the_room_above_it(
     running = serve(make_project(tmp_path / "projects" / "demo").folder, PlainLibrary())
     page = context.new_page()
     page.set_viewport_size({"width": 390, "height": 844})
-    page.goto(f"http://127.0.0.1:{running.port}/?fixedDpr=1")
+    page.goto(f"http://127.0.0.1:{running.port}/{QUERY}")
     page.wait_for_selector("html.dio-ready.dio-phone")
     page.wait_for_timeout(700)
     canvas = page.evaluate("(({width, bottom}) => [width, bottom])(__viserMutable.canvas.getBoundingClientRect())")
@@ -147,7 +147,7 @@ def test_the_whole_room_is_seen_at_first_and_after_the_window_changed(
     page = context.new_page()
     page.add_init_script(BEEN_HERE)
     page.set_viewport_size({"width": width, "height": height})
-    page.goto(f"http://127.0.0.1:{running.port}/?fixedDpr=1")
+    page.goto(f"http://127.0.0.1:{running.port}/{QUERY}")
     page.wait_for_selector("html.dio-ready")
     page.wait_for_timeout(2500)
     assert page.evaluate(in_view, corners)

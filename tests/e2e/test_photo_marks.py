@@ -17,7 +17,7 @@ from playwright.sync_api import expect
 from diorama_core.artefacts import LabelledBox
 from diorama_core.project.storage import Project
 from tests.app.small_room import make_project, plain_photo
-from tests.e2e.browser import EditorPage
+from tests.e2e.browser import QUERY, EditorPage
 from tests.waiting import until
 
 pytestmark = pytest.mark.browser
@@ -158,7 +158,7 @@ def test_what_was_drawn_outlives_a_killed_server(context, serve_apart, photo: Pa
     port = int(server.stdout.readline())
     page = context.new_page()
     page.set_default_timeout(60_000)
-    page.goto(f"http://127.0.0.1:{port}/?fixedDpr=1")
+    page.goto(f"http://127.0.0.1:{port}/{QUERY}")
     page.get_by_role("tab", name="Photo", exact=True).click()
     with page.expect_file_chooser() as chosen:
         page.get_by_role("button", name="Upload a photo", exact=True).click()
@@ -178,7 +178,7 @@ def test_what_was_drawn_outlives_a_killed_server(context, serve_apart, photo: Pa
     again = serve_apart(port)
     assert again.stdout is not None
     again.stdout.readline()
-    page.goto(f"http://127.0.0.1:{port}/?fixedDpr=1")
+    page.goto(f"http://127.0.0.1:{port}/{QUERY}")
     page.get_by_role("tab", name="Project", exact=True).click()
     page.locator(".dio .row", has_text="my room").get_by_role("button", name="Open").click()
     expect(page.locator(".dio-canvas-box")).to_have_count(1)

@@ -12,6 +12,7 @@ from jaxtyping import Bool, UInt8
 from diorama_core.geometry.shape_appearance import appearance_of
 from diorama_core.render.colour_layout import LAYOUT_WIDTH, colour_layout, layout_agreement, painted_views
 from diorama_core.render.templates import TemplateGrid, render_templates, templates_with_faces
+from diorama_core.render.view_features import squared_around, window_around
 from tests.primitives import material
 
 WHITE, BLACK, RED = (235, 235, 235), (30, 30, 30), (200, 40, 40)
@@ -92,3 +93,19 @@ def test_views_show_faces_in_their_colours_and_shade() -> None:
     upper = templates.mask & ~lower
     assert (np.ptp(views[upper].astype(int), axis=1) == 0).all()  # no colour known: gray
     assert len(np.unique(views[upper][:, 0])) > 1  # lit from one side
+
+
+@pytest.mark.parametrize("corner", [(130, 200), (0, 370)])
+def test_all_that_the_square_shows_is_in_its_window(rng: np.random.Generator, corner: tuple[int, int]) -> None:
+    picture, mask = rng.uniform(0, 255, (400, 500, 3)).astype(np.float32), np.zeros((400, 500), bool)
+    mask[corner[0] : corner[0] + 130, corner[1] : corner[1] + 130] = True
+    window = window_around(mask)
+    assert window is not None
+    assert mask[window].size < 0.2 * mask.size
+    alone = np.zeros_like(picture)
+    alone[window] = picture[window]
+    whole, part = squared_around(mask, picture), squared_around(mask, alone)
+    assert whole is not None
+    assert part is not None
+    np.testing.assert_array_equal(part, whole)
+    assert window_around(np.zeros((4, 4), bool)) is None

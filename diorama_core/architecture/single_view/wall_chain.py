@@ -239,13 +239,14 @@ class ChainScorer:
         summed = _summed(v.upright[1:-1])
         seen = _upto_rows(summed, v.row_of((ceiling_m - eye) / nearest)) - _upto_rows(summed, v.row_of(-eye / nearest))
         seen = UPRIGHT_WEIGHT * np.maximum(seen, 0.0)
-        nearer = nearest[:, :, None] <= nearest[:, None, :]
-        edge = np.where(nearer, seen[:, :, None], seen[:, None, :])
         width = float(v.edges_rad[1] - v.edges_rad[0])
         corner = _corner_headings(walls, self.cues.camera.position[:2])
-        meet = np.abs(corner[None] - borders[:, None, None]) < CORNER_BINS * width
-        usual = np.where(meet, np.where(_folds_in(walls)[None], CORNER_COST, PROTRUDING_COST), JUMP_COST)
-        cost = np.maximum(usual - edge, MIN_SHARE * usual)
+        folded = np.where(_folds_in(walls), CORNER_COST, PROTRUDING_COST)
+        cost = np.empty((len(borders), *corner.shape))
+        for k, border in enumerate(borders):  # one at a time stays in the processor's cache
+            edge = np.where(nearest[k, :, None] <= nearest[k], seen[k, :, None], seen[k])
+            usual = np.where(np.abs(corner - border) < CORNER_BINS * width, folded, JUMP_COST)
+            np.maximum(usual - edge, MIN_SHARE * usual, out=cost[k])
         same = np.arange(len(walls))
         cost[:, same, same] = 0.0
         return np.asarray(cost)

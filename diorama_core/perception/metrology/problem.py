@@ -183,9 +183,11 @@ def outline_inset(unknowns: Float[np.ndarray, "n 6"], problems: Problems, view: 
 def _cut_off(corners: Float[np.ndarray, "n 8 3"], problems: Problems, view: View) -> Float[np.ndarray, "n 2"]:
     """How much of the cuboid lies outside the picture, against the box: of readings that fit, the least cut one."""
     k = view.intrinsics
-    depth = np.maximum(corners[..., 2:], CUT_NEAR_M)
-    pixels = corners[..., :2] / depth * [k.fx, k.fy] + [k.cx, k.cy]
-    outside = np.maximum(-pixels, pixels - [k.width, k.height]).max(axis=1)
+    x, y, z = np.ascontiguousarray(corners.transpose(2, 1, 0))
+    depth = np.maximum(z, CUT_NEAR_M)
+    u, v = x / depth * k.fx + k.cx, y / depth * k.fy + k.cy
+    beside, above = np.maximum(-u, u - k.width).max(axis=0), np.maximum(-v, v - k.height).max(axis=0)
+    outside = np.stack([beside, above], axis=-1)
     extent = problems.box_px[:, 2:] - problems.box_px[:, :2]
     return np.log1p(np.maximum(outside, 0.0) / extent) / problems.cut_sigma[:, None]
 
@@ -200,17 +202,17 @@ def _unfilled(
     k = view.intrinsics
     inset = np.zeros((len(boxes.centre), 4))
     ahead = (corners[..., 2] > CUT_NEAR_M).all(axis=1)
-    local = problems.outline[ahead] * boxes.size_m[ahead, None]
+    x, y, z = (problems.outline[ahead, :, axis] * boxes.size_m[ahead, axis, None] for axis in range(3))
     c, s = np.cos(boxes.yaw_rad[ahead])[:, None], np.sin(boxes.yaw_rad[ahead])[:, None]
-    x, y, z = local[..., 0], local[..., 1], local[..., 2]
-    R, centre = view.R_world_camera, corners[ahead].mean(axis=1)
+    corners = corners[ahead]
+    R, centre = view.R_world_camera, corners.mean(axis=1)
     wx, wy = c * x - s * y, s * x + c * y
+    depth = np.maximum(wx * R[0, 2] + wy * R[1, 2] + z * R[2, 2] + centre[:, 2, None], NEAR_M)
     outline, whole = [], []
     for axis, f in ((0, k.fx), (1, k.fy)):
         across = wx * R[0, axis] + wy * R[1, axis] + z * R[2, axis] + centre[:, axis, None]
-        depth = wx * R[0, 2] + wy * R[1, 2] + z * R[2, 2] + centre[:, 2, None]
-        outline.append(f * across / np.maximum(depth, NEAR_M))
-        whole.append(f * corners[ahead, :, axis] / corners[ahead, :, 2])
+        outline.append(f * across / depth)
+        whole.append(f * corners[..., axis] / corners[..., 2])
     low = [o.min(axis=1) - w.min(axis=1) for o, w in zip(outline, whole, strict=True)]
     high = [w.max(axis=1) - o.max(axis=1) for o, w in zip(outline, whole, strict=True)]
     inset[ahead] = np.maximum(np.stack([*low, *high], axis=-1), 0.0)

@@ -70,17 +70,17 @@ def test_a_killed_worker_costs_its_own_photo_a_second_try(folder: Path, tmp_path
 
 @pytest.mark.slow
 def test_what_died_twice_is_listed_and_the_next_run_builds_only_that(folder: Path, tmp_path: Path) -> None:
-    output, photos = tmp_path / "out", photos_of(folder)[0]
+    output, photos = tmp_path / "out", photos_of(folder)[0][:2]
     with killing(output / "b", 2) as killed:
         first = build_photos(photos, OPTIONS, output, LocalWorkers(2), Progress())
     assert len(killed) == 2
-    assert [bool(r.error) for r in first] == [False, True, False]
+    assert [bool(r.error) for r in first] == [False, True]
     assert "without an answer" in first[1].error
     edited = output / "a" / "scene.json"
     edited.write_text(edited.read_text() + "\n")
     before = edited.stat().st_mtime_ns
     second = build_photos(photos, OPTIONS, output, LocalWorkers(2), Progress())
-    assert [(r.error, r.kept) for r in second] == [("", True), ("", False), ("", True)]
+    assert [(r.error, r.kept) for r in second] == [("", True), ("", False)]
     assert edited.stat().st_mtime_ns == before, "what is finished is left as it is"
     (folder / "a.boxes.json").write_text(json.dumps(BOXES[:1]))
     third = build_photos(photos[:1], OPTIONS, output, LocalWorkers(1), Progress())
