@@ -11,6 +11,7 @@ from collections.abc import Mapping
 
 import cv2
 import numpy as np
+from jaxtyping import UInt8
 
 from diorama_core.geometry.shape_appearance import ShapeAppearance
 from diorama_core.io.cache import LruCache
@@ -38,12 +39,20 @@ _TABLES = with_kin("table", "desk", "coffee table", "side table", "console table
 _FLAT = {"rectangular": 0.93, "other": 0.07}
 """Of what hangs flat on walls or stands in frames: round, oval and free outlines, and several in a row."""
 _FLAT_KINDS = with_kin("picture", "window") | {"mirror", "floor mirror"}
+_SIDES: tuple[tuple[frozenset[str], Mapping[str, float]], ...] = (
+    (with_kin("sofa", "sectional sofa"), {"closed": 0.88, "open": 0.12}),
+    (with_kin("armchair"), {"closed": 0.65, "open": 0.35}),
+)
+"""Padded arms, and frames that are seen through below the arms."""
+_CLOSED = 0.72
+"""Share of the outline from the side that is filled, from which on a seat's sides are closed."""
 _DRAWN_PX = 128
 _RARE = 0.02
 _SAYS = 0.08
 """Power of the share that multiplies a retrieval score: scores of shapes that fit well and badly differ little."""
 
 _OUTLINE_OF: LruCache[str, str] = LruCache(4096)
+_SIDE_OF: LruCache[str, str] = LruCache(4096)
 
 
 def usual_form_factor(shape: Shape, appearance: ShapeAppearance) -> float:
@@ -52,9 +61,10 @@ def usual_form_factor(shape: Shape, appearance: ShapeAppearance) -> float:
         return float((_FLAT[_outline(shape, appearance)] / max(_FLAT.values())) ** _SAYS)
     bases = next((shares for kinds, shares in _BASES if shape.category in kinds), None)
     tops = _TOPS if shape.category in _TABLES else None
-    if bases is None and tops is None:
+    sides = next((shares for kinds, shares in _SIDES if shape.category in kinds), None)
+    if bases is None and tops is None and sides is None:
         return 1.0
-    of_form = zip((bases, tops), _form(shape, appearance), strict=True)
+    of_form = zip((bases, tops, sides), (*_form(shape, appearance), _side(shape, appearance)), strict=True)
     usual = [shares.get(form, _RARE) / max(shares.values()) for shares, form in of_form if shares is not None]
     return float(np.prod(usual) ** _SAYS)
 
@@ -77,11 +87,27 @@ def _outline(shape: Shape, appearance: ShapeAppearance) -> str:
     return _OUTLINE_OF.get(shape.content_hash, found)
 
 
+def _side(shape: Shape, appearance: ShapeAppearance) -> str:
+    """Whether a seat is seen through from the side."""
+
+    def found() -> str:
+        drawn = _drawn(appearance, [0, 2])
+        around = cv2.contourArea(cv2.convexHull(np.argwhere(drawn).astype(np.int32)))
+        return "closed" if float(drawn.sum()) >= _CLOSED * around else "open"
+
+    return _SIDE_OF.get(shape.content_hash, found)
+
+
 def _pieces(appearance: ShapeAppearance) -> int:
     """How many separate pieces are seen from the front: a row of prints is several."""
-    yz = appearance.vertices[:, 1:]
+    return int(cv2.connectedComponents(_drawn(appearance, [1, 2]))[0]) - 1
+
+
+def _drawn(appearance: ShapeAppearance, axes: list[int]) -> UInt8[np.ndarray, "p p"]:
+    """The outline along the remaining axis, 1 where there is something, stretched to a square."""
+    flat = appearance.vertices[:, axes]
     drawn = np.zeros((_DRAWN_PX, _DRAWN_PX), np.uint8)
-    at = (yz - yz.min(axis=0)) / np.maximum(np.ptp(yz, axis=0), 1e-9) * (_DRAWN_PX - 1)
+    at = (flat - flat.min(axis=0)) / np.maximum(np.ptp(flat, axis=0), 1e-9) * (_DRAWN_PX - 1)
     for triangle in np.rint(at[appearance.faces]).astype(np.int32):
         cv2.fillConvexPoly(drawn, triangle, 1)
-    return int(cv2.connectedComponents(drawn)[0]) - 1
+    return drawn

@@ -40,3 +40,13 @@ def test_pictures_are_usually_rectangular():
 @pytest.mark.parametrize("several", ["picture-column", "picture-triptych", "picture-gallery"])
 def test_a_row_of_prints_is_rarer_than_one(several):
     assert factor(several) == factor("mirror-pebble")
+
+
+def test_sofas_usually_have_padded_arms():
+    assert factor("sofa-leather-tan") == 1.0
+    assert 0.7 < factor("sofa-slat-pine") < 0.9
+    assert factor("sofa-wood-arm") < 0.9
+
+
+def test_frames_are_more_usual_of_armchairs():
+    assert factor("sofa-slat-pine") < factor("armchair-mission-oak") < factor("armchair-track-beige")
