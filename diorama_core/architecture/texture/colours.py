@@ -37,6 +37,16 @@ def object_pixels(shape: tuple[int, int], objects: tuple[DetectedObject, ...]) -
     return cv2.dilate(union, np.ones((2 * radius + 1, 2 * radius + 1), np.uint8)).astype(bool)
 
 
+def _doubtful(shape: tuple[int, int], objects: tuple[DetectedObject, ...]) -> Bool[np.ndarray, "h w"]:
+    """The boxes of objects whose outlines are only a guess: a door's frame may be taken for the wall beside it."""
+    within = np.zeros(shape, dtype=bool)
+    for found in objects:
+        if found.mask_confidence < 1.0:
+            x1, y1, x2, y2 = (max(round(v), 0) for v in found.box)
+            within[y1:y2, x1:x2] = True
+    return within
+
+
 def coloured(
     planes: tuple[Plane, ...], rgb: UInt8[np.ndarray, "h w 3"], camera: Camera, objects: tuple[DetectedObject, ...]
 ) -> tuple[Plane, ...]:
@@ -50,7 +60,13 @@ def coloured(
     free = ~object_pixels((rgb.shape[0], rgb.shape[1]), objects)[grid]
     small = rgb[grid]
     white = white_level(rgb)
-    found = [_colour_of(plane.role, small, (seen == i) & free, white) for i, plane in enumerate(planes)]
+    sure = free & ~_doubtful((rgb.shape[0], rgb.shape[1]), objects)[grid]
+
+    def where(index: int, role: PlaneRole) -> Bool[np.ndarray, "hs ws"]:
+        own, surely = (seen == index) & free, (seen == index) & sure
+        return surely if role != "floor" and surely.sum() >= MIN_PIXELS else own
+
+    found = [_colour_of(plane.role, small, where(i, plane.role), white) for i, plane in enumerate(planes)]
     by_role = {p.role: c for p, c in reversed(list(zip(planes, found, strict=True))) if c is not None}
     return tuple(
         replace(p, colour=c or by_role.get(p.role, _PLAIN[p.role])) for p, c in zip(planes, found, strict=True)
