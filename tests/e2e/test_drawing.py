@@ -59,6 +59,19 @@ PICTURE = "window.__viserMutable.canvas.toDataURL()"
 CALLS = "window.__viserTestpoints.rendererInfo.render.calls"
 
 
+def calls_at_rest(editor: EditorPage) -> int:
+    """Draw calls of a whole picture, once two in a row have as many: beside other work, shapes and marks come late."""
+    before = -1
+    for _ in range(20):
+        editor.page.evaluate("window.__viserMutable.requestRender()")
+        editor.page.wait_for_timeout(900)
+        calls = int(editor.page.evaluate(CALLS))
+        if calls == before:
+            return calls
+        before = calls
+    raise AssertionError(f"the picture does not come to rest: {calls} draw calls")
+
+
 def pixels(page: EditorPage) -> np.ndarray:
     """What is on the canvas, 0 to 255."""
     data = base64.b64decode(page.page.evaluate(PICTURE).partition(",")[2])
@@ -73,7 +86,7 @@ def test_of_a_moved_object_only_its_part_of_the_picture_is_drawn(editor: EditorP
         if selected:
             session.ui_thread.post(lambda: mine.select(("lamp_1",)))
         watching.page.wait_for_timeout(1000)
-        calls = watching.page.evaluate(CALLS)
+        calls = calls_at_rest(watching)
         sharp = watching.page.evaluate(PIXELS)
         drawn = watching.page.evaluate(FRAME)
         here = session.scene.object("lamp_1").pose
@@ -87,9 +100,7 @@ def test_of_a_moved_object_only_its_part_of_the_picture_is_drawn(editor: EditorP
         watching.page.wait_for_timeout(600)
         partly = pixels(watching)
         assert watching.page.evaluate(FRAME) <= drawn + 2
-        watching.page.evaluate("window.__viserMutable.requestRender()")
-        watching.page.wait_for_timeout(900)
-        assert watching.page.evaluate(CALLS) == calls
+        assert calls_at_rest(watching) == calls
         assert np.abs(pixels(watching) - partly).max() <= 2, "it is the picture that drawing everything gives"
         session.ui_thread.post(session.refresh)
         watching.page.wait_for_timeout(600)

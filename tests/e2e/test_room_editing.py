@@ -90,9 +90,10 @@ def test_a_door_from_the_library_cuts_the_wall_it_is_put_on(
     wall = scene(page).plane(edge.parent)
     assert wall.role == "wall"
     assert door.corners_world[:, 2].min() == pytest.approx(wall.polygon[:, 2].min(), abs=1e-6)
-    page.settle()
-    redrawn = page.session.viewport._planes[wall.id][0]
-    assert len(redrawn.polygon) > len(wall.polygon), "drawn with its opening"
+    drawn = page.session.viewport._planes
+    page.until(
+        lambda: wall.id in drawn and len(drawn[wall.id][0].polygon) > len(wall.polygon), "drawn with its opening"
+    )
     mesh = page.session.viewport.mesh_name(door.id)
     page.tab("Object")
     slider = page.page.get_by_label("Open", exact=True).and_(page.page.locator("input"))
