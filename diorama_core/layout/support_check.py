@@ -69,6 +69,10 @@ def checked_supports(scene: Scene, library: ShapeLibrary, noise: ObservationNois
             continue
         there = noise.measured and _gap(scene, library, item, edge) <= _tolerance(scene, item, edge, noise)
         wall = _wall_in_sight(scene, item, edge, noise) if hangs and not there else None
+        # Where distances were measured, a wall that is farther from the object than its own is not the one it hangs on.
+        if wall is not None and noise.measured:
+            other = _gap(scene, library, item, replace(edge, parent=wall, adheres_to=()))
+            wall = wall if other < _gap(scene, library, item, edge) else None
         if wall is not None:
             reasons.append(f"support changed: {item.label} was seen on another wall than its own")
             scene = edits.attach(scene, replace(edge, parent=wall, adheres_to=()))

@@ -3,6 +3,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from diorama_core.layout.feasible.recipe import FeasibleRecipe
 from diorama_core.layout.noise import MEASURED, REASONED
@@ -117,10 +118,11 @@ def test_what_is_seen_beside_its_wall_hangs_on_the_wall_in_sight(room: Room) -> 
     assert "another wall" in reasons[0]
 
 
-def test_a_measured_door_stays_on_its_wall_although_another_is_in_sight(room: Room) -> None:
+@pytest.mark.parametrize("x", [2.98, 2.85], ids=["in its wall", "a little before it"])
+def test_a_measured_door_stays_on_its_wall_although_another_is_in_sight(room: Room, x: float) -> None:
     walls = room_box(6.0, 5.0)
     (own,) = (w.id for w in walls.by_role("wall") if w.normal[0] < -0.9)
-    door = room.put("picture_13", (2.98, 1.16, 1.5), on=own, relation="mounted on", yaw=np.pi)
+    door = room.put("picture_13", (x, 1.16, 1.5), on=own, relation="mounted on", yaw=np.pi)
     shapes = {
         own: lambda polygon: np.clip(polygon, -9.0, [9.0, 1.1, 9.0]),
         "wall_2": lambda polygon: polygon * [2, 1, 1],
