@@ -22,15 +22,12 @@ from diorama_core.library.taxonomy import broad, category
 from diorama_core.multiview.better_seen import CLEARLY_BETTER, better_seen
 from diorama_core.multiview.joining import RoomPhoto, Sighted, Track, claims, fitted_track, overlap
 from diorama_core.multiview.joint_fit import JointCuboid
+from diorama_core.multiview.one_scene import acyclic, edge_in_room, filling, moved_to_room
 from diorama_core.multiview.room_pictures import room_pictures, with_pictures
 from diorama_core.multiview.rooms import (
     PosedInputs,
     ReadPhoto,
-    acyclic,
     built_alone,
-    edge_in_room,
-    filling,
-    moved_to_room,
     photo_world,
     placed_picture,
     read_photo,

@@ -2,7 +2,7 @@
 
 Each photo is outlined and read by itself; then objects are joined across photos and fitted to all of them
 (`joining`, `joint_fit`). Each object gets its shape, its front and its colours from the photo that shows it best,
-through the same stages as a single photo. The room is that of the first photo, extended to hold everything.
+through the same stages as a single photo. The room is that of all photos (`joint_room`), extended to hold everything.
 """
 
 from __future__ import annotations
@@ -26,7 +26,16 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import category
 from diorama_core.multiview.alignment import Alignment, PhotoReading, align
 from diorama_core.multiview.cut_short import edges_cut_short
-from diorama_core.multiview.given_stages import (
+from diorama_core.multiview.joining import RoomPhoto, Sighted, Track, joined_objects
+from diorama_core.multiview.joint_fit import JointCuboid, PhotoBoxes
+from diorama_core.multiview.joint_room import SeenRoom, joint_room, with_open_doorways
+from diorama_core.multiview.one_scene import acyclic, edge_in_room, filling, moved_to_room
+from diorama_core.multiview.room_pictures import PlacedPicture, room_pictures
+from diorama_core.perception.metrology.box_observations import gather
+from diorama_core.perception.metrology.placement import place_all
+from diorama_core.perception.metrology.problem import View
+from diorama_core.perception.metrology.reading import heading_and_size
+from diorama_core.pipeline.given_stages import (
     AsObserved,
     GivenCamera,
     GivenCuboids,
@@ -34,14 +43,6 @@ from diorama_core.multiview.given_stages import (
     GivenRoom,
     given_camera,
 )
-from diorama_core.multiview.joining import RoomPhoto, Sighted, Track, joined_objects
-from diorama_core.multiview.joint_fit import JointCuboid, PhotoBoxes
-from diorama_core.multiview.joint_room import SeenRoom, joint_room, with_open_doorways
-from diorama_core.multiview.room_pictures import PlacedPicture, room_pictures
-from diorama_core.perception.metrology.box_observations import gather
-from diorama_core.perception.metrology.placement import place_all
-from diorama_core.perception.metrology.problem import View
-from diorama_core.perception.metrology.reading import heading_and_size
 from diorama_core.pipeline.plan import evaluate
 from diorama_core.pipeline.run import Built, build_scene
 from diorama_core.pipeline.runner import Runner
@@ -50,12 +51,10 @@ from diorama_core.progress import Progress
 from diorama_core.protocols import LayoutStage, Preview
 from diorama_core.scene.edits import set_metrics
 from diorama_core.scene.support import check_scene
-from diorama_core.scene.types import Architecture, Camera, Pose, Scene, SceneObject, Support, yaw_rotation
+from diorama_core.scene.types import Architecture, Camera, Scene, SceneObject, Support, yaw_rotation
 
 UNSEEN_EDGE_FACTOR = 0.5
 """Of a box's area, for each of its edges that is hidden or cut: how well a photo shows an object."""
-PROPORTION_SIGMA = 0.12
-"""Of the logarithms of a shape's proportions, about those of what it stands for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -369,77 +368,3 @@ def _merged(
     scene = containing_room(replace(main, objects=tuple(objects), supports=acyclic(held)))
     check_scene(scene)
     return scene, textures
-
-
-def acyclic(edges: Sequence[Support]) -> tuple[Support, ...]:
-    """The edges without edges that would close a circle: different photos may disagree about what stands on what."""
-    parent: dict[str, str] = {}
-    retained = []
-    for edge in edges:
-        above, seen = edge.parent, {edge.child}
-        while above in parent and above not in seen:
-            seen.add(above)
-            above = parent[above]
-        if above not in seen:
-            parent[edge.child] = edge.parent
-            retained.append(edge)
-    return tuple(retained)
-
-
-def edge_in_room(edge: Support, scene: Scene, room: Architecture) -> Support:
-    """An edge whose plane is the first photo's plane of the same role that is nearest."""
-    if not scene.has_plane(edge.parent):
-        return replace(edge, adheres_to=())
-    own = scene.plane(edge.parent)
-    alike = [
-        (abs(p.offset - own.offset) + 10 * (1 - float(p.normal @ own.normal)), p.id) for p in room.by_role(own.role)
-    ]
-    return replace(edge, parent=min(alike)[1] if alike else "", adheres_to=())
-
-
-def moved_to_room(scene: Scene, T: Float[np.ndarray, "4 4"]) -> Scene:
-    """A scene of a photo's own world, and all candidates' poses, in the room: `p_room = T @ p`, rigid."""
-    R, t = T[:3, :3], T[:3, 3]
-
-    def there(pose: Pose) -> Pose:
-        return Pose(R @ pose.R_world_object, R @ pose.position + t, pose.scale)
-
-    planes = tuple(replace(p, polygon=p.polygon @ R.T + t) for p in scene.architecture.planes)
-    objects = tuple(
-        replace(o, pose=there(o.pose), candidates=tuple(replace(c, pose=there(c.pose)) for c in o.candidates))
-        for o in scene.objects
-    )
-    camera = scene.camera and Camera(scene.camera.intrinsics, T @ scene.camera.T_world_camera)
-    return replace(scene, camera=camera, objects=objects, architecture=replace(scene.architecture, planes=planes))
-
-
-def filling(item: SceneObject, joint: JointCuboid) -> SceneObject:
-    """The object with every candidate filling the joint cuboid, its front on the side where its photo saw it.
-
-    Extents that boxes hardly tell are those that the shape has in proportion to the others.
-    """
-
-    def fitted(pose: Pose, shape_size_m: tuple[float, float, float]) -> Pose:
-        turn = round((pose.yaw_rad - joint.yaw_rad) / (np.pi / 2))
-        axes = [1, 0, 2] if turn % 2 else [0, 1, 2]
-        shape = np.array(shape_size_m)
-        size = in_proportion(np.maximum(joint.size_m, 1e-3)[axes], np.array(joint.log_size_sigma)[axes], shape)
-        R = yaw_rotation(joint.yaw_rad + turn * np.pi / 2)
-        base = joint.centre[2] - joint.size_m[2] / 2
-        return Pose(R, np.array([*joint.centre[:2], base + size[2] / 2]), size / shape)
-
-    candidates = tuple(replace(c, pose=fitted(c.pose, c.shape_size_m)) for c in item.candidates)
-    return replace(item, pose=fitted(item.pose, item.shape_size_m), candidates=candidates)
-
-
-def in_proportion(
-    size_m: Float[np.ndarray, "3"], log_sigma: Float[np.ndarray, "3"], shape_size_m: Float[np.ndarray, "3"]
-) -> Float[np.ndarray, "3"]:
-    """Extents by a measurement and by the proportions of a shape, of unknown scale, each as sure as it is."""
-    measured, shape = np.log(size_m), np.log(shape_size_m)
-    known = 1.0 / np.maximum(log_sigma, 1e-3) ** 2
-    weight = 1.0 / (np.maximum(log_sigma, 1e-3) ** 2 + PROPORTION_SIGMA**2)
-    scale = float(weight @ (measured - shape) / weight.sum())
-    own = 1.0 / PROPORTION_SIGMA**2
-    extents: Float[np.ndarray, "3"] = np.exp((known * measured + own * (shape + scale)) / (known + own))
-    return extents

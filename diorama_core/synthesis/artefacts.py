@@ -5,31 +5,21 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from diorama_core.artefacts import (
-    CameraEstimate,
-    CameraHypothesis,
     Cuboid,
     DetectedObject,
     Inputs,
-    LayoutReport,
     ObjectGeometry,
     RankedShapes,
 )
 from diorama_core.progress import Progress
-from diorama_core.protocols import Preview
-from diorama_core.provenance import CameraSource, ScaleSource
-from diorama_core.scene.types import Scene, Support
+from diorama_core.provenance import ScaleSource
+from diorama_core.scene.types import Support
 from diorama_core.synthesis.truth import TruthView
 
 
 def photo_only(view: TruthView) -> Inputs:
     """The picture with boxes and classes, as a person or detector gives them; no masks, depth or intrinsics."""
     return replace(view.inputs, instances=None, instance_boxes=(), depth_m=None, intrinsics=None)
-
-
-def true_camera(view: TruthView) -> CameraEstimate:
-    """The camera as a perfect stage would report it."""
-    reading = CameraHypothesis(view.camera.intrinsics, view.camera.T_world_camera[:3, :3], 1.0)
-    return CameraEstimate((reading,), 1.0, CameraSource.given(), height_m=float(view.camera.position[2]))
 
 
 def true_objects(view: TruthView) -> tuple[DetectedObject, ...]:
@@ -85,12 +75,3 @@ class TrueShapes:
         """The true shape of every object, matched by mask id."""
         known = dict(self.shapes)
         return tuple(RankedShapes(o.id, ((known[str(o.mask_id)], 1.0),)) for o in objects if str(o.mask_id) in known)
-
-
-@dataclass(frozen=True)
-class LeaveAsIs:
-    """A layout stage that moves nothing."""
-
-    def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
-        """The same scene."""
-        return scene, LayoutReport("none", {}, {}, 0.0)

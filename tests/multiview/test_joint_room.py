@@ -79,8 +79,8 @@ def test_an_open_doorway_cuts_the_wall_for_all_photos() -> None:
     joint = joint_room([NORTH, WEST], [])
     corners = np.array([[x, 2.0, z] for x in (-0.3, 0.5) for z in (0.0, 2.0)])
     pixels = NORTH.camera.project(corners)
-    box = tuple(float(v) for v in (*pixels.min(axis=0), *pixels.max(axis=0)))
-    mark = DetectedObject("gap", "door", "open doorway", box, np.zeros((480, 640), bool), 1, 0.9)  # type: ignore[arg-type]
+    (x1, y1), (x2, y2) = pixels.min(axis=0).tolist(), pixels.max(axis=0).tolist()
+    mark = DetectedObject("gap", "door", "open doorway", (x1, y1, x2, y2), np.zeros((480, 640), bool), 1, 0.9)
     photos = (SeenRoom(NORTH.architecture, NORTH.camera, (mark,)), WEST)
     cut, marks = with_open_doorways(joint, photos)
     assert marks == (("gap",), ())

@@ -45,10 +45,11 @@ from diorama_core.evaluation.reports.tables import Table
 from diorama_core.layout.published.recipes import AllInOneRecipe, PaperRecipe
 from diorama_core.layout.recipes import recipe as layout_recipe
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.pipeline.given_stages import AsObserved
 from diorama_core.progress import Progress
 from diorama_core.protocols import LayoutStage
 from diorama_core.scene.types import Scene, Support
-from diorama_core.synthesis.artefacts import LeaveAsIs, true_supports
+from diorama_core.synthesis.artefacts import true_supports
 from diorama_core.synthesis.truth import TruthView
 
 log = logging.getLogger(__name__)
@@ -218,7 +219,7 @@ def _arrange(
     progress: Progress,
 ) -> Mapping[str, Scene]:
     """Every row of the optimiser's ablation for one room; the arranged scenes by row."""
-    rows: list[tuple[str, LayoutStage, Scene | None]] = [("none", LeaveAsIs(), observed)]
+    rows: list[tuple[str, LayoutStage, Scene | None]] = [("none", AsObserved(), observed)]
     rows += [
         (name, PaperRecipe(library, stages=k), observed)
         for k, name in enumerate(("O", "O, P", "O, P, S", PAPER_LAYOUT), start=1)

@@ -25,12 +25,13 @@ from diorama_core.artefacts import (
 )
 from diorama_core.errors import InputError
 from diorama_core.geometry.projection import box_iou
+from diorama_core.pipeline.given_stages import GivenCamera
 from diorama_core.pipeline.stages import Stages
 from diorama_core.progress import Progress
 from diorama_core.protocols import ArchitectureStage, GeometryStage, RetrievalStage
 from diorama_core.provenance import RoomMethod, RoomSource
 from diorama_core.scene.types import Plane, SceneObject, Support, yaw_rotation
-from diorama_core.synthesis.artefacts import true_camera, true_geometry
+from diorama_core.synthesis.artefacts import true_geometry
 from diorama_core.synthesis.truth import TruthView
 
 SUBSTITUTES: Mapping[str, str] = {
@@ -71,7 +72,7 @@ def with_true_masks(inputs: Inputs, view: TruthView) -> Inputs:
 def substituted(stages: Stages, view: TruthView, given: frozenset[str]) -> Stages:
     """Stages whose results carry the truth where `given` says so ("masks" belongs to the inputs)."""
     if given & {"camera", "cuboids"}:
-        stages = replace(stages, camera=_TrueCamera(view))
+        stages = replace(stages, camera=GivenCamera(view.camera))
     if given & {"height", "scale", "distance", "rotation", "size", "supports", "cuboids"}:
         stages = replace(stages, geometry=_TrueGeometry(stages.geometry, view, given))
     if "room" in given:
@@ -79,14 +80,6 @@ def substituted(stages: Stages, view: TruthView, given: frozenset[str]) -> Stage
     if "shape" in given:
         stages = replace(stages, retrieval=_TrueShape(stages.retrieval, view))
     return stages
-
-
-@dataclass(frozen=True)
-class _TrueCamera:
-    view: TruthView = field(repr=False)
-
-    def estimate(self, inputs: Inputs, progress: Progress) -> CameraEstimate:
-        return true_camera(self.view)
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diorama_core.artefacts import Cuboid, Inputs, ObjectGeometry, Photo
-from diorama_core.multiview.given_stages import AsObserved, GivenCamera, GivenRoom, given_camera
+from diorama_core.pipeline.given_stages import AsObserved, GivenCamera, GivenRoom, given_camera
 from diorama_core.progress import Progress
 from diorama_core.provenance import ScaleSource
 from diorama_core.scene.types import Scene, Support

@@ -1,4 +1,4 @@
-"""What all photos of a room say, as the stages of one photo that would otherwise find it."""
+"""What is known already, as the stages that would otherwise find it: by other photos of the room, or by the truth."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ class GivenRoom:
 
 @dataclass(frozen=True)
 class AsObserved:
-    """No layout: that runs once, on the whole room."""
+    """No layout: the scene as the photo shows it."""
 
     def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
         """The scene as it is."""
