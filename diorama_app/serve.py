@@ -46,6 +46,8 @@ class Running:
     """Where to open it, token included."""
     stopped: threading.Event
     """Set when it has been stopped."""
+    loading: threading.Thread
+    """Loads in the background what the first build needs."""
 
     @property
     def editor(self) -> Editor:
@@ -63,10 +65,14 @@ class Running:
         return int(self.server.get_port())
 
     def stop(self) -> None:
-        """Save, end jobs, close the port."""
+        """Save, end jobs, close the port; wait for a library that is being loaded.
+
+        An interpreter that ends while another thread loads native code aborts.
+        """
         self.stopped.set()
         self.workspace.close()
         stop_server(self.server)
+        self.loading.join()
 
 
 def start(
@@ -126,8 +132,9 @@ def start(
         stop_server(server)
         raise
     stopped = threading.Event()
-    threading.Thread(target=warm_up, args=(stopped,), daemon=True, name="warm up").start()
-    return Running(server, workspace, page_address(host, server.get_port(), token), stopped)
+    loading = threading.Thread(target=warm_up, args=(stopped,), daemon=True, name="warm up")
+    loading.start()
+    return Running(server, workspace, page_address(host, server.get_port(), token), stopped, loading)
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,8 @@ def warm_up(stopped: threading.Event) -> None:
     if stopped.wait(WARM_UP_AFTER_S):
         return
     load_open3d()
+    if stopped.is_set():
+        return
     import diorama_core.project.build
     import diorama_core.text.pictures  # noqa: F401  # loading it is the whole work
 

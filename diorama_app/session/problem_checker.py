@@ -125,6 +125,8 @@ class Checker:
         with self._condition:
             self._stopping = True
             self._condition.notify_all()
+        if self._thread is not None:
+            self._thread.join(timeout=5.0)
 
     def _work(self) -> None:
         last: Problems = {}

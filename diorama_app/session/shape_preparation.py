@@ -21,6 +21,7 @@ class Preparer:
         self._asked: set[str] = set()
         self._ready: set[str] = set()
         self._thread: threading.Thread | None = None
+        self._stopping = False
 
     def want(self, shape_ids: Iterable[str]) -> None:
         """Prepare these shapes soon."""
@@ -37,13 +38,16 @@ class Preparer:
         return self._ready.issuperset(shape_ids)
 
     def stop(self) -> None:
-        """End the thread."""
+        """End the thread, after the shape that it prepares at this moment."""
+        self._stopping = True
         self._queue.put(None)
+        if self._thread is not None:
+            self._thread.join(timeout=5.0)
 
     def _work(self) -> None:
         from diorama_core.layout.problem.parts import parts_of_shape
 
-        while (shape_id := self._queue.get()) is not None:
+        while (shape_id := self._queue.get()) is not None and not self._stopping:
             try:
                 parts_of_shape(self._library, self._library.shape(shape_id))
             except Exception:  # a gesture will find out; the thread goes on with the next

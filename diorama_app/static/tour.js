@@ -40,6 +40,7 @@
     tour?.remove();
     tour = null;
     store(localStorage, SEEN, "seen");
+    store(sessionStorage, WANTED, null);
   };
   const place = () => {
     const hole = tour.querySelector(".hole"), card = tour.querySelector(".card"), on = STEPS[at][2]();
@@ -99,7 +100,7 @@
     const from = read(sessionStorage, WANTED);
     calm = !tour && ready && from ? calm + 1 : 0;
     if (calm < (from === location.search ? OPENS_WITHIN : 4)) return;
-    store(sessionStorage, WANTED, null);
-    if (!read(localStorage, SEEN)) window.__dioTour();
+    if (read(localStorage, SEEN)) store(sessionStorage, WANTED, null);
+    else window.__dioTour(); // it stays wanted until it ends: should the page load again, it comes again
   }, 300);
 })();

@@ -10,8 +10,13 @@ from pathlib import Path
 
 import pytest
 
+from diorama_app.projects.example import EXAMPLE
 from diorama_app.session import preload
+from diorama_core.library.boards import without_boards
+from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.ingest import known_shapes
+from diorama_core.project.storage import Project
+from tests.app.small_room import make_project
 
 NEVER_AT_START = (
     "torch",
@@ -49,6 +54,9 @@ main(["--help"])
 
 
 def test_the_port_opens_before_the_editor_loads_and_the_editor_without_the_pipeline(tmp_path: Path) -> None:
+    library = built_in_library()
+    for item in Project.open(EXAMPLE / "project").load_scene().objects:
+        library.shape(without_boards(item.shape_id))  # as an installation prepares all
     code = f"""
 import os, socket, sys
 from pathlib import Path
@@ -117,3 +125,26 @@ def test_nothing_is_learnt_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(preload, "LEARN", "raise SystemExit('learnt again')")
     monkeypatch.setattr(subprocess, "Popen", None)
     preload.learn_shapes(threading.Event())
+
+
+@pytest.mark.slow
+def test_the_program_ends_well_while_it_still_loads(tmp_path: Path) -> None:
+    project = make_project(tmp_path / "projects" / "demo")
+    script = """
+import sys
+from pathlib import Path
+from diorama_app.projects.example import EXAMPLE
+from diorama_app.session import preload
+from diorama_core.library.boards import without_boards
+from diorama_core.library.catalogue import built_in_library
+from diorama_app.serve import start
+from diorama_core.project.storage import Project
+from tests.app.small_room import PlainLibrary
+preload.WARM_UP_AFTER_S = 0.0
+running = start(project=Path(sys.argv[1]), projects_dir=Path(sys.argv[1]).parent, library=PlainLibrary())
+running.stop()
+"""
+    command = [sys.executable, "-c", script, str(project.folder)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "Memory Statistics" not in done.stdout, "Open3D was torn down while it was being loaded"
