@@ -69,22 +69,29 @@ def _with_ceiling(scene: Scene) -> Scene:
 
 
 def _given_way(scene: Scene, wall_id: str, standing: list[SceneObject]) -> Scene:
-    """The wall behind everything whose middle is in front of it; objects and what is fastened to it stay."""
+    """The wall at the backs of what hangs on it, behind everything whose middle is in front of it; objects stay."""
     wall = scene.plane(wall_id)
-    deepest = min((_behind(o, wall) for o in standing), default=0.0)
-    if deepest >= 0.0:
+    # Of what was seen, something hangs on the wall: it says where the wall is, within the room that it leaves.
+    backs = [float((o.corners_world @ wall.normal).min()) - wall.offset for o in _hanging(scene, wall_id)]
+    inward = float(np.median(backs)) if backs else 0.0
+    deepest = min((_behind(o, wall, inward) for o in standing), default=inward)
+    if inward == 0.0 and deepest == inward:
         return scene
     try:
-        moved = move_plane(scene, wall_id, _MARGIN_M - deepest)
+        moved = move_plane(scene, wall_id, _MARGIN_M - deepest if deepest < inward else -inward)
     except EditRefused:
         return scene
     return replace(moved, objects=scene.objects)
 
 
+def _hanging(scene: Scene, wall_id: str) -> list[SceneObject]:
+    return [scene.object(s.child) for s in scene.supports if s.parent == wall_id and s.relation == "mounted on"]
+
+
 def _drawn_out(scene: Scene, wall_id: str) -> Scene:
     """The wall long enough for what hangs on it: an end is known only where it meets another wall that was seen."""
     wall = scene.plane(wall_id)
-    hanging = [scene.object(s.child) for s in scene.supports if s.parent == wall_id and s.relation == "mounted on"]
+    hanging = _hanging(scene, wall_id)
     if not hanging:
         return scene
     level = np.cross([0.0, 0.0, 1.0], wall.normal)
@@ -111,13 +118,15 @@ def _meets_a_wall(scene: Scene, wall: Plane, corners: Float[np.ndarray, "k 3"]) 
     )
 
 
-def _behind(item: SceneObject, wall: Plane) -> float:
-    """Height of an object's hindmost corner before a wall; 0 for objects beside it or behind it."""
+def _behind(item: SceneObject, wall: Plane, inward_m: float = 0.0) -> float:
+    """Height of an object's hindmost corner before a wall, where that is less than the height at which it is wanted;
+    that height for other objects, and for those beside the wall or behind it.
+    """
     along = np.cross([0.0, 0.0, 1.0], wall.normal)
     spread, reach = wall.polygon @ along, float(item.pose.position @ along)
     if not spread.min() < reach < spread.max() or float(item.pose.position @ wall.normal) < wall.offset:
-        return 0.0
-    return min(float((item.corners_world @ wall.normal).min()) - wall.offset, 0.0)
+        return inward_m
+    return min(float((item.corners_world @ wall.normal).min()) - wall.offset, inward_m)
 
 
 def _footprint(scene: Scene, item: SceneObject) -> Float[np.ndarray, "k 2"]:

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
-from diorama_core.layout.holding_shapes import MIN_SCORE, candidate_of, of_one_shape, reshaped
+from diorama_core.layout.holding_shapes import candidate_of, cost_of_shape, loads_of, of_one_shape, reshaped
+from diorama_core.layout.noise import ObservationNoise
 from diorama_core.layout.problem.problem import build_problem
 from diorama_core.layout.report import part_overlaps
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.scene.types import Scene, SceneObject
+from diorama_core.scene.types import Candidate, Scene, SceneObject
 
 CLEAR_M = 0.02
 """Overlaps that go less deep are left to moves."""
@@ -25,21 +24,23 @@ MAX_OVERLAP_COST = 6.0
 """Most that one overlap says against a shape: the neighbour may be wrong instead."""
 
 
-def clear_shapes(scene: Scene, library: ShapeLibrary) -> tuple[Scene, tuple[str, ...]]:
+def clear_shapes(scene: Scene, library: ShapeLibrary, noise: ObservationNoise) -> tuple[Scene, tuple[str, ...]]:
     """The scene with objects in the retrieved shapes that agree best with picture and neighbours, and what was changed.
 
-    Costs are negative logarithms of likelihoods: of the retrieval's score, and of each overlap's depth. Objects of one
-    shape stay of one shape; what is locked stays as it is. The deepest overlaps are looked at first.
+    Costs are negative logarithms of likelihoods: of the retrieval's score, of each load's gap, and of each overlap's
+    depth. Objects of one shape stay of one shape; what is locked stays as it is. The deepest overlaps are looked at
+    first.
 
     Args:
         scene: as measured, before any layout, with its support graph.
         library: where shapes come from.
+        noise: of the observed positions.
     """
     reasons: list[str] = []
     looked_at: set[tuple[str, str]] = set()
     while pairs := [pair for pair in _deepest_first(scene, library) if pair not in looked_at]:
         looked_at.add(pairs[0])
-        _, changed = min((_better(scene, library, name) for name in pairs[0]), key=lambda option: option[0])
+        _, changed = min((_better(scene, library, noise, name) for name in pairs[0]), key=lambda option: option[0])
         for item in scene.objects:
             if changed.object(item.id).shape_id != item.shape_id:
                 reasons.append(f"shape changed: {item.label} {_why(scene, item, pairs[0])}")
@@ -65,26 +66,30 @@ def _overlaps(scene: Scene, library: ShapeLibrary) -> dict[tuple[str, str], floa
     return {(problem.ids[a], problem.ids[b]): depth for (a, b), depth in found.items() if depth > CLEAR_M}
 
 
-def _better(scene: Scene, library: ShapeLibrary, name: str) -> tuple[float, Scene]:
+def _better(scene: Scene, library: ShapeLibrary, noise: ObservationNoise, name: str) -> tuple[float, Scene]:
     """The gain (negative, in logarithms) and the scene of the best shape for an object and those of its shape."""
     members = next(group for group in of_one_shape(scene) if any(o.id == name for o in group))
     if any(o.locked for o in members):
         return 0.0, scene
     common = set.intersection(*({c.shape_id for c in o.candidates} for o in members))
-    now = _cost(scene, library, members)
+    now = _cost(scene, library, noise, members)
     options = [(0.0, "", scene)]
     for shape in sorted(common - {members[0].shape_id}):
         other = scene
         for o in members:
             other = reshaped(other, o, candidate_of(o, shape))
-        options.append((_cost(other, library, [other.object(o.id) for o in members]) - now, shape, other))
+        options.append((_cost(other, library, noise, [other.object(o.id) for o in members]) - now, shape, other))
     cost, _, best = min(options, key=lambda option: option[:2])
     return cost, best
 
 
-def _cost(scene: Scene, library: ShapeLibrary, members: Sequence[SceneObject]) -> float:
+def _cost(scene: Scene, library: ShapeLibrary, noise: ObservationNoise, members: Sequence[SceneObject]) -> float:
     names = {o.id for o in members}
     depths = [depth for pair, depth in _overlaps(scene, library).items() if names & set(pair)]
-    scores = [next((c.score for c in o.candidates if c.shape_id == o.shape_id), 1.0) for o in members]
     overlap = sum(min(0.5 * (depth / OVERLAP_M) ** 2, MAX_OVERLAP_COST) for depth in depths)
-    return overlap - float(np.log(np.maximum(scores, MIN_SCORE)).sum())
+    return overlap + sum(cost_of_shape(o, _as_it_is(o), loads_of(scene, o.id), library, scene, noise) for o in members)
+
+
+def _as_it_is(item: SceneObject) -> Candidate:
+    score = next((c.score for c in item.candidates if c.shape_id == item.shape_id), 1.0)
+    return Candidate(item.shape_id, item.shape_size_m, score, item.pose)

@@ -63,16 +63,27 @@ def fitted_boards(scene: Scene, library: ShapeLibrary, *, reasoned: bool) -> tup
     """
     reasons = []
     for item in scene.objects:
-        shape = library.shape(item.shape_id)
-        if item.locked or not is_adjustable(item, shape):
-            continue
-        feet = _feet(scene, item, scene.camera if reasoned else None)
-        wanted = _adjusted(shape, feet, float(item.pose.scale[2]))
+        wanted = None if item.locked else fitted_shape(scene, item, library, reasoned=reasoned)
         if wanted is not None:
             objects = tuple(replace(o, shape_id=wanted) if o.id == item.id else o for o in scene.objects)
             scene = replace(scene, objects=objects)
             reasons.append(f"shape changed: the boards of {item.label} are where its loads were seen")
     return scene, tuple(reasons)
+
+
+def fitted_shape(scene: Scene, item: SceneObject, library: ShapeLibrary, *, reasoned: bool) -> str | None:
+    """The shape of an object with its boards where its loads were seen; None where it is as good as it is.
+
+    Args:
+        scene: as observed, before any layout, with its support graph.
+        item: one of its objects, maybe in another shape.
+        library: where shapes come from.
+        reasoned: whether distances were reasoned from a photo alone.
+    """
+    shape = library.shape(item.shape_id)
+    if not is_adjustable(item, shape):
+        return None
+    return _adjusted(shape, _feet(scene, item, scene.camera if reasoned else None), float(item.pose.scale[2]))
 
 
 def is_adjustable(item: SceneObject, shape: Shape) -> bool:

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.layout.fitted_boards import is_adjustable
+from diorama_core.layout.fitted_boards import fitted_shape
 from diorama_core.layout.noise import ObservationNoise
 from diorama_core.layout.problem.supports import is_soft, misfit, object_surfaces
 from diorama_core.library.record import ShapeLibrary
@@ -39,14 +39,12 @@ def holding_shapes(scene: Scene, library: ShapeLibrary, noise: ObservationNoise)
     """
     reasons = []
     for members in of_one_shape(scene):
-        if any(is_adjustable(o, library.shape(o.shape_id)) for o in members):  # their boards follow the loads
-            continue
-        loads = {o.id: _loads(scene, o.id) for o in members}
+        loads = {o.id: loads_of(scene, o.id) for o in members}
         if not any(loads.values()) or any(o.locked for o in members) or _agree(members, loads, library, scene, noise):
             continue
         common = set.intersection(*({c.shape_id for c in o.candidates} for o in members))
         options = [
-            (sum(_cost(o, candidate_of(o, shape), loads[o.id], library, scene, noise) for o in members), shape)
+            (sum(cost_of_shape(o, candidate_of(o, shape), loads[o.id], library, scene, noise) for o in members), shape)
             for shape in sorted(common | {members[0].shape_id})
             if all(any(c.shape_id == shape for c in o.candidates) for o in members)
         ]
@@ -75,7 +73,7 @@ def of_one_shape(scene: Scene) -> list[list[SceneObject]]:
     return list(groups.values())
 
 
-def _loads(scene: Scene, object_id: str) -> list[SceneObject]:
+def loads_of(scene: Scene, object_id: str) -> list[SceneObject]:
     """What is placed on an object and keeps its form there."""
     edges = [s for s in scene.supports if s.parent == object_id and s.relation == "placed on"]
     return [item for s in edges if not is_soft(item := scene.object(s.child))]
@@ -86,16 +84,22 @@ def candidate_of(item: SceneObject, shape_id: str) -> Candidate:
     return next(c for c in item.candidates if c.shape_id == shape_id)
 
 
-def _gap_m(item: SceneObject, candidate: Candidate, load: SceneObject, library: ShapeLibrary) -> float:
-    shape = library.shape(candidate.shape_id)
-    return min(misfit(load, s.in_world(candidate.pose)) for s in object_surfaces(shape, item))
+def _gaps_m(
+    item: SceneObject, candidate: Candidate, loads: Sequence[SceneObject], library: ShapeLibrary, scene: Scene
+) -> list[float]:
+    """How badly each load agrees with standing on an object in another shape, its boards set for them."""
+    size_m, pose = candidate.shape_size_m, candidate.pose
+    other = replace(item, shape_id=candidate.shape_id, shape_size_m=size_m, pose=pose)
+    fitted = fitted_shape(scene, other, library, reasoned=False)
+    surfaces = [s.in_world(pose) for s in object_surfaces(library.shape(fitted or candidate.shape_id), other)]
+    return [min(misfit(load, surface) for surface in surfaces) for load in loads]
 
 
 def _sigma_m(scene: Scene, load: SceneObject, noise: ObservationNoise) -> float:
     return float(np.hypot(0.5 * noise.tolerance_m(scene.camera, load.pose.position, UP_WORLD), BOARD_M))
 
 
-def _cost(
+def cost_of_shape(
     item: SceneObject,
     candidate: Candidate,
     loads: Sequence[SceneObject],
@@ -103,8 +107,10 @@ def _cost(
     scene: Scene,
     noise: ObservationNoise,
 ) -> float:
-    gaps = [_gap_m(item, candidate, load, library) / _sigma_m(scene, load, noise) for load in loads]
-    return sum(min(0.5 * g * g, MAX_LOAD_COST) for g in gaps) - float(np.log(max(candidate.score, MIN_SCORE)))
+    """What a shape's score and the gaps of its loads say against it: a negative logarithm."""
+    gaps = _gaps_m(item, candidate, loads, library, scene) if loads else []
+    deviations = [gap / _sigma_m(scene, load, noise) for gap, load in zip(gaps, loads, strict=True)]
+    return sum(min(0.5 * d * d, MAX_LOAD_COST) for d in deviations) - float(np.log(max(candidate.score, MIN_SCORE)))
 
 
 def _agree(
@@ -117,9 +123,9 @@ def _agree(
     """Whether every load is within the noise of a place on its supporter as it is."""
     for item in members:
         current = Candidate(item.shape_id, item.shape_size_m, 1.0, item.pose)
-        for load in loads[item.id]:
-            if _gap_m(item, current, load, library) > 2.0 * _sigma_m(scene, load, noise):
-                return False
+        gaps = _gaps_m(item, current, loads[item.id], library, scene) if loads[item.id] else []
+        if any(gap > 2.0 * _sigma_m(scene, load, noise) for gap, load in zip(gaps, loads[item.id], strict=True)):
+            return False
     return True
 
 

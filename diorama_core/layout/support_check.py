@@ -48,13 +48,16 @@ UNUSUAL_M = 0.3
 """Objects that people put on surfaces hang on a wall only where nothing is below them: this is added to their gap."""
 
 
-def checked_supports(scene: Scene, library: ShapeLibrary, noise: ObservationNoise) -> tuple[Scene, tuple[str, ...]]:
+def checked_supports(
+    scene: Scene, library: ShapeLibrary, noise: ObservationNoise, *, shapes_clear: bool = True
+) -> tuple[Scene, tuple[str, ...]]:
     """The scene with the edges that agree with the observed poses, and what was changed.
 
     Args:
         scene: as observed, before any layout.
         library: where shapes come from.
         noise: of the observed positions.
+        shapes_clear: whether shapes leave their neighbours room: what is in furniture then rests on it.
     """
     reasons = []
     for item in scene.objects:
@@ -86,13 +89,13 @@ def checked_supports(scene: Scene, library: ShapeLibrary, noise: ObservationNois
             )
             scene = edits.attach(_along_sight(scene, item, share), Support(item.id, parent))
             continue
-        better = _better(scene, library, item, edge, noise)
+        inside = _inside_m(scene, library, item, edge) if shapes_clear else 0.0
+        better = _better(scene, library, item, edge, noise, inside)
         if better is None and floor is not None and _belongs_on_floor(scene, library, item, edge, noise):
             better = Support(item.id, floor.id)
         if better is not None:
             gap = _gap(scene, library, item, edge)
-            inside = _inside_m(scene, library, item, edge) > 0.0
-            where = "in something that is on" if inside else f"{100 * gap:.0f} cm from"
+            where = "in something that is on" if inside > 0.0 else f"{100 * gap:.0f} cm from"
             reasons.append(
                 f"support changed: {item.label} is {where} {label_of(scene, edge.parent)} and rests on "
                 f"{label_of(scene, better.parent)}"
@@ -198,13 +201,12 @@ def _is_set_down(item: SceneObject) -> bool:
 
 
 def _better(
-    scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support, noise: ObservationNoise
+    scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support, noise: ObservationNoise, inside: float
 ) -> Support | None:
     """The supporter that is there, where the measured gap contradicts the edge; None where it may stay.
 
     What lies on the same supporter right under the object is there, too: a tray under a bottle.
     """
-    inside = _inside_m(scene, library, item, edge)
     gap = _gap(scene, library, item, edge) + inside
     unusual = _is_unusual(scene, item, edge)
     contradicted = gap > _tolerance(scene, item, edge, noise) or unusual
@@ -216,7 +218,9 @@ def _better(
         beneath = scene.support_of(other.parent)
         between = beneath is not None and beneath.parent == edge.parent and _is_thin(scene, other.parent, limit)
         between = between and edge.relation == "placed on" and _carries(scene, other.parent)
-        most = min(CLEARLY * gap, max(limit, UNUSUAL_M * unusual)) if contradicted else limit * between
+        # Against a measured gap that is many times as large, a foot that is hidden does not count.
+        reached = np.inf if noise.measured else max(limit, UNUSUAL_M * unusual)
+        most = min(CLEARLY * gap, reached) if contradicted else limit * between
         if cost <= max(most, inside):
             options.append((cost, other.parent, other))
     return min(options, key=lambda option: option[:2])[2] if options else None

@@ -125,12 +125,13 @@ def build_scene(
         textures = painted.result()
     noise = REASONED if inputs.depth_m is None else MEASURED
     shaped = _observed({**found, "architecture": room}, balanced, library)
-    reshaped: tuple[str, ...] = ()
+    changed: tuple[str, ...] = ()
     if inputs.depth_m is not None:  # heights reasoned from a photo alone do not tell boards from one another
         shaped, holding = holding_shapes(shaped, library, noise)
-        shaped, clear = clear_shapes(shaped, library)
-        reshaped = holding + clear
-    checked, changed = checked_supports(shaped, library, noise)
+        shaped, contradicted = checked_supports(shaped, library, noise, shapes_clear=False)
+        shaped, clear = clear_shapes(shaped, library, noise)
+        changed = holding + contradicted + clear
+    checked, corrected = checked_supports(shaped, library, noise)
     fitted, moved = fitted_boards(checked, library, reasoned=inputs.depth_m is None)
     observed = _textured(containing_room(fitted), textures)
     appearance = photo_appearance(balanced.photo.rgb, found["furniture_objects"], observed, library, illuminant.rgb)
@@ -160,7 +161,7 @@ def build_scene(
         inputs=inputs,
         runs=tuple(runner.runs),
         stages=stages,
-        notes=(*_notes(found, reshaped + changed + moved, report), *runner.lost),
+        notes=(*_notes(found, changed + corrected + moved, report), *runner.lost),
     )
 
 

@@ -5,15 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Bool
+from jaxtyping import Bool, Float
 
 from diorama_core.artefacts import Cuboid, DepthMap
 from diorama_core.geometry.silhouette import PoseBatch
 from diorama_core.library.record import SymmetryFold
 from diorama_core.pose.depth_fit import FEWEST_RAYS, NOISE_REACH, SURE_CONTACT_M, Contact, DepthFit, Outline, SeenPoints
+from diorama_core.pose.facing import WallSamples
 from diorama_core.pose.hypotheses import Anchor, Hypotheses
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.mask_observations import Evidence
+from diorama_core.pose.wall_bounds import NO_BOUNDS, WallBounds
 from diorama_core.scene.types import Camera, yaw_rotation
 
 _TURNS = 24
@@ -33,6 +35,7 @@ class MeasuredObject:
     contact: Contact
     points: SeenPoints
     outline: Outline | None
+    bounds: WallBounds
 
     @classmethod
     def of(
@@ -41,6 +44,7 @@ class MeasuredObject:
         observations: Evidence,
         cuboid: Cuboid,
         anchor: Anchor,
+        walls: WallSamples,
         floor_foot_m: float | None = None,
     ) -> MeasuredObject | None:
         """What can be used of the depth under a mask; None where hardly any was measured.
@@ -50,6 +54,7 @@ class MeasuredObject:
             observations: what is known of it.
             cuboid: its box.
             anchor: the face of the box that touches what holds it.
+            walls: where walls were measured.
             floor_foot_m: for objects on the floor, whose height is known even where they hide it: the height at which
                 their lowest pixels were measured.
         """
@@ -61,13 +66,21 @@ class MeasuredObject:
         if len(points.depth_m) < FEWEST_RAYS:
             return None
         outline = Outline.of(observations.seen, mask)
-        return cls(observations, cuboid, _contact(anchor, floor_foot_m, points, outline), points, outline)
+        contact = _contact(anchor, floor_foot_m, points, outline)
+        # What hangs on a wall may be set into it.
+        bounds = WallBounds.of(walls, points) if anchor.axis_world[2] > 0.5 else NO_BOUNDS
+        return cls(observations, cuboid, contact, points, outline, bounds)
 
     def fit(self, limits: SizeLimits) -> DepthFit:
         """The fit of a shape with these limits."""
         return DepthFit(
             self.observations.camera, self.observations.seen, self.points, self.outline, self.contact, limits
         )
+
+    def log_likelihood(self, poses: PoseBatch, limits: SizeLimits) -> Float[np.ndarray, " p"]:
+        """What the places where it stands and where it cannot be say of poses."""
+        size_m = limits.shape_size_m
+        return self.contact.log_likelihood(poses, size_m) + self.bounds.log_likelihood(poses, size_m)
 
     def hypotheses(self, symmetry: SymmetryFold, limits: SizeLimits) -> Hypotheses:
         """Turns all around, each set against the measured points; where a part may be hidden, also from behind."""

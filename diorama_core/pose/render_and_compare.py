@@ -226,7 +226,7 @@ class RenderAndCompare:
             coarse, fine = (Evidence(geometry.camera, *of) for of in zip(windows[:2], [facing] * 2, surfaces[:2]))
             on_floor = parent_of.get(item.id) == "floor"
             foot_m = foot_height_m(depth, item.mask, geometry.camera) if on_floor else None
-            measured = MeasuredObject.of(item.mask, fine, cuboids[i], anchor, foot_m)
+            measured = MeasuredObject.of(item.mask, fine, cuboids[i], anchor, walls, foot_m)
             close = None
             if measured is not None and surfaces[2] is not None:
                 close = AppearanceLikelihood.of(inputs.photo.rgb, item.mask, windows[2], surfaces[2], cuboids[i].size_m)
@@ -268,6 +268,8 @@ class RenderAndCompare:
             tried = tried.and_also(task.measured.hypotheses(shape.symmetry, limits))
         errors = task.coarse.errors(appearance.caster, tried.poses)
         scores = task.coarse.log_scores(errors, tried.poses, tried.off_axis_rad, tried.misfit, limits)
+        if task.measured is not None:
+            scores = scores + task.measured.bounds.log_likelihood(tried.poses, limits.shape_size_m)
         return _Tried(shape, liked, appearance, limits, tried, scores)
 
     def _pose_by_outline(self, task: _Task, tried: _Tried) -> _Posed:
@@ -306,7 +308,7 @@ class RenderAndCompare:
         off_axis, misfit = np.tile(start.off_axis_rad, 2), np.tile(start.misfit, 2)
         scores = task.fine.log_scores(errors, both, off_axis, misfit, tried.limits)
         if task.measured is not None:
-            scores = scores + task.measured.contact.log_likelihood(both, tried.limits.shape_size_m)
+            scores = scores + task.measured.log_likelihood(both, tried.limits)
         chosen = int(np.argmax(scores))
         return both[chosen : chosen + 1], float(errors[chosen]), float(scores[chosen])
 
@@ -320,7 +322,7 @@ class RenderAndCompare:
 def _rank(task: _Task, measured: MeasuredObject, tried: _Tried, poses: PoseBatch, error: float) -> float:
     """What retrieval, the picture and what holds the object say about a posed shape, where depth was measured."""
     similarity = task.fine.log_likelihood(error, poses.scale[0], tried.limits)
-    stands = float(measured.contact.log_likelihood(poses, tried.limits.shape_size_m)[0])
+    stands = float(measured.log_likelihood(poses, tried.limits)[0])
     return _RETRIEVAL_WITH_DEPTH * tried.liked + similarity + stands
 
 

@@ -109,3 +109,23 @@ def test_a_wall_ends_at_the_corner_with_another_that_was_seen() -> None:
     planes = (*sliver().planes, Plane("wall_2", "wall", corner))
     scene = containing_room(room.scene(architecture=Architecture(planes), camera=looking_north(5.0)))
     assert scene.plane("wall_1").polygon[:, 0].max() == 1.0
+
+
+@pytest.mark.parametrize("confidence", [0.15, 0.95])
+def test_an_assumed_wall_is_where_the_back_of_what_hangs_on_it_was_seen(confidence: float) -> None:
+    room = Room(LIBRARY)
+    mirror = room.put("box_24", (0.0, 2.15, 1.5), on="wall_1", relation="mounted on")
+    scene = room.scene(architecture=sliver(confidence), camera=looking_north(5.0))
+    back = float(scene.object(mirror).corners_world[:, 1].max())
+    found = containing_room(scene)
+    assert found.plane("wall_1").offset == pytest.approx(-back if confidence < 0.5 else -2.5)
+    assert found.object(mirror) == scene.object(mirror)
+
+
+def test_what_stands_behind_a_hanging_thing_decides_where_an_assumed_wall_is() -> None:
+    room = Room(LIBRARY)
+    room.put("box_24", (0.0, 2.0, 1.5), on="wall_1", relation="mounted on")
+    box = room.put("box_24", (0.5, 2.4, 0.15))
+    found = containing_room(room.scene(architecture=sliver(0.15), camera=looking_north(5.0)))
+    behind = float(found.object(box).corners_world[:, 1].max())
+    assert -found.plane("wall_1").offset == pytest.approx(behind + 0.01)

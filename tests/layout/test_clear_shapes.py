@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from diorama_core.layout.clear_shapes import clear_shapes
+from diorama_core.layout.noise import MEASURED
 from diorama_core.layout.problem.problem import build_problem
 from diorama_core.layout.report import part_overlaps
 from diorama_core.scene.types import Candidate, Pose, Scene
@@ -35,7 +36,7 @@ def overlaps(scene: Scene) -> dict[tuple[int, int], float]:
 
 def test_a_desk_takes_the_shape_that_has_room_for_what_is_below_it(room: Room) -> None:
     scene = desk_with_a_box_below(room)
-    changed, reasons = clear_shapes(scene, LIBRARY)
+    changed, reasons = clear_shapes(scene, LIBRARY, MEASURED)
     assert changed.object("desk").shape_id == OPEN
     assert overlaps(scene)
     assert not overlaps(changed)
@@ -44,12 +45,12 @@ def test_a_desk_takes_the_shape_that_has_room_for_what_is_below_it(room: Room) -
 
 def test_what_the_picture_says_plainly_outweighs_a_neighbour(room: Room) -> None:
     scene = desk_with_a_box_below(room, scores=(0.9, 0.001))
-    assert clear_shapes(scene, LIBRARY) == (scene, ())
+    assert clear_shapes(scene, LIBRARY, MEASURED) == (scene, ())
 
 
 def test_a_locked_desk_stays(room: Room) -> None:
     scene = desk_with_a_box_below(room, locked=True)
-    assert clear_shapes(scene, LIBRARY) == (scene, ())
+    assert clear_shapes(scene, LIBRARY, MEASURED) == (scene, ())
 
 
 def test_desks_of_one_shape_stay_of_one_shape(room: Room) -> None:
@@ -60,7 +61,7 @@ def test_desks_of_one_shape_stay_of_one_shape(room: Room) -> None:
         replace(c, pose=Pose(c.pose.R_world_object, c.pose.position + away, c.pose.scale)) for c in desk.candidates
     )
     twin = replace(desk, id="twin", label="twin", pose=beside[0].pose, candidates=beside)
-    changed, reasons = clear_shapes(replace(scene, objects=(*scene.objects, twin)), LIBRARY)
+    changed, reasons = clear_shapes(replace(scene, objects=(*scene.objects, twin)), LIBRARY, MEASURED)
     assert {o.shape_id for o in changed.objects if o.id != "computer"} == {OPEN}
     assert len(reasons) == 2
     assert "of one shape" in reasons[1]
@@ -69,4 +70,4 @@ def test_desks_of_one_shape_stay_of_one_shape(room: Room) -> None:
 def test_nothing_that_is_clear_changes(room: Room) -> None:
     room.put(CLOSED, (0.0, 1.0, 0.4), candidates=(candidate(CLOSED, 0.1), candidate(OPEN, 0.9)))
     scene = room.scene()
-    assert clear_shapes(scene, LIBRARY) == (scene, ())
+    assert clear_shapes(scene, LIBRARY, MEASURED) == (scene, ())

@@ -87,6 +87,23 @@ def test_what_is_under_a_table_stays_on_the_floor(room: Room) -> None:
     assert checked_supports(room.scene(camera=looking_north()), LIBRARY, MEASURED)[0].support_of(box).parent == "floor"
 
 
+def test_where_shapes_may_not_leave_room_only_a_measured_gap_counts(room: Room) -> None:
+    room.put("bookshelf_7", (0.0, 1.0, 0.6))
+    books = room.put("books_18", (0.0, 1.0, 0.12), yaw=0.2)
+    scene = room.scene(camera=looking_north())
+    assert checked_supports(scene, LIBRARY, MEASURED, shapes_clear=False) == (scene, ())
+    assert checked_supports(scene, LIBRARY, MEASURED)[0].support_of(books).parent != "floor"
+
+
+def test_a_laptop_far_above_its_chair_rests_on_the_desk_below_it_although_its_foot_is_hidden(room: Room) -> None:
+    chair = room.put("chair_4", (0.0, 0.9, 0.45))
+    desk = room.put("table_0", (0.0, 1.2, 0.37))
+    top = float(room.scene().object(desk).corners_world[:, 2].max())
+    laptop = room.put("box_24", (0.0, 1.0, top + 0.15 + 0.12), on=chair)
+    checked = checked_supports(room.scene(camera=looking_north()), LIBRARY, MEASURED)[0]
+    assert checked.support_of(laptop).parent == desk
+
+
 def test_a_chair_whose_foot_a_table_hides_is_not_on_the_table(room: Room) -> None:
     table = room.put("table_0", (0.0, 1.0, 0.37))
     chair = room.put("chair_4", (0.0, 1.5, 0.85), on=table)

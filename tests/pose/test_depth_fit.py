@@ -13,7 +13,7 @@ from diorama_core.artefacts import DepthMap
 from diorama_core.geometry.observed import observe_among
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.pose.depth_fit import DepthFit, Outline, SeenPoints
-from diorama_core.pose.facing import Facing
+from diorama_core.pose.facing import Facing, WallSamples
 from diorama_core.pose.hypotheses import anchor_of
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.mask_observations import Evidence
@@ -21,6 +21,8 @@ from diorama_core.pose.measured import MeasuredObject, foot_height_m
 from diorama_core.pose.surface import measured_surface, noise_of
 from diorama_core.scene.types import yaw_rotation
 from tests.pose.rooms import LIBRARY, Room, camera_at, standing, yaw_error_deg
+
+NO_WALLS = WallSamples(np.zeros((0, 2)), np.zeros((0, 2)))
 
 
 def measured(
@@ -34,7 +36,7 @@ def measured(
     surface = measured_surface(depth, seen, item.mask, noise_of(depth))
     evidence = Evidence(room.camera, seen, Facing(()), surface)
     anchor = anchor_of(cuboid, False, room.camera.position[:2] - cuboid.centre[:2])
-    found = MeasuredObject.of(item.mask, evidence, cuboid, anchor, floor_foot_m)
+    found = MeasuredObject.of(item.mask, evidence, cuboid, anchor, NO_WALLS, floor_foot_m)
     assert found is not None
     return found
 
@@ -141,7 +143,7 @@ def test_hardly_any_depth_is_no_measurement() -> None:
     mask = np.zeros_like(room.objects[0].mask)
     assert whole.observations.surface is not None
     blind = replace(whole.observations, surface=replace(whole.observations.surface, weight=np.zeros(56 * 56)))
-    assert MeasuredObject.of(mask, blind, whole.cuboid, whole.contact.anchor) is None
+    assert MeasuredObject.of(mask, blind, whole.cuboid, whole.contact.anchor, NO_WALLS) is None
 
 
 def test_the_foot_of_a_table_is_where_its_thin_legs_end() -> None:

@@ -1,7 +1,9 @@
-"""Objects whose hidden side reaches into a neighbour: how far they go on behind it is a guess, so they end before it.
+"""Objects whose hidden side reaches into a neighbour or beyond their wall: how far they go on there is a guess, so they
+end before it.
 
 A bookcase whose left end is behind a wardrobe was seen up to the wardrobe. Where its shape goes on into the wardrobe, a
-narrower bookcase agrees with the picture as well, and nothing has to move.
+narrower bookcase agrees with the picture as well, and nothing has to move. So it is with a window whose upper end is
+above the picture's border, and whose shape goes on through the ceiling.
 """
 
 from __future__ import annotations
@@ -30,6 +32,8 @@ LEAST_OVERLAP_M = 0.01
 """Overlaps that go less deep are left to moves."""
 LEAST_SEEN = 0.03
 """Share of its box in the photo by which a shortened object may fall short of it."""
+UPRIGHT = 0.3
+"""A normal whose z is smaller is that of a wall; a direction that is more along it goes through the wall."""
 AROUND_LOAD_M = 0.02
 """Left beside what stands on an object."""
 
@@ -61,15 +65,44 @@ def ending_before_neighbours(problem: Problem, observations: PhotoObservations) 
     return replace(problem, scale=scale, p=p)
 
 
-def _is_hidden(observations: PhotoObservations, i: int, centre: np.ndarray, face: np.ndarray) -> bool:
-    """Whether a face of an object looks to a side of the picture on which something hides the object's end."""
+def ending_on_walls(problem: Problem, observations: PhotoObservations) -> Problem:
+    """The problem with objects that hang on walls shortened where a side that was not seen reaches beyond the wall.
+
+    The opposite side stays.
+    """
+    scale, p = problem.scale.copy(), problem.p.copy()
+    for i in map(int, np.flatnonzero(problem.free & observations.hidden.any(axis=1))):
+        wall = problem.surface[i]
+        if problem.on_plane[i] is None or wall is None or abs(float(wall.normal[2])) > UPRIGHT:
+            continue
+        for axis in range(3):
+            for sign in (-1.0, 1.0):
+                outward = sign * problem.R[i][:, axis]
+                extent = float(problem.shape_size[i, axis] * scale[i, axis])
+                face = p[i] + 0.5 * extent * outward
+                if abs(float(outward @ wall.normal)) > UPRIGHT or not _is_hidden(observations, i, p[i], face, (0, 1)):
+                    continue
+                beyond = float(face @ outward) - float((wall.polygon @ outward).max())
+                cut = min(beyond, (1.0 - LEAST_SHARE) * extent)
+                if cut > LEAST_OVERLAP_M:
+                    scale[i, axis] *= 1.0 - cut / extent
+                    p[i] = p[i] - 0.5 * cut * outward
+    return replace(problem, scale=scale, p=p)
+
+
+def _is_hidden(
+    observations: PhotoObservations, i: int, centre: np.ndarray, face: np.ndarray, sides: tuple[int, ...] = (0,)
+) -> bool:
+    """Whether a face of an object looks to a side of the picture on which something hides the object's end.
+
+    Sides are those across the picture (0) and up and down (1).
+    """
     ends = np.stack([centre, face])
     if observations.camera.to_camera(ends)[:, 2].min() <= 0.0:
         return False
     step = np.diff(observations.camera.project(ends), axis=0)[0]
-    if abs(step[0]) <= abs(step[1]):
-        return False
-    return bool(observations.hidden[i, 0 if step[0] < 0 else 2])
+    side = 0 if abs(step[0]) > abs(step[1]) else 1
+    return side in sides and bool(observations.hidden[i, side if step[side] < 0 else side + 2])
 
 
 def _covers_box(

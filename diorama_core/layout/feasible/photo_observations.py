@@ -393,7 +393,7 @@ def _pictured(
     shape says where it is.
     """
     boxes = problem.box_px
-    agrees = _agrees(posed, boxes)
+    agrees = _agrees(_bounds_in_picture_px(problem, camera), boxes)
     hidden = _hidden_sides(problem, camera) & agrees[:, None]
     extent = np.tile(boxes[:, 2:] - boxes[:, :2], (1, 2))
     contradicted = np.abs(posed - boxes) > DIFFERENT * extent + BORDER_PX

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import LayoutReport, PhotoDisagreement
-from diorama_core.layout.feasible.hidden_extents import ending_before_neighbours
+from diorama_core.layout.feasible.hidden_extents import ending_before_neighbours, ending_on_walls
 from diorama_core.layout.feasible.photo_observations import PhotoObservations, disagreements, photo_observations
 from diorama_core.layout.feasible.relocate import relocate
 from diorama_core.layout.feasible.resize import fitted_sizes
@@ -82,7 +82,7 @@ class FeasibleRecipe:
         observations = self._observations(problem, scene.camera)
         wanted = problem
         if observations is not None and not self.sizes_reasoned:  # reasoned distances overlap for other reasons
-            wanted = ending_before_neighbours(problem, observations)
+            wanted = ending_on_walls(ending_before_neighbours(problem, observations), observations)
             observations = self._observations(wanted, scene.camera)
         best: tuple[Problem, Program, Separation] | None = None
         for _ in range(self.attempts):

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.layout.feasible.hidden_extents import LEAST_SHARE, ending_before_neighbours
+from diorama_core.layout.feasible.hidden_extents import LEAST_SHARE, ending_before_neighbours, ending_on_walls
 from diorama_core.layout.feasible.photo_observations import photo_observations
 from diorama_core.layout.problem.problem import Problem, build_problem
 from diorama_core.layout.report import part_overlaps
@@ -62,3 +62,32 @@ def test_no_object_loses_more_than_half(room: Room) -> None:
 def test_an_end_goes_on_under_its_load(room: Room) -> None:
     before, after = problem_of(room, 0.3, load=True)
     np.testing.assert_array_equal(after.scale, before.scale)
+
+
+def hung(room: Room, top_m: float, *, cut: bool) -> tuple[Problem, Problem]:
+    """A box on the far wall of a room 2.6 m high, whose upper end may be above the picture; before and after."""
+    size = room.library.shape(BOX).size_m
+    scale = (1.0, 1.0, 1.5 / size[2])
+    at = (0.0, 2.5 - size[0] / 2, top_m - 0.75)
+    name = room.put(BOX, at, on="wall_2", relation="mounted on", yaw=-np.pi / 2, scale=scale)
+    camera = looking_north(0.5)  # sees the far wall up to 2.94 m
+    scene = room.scene(camera=camera)
+    box = outline(scene, name)
+    box[1] = max(box[1], 0.0) if cut else box[1]
+    scene = replace(scene, objects=tuple(replace(o, box_px=tuple(box)) for o in scene.objects))
+    problem = build_problem(scene, room.library)
+    return problem, ending_on_walls(problem, photo_observations(problem, camera, depth_weight=1.0, measured=True))
+
+
+def test_what_goes_on_above_the_picture_ends_at_the_ceiling_and_its_lower_end_stays(room: Room) -> None:
+    before, after = hung(room, 3.2, cut=True)
+    low, high = (p.p[0, 2] + sign * 0.5 * p.shape_size[0, 2] * p.scale[0, 2] for p, sign in ((after, -1), (after, 1)))
+    assert high == pytest.approx(2.6)
+    assert low == pytest.approx(before.p[0, 2] - 0.75)
+
+
+@pytest.mark.parametrize(("top_m", "cut"), [(2.5, True), (2.8, False)])
+def test_what_ends_below_the_ceiling_or_whose_end_was_seen_stays(room: Room, top_m: float, cut: bool) -> None:
+    before, after = hung(room, top_m, cut=cut)
+    np.testing.assert_array_equal(after.scale, before.scale)
+    np.testing.assert_array_equal(after.p, before.p)
