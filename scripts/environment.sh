@@ -41,9 +41,10 @@ find_python() {
     return 1
 }
 
-# install EXTRAS ("" or "dev,sim"): into .venv, once for each state of pyproject.toml and constraints.txt.
+# install EXTRAS ("" or "dev,sim") [PIP OPTIONS]: into .venv, once for each state of pyproject.toml and constraints.txt.
 install() {
     local extras="$1" python stamp
+    shift
     if [ ! -x .venv/bin/python ]; then
         python="$(find_python)" || exit 1
         if ! "$python" -m venv .venv >/dev/null 2>&1; then
@@ -55,7 +56,7 @@ install() {
     stamp=".venv/.installed-${extras:-core}-$(cat pyproject.toml constraints.txt | cksum | tr ' ' '-')"
     if [ ! -e "$stamp" ]; then
         say "Installing Diorama into .venv (once; a few minutes)…"
-        .venv/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt \
+        .venv/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt "$@" \
             --editable ".${extras:+[$extras]}" || { say "The installation failed; the lines above say why."; exit 1; }
         rm -f .venv/.installed-"${extras:-core}"-*
         touch "$stamp"

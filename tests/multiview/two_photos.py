@@ -38,7 +38,7 @@ class TwoPhotos:
 @cache
 def two_photos() -> TwoPhotos:
     library = built_in_library()
-    room = furnished_room(7006, "dining", library, clutter=3)
+    room = furnished_room(7006, "dining", library, clutter=1)
     camera = sample_cameras(room, library, 7006, 1, SIZE)[0]
     studio, eye, ahead = Studio(room, library), camera.position, camera.T_world_camera[:3, 2]
     yaw, target = float(np.arctan2(ahead[1], ahead[0])), eye + 2.5 * ahead

@@ -42,10 +42,10 @@ def _choose(profile: Profile, inputs: Inputs):
 
 
 def _build(
-    profile: Profile, inputs: Inputs, store: ModelStore, cache: Path | None = None
+    profile: Profile, inputs: Inputs, store: ModelStore, cache: Path | None = None, *, plane_pictures: bool = False
 ) -> tuple[Built, tuple[str, ...]]:
     def build(stages: Stages) -> Built:
-        return build_scene(inputs, box_library(), stages=stages, cache=cache)
+        return build_scene(inputs, box_library(), stages=stages, cache=cache, plane_pictures=plane_pictures)
 
     return with_usable_networks(_choose(profile, inputs), build, store=store)
 
@@ -72,7 +72,8 @@ def test_a_network_that_fails_is_left_out_and_named(
     broken = tmp_path / "broken.onnx"
     BROKEN[how](CASES[IN_STORE[network_id]], broken)
     install(store, network_id, [broken, *graphs[network_id][1:]])
-    built, left_out = _build("auto", Inputs(photo), store, finished)
+    filled = network_id == "migan"  # it works on pictures of floor and walls only
+    built, left_out = _build("auto", Inputs(photo), store, finished, plane_pictures=filled)
     assert [line.split(" was left out: ")[0] for line in left_out] == [network(network_id).title]
     assert all("\n" not in line and len(line) < 600 for line in left_out)
     assert built.scene.architecture.planes

@@ -91,9 +91,9 @@ def photo(rng: np.random.Generator) -> Photo:
     return Photo(rgb, "room.png", (WIDTH, HEIGHT))
 
 
-def _build(stages: Stages, inputs: Inputs, cache: Path | None = None) -> Built:
+def _build(stages: Stages, inputs: Inputs, cache: Path | None = None, *, plane_pictures: bool = False) -> Built:
     quiet = replace(stages, retrieval=_Nothing(), pose=_Nothing())
-    return build_scene(inputs, box_library(), stages=quiet, cache=cache)
+    return build_scene(inputs, box_library(), stages=quiet, cache=cache, plane_pictures=plane_pictures)
 
 
 def _types(built: Built) -> dict[str, type]:
@@ -109,7 +109,7 @@ def test_both_profiles_make_the_same_kinds_of_artefacts(
     for network_id, files in graphs.items():
         install(store, network_id, files)
     alone = Inputs(photo)
-    foundation = _build(stages_for("foundation", alone, box_library(), store=store), alone)
+    foundation = _build(stages_for("foundation", alone, box_library(), store=store), alone, plane_pictures=True)
     assert _types(embedded) == _types(foundation)
     assert [o.category for o in foundation.objects] == ["chair"]
     np.testing.assert_allclose(foundation.objects[0].box, BOX, atol=1.0)

@@ -198,12 +198,21 @@ def _children_costs(
     ]
     if not children or len(total) < 2:
         return total
+    rows: list[Problems] = []
+    below: list[int] = []
+    """The reading that each row lies on: all are solved together, which a row's solution does not depend on."""
     for reading in range(len(total)):
         box = readings.placement(reading, FLOOR).cuboid
-        rows = [p for i in children for p in place_on(observations, i, parent, box, height_m, 0.0)]
-        solved = solve_all(rows, view)
-        for child in children:
-            total[reading] += min(float(solved.cost[solved.problems.item == child].min()), _CHILD_CAP)
+        made = [p for i in children for p in place_on(observations, i, parent, box, height_m, 0.0)]
+        rows += made
+        below += [reading] * sum(map(len, made))
+    solved = solve_all(rows, view)
+    reading_of = np.tile(below, len(solved.cost) // len(below))
+    for child in children:
+        lowest = np.full(len(total), np.inf)
+        mine = solved.problems.item == child
+        np.minimum.at(lowest, reading_of[mine], solved.cost[mine])
+        total += np.minimum(lowest, _CHILD_CAP)
     return total
 
 
@@ -221,8 +230,13 @@ def _supported(
     for index in indices:
         for supporter, rows in _supported_rows(observations, index, carriers, room, height_m):
             groups.setdefault(supporter, []).extend(rows)
-    for supporter, rows in groups.items():
-        for index, readings in _readings(solve_all(rows, view), observations, view).items():
+    if not groups:
+        return best
+    solved = solve_all([p for rows in groups.values() for p in rows], view)
+    under = np.repeat(list(groups), [sum(map(len, rows)) for rows in groups.values()])
+    supporter_of = np.tile(under, len(solved.cost) // len(under))
+    for supporter in groups:
+        for index, readings in _readings(solved.rows(supporter_of == supporter), observations, view).items():
             challenger = readings.placement(0, supporter)
             if index not in best or challenger.cost < best[index].cost:
                 best[index] = challenger

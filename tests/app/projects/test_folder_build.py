@@ -59,33 +59,24 @@ def killing(project: Path, times: int):
 
 
 @pytest.mark.slow
-def test_a_killed_worker_costs_its_own_photo_a_second_try(folder: Path, tmp_path: Path) -> None:
+def test_a_killed_worker_costs_its_own_photo_a_second_try_and_what_died_twice_is_built_by_the_next_run(
+    folder: Path, tmp_path: Path
+) -> None:
     output, photos = tmp_path / "out", photos_of(folder)[0]
-    with killing(output / "b", 1) as killed:
-        results = build_photos(photos, OPTIONS, output, LocalWorkers(2), Progress())
-    assert len(killed) == 1
-    assert [(r.error, r.tries) for r in results] == [("", 1), ("", 2), ("", 1)]
-    assert all(r.picture.exists() and len(r.report["objects"]) >= 1 for r in results)
-
-
-@pytest.mark.slow
-def test_what_died_twice_is_listed_and_the_next_run_builds_only_that(folder: Path, tmp_path: Path) -> None:
-    output, photos = tmp_path / "out", photos_of(folder)[0][:2]
-    with killing(output / "b", 2) as killed:
+    with killing(output / "b", 1) as once, killing(output / "c", 2) as twice:
         first = build_photos(photos, OPTIONS, output, LocalWorkers(2), Progress())
-    assert len(killed) == 2
-    assert [bool(r.error) for r in first] == [False, True]
-    assert "without an answer" in first[1].error
+    assert (len(once), len(twice)) == (1, 2)
+    assert [(bool(r.error), r.tries) for r in first] == [(False, 1), (False, 2), (True, 2)]
+    assert all(r.picture.exists() and len(r.report["objects"]) >= 1 for r in first[:2])
+    assert "without an answer" in first[2].error
     edited = output / "a" / "scene.json"
     edited.write_text(edited.read_text() + "\n")
     before = edited.stat().st_mtime_ns
+    (folder / "b.boxes.json").write_text(json.dumps(BOXES[:1]))
     second = build_photos(photos, OPTIONS, output, LocalWorkers(2), Progress())
-    assert [(r.error, r.kept) for r in second] == [("", True), ("", False)]
+    assert [(r.error, r.kept) for r in second] == [("", True), ("", False), ("", False)]
     assert edited.stat().st_mtime_ns == before, "what is finished is left as it is"
-    (folder / "a.boxes.json").write_text(json.dumps(BOXES[:1]))
-    third = build_photos(photos[:1], OPTIONS, output, LocalWorkers(1), Progress())
-    assert not third[0].kept
-    assert len(third[0].report["objects"]) == 1
+    assert [len(r.report["objects"]) for r in second] == [2, 1, 2]
 
 
 def test_on_cancellation_what_is_done_stays(folder: Path, tmp_path: Path) -> None:

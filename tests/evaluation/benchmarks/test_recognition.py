@@ -138,7 +138,12 @@ def computed_once(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.slow
 @pytest.mark.usefixtures("computed_once")
 def test_the_shipped_networks_reach_what_is_promised_on_real_photos(shared: Path, tmp_path: Path) -> None:
-    """Shares of 302 objects in 21 photos on which nothing was trained; `assets/models/README.md` has the figures."""
+    """Shares of 97 objects in every third of 21 photos on which nothing was trained; `assets/models/README.md` has the
+    figures of all.
+    """
+    photos = list(json.loads(ANNOTATIONS.read_text()).items())[::3]
+    third = tmp_path / "third.json"
+    third.write_text(json.dumps(dict(photos)))
     store = ModelStore(tmp_path / "models")
     store.add_folder(shared / "models")
     everyday = everyday_detector(store)
@@ -148,25 +153,25 @@ def test_the_shipped_networks_reach_what_is_promised_on_real_photos(shared: Path
         "everyday objects": everyday,
         "used": JoinedDetection(everyday, OwnDetection(own_recogniser())),
     }
-    bench = run(ANNOTATIONS, shared / "photos", routes, namers(store), clickers(store))
+    bench = run(third, shared / "photos", routes, namers(store), clickers(store))
     found, named, clicked = bench.tables()
-    assert found.row("twenty best")["objects"] == 302
+    assert found.row("twenty best")["objects"] == 97
     least: list[tuple[Table, str, str, float]] = [
-        (found, "twenty best", "found at IoU 0.5", 0.50),
+        (found, "twenty best", "found at IoU 0.5", 0.48),
         (found, "twenty best", "found at IoU 0.3", 0.70),
-        (found, "everyday objects", "found at IoU 0.5", 0.18),
+        (found, "everyday objects", "found at IoU 0.5", 0.20),
         (found, "everyday objects", "precision", 0.85),
-        (found, "used", "found at IoU 0.5", 0.39),
-        (found, "used", "found at IoU 0.3", 0.48),
-        (found, "used", "precision", 0.60),
-        (named, "own", "first", 0.40),
+        (found, "used", "found at IoU 0.5", 0.40),
+        (found, "used", "found at IoU 0.3", 0.49),
+        (found, "used", "precision", 0.58),
+        (named, "own", "first", 0.41),
         (named, "own", "among five", 0.70),
-        (named, "own, everyday objects known", "first", 0.46),
-        (named, "own, everyday objects known", "among five", 0.71),
-        (clicked, "own", "right at IoU 0.5", 0.62),
-        (clicked, "own", "right at IoU 0.3", 0.82),
-        (clicked, "own, everyday objects known", "right at IoU 0.5", 0.66),
-        (clicked, "own, everyday objects known", "right at IoU 0.3", 0.83),
+        (named, "own, everyday objects known", "first", 0.47),
+        (named, "own, everyday objects known", "among five", 0.70),
+        (clicked, "own", "right at IoU 0.5", 0.69),
+        (clicked, "own", "right at IoU 0.3", 0.84),
+        (clicked, "own, everyday objects known", "right at IoU 0.5", 0.69),
+        (clicked, "own, everyday objects known", "right at IoU 0.3", 0.84),
     ]
     missed = [
         (row, column, table.row(row)[column]) for table, row, column, share in least if table.row(row)[column] < share

@@ -35,7 +35,7 @@ def test_pictures_show_one_room_from_different_places() -> None:
 
 @pytest.mark.slow
 def test_a_room_is_built_from_two_photos() -> None:
-    bench = run(built_in_library(), 1, 6, counts=(2,))  # a room of twelve objects, not of twenty-six
+    bench = run(built_in_library(), 1, 38, counts=(2,))  # seven objects in the first picture, six in the second
     assert [r.way for r in bench.results] == [ALONE, "2 photos with their cameras"]
     assert all(not r.failure for r in bench.results)
     assert bench.results[1].own.count >= 4
