@@ -21,7 +21,7 @@ from shapely.geometry import MultiPolygon, Polygon, box
 from shapely.ops import unary_union
 
 from diorama_core.errors import InputError
-from diorama_core.importing.measured_room import MeasuredBox, MeasuredRoom, MeasuredWall
+from diorama_core.importing.measured_room import MeasuredBox, MeasuredOpening, MeasuredRoom, MeasuredWall
 from diorama_core.importing.point_files import PointCloud
 from diorama_core.importing.scanned_openings import scanned_openings
 from diorama_core.importing.scanned_tops import apart_from_tops
@@ -63,6 +63,8 @@ WALL_SHARE = 0.85
 LOWEST_LAMP_SHARE = 0.5
 """Of the room's height, below which nothing reaches that hangs from the ceiling."""
 HANGS_CLEAR_M = 0.15
+PART_M = 0.15
+"""Of a door or window: what is deeper, or larger than it by more, is before it."""
 MAX_BOXES = 200
 AT_WALL_M = 0.4
 GUESS = 0.4
@@ -97,14 +99,15 @@ def measured_cloud(cloud: PointCloud) -> MeasuredRoom:
     T[:3] = turn @ T[:3]
     outline = _outline(points, top_m)
     room = _Room(outline, 0.0, top_m)
+    walls, ring = _walls(room), np.asarray(outline.exterior.coords)[:-1]
+    openings = scanned_openings(points, walls, ring)
     boxes, left_out = _boxes(points, room)
+    boxes = tuple(b for b in boxes if not any(_is_part(b, o) for o in openings))
     notes = [*cloud.notes, "kinds of things are guessed; correct them where they are wrong"]
     if not closed:
         notes.append("no ceiling was scanned; walls end where points end")
     if left_out:
         notes.append(f"{left_out} smaller things were left out")
-    walls, ring = _walls(room), np.asarray(outline.exterior.coords)[:-1]
-    openings = scanned_openings(points, walls, ring)
     photos = tuple(p.moved(T) for p in cloud.photos)
     return MeasuredRoom(walls, boxes, openings, floor=ring, floor_m=0.0, notes=tuple(notes), photos=photos)
 
@@ -276,6 +279,14 @@ def _middle_extent(points: Float[np.ndarray, "n 3"]) -> float:
 def _is_wall(box: MeasuredBox, room: _Room) -> bool:
     """Whether a box is around a piece of a wall that stands elsewhere than where walls were found."""
     return bool(box.size_m[:2].min() < OFF_M and box.size_m[2] > WALL_SHARE * room.top_m)
+
+
+def _is_part(box: MeasuredBox, opening: MeasuredOpening) -> bool:
+    """Whether a box is around a handle, a sill or a frame."""
+    off = np.abs(box.centre - opening.centre)
+    within = np.hypot(*off[:2]) < opening.width_m / 2 and off[2] < opening.height_m / 2
+    smaller = box.size_m[:2].max() < opening.width_m + PART_M and box.size_m[2] < opening.height_m + PART_M
+    return bool(within and smaller and box.size_m[:2].min() < PART_M)
 
 
 def _is_clear_of_walls(points: Float[np.ndarray, "n 3"], room: _Room) -> bool:

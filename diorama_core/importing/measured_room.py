@@ -14,6 +14,7 @@ from jaxtyping import Float
 from shapely.geometry import MultiPoint, MultiPolygon, Point, Polygon
 from shapely.ops import polygonize, snap, unary_union
 
+from diorama_core.geometry.openings import STANDS_OUT_M
 from diorama_core.importing.opening import Opened
 from diorama_core.importing.point_files import ScanPhoto
 from diorama_core.library.record import Shape, ShapeLibrary
@@ -31,8 +32,6 @@ CORNER_M = 0.25
 """Ends of walls that are so near meet in a corner, where the file has no floor."""
 INSIDE_M = 0.3
 """So far from a wall one is in the room, on one side of it."""
-FRAME_M = 0.06
-"""How far doors and windows stand out into the room."""
 LEVEL_M = 0.05
 """Walls whose tops differ by less carry a level ceiling."""
 
@@ -76,6 +75,8 @@ class MeasuredBox:
     """Of the thing's surface, in the world, where it was scanned."""
     kinds_know_size: bool = False
     """Whether the shares of its kinds say already how usual its size is for each."""
+    fits: Mapping[str, float] = field(default_factory=dict)
+    """How well shapes agree with the points, by id, 0 to 1; those that were not compared agree as the worst of them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -302,7 +303,7 @@ def _object(names: _Names, box: MeasuredBox, held: str, library: ShapeLibrary) -
     query = RetrievalQuery(kind, box.size_m, False, mount, senses)
     ranked = sorted(
         (
-            (m.kind_factor * float(np.exp(-size_cost(m.shape.size_m, box.size_m))), m.shape)
+            (m.kind_factor * float(np.exp(-size_cost(m.shape.size_m, box.size_m))) * _fit(box, m.shape), m.shape)
             for m in pool_for(library, query).members
         ),
         key=lambda row: (-row[0], row[1].id),
@@ -319,6 +320,10 @@ def _object(names: _Names, box: MeasuredBox, held: str, library: ShapeLibrary) -
         candidates,
         confidence=box.confidence,
     )
+
+
+def _fit(box: MeasuredBox, shape: Shape) -> float:
+    return box.fits.get(shape.id, min(box.fits.values(), default=1.0))
 
 
 def _filling(shape: Shape, box: MeasuredBox) -> Pose:
@@ -340,9 +345,9 @@ def _hung(names: _Names, opening: MeasuredOpening, wall: Plane, library: ShapeLi
     yaw = float(np.arctan2(wall.normal[1], wall.normal[0]))
     on_wall = opening.centre - (wall.normal @ opening.centre - wall.offset) * wall.normal
     shapes = library.in_category(opening.kind)
-    size = np.array([FRAME_M, opening.width_m, opening.height_m])
+    size = np.array([STANDS_OUT_M, opening.width_m, opening.height_m])
     ranked = sorted(shapes, key=lambda s: (size_cost(s.size_m[1:], size[1:]), s.id))[:KEEP]
-    centre = on_wall + wall.normal * FRAME_M / 2
+    centre = on_wall + wall.normal * STANDS_OUT_M / 2
     candidates = tuple(
         Candidate(
             s.id,

@@ -25,6 +25,7 @@ from diorama_core.perception.naming import OwnNaming, own_naming
 from diorama_core.progress import Progress
 from diorama_core.retrieval.kinds_together import kinds_together
 from diorama_core.retrieval.seen_kinds import as_it_looks
+from diorama_core.scene.types import yaw_rotation
 
 LOOKS = 4
 """Photos in which a thing is looked at."""
@@ -58,11 +59,17 @@ def with_scanned_kinds(room: MeasuredRoom, library: ShapeLibrary, *, look: bool 
     known = dict(zip(scanned, together, strict=True))
     return replace(
         room,
-        boxes=tuple(
-            replace(box, kinds=known[k], kinds_know_size=True) if k in known else box
-            for k, box in enumerate(room.boxes)
-        ),
+        boxes=tuple(_fitted(box, known[k], library) if k in known else box for k, box in enumerate(room.boxes)),
     )
+
+
+def _fitted(box: MeasuredBox, kinds: Mapping[str, float], library: ShapeLibrary) -> MeasuredBox:
+    """A box with its kinds, and its front and shapes as its points say."""
+    kind = max(kinds, key=lambda k: (kinds[k], k))
+    fits, quarters = ScannedSurface.of(box).fits(kind, library)
+    size = box.size_m if quarters % 2 == 0 else box.size_m[[1, 0, 2]]
+    R = box.R_world_box @ yaw_rotation(quarters * np.pi / 2)
+    return replace(box, kinds=kinds, kinds_know_size=True, fits=fits, R_world_box=R, size_m=size)
 
 
 def _alone(box: MeasuredBox, seen: Sequence[tuple[str, float]]) -> dict[str, float]:

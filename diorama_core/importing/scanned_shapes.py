@@ -19,6 +19,11 @@ from diorama_core.retrieval.pools import size_cost
 POINTS = 500
 SHAPES_OF_KIND = 4
 """Those nearest in size are compared."""
+SHAPES_COMPARED = 24
+"""Of the kind that a thing is."""
+FIT_SIGMA_M = 0.02
+TURN_COST_M = 0.006
+"""Metres that another front must be nearer."""
 FAR_M = 0.15
 """What is farther apart counts no more."""
 UNSEEN_WEIGHT = 0.5
@@ -47,6 +52,19 @@ class ScannedSurface:
         """How far the points are from the best shape of a kind, in metres; None where the library has none."""
         shapes = sorted(library.in_category(kind), key=lambda s: (_unlike(s, self.size_m), s.id))[:SHAPES_OF_KIND]
         return min((min(self.misfits(s, library)) for s in shapes), default=None)
+
+    def fits(self, kind: str, library: ShapeLibrary) -> tuple[dict[str, float], int]:
+        """How well a kind's shapes agree with the points, by id, and how many quarters the best one is turned by.
+
+        A front that was guessed stays where another one is hardly better.
+        """
+        shapes = sorted(library.in_category(kind), key=lambda s: (_unlike(s, self.size_m), s.id))[:SHAPES_COMPARED]
+        found = {s.id: np.asarray(self.misfits(s, library)) + TURN_COST_M * (np.arange(4) > 0) for s in shapes}
+        if not found:
+            return {}, 0
+        best = min(found, key=lambda name: (float(found[name].min()), name))
+        fits = {name: float(np.exp(-misfits.min() / FIT_SIGMA_M)) for name, misfits in found.items()}
+        return fits, int(np.argmin(found[best])) % 4
 
     def misfits(self, shape: Shape, library: ShapeLibrary) -> Sequence[float]:
         """For each quarter turn of a shape that is stretched into the box, the mean distance of the two surfaces."""

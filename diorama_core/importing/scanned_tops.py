@@ -18,7 +18,7 @@ MAX_ABOVE = 0.45
 MIN_HEIGHT_M = 0.25
 """Of a board above the thing's foot: lower ones are rugs, plinths and pedals."""
 MIN_ABOVE_M = 0.08
-REACHES_ALONG, REACHES_ACROSS = 0.7, 0.9
+REACHES_ALONG, REACHES_ACROSS = 0.78, 0.9
 """Of the longer side, and of the shorter one of what is not about square: what reaches so far belongs to the thing."""
 SQUARE = 0.75
 
