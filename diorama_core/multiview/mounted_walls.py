@@ -58,8 +58,8 @@ def hangs_on_wall(kind: str) -> bool:
 
 
 def seen_whole(sightings: Sequence[tuple[PhotoBoxes, int]]) -> bool:
-    """Whether two photos or more show a thing that the picture does not cut: else its usual size says where it is."""
-    return sum(not photo.observations.truncated[box].any() for photo, box in sightings) > 1
+    """Whether two photos or more show a thing, and one of them uncut: else its usual size says where it is."""
+    return len(sightings) > 1 and any(not photo.observations.truncated[box].any() for photo, box in sightings)
 
 
 def _gap(wall: Plane, thing: JointCuboid, room: Architecture) -> float | None:
