@@ -34,6 +34,7 @@ TABLES = (
     ("layout", 40, "The layout recipes compared with each other."),
     ("system", 20, "Images to scenes, end to end."),
     ("views", 6, "One, two, four and eight photos of a room with given cameras."),
+    ("scans", 6, "Scans of a phone: furniture, its kinds, doors and windows."),
     ("text", 60, "Rooms composed from prompts: what was asked for, and whether people could use the room."),
     ("speed", 1, "Time and memory by scene size, compared with the committed figures."),
 )
@@ -134,12 +135,13 @@ def _bench_layout(a: argparse.Namespace) -> None:
 
 
 def _bench_rooms(a: argparse.Namespace) -> None:
-    """Run the architecture, retrieval, relations, look, views or pose benchmark on rendered rooms."""
+    """Run the architecture, retrieval, relations, look, views, scans or pose benchmark on rendered rooms."""
     from diorama_core.evaluation.benchmarks import architecture as architecture_bench
     from diorama_core.evaluation.benchmarks import look as look_bench
     from diorama_core.evaluation.benchmarks import pose as pose_bench
     from diorama_core.evaluation.benchmarks import relations as relations_bench
     from diorama_core.evaluation.benchmarks import retrieval as retrieval_bench
+    from diorama_core.evaluation.benchmarks import scans as scans_bench
     from diorama_core.evaluation.benchmarks import views as views_bench
     from diorama_core.evaluation.benchmarks.cases import parse_seeds
     from diorama_core.library.catalogue import built_in_library
@@ -158,6 +160,8 @@ def _bench_rooms(a: argparse.Namespace) -> None:
             bench = look_bench.run(library, a.scenes, a.seed, progress, _look_writer(a.sheet))
         elif a.table == "views":
             bench = views_bench.run(library, a.scenes, a.seed, progress)
+        elif a.table == "scans":
+            bench = scans_bench.run(library, a.scenes, a.seed, progress)
         else:
             bench = pose_bench.run(library, a.scenes, a.seed, progress)
     _show(bench, a)

@@ -23,6 +23,8 @@ FRAME_M = 0.02
 """So much of a wall stays behind the rim of what fills the opening, and nothing is seen past it."""
 FOOT_M = 0.05
 """What comes down to the floor this nearly reaches it."""
+STANDS_OUT_M = 0.06
+"""How far doors and windows stand out into the room."""
 MIN_SIDE_M = 0.1
 
 Contour = Float[np.ndarray, "_ 2"]

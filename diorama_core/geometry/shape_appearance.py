@@ -61,7 +61,7 @@ class ShapeAppearance:
 
         Of the middle and the middles of its main parts the one about which it looks most alike when turned.
         """
-        points = self._spread_points(_AXIS_POINTS)
+        points = self.spread_points(_AXIS_POINTS)
         if len(points) < 2:
             return np.zeros(2)
         tree = cKDTree(points)
@@ -70,7 +70,7 @@ class ShapeAppearance:
         unlike[0] *= _KEEPS_MIDDLE
         return options[int(np.argmin(unlike))]
 
-    def _spread_points(self, count: int) -> Float[np.ndarray, "n 3"]:
+    def spread_points(self, count: int) -> Float[np.ndarray, "n 3"]:
         """Points spread evenly over the surface, the same ones every time; none where there is no surface."""
         triangles = self.vertices[self.faces].astype(np.float64)
         area = np.linalg.norm(np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), axis=1)

@@ -3,13 +3,15 @@
 Floor and ceiling are where heights are densest. Walls are lines along the room's two axes above which points reach up;
 the lines divide the plan into cells, and those that were scanned are the room (as in Mura et al., Automatic room
 detection and reconstruction in cluttered indoor environments, 2014, for two axes). What is left is split where it does
-not touch.
+not touch, and where things lie on furniture (`scanned_tops`). Doors and windows are holes and leaves in walls
+(`scanned_openings`).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Literal
 
 import cv2
 import numpy as np
@@ -19,8 +21,11 @@ from shapely.geometry import MultiPolygon, Polygon, box
 from shapely.ops import unary_union
 
 from diorama_core.errors import InputError
-from diorama_core.importing.measured_room import MeasuredBox, MeasuredRoom, MeasuredWall
+from diorama_core.importing.measured_room import MeasuredBox, MeasuredOpening, MeasuredRoom, MeasuredWall
 from diorama_core.importing.point_files import PointCloud
+from diorama_core.importing.scanned_openings import scanned_openings
+from diorama_core.importing.scanned_tops import apart_from_tops
+from diorama_core.library.company import CARRIED_KINDS
 from diorama_core.library.taxonomy import CATEGORIES
 from diorama_core.scene.types import yaw_rotation
 
@@ -48,14 +53,23 @@ OFF_M = 0.06
 CELL_M = 0.06
 """Things are apart where so much is free between them."""
 MIN_SIZE_M, MIN_CELLS = 0.15, 12
+MIN_TOP_M = 0.12
+"""Of what lies on something."""
 STANDS_M = 0.35
 """So far above the floor thin legs may go unseen."""
 SQUARE_RAD = float(np.radians(10.0))
+WALL_SHARE = 0.85
+"""Of the room's height: what is thinner than `OFF_M` and reaches so high is a wall."""
+LOWEST_LAMP_SHARE = 0.5
+"""Of the room's height, below which nothing reaches that hangs from the ceiling."""
+HANGS_CLEAR_M = 0.15
+PART_M = 0.15
+"""Of a door or window: what is deeper, or larger than it by more, is before it."""
 MAX_BOXES = 200
 AT_WALL_M = 0.4
 GUESS = 0.4
-"""Confidence in a kind that size alone tells."""
-UNLIKELY = ("object", "door", "window", "curtain", "rug", "wall", "ceiling lamp")
+"""Confidence in a kind that no word tells."""
+UNLIKELY = ("object", "door", "window", "curtain", "rug", "wall")
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,26 +87,33 @@ def measured_cloud(cloud: PointCloud) -> MeasuredRoom:
     Raises:
         InputError: there is no floor in it.
     """
-    points = _thinned(_upright(cloud))
+    T = np.eye(4)
+    T[:3, :3] = _upright_axes(cloud)
+    points = _thinned(cloud.points @ T[:3, :3].T)
     floor_m, top_m, closed = _levels(points[:, 2])
     points = points - [0.0, 0.0, floor_m]
     top_m -= floor_m
-    points = points @ yaw_rotation(-_heading(points, top_m)).T
+    turn = yaw_rotation(-_heading(points, top_m))
+    points = points @ turn.T
+    T[2, 3] = -floor_m
+    T[:3] = turn @ T[:3]
     outline = _outline(points, top_m)
     room = _Room(outline, 0.0, top_m)
+    walls, ring = _walls(room), np.asarray(outline.exterior.coords)[:-1]
+    openings = scanned_openings(points, walls, ring)
     boxes, left_out = _boxes(points, room)
-    notes = [*cloud.notes, "kinds of things are guessed by their sizes; correct them where they are wrong"]
+    boxes = tuple(b for b in boxes if not any(_is_part(b, o) for o in openings))
+    notes = [*cloud.notes, "kinds of things are guessed; correct them where they are wrong"]
     if not closed:
         notes.append("no ceiling was scanned; walls end where points end")
     if left_out:
         notes.append(f"{left_out} smaller things were left out")
-    return MeasuredRoom(
-        _walls(room), boxes, floor=np.asarray(outline.exterior.coords)[:-1], floor_m=0.0, notes=tuple(notes)
-    )
+    photos = tuple(p.moved(T) for p in cloud.photos)
+    return MeasuredRoom(walls, boxes, openings, floor=ring, floor_m=0.0, notes=tuple(notes), photos=photos)
 
 
-def _upright(cloud: PointCloud) -> Float[np.ndarray, "n 3"]:
-    """The points with +Z up: as the format says, or along the axis across which levels are densest."""
+def _upright_axes(cloud: PointCloud) -> Float[np.ndarray, "3 3"]:
+    """The rotation to +Z up: as the format says, or along the axis across which levels are densest."""
     up = cloud.up
     if up is None:
         up = np.eye(3)[max((2, 1), key=lambda axis: _sharpness(cloud.points[:, axis], LEVEL_M))]
@@ -100,7 +121,7 @@ def _upright(cloud: PointCloud) -> Float[np.ndarray, "n 3"]:
     x = np.array([1.0, 0.0, 0.0]) if abs(z[0]) < 0.9 else np.array([0.0, 0.0, 1.0])
     x = x - (x @ z) * z
     x /= np.linalg.norm(x)
-    return cloud.points @ np.stack([x, np.cross(z, x), z]).T
+    return np.stack([x, np.cross(z, x), z])
 
 
 def _sharpness(values: Float[np.ndarray, "n"], step: float) -> float:
@@ -240,17 +261,50 @@ def _boxes(points: Float[np.ndarray, "n 3"], room: _Room) -> tuple[tuple[Measure
     found = []
     for number in np.argsort(-sizes, kind="stable"):
         own = left[which == number + 1]
-        extent = np.ptp(own, axis=0)
-        if sizes[number] >= MIN_CELLS and np.sort(extent)[1] >= MIN_SIZE_M:
-            found.append(_box(own, room))
+        if sizes[number] < MIN_CELLS or _middle_extent(own) < MIN_SIZE_M:
+            continue
+        thing, *on_it = apart_from_tops(own)
+        around = _box(thing, room)
+        if _is_wall(around, room):
+            continue
+        found.append(around)
+        found += [replace(_box(top, room), kinds=_kinds("surface")) for top in on_it if _is_thing(top)]
     return tuple(found[:MAX_BOXES]), max(0, len(found) - MAX_BOXES)
+
+
+def _middle_extent(points: Float[np.ndarray, "n 3"]) -> float:
+    return float(np.sort(np.ptp(points, axis=0))[1])
+
+
+def _is_wall(box: MeasuredBox, room: _Room) -> bool:
+    """Whether a box is around a piece of a wall that stands elsewhere than where walls were found."""
+    return bool(box.size_m[:2].min() < OFF_M and box.size_m[2] > WALL_SHARE * room.top_m)
+
+
+def _is_part(box: MeasuredBox, opening: MeasuredOpening) -> bool:
+    """Whether a box is around a handle, a sill or a frame."""
+    off = np.abs(box.centre - opening.centre)
+    within = np.hypot(*off[:2]) < opening.width_m / 2 and off[2] < opening.height_m / 2
+    smaller = box.size_m[:2].max() < opening.width_m + PART_M and box.size_m[2] < opening.height_m + PART_M
+    return bool(within and smaller and box.size_m[:2].min() < PART_M)
+
+
+def _is_clear_of_walls(points: Float[np.ndarray, "n 3"], room: _Room) -> bool:
+    """Whether no wall is near enough to hold a thing: cords and rods of lamps are too thin to be scanned."""
+    around = box(*points[:, :2].min(axis=0), *points[:, :2].max(axis=0))
+    return bool(room.outline.exterior.distance(around) > HANGS_CLEAR_M)
+
+
+def _is_thing(points: Float[np.ndarray, "n 3"]) -> bool:
+    """Whether what lies on something is large enough, and no few points of a larger thing's edge."""
+    return len(points) >= 2 * MIN_CELLS and _middle_extent(points) >= MIN_TOP_M
 
 
 def _box(points: Float[np.ndarray, "n 3"], room: _Room) -> MeasuredBox:
     """The upright box around a thing, its back at the wall that it stands at."""
     low, high = float(points[:, 2].min()), float(points[:, 2].max())
-    if low < STANDS_M:
-        low = 0.0
+    hangs = low > LOWEST_LAMP_SHARE * room.top_m and _is_clear_of_walls(points, room)
+    low, high = 0.0 if low < STANDS_M else low, room.top_m if hangs else high
     plan = points[:, :2]
     (cx, cy), (a, b), degrees = cv2.minAreaRect(plan.astype(np.float32))
     turn = np.radians(degrees)
@@ -264,11 +318,12 @@ def _box(points: Float[np.ndarray, "n 3"], room: _Room) -> MeasuredBox:
     size = np.maximum(np.array([depth, width, high - low]), 0.02)
     return MeasuredBox(
         "object",
-        _kinds(),
+        _kinds("ceiling" if hangs else "floor"),
         yaw_rotation(turn + best * quarter),
         np.array([cx, cy, (low + high) / 2]),
         size,
         confidence=GUESS,
+        points=points,
     )
 
 
@@ -281,6 +336,8 @@ def _likely_front(centre: Float[np.ndarray, "2"], yaw: float, depth_m: float, ro
     return bool(at_wall), -depth_m
 
 
-def _kinds() -> dict[str, float]:
-    """Everything that stands or hangs in rooms; sizes decide."""
-    return {c.name: 1.0 for c in CATEGORIES if c.name not in UNLIKELY and c.mount in ("floor", "wall")}
+def _kinds(where: Literal["floor", "surface", "ceiling"]) -> dict[str, float]:
+    """Everything that stands or hangs in rooms, lies on furniture, or hangs from the ceiling; sizes decide."""
+    mounts = ("floor", "wall") if where == "floor" else (where,)
+    also = CARRIED_KINDS if where == "surface" else frozenset[str]()
+    return {c.name: 1.0 for c in CATEGORIES if c.name not in UNLIKELY and (c.mount in mounts or c.name in also)}

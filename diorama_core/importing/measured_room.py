@@ -14,7 +14,9 @@ from jaxtyping import Float
 from shapely.geometry import MultiPoint, MultiPolygon, Point, Polygon
 from shapely.ops import polygonize, snap, unary_union
 
+from diorama_core.geometry.openings import STANDS_OUT_M
 from diorama_core.importing.opening import Opened
+from diorama_core.importing.point_files import ScanPhoto
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import UNKNOWN, category
 from diorama_core.retrieval.pools import RetrievalQuery, pool_for, size_cost
@@ -30,8 +32,6 @@ CORNER_M = 0.25
 """Ends of walls that are so near meet in a corner, where the file has no floor."""
 INSIDE_M = 0.3
 """So far from a wall one is in the room, on one side of it."""
-FRAME_M = 0.06
-"""How far doors and windows stand out into the room."""
 LEVEL_M = 0.05
 """Walls whose tops differ by less carry a level ceiling."""
 
@@ -71,6 +71,12 @@ class MeasuredBox:
     size_m: Float[np.ndarray, "3"]
     """Along x (depth), y (width), z (height)."""
     confidence: float = 1.0
+    points: Float[np.ndarray, "n 3"] | None = None
+    """Of the thing's surface, in the world, where it was scanned."""
+    kinds_know_size: bool = False
+    """Whether the shares of its kinds say already how usual its size is for each."""
+    fits: Mapping[str, float] = field(default_factory=dict)
+    """How well shapes agree with the points, by id, 0 to 1; those that were not compared agree as the worst of them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +91,8 @@ class MeasuredRoom:
     floor_m: float | None = None
     """Height of the floor; the lowest corner of the walls where None."""
     notes: tuple[str, ...] = field(default=())
+    photos: tuple[ScanPhoto, ...] = ()
+    """Taken while the room was measured, their cameras in the world."""
 
 
 def opened_room(room: MeasuredRoom, library: ShapeLibrary) -> Opened:
@@ -99,9 +107,10 @@ def opened_room(room: MeasuredRoom, library: ShapeLibrary) -> Opened:
     planes = (*_floor(outline, floor_m), *walls, *_ceiling(outline, walls))
     boxes = [_facing_the_room(_resting(b, floor_m), walls) for b in room.boxes]
     names = _Names()
-    objects = [_object(names, box, _held(index, boxes, walls, floor_m), library) for index, box in enumerate(boxes)]
+    holders = [_held(index, boxes, planes, floor_m) for index in range(len(boxes))]
+    objects = [_object(names, box, held, library) for box, held in zip(boxes, holders, strict=True)]
     ids = [o.id for o in objects]
-    supports = [_support(ids, index, boxes, walls, floor_m) for index in range(len(boxes))]
+    supports = [_support(ids, index, held) for index, held in enumerate(holders)]
     notes = list(room.notes)
     for opening in room.openings:
         wall = _wall_of(opening, walls)
@@ -248,10 +257,10 @@ def _corners(box: MeasuredBox) -> Float[np.ndarray, "8 3"]:
     return box.centre + (0.5 * signs * box.size_m) @ box.R_world_box.T
 
 
-def _held(index: int, boxes: Sequence[MeasuredBox], walls: Sequence[Plane], floor_m: float) -> str:
-    """What holds a box up: the floor, a wall, or the number of another box."""
+def _held(index: int, boxes: Sequence[MeasuredBox], planes: Sequence[Plane], floor_m: float) -> str:
+    """What holds a box up: the floor, the ceiling, a wall, or the number of another box."""
     box = boxes[index]
-    low = float(box.centre[2] - box.size_m[2] / 2)
+    low, high = (float(box.centre[2] + side * box.size_m[2] / 2) for side in (-1, 1))
     below = [
         (float(b.centre[2] + b.size_m[2] / 2), k)
         for k, b in enumerate(boxes)
@@ -263,32 +272,38 @@ def _held(index: int, boxes: Sequence[MeasuredBox], walls: Sequence[Plane], floo
         return str(max(below)[1])
     if low - floor_m < RESTS_M:
         return "floor"
-    near = [(_gap(box, -box.R_world_box[:, 0], [w]), w.id) for w in walls]
+    if any(p.role == "ceiling" and abs(p.centre[2] - high) < RESTS_M for p in planes):
+        return "ceiling"
+    near = [(_gap(box, -box.R_world_box[:, 0], [w]), w.id) for w in planes if w.role == "wall"]
     return min(near)[1] if near and min(near)[0] < AT_WALL_M else "nothing"
 
 
-def _support(
-    ids: Sequence[str], index: int, boxes: Sequence[MeasuredBox], walls: Sequence[Plane], floor_m: float
-) -> Support | None:
-    held = _held(index, boxes, walls, floor_m)
+def _support(ids: Sequence[str], index: int, held: str) -> Support | None:
     if held == "nothing":
         return None
     if held == "floor":
         return Support(ids[index], "floor")
     if held.isdecimal():
         return Support(ids[index], ids[int(held)])
-    return Support(ids[index], held, "mounted on", child_face="back")
+    return Support(ids[index], held, "mounted on", child_face="top" if held == "ceiling" else "back")
+
+
+def _mount(held: str) -> str:
+    """Where kinds are found that are held so: a wall, the ceiling, or else the floor."""
+    return "floor" if held in ("floor", "nothing") or held.isdecimal() else "ceiling" if held == "ceiling" else "wall"
 
 
 def _object(names: _Names, box: MeasuredBox, held: str, library: ShapeLibrary) -> SceneObject:
-    hung = held not in ("floor", "nothing") and not held.isdecimal()
-    mounted = {k: v for k, v in box.kinds.items() if (category(k).mount == "wall") == hung}
-    senses = likeliest_kind(mounted or box.kinds or {UNKNOWN.name: 1.0}, box.size_m)
+    mount = _mount(held)
+    held_so = ("floor", "surface") if mount == "floor" else (mount,)
+    mounted = {k: v for k, v in box.kinds.items() if category(k).mount in held_so}
+    possible = mounted or box.kinds or {UNKNOWN.name: 1.0}
+    senses = dict(possible) if box.kinds_know_size else likeliest_kind(possible, box.size_m)
     kind = max(senses, key=lambda k: (senses[k], k))
-    query = RetrievalQuery(kind, box.size_m, False, "wall" if hung else "floor", senses)
+    query = RetrievalQuery(kind, box.size_m, False, mount, senses)
     ranked = sorted(
         (
-            (m.kind_factor * float(np.exp(-size_cost(m.shape.size_m, box.size_m))), m.shape)
+            (m.kind_factor * float(np.exp(-size_cost(m.shape.size_m, box.size_m))) * _fit(box, m.shape), m.shape)
             for m in pool_for(library, query).members
         ),
         key=lambda row: (-row[0], row[1].id),
@@ -305,6 +320,10 @@ def _object(names: _Names, box: MeasuredBox, held: str, library: ShapeLibrary) -
         candidates,
         confidence=box.confidence,
     )
+
+
+def _fit(box: MeasuredBox, shape: Shape) -> float:
+    return box.fits.get(shape.id, min(box.fits.values(), default=1.0))
 
 
 def _filling(shape: Shape, box: MeasuredBox) -> Pose:
@@ -326,9 +345,9 @@ def _hung(names: _Names, opening: MeasuredOpening, wall: Plane, library: ShapeLi
     yaw = float(np.arctan2(wall.normal[1], wall.normal[0]))
     on_wall = opening.centre - (wall.normal @ opening.centre - wall.offset) * wall.normal
     shapes = library.in_category(opening.kind)
-    size = np.array([FRAME_M, opening.width_m, opening.height_m])
+    size = np.array([STANDS_OUT_M, opening.width_m, opening.height_m])
     ranked = sorted(shapes, key=lambda s: (size_cost(s.size_m[1:], size[1:]), s.id))[:KEEP]
-    centre = on_wall + wall.normal * FRAME_M / 2
+    centre = on_wall + wall.normal * STANDS_OUT_M / 2
     candidates = tuple(
         Candidate(
             s.id,

@@ -9,7 +9,7 @@ Without depth, the mesh beside them is taken.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +20,7 @@ from PIL import Image
 from diorama_core.errors import DioramaError, InputError, UnavailableError
 from diorama_core.io.bounded import megabytes, shortened
 from diorama_core.multiview.posed_photos import PosedPhoto, read_poses
+from diorama_core.scene.types import Camera
 
 CLOUD_SUFFIXES = (".ply", ".las", ".laz", ".e57")
 MESH_NAMES = ("raw.glb", "export.obj", "export_refined.obj", "textured_output.obj", "*.glb", "*.obj", "*.ply")
@@ -39,6 +40,21 @@ Up = Float[np.ndarray, "3"]
 
 
 @dataclass(frozen=True, eq=False)
+class ScanPhoto:
+    """A picture that was taken with the depth beside it."""
+
+    picture: Path
+    depth: Path
+    """Millimetres, of any size."""
+    camera: Camera
+    """In the world of the points; its intrinsics are the picture's."""
+
+    def moved(self, T_to_from: Float[np.ndarray, "4 4"]) -> ScanPhoto:
+        """The same photo in another frame: `p_to = T_to_from @ p_from`, rigid."""
+        return replace(self, camera=Camera(self.camera.intrinsics, T_to_from @ self.camera.T_world_camera))
+
+
+@dataclass(frozen=True, eq=False)
 class PointCloud:
     """Points of surfaces, in metres."""
 
@@ -46,6 +62,7 @@ class PointCloud:
     up: Up | None
     """Direction against gravity, where the format says it."""
     notes: tuple[str, ...] = ()
+    photos: tuple[ScanPhoto, ...] = ()
 
 
 def is_scan_folder(path: Path) -> bool:
@@ -76,7 +93,7 @@ def read_points(path: Path) -> PointCloud:
     if len(points) < MIN_POINTS:
         raise InputError(f"{path.name} has {len(points)} points; a room needs {MIN_POINTS} or more")
     step = -(-len(points) // MAX_POINTS)
-    return PointCloud(points[::step], cloud.up, cloud.notes)
+    return replace(cloud, points=points[::step])
 
 
 def _readers() -> Mapping[str, Callable[[Path], PointCloud]]:
@@ -133,6 +150,8 @@ def _from_e57(path: Path) -> PointCloud:
 class _Frame:
     depth: Path
     confidence: Path | None
+    picture: Path
+    """May be missing."""
 
 
 def _frames(folder: Path) -> dict[str, _Frame]:
@@ -140,11 +159,15 @@ def _frames(folder: Path) -> dict[str, _Frame]:
     found = {}
     for path in sorted((folder / "keyframes" / "depth").glob("*.png")):
         sure = folder / "keyframes" / "confidence" / path.name
-        found[path.stem] = _Frame(path, sure if sure.is_file() else None)
+        frames = folder / "keyframes"
+        pictures = [frames / name / f"{path.stem}.jpg" for name in ("corrected_images", "images")]
+        picture = next((p for p in pictures if p.is_file()), pictures[-1])
+        found[path.stem] = _Frame(path, sure if sure.is_file() else None, picture)
     for path in sorted(folder.glob("depth_*.png")):
         number = path.stem.removeprefix("depth_")
         sure = folder / f"conf_{number}.png"
-        found[f"frame_{number}"] = _Frame(path, sure if sure.is_file() else None)
+        picture = folder / f"frame_{number}.jpg"
+        found[f"frame_{number}"] = _Frame(path, sure if sure.is_file() else None, picture)
     return found
 
 
@@ -172,12 +195,19 @@ def _from_depth(folder: Path, frames: Mapping[str, _Frame]) -> PointCloud:
     used = used[:: -(-len(used) // MAX_FRAMES)]
     step = max(1, round(np.sqrt(len(used) * 256 * 192 / MAX_POINTS)))
     rows = [_points_of_frame(p, frames[Path(p.name).stem], step) for p in used]
-    return PointCloud(np.vstack(rows), poses.up, (f"{len(used)} frames with depth", *poses.notes))
+    photos = [ScanPhoto(frame.picture, frame.depth, p.camera) for p in used if (frame := frames[Path(p.name).stem])]
+    pictured = tuple(p for p in photos if p.picture.is_file())
+    return PointCloud(np.vstack(rows), poses.up, (f"{len(used)} frames with depth", *poses.notes), pictured)
+
+
+def read_depth(path: Path) -> Float[np.ndarray, "h w"]:
+    """Depth along the viewing axis in metres, from a PNG of millimetres; 0 where the sensor saw nothing."""
+    with Image.open(path, formats=("PNG",)) as opened:
+        return np.asarray(opened).astype(np.float64) / 1000.0
 
 
 def _points_of_frame(photo: PosedPhoto, frame: _Frame, step: int) -> Float[np.ndarray, "n 3"]:
-    with Image.open(frame.depth, formats=("PNG",)) as opened:
-        depth = np.asarray(opened).astype(np.float64) / 1000.0
+    depth = read_depth(frame.depth)
     good = (depth > 0.05) & (depth < MAX_DEPTH_M)
     if frame.confidence is not None:
         with Image.open(frame.confidence, formats=("PNG",)) as opened:

@@ -127,5 +127,7 @@ def _known(name: str) -> str:
 def _room_of_points(path: Path, library: str) -> Opened:
     # OpenCV and SciPy: the editor starts without them.
     from diorama_core.importing.measured_cloud import measured_cloud
+    from diorama_core.importing.scanned_kinds import with_scanned_kinds
 
-    return opened_room(measured_cloud(read_points(path)), open_library(library))
+    shapes = open_library(library)
+    return opened_room(with_scanned_kinds(measured_cloud(read_points(path)), shapes), shapes)

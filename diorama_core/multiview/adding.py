@@ -22,6 +22,7 @@ from diorama_core.library.taxonomy import broad, category
 from diorama_core.multiview.better_seen import CLEARLY_BETTER, better_seen
 from diorama_core.multiview.joining import RoomPhoto, Sighted, Track, claims, fitted_track, overlap
 from diorama_core.multiview.joint_fit import JointCuboid
+from diorama_core.multiview.mounted_walls import hangs_on_wall, seen_whole, walls_at_mounted
 from diorama_core.multiview.one_scene import acyclic, edge_in_room, filling, moved_to_room
 from diorama_core.multiview.room_pictures import room_pictures, with_pictures
 from diorama_core.multiview.rooms import (
@@ -85,8 +86,8 @@ def with_photo(
         scene: as it is now, floor at 0.
         known: photos of the scene with their cameras, and which objects are seen in them.
         new: the photo; where nothing is marked in it, what a detector finds counts.
-        movable: ids of objects that may be put elsewhere, and of planes that may get new pictures: those where the
-            program had put them.
+        movable: ids of objects and walls that may be put elsewhere, and of planes that may get new pictures: those
+            where the program had put them.
         changeable: ids of objects that may get another shape and other colours: those that have what the program gave
             them.
         library: where shapes come from.
@@ -121,11 +122,17 @@ def with_photo(
         read, own = _at_likeliest_distance(read, own, others[0][2], pairs)
     photos = (*(photo for _, _, photo in others), own)
     fitted: dict[str, JointCuboid] = {}
+    on_walls: list[JointCuboid] = []
     for box, item in claimed.items():
         if item.id in movable and sightings[item.id]:
             rows = (*sightings[item.id], (len(others), box))
-            fitted[item.id] = fitted_track(tuple(rows), photos).cuboid
+            track = fitted_track(tuple(rows), photos)
+            fitted[item.id] = track.cuboid
+            if _hangs(item, scene) and seen_whole(track.sightings(photos)):
+                on_walls.append(track.cuboid)
     scene = replace(scene, objects=tuple(filling(o, fitted[o.id]) if o.id in fitted else o for o in scene.objects))
+    if len(others) > 1:  # two photos alone do not tell how far they are apart
+        scene = replace(scene, architecture=walls_at_mounted(scene.architecture, on_walls, movable))
     shares = {
         box: share
         for box, item in claimed.items()
@@ -150,6 +157,13 @@ def with_photo(
     photo = replace(new, inputs=inputs, camera=read.posed.camera, seen=seen)
     joined = tuple(item.id for item in claimed.values())
     return Added(scene, photo, tuple(names.values()), joined, textures)
+
+
+def _hangs(item: SceneObject, scene: Scene) -> bool:
+    """Whether an object hangs on a wall by its kind, and in the scene: clocks stand on shelves, too."""
+    edge = scene.support_of(item.id)
+    on_wall = edge is not None and scene.has_plane(edge.parent) and scene.plane(edge.parent).role == "wall"
+    return hangs_on_wall(item.category) and (on_wall or item.category == "door")
 
 
 def _at_likeliest_distance(

@@ -6,7 +6,7 @@ photo, distance is not read from the size: rays from several places meet.
 
 The unknowns are x and y of the centre, the logarithms of depth, width and height, the height of the base, and the
 heading. Things that stand on the floor have their base there; things that stand along the room's axes turn only by
-quarters.
+quarters, unless many photos say otherwise.
 """
 
 from __future__ import annotations
@@ -38,8 +38,10 @@ PLACE_SIGMA_M = 0.5
 """Of the place that photos say each by itself: it decides where rays hardly cross."""
 MAX_SIGMAS = 2.5
 """So far may a size be from its kind's."""
-ODD_ANGLE_COST = 1.5
-"""Of a heading off the room's axes."""
+ODD_ANGLE_COST, ODD_OF_SQUARE_KIND_COST = 1.5, 8.0
+"""Of a heading off the room's axes, and of one of a kind that hardly ever stands so."""
+MIN_PHOTOS_OF_ODD = 4
+"""Fewer do not tell that what usually stands along the axes does not."""
 ODD_STARTS = np.radians((0.0, 30.0, 60.0, 90.0, 120.0, 150.0))
 NEAREST_M = 0.15
 SURE = (0.0, 0.0, 0.0)
@@ -70,6 +72,8 @@ class JointCuboid:
     """Everything that speaks against it, in squared sigmas."""
     log_size_sigma: tuple[float, float, float] = SURE
     """How far off the logarithms of its extents may be: depths of thin things hardly show in boxes."""
+    place_sigma_m: tuple[float, float] = (0.0, 0.0)
+    """How far off x and y of its centre may be: rays from places close together hardly cross."""
 
 
 def fit_jointly(
@@ -90,7 +94,9 @@ def fit_jointly(
         upright_m: expected height of the base, where it is not on the floor; that of the first start by default.
     """
     modes = size_modes(kind.name)
-    rows = [(mode, yaw, free) for mode in modes for yaw, free in _headings(kind, mode)]
+    odd = kind.quarter_turns_free or len(sightings) >= MIN_PHOTOS_OF_ODD
+    odd_cost = ODD_ANGLE_COST if kind.quarter_turns_free else ODD_OF_SQUARE_KIND_COST
+    rows = [(mode, yaw, free) for mode in modes for yaw, free in _headings(mode, odd=odd)]
     batch = [(mode, yaw, free, start) for mode, yaw, free in rows for start in starts]
     unknowns = np.array([[*s[:2], *mode.log_size, 0.0 if on_floor else s[2], yaw] for mode, yaw, _, s in batch])
     if not on_floor:
@@ -98,7 +104,7 @@ def fit_jointly(
     fixed = np.array([[False] * 5 + [on_floor, not free] for _, _, free, _ in batch])
     base_m = float(np.median([s[2] for s in starts])) if upright_m is None else upright_m
     problem = _Joint(sightings, [b[0] for b in batch], starts[0][:2], None if on_floor else base_m)
-    extra = np.array([mode.cost + (ODD_ANGLE_COST if free else 0.0) for mode, _, free, _ in batch])
+    extra = np.array([mode.cost + (odd_cost if free else 0.0) for mode, _, free, _ in batch])
     unknowns, costs = _minimised(problem, unknowns, fixed, FIRST_ITERATIONS)
     last = np.argsort(costs + extra, kind="stable")[:FINALISTS]
     unknowns, costs = _minimised(problem.rows(last), unknowns[last], fixed[last], ITERATIONS)
@@ -107,26 +113,24 @@ def fit_jointly(
     x, y, *log_size, base, yaw = unknowns[best]
     size = np.exp(np.array(log_size))
     row = np.array([best])
-    sigma = _size_sigma(problem.rows(last).rows(row), unknowns[row], fixed[last][row])
-    return JointCuboid(np.array([x, y, base + size[2] / 2]), float(yaw), size, float(costs[best]), sigma)
+    sigmas = _sigmas(problem.rows(last).rows(row), unknowns[row], fixed[last][row])
+    centre, log_size = np.array([x, y, base + size[2] / 2]), (sigmas[2], sigmas[3], sigmas[4])
+    return JointCuboid(centre, float(yaw), size, float(costs[best]), log_size, (sigmas[0], sigmas[1]))
 
 
-def _size_sigma(
-    problem: _Joint, unknowns: Float[np.ndarray, "1 7"], fixed: Bool[np.ndarray, "1 7"]
-) -> tuple[float, float, float]:
-    """Deviations of the logarithms of depth, width and height, from the curvature of the cost."""
+def _sigmas(problem: _Joint, unknowns: Float[np.ndarray, "1 7"], fixed: Bool[np.ndarray, "1 7"]) -> list[float]:
+    """Deviations of the place (x, y) and of the logarithms of depth, width and height, from the cost's curvature."""
     moves = STEP * np.concatenate([np.zeros((1, UNKNOWNS)), np.eye(UNKNOWNS)])
     values = problem((unknowns + moves).reshape(-1, UNKNOWNS), UNKNOWNS + 1)
     jacobian = ((values[1:] - values[0]) / STEP).T * ~fixed
     normal = jacobian.T @ jacobian + np.diag(np.where(fixed[0], 1.0, 1e-6))
-    depth, width, height = (float(v) for v in np.sqrt(np.diag(np.linalg.inv(normal))[2:5]))
-    return depth, width, height
+    return [float(v) for v in np.sqrt(np.diag(np.linalg.inv(normal))[:5])]
 
 
-def _headings(kind: Category, mode: SizeMode) -> list[tuple[float, bool]]:
+def _headings(mode: SizeMode, *, odd: bool) -> list[tuple[float, bool]]:
     """Headings to start from, and whether each may turn."""
     axes = [(0.0, False)] if mode.square else [(0.0, False), (np.pi / 2, False)]
-    return axes + [(float(a), True) for a in ODD_STARTS] if kind.quarter_turns_free else axes
+    return axes + [(float(a), True) for a in ODD_STARTS] if odd else axes
 
 
 class _Joint:

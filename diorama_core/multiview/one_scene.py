@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float
 
+from diorama_core.geometry.openings import STANDS_OUT_M
 from diorama_core.multiview.joint_fit import JointCuboid
 from diorama_core.scene.types import Architecture, Camera, Pose, Scene, SceneObject, Support, yaw_rotation
 
@@ -74,6 +75,21 @@ def filling(item: SceneObject, joint: JointCuboid) -> SceneObject:
 
     candidates = tuple(replace(c, pose=fitted(c.pose, c.shape_size_m)) for c in item.candidates)
     return replace(item, pose=fitted(item.pose, item.shape_size_m), candidates=candidates)
+
+
+def set_into_wall(item: SceneObject) -> SceneObject:
+    """A door or window with its frame in the wall: no photo tells how thick it is, only what stands out is seen."""
+
+    def thinner(pose: Pose, shape_size_m: tuple[float, float, float]) -> Pose:
+        depth = shape_size_m[0] * float(pose.scale[0])
+        if depth <= STANDS_OUT_M:
+            return pose
+        behind = pose.R_world_object[:, 0] * (depth - STANDS_OUT_M) / 2
+        scale = pose.scale * [STANDS_OUT_M / depth, 1.0, 1.0]
+        return Pose(pose.R_world_object, pose.position - behind, scale)
+
+    candidates = tuple(replace(c, pose=thinner(c.pose, c.shape_size_m)) for c in item.candidates)
+    return replace(item, pose=thinner(item.pose, item.shape_size_m), candidates=candidates)
 
 
 def in_proportion(

@@ -22,6 +22,7 @@ from diorama_core.artefacts import (
     LayoutReport,
 )
 from diorama_core.errors import InputError
+from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import category
 from diorama_core.multiview.alignment import Alignment, PhotoReading, align
@@ -29,10 +30,11 @@ from diorama_core.multiview.cut_short import edges_cut_short
 from diorama_core.multiview.joining import RoomPhoto, Sighted, Track, joined_objects
 from diorama_core.multiview.joint_fit import JointCuboid, PhotoBoxes
 from diorama_core.multiview.joint_room import SeenRoom, joint_room, with_open_doorways
-from diorama_core.multiview.one_scene import acyclic, edge_in_room, filling, moved_to_room
+from diorama_core.multiview.mounted_walls import hangs_on_wall, seen_whole, walls_at_mounted
+from diorama_core.multiview.one_scene import acyclic, edge_in_room, filling, moved_to_room, set_into_wall
 from diorama_core.multiview.room_pictures import PlacedPicture, room_pictures
 from diorama_core.perception.metrology.box_observations import gather
-from diorama_core.perception.metrology.placement import place_all
+from diorama_core.perception.metrology.placement import WALL, place_all
 from diorama_core.perception.metrology.problem import View
 from diorama_core.perception.metrology.reading import heading_and_size
 from diorama_core.pipeline.given_stages import (
@@ -166,7 +168,7 @@ def build_room(
     used = sorted({0, *best})
     built: dict[int, Built] = {}
     single = len(photos) == 1
-    rooms = (None,) * len(read) if single else _room_of_all(read, tracks, progress.part(0.45, 0.55))
+    rooms = (None,) * len(read) if single else _room_of_all(read, room_photos, tracks, progress.part(0.45, 0.55))
     for number, index in enumerate(used):
         part = progress.part(0.55 + 0.3 * number / len(used), 0.55 + 0.3 * (number + 1) / len(used))
         built[index] = built_alone(read[index], index, tracks, library, part, room=rooms[index], plane_pictures=single)
@@ -289,7 +291,9 @@ def room_alone(read: ReadPhoto, index: int, tracks: Sequence[Track], progress: P
     return moved_to_room(Scene(architecture=architecture), read.T_room_photo).architecture
 
 
-def _room_of_all(read: Sequence[ReadPhoto], tracks: Sequence[Track], progress: Progress) -> tuple[GivenRoom, ...]:
+def _room_of_all(
+    read: Sequence[ReadPhoto], alone: Sequence[RoomPhoto], tracks: Sequence[Track], progress: Progress
+) -> tuple[GivenRoom, ...]:
     """The room of all photos, for each photo in its own world."""
     seen = []
     for index, r in enumerate(read):
@@ -297,9 +301,16 @@ def _room_of_all(read: Sequence[ReadPhoto], tracks: Sequence[Track], progress: P
         objects = placed_picture(r, _ids_in(tracks, index)).objects
         seen.append(SeenRoom(room_alone(r, index, tracks, part), r.posed.camera, objects))
     standing = [_footprint(t.cuboid) for t in tracks if t.kind.mount == "floor" and len(t.boxes) > 1]
-    room, passages = with_open_doorways(joint_room(seen, standing), seen)
+    mounted = [t.cuboid for t in tracks if _hangs(t, alone) and seen_whole(t.sightings(alone))]
+    room, passages = with_open_doorways(walls_at_mounted(joint_room(seen, standing), mounted), seen)
     worlds = [moved_to_room(Scene(architecture=room), np.linalg.inv(r.T_room_photo)).architecture for r in read]
     return tuple(GivenRoom(world, marks) for world, marks in zip(worlds, passages, strict=True))
+
+
+def _hangs(track: Track, alone: Sequence[RoomPhoto]) -> bool:
+    """Whether an object hangs on a wall by its kind and by what most photos say: clocks stand on shelves, too."""
+    on_wall = sum(alone[photo].alone[box].supporter == WALL for photo, box in track.boxes)
+    return track.kind.name == "door" or (hangs_on_wall(track.kind.name) and 2 * on_wall > len(track.boxes))
 
 
 def _footprint(cuboid: JointCuboid) -> Float[np.ndarray, "4 2"]:
@@ -353,6 +364,8 @@ def _merged(
         in_main = main.object(name) if main.has_object(name) else None
         if len(track.boxes) > 1:
             item = filling(item, track.cuboid)
+        if item.category in OPENING_CATEGORIES:
+            item = set_into_wall(item)
         box = None if in_main is None else in_main.box_px
         objects.append(replace(item, box_px=box, mask_id=None if in_main is None else in_main.mask_id))
         textures |= {

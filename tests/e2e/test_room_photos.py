@@ -6,13 +6,15 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from PIL import Image
 from playwright.sync_api import expect
 
+from diorama_core.project.further_photos import save_photos
 from tests.e2e.browser import LEARN_MS, EditorPage
 from tests.e2e.conftest import StartServer, keep_picture
-from tests.multiview.two_photos import project_of, two_photos
+from tests.multiview.two_photos import project_of, two_photos, with_camera
 
 pytest.importorskip("pycolmap", reason="needs pycolmap (pip install 'diorama[photos]')")
 pytestmark = pytest.mark.browser
@@ -60,3 +62,45 @@ def test_a_photo_of_the_same_room_is_added_looked_through_and_undone(
     editor.page.keyboard.press("Control+z")
     editor.until(lambda: editor.session.scene == before, "undone in one step")
     expect(editor.page.locator('.dio .tile[data-arg="beside"]')).to_contain_text("not in the scene yet")
+
+
+def test_a_rebuild_keeps_the_other_photo_of_the_room(
+    serve: StartServer, visit: Callable[..., EditorPage], tmp_path: Path
+) -> None:
+    photos = two_photos()
+    project = project_of(photos, tmp_path / "projects" / "room")
+    boxes = {b.label.replace(" ", "_"): b.box for b in photos.second.boxes}
+    seen = tuple((name, box) for name, box in boxes.items() if photos.scene.has_object(name))
+    save_photos(project, (replace(with_camera(photos), seen=seen),))
+    editor = visit(serve(project.folder))
+    before = editor.session.scene
+    (beside,) = editor.session.further_photos
+    assert beside.camera is not None
+    editor.tab("Photo")
+    editor.page.get_by_text("Camera and floor").click()
+    field = editor.page.get_by_label("Field of view (°)")
+    field.fill(f"{np.degrees(before.camera.intrinsics.horizontal_fov_rad) + 0.4:.1f}")
+    field.press("Tab")
+    editor.button("Rebuild with this camera").click()
+    editor.until(
+        lambda: editor.session.jobs.status is None and editor.session.scene != before, "built again", LEARN_MS / 1000
+    )
+    expect(editor.page.get_by_text("Building with this camera")).to_be_hidden(timeout=LEARN_MS)
+    (again,) = editor.session.further_photos
+    scene = editor.session.scene
+    assert editor.session.document.history.current.label == "set the camera"
+    assert again is not beside
+    assert again.camera is not None, "it joined the new scene"
+    assert len(again.seen) >= 4
+    assert all(scene.has_object(name) for name, _ in again.seen)
+    tile = editor.page.locator('.dio .tile[data-arg="beside"]')
+    expect(tile).to_be_visible()
+    expect(tile).not_to_contain_text("not in the scene yet")
+    editor.settle()
+    keep_picture(editor, "room-photos-rebuilt")
+    tile.click()
+    editor.until(lambda: editor.client.view.camera.through_photo, "looked through")
+    editor.settle()
+    keep_picture(editor, "room-photos-rebuilt-through")
+    editor.page.keyboard.press("Control+z")
+    editor.until(lambda: editor.session.scene == before, "undone in one step")

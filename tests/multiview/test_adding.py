@@ -9,13 +9,18 @@ import pytest
 
 from diorama_core.artefacts import FurtherPhoto, Inputs, Photo
 from diorama_core.errors import InputError
+from diorama_core.evaluation.benchmarks.cases import recipe as recipe_of_rooms
+from diorama_core.evaluation.benchmarks.views import photographed
 from diorama_core.layout.recipes import recipe
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.multiview.adding import Added, with_photo
 from diorama_core.multiview.finding import photos_of_scene
 from diorama_core.pipeline.stages import Stages, embedded_stages
 from diorama_core.scene.edits import move
-from diorama_core.scene.types import Scene
+from diorama_core.scene.room_edits import move_plane
+from diorama_core.scene.types import Camera, Scene
+from diorama_core.synthesis.artefacts import photo_only
+from diorama_core.synthesis.splits import split_library
 from tests.multiview.two_photos import two_photos, with_camera
 
 
@@ -66,3 +71,36 @@ def test_a_photo_in_which_nothing_is_found_is_one_line() -> None:
             photos.scene, (), replace(new, camera=None), frozenset(), frozenset(), library, choose,
             lambda free: recipe("feasible", library, free),
         )  # fmt: skip
+
+
+@pytest.mark.slow
+def test_walls_that_nobody_moved_go_to_what_photos_show_on_them() -> None:
+    """A wall that was built too far away comes back to its door; one that a person moved stays."""
+    library = built_in_library()
+    views = photographed(recipe_of_rooms(3, 1, 91)[2], split_library(library, "test"), 6)
+    first = views[0].truth
+    to_first = first.camera.T_world_camera @ np.linalg.inv(views[0].camera.T_world_camera)
+    photos = [
+        FurtherPhoto(
+            f"photo {n}",
+            photo_only(v.truth),
+            Camera(first.camera.intrinsics, to_first @ v.camera.T_world_camera),
+            tuple((o.id, o.box_px) for o in v.truth.scene.objects if o.box_px is not None),
+        )
+        for n, v in enumerate(views)
+    ]
+    wall = first.scene.support_of("door_1").parent
+    true_m = first.scene.plane(wall).offset
+    scene = move_plane(first.scene, wall, 0.2)
+    known = photos_of_scene(scene, photo_only(first), tuple(photos[1:3]))
+    free = frozenset([*(o.id for o in scene.objects), *(p.id for p in scene.architecture.planes)])
+
+    def offset(movable: frozenset[str]) -> float:
+        found = with_photo(
+            scene, known, replace(photos[3], seen=()), movable, movable, library, choose,
+            lambda ids: recipe("feasible", library, ids, depth_measured=True),
+        )  # fmt: skip
+        return float(found.scene.plane(wall).offset)
+
+    assert offset(free) == pytest.approx(true_m, abs=0.1)
+    assert offset(free - {wall}) == pytest.approx(true_m - 0.2, abs=1e-9)

@@ -1,12 +1,15 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diorama_core.multiview.one_scene import acyclic, in_proportion, moved_to_room
-from diorama_core.scene.types import Support, yaw_rotation
+from diorama_core.geometry.openings import STANDS_OUT_M
+from diorama_core.multiview.one_scene import acyclic, in_proportion, moved_to_room, set_into_wall
+from diorama_core.scene.types import Pose, Support, yaw_rotation
 from tests.app.small_room import furnished_scene
 
 EXTENT = st.floats(0.1, 3.0)
@@ -42,3 +45,15 @@ def test_a_scene_moves_as_a_whole_and_back() -> None:
         np.testing.assert_allclose(moved.pose.position, T[:3, :3] @ before.pose.position + T[:3, 3])
         np.testing.assert_allclose(after.pose.position, before.pose.position, atol=1e-9)
         np.testing.assert_allclose(after.pose.R_world_object, before.pose.R_world_object, atol=1e-9)
+
+
+def test_a_windows_frame_is_in_the_wall_and_its_back_stays() -> None:
+    scene = furnished_scene()
+    item = replace(scene.objects[0], shape_size_m=(0.14, 1.0, 1.2))
+    thick = replace(item, pose=Pose(yaw_rotation(0.4), np.array([1.0, 2.0, 1.5]), np.ones(3)), candidates=())
+    thin = set_into_wall(thick)
+    front = thick.pose.R_world_object[:, 0]
+    np.testing.assert_allclose(thin.size_m, (STANDS_OUT_M, 1.0, 1.2))
+    back = [o.pose.position - front * o.size_m[0] / 2 for o in (thick, thin)]
+    np.testing.assert_allclose(*back, atol=1e-9)
+    assert set_into_wall(thin).pose.position == pytest.approx(thin.pose.position)

@@ -1,0 +1,185 @@
+"""What scanned things are: by how large they are, what they look like in the photos of the scan, which shapes their
+points lie on, and what else is in the room.
+
+Each says how likely every kind is; a thing is of the kind for which all together speak most (naive Bayes). Shapes of
+likely kinds are stretched into the thing's box and compared with its points, so that a table is no cabinet.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+from PIL import Image
+
+from diorama_core.artefacts import DetectedObject, Photo
+from diorama_core.importing.measured_room import RESTS_M, MeasuredBox, MeasuredRoom, likeliest_kind
+from diorama_core.importing.point_files import ScanPhoto, read_depth
+from diorama_core.importing.scanned_shapes import ScannedSurface
+from diorama_core.library.hyponyms import meanings
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.taxonomy import UNKNOWN, category
+from diorama_core.perception.naming import OwnNaming, own_naming
+from diorama_core.progress import Progress
+from diorama_core.retrieval.kinds_together import kinds_together
+from diorama_core.retrieval.seen_kinds import as_it_looks
+from diorama_core.scene.types import yaw_rotation
+
+LOOKS = 4
+"""Photos in which a thing is looked at."""
+AGREES_M = 0.08
+"""So near to the depth in a photo a point is seen there."""
+MIN_SEEN, MIN_SEEN_PX = 0.25, 16
+"""Share of a thing's points that a photo must show, and the least side of their box."""
+LOOKED_AT = 400
+"""Points of a thing that are projected."""
+LIKELY, MOST_KINDS = 1e-3, 12
+"""Kinds whose shapes are compared: not less likely than so many times the likeliest, and not more."""
+MISFIT_SIGMA_M = 0.02
+"""A kind whose best shape is so much farther off the points is less likely by e."""
+
+
+def with_scanned_kinds(room: MeasuredRoom, library: ShapeLibrary, *, look: bool = True) -> MeasuredRoom:
+    """The room, the kinds of its scanned boxes as likely as everything says.
+
+    Args:
+        room: boxes without points keep their kinds.
+        library: whose shapes are compared with points.
+        look: whether the room's photos are looked at.
+    """
+    scanned = [k for k, box in enumerate(room.boxes) if box.points is not None]
+    boxes = [room.boxes[k] for k in scanned]
+    naming = own_naming() if look and room.photos else None
+    seen = _looks(boxes, room.photos, naming) if naming is not None else [()] * len(boxes)
+    alone = [_alone(box, of_box) for box, of_box in zip(boxes, seen, strict=True)]
+    alone = [_with_shapes(box, kinds, library) for box, kinds in zip(boxes, alone, strict=True)]
+    together = kinds_together(alone, [_carrier(box, boxes) for box in boxes])
+    known = dict(zip(scanned, together, strict=True))
+    return replace(
+        room,
+        boxes=tuple(_fitted(box, known[k], library) if k in known else box for k, box in enumerate(room.boxes)),
+    )
+
+
+def _fitted(box: MeasuredBox, kinds: Mapping[str, float], library: ShapeLibrary) -> MeasuredBox:
+    """A box with its kinds, and its front and shapes as its points say."""
+    kind = max(kinds, key=lambda k: (kinds[k], k))
+    fits, quarters = ScannedSurface.of(box).fits(kind, library)
+    size = box.size_m if quarters % 2 == 0 else box.size_m[[1, 0, 2]]
+    R = box.R_world_box @ yaw_rotation(quarters * np.pi / 2)
+    return replace(box, kinds=kinds, kinds_know_size=True, fits=fits, R_world_box=R, size_m=size)
+
+
+def _alone(box: MeasuredBox, seen: Sequence[tuple[str, float]]) -> dict[str, float]:
+    """How likely each kind is by how frequent it is, the thing's size, and its looks."""
+    frequent = meanings(UNKNOWN.name, UNKNOWN.name)
+    usual = {kind: share * frequent[kind] for kind, share in box.kinds.items()}
+    return as_it_looks(likeliest_kind(usual, box.size_m), seen, named=False)
+
+
+def _with_shapes(box: MeasuredBox, kinds: Mapping[str, float], library: ShapeLibrary) -> dict[str, float]:
+    """How likely each kind is once its shapes were compared with the points; others fit as badly as the worst."""
+    if box.points is None:
+        return dict(kinds)
+    surface = ScannedSurface.of(box)
+    order = sorted(kinds, key=lambda kind: (-kinds[kind], kind))
+    compared = [kind for kind in order[:MOST_KINDS] if kinds[kind] >= LIKELY * kinds[order[0]]]
+    misfit = {kind: found for kind in compared if (found := surface.misfit_of_kind(kind, library)) is not None}
+    if not misfit:
+        return dict(kinds)
+    worst = max(misfit.values())
+    likely = {k: share * float(np.exp(-misfit.get(k, worst) / MISFIT_SIGMA_M)) for k, share in kinds.items()}
+    whole = sum(likely.values())
+    return {kind: value / whole for kind, value in likely.items()}
+
+
+def _carrier(box: MeasuredBox, boxes: Sequence[MeasuredBox]) -> int | None:
+    """The larger box that a box stands on."""
+    low = float(box.centre[2] - box.size_m[2] / 2)
+    below = [
+        k
+        for k, b in enumerate(boxes)
+        if b is not box
+        and np.prod(b.size_m) > np.prod(box.size_m)
+        and abs(float(b.centre[2] + b.size_m[2] / 2) - low) < RESTS_M
+        and (np.abs(b.R_world_box.T @ (box.centre - b.centre))[:2] < b.size_m[:2] / 2).all()
+    ]
+    return below[0] if below else None
+
+
+@dataclass(frozen=True, eq=False)
+class _View:
+    """A box of the photo around what it shows of a thing, and how well it shows it."""
+
+    number: int
+    box_px: tuple[float, float, float, float]
+    worth: float
+
+
+def _looks(
+    boxes: Sequence[MeasuredBox], photos: Sequence[ScanPhoto], naming: OwnNaming
+) -> list[tuple[tuple[str, float], ...]]:
+    """For every thing the kinds that it looks like, by all photos that show it best together."""
+    views: list[list[_View]] = [[] for _ in boxes]
+    for number, photo in enumerate(photos):
+        depth = read_depth(photo.depth)
+        for of_box, box in zip(views, boxes, strict=True):
+            view = _view(number, photo, depth, box)
+            if view is not None:
+                of_box.append(view)
+    best = [sorted(of_box, key=lambda v: (-v.worth, v.number))[:LOOKS] for of_box in views]
+    logs: list[dict[str, float]] = [{} for _ in boxes]
+    weights = [0.0] * len(boxes)
+    for number, photo in enumerate(photos):
+        shown = [(k, v) for k, of_box in enumerate(best) for v in of_box if v.number == number]
+        if not shown:
+            continue
+        with Image.open(photo.picture, formats=("JPEG",)) as opened:
+            rgb = np.asarray(opened.convert("RGB"))
+        named = naming.name(
+            Photo(rgb, photo.picture.name, (rgb.shape[1], rgb.shape[0])), _marks(shown, rgb), Progress()
+        )
+        for (k, view), kinds in zip(shown, named, strict=True):
+            weights[k] += view.worth
+            for kind, p in zip(kinds.kinds, kinds.probabilities, strict=True):
+                logs[k][kind] = logs[k].get(kind, 0.0) + view.worth * float(np.log(max(float(p), 1e-6)))
+    return [_mean(of_box, weight) for of_box, weight in zip(logs, weights, strict=True)]
+
+
+def _mean(logs: Mapping[str, float], weight: float) -> tuple[tuple[str, float], ...]:
+    """Probabilities whose logarithms are the weighted mean; nothing where nobody looked."""
+    if not logs:
+        return ()
+    kinds = tuple(sorted(kind for kind in logs if category(kind) is not UNKNOWN))
+    values = np.exp([logs[kind] / weight for kind in kinds])
+    return tuple(zip(kinds, (float(v) for v in values / values.sum()), strict=True))
+
+
+def _marks(shown: Sequence[tuple[int, _View]], rgb: np.ndarray) -> tuple[DetectedObject, ...]:
+    nothing = np.zeros(rgb.shape[:2], bool)
+    return tuple(
+        DetectedObject(f"thing-{k}", UNKNOWN.name, UNKNOWN.name, v.box_px, nothing, n + 1, 0.0)
+        for n, (k, v) in enumerate(shown)
+    )
+
+
+def _view(number: int, photo: ScanPhoto, depth_m: Float[np.ndarray, "h w"], box: MeasuredBox) -> _View | None:
+    """What a photo shows of a thing; None where that is too little."""
+    assert box.points is not None
+    points = box.points[:: max(1, len(box.points) // LOOKED_AT)]
+    local = photo.camera.to_camera(points)
+    k, (height, width) = photo.camera.intrinsics, depth_m.shape
+    z = np.maximum(local[:, 2], 1e-3)
+    x, y = local[:, 0] / z * k.fx + k.cx, local[:, 1] / z * k.fy + k.cy
+    inside = (local[:, 2] > 0.2) & (x >= 0) & (x < k.width) & (y >= 0) & (y < k.height)
+    columns = np.clip((x / k.width * width).astype(int), 0, width - 1)
+    rows = np.clip((y / k.height * height).astype(int), 0, height - 1)
+    seen = inside & (np.abs(depth_m[rows, columns] - local[:, 2]) < AGREES_M)
+    if seen.mean() < MIN_SEEN:
+        return None
+    x1, x2, y1, y2 = float(x[seen].min()), float(x[seen].max()), float(y[seen].min()), float(y[seen].max())
+    if min(x2 - x1, y2 - y1) < MIN_SEEN_PX:
+        return None
+    return _View(number, (x1, y1, x2, y2), float(seen.mean()))

@@ -1,0 +1,80 @@
+"""Walls stand where the things that hang on them were found.
+
+What several photos see is placed by rays that meet, within a few centimetres; a wall's line is what single photos made
+of the room's edges and of what stands before it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+import numpy as np
+
+from diorama_core.errors import EditRefused
+from diorama_core.library.taxonomy import category
+from diorama_core.multiview.joint_fit import JointCuboid, PhotoBoxes
+from diorama_core.scene.room_edits import move_plane
+from diorama_core.scene.types import Architecture, Plane, Scene, yaw_rotation
+
+REACH_M = 0.4
+"""So far may a wall be from the backs of what hangs on it."""
+MOVED_M = 0.02
+"""Less is not worth moving a wall."""
+DEEPEST_M = 0.3
+"""Deeper things tell little of where their backs are."""
+MAX_SIGMA_M = 0.1
+"""Of a thing's place across the wall."""
+BESIDE_M = 0.1
+"""How far the middle of a thing may be beyond a wall's end."""
+
+
+def walls_at_mounted(
+    room: Architecture, mounted: Sequence[JointCuboid], movable: Collection[str] | None = None
+) -> Architecture:
+    """The room, each wall moved to the middle of the backs of the things that surely hang on it.
+
+    Args:
+        room: closed; walls that cannot move without another one vanishing stay.
+        mounted: what hangs on walls, seen by two photos or more.
+        movable: ids of walls that may move; all by default. The others stay in their planes, and end where they meet
+            one that moved.
+    """
+    for wall in room.by_role("wall"):
+        if movable is not None and wall.id not in movable:
+            continue
+        gaps = [gap for thing in mounted if (gap := _gap(wall, thing, room)) is not None]
+        if not gaps or abs(float(np.median(gaps))) < MOVED_M:
+            continue
+        try:
+            room = move_plane(Scene(architecture=room), wall.id, -float(np.median(gaps))).architecture
+        except EditRefused:
+            continue  # the room is too small there for what was measured: the wall stays where photos saw it
+    return room
+
+
+def hangs_on_wall(kind: str) -> bool:
+    """Whether things of a category have their backs at a wall wherever they are."""
+    return category(kind).mount == "wall" or kind == "door"
+
+
+def seen_whole(sightings: Sequence[tuple[PhotoBoxes, int]]) -> bool:
+    """Whether two photos or more show a thing, and one of them uncut: else its usual size says where it is."""
+    return len(sightings) > 1 and any(not photo.observations.truncated[box].any() for photo, box in sightings)
+
+
+def _gap(wall: Plane, thing: JointCuboid, room: Architecture) -> float | None:
+    """From a wall into the room to the back of a thing that hangs on it; None where it hangs elsewhere."""
+    gaps = {w.id: gap for w in room.by_role("wall") if (gap := _distance(w, thing)) is not None}
+    own = gaps.get(wall.id)
+    return own if own is not None and abs(own) == min(map(abs, gaps.values())) else None
+
+
+def _distance(wall: Plane, thing: JointCuboid) -> float | None:
+    axes = np.abs(yaw_rotation(thing.yaw_rad).T @ wall.normal)
+    depth = float(axes @ thing.size_m)
+    along = np.cross([0.0, 0.0, 1.0], wall.normal)
+    span, at = wall.polygon @ along, float(thing.centre @ along)
+    gap = float(wall.normal @ thing.centre) - depth / 2 - wall.offset
+    unsure = float(np.abs(wall.normal[:2]) @ np.array(thing.place_sigma_m)) > MAX_SIGMA_M
+    beside = span.min() - BESIDE_M < at < span.max() + BESIDE_M
+    return gap if depth < DEEPEST_M and beside and not unsure and abs(gap) < REACH_M else None

@@ -1,0 +1,25 @@
+"""A furnished room as a phone scans it, made once for all tests of a run."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from diorama_core.evaluation.benchmarks.cases import furnished, recipe
+from diorama_core.library.catalogue import built_in_library
+from diorama_core.library.record import ShapeLibrary
+from diorama_core.scene.types import Scene
+from diorama_core.synthesis.scan import ScanFrame, scanned
+from diorama_core.synthesis.splits import split_library
+
+
+@cache
+def living_room() -> tuple[Scene, tuple[ScanFrame, ...]]:
+    """The room and its frames."""
+    tested = split_library(built_in_library(), "test")
+    scene = furnished(recipe(1, 1, 0)[0], tested)
+    return scene, scanned(scene, tested, 0, places=3, turns=8)
+
+
+def searched() -> ShapeLibrary:
+    """Shapes that are not in the room."""
+    return split_library(built_in_library(), "train", "validation")
