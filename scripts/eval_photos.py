@@ -2,7 +2,8 @@
 
     python scripts/eval_photos.py ../shared/photos -o built [--only im3d_1 nyu_00000] [--pictures]
 
-Writes one project a photo, `report.json`, and with --pictures `ID.png`: photo, rendering, and seen from outside.
+Writes one project a photo, `report.json`, and with --pictures `ID.png`: photo, rendering before and after the layout,
+and the scene seen from outside.
 """
 
 from __future__ import annotations
@@ -87,8 +88,9 @@ def draw(built: Built, photo: np.ndarray, library: ShapeLibrary, path: Path) -> 
     height = 480
     width = round(photo.shape[1] * height / photo.shape[0])
     views = [np.asarray(Image.fromarray(photo).resize((width, height)))]
-    for view, size in (("photo", (width, height)), ("orbit:25", (height, height))):
-        views.append(picture(built.scene, library, view=view, size=size, textures=built.textures))
+    seen = ((built.observed, "photo", width), (built.scene, "photo", width), (built.scene, "orbit:25", height))
+    for scene, view, across in seen:
+        views.append(picture(scene, library, view=view, size=(across, height), textures=built.textures))
     Image.fromarray(np.hstack(views)).save(path)
 
 
