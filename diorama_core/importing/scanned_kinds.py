@@ -12,12 +12,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
-from PIL import Image
 
 from diorama_core.artefacts import DetectedObject, Photo
+from diorama_core.errors import InputError
 from diorama_core.importing.measured_room import RESTS_M, MeasuredBox, MeasuredRoom, likeliest_kind
 from diorama_core.importing.point_files import ScanPhoto, read_depth
 from diorama_core.importing.scanned_shapes import ScannedSurface
+from diorama_core.io.bounded import read_picture
 from diorama_core.library.hyponyms import meanings
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import UNKNOWN, category
@@ -48,6 +49,9 @@ def with_scanned_kinds(room: MeasuredRoom, library: ShapeLibrary, *, look: bool 
         room: boxes without points keep their kinds.
         library: whose shapes are compared with points.
         look: whether the room's photos are looked at.
+
+    Raises:
+        InputError: a photo cannot be read.
     """
     scanned = [k for k, box in enumerate(room.boxes) if box.points is not None]
     boxes = [room.boxes[k] for k in scanned]
@@ -136,8 +140,7 @@ def _looks(
         shown = [(k, v) for k, of_box in enumerate(best) for v in of_box if v.number == number]
         if not shown:
             continue
-        with Image.open(photo.picture, formats=("JPEG",)) as opened:
-            rgb = np.asarray(opened.convert("RGB"))
+        rgb = read_picture(photo.picture, InputError)
         named = naming.name(
             Photo(rgb, photo.picture.name, (rgb.shape[1], rgb.shape[0])), _marks(shown, rgb), Progress()
         )

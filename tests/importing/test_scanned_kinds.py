@@ -1,8 +1,12 @@
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from diorama_core.errors import InputError
 from diorama_core.importing.measured_cloud import measured_cloud
 from diorama_core.importing.measured_room import MeasuredBox, MeasuredRoom, opened_room
 from diorama_core.importing.point_files import read_points
@@ -50,3 +54,11 @@ def test_boxes_without_points_keep_their_kinds() -> None:
     box = MeasuredBox("chair", {"chair": 1.0}, np.eye(3), np.array([0, 0, 0.4]), np.array([0.5, 0.5, 0.8]))
     room = MeasuredRoom((), (box,))
     assert with_scanned_kinds(room, searched()).boxes == (box,)
+
+
+def test_a_damaged_photo_is_one_clear_line(measured: MeasuredRoom, tmp_path: Path) -> None:
+    damaged = tmp_path / "frame_00001.jpg"
+    damaged.write_bytes(b"no picture")
+    photos = tuple(replace(photo, picture=damaged) for photo in measured.photos)
+    with pytest.raises(InputError, match=r"frame_00001.jpg is not a whole picture"):
+        with_scanned_kinds(replace(measured, photos=photos), searched())
