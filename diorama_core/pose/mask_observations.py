@@ -29,6 +29,8 @@ _NOISE_FLOOR = 0.03
 _FACING_STRENGTH = 0.7
 _STRETCH_SIGMA = 0.3
 _ENLARGED_SIGMA = 0.2
+_ENLARGED_SIGMA_REASONED = 0.5
+"""The same where sizes follow from a photo alone, and are those of the kind as much as of the thing."""
 _LIKELIHOOD_SIGMA = 0.15
 _LIKELIHOOD_FLOOR = 0.02
 _MISFIT_SIGMA = 0.2
@@ -89,6 +91,14 @@ class Evidence:
         """What speaks against poses whatever the picture shows: unusual headings and uneven stretching."""
         stretched = 0.5 * (limits.stretch(poses.scale) / _STRETCH_SIGMA) ** 2
         return _FACING_STRENGTH * self.facing.cost(poses.R) + stretched
+
+    def enlarged_cost(self, scale: Float[np.ndarray, "3"], limits: SizeLimits) -> float:
+        """What speaks against a shape that had to become much larger or smaller than it was made, from a photo alone.
+
+        A folded blanket that is twice as large in every direction is another thing.
+        """
+        logs = np.log(scale[~limits.thin]) if not limits.thin.all() else np.log(scale)
+        return 0.5 * (float(logs.mean()) / _ENLARGED_SIGMA_REASONED) ** 2
 
     def log_likelihood(self, error: float, scale: Float[np.ndarray, "3"], limits: SizeLimits) -> float:
         """How well one shape at its best pose explains the object, to compare shapes where depth was measured.

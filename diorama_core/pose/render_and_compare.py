@@ -276,7 +276,8 @@ class RenderAndCompare:
         best = _worth_refining(tried.scores, task.fine.facing.cost(tried.hypotheses.poses.R), self.refined)
         poses, error, score = self._chosen(task, tried, tried.hypotheses[best])
         of_retrieval, of_pose = _POWERS
-        return _Posed(tried.shape, _only(poses), error, of_retrieval * tried.liked + of_pose * score)
+        enlarged = task.fine.enlarged_cost(poses.scale[0], tried.limits)
+        return _Posed(tried.shape, _only(poses), error, of_retrieval * tried.liked + of_pose * score - enlarged)
 
     def _pose_by_depth(self, task: _Task, measured: MeasuredObject, tried: _Tried, promising: bool) -> _Posed:
         """Unlike hypotheses are refined; the best one is also tried turned by quarters in its place."""

@@ -1,0 +1,37 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diorama_core.geometry.observed import observe_among
+from diorama_core.pose.facing import Facing
+from diorama_core.pose.limits import SizeLimits
+from diorama_core.pose.mask_observations import Evidence
+from tests.pose.rooms import Room, camera_at, standing
+
+
+@pytest.fixture(scope="module")
+def evidence() -> Evidence:
+    """A chair's outline from a photo alone."""
+    room = Room(camera_at(), (standing("chair", 0.2, 2.6, 30.0),), (0,))
+    centres = np.array([c.centre for c in room.geometry.cuboids])
+    return Evidence(room.camera, observe_among(room.camera, room.objects, centres, [None], 0, 32), Facing(()), None)
+
+
+def enlarged_cost(evidence: Evidence, shape_size_m: tuple[float, float, float], scale: tuple[float, ...]) -> float:
+    limits = SizeLimits.of(shape_size_m, "blanket", np.array([0.6, 0.9, 0.15]))
+    return evidence.enlarged_cost(np.array(scale), limits)
+
+
+def test_a_folded_blanket_twice_as_large_is_less_likely_than_a_throw_of_its_size(evidence: Evidence) -> None:
+    folded = enlarged_cost(evidence, (0.34, 0.42, 0.3), (1.8, 2.2, 1.6))
+    throw = enlarged_cost(evidence, (0.7, 1.1, 0.3), (0.9, 0.85, 1.1))
+    assert throw < 0.1
+    assert folded > throw + 0.5
+
+
+def test_smaller_counts_as_larger_does_and_thickness_of_thin_things_says_nothing(evidence: Evidence) -> None:
+    assert enlarged_cost(evidence, (0.5, 0.5, 0.5), (2.0, 2.0, 2.0)) == pytest.approx(
+        enlarged_cost(evidence, (0.5, 0.5, 0.5), (0.5, 0.5, 0.5))
+    )
+    assert enlarged_cost(evidence, (1.0, 1.0, 0.01), (1.0, 1.0, 5.0)) == 0.0
