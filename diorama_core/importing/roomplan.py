@@ -187,6 +187,15 @@ def _json_outline(row: Mapping[str, Any]) -> Float[np.ndarray, "n 3"]:
     return _moved(M, local)
 
 
+def kinds_of_label(label: str) -> frozenset[str]:
+    """What a thing may be that a scan calls so; nothing where RoomPlan has no such word."""
+    return frozenset(next((kinds for word, kinds in KINDS.items() if _spoken(word) == label), ()))
+
+
+def _spoken(word: str) -> str:
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", word).lower()
+
+
 def _kinds(word: str, attributes: tuple[str, ...] = ()) -> Mapping[str, float]:
     kinds = KINDS.get(word, {"object": 1.0})
     named = [kind for a in attributes for end, kind in ATTRIBUTES.items() if kind and a.lower().endswith(end.lower())]
@@ -205,8 +214,7 @@ def _box(
     front /= length
     up = np.array([0.0, 0.0, 1.0])
     R = np.stack([front, np.cross(up, front), up], axis=1)
-    label = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", word).lower()
-    return MeasuredBox(label, kinds, R, M[:3, 3].copy(), np.maximum(size[[2, 0, 1]], 0.01), confidence)
+    return MeasuredBox(_spoken(word), kinds, R, M[:3, 3].copy(), np.maximum(size[[2, 0, 1]], 0.01), confidence)
 
 
 def _moved(M: Float[np.ndarray, "4 4"], points: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
