@@ -218,4 +218,11 @@ def test_the_document_says_what_the_api_is(client: Client) -> None:
         *("create_job", "list_jobs", "get_job", "cancel_job", "delete_job"),
         *("get_scene", "get_picture", "export_scene", "list_formats"),
     }
+    form = client.document["components"]["schemas"]["Body_create_job"]["properties"]
+    files = {
+        name
+        for name, field in form.items()
+        if any(k.get("format") == "binary" for k in (field, *field.get("anyOf", ())))
+    }
+    assert files == {"photo", "masks", "depth"}, "generators of clients take other strings for text"
     assert json.dumps(client.document).count('"#/components/schemas/Problem"') > 20
