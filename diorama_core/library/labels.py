@@ -1,7 +1,7 @@
 """What a label says a thing is: the word of the taxonomy, or the loose one, that people and data sets mean by it.
 
-"a wooden coffee table with a glass top", "chair_2", "Statue (sculpture)" and "arm chair" name a coffee table, a
-chair, a statue and an armchair: what follows "with" or "on" and what brackets hold describes, the last words before it name.
+"a wooden coffee table with a glass top", "chair_2", "Statue (sculpture)" and "arm chair" name a coffee table, a chair,
+a statue and an armchair: what follows "with" or "on" and what brackets hold describes, the last words before it name.
 Where none is known the nearest in form is taken (`near_names`), then the nearest spelling.
 """
 
