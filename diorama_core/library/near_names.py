@@ -116,7 +116,8 @@ _NEAR: dict[str, str] = {
     ),
     "box": (
         "parcel, package, bin box, cooler box, crate box, toolbox, briefcase, handbag, shopping bag, sack, packet, "
-        "tissue box, shoebox, tote, cat carrier, litter box, jewelry box, drawer box, block, cube, concrete block"
+        "tissue box, shoebox, tote, cat carrier, litter box, jewelry box, drawer box, block, cube, concrete block, "
+        "stapler, shoe, boot, slipper, sandal, trainer"
     ),
     "basket": (
         "laundry hamper, laundry bin, picnic basket, bread basket, bucket, pail, umbrella stand, creel, pram, "
