@@ -93,6 +93,12 @@ class PhotoObservations:
         smaller = scale < 0.999 * self.most / MAX_STRETCH
         return replace(self, most=np.where(smaller, scale, self.most), least=np.minimum(self.least, scale))
 
+    def at_heights(self, members: Int[np.ndarray, " m"], scale: Float[np.ndarray, " n"]) -> PhotoObservations:
+        """The same with the heights of some objects decided: the scales of all along their own up axes."""
+        least, most = self.least.copy(), self.most.copy()
+        least[members, 2] = most[members, 2] = scale[members]
+        return replace(self, least=least, most=most)
+
     def fitted(
         self,
         i: int,
@@ -287,6 +293,8 @@ def photo_observations(
     points = _outline_points(problem)
     posed = _posed_bounds_px(problem, camera)
     bounds, hidden = _pictured(problem, camera, posed)
+    if measured:  # masks and depth, to which shapes were fitted, say more than boxes
+        bounds = posed
     return PhotoObservations(
         camera=camera,
         bounds_px=bounds,

@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.artefacts import LayoutReport, PhotoDisagreement
+from diorama_core.layout.feasible.heights import joint_heights
 from diorama_core.layout.feasible.hidden_extents import ending_before_neighbours, ending_on_walls
 from diorama_core.layout.feasible.photo_observations import PhotoObservations, disagreements, photo_observations
 from diorama_core.layout.feasible.relocate import relocate
@@ -84,6 +85,8 @@ class FeasibleRecipe:
         if observations is not None and not self.sizes_reasoned:  # reasoned distances overlap for other reasons
             wanted = ending_on_walls(ending_before_neighbours(problem, observations), observations)
             observations = self._observations(wanted, scene.camera)
+        if observations is not None and self.depth_measured:
+            wanted, observations = joint_heights(wanted, observations)
         best: tuple[Problem, Program, Separation] | None = None
         for _ in range(self.attempts):
             seen = None if observations is None else observations.limited(wanted.scale)
