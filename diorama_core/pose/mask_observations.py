@@ -104,10 +104,13 @@ class Evidence:
     def log_likelihood(self, error: float, scale: Float[np.ndarray, "3"], limits: SizeLimits) -> float:
         """How well one shape at its best pose explains the object, to compare shapes where depth was measured.
 
-        Shapes are made in metres: the right one fits without being enlarged or stretched much.
+        Shapes are made in metres: the very one fits without being enlarged or stretched much. Where the library has
+        none of that size, how much exactly one that is like it was changed says little: the tails are those of a Cauchy
+        distribution.
         """
         logs = np.log(scale[~limits.thin]) if not limits.thin.all() else np.log(scale)
-        cost = 0.5 * (float(logs.mean()) / _ENLARGED_SIGMA) ** 2 + 0.5 * (float(logs.std()) / _LIKELIHOOD_SIGMA) ** 2
+        deviations = np.array([float(logs.mean()) / _ENLARGED_SIGMA, float(logs.std()) / _LIKELIHOOD_SIGMA])
+        cost = 0.5 * float(np.log1p(deviations**2).sum())
         return -_STRENGTH_WITH_DEPTH * float(np.log(error + _LIKELIHOOD_FLOOR)) - cost
 
     def confidence(self, error: float, cuboid_confidence: float) -> float:
