@@ -12,15 +12,13 @@ from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
-import open3d as o3d
 import trimesh
 from jaxtyping import Bool, Float, Int, UInt32
 from scipy.spatial import ConvexHull, QhullError
 
+from diorama_core.geometry.open3d_import import o3d
 from diorama_core.geometry.projection import NEAR_M, frustum_slack
 from diorama_core.scene.types import Camera, box_corners
-
-_OPEN3D: Any = o3d  # its stubs do not know that arrays are taken for tensors
 
 _MIN_EXTENT_M = 1e-4
 _HULL_DIRECTIONS = 48
@@ -92,21 +90,26 @@ class Hits:
 
 
 class ShapeCaster:
-    """A mesh prepared for rays, with the corners and edges of its (slightly simplified) convex hull."""
+    """A mesh prepared for rays."""
 
     def __init__(self, mesh: trimesh.Trimesh) -> None:
         vertices = np.asarray(mesh.vertices, dtype=np.float64)
         extent = np.ptp(vertices, axis=0) if len(vertices) else np.ones(3)
         self.size_m: Float[np.ndarray, "3"] = np.maximum(extent, _MIN_EXTENT_M)
-        self.hull_points, self.hull_edges = _hull(vertices, self.size_m)
-        self._scene: Any = _OPEN3D.t.geometry.RaycastingScene(nthreads=1)
+        self._vertices = vertices
+        self._scene: Any = o3d.t.geometry.RaycastingScene(nthreads=1)
         corners = vertices if len(mesh.faces) else np.zeros((3, 3))
         triangles = mesh.faces if len(mesh.faces) else [[0, 1, 2]]
         self._scene.add_triangles(np.asarray(corners, dtype=np.float32), np.asarray(triangles, dtype=np.uint32))
         self._cast(np.array([[9.0, 9.0, 9.0, 1.0, 0.0, 0.0]], np.float32))  # builds the tree here, not under threads
 
+    @cached_property
+    def hull(self) -> tuple[Float[np.ndarray, "h 3"], Int[np.ndarray, "e 2"]]:
+        """Corners and edges of the (slightly simplified) convex hull."""
+        return _hull(self._vertices, self.size_m)
+
     def _cast(self, rays: Float[np.ndarray, "n 6"]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        answer = self._scene.cast_rays(_OPEN3D.core.Tensor(rays), nthreads=1)
+        answer = self._scene.cast_rays(o3d.core.Tensor(rays), nthreads=1)
         return answer["t_hit"].numpy(), answer["primitive_normals"].numpy(), answer["primitive_ids"].numpy()
 
     def cast(
@@ -126,8 +129,8 @@ class ShapeCaster:
 
     def bounds_px(self, camera: Camera, poses: PoseBatch) -> Float[np.ndarray, "p 4"]:
         """Boxes x1, y1, x2, y2 of the posed shape in the photo, clipped to it; NaN where it is out of sight."""
-        points = camera.to_camera(poses.apply(self.hull_points))
-        return clipped_bounds(camera, points, self.hull_edges)
+        corners, edges = self.hull
+        return clipped_bounds(camera, camera.to_camera(poses.apply(corners)), edges)
 
 
 @cache

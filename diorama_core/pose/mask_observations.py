@@ -49,13 +49,20 @@ class Evidence:
 
     def errors(self, caster: ShapeCaster, poses: PoseBatch) -> Float[np.ndarray, "p"]:
         """0 (agrees entirely) to 1: weighted disagreement of silhouette, box, depth and normals."""
-        hits = caster.cast(self.seen.origin_world, self.seen.directions_world, poses)
+        return self.errors_of(caster, self.hits(caster, poses))
+
+    def hits(self, caster: ShapeCaster, poses: PoseBatch) -> Hits:
+        """What the rays of the object's window meet of a shape under every pose."""
+        return caster.cast(self.seen.origin_world, self.seen.directions_world, poses)
+
+    def errors_of(self, caster: ShapeCaster, hits: Hits) -> Float[np.ndarray, "p"]:
+        """As `errors`, of a shape that the rays have met."""
         if self.surface is not None:
             weights = [_SILHOUETTE_WEIGHT_WITH_DEPTH * (0.3 + 0.7 * self.seen.mask_trust), _DEPTH_WEIGHT]
             terms = [self._outline_with_depth(self.surface, hits), self.surface.agreement(hits)]
         else:
             weights = [_SILHOUETTE_WEIGHT * self.seen.mask_trust, _BOX_WEIGHT]
-            boxes = box_iou(caster.bounds_px(self.camera, poses), np.asarray(self.seen.box))
+            boxes = box_iou(caster.bounds_px(self.camera, hits.poses), np.asarray(self.seen.box))
             terms = [self.seen.agreement(hits.covered), np.nan_to_num(boxes)]
         agreement = sum(w * t for w, t in zip(weights, terms, strict=True)) / sum(weights)
         return np.clip(1.0 - np.nan_to_num(agreement), 0.0, 1.0)

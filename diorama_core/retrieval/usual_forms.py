@@ -7,17 +7,17 @@ are rough counts in homes and offices.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import cv2
 import numpy as np
 from jaxtyping import UInt8
 
 from diorama_core.geometry.shape_appearance import ShapeAppearance
-from diorama_core.io.cache import LruCache
 from diorama_core.library.form import FULL_RECTANGLE
 from diorama_core.library.record import Shape
 from diorama_core.library.taxonomy import with_kin
+from diorama_core.retrieval.feature_cache import cached_features
 from diorama_core.retrieval.seen_forms import shape_form
 
 _SEAT = {"four legs": 0.75, "sled": 0.08, "five-star": 0.07, "pedestal": 0.06, "plinth": 0.02}
@@ -51,12 +51,15 @@ _RARE = 0.02
 _SAYS = 0.08
 """Power of the share that multiplies a retrieval score: scores of shapes that fit well and badly differ little."""
 
-_OUTLINE_OF: LruCache[str, str] = LruCache(4096)
-_SIDE_OF: LruCache[str, str] = LruCache(4096)
+OUTLINE_FEATURES, SIDE_FEATURES = "outline-1", "side-1"
+"""Cache keys; to be changed with what is measured under them."""
 
 
 def usual_form_factor(shape: Shape, appearance: ShapeAppearance) -> float:
-    """What a shape's score is multiplied by: 1 for the usual base, top or outline of its kind, less for rare ones."""
+    """What a shape's score is multiplied by: 1 for the usual base, top or outline of its kind, less for rare ones.
+
+    What has to be drawn for it is kept on disk.
+    """
     if shape.category in _FLAT_KINDS:
         return float((_FLAT[_outline(shape, appearance)] / max(_FLAT.values())) ** _SAYS)
     bases = next((shares for kinds, shares in _BASES if shape.category in kinds), None)
@@ -78,24 +81,28 @@ def _form(shape: Shape, appearance: ShapeAppearance) -> tuple[str, str]:
 def _outline(shape: Shape, appearance: ShapeAppearance) -> str:
     """From the front: whether it is one piece that fills the rectangle around it."""
 
-    def found() -> str:
+    def is_rectangular() -> bool:
         outline = cv2.convexHull(np.ascontiguousarray(appearance.vertices[:, 1:], np.float32))
         around = max(float(np.prod(np.ptp(outline[:, 0], axis=0))), 1e-9)
-        full = cv2.contourArea(outline) >= FULL_RECTANGLE * around and _pieces(appearance) == 1
-        return "rectangular" if full else "other"
+        return cv2.contourArea(outline) >= FULL_RECTANGLE * around and _pieces(appearance) == 1
 
-    return _OUTLINE_OF.get(shape.content_hash, found)
+    return "rectangular" if _kept(OUTLINE_FEATURES, shape, is_rectangular) else "other"
 
 
 def _side(shape: Shape, appearance: ShapeAppearance) -> str:
     """Whether a seat is seen through from the side."""
 
-    def found() -> str:
+    def is_closed() -> bool:
         drawn = _drawn(appearance, [0, 2])
         around = cv2.contourArea(cv2.convexHull(np.argwhere(drawn).astype(np.int32)))
-        return "closed" if float(drawn.sum()) >= _CLOSED * around else "open"
+        return float(drawn.sum()) >= _CLOSED * around
 
-    return _SIDE_OF.get(shape.content_hash, found)
+    return "closed" if _kept(SIDE_FEATURES, shape, is_closed) else "open"
+
+
+def _kept(kind: str, shape: Shape, make: Callable[[], bool]) -> bool:
+    """An answer about a shape: from memory, from disk, or found now."""
+    return bool(cached_features(kind, shape, lambda: np.array([[float(make())]]))[0, 0])
 
 
 def _pieces(appearance: ShapeAppearance) -> int:
