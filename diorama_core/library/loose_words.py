@@ -71,7 +71,7 @@ MEANINGS: Mapping[str, Mapping[str, float]] = {
     "clock": {"clock": 0.75, "mantel clock": 0.2, "grandfather clock": 0.05},
     "curtain": {"curtain": 0.95, "blinds": 0.05},
     "plant": {"plant": 0.95, "hanging plant": 0.05},
-    "flower": {"plant": 0.75, "vase": 0.25},
+    "flower": {"plant": 0.85, "vase": 0.15},
     "flowerpot": {"plant": 0.8, "vase": 0.2},
     "pot": {"plant": 0.5, "cooking pot": 0.4, "vase": 0.1},
     "box": {"box": 0.88, "basket": 0.04, "chest": 0.04, "suitcase": 0.02, "books": 0.02},
