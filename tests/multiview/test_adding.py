@@ -80,7 +80,7 @@ THERE = ("door_1", "window_1", "picture_1", "desk_1", "chair_1")
 
 
 class AsItIs:
-    """The layout that leaves everything where it was put: what it does to rooms is tested above and in its own tests."""
+    """The layout that leaves everything where it was put: what it does to rooms is tested elsewhere."""
 
     def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
         return scene, LayoutReport("as it is", {}, {}, 0.0)
