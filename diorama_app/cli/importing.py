@@ -48,7 +48,8 @@ def _import(a: argparse.Namespace) -> None:
     with progress_bar() as progress:
         part = progress if a.photo is None else progress.part(0.0, 0.2)
         imported = imported_apart(a.file, a.library, part)
-        opened, warnings = imported.opened, ()
+        opened = imported.opened
+        warnings: tuple[str, ...] = ()
         if a.photo is not None:
             opened, warnings = _with_photo(a, imported, progress.part(0.2, 1.0))
     project = Project.create(a.output, name=a.file.stem)

@@ -247,7 +247,9 @@ def create_app(queue: JobQueue, visitors: Visitors) -> FastAPI:
         visitors: who may ask.
     """
     # No pages with documentation: those that FastAPI offers load their scripts from other servers.
-    app = _Application(title="Diorama", version="1", description=ABOUT, docs_url=None, redoc_url=None)
+    app = FastAPI(title="Diorama", version="1", description=ABOUT, docs_url=None, redoc_url=None)
+    described = app.openapi
+    app.openapi = lambda: _with_files(described())
     app.state.queue = queue
     app.include_router(router)
     app.add_middleware(Guard, visitors=visitors)
@@ -256,18 +258,14 @@ def create_app(queue: JobQueue, visitors: Visitors) -> FastAPI:
     return app
 
 
-class _Application(FastAPI):
-    """With files that generators of clients know as such."""
-
-    def openapi(self) -> dict[str, Any]:
-        """The document; files say `format: binary`, too: without it generators take them for text."""
-        document = super().openapi()
-        for form in document["components"]["schemas"].values():
-            for field in form.get("properties", {}).values():
-                for kind in (field, *field.get("anyOf", ())):
-                    if "contentMediaType" in kind:
-                        kind["format"] = "binary"
-        return document
+def _with_files(document: dict[str, Any]) -> dict[str, Any]:
+    """The document; files say `format: binary`, too: without it generators of clients take them for text."""
+    for form in document["components"]["schemas"].values():
+        for field in form.get("properties", {}).values():
+            for kind in (field, *field.get("anyOf", ())):
+                if "contentMediaType" in kind:
+                    kind["format"] = "binary"
+    return document
 
 
 def _told(request: Request, error: Exception) -> Response:

@@ -311,7 +311,8 @@ def _spacing(points: Float[np.ndarray, "n 3"]) -> float:
     if len(points) < 2:
         return 0.0
     asked = points[:: max(1, len(points) // 2000)]
-    return float(np.median(cKDTree(points).query(asked, k=2)[0][:, 1]))
+    distances, _ = cKDTree(points).query(asked, k=[2])
+    return float(np.median(distances))
 
 
 def _middle_extent(points: Float[np.ndarray, "n 3"]) -> float:

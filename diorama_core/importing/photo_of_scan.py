@@ -146,7 +146,9 @@ def _told(item: DetectedObject, scanned: SceneObject | None) -> LabelledBox:
     """A marked thing; what nobody named is called as the scan calls it: a loose word that its picture explains."""
     if scanned is None or item.category != UNKNOWN.name:
         return LabelledBox(item.box, item.category, item.label)
-    return LabelledBox(item.box, resolve(scanned.label).category.name, scanned.label)
+    understood = resolve(scanned.label)
+    word = scanned.label if understood.exact else scanned.category  # "storage" is nobody's word for a thing
+    return LabelledBox(item.box, resolve(word).category.name, word)
 
 
 def _filling(item: SceneObject, measured: SceneObject) -> SceneObject:

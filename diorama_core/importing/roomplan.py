@@ -133,9 +133,9 @@ def _from_json(path: Path) -> MeasuredRoom | None:
         ) from error
     outline, floor_m = _joined([Polygon(f[:, :2]) for f in floors], [float(f[:, 2].mean()) for f in floors])
     unsure = sum(box.confidence < CONFIDENCE["medium"] for box in boxes)
-    notes = (f"RoomPlan was unsure of {unsure} of {len(boxes)} objects",) if unsure else ()
     curved = sum(row.get("curve") is not None for row in names["walls"])
-    notes += (f"{curved} curved walls are flat from end to end",) if curved else ()
+    notes = [f"RoomPlan was unsure of {unsure} of {len(boxes)} objects"] if unsure else []
+    notes += [f"{curved} curved walls are flat from end to end"] if curved else []
     return MeasuredRoom(walls, boxes, openings, outline, floor_m, (*notes, *left_out))
 
 
