@@ -52,6 +52,12 @@ def plain_word(label: str) -> str | None:
     return None if slip is UNKNOWN else slip.name
 
 
+def names_a_kind(label: str) -> bool:
+    """Whether the plain word of a label is a name of one kind, and not only loosely used of several: "stand"."""
+    word = plain_word(label)
+    return word is not None and resolve(word).exact and resolve(word).category is not UNKNOWN
+
+
 def _category_of(word: str) -> taxonomy.Category:
     named = resolve(word)
     if named.exact or word not in MEANINGS:

@@ -86,7 +86,7 @@ MEANINGS: Mapping[str, Mapping[str, float]] = {
     "cup": {"cup": 0.88, "glass": 0.12},
     "bowl": {"bowl": 0.92, "plate": 0.04, "tray": 0.04},
     "dish": {"plate": 0.6, "bowl": 0.35, "tray": 0.05},
-    "vase": {"vase": 0.93, "jar": 0.05, "plant": 0.02},
+    "vase": {"vase": 0.95, "jar": 0.05},
     "phone": {"telephone": 0.5, "smartphone": 0.5},
     "keyboard": {"keyboard": 0.95, "piano": 0.05},
     "player": {"record player": 1.0},

@@ -107,9 +107,12 @@ _NEAR: dict[str, str] = {
     ),
     "cup": (
         "beaker, chalice, pencil holder, pen holder, toothbrush holder, soap dish, soap, egg cup, shot glass, "
-        "candle holder, salt shaker, pepper mill, thermos, can, tin can"
+        "candle holder, salt shaker, pepper mill, can, tin can"
     ),
-    "bottle": "flagon, water bottle, soap dispenser, shampoo, lotion, spray, beer bottle, perfume, ketchup, jerrycan",
+    "bottle": (
+        "flagon, thermos, vacuum flask, water bottle, soap dispenser, shampoo, lotion, spray, beer bottle, perfume, "
+        "ketchup, jerrycan"
+    ),
     "clock": (
         "timepiece, wristwatch, watch, thermostat, smoke detector, cuckoo clock, sundial, metronome, dartboard, "
         "light switch, switch, socket, power outlet, outlet, fire alarm, wall plaque"

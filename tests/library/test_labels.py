@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from diorama_core.library.hyponyms import is_named, meanings
-from diorama_core.library.labels import plain_word, understand_label
+from diorama_core.library.labels import names_a_kind, plain_word, understand_label
 from diorama_core.library.taxonomy import UNKNOWN
 
 VOCABULARY = {
@@ -70,7 +70,7 @@ VOCABULARY = {
     "books": "book, books, magazine, newspaper, notebook, binder, pile of books, stack of books",
     "cup": "cup, mug, Coffee cup, cup of coffee",
     "glass": "glass, glasses, wineglass, wine glass",
-    "bottle": "bottle, wine bottle, water bottle",
+    "bottle": "bottle, wine bottle, water bottle, thermos",
     "bowl": "bowl, bowls",
     "plate": "plate, dishes",
     "refrigerator": "refrigerator, fridge, mini fridge, water cooler",
@@ -133,3 +133,8 @@ def test_only_the_words_that_name_the_thing_count(label, word) -> None:
 def test_slips_are_understood_and_near_names_come_first() -> None:
     assert plain_word("armchiar") == "armchair"
     assert plain_word("tablecloth") == "blanket"
+
+
+def test_names_of_kinds_and_words_of_several() -> None:
+    assert all(map(names_a_kind, ("chair", "couch", "a red armchair", "table")))
+    assert not any(map(names_a_kind, ("stand", "seat", "furniture", "object", "???")))
