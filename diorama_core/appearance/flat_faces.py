@@ -29,10 +29,13 @@ FACES: Mapping[str, tuple[tuple[str, ...], TextureLayout]] = {
     **dict.fromkeys(("whiteboard", "bulletin board", "curtain", "blinds"), ((MAIN,), "front")),
     "pillow": ((MAIN,), "front"),
     **dict.fromkeys(("rug", "bath mat", "yoga mat"), ((MAIN,), "top")),
-    "door": ((MAIN, "pane"), "front"),
+    "door": ((MAIN, "pane", "metal"), "front"),
     "window": (("pane",), "front"),
 }
-"""By category: roles of the slots that have the face (or the main slot), and which way it faces."""
+"""By category: roles of the slots that have the face (or the main slot), and which way it faces.
+
+A door's handle wears what the photo shows in its place, or there would be two: one in the picture and one before it.
+"""
 NOT_RECTANGULAR = frozenset({"pillow"})
 """Of their rectangle only what their mask holds is theirs."""
 COVERS = ("leather", "paint", "fabric", "paper", "material")

@@ -15,6 +15,7 @@ from jaxtyping import Bool, Float32, UInt8
 from diorama_core.appearance.flat_faces import Face, faces_of
 from diorama_core.appearance.irradiance import irradiance_map
 from diorama_core.appearance.light import SHINING, estimated_light
+from diorama_core.appearance.room_cues import toward_window, wall_shade
 from diorama_core.appearance.sets import SETS, shared_materials
 from diorama_core.appearance.surface_materials import ROUGHNESS, SlotPixels, appearance_of, shade_of, slot_pixels
 from diorama_core.appearance.surface_view import SurfaceView, surface_view
@@ -85,7 +86,8 @@ def photo_appearance(
         lambda item: _seen(item, _parts(library, item), rgb, found[item.id], objects, camera),
         [item for item in scene.objects if item.id in found],
     )
-    light = estimated_light([shade_of(s.view, p, rgb) for s in seen if s.view is not None for p in s.pixels])
+    shades = [shade_of(s.view, p, rgb) for s in seen if s.view is not None for p in s.pixels]
+    light = estimated_light(shades, wall_shade(rgb, objects, scene), toward_window(rgb, objects, scene))
     red, green, blue = (float(c) / max(illuminant_rgb) for c in illuminant_rgb)
     light = replace(light, colour=(red, green, blue))
     falls = irradiance_map(replace(scene, light=light), scene.camera, library)

@@ -13,7 +13,7 @@ from diorama_core.appearance.light import Shade
 from diorama_core.appearance.plainness import shows_plain
 from diorama_core.appearance.surface_view import SurfaceView
 from diorama_core.appearance.texture_example import Example, best_example, tileable
-from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
+from diorama_core.io.srgb import linear_to_srgb, luminance, srgb_to_linear
 from diorama_core.library.slots import Role, Slot
 
 READ_ROLES: frozenset[Role] = frozenset(
@@ -171,15 +171,15 @@ def _is_near(difference: np.ndarray) -> np.ndarray:
 
 def shade_of(view: SurfaceView, pixels: SlotPixels, rgb: UInt8[np.ndarray, "h w 3"]) -> Shade:
     """How bright the slot is at each of its normals."""
-    linear = srgb_to_linear(view.of(rgb)[pixels.near] / 255.0) @ np.array([0.2126, 0.7152, 0.0722])
+    linear = luminance(srgb_to_linear(view.of(rgb)[pixels.near] / 255.0))
     cells, label = np.unique(np.round(view.normals_world[pixels.near] / NORMAL_CELL), axis=0, return_inverse=True)
     count = np.bincount(label.ravel(), minlength=len(cells))
     chosen = [k for k in range(len(cells)) if count[k] >= MIN_FACE_PIXELS]
     of = [label.ravel() == k for k in chosen]
     normals = np.array([view.normals_world[pixels.near][m].mean(axis=0) for m in of]).reshape(-1, 3)
-    luminance = np.array([max(float(np.median(linear[m])), 1e-4) for m in of])
+    brightness = np.array([max(float(np.median(linear[m])), 1e-4) for m in of])
     weight = np.array([float(m.mean()) for m in of])
-    return Shade(normals, luminance, weight)
+    return Shade(normals, brightness, weight)
 
 
 def appearance_of(
