@@ -20,7 +20,7 @@ def wall() -> World:
         vertices=vertices,
         faces=np.array([[0, 1, 2], [0, 2, 3]], np.int32),
         normals=np.tile(np.array([0, -1, 0], np.float32), (4, 1)),
-        material=Material(texture=CHECKS),
+        material=Material(colour=(1.0, 1.0, 1.0), texture=CHECKS),
         uv=np.array([[0, 0], [4, 0], [4, 4], [0, 4]], np.float32),
     )
     return World([Placed((surface,), np.eye(4), 0)])
