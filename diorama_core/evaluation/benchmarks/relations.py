@@ -132,11 +132,11 @@ def run(
 def costs_table(model: str, asked: Sequence[Asked]) -> Table:
     """Means over pictures of what the questions took, beside the paper's."""
     columns = (
-        Column("calls ↓", ".1f"),
-        Column("tokens ↓", ".0f"),
-        Column("seconds ↓", ".1f"),
-        Column("cost ↓", ".4f"),
-        Column("unusable replies ↓", ".2f"),
+        Column("calls", ".1f", "↓"),
+        Column("tokens", ".0f", "↓"),
+        Column("seconds", ".1f", "↓"),
+        Column("cost", ".4f", "↓"),
+        Column("unusable replies", ".2f", "↓"),
     )
     by_question = {q: [a for a in asked if a.question == q] for q in (WHAT_IS_THERE, WHAT_HOLDS_WHAT)}
     means = {q: _means(of_one) for q, of_one in by_question.items() if of_one}

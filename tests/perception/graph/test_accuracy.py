@@ -74,11 +74,11 @@ def test_a_language_model_s_times_and_costs_are_rows_of_their_own() -> None:
     first, second, both = (
         costs.row(name) for name in (relations_bench.WHAT_IS_THERE, relations_bench.WHAT_HOLDS_WHAT, "both")
     )
-    assert (first["calls ↓"], first["unusable replies ↓"]) == (2.0, 1.0), "the first reply was no JSON"
-    assert (second["calls ↓"], second["unusable replies ↓"]) == (2.0, 0.0), "two votes"
-    assert both["tokens ↓"] == pytest.approx(4 * 1050)
-    assert both["cost ↓"] == pytest.approx(4 * (1000 * 2.0 + 50 * 10.0) / 1e6)
-    assert isinstance(both["seconds ↓"], float)
-    assert both["seconds ↓"] > 0
+    assert (first["calls"], first["unusable replies"]) == (2.0, 1.0), "the first reply was no JSON"
+    assert (second["calls"], second["unusable replies"]) == (2.0, 0.0), "two votes"
+    assert both["tokens"] == pytest.approx(4 * 1050)
+    assert both["cost"] == pytest.approx(4 * (1000 * 2.0 + 50 * 10.0) / 1e6)
+    assert isinstance(both["seconds"], float)
+    assert both["seconds"] > 0
     free = relations_bench.costs_table("stub", [replace(a, cost=None) for a in bench.asked])
-    assert free.row("both")["cost ↓"] is None, "without prices there is no cost"
+    assert free.row("both")["cost"] is None, "without prices there is no cost"
