@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.artefacts import FurtherPhoto, Inputs, LayoutReport, Photo
+from diorama_core.artefacts import FurtherPhoto, Inputs, Photo
 from diorama_core.errors import InputError
 from diorama_core.evaluation.benchmarks.cases import recipe as recipe_of_rooms
 from diorama_core.evaluation.benchmarks.views import RoomView, photographed
@@ -16,14 +16,12 @@ from diorama_core.library.catalogue import built_in_library
 from diorama_core.multiview.adding import Added, with_photo
 from diorama_core.multiview.finding import photos_of_scene
 from diorama_core.pipeline.stages import Stages, embedded_stages
-from diorama_core.progress import Progress
-from diorama_core.protocols import Preview
 from diorama_core.scene.edits import move, remove
 from diorama_core.scene.room_edits import move_plane
 from diorama_core.scene.types import Camera, Scene
 from diorama_core.synthesis.artefacts import photo_only
 from diorama_core.synthesis.splits import split_library
-from tests.multiview.two_photos import two_photos, with_camera
+from tests.multiview.two_photos import AsItIs, two_photos, with_camera
 
 
 def choose(inputs: Inputs) -> Stages:
@@ -77,13 +75,6 @@ def test_a_photo_in_which_nothing_is_found_is_one_line() -> None:
 
 THERE = ("door_1", "window_1", "picture_1", "desk_1", "chair_1")
 """What is marked in the photos of the room, and in its scene: enough to tell where they were taken."""
-
-
-class AsItIs:
-    """The layout that leaves everything where it was put: what it does to rooms is tested elsewhere."""
-
-    def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
-        return scene, LayoutReport("as it is", {}, {}, 0.0)
 
 
 def marked(view: RoomView, name: str, camera: Camera) -> FurtherPhoto:
