@@ -57,6 +57,14 @@ def test_every_variant_can_be_built_in_its_size_and_is_found_by_its_id(design) -
             assert np.ptp(mesh_of(built(made)).vertices, axis=0) == pytest.approx(made.size_m, abs=1e-6)
 
 
+@pytest.mark.parametrize("end", [0, 1], ids=["fewest", "most"])
+def test_designs_with_the_fewest_and_the_most_of_everything_can_be_built(end: int) -> None:
+    """Counts are fitted one after another, so that a stand may lose its drawers and its shelves."""
+    for design in FAMILIES:
+        counts = {p.name: int(p.limits[end]) for p in parameters(design.id) if p.is_count}
+        assert design.builder(design.size_m, **{**design.options, **counts}), design.id
+
+
 def test_a_longer_table_has_legs_as_thick_as_before() -> None:
     table = next(d for d in DESIGNS.values() if d.builder.__name__ == "leg_table" and "outline" not in d.options)
     longer = made_to_measure(table, np.array(table.size_m) * (1, 1.5, 1), {})
