@@ -57,12 +57,12 @@ def test_every_variant_can_be_built_in_its_size_and_is_found_by_its_id(design) -
             assert np.ptp(mesh_of(built(made)).vertices, axis=0) == pytest.approx(made.size_m, abs=1e-6)
 
 
-@pytest.mark.parametrize("end", [0, 1], ids=["fewest", "most"])
-def test_designs_with_the_fewest_and_the_most_of_everything_can_be_built(end: int) -> None:
+def test_designs_with_nothing_of_what_they_have_several_of_can_be_built() -> None:
     """Counts are fitted one after another, so that a stand may lose its drawers and its shelves."""
     for design in FAMILIES:
-        counts = {p.name: int(p.limits[end]) for p in parameters(design.id) if p.is_count}
-        assert design.builder(design.size_m, **{**design.options, **counts}), design.id
+        none = {p.name: 0 for p in parameters(design.id) if p.is_count and p.limits[0] == 0}
+        if len(none) > 1:
+            assert design.builder(design.size_m, **{**design.options, **none}), design.id
 
 
 def test_a_longer_table_has_legs_as_thick_as_before() -> None:
