@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from diorama_core.library.taxonomy import PORTABLE, category, with_kin
+from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, category, with_kin
 
 
 @dataclass(frozen=True)
@@ -73,9 +73,9 @@ SELDOM_CARRIED, HARDLY_CARRIED = 0.3, 0.08
 
 
 def often_carried(kind: str, carrier: str) -> float:
-    """How many times more often a kind lies on a carrier than it is met at all; 1 for carriers that no row names."""
+    """How many times more often a kind lies on a carrier than it is met at all; 1 where nothing is known of either."""
     row = next((row for row in CARRIED if carrier in row.carriers), None)
-    if row is None:
+    if row is None or kind == UNKNOWN.name:
         return 1.0
     lies = category(kind).mount == "surface" or kind in PORTABLE
     return row.kinds.get(kind, SELDOM_CARRIED if lies else HARDLY_CARRIED)

@@ -31,4 +31,4 @@ def test_how_often_kinds_lie_on_carriers() -> None:
     assert often_carried("keyboard", "desk") > often_carried("keyboard", "table") > often_carried("wardrobe", "table")
     assert often_carried("vase", "night stand") > 1 > often_carried("vase", "bed")
     assert often_carried("heater", "bed") > often_carried("sofa", "bed")
-    assert often_carried("vase", "door") == 1.0
+    assert often_carried("vase", "door") == often_carried("object", "bed") == 1.0

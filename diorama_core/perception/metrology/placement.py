@@ -330,6 +330,8 @@ def _unlikely_parent_cost(category: Category, parent: Category) -> float:
     if parent is UNKNOWN:
         return 0.5
     carries = 0.0 if parent.supports_objects else 4.0
+    if category is UNKNOWN:
+        return carries
     return carries + 2.0 * _COMPANY_TRUST * float(np.log(max(_USUAL / often_carried(category.name, parent.name), 1.0)))
 
 
