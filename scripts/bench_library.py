@@ -1,6 +1,7 @@
 """What the library's parts cost, and how that grows with the number of shapes.
 
 python scripts/bench_library.py [--sizes 1000 10000 60000 100000] [--models DIR] [--built-in] [--index] [--json FILE]
+python scripts/bench_library.py --index-sizes 10000 100000 1000000      # LanceDB alone: time, memory, recall
 
 Large libraries are synthetic: random records with captions, and random unit features of 512 numbers. Times are those of
 the wall clock, the best of several for things that are quick; the processor's own seconds stand beside them,
@@ -12,6 +13,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import resource
 import sys
 import tempfile
 import time
@@ -29,12 +31,14 @@ from diorama_core.library.ingest.sink import Ingested
 from diorama_core.library.record import Shape
 from diorama_core.library.search import find
 from diorama_core.library.store import StoredLibrary
-from diorama_core.library.store.features import FeatureMatrix
+from diorama_core.library.store.features import INDEX_FOLDER, FeatureMatrix
 from diorama_core.library.store.vectors import LanceIndex
 from diorama_core.render.templates import PAPER_GRID, render_templates
 
 WIDTH = 512
 NEAREST = 50
+QUERIES = 100
+"""Asked of an index."""
 WORDS = (
     "oak walnut pine white black grey blue green brass steel leather linen velvet round square tall low modern rustic "
     "industrial slatted padded panelled turned tapered ribbed curved folding stacking buttoned glazed drawers legs"
@@ -65,6 +69,7 @@ def main() -> int:
         "--built-in", action="store_true", help="also build the built-in library from nothing (minutes)"
     )
     parser.add_argument("--index", action="store_true", help="also make a LanceDB index at the greatest size (minutes)")
+    parser.add_argument("--index-sizes", type=int, nargs="+", metavar="N", help="measure only features, at these sizes")
     parser.add_argument("--json", type=Path, metavar="FILE")
     arguments = parser.parse_args()
     rows: list[Row] = []
@@ -75,22 +80,31 @@ def main() -> int:
         sys.stdout.flush()
 
     sys.stdout.write(f"{'':<46} {'shapes':>9}  {'wall':>10}  {'processor':>10}\n")
-    for measure in (measure_templates, measure_built_in_start):
-        for row in measure():
-            show(row)
-    if arguments.built_in:
-        show(measure_built_in_build())
-    if arguments.models:
-        show(measure_ingestion(arguments.models))
-    for size in sorted(arguments.sizes):
-        with tempfile.TemporaryDirectory() as folder:
-            for row in measure_store(size, Path(folder), index=arguments.index and size == max(arguments.sizes)):
-                show(row)
+    for row in measured(arguments):
+        show(row)
     for line in growth(rows):
         sys.stdout.write(line + "\n")
     if arguments.json:
         arguments.json.write_text(json.dumps([asdict(r) for r in rows], indent=1))
     return 0
+
+
+def measured(arguments: argparse.Namespace) -> Iterator[Row]:
+    """What the command line asks for."""
+    if arguments.index_sizes:
+        for size in sorted(arguments.index_sizes):
+            with tempfile.TemporaryDirectory() as folder:
+                yield from measure_features(size, Path(folder), index=True)
+        return
+    yield from measure_templates()
+    yield from measure_built_in_start()
+    if arguments.built_in:
+        yield measure_built_in_build()
+    if arguments.models:
+        yield measure_ingestion(arguments.models)
+    for size in sorted(arguments.sizes):
+        with tempfile.TemporaryDirectory() as folder:
+            yield from measure_store(size, Path(folder), index=arguments.index and size == max(arguments.sizes))
 
 
 def measure_templates() -> Iterator[Row]:
@@ -152,24 +166,48 @@ def measure_store(size: int, folder: Path, *, index: bool) -> Iterator[Row]:
         find(library, "first words")
     yield Row("words: first search (index made)", size, used.wall, used.cpu)
     yield _best("words: 'small rustic oak table'", size, lambda: find(library, "small rustic oak table", NEAREST))
+    yield from measure_features(size, folder, index=index)
+
+
+def measure_features(size: int, folder: Path, *, index: bool) -> Iterator[Row]:
+    """Synthetic features of a size: written, opened, searched row by row, and by an index."""
     values = synthetic_features(size)
     with _cpu() as used:
         FeatureMatrix(folder / "features", WIDTH).append([f"h{i}" for i in range(size)], values)
     yield Row("features: written", size, used.wall, used.cpu)
     yield _best("features: opened", size, lambda: FeatureMatrix(folder / "features", WIDTH))
     matrix = FeatureMatrix(folder / "features", WIDTH)
-    query = values[size // 3, 0] + 0.02 * np.random.default_rng(1).standard_normal(WIDTH)
+    rng = np.random.default_rng(1)
+    queries = values[rng.integers(size, size=QUERIES), 0] + 0.02 * rng.standard_normal((QUERIES, WIDTH))
+    del values
+    query = queries[0]
     yield _best(f"features: nearest {NEAREST}, exactly", size, lambda: matrix.top(query, NEAREST), "30 ms at 60,000")
     if index:
-        yield from measure_index(matrix, query)
+        yield from measure_index(matrix, queries)
 
 
-def measure_index(matrix: FeatureMatrix, query: np.ndarray) -> Iterator[Row]:
-    """The LanceDB index of a matrix: made, and asked."""
+def measure_index(matrix: FeatureMatrix, queries: np.ndarray) -> Iterator[Row]:
+    """The LanceDB index of a matrix: made, asked, and compared with what comparing every row finds."""
     with _cpu() as used:
         made = LanceIndex(matrix)
-    yield Row("LanceDB index: made", len(matrix), used.wall, used.cpu)
-    yield _best(f"LanceDB index: nearest {NEAREST}", len(matrix), lambda: made.top(query, NEAREST))
+    disk = sum(f.stat().st_size for f in (matrix.folder / INDEX_FOLDER).rglob("*") if f.is_file()) / 1e9
+    yield Row(f"LanceDB index: made, {disk:.2f} GB on disk", len(matrix), used.wall, used.cpu, f"{_memory_gb():.1f} GB")
+    found = []
+    with _cpu() as used:
+        found = [made.top(query, NEAREST) for query in queries]
+    each = len(queries)
+    yield Row(f"LanceDB index: nearest {NEAREST}", len(matrix), used.wall / each, used.cpu / each)
+    shares = [
+        len({n.key for n in near} & {n.key for n in matrix.top(query, NEAREST)}) / NEAREST
+        for near, query in zip(found, queries, strict=True)
+    ]
+    recall = f"{np.mean(shares):.3f} of the nearest {NEAREST}, {np.min(shares):.2f} at worst"
+    yield Row(f"LanceDB index finds {recall}", len(matrix), 0.0, 0.0, f"{_memory_gb():.1f} GB")
+
+
+def _memory_gb() -> float:
+    """The most that this process has had in memory so far."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e9
 
 
 def write_synthetic(library: StoredLibrary, size: int, batch: int = 5_000) -> None:

@@ -28,7 +28,7 @@ TABLES = (
     ("rooms", 60, "The generated rooms themselves: validity, variety, pictures."),
     ("architecture", 20, "Architecture: planes compared with ground truth."),
     ("retrieval", 20, "Retrieval of shapes that are, and are not, in the library."),
-    ("relations", 18, "Supports, from geometry alone."),
+    ("relations", 18, "Supports, from geometry and a language model."),
     ("pose", 6, "Poses with true and estimated depth, groups, ablations."),
     ("look", 6, "Shapes made to measure and the photo's materials, the true shapes removed."),
     ("layout", 40, "The layout recipes compared with each other."),
@@ -145,6 +145,7 @@ def _bench_rooms(a: argparse.Namespace) -> None:
     from diorama_core.evaluation.benchmarks import views as views_bench
     from diorama_core.evaluation.benchmarks.cases import parse_seeds
     from diorama_core.library.catalogue import built_in_library
+    from diorama_core.perception.language.client import LmmSettings
 
     _check(a)
     library = built_in_library()
@@ -155,7 +156,7 @@ def _bench_rooms(a: argparse.Namespace) -> None:
         elif a.table == "retrieval":
             bench = retrieval_bench.run(library, a.scenes, a.seed, progress)
         elif a.table == "relations":
-            bench = relations_bench.run(library, a.scenes, a.seed, progress)
+            bench = relations_bench.run(library, a.scenes, a.seed, progress, LmmSettings.from_environment())
         elif a.table == "look":
             bench = look_bench.run(library, a.scenes, a.seed, progress, _look_writer(a.sheet))
         elif a.table == "views":

@@ -7,10 +7,6 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from rich.console import Console
-from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
-from rich.progress import Progress as Bar
-
 from diorama_core.progress import CancelToken, Progress, ProgressEvent
 
 
@@ -28,6 +24,10 @@ def progress_bar() -> Iterator[Progress]:
     signal.signal(signal.SIGINT, stop)
     try:
         if sys.stderr.isatty():
+            from rich.console import Console  # a tenth of a second to load
+            from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
+            from rich.progress import Progress as Bar
+
             columns = (TextColumn("{task.description:<28}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn())
             with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
                 task = bar.add_task("", total=1.0)

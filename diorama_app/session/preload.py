@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import subprocess
 import sys
 import threading
@@ -46,7 +47,7 @@ def load_open3d() -> None:
     """Load Open3D: it looks through the loaded modules, and fails where another thread loads one at that moment."""
     for remaining in reversed(range(OPEN3D_TRIES)):
         try:
-            import open3d  # noqa: F401  # loading it is the whole work
+            importlib.import_module("diorama_core.geometry.open3d_import")
         except RuntimeError as error:
             if "changed size during iteration" not in str(error) or not remaining:
                 raise

@@ -207,10 +207,8 @@ def appearance_of(
     if pixels.slot.role in PATTERNED_ROLES:
         example = best_example(view, pixels.mine, pixels.near, rgb)
     if example is None:
-        tile_m = pixels.slot.tile_m
-        if weave is None or tile_m is None or pixels.slot.role not in WOVEN_ROLES:
-            return SlotAppearance(pixels.slot, (red, green, blue), None, 1.0)
-        if not shows_plain(view, pixels.near, rgb, weave, tile_m):
+        tile_m = pixels.slot.tile_m if pixels.slot.role in WOVEN_ROLES else None
+        if weave is None or tile_m is None or not shows_plain(view, pixels.near, rgb, weave, tile_m):
             return SlotAppearance(pixels.slot, (red, green, blue), None, 1.0)
         plain = np.rint(255 * np.clip([red, green, blue], 0, 1)).astype(np.uint8)
         return SlotAppearance(pixels.slot, (red, green, blue), np.tile(plain, (PLAIN_PX, PLAIN_PX, 1)), tile_m)

@@ -42,6 +42,8 @@ SEAT_COST = 1.5
 SEATS = ("chair", "armchair", "stool", "office chair", "sofa", "bench", "ottoman")
 BEFORE_M = {"ottoman": 0.3, "bench": 0.3, "coffee table": 0.45, "stool": 0.5}
 """How far before something these are used; farther off they are only somewhere in the room."""
+BETWEEN_BEDS_M = 0.7
+"""Beds side by side lie the same way, with a way to get up and a night stand between them."""
 TOO_HOT_M = {"fireplace": 0.8}
 """Before these nobody sits nearer."""
 LONG_RATIO = 1.25
@@ -148,6 +150,10 @@ def _to_target(
         corners = (stances.quads - stances.places[:, None]) @ target.pose.R_world_object[:2, 1]
         aside = np.maximum(np.abs(local[:, 1]) - half[1] - np.abs(corners).max(axis=1), 0.0)
         return np.maximum(gap - 0.5, 0.0) / 0.3 + aside / 0.5 + 0.1 * gap
+    if kind == "beside" and broad(category_name) == broad(target.category) == "bed":
+        heading = _angle(stances.yaws_rad, np.full(len(local), target.pose.yaw_rad))
+        off_side = np.maximum(half[1] - np.abs(local[:, 1]), 0.0) / 0.3 + np.abs(local[:, 0]) / 0.6
+        return heading / FACING_RAD + off_side + np.abs(gap - BETWEEN_BEDS_M) / 0.6
     if kind == "beside":
         far = np.maximum(gap - SIDE_GAP_M, 0.0) / 0.3
         if broad(target.category) in NO_FRONT:

@@ -64,7 +64,7 @@ class Observed:
 
     def silhouettes(self, caster: ShapeCaster, poses: PoseBatch) -> Bool[np.ndarray, "p n"]:
         """The cells whose centres the posed shape covers."""
-        return caster.cast(self.origin_world, self.directions_world, poses).covered
+        return caster.covers(self.origin_world, self.directions_world, poses)
 
     def agreement(self, silhouettes: Bool[np.ndarray, "p n"]) -> Float[np.ndarray, "p"]:
         """Intersection over union with the mask where there is evidence, 0 to 1.

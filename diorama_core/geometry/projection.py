@@ -18,6 +18,8 @@ from diorama_core.scene.types import Intrinsics, box_corners
 NEAR_M = 0.05
 """Depth of the near plane."""
 _INSIDE_TOLERANCE = 1e-9
+_AT_ONCE = 512
+"""Cuboids that are clipped at once: so many stay in the processor's cache."""
 
 
 def cuboid_corners(
@@ -45,8 +47,8 @@ def visible_bounds(
     u, v = _project(points, intrinsics)
     bounds = np.stack([u.min(axis=0), v.min(axis=0), u.max(axis=0), v.max(axis=0)], axis=-1)
     visible = np.ones(len(corners_camera), dtype=bool)
-    cut = np.flatnonzero(~inside)
-    if len(cut):
+    every = np.flatnonzero(~inside)
+    for cut in (every[at : at + _AT_ONCE] for at in range(0, len(every), _AT_ONCE)):
         bounds[cut], visible[cut] = _clipped_bounds(corners_camera[cut], slack.take(cut, axis=-1), intrinsics)
     return bounds, visible
 
@@ -98,17 +100,22 @@ def _clipped_bounds(
     points = _by_coordinate(corners)
     a, b = _edges().T
     low, high = _segment_bounds(points[:, a], points[:, b], slack[:, a], slack[:, b], k)
+    outside = slack < 0
     near = slack[0]
-    straddling = (near < 0).any(axis=0) & (near > 0).any(axis=0)
-    if straddling.any():
-        cut_low, cut_high = _near_cut_bounds(points[..., straddling], near[:, straddling], k)
+    left, right, top, bottom = np.any(outside[1:], axis=1)
+    straddling = np.flatnonzero(outside[0].any(axis=0) & (near > 0).any(axis=0))
+    if len(straddling):
+        cut_low, cut_high = _near_cut_bounds(points.take(straddling, axis=-1), near.take(straddling, axis=-1), k)
         low[:, straddling] = np.minimum(low[:, straddling], cut_low)
         high[:, straddling] = np.maximum(high[:, straddling], cut_high)
+    # A corner of the picture is covered only by what reaches beyond both of the sides that meet in it.
+    reaching = np.flatnonzero((left | right) & (top | bottom))
     picture = np.array([[0.0, 0.0], [k.width, 0.0], [0.0, k.height], [k.width, k.height]])
-    covered = _covers_rays(corners, (picture - [k.cx, k.cy]) / [k.fx, k.fy]).T
-    for corner, (x, y) in zip(covered, picture, strict=True):
-        low = np.where(corner, np.minimum(low, [[x], [y]]), low)
-        high = np.where(corner, np.maximum(high, [[x], [y]]), high)
+    covered = _covers_rays(corners[reaching], (picture - [k.cx, k.cy]) / [k.fx, k.fy]).T
+    for corner, at in zip(covered, picture, strict=True):
+        over = reaching[corner]
+        low[:, over] = np.minimum(low[:, over], at[:, None])
+        high[:, over] = np.maximum(high[:, over], at[:, None])
     visible = np.isfinite(low).all(axis=0)
     size = np.array([k.width, k.height])
     nearest = np.clip(_project(corners.mean(axis=1).T, k), 0.0, size[:, None])

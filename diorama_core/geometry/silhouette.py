@@ -12,15 +12,13 @@ from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
-import open3d as o3d
 import trimesh
-from jaxtyping import Bool, Float, Int, UInt32
+from jaxtyping import Bool, Float, Float32, Int, UInt32
 from scipy.spatial import ConvexHull, QhullError
 
+from diorama_core.geometry.open3d_import import o3d
 from diorama_core.geometry.projection import NEAR_M, frustum_slack
 from diorama_core.scene.types import Camera, box_corners
-
-_OPEN3D: Any = o3d  # its stubs do not know that arrays are taken for tensors
 
 _MIN_EXTENT_M = 1e-4
 _HULL_DIRECTIONS = 48
@@ -92,42 +90,62 @@ class Hits:
 
 
 class ShapeCaster:
-    """A mesh prepared for rays, with the corners and edges of its (slightly simplified) convex hull."""
+    """A mesh prepared for rays."""
 
     def __init__(self, mesh: trimesh.Trimesh) -> None:
         vertices = np.asarray(mesh.vertices, dtype=np.float64)
         extent = np.ptp(vertices, axis=0) if len(vertices) else np.ones(3)
         self.size_m: Float[np.ndarray, "3"] = np.maximum(extent, _MIN_EXTENT_M)
-        self.hull_points, self.hull_edges = _hull(vertices, self.size_m)
-        self._scene: Any = _OPEN3D.t.geometry.RaycastingScene(nthreads=1)
+        self._vertices = vertices
+        self._scene: Any = o3d.t.geometry.RaycastingScene(nthreads=1)
         corners = vertices if len(mesh.faces) else np.zeros((3, 3))
         triangles = mesh.faces if len(mesh.faces) else [[0, 1, 2]]
         self._scene.add_triangles(np.asarray(corners, dtype=np.float32), np.asarray(triangles, dtype=np.uint32))
         self._cast(np.array([[9.0, 9.0, 9.0, 1.0, 0.0, 0.0]], np.float32))  # builds the tree here, not under threads
 
+    @cached_property
+    def hull(self) -> tuple[Float[np.ndarray, "h 3"], Int[np.ndarray, "e 2"]]:
+        """Corners and edges of the (slightly simplified) convex hull."""
+        return _hull(self._vertices, self.size_m)
+
     def _cast(self, rays: Float[np.ndarray, "n 6"]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        answer = self._scene.cast_rays(_OPEN3D.core.Tensor(rays), nthreads=1)
+        answer = self._scene.cast_rays(o3d.core.Tensor(rays), nthreads=1)
         return answer["t_hit"].numpy(), answer["primitive_normals"].numpy(), answer["primitive_ids"].numpy()
+
+    def covers(
+        self, origin_world: Float[np.ndarray, "3"], directions_world: Float[np.ndarray, "r 3"], poses: PoseBatch
+    ) -> Bool[np.ndarray, "p r"]:
+        """Whether every ray meets the shape under every pose: faster than `cast`, where that is all."""
+        rays = _rays(origin_world, directions_world, poses)
+        met = self._scene.test_occlusions(o3d.core.Tensor(rays.reshape(-1, 6)), tnear=NEAR_M, nthreads=1)
+        return np.asarray(met.numpy().reshape(rays.shape[:2]))
 
     def cast(
         self, origin_world: Float[np.ndarray, "3"], directions_world: Float[np.ndarray, "r 3"], poses: PoseBatch
     ) -> Hits:
         """First hits of every ray with the shape under every pose."""
-        count, rays_each = len(poses), len(directions_world)
-        to_object = poses.R.transpose(0, 2, 1) / poses.scale[:, :, None]
-        rays = np.empty((count, rays_each, 6), np.float32)
-        rays[..., :3] = (to_object @ (origin_world - poses.position)[..., None])[:, None, :, 0]
-        rays[..., 3:] = directions_world @ to_object.transpose(0, 2, 1)
+        rays = _rays(origin_world, directions_world, poses)
         depth, normals, triangles = self._cast(rays.reshape(-1, 6))
-        depth = depth.reshape(count, rays_each).astype(np.float64)
+        shape = rays.shape[:2]
+        depth = depth.reshape(shape).astype(np.float64)
         depth[~(depth > NEAR_M)] = np.inf
-        shape = (count, rays_each)
         return Hits(depth, normals.reshape(*shape, 3), triangles.reshape(shape), directions_world, poses)
 
     def bounds_px(self, camera: Camera, poses: PoseBatch) -> Float[np.ndarray, "p 4"]:
         """Boxes x1, y1, x2, y2 of the posed shape in the photo, clipped to it; NaN where it is out of sight."""
-        points = camera.to_camera(poses.apply(self.hull_points))
-        return clipped_bounds(camera, points, self.hull_edges)
+        corners, edges = self.hull
+        return clipped_bounds(camera, camera.to_camera(poses.apply(corners)), edges)
+
+
+def _rays(
+    origin_world: Float[np.ndarray, "3"], directions_world: Float[np.ndarray, "r 3"], poses: PoseBatch
+) -> Float32[np.ndarray, "p r 6"]:
+    """The rays in the shape's own frame, for every pose."""
+    to_object = poses.R.transpose(0, 2, 1) / poses.scale[:, :, None]
+    rays = np.empty((len(poses), len(directions_world), 6), np.float32)
+    rays[..., :3] = (to_object @ (origin_world - poses.position)[..., None])[:, None, :, 0]
+    rays[..., 3:] = directions_world @ to_object.transpose(0, 2, 1)
+    return rays
 
 
 @cache

@@ -4,12 +4,20 @@ from __future__ import annotations
 
 import io
 import math
+import re
 import zipfile
 from collections.abc import Iterable
 
 import numpy as np
 from numpy.lib import format as npy
 
+_Header = tuple[tuple[int, ...], bool, np.dtype, int]
+"""Shape, whether columns come first, type, and where the numbers start."""
+_USUAL = re.compile(
+    rb"\x93NUMPY\x01\x00..\{'descr': '([<|][biuf][1248])', 'fortran_order': (True|False), "
+    rb"'shape': \(((?:\d{1,18}, )*(?:\d{1,18},?)?)\), \} *\n",
+    re.DOTALL,
+)
 MAX_ARCHIVE_BYTES = 400_000_000
 """Of all arrays of an archive, unpacked."""
 
@@ -21,18 +29,35 @@ def array_of(content: bytes) -> np.ndarray:
         ValueError: the bytes are no such file of numbers or words, or not of the stated size. A damaged header may
             also raise whatever its parser does.
     """
-    stream = io.BytesIO(content)
-    version = npy.read_magic(stream)
-    shape, fortran, dtype = (
-        npy.read_array_header_1_0(stream) if version == (1, 0) else npy.read_array_header_2_0(stream)
-    )
+    shape, fortran, dtype, start = _usual_header(content) or _header(content)
     count = math.prod(shape)
-    if dtype.hasobject or dtype.kind not in "biufU" or len(content) - stream.tell() != count * dtype.itemsize:
+    if dtype.hasobject or dtype.kind not in "biufU" or len(content) - start != count * dtype.itemsize:
         raise ValueError("an array has another size than stated")
-    flat = np.frombuffer(content, dtype, count=count, offset=stream.tell()) if count else np.zeros(0, dtype)
+    flat = np.frombuffer(content, dtype, count=count, offset=start) if count else np.zeros(0, dtype)
     array = flat.reshape(shape, order="F" if fortran else "C")
     array.setflags(write=False)
     return array
+
+
+def _usual_header(content: bytes) -> _Header | None:
+    """The header as `numpy.save` writes it for plain numbers, read without Python's parser; None for any other."""
+    match = _USUAL.match(content)
+    if match is None or match.end() != 10 + int.from_bytes(content[8:10], "little"):
+        return None
+    kind, fortran, shape = match.groups()
+    return (
+        tuple(int(n) for n in shape.split(b",") if n.strip()),
+        fortran == b"True",
+        np.dtype(kind.decode()),
+        match.end(),
+    )
+
+
+def _header(content: bytes) -> _Header:
+    stream = io.BytesIO(content)
+    version = npy.read_magic(stream)
+    read = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
+    return *read(stream), stream.tell()
 
 
 def arrays_of(content: bytes, names: Iterable[str]) -> tuple[np.ndarray, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -68,7 +69,12 @@ SCENE_BYTES = 256e6
 
 def default_cache_dir() -> Path:
     """Where derived files live: `DIORAMA_CACHE` when set, else the user's cache folder."""
-    return Path(os.environ.get("DIORAMA_CACHE") or platformdirs.user_cache_dir("diorama"))
+    return Path(own) if (own := os.environ.get("DIORAMA_CACHE")) else _users_cache_dir()
+
+
+@cache
+def _users_cache_dir() -> Path:
+    return Path(platformdirs.user_cache_dir("diorama"))
 
 
 def built_in_library(cache_dir: Path | None = None) -> BuiltInLibrary:

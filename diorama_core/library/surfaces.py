@@ -91,7 +91,7 @@ def support_surfaces(mesh: trimesh.Trimesh, lattice: int = 72) -> tuple[SupportS
 
 
 def _caster(mesh: trimesh.Trimesh) -> RaycastingScene:
-    import open3d as o3d  # seconds to load, and listing shapes does without it
+    from diorama_core.geometry.open3d_import import o3d  # a second to load, and listing shapes does without it
 
     scene = o3d.t.geometry.RaycastingScene(nthreads=1)
     scene.add_triangles(mesh.vertices.astype(np.float32), mesh.faces.astype(np.uint32))
@@ -118,7 +118,7 @@ def _hits(
     mesh: trimesh.Trimesh, caster: RaycastingScene, x: Float[np.ndarray, "r"], y: Float[np.ndarray, "r"], top: float
 ) -> tuple[Int[np.ndarray, "h"], Float[np.ndarray, "h"], Float[np.ndarray, "h"]]:
     """Every hit of downward rays: ray number, height, and the face normal's z; sorted by ray, then downward."""
-    import open3d as o3d
+    from diorama_core.geometry.open3d_import import o3d
 
     rays = np.zeros((len(x), 6), dtype=np.float32)
     rays[:, 0], rays[:, 1], rays[:, 2], rays[:, 5] = x, y, top, -1.0
@@ -174,7 +174,7 @@ def _walled_off(
 
     Only neighbours under one roof are asked: objects in the open may reach over what parts them.
     """
-    import open3d as o3d
+    from diorama_core.geometry.open3d_import import o3d
 
     walled = np.zeros(len(a), dtype=bool)
     roofed = np.flatnonzero(np.isfinite(spots.clearance[a]) & np.isfinite(spots.clearance[b]))

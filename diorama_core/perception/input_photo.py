@@ -84,7 +84,6 @@ def open_picture(source: Source, what: str = "picture", megapixels: float = MAX_
     Raises:
         InputError: when it is no picture, or has more than so many megapixels (`MAX_JPEG_MEGAPIXELS` of a JPEG).
     """
-    Image.init()  # the rarer formats are registered only on demand
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", Image.DecompressionBombWarning)

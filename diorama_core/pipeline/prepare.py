@@ -18,6 +18,7 @@ from diorama_core.render.image_search import ImageSearch
 from diorama_core.render.template_cache import TemplateCache
 from diorama_core.retrieval.appearance_similarity import EmbeddedSimilarity
 from diorama_core.retrieval.seen_forms import has_form, shape_form
+from diorama_core.retrieval.usual_forms import usual_form_factor
 from diorama_core.workers import Workers, workers
 
 _CHUNK = 12
@@ -122,6 +123,7 @@ def _prepare(name: str, wanted: _Wanted, shape_ids: Sequence[str]) -> list[tuple
             if wanted.views:
                 similarity.prepare(shape)
                 shape_form(shape, appearance)
+                usual_form_factor(shape, appearance)
             if wanted.templates:
                 retained.get(library, shape)
         except DioramaError as error:

@@ -274,7 +274,7 @@ class DepthFit:
     ) -> tuple[Float[np.ndarray, "p k 7"], Float[np.ndarray, "p k"], Float[np.ndarray, "p k"]]:
         """How far the shape reaches in the picture against how far its mask does."""
         assert self.outline is not None
-        world = poses.apply(caster.hull_points)
+        world = poses.apply(caster.hull[0])
         in_camera = self.camera.to_camera(world)
         k = self.camera.intrinsics
         z = np.maximum(in_camera[..., 2], 0.05)

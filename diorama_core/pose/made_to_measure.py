@@ -80,11 +80,12 @@ class _Seen:
     def score(self, caster: ShapeCaster, scale: Float[np.ndarray, "3"]) -> float:
         """How well a shape agrees: logarithm, higher is better."""
         pose = PoseBatch(self.pose.R_world_object[None], self.pose.position[None], scale[None])
-        seen = self.evidence.seen
-        error = float(self.evidence.errors(caster, pose)[0])
-        edges = float(self.edges.agreement(caster.cast(seen.origin_world, seen.directions_world, pose))[0])
-        outline = OUTLINE * seen.mask_trust if self.evidence.surface is None else OUTLINE_WITH_DEPTH
-        return -outline * float(np.log(error + NOISE_FLOOR)) + EDGES * seen.mask_trust * edges
+        hits = self.evidence.hits(caster, pose)
+        error = float(self.evidence.errors_of(caster, hits)[0])
+        edges = float(self.edges.agreement(hits)[0])
+        trust = self.evidence.seen.mask_trust
+        outline = OUTLINE * trust if self.evidence.surface is None else OUTLINE_WITH_DEPTH
+        return -outline * float(np.log(error + NOISE_FLOOR)) + EDGES * trust * edges
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ _OF_SURE_MASK = 0.8
 _NOISE_FLOOR = 0.03
 """Error below which two poses count as equal: the resolution of the silhouettes."""
 _FACING_STRENGTH = 0.7
-_STRETCH_SIGMA = 0.3
+_STRETCH_SIGMA, _STRETCH_SIGMA_OF_FLAT = 0.3, 1.0
 _ENLARGED_SIGMA = 0.2
 _ENLARGED_SIGMA_REASONED = 0.5
 """The same where sizes follow from a photo alone, and are those of the kind as much as of the thing."""
@@ -49,13 +49,20 @@ class Evidence:
 
     def errors(self, caster: ShapeCaster, poses: PoseBatch) -> Float[np.ndarray, "p"]:
         """0 (agrees entirely) to 1: weighted disagreement of silhouette, box, depth and normals."""
-        hits = caster.cast(self.seen.origin_world, self.seen.directions_world, poses)
+        return self.errors_of(caster, self.hits(caster, poses))
+
+    def hits(self, caster: ShapeCaster, poses: PoseBatch) -> Hits:
+        """What the rays of the object's window meet of a shape under every pose."""
+        return caster.cast(self.seen.origin_world, self.seen.directions_world, poses)
+
+    def errors_of(self, caster: ShapeCaster, hits: Hits) -> Float[np.ndarray, "p"]:
+        """As `errors`, of a shape that the rays have met."""
         if self.surface is not None:
             weights = [_SILHOUETTE_WEIGHT_WITH_DEPTH * (0.3 + 0.7 * self.seen.mask_trust), _DEPTH_WEIGHT]
             terms = [self._outline_with_depth(self.surface, hits), self.surface.agreement(hits)]
         else:
             weights = [_SILHOUETTE_WEIGHT * self.seen.mask_trust, _BOX_WEIGHT]
-            boxes = box_iou(caster.bounds_px(self.camera, poses), np.asarray(self.seen.box))
+            boxes = box_iou(caster.bounds_px(self.camera, hits.poses), np.asarray(self.seen.box))
             terms = [self.seen.agreement(hits.covered), np.nan_to_num(boxes)]
         agreement = sum(w * t for w, t in zip(weights, terms, strict=True)) / sum(weights)
         return np.clip(1.0 - np.nan_to_num(agreement), 0.0, 1.0)
@@ -89,7 +96,8 @@ class Evidence:
 
     def habit_cost(self, poses: PoseBatch, limits: SizeLimits) -> Float[np.ndarray, "p"]:
         """What speaks against poses whatever the picture shows: unusual headings and uneven stretching."""
-        stretched = 0.5 * (limits.stretch(poses.scale) / _STRETCH_SIGMA) ** 2
+        sigma = _STRETCH_SIGMA_OF_FLAT if limits.any_proportions else _STRETCH_SIGMA
+        stretched = 0.5 * (limits.stretch(poses.scale) / sigma) ** 2
         return _FACING_STRENGTH * self.facing.cost(poses.R) + stretched
 
     def enlarged_cost(self, scale: Float[np.ndarray, "3"], limits: SizeLimits) -> float:

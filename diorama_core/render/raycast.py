@@ -9,12 +9,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
-import open3d as o3d
 import trimesh
 from jaxtyping import Bool, Float, Float32, Int32
 
+from diorama_core.geometry.open3d_import import o3d
 from diorama_core.geometry.vectors import face_normals, facing
 from diorama_core.scene.types import Camera
 
@@ -135,7 +136,7 @@ class Caster:
         return self._scene.test_occlusions(_tensor(rays), tfar=float(far)).numpy()
 
 
-def _tensor(rays: RayArray) -> o3d.core.Tensor:
+def _tensor(rays: RayArray) -> Any:
     return o3d.core.Tensor.from_numpy(np.ascontiguousarray(rays, dtype=np.float32))
 
 

@@ -12,20 +12,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache, cached_property
-from typing import Any
 
 import cv2
 import numpy as np
-import open3d as o3d
 import trimesh
 from jaxtyping import Bool, Float, Float32, Int, Int32, UInt8, UInt16, UInt32
 from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.errors import LibraryError
+from diorama_core.geometry.open3d_import import o3d
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Camera, Intrinsics
 
-_OPEN3D: Any = o3d  # its stubs do not know that arrays are taken for tensors
 _DEPTH_STEPS = 65534
 _NORMAL_STEPS = 255
 _LIGHT_CAMERA = np.array([-0.32, -0.55, -0.77])
@@ -252,7 +250,7 @@ class _UnitCaster:
         self, vertices: Float32[np.ndarray, "n 3"], faces: UInt32[np.ndarray, "m 3"], grid: TemplateGrid
     ) -> None:
         self._grid = grid
-        self._scene = _OPEN3D.t.geometry.RaycastingScene(nthreads=1)
+        self._scene = o3d.t.geometry.RaycastingScene(nthreads=1)
         self._scene.add_triangles(vertices, faces)
         self._hull = _hull_points(vertices)
         self._rays = grid.rays_camera.reshape(-1, 3)
@@ -270,7 +268,7 @@ class _UnitCaster:
         rays = np.empty((len(pixels), 6), np.float32)
         rays[:, :3] = -R[:, 2] * grid.distance
         rays[:, 3:] = self._rays[pixels] @ R.T
-        answer = self._scene.cast_rays(_OPEN3D.core.Tensor(rays), nthreads=1)
+        answer = self._scene.cast_rays(o3d.core.Tensor(rays), nthreads=1)
         distance = answer["t_hit"].numpy()
         seen = np.flatnonzero(np.isfinite(distance))
         depth.reshape(-1)[pixels[seen]] = _depth_codes(distance[seen], grid)

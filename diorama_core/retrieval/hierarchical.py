@@ -26,7 +26,7 @@ from diorama_core.retrieval.appearance_similarity import (
     ObjectCrop,
 )
 from diorama_core.retrieval.neighbours import neighbour_factors
-from diorama_core.retrieval.outlines import outline_agreement
+from diorama_core.retrieval.outlines import outline_agreement, whole_outline
 from diorama_core.retrieval.pools import Pool, RetrievalQuery, pool_for, size_cost
 from diorama_core.retrieval.seen_forms import seen_form_factor, shape_form
 from diorama_core.retrieval.usual_forms import usual_form_factor
@@ -105,6 +105,7 @@ class HierarchicalRetrieval:
             seen = observe_among(geometry.camera, measured, centres, parents, index, self.cells)
             members = pools[groups[index]].members
             visible = (1 - seen.border_share) * (1 - seen.hidden_share) * seen.mask_trust
+            observed = _Observation(cuboids[item.id], seen, whole_outline(seen), visible, named[index])
             object_crop = ObjectCrop(inputs.photo.rgb, item.mask, item.label, visible, seen.mask_trust)
             alike = similarity.of(object_crop, [m.shape for m in members])
             said = described_share(self.library, item.label, item.category, [m.shape for m in members])
@@ -115,8 +116,7 @@ class HierarchicalRetrieval:
             sight.append(visible)
             scores.append(
                 {
-                    m.shape.id: factor
-                    * self._score(m.shape, cuboids[item.id], seen, visible, float(like), named[index])
+                    m.shape.id: factor * self._score(m.shape, observed, float(like))
                     for m, like, factor in zip(members, alike, factors, strict=True)
                 }
             )
@@ -155,13 +155,13 @@ class HierarchicalRetrieval:
             pools.append(pool_for(self.library, query))
         return pools
 
-    def _score(self, shape: Shape, cuboid: Cuboid, seen: Observed, visible: float, like: float, named: bool) -> float:
+    def _score(self, shape: Shape, item: _Observation, like: float) -> float:
         """0 to 1: the best of the shape's quarter turns in the cuboid, and its likeness."""
         appearance = self._appearance(shape)
-        targets, poses = quarter_turns(shape, cuboid)
+        targets, poses = quarter_turns(shape, item.cuboid)
         cost = np.array([size_cost(shape.size_m, t) for t in targets])
-        outline = outline_agreement(seen, seen.silhouettes(appearance.caster, poses))
-        of_size, of_outline, of_appearances = self._weights(seen, visible, named)
+        outline = outline_agreement(item.seen, item.whole, item.seen.silhouettes(appearance.caster, poses))
+        of_size, of_outline, of_appearances = self._weights(item)
         fit = of_size * np.exp(-cost / 2) + of_outline * outline
         return float((fit.max() + of_appearances * like) / (of_size + of_outline + of_appearances))
 
@@ -175,13 +175,26 @@ class HierarchicalRetrieval:
         seen = seen_form_factor(shape_form(shape, appearance), item.seen_form) if item.seen_form else 1.0
         return seen if item.mask_confidence >= 1.0 else seen * usual_form_factor(shape, appearance)
 
-    def _weights(self, seen: Observed, visible: float, named: bool) -> tuple[float, float, float]:
+    def _weights(self, item: _Observation) -> tuple[float, float, float]:
         """Weights of size, outline and appearance for an object with this visibility."""
         return (
-            self.size_weight * (1 - _GUESSED_SIZE * (1 - visible)) * (1.0 if named else _UNNAMED_SIZE),
-            self.silhouette_weight * (0.25 + 0.75 * seen.mask_trust) * (1.0 if named else _UNNAMED_OUTLINE),
-            self.similarity_weight * (_MIN_SIMILARITY + (1 - _MIN_SIMILARITY) * visible),
+            self.size_weight * (1 - _GUESSED_SIZE * (1 - item.visible)) * (1.0 if item.named else _UNNAMED_SIZE),
+            self.silhouette_weight * (0.25 + 0.75 * item.seen.mask_trust) * (1.0 if item.named else _UNNAMED_OUTLINE),
+            self.similarity_weight * (_MIN_SIMILARITY + (1 - _MIN_SIMILARITY) * item.visible),
         )
+
+
+@dataclass(frozen=True, eq=False)
+class _Observation:
+    """What the picture says of one object."""
+
+    cuboid: Cuboid
+    seen: Observed
+    whole: Float[np.ndarray, " n"]
+    """`outlines.whole_outline`."""
+    visible: float
+    """0 to 1: how much of it is seen, and how well."""
+    named: bool
 
 
 def _senses(

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass, field
 from functools import lru_cache
+from typing import Any
 
 import fcl
 import numpy as np
-import open3d as o3d
 from jaxtyping import Float
 
+from diorama_core.geometry.open3d_import import o3d
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.scene.types import Pose
 from diorama_core.scene.values import Vector3
@@ -107,7 +108,7 @@ def _model(mesh: _Mesh, scale: tuple[float, float, float]) -> tuple[fcl.BVHModel
 
 
 @lru_cache(maxsize=512)
-def _caster(mesh: _Mesh) -> o3d.t.geometry.RaycastingScene:
+def _caster(mesh: _Mesh) -> Any:
     vertices, faces = mesh.arrays()
     scene = o3d.t.geometry.RaycastingScene()
     scene.add_triangles(

@@ -10,7 +10,7 @@ from diorama_core.editing.relations import RelationKind
 from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN, Category, resolve
 
 NUMBERS = {
-    "a": 1, "an": 1, "the": 1, "one": 1, "single": 1, "another": 1, "two": 2, "pair": 2, "couple": 2, "both": 2,
+    "a": 1, "an": 1, "the": 1, "one": 1, "another": 1, "two": 2, "pair": 2, "couple": 2, "both": 2,
     "three": 3, "few": 3, "some": 3, "several": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9,
     "ten": 10, "eleven": 11, "twelve": 12, "dozen": 12,
 }  # fmt: skip
@@ -166,8 +166,8 @@ RELATION_WORDS: tuple[tuple[str, RelationKind | None], ...] = (
     (r"in line with|aligned with|lined up with", "aligned with"), (r"between|in between", "between"),
     (r"(?:all )?around|round about|surrounding", "around"),
     (r"(?:with (?:its|their) backs? to|up against|against|along|at|by|to|near|next to|onto|on) (?:the|a|one|any|opposite) "
-     r"(?:back |long |far |same |left |right )?walls?", "against wall"),
-    (r"(?:in|into|to|at) (?:the|a|one|each|opposite|another|any) (?:far |back |same |other )?corners?(?! table| sofa| desk)"
+     r"(?:back |long |far |same |left |right |opposite |other )?walls?", "against wall"),
+    (r"(?:in|into|to|at) (?:the|a|one|each|opposite|another|any) (?:far |back |same |other |opposite |left |right |front )?corners?(?! table| sofa| desk)"
      r"(?: of (?:the|this) room)?", "in corner"),
     (r"(?:in|into|to|at) the (?:middle|cent(?:re|er))(?: of (?:the|this) (?:\w+ )?(?:room|floor|bedroom|kitchen|office|space))?",
      "in middle"),

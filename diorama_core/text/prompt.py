@@ -6,14 +6,16 @@ import re
 from dataclasses import dataclass, field, replace
 
 from diorama_core.editing.relations import OF_ROOM, RelationKind
-from diorama_core.library.taxonomy import broad, resolve
+from diorama_core.library.taxonomy import LAMPS, PORTABLE, broad, category, resolve
 from diorama_core.synthesis import RoomKind
-from diorama_core.text.phrases import MAX_OF_A_KIND, NounPhrase, Placing, noun_phrase, split_places
+from diorama_core.text.customs import USUAL
+from diorama_core.text.phrases import MAX_OF_A_KIND, NUMBERS, NounPhrase, Placing, noun_phrase, split_places
 
 _ROOMS: tuple[tuple[str, RoomKind], ...] = (
     ("living room", "living"), ("sitting room", "living"), ("lounge", "living"), ("family room", "living"),
     ("reading corner", "living"), ("reading nook", "living"), ("bedroom", "bedroom"), ("guest room", "bedroom"),
-    ("nursery", "bedroom"), ("home office", "study"), ("study", "study"), ("library", "study"), ("office", "office"),
+    ("nursery", "bedroom"), ("children's room", "bedroom"), ("child's room", "bedroom"),
+    ("kids' room", "bedroom"), ("kids room", "bedroom"), ("kid's room", "bedroom"), ("home office", "study"), ("study", "study"), ("library", "study"), ("office", "office"),
     ("kitchen", "kitchen"), ("dining room", "dining"), ("dining area", "dining"), ("bathroom", "bathroom"),
     ("restroom", "bathroom"), ("laboratory", "lab"), ("lab", "lab"), ("workshop", "lab"), ("corridor", "corridor"),
     ("hallway", "corridor"), ("hall", "corridor"), ("apartment", "living"), ("room", "living"),
@@ -34,6 +36,10 @@ _REWRITES = (
         "facing",
     ),
     (r"\bopposite (?:each other|one another)\b", "facing each other"),
+    (r"\bside by side\b|\bnext to (?:each other|one another)\b", "beside each other"),
+    (r"\bat its foot\b", "at the foot of it"),
+    (r"\b(?:at|by|on) its sides?\b", "beside it"),
+    (r"\b(?:on|to|at) its (left|right)\b", r"\1 of it"),
     (r"\b(?:aligned|lined up|in a (?:row|line))\b(?! with)", "aligned with each other"),
     (r"\b(?:that|which|who)\b", " "),
     (
@@ -48,6 +54,14 @@ _REWRITES = (
 """Phrases that say the same in other words, brought to one form."""
 _ASKED = re.compile(r"(?:an?|one|two|three|four|five|six|\d+|some|several|many)\b")
 """How a clause begins that asks for something of its own, and says nothing more of what came before."""
+_SEATS_FOR = re.compile(
+    r"\bfor (two|three|four|five|six|seven|eight|nine|ten|twelve|\d\d?)(?: people| persons| guests| diners)?(?=,|;|\.|$| and\b| with\b)"
+)
+"""How many are to sit: "a dining room for six"."""
+_EACH = re.compile(r"^(?:(.*) )?(?:each|both)(?: of (?:them|these|those|the \w+))?$")
+"""A clause after which everything is meant once for each: "two desks, each with a lamp"."""
+_FIGURES = re.compile(r"\b(?:an? )((?:l|u|ring|circle|semicircle|half circle|triangle)(?:[ -]shaped?)? of)\b")
+"""Arrangements that are read as no relation."""
 _NOT_PLACES = re.compile(
     r"^(?:the |a |an |this )?(?:[a-z]+ )?(?:room|bedroom|kitchen|office|floor|ground|space|house|home|apartment|style|corner of .*)$"
 )
@@ -106,6 +120,10 @@ class _Reading:
     ignored: list[str] = field(default_factory=list)
     last: int = -1
     """The request that "it" means."""
+    hosts: int | None = None
+    """The request for each of which the following ones are meant."""
+    waiting: list[tuple[Placing, str]] = field(default_factory=list)
+    """Places, with their clauses, that were named before any object: "a reading nook by the window"."""
 
 
 def understood_prompt(prompt: str) -> RoomRequest:
@@ -115,9 +133,12 @@ def understood_prompt(prompt: str) -> RoomRequest:
     named = rest != text
     for pattern, form in _REWRITES:
         rest = re.sub(pattern, form, rest)
-    reading = _Reading()
-    for clause in _JOINTS.split(rest):
-        _read(reading, clause.strip())
+    reading = _Reading(ignored=[match.group(1) for match in _FIGURES.finditer(rest)])
+    for sentence in re.split(r"[;.]", rest):
+        reading.hosts = None
+        for clause in _JOINTS.split(sentence):
+            _read(reading, clause.strip())
+    _add_seats(reading, room, text)
     size = 1.25 if re.search(r"\b(large|big|spacious|huge)\b.{0,20}\broom\b", text) else 1.0
     size = (
         0.85
@@ -132,11 +153,23 @@ def understood_prompt(prompt: str) -> RoomRequest:
 
 def _read(reading: _Reading, clause: str) -> None:
     """Take in one clause: "two red chairs beside the table" names chairs, and a table unless it is known."""
+    each = _EACH.match(clause)
+    if each is not None:
+        _read(reading, each[1] or "")
+        reading.hosts = reading.last if reading.last >= 0 and reading.objects[reading.last].count > 1 else None
+        return
     if not clause:
         return
     head, places = split_places(clause)
     phrase, unknown = noun_phrase(head) if head else (None, "")
     index = _subject(reading, phrase)
+    if index is None and not head and not reading.objects:
+        reading.waiting += [(place, clause) for place in places]
+        return
+    if index is not None:
+        waiting, reading.waiting = reading.waiting, []
+        for place, said in waiting:
+            _place(reading, index, place, said)
     asked = index is None or (phrase is None and _ASKED.match(head) is not None)
     if (
         asked
@@ -164,8 +197,30 @@ def _subject(reading: _Reading, phrase: NounPhrase | None) -> int | None:
         known = next((k for k, o in enumerate(reading.objects) if o.category == phrase.category), None)
         if known is not None:
             return known
-    reading.objects.append(RequestedObject(phrase.category, phrase.label, phrase.count, phrase.appearance))
+    count = min(phrase.count * _times(reading, phrase.category), MAX_OF_A_KIND)
+    reading.objects.append(RequestedObject(phrase.category, phrase.label, count, phrase.appearance))
     return len(reading.objects) - 1
+
+
+def _times(reading: _Reading, category: str) -> int:
+    """How often something is meant: once for each host, where its kind usually goes with theirs."""
+    if reading.hosts is None:
+        return 1
+    host = reading.objects[reading.hosts]
+    usual = USUAL.get(category, USUAL.get(broad(category), ()))
+    return host.count if any({host.category, broad(host.category)} & set(names) for _, names in usual) else 1
+
+
+def _add_seats(reading: _Reading, room: RoomKind, text: str) -> None:
+    """Chairs for as many as a table or a dining room is for, where none are asked for."""
+    said = _SEATS_FOR.search(text)
+    table = next((o.category for o in reading.objects if broad(o.category) == "table"), None)
+    seated = any(broad(o.category) in ("chair", "stool", "bench", "armchair") for o in reading.objects)
+    if said is None or seated or (table is None and room != "dining"):
+        return
+    count = int(said[1]) if said[1].isdigit() else NUMBERS[said[1]]
+    around = Wish("around", (table or "table",))
+    reading.objects.append(RequestedObject("chair", "chair", max(1, min(count, MAX_OF_A_KIND)), wishes=(around,)))
 
 
 def _place(reading: _Reading, index: int | None, place: Placing, clause: str) -> None:
@@ -176,13 +231,13 @@ def _place(reading: _Reading, index: int | None, place: Placing, clause: str) ->
             _wish(reading, index, Wish("opposite", each_other=True))
         return
     if re.search(r"\b(?:each other|one another)\b", place.words):
-        _wish(reading, index, Wish(place.kind, each_other=True))
+        _each_other(reading, index, place.kind)
         return
     if _NOT_PLACES.match(place.words) or not place.words:
         return
     targets: list[str] = []
     for words in re.split(r"&|\bor\b", place.words):
-        target = _target(reading, words, index)
+        target = _target(reading, words, index, place.kind)
         if target is not None:
             targets.append(target)
         elif (unknown := noun_phrase(words)[1]) and place.kind not in ("on", "near"):
@@ -208,6 +263,19 @@ def _place(reading: _Reading, index: int | None, place: Placing, clause: str) ->
     _wish(reading, index, Wish(kind, tuple(targets)))
 
 
+def _each_other(reading: _Reading, index: int | None, kind: RelationKind) -> None:
+    """Several of one kind stand so to one another; "a washer and a dryer side by side" are one of two kinds each."""
+    if index is None:
+        return
+    own, before = reading.objects[index], reading.objects[index - 1] if index else None
+    if own.count > 1 or before is None or before.category == own.category:
+        _wish(reading, index, Wish(kind, each_other=True))
+        return
+    _wish(reading, index, Wish(kind, (before.category,)))
+    if kind in ("facing", "opposite"):
+        _wish(reading, index - 1, Wish(kind, (own.category,)))
+
+
 def _sat_at(category: str) -> bool:
     return broad(category) in ("table", "desk", "kitchen counter")
 
@@ -218,19 +286,36 @@ def _wish(reading: _Reading, index: int | None, wish: Wish) -> None:
         reading.objects[index] = replace(request, wishes=(*request.wishes, wish))
 
 
-def _target(reading: _Reading, words: str, own: int | None) -> str | None:
+def _meant(reading: _Reading, own: int | None, kind: RelationKind) -> str | None:
+    """Category of what "it" means: the last before that can be what the relation says, else the last at all.
+
+    Things are on what carries things, and stand near furniture rather than near its lamps and plants: in "an armchair,
+    a floor lamp and a bookshelf near it" the bookshelf is near the armchair.
+    """
+    if not reading.objects or reading.last < 0:
+        return None
+    newest = own is not None and own == len(reading.objects) - 1 and reading.last != own
+    last = own - 1 if newest and own else reading.last
+    before = [o.category for o in reading.objects[: last + 1]][::-1] or [reading.objects[reading.last].category]
+    fits = _carries if kind == "on" else _is_furniture
+    return next((name for name in before if fits(name)), before[0])
+
+
+def _carries(name: str) -> bool:
+    return category(name).supports_objects
+
+
+def _is_furniture(name: str) -> bool:
+    return category(name).mount == "floor" and name not in PORTABLE | LAMPS
+
+
+def _target(reading: _Reading, words: str, own: int | None, kind: RelationKind) -> str | None:
     """Category of what a place refers to; asked for as well where it is new, but for windows and doors."""
     phrase, _ = noun_phrase(words)
     if phrase is None:
         return None
     if phrase.pronoun:
-        before = (
-            own - 1 if own is not None and own == len(reading.objects) - 1 and reading.last != own else reading.last
-        )
-        known = (
-            reading.objects[reading.last if before < 0 else before] if reading.objects and reading.last >= 0 else None
-        )
-        return None if known is None else known.category
+        return _meant(reading, own, kind)
     if not phrase.label:
         return None
     kin = next((o.category for o in reading.objects if o.category == phrase.category), None)

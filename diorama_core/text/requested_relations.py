@@ -23,6 +23,10 @@ SEAT_WIDTH_M, SEAT_OUT_M = 0.62, 0.1
 """Of a long side, for each who sits there, and how far their seat's middle is from the edge."""
 
 
+_APART = frozenset({"opposite", "facing", "in corner"})
+"""Wishes that take the second of two beds to another wall than the first."""
+
+
 def in_row(relations: Sequence[Relation], request: RequestedObject, copy: int, shape: Shape) -> list[Relation]:
     """The relations of one of several seats that are wished before or opposite something: each has its place.
 
@@ -112,8 +116,12 @@ def _depth(k: int, wanted: Sequence[RequestedObject], seen: tuple[int, ...]) -> 
     named |= {o.category for o in wanted if wanted[k].category == stands_between(o, wanted)}
     for _, targets in USUAL.get(wanted[k].category, USUAL.get(broad(wanted[k].category), ())):
         named |= {t for t in targets if t != own and not _asks_for(t, wanted[k].category, wanted, ())}
-    named -= {wanted[k].category}
-    below = [_depth(j, wanted, (*seen, k)) for j, o in enumerate(wanted) if o.category in named and j != k]
+    named -= {wanted[k].category, broad(wanted[k].category)}
+    below = [
+        _depth(j, wanted, (*seen, k))
+        for j, o in enumerate(wanted)
+        if {o.category, broad(o.category)} & named and j != k
+    ]
     return 1 + max(below, default=-1)
 
 
@@ -135,6 +143,11 @@ def targets_of(scene: Scene, wish: Wish, copy: int) -> tuple[str, ...]:
     return tuple(g[copy % len(g)] for g in there if g)[:1]
 
 
+def _of_kind(scene: Scene, name: str) -> list[str]:
+    """Ids of the objects of a category, or of special kinds of it: a sectional sofa is a sofa."""
+    return [o.id for o in scene.objects if name in (o.category, broad(o.category))]
+
+
 def usual_relations(scene: Scene, request: RequestedObject, copy: int) -> list[Relation]:
     """How such an object stands where the prompt does not say."""
     said = {w.kind for w in request.wishes}
@@ -142,6 +155,8 @@ def usual_relations(scene: Scene, request: RequestedObject, copy: int) -> list[R
     for wish in request.wishes:
         if wish.kind == "in front of" and broad(request.category) in SEATS and "bed" not in wish.targets:
             found += [Relation("facing", targets)] if (targets := targets_of(scene, wish, copy)) else []
+    if copy and broad(request.category) == "bed" and not said & _APART:
+        found += [Relation("beside", (there[0],)) for there in (_of_kind(scene, request.category),) if there]
     for kind, names in USUAL.get(request.category, USUAL.get(broad(request.category), ())):
         if kind in said or (said and kind in ("in corner", "above", "on") and request.category != "television"):
             continue
@@ -150,7 +165,7 @@ def usual_relations(scene: Scene, request: RequestedObject, copy: int) -> list[R
         if not names:
             found.append(Relation(kind))
             continue
-        there = next((ids for n in names if (ids := [o.id for o in scene.objects if o.category == n])), None)
+        there = next((ids for n in names if (ids := _of_kind(scene, n))), None)
         if there:
             found.append(Relation(kind, (there[copy % len(there)],)))
     return found

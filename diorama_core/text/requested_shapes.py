@@ -26,13 +26,16 @@ def requested_shapes(
 ) -> tuple[Shape, ...]:
     """Shapes that fit the words equally well, in an order left to chance; the others after them."""
     on = any(w.kind == "on" for w in request.wishes)
-    double = request.category == "bed" and "double" in (*request.appearance, *request.label.split())
+    double, single = (
+        request.category == "bed" and word in (*request.appearance, *request.label.split())
+        for word in ("double", "single")
+    )
 
     def usable(shape: Shape) -> bool:
         if request.category == "plant" and request.label in ("plant", "plants", "potted plant") and not on:
             return TALL_PLANT_M < shape.size_m[2] < 1.9
-        if double:
-            return shape.size_m[1] > 1.3
+        if double or single:
+            return (shape.size_m[1] > 1.3) == double
         if request.category == "television":
             return shape.size_m[0] > 0.12
         if request.category == "kitchen counter":

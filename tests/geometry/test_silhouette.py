@@ -29,7 +29,9 @@ def test_rays_in_the_shape_s_frame_see_what_a_renderer_sees(yaw, x, y, sx, sz) -
     pose = Pose.upright((x, y, 1.0), yaw, (sx, 1.0, sz))
     rows, columns = np.mgrid[0:48, 0:64]
     directions = CAMERA.rays(np.stack([columns.ravel() + 0.5, rows.ravel() + 0.5], axis=1))
-    hits = ShapeCaster(MESH).cast(CAMERA.position, directions, batch(pose))
+    caster = ShapeCaster(MESH)
+    hits = caster.cast(CAMERA.position, directions, batch(pose))
+    assert (caster.covers(CAMERA.position, directions, batch(pose)) == hits.covered).all()
     truth = render_buffers([(MESH, pose.matrix)], CAMERA)
     both = hits.covered[0] & truth.silhouette.ravel()
     assert (hits.covered[0] != truth.silhouette.ravel()).mean() < 0.003

@@ -29,6 +29,12 @@ def test_arrays_come_back_as_they_were(value: np.ndarray) -> None:
     assert not again.flags.writeable
 
 
+@pytest.mark.parametrize("value", [np.zeros((3, 4), np.float32), np.arange(5), np.float64(2.0), np.zeros((0, 2), bool)])
+def test_what_numpy_writes_is_read_without_the_parser(value: np.ndarray, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr(arrays.npy, "read_array_header_1_0")
+    np.testing.assert_array_equal(array_of(npy(np.asarray(value))), value)
+
+
 def test_headers_are_not_believed() -> None:
     header = io.BytesIO()
     np.lib.format.write_array_header_1_0(header, {"descr": "|u1", "fortran_order": False, "shape": (1 << 50,)})

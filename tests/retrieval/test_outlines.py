@@ -60,9 +60,10 @@ def test_the_right_outline_agrees_best_with_and_without_its_gaps() -> None:
         return SimpleNamespace(covered=covered, weight=np.ones(64 * 64), mask_trust=trust, agreement=agreement)
 
     candidates = np.stack([true.ravel(), solid.ravel(), other.ravel()])
-    doubtful = outline_agreement(seen(0.4), candidates)
+    whole = filled(true).ravel().astype(float)
+    doubtful = outline_agreement(seen(0.4), whole, candidates)
     assert doubtful[0] == pytest.approx(doubtful[1]), "a doubtful mask's gaps say nothing"
     assert doubtful[0] > doubtful[2] + 0.2
-    sure = outline_agreement(seen(1.0), candidates)
+    sure = outline_agreement(seen(1.0), whole, candidates)
     assert sure[0] == pytest.approx(1.0)
     assert sure[0] > sure[1] + 0.05

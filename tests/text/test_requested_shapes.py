@@ -41,6 +41,12 @@ def test_a_double_bed_is_wide_and_chance_decides_among_equals() -> None:
     assert len({frozenset(order) for order in orders}) == 1
 
 
+def test_a_single_bed_is_narrow() -> None:
+    single = shapes(RequestedObject("bed", "bed", 2, ("single",)))
+    assert single
+    assert all(s.size_m[1] <= 1.3 for s in single)
+
+
 def test_colours_that_a_shape_lacks_are_painted_on() -> None:
     scene = living_room()
     shape = next(s for s in built_in_library().in_category("sofa") if s.id == scene.object("sofa_1").shape_id)

@@ -40,6 +40,11 @@ READINGS = {
     ),
     "a vase of flowers on a round table": ("living", {"table": 1, "vase": 1}),
     "kitchen": ("kitchen", {}),
+    "an office where two desks face each other, each with a monitor and an office chair, and a plant": (
+        "office",
+        {"desk": 2, "monitor": 2, "office chair": 2, "plant": 1},
+    ),
+    "a kids' room with two single beds": ("bedroom", {"bed": 2}),
 }
 
 
@@ -59,6 +64,23 @@ def test_places_and_appearance_are_read() -> None:
     assert understood_prompt("an elephant beside a piano").ignored == ("elephant",)
     vase = next(t for t in understood_prompt("a table and a sideboard with a vase on it").objects if t.label == "vase")
     assert vase.wishes == (Wish("on", ("sideboard",)),)
+
+
+@pytest.mark.parametrize(
+    ("prompt", "seats"),
+    [
+        ("a dining room for six with an oval table", 6),
+        ("a table for 8 people", 8),
+        ("a dining room for four with four stools around a table", 4),
+    ],
+)
+def test_tables_have_seats_for_as_many_as_they_are_for(prompt: str, seats: int) -> None:
+    kinds = Counter({o.category: o.count for o in understood_prompt(prompt).objects})
+    assert kinds["chair"] + kinds["stool"] == seats
+
+
+def test_arrangements_that_are_no_relation_are_named() -> None:
+    assert understood_prompt("a study with an L of two desks").ignored == ("l of",)
 
 
 @given(st.text(max_size=120))
@@ -84,6 +106,17 @@ def test_the_same_words_give_the_same_room_and_another_seed_another() -> None:
     assert first.scene != other.scene
 
 
+def test_beds_side_by_side_lie_the_same_way_at_one_wall() -> None:
+    scene = composed_room(
+        "a twin bedroom with two beds, each with a night stand, and a wardrobe", built_in_library()
+    ).scene
+    first, second = (o for o in scene.objects if o.category == "bed")
+    assert abs(np.sin(first.pose.yaw_rad - second.pose.yaw_rad)) < 0.05
+    assert np.cos(first.pose.yaw_rad - second.pose.yaw_rad) > 0.9
+    apart = (second.pose.position - first.pose.position)[:2] @ first.pose.R_world_object[:2, :2]
+    assert abs(apart[0]) < 0.3, "their heads are at one wall"
+
+
 def test_lamps_stand_on_their_night_stands() -> None:
     room = composed_room("a double bed, two night stands and a lamp on each night stand", built_in_library())
     holders = [s.parent for s in room.scene.supports if s.child.startswith("lamp")]
@@ -102,6 +135,14 @@ WISHES = {
     "a sofa facing a television on a tv stand": ("television", Wish("on", ("tv stand",))),
     "a chair at the desk": ("chair", Wish("around", ("desk",))),
     "bookshelves along the wall": ("bookshelf", Wish("against wall")),
+    "a reading nook by the window with a rocking chair": ("rocking chair", Wish("near", ("window",))),
+    "a desk by the door and a bed in the opposite corner": ("bed", Wish("in corner")),
+    "a bunk bed with a toy chest at its foot": ("chest", Wish("in front of", ("bunk bed",))),
+    "a washing machine and a dryer side by side": ("dryer", Wish("beside", ("washing machine",))),
+    "an armchair and a sofa facing each other": ("armchair", Wish("facing", ("sofa",))),
+    "an armchair, a floor lamp and a bookshelf near it": ("bookshelf", Wish("near", ("armchair",))),
+    "a sideboard with two candles and a vase on it": ("vase", Wish("on", ("sideboard",))),
+    "a dining room for six with an oval table": ("chair", Wish("around", ("table",))),
 }
 
 

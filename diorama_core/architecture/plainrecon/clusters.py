@@ -7,10 +7,11 @@ Where the publication names no number, the authors' public code does.
 from __future__ import annotations
 
 import numpy as np
-import open3d
 from jaxtyping import Bool, Float, Int
 from scipy.spatial import cKDTree
 from sklearn.cluster import DBSCAN, KMeans
+
+from diorama_core.geometry.open3d_import import o3d
 
 VOXEL_M = 0.05
 OUTLIER_NEIGHBOURS, OUTLIER_DEVIATIONS = 200, 2.0
@@ -45,8 +46,8 @@ def _thinned(
     points: Float[np.ndarray, "n 3"], normals: Float[np.ndarray, "n 3"]
 ) -> tuple[Float[np.ndarray, "m 3"], Float[np.ndarray, "m 3"]]:
     """One point a voxel, without statistical outliers."""
-    cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(points))
-    cloud.normals = open3d.utility.Vector3dVector(normals)
+    cloud = o3d.geometry.PointCloud(o3d.utility.Vector3dVector(points))
+    cloud.normals = o3d.utility.Vector3dVector(normals)
     cloud = cloud.voxel_down_sample(VOXEL_M)
     cloud = cloud.remove_statistical_outlier(OUTLIER_NEIGHBOURS, OUTLIER_DEVIATIONS)[0]
     directions = np.asarray(cloud.normals)

@@ -1,18 +1,47 @@
-"""How often the support graph without a language model names what holds an object up."""
+"""How often the support graph names what holds an object up: from geometry, and by a language model where one is named.
+
+A language model is asked the two questions that a photo is worth (paper, section 3.1), and what they take is measured.
+"""
 
 from __future__ import annotations
 
+import time
 from collections import Counter
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
+import numpy as np
+
+from diorama_core.artefacts import DetectedObject, Inputs, ObjectGeometry, Photo, SceneGraph
 from diorama_core.evaluation.benchmarks.cases import LeftOut, attempted, recipe
 from diorama_core.evaluation.metrics.relations import RelationCount, relations_of
-from diorama_core.evaluation.reports.tables import Column, Row, Table
+from diorama_core.evaluation.reports import paper
+from diorama_core.evaluation.reports.tables import Column, Row, Table, paper_rows
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.perception.language.client import LmmSettings
+from diorama_core.perception.language.stages import LanguageGraph, LanguageRecognition
 from diorama_core.progress import Progress
 
 WITH_DEPTH, PHOTO_ALONE = "masks and depth", "masks and the photo alone"
+BY_MODEL = "a language model, masks and depth"
+WHAT_IS_THERE, WHAT_HOLDS_WHAT = "what is in the photo", "what holds up what"
 MISTAKES_SHOWN = 5
+
+
+@dataclass(frozen=True)
+class Asked:
+    """One question about one picture, however many calls it took."""
+
+    question: str
+    calls: int
+    tokens: int
+    """Read and written."""
+    seconds: float
+    """By the clock: waiting for a network."""
+    cost: float | None
+    """In units of the user's prices; None without prices."""
+    unusable: int
+    """Calls whose reply could not be used."""
 
 
 @dataclass(frozen=True)
@@ -22,9 +51,12 @@ class RelationsBench:
     seed: int
     rooms: int
     counts: tuple[tuple[str, RelationCount], ...]
+    model: str = ""
+    """The language model that was asked; empty where none was."""
+    asked: tuple[Asked, ...] = ()
 
     def tables(self) -> tuple[Table, ...]:
-        """One row per kind of input."""
+        """One row per kind of input; what the questions took, where a language model was asked."""
         columns = (Column("accuracy", ".3f", "↑"), Column("objects", "d"), Column("usual mistakes"))
         rows = tuple(Row(name, (c.accuracy, c.total, _mistakes(c))) for name, c in self.counts)
         note = (
@@ -32,24 +64,103 @@ class RelationsBench:
             "true supporter is a part of the room or is itself in the picture. The publication reports about 0.62 with "
             "GPT-4o and its own poses, on another dataset."
         )
-        return (Table("Support graph from geometry", columns, rows, note),)
+        accuracy = Table("Support graph", columns, rows, note)
+        return (accuracy, costs_table(self.model, self.asked)) if self.asked else (accuracy,)
 
     def to_json(self) -> dict[str, object]:
         """Plain values."""
         return {"seed": self.seed, "rooms": self.rooms, "tables": [t.to_json() for t in self.tables()]}
 
 
-def run(library: ShapeLibrary, scenes: int = 18, seed: int = 0, progress: Progress | None = None) -> RelationsBench:
-    """Judge the graph of every room's first picture, with depth and without."""
+@dataclass
+class MeteredGraph:
+    """A language model's graph stage that notes what every picture took. Implements `GraphStage`."""
+
+    stage: LanguageGraph
+    asked: list[Asked] = field(default_factory=list)
+
+    def relate(
+        self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
+    ) -> SceneGraph:
+        """The stage's graph."""
+        began = time.perf_counter()
+        graph = self.stage.relate(inputs, objects, geometry, progress)
+        if (use := graph.source.asked) is not None:
+            seconds = time.perf_counter() - began
+            self.asked.append(Asked(WHAT_HOLDS_WHAT, use.calls, use.tokens, seconds, use.cost, use.calls - use.replies))
+        return graph
+
+
+def run(
+    library: ShapeLibrary,
+    scenes: int = 18,
+    seed: int = 0,
+    progress: Progress | None = None,
+    language_model: LmmSettings | None = None,
+) -> RelationsBench:
+    """Judge the graph of every room's first picture, with depth and without.
+
+    Args:
+        library: furnishes the rooms.
+        scenes: rooms.
+        seed: of the rooms.
+        progress: reports and cancellation.
+        language_model: is asked about every picture, too; cached replies do not count.
+
+    Raises:
+        UnavailableError: when the language model is asked wrongly (key, model), or never answers usably.
+    """
     progress = progress or Progress()
     counts = {WITH_DEPTH: RelationCount(), PHOTO_ALONE: RelationCount()}
+    settings = None if language_model is None else replace(language_model, cache=None)
+    asked: list[Asked] = []
     cases = recipe(scenes, 1, seed)
     left_out: list[LeftOut] = []
     for k, (case, view) in enumerate(attempted(cases, library, left_out)):
         progress.report(k / len(cases), case.name)
         counts[WITH_DEPTH] += relations_of(view, with_depth=True)
         counts[PHOTO_ALONE] += relations_of(view, with_depth=False)
-    return RelationsBench(seed, scenes - len(left_out), tuple(counts.items()))
+        if settings is not None:
+            asked.append(_recognised(view.inputs.photo, settings))
+            metered = MeteredGraph(LanguageGraph(settings), asked)
+            found = relations_of(view, with_depth=True, graph=metered)
+            counts[BY_MODEL] = counts.get(BY_MODEL, RelationCount()) + found
+    model = "" if settings is None else settings.model
+    return RelationsBench(seed, scenes - len(left_out), tuple(counts.items()), model, tuple(asked))
+
+
+def costs_table(model: str, asked: Sequence[Asked]) -> Table:
+    """Means over pictures of what the questions took, beside the paper's."""
+    columns = (
+        Column("calls", ".1f", "↓"),
+        Column("tokens", ".0f", "↓"),
+        Column("seconds", ".1f", "↓"),
+        Column("cost", ".4f", "↓"),
+        Column("unusable replies", ".2f", "↓"),
+    )
+    by_question = {q: [a for a in asked if a.question == q] for q in (WHAT_IS_THERE, WHAT_HOLDS_WHAT)}
+    means = {q: _means(of_one) for q, of_one in by_question.items() if of_one}
+    whole = tuple(None if None in column else float(sum(column)) for column in zip(*means.values(), strict=True))
+    note = (
+        f"{model}; a picture, {len(by_question[WHAT_HOLDS_WHAT])} pictures. Seconds by the clock, with pauses after "
+        "refusals; tokens as the endpoint counts them. Cost in units of the prices that DIORAMA_LMM_PRICE states; in "
+        "the paper's row US dollars."
+    )
+    rows = (*(Row(q, values) for q, values in means.items()), Row("both", whole), *paper_rows(paper.LANGUAGE_MODEL))
+    return Table("Language model: times and costs", columns, rows, note)
+
+
+def _recognised(photo: Photo, settings: LmmSettings) -> Asked:
+    began = time.perf_counter()
+    usage = LanguageRecognition(settings).ask(photo, Progress()).usage
+    seconds = time.perf_counter() - began
+    return Asked(WHAT_IS_THERE, usage.calls, usage.tokens, seconds, usage.cost(settings), usage.calls - 1)
+
+
+def _means(asked: Sequence[Asked]) -> tuple[float | None, ...]:
+    """Calls, tokens, seconds, cost and unusable replies."""
+    columns = zip(*((a.calls, a.tokens, a.seconds, a.cost, a.unusable) for a in asked), strict=True)
+    return tuple(None if None in column else float(np.mean(column)) for column in columns)
 
 
 def _mistakes(count: RelationCount) -> str:

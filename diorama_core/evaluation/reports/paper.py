@@ -14,6 +14,9 @@ SYSTEM: Rows = {
 }
 """rAcc, tAcc, sAcc, Acc, CD, failures, seconds a scene."""
 
+LANGUAGE_MODEL: Rows = {"Diorama, GPT-4o": (2, None, None, 0.12, None)}
+"""Calls, tokens, seconds, cost in US dollars and unusable replies of a picture."""
+
 ARCHITECTURE: Rows = {
     "RaC, DAv2": (236 / 344, 40.3, 39.8, 23.2, 0.67, 0.645, 43.0),
     "RaC, M3Dv2": (258 / 344, 45.2, 33.7, 21.0, 1.23, 0.908, 49.0),

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import itertools
 from functools import cache
-from typing import Any
 
 import numpy as np
 import trimesh
@@ -26,11 +25,11 @@ Relief = Float32[np.ndarray, "axis=3 end=2 n n"]
 
 def relief(mesh: trimesh.Trimesh) -> Relief:
     """The relief of a mesh in its own frame; the box is stretched to a cube first."""
-    import open3d as o3d  # seconds to load
+    from diorama_core.geometry.open3d_import import o3d  # a second to load
 
     low, high = mesh.bounds
     unit = (np.asarray(mesh.vertices) - low) / np.maximum(high - low, 1e-12)
-    scene: Any = o3d.t.geometry.RaycastingScene(nthreads=1)  # takes arrays, unlike its stubs say
+    scene = o3d.t.geometry.RaycastingScene(nthreads=1)
     scene.add_triangles(unit.astype(np.float32), np.asarray(mesh.faces, dtype=np.uint32))
     hits = scene.cast_rays(o3d.core.Tensor.from_numpy(_rays()))["t_hit"].numpy()
     return np.clip(hits - 0.5, 0.0, 1.0).reshape(3, 2, SIDE, SIDE)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import trimesh
 
@@ -34,9 +32,9 @@ def symmetry_fold(mesh: trimesh.Trimesh, pictures: Relief) -> SymmetryFold:
 
 def coincides(mesh: trimesh.Trimesh, fold: int) -> bool:
     """Whether a mesh turned by one of so many equal turns about up lies where it lay before."""
-    import open3d as o3d  # seconds to load
+    from diorama_core.geometry.open3d_import import o3d  # a second to load
 
-    scene: Any = o3d.t.geometry.RaycastingScene(nthreads=1)  # takes arrays, unlike its stubs say
+    scene = o3d.t.geometry.RaycastingScene(nthreads=1)
     scene.add_triangles(np.asarray(mesh.vertices, np.float32), np.asarray(mesh.faces, np.uint32))
     points, _ = trimesh.sample.sample_surface(mesh, _POINTS, seed=0)
     moved = np.asarray(points) @ trimesh.transformations.rotation_matrix(2 * np.pi / fold, (0, 0, 1))[:3, :3].T

@@ -8,7 +8,14 @@ from diorama_core.artefacts import DetectedObject, Inputs, ObjectGeometry, Photo
 from diorama_core.library.taxonomy import ARCHITECTURE_WORDS
 from diorama_core.perception.graph.geometric import GeometricGraph
 from diorama_core.perception.graph.repair import repaired
-from diorama_core.perception.language.client import EndpointDownError, LmmClient, LmmSettings, UnusableReplyError, Usage
+from diorama_core.perception.language.client import (
+    EndpointDownError,
+    LmmClient,
+    LmmSettings,
+    Reply,
+    UnusableReplyError,
+    Usage,
+)
 from diorama_core.perception.language.marks import marked, picture_bytes
 from diorama_core.perception.language.replies import RECOGNITION_PROMPT, ClassesReply, GraphReply, graph_prompt
 from diorama_core.perception.language.votes import counted
@@ -28,10 +35,14 @@ class LanguageRecognition:
         Raises:
             UnavailableError: when the model cannot be asked or never answers usably.
         """
+        reply = self.ask(photo, progress)
+        return tuple(w for w in reply.value.words() if w not in ARCHITECTURE_WORDS)
+
+    def ask(self, photo: Photo, progress: Progress) -> Reply[ClassesReply]:
+        """The reply, with what it took; raises as `recognise`."""
         progress.report(0.0, f"Asking {self.settings.model} what is in the photo")
         picture = picture_bytes(marked(photo.rgb, (), ()))
-        reply = LmmClient(self.settings).ask(RECOGNITION_PROMPT, [picture], ClassesReply, progress)
-        return tuple(w for w in reply.value.words() if w not in ARCHITECTURE_WORDS)
+        return LmmClient(self.settings).ask(RECOGNITION_PROMPT, [picture], ClassesReply, progress)
 
 
 @dataclass(frozen=True)

@@ -86,8 +86,8 @@ class Problems:
     """Of the logarithm of that coordinate's ratio."""
     cut_sigma: Float[np.ndarray, "n"]
     """How readily the cuboid may reach beyond the picture (of a logarithm of box sizes)."""
-    outline: Float[np.ndarray, "n 40 3"]
-    """Points in a unit box that bound what the object fills of its cuboid (`library.kinds`)."""
+    outline: Float[np.ndarray, "n p 3"]
+    """Points in a unit box that bound what the object fills of its cuboid (`library.kinds`): 40 points, or none."""
     extra: Float[np.ndarray, "n"]
     """Constant cost of the row's assumptions."""
 
@@ -97,6 +97,10 @@ class Problems:
     def rows(self, chosen: np.ndarray) -> Problems:
         """The chosen rows, by index or by mask."""
         return Problems(**{f.name: getattr(self, f.name)[chosen] for f in fields(self)})
+
+    def without_outlines(self) -> Problems:
+        """The rows without their largest column, where insets are known."""
+        return replace(self, outline=self.outline[:, :0])
 
     def changed(self, **columns: object) -> Problems:
         """A copy with some columns replaced (broadcast to the rows)."""
@@ -153,7 +157,7 @@ def residuals(
 ) -> Float[np.ndarray, "n r"]:
     """Everything that speaks against a row's cuboid, in sigmas: their squares sum to its cost.
 
-    `inset_px` is what `outline_inset` says nearby, where it is known: it hardly changes with small steps.
+    `inset_px` is what `outline_inset` says here or nearby, where it is known: it hardly changes with small steps.
     """
     boxes = cuboids(unknowns, problems, view)
     corners = corners_camera(boxes, problems.camera_height_m, view)

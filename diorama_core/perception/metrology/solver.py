@@ -48,20 +48,26 @@ def solve(problems: Problems, start: Float[np.ndarray, "n 6"], view: View, itera
     """Minimise every row's cost from its start; rows that have settled are left alone."""
     low, high = _bounds(problems)
     unknowns = np.clip(start, low, high)
-    cost = _cost(residuals(unknowns, problems, view))
+    inset = outline_inset(unknowns, problems, view)
+    r = residuals(unknowns, problems, view, inset)
+    cost = _cost(r)
     damping = np.full(len(problems), 1e-2)
     active = np.arange(len(problems))
     for _ in range(iterations):
         if not len(active):
             break
         part, here = problems.rows(active), unknowns[active]
-        step = _step(part, here, damping[active], (low[active], high[active]), view)
-        there = np.clip(here + step, low[active], high[active])
-        reached = _cost(residuals(there, part, view))
+        bounds = low[active], high[active]
+        step = _step(part, here, _Values(r[active], inset[active]), damping[active], bounds, view)
+        there = np.clip(here + step, *bounds)
+        inset_there = outline_inset(there, part, view)
+        r_there = residuals(there, part, view, inset_there)
+        reached = _cost(r_there)
         gain = cost[active] - reached
         better = gain > 0
-        unknowns[active] = np.where(better[:, None], there, here)
-        cost[active] = np.where(better, reached, cost[active])
+        moved = active[better]
+        unknowns[moved], cost[moved] = there[better], reached[better]
+        r[moved], inset[moved] = r_there[better], inset_there[better]
         damping[active] = np.where(better, damping[active] * 0.3, damping[active] * 6.0)
         active = active[(~better & (damping[active] < 1e5)) | (gain > _MIN_GAIN)]
     return Solutions(problems, unknowns, cost + problems.extra)
@@ -80,22 +86,30 @@ def _cost(r: Float[np.ndarray, "n r"]) -> Float[np.ndarray, "n"]:
     return (r**2).sum(axis=1)
 
 
+@dataclass(frozen=True, eq=False)
+class _Values:
+    """What is known of the rows where they are."""
+
+    residuals: Float[np.ndarray, "n r"]
+    inset_px: Float[np.ndarray, "n 4"]
+
+
 def _step(
     problems: Problems,
     unknowns: Float[np.ndarray, "n 6"],
+    here: _Values,
     damping: Float[np.ndarray, "n"],
     bounds: tuple[Float[np.ndarray, "n 6"], Float[np.ndarray, "n 6"]],
     view: View,
 ) -> Float[np.ndarray, "n 6"]:
     """The damped Gauss-Newton step of the unknowns that no bound stops, with derivatives by forward differences."""
     count = len(problems)
-    moves = _STEP * np.concatenate([np.zeros((1, UNKNOWNS)), np.eye(UNKNOWNS)])
-    probes = (unknowns[None] + moves[:, None]).reshape(-1, UNKNOWNS)
-    repeated = problems.rows(np.tile(np.arange(count), UNKNOWNS + 1))
-    inset = np.tile(outline_inset(unknowns, problems, view), (UNKNOWNS + 1, 1))
-    values = residuals(probes, repeated, view, inset).reshape(UNKNOWNS + 1, count, -1)
-    r = values[0]
-    jacobian = ((values[1:] - r) / _STEP).transpose(1, 2, 0)
+    probes = (unknowns[None] + _STEP * np.eye(UNKNOWNS)[:, None]).reshape(-1, UNKNOWNS)
+    repeated = problems.without_outlines().rows(np.tile(np.arange(count), UNKNOWNS))
+    inset = np.tile(here.inset_px, (UNKNOWNS, 1))
+    r = here.residuals
+    values = residuals(probes, repeated, view, inset).reshape(UNKNOWNS, count, -1)
+    jacobian = ((values - r) / _STEP).transpose(1, 2, 0)
     normal = np.einsum("nri,nrj->nij", jacobian, jacobian)
     gradient = np.einsum("nri,nr->ni", jacobian, r)
     low, high = bounds

@@ -7,11 +7,19 @@ import json
 import numpy as np
 import pytest
 from PIL import Image
+from scipy.spatial.transform import Rotation
 
 from diorama_core.artefacts import Inputs, Photo
 from diorama_core.errors import InputError
-from diorama_core.evaluation.adapters.scan2cad import AlignedModel, ScanFrame
-from diorama_core.evaluation.benchmarks.local_datasets import LocalResult, aligned, aligned_table, local_cases, run
+from diorama_core.evaluation.adapters.scan2cad import SHAPENET_CATEGORIES, AlignedModel, ScanFrame
+from diorama_core.evaluation.benchmarks.local_datasets import (
+    LocalResult,
+    aligned,
+    aligned_table,
+    local_cases,
+    run,
+    scan2cad_class,
+)
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Camera, Intrinsics, Pose, Scene, SceneObject, yaw_rotation
 from diorama_core.synthesis import furnished_room, render_truth, sample_cameras
@@ -38,6 +46,62 @@ def ssdb(tmp_path_factory):
     }
     (folder / "gt.json").write_text(json.dumps(records))
     return folder.parent, len(records)
+
+
+def _scan2cad_model(item: SceneObject) -> dict[str, object]:
+    """An object as Scan2CAD annotates a ShapeNet model: +Y up, -Z front."""
+    depth, width, height = np.asarray(item.shape_size_m) * item.pose.scale
+    R = item.pose.R_world_object @ np.array([[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    offsets = {name: offset for offset, name in SHAPENET_CATEGORIES.items()}
+    return {
+        "catid_cad": offsets.get(scan2cad_class(item.category), "00000000"),
+        "id_cad": item.shape_id,
+        "sym": "__SYM_NONE",
+        "bbox": [width / 2, height / 2, depth / 2],
+        "center": [0.0, 0.0, 0.0],
+        "trs": {
+            "translation": item.pose.position.tolist(),
+            "rotation": Rotation.from_matrix(R).as_quat(scalar_first=True).tolist(),
+            "scale": [1.0, 1.0, 1.0],
+        },
+    }
+
+
+@pytest.mark.slow
+def test_a_folder_of_scan2cad_is_built_and_fills_the_table_by_category(tmp_path):
+    library = built_in_library()
+    room = furnished_room(3, "office", library, clutter=2)
+    view = render_truth(room, sample_cameras(room, library, 1, 1, SIZE)[0], library, SIZE, with_empty_room=False)
+    root, k = tmp_path / "scans" / "scene0000_00", view.camera.intrinsics
+    for folder in ("color", "depth", "instance", "pose", "intrinsic"):
+        (root / folder).mkdir(parents=True)
+    Image.fromarray(view.inputs.photo.rgb).save(root / "color" / "10.png")
+    Image.fromarray((view.inputs.depth_m * 1000).astype(np.uint16)).save(root / "depth" / "10.png")
+    Image.fromarray(view.inputs.instances.astype(np.uint8)).save(root / "instance" / "10.png")
+    np.savetxt(root / "pose" / "10.txt", view.camera.T_world_camera)
+    K = np.array([[k.fx, 0, k.cx, 0], [0, k.fy, k.cy, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+    np.savetxt(root / "intrinsic" / "intrinsic_depth.txt", K)
+    seen = [o for o in view.scene.objects if o.mask_id is not None]
+    still = {"translation": [0.0, 0.0, 0.0], "rotation": [1.0, 0.0, 0.0, 0.0], "scale": [1.0, 1.0, 1.0]}
+    record = {"id_scan": "scene0000_00", "trs": still, "aligned_models": [_scan2cad_model(o) for o in seen]}
+    (tmp_path / "full_annotations.json").write_text(json.dumps([record]))
+    bench = run("scan2cad", tmp_path, library, 3)
+    (result,) = bench.results
+    assert result.failure == ""
+    assert result.asked == len(seen)
+    assert {name for name, _ in result.aligned} >= {"chair", "table"}
+    row = bench.tables()[1].row("embedded")
+    assert isinstance(row["instance mean"], float)
+    assert row["instance mean"] >= 25.0
+    assert row["bathtub"] is None
+
+
+@pytest.mark.parametrize(
+    ("ours", "theirs"),
+    [("armchair", "chair"), ("desk", "table"), ("dresser", "cabinet"), ("television", "display"), ("lamp", "lamp")],
+)
+def test_kinds_of_things_have_scan2cads_classes(ours, theirs):
+    assert scan2cad_class(ours) == theirs
 
 
 def test_a_folder_of_ssdb_is_built_and_measured(ssdb):

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import json
+from dataclasses import replace
+from typing import Any
+
 import pytest
 
 from diorama_core.evaluation.benchmarks import relations as relations_bench
 from diorama_core.evaluation.metrics.relations import RelationCount, relations_of
 from diorama_core.library.catalogue import built_in_library
+from diorama_core.perception.language.client import LmmSettings
 from diorama_core.synthesis import ROOM_KINDS, TruthView, furnished_room, render_truth, sample_cameras
+from tests.perception.language.stub_lmm import StubLmm, answering
 
 SIZE = (480, 360)
 SEEDS = range(6)
@@ -49,3 +55,30 @@ def test_the_bench_gives_a_row_for_each_kind_of_input() -> None:
         assert isinstance(row["accuracy"], float)
         assert 0.5 <= row["accuracy"] <= 1.0
     assert bench.to_json()["rooms"] == 1
+
+
+def test_a_language_model_s_times_and_costs_are_rows_of_their_own() -> None:
+    def answer(request: dict[str, Any]) -> str:
+        if "room_type" not in str(request):
+            return json.dumps({"classes": ["chair"]})
+        return json.dumps({"room_type": "living room", "objects": [], "support_relation": []})
+
+    stub = StubLmm(["no JSON at first", answer])
+    with answering(stub):
+        settings = LmmSettings(stub.address, "stub", votes=2, price_per_million=(2.0, 10.0))
+        bench = relations_bench.run(built_in_library(), scenes=1, seed=3, language_model=settings)
+    assert [name for name, _ in bench.counts] == [
+        relations_bench.WITH_DEPTH, relations_bench.PHOTO_ALONE, relations_bench.BY_MODEL,
+    ]  # fmt: skip
+    costs = bench.tables()[1]
+    first, second, both = (
+        costs.row(name) for name in (relations_bench.WHAT_IS_THERE, relations_bench.WHAT_HOLDS_WHAT, "both")
+    )
+    assert (first["calls"], first["unusable replies"]) == (2.0, 1.0), "the first reply was no JSON"
+    assert (second["calls"], second["unusable replies"]) == (2.0, 0.0), "two votes"
+    assert both["tokens"] == pytest.approx(4 * 1050)
+    assert both["cost"] == pytest.approx(4 * (1000 * 2.0 + 50 * 10.0) / 1e6)
+    assert isinstance(both["seconds"], float)
+    assert both["seconds"] > 0
+    free = relations_bench.costs_table("stub", [replace(a, cost=None) for a in bench.asked])
+    assert free.row("both")["cost"] is None, "without prices there is no cost"

@@ -1,0 +1,40 @@
+"""Open3D without its plots for notebooks, whose Dash, Plotly and IPython take half of the time of importing it.
+
+The plots load when somebody calls them.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Callable
+from types import ModuleType
+from typing import Any
+
+_PLOTS = "open3d.visualization.draw_plotly"
+_FUNCTIONS = ("get_plotly_fig", "draw_plotly", "draw_plotly_server")
+
+
+def _without_plots() -> Any:
+    """The package, imported with a stand-in for its module of plots."""
+    if "open3d" in sys.modules:  # imported by somebody else, plots and all
+        return importlib.import_module("open3d")
+    stand_in = ModuleType(_PLOTS)
+    for name in _FUNCTIONS:
+        setattr(stand_in, name, _loaded_on_call(name))
+    sys.modules[_PLOTS] = stand_in
+    try:
+        return importlib.import_module("open3d")
+    finally:
+        del sys.modules[_PLOTS]
+
+
+def _loaded_on_call(name: str) -> Callable[..., Any]:
+    def call(*args: Any, **kwargs: Any) -> Any:
+        return getattr(importlib.import_module(_PLOTS), name)(*args, **kwargs)
+
+    call.__name__ = name
+    return call
+
+
+o3d: Any = _without_plots()  # Any, as its stubs do not know that arrays are taken for tensors
