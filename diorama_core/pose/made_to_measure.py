@@ -52,7 +52,7 @@ SIZE_LOSS = 0.1
 """A shape stretched unevenly is rather built at that size, unless it agrees worse by so much."""
 PASSES, MAX_VARIANTS = 2, 32
 """Times that all parameters are gone through, since one may hide another, and shapes built for one object or set."""
-POOR_FIT = 0.2
+POOR_FIT = 0.3
 """Disagreement from which on the designs that were ranked next are fitted, too."""
 COMPARED = 3
 """Designs that are then compared after they were fitted."""

@@ -35,3 +35,11 @@ def test_smaller_counts_as_larger_does_and_thickness_of_thin_things_says_nothing
         enlarged_cost(evidence, (0.5, 0.5, 0.5), (0.5, 0.5, 0.5))
     )
     assert enlarged_cost(evidence, (1.0, 1.0, 0.01), (1.0, 1.0, 5.0)) == 0.0
+
+
+def test_with_depth_a_shape_of_another_size_is_less_likely_but_never_ruled_out(evidence: Evidence) -> None:
+    limits = SizeLimits.of((0.5, 0.5, 0.9), "chair", np.array([0.5, 0.5, 0.9]), measured=True)
+    same, larger, twice = (evidence.log_likelihood(0.2, np.full(3, factor), limits) for factor in (1.0, 1.3, 2.0))
+    assert same > larger > twice
+    better_fit = evidence.log_likelihood(0.04, np.full(3, 2.0), limits)
+    assert better_fit > same
