@@ -29,6 +29,7 @@ from diorama_core.library.company import CARRIED_KINDS
 from diorama_core.library.taxonomy import CATEGORIES
 from diorama_core.scene.types import yaw_rotation
 
+MAX_REACH_M = 60.0
 VOXEL_M = 0.03
 LEVEL_M = 0.02
 """Of the histogram of heights."""
@@ -87,6 +88,7 @@ def measured_cloud(cloud: PointCloud) -> MeasuredRoom:
     Raises:
         InputError: there is no floor in it.
     """
+    _spread(cloud.points, 2 * MAX_REACH_M)  # whichever way they are turned: a diagonal is shorter than two sides
     T = np.eye(4)
     T[:3, :3] = _upright_axes(cloud)
     points = _thinned(cloud.points @ T[:3, :3].T)
@@ -133,9 +135,7 @@ def _sharpness(values: Float[np.ndarray, "n"], step: float) -> float:
 
 def _thinned(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 3"]:
     """One point for each occupied voxel, so that what was scanned from near does not outweigh the rest."""
-    low, high = np.quantile(points, [0.001, 0.999], axis=0)
-    if not (high - low < 60.0).all():
-        raise InputError("the points reach over more than 60 m; cut out one room, in metres")
+    low, high = _spread(points, MAX_REACH_M)
     points = points[((points > low - 0.5) & (points < high + 0.5)).all(axis=1)]
     cells = np.floor((points - points.min(axis=0)) / VOXEL_M).astype(np.int64)
     counts = cells.max(axis=0) + 1
@@ -146,11 +146,19 @@ def _thinned(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 3"]:
     return sums / np.diff(np.append(starts, len(points)))[:, None]
 
 
+def _spread(points: Float[np.ndarray, "n 3"], most_m: float) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+    """The least and the largest coordinates of all points but stray ones; an error where they are too far apart."""
+    low, high = np.quantile(points, [0.001, 0.999], axis=0)
+    if not (high - low < most_m).all():
+        raise InputError(f"the points reach over more than {MAX_REACH_M:.0f} m; cut out one room, in metres")
+    return low, high
+
+
 def _levels(heights: Float[np.ndarray, "n"]) -> tuple[float, float, bool]:
     """Heights of the floor and the room's top, and whether that is a ceiling."""
     low, high = float(heights.min()), float(heights.max())
     counts, edges = np.histogram(heights, np.arange(low, high + 2 * LEVEL_M, LEVEL_M))
-    smooth = np.convolve(counts, [1, 1, 1], "same")
+    smooth = np.convolve(counts, [1, 1, 1])[1:-1]  # as many as bins, however few
     strong = np.flatnonzero(smooth >= LEVEL_SHARE * smooth.max())
     floor_bin = int(strong[0])
     floor_m = _at(heights, float(edges[floor_bin]), 2.5 * LEVEL_M)
