@@ -40,8 +40,8 @@ os.environ["OMP_NUM_THREADS"] = "1"  # threads do not survive a fork
 import numpy as np
 import trimesh
 
+from diorama_app.projects.uploads import Upload, read_packed
 from diorama_app.session.autosave import Autosave
-from diorama_app.session.reading import Upload, read_packed
 from diorama_app.session.recovery import Recovery
 from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.errors import DioramaError

@@ -30,6 +30,7 @@ from diorama_core.library.company import CARRIED_KINDS
 from diorama_core.library.taxonomy import CATEGORIES
 from diorama_core.scene.types import yaw_rotation
 
+MAX_REACH_M = 60.0
 VOXEL_M = 0.03
 LEVEL_M = 0.02
 """Of the histogram of heights."""
@@ -94,7 +95,7 @@ def measured_cloud(cloud: PointCloud) -> MeasuredRoom:
     Raises:
         InputError: there is no floor in it.
     """
-    _check_extent(cloud.points)
+    _spread(cloud.points, 2 * MAX_REACH_M)  # whichever way they are turned: a diagonal is shorter than two sides
     T = np.eye(4)
     T[:3, :3] = _upright_axes(cloud)
     points = _thinned(cloud.points @ T[:3, :3].T)
@@ -141,15 +142,9 @@ def _sharpness(values: Float[np.ndarray, "n"], step: float) -> float:
     return float((counts.astype(float) ** 2).sum()) / max(len(values), 1) ** 2
 
 
-def _check_extent(points: Float[np.ndarray, "n 3"]) -> None:
-    low, high = np.quantile(points, [0.001, 0.999], axis=0)
-    if not (high - low < 60.0).all():
-        raise InputError("the points reach over more than 60 m; cut out one room, in metres")
-
-
 def _thinned(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 3"]:
     """One point for each occupied voxel, so that what was scanned from near does not outweigh the rest."""
-    low, high = np.quantile(points, [0.001, 0.999], axis=0)
+    low, high = _spread(points, MAX_REACH_M)
     points = points[((points > low - 0.5) & (points < high + 0.5)).all(axis=1)]
     cells = np.floor((points - points.min(axis=0)) / VOXEL_M).astype(np.int64)
     counts = cells.max(axis=0) + 1
@@ -158,6 +153,14 @@ def _thinned(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 3"]:
     starts = np.flatnonzero(np.append(True, np.diff(keys[order]) > 0))
     sums = np.add.reduceat(points[order], starts, axis=0)
     return sums / np.diff(np.append(starts, len(points)))[:, None]
+
+
+def _spread(points: Float[np.ndarray, "n 3"], most_m: float) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+    """The least and the largest coordinates of all points but stray ones; an error where they are too far apart."""
+    low, high = np.quantile(points, [0.001, 0.999], axis=0)
+    if not (high - low < most_m).all():
+        raise InputError(f"the points reach over more than {MAX_REACH_M:.0f} m; cut out one room, in metres")
+    return low, high
 
 
 @dataclass(frozen=True)

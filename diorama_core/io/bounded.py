@@ -86,7 +86,7 @@ def parse_json(
         if _depth(raw) > MAX_JSON_DEPTH:
             raise error(f"{name} is nested more than {MAX_JSON_DEPTH} levels deep; {advice}")
         value = json.loads(raw.decode("utf-8-sig"), parse_constant=_refuse_constant if finite else float)
-        if finite and _infinite(value, raw):
+        if finite and _infinite(raw):
             raise ValueError("a number is too large")
         if rb"\u" in raw:
             json.dumps(value, ensure_ascii=False).encode()  # half of a character pair cannot be written
@@ -178,12 +178,12 @@ def _refuse_constant(name: str) -> float:
     raise ValueError(f"{name} is no number")
 
 
-def _infinite(value: Any, raw: bytes) -> bool:
-    """Whether a number overflowed, as 1e999 does. Only text with an exponent or very many digits can."""
+def _infinite(raw: bytes) -> bool:
+    """Whether a number is too large, as 1e999 or 400 digits. Only an exponent or very many digits make one."""
     if not _LARGE.search(raw):
         return False
     try:
-        json.dumps(value, allow_nan=False)
+        json.dumps(json.loads(raw.decode("utf-8-sig"), parse_int=float), allow_nan=False)
     except ValueError:
         return True
     return False

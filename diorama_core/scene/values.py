@@ -19,7 +19,10 @@ def frozen_array(value: Any, shape: tuple[int, ...], dtype: Any = np.float64) ->
     Raises:
         ValueError: when the shape differs or a number is not finite.
     """
-    array = np.array(value, dtype=dtype)
+    try:
+        array = np.array(value, dtype=dtype)
+    except OverflowError as error:  # a whole number of hundreds of digits
+        raise ValueError("every number must be finite") from error
     fits = array.ndim == len(shape) and all(want in (-1, have) for want, have in zip(shape, array.shape, strict=True))
     if not fits:
         raise ValueError(f"expected an array of shape {shape}, got {array.shape}")

@@ -24,7 +24,7 @@ from tests.e2e.browser import LEARN_MS, PATIENCE_MS, EditorPage
 from tests.e2e.conftest import keep_picture
 from tests.export import gltf_reader
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 JOB_MS = 120_000
 """Seconds on two free cores; test machines are often busy."""

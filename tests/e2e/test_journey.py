@@ -16,7 +16,7 @@ from diorama_core.scene.types import Scene, SceneObject
 from tests.conftest import SHARED
 from tests.e2e.browser import EditorPage
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 BUILD_S = 300
 """A build takes some fifteen seconds of two free cores; test machines are often busy."""

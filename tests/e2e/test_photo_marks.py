@@ -20,7 +20,7 @@ from tests.app.small_room import make_project, plain_photo
 from tests.e2e.browser import QUERY, EditorPage
 from tests.waiting import until
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 CHAIR, TABLE = (40.0, 250.0, 160.0, 440.0), (240.0, 200.0, 440.0, 420.0)
 

@@ -17,7 +17,7 @@ from tests.e2e.conftest import StartServer, keep_picture
 from tests.multiview.two_photos import project_of, two_photos, with_camera
 
 pytest.importorskip("pycolmap", reason="needs pycolmap (pip install 'diorama[photos]')")
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 
 def test_a_photo_of_the_same_room_is_added_looked_through_and_undone(

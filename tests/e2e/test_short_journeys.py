@@ -18,7 +18,7 @@ from tests.e2e.browser import EditorPage
 from tests.e2e.conftest import ARTEFACTS, keep_picture
 from tests.e2e.hand import Hand
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 MOST_ACTIONS = 60
 BUILD_S = 300

@@ -27,13 +27,15 @@ from tests.importing.scans import FROM_OPENCV, Y_UP, room_meshes, room_points
 from tests.importing.test_plan_pages import write_pdf
 from tests.importing.test_point_files import write_ply
 
+PLY_ROW = np.dtype([("p", "<f4", 3), ("c", "u1", 3)])
+STRANGE_NUMBERS = (np.nan, np.inf, -np.inf, 3e38, 1e30, 1e9, 0.0, -50.0, 1e-40)
 POINTS = 4000
 """Twice as many as a room needs: half of a file is still one."""
 
 
 @cache
 def cloud_samples() -> tuple[bytes, ...]:
-    """A room's points as PLY, LAS, LAZ and E57."""
+    """A room's points as PLY, LAS and E57. Damaged LAZ makes its reader abort, each time a process: see the corpus."""
     import laspy
     import pye57
 
@@ -41,16 +43,33 @@ def cloud_samples() -> tuple[bytes, ...]:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         write_ply(folder / "room.ply", points)
-        for suffix in ("las", "laz"):
-            header = laspy.LasHeader(point_format=3, version="1.2")
-            header.offsets, header.scales = points.min(axis=0), np.full(3, 0.001)
-            made = laspy.LasData(header)
-            made.x, made.y, made.z = points.T
-            made.write(str(folder / f"room.{suffix}"))
+        header = laspy.LasHeader(point_format=3, version="1.2")
+        header.offsets, header.scales = points.min(axis=0), np.full(3, 0.001)
+        made = laspy.LasData(header)
+        made.x, made.y, made.z = points.T
+        made.write(str(folder / "room.las"))
         scan = pye57.E57(str(folder / "room.e57"), mode="w")
         scan.write_scan_raw({f"cartesian{a}": np.ascontiguousarray(points[:, n]) for n, a in enumerate("XYZ")})
         scan.close()
-        return tuple((folder / f"room.{suffix}").read_bytes() for suffix in ("ply", "las", "laz", "e57"))
+        return tuple((folder / f"room.{suffix}").read_bytes() for suffix in ("ply", "las", "e57"))
+
+
+def strange_cloud(data: bytes, random: Random) -> bytes:
+    """A file of points that is damaged, or whole with some points where none can be, or all of them elsewhere."""
+    head, found, rows = data.partition(b"end_header\n")
+    if not found or random.integers(0, 3) == 0:
+        return damaged(data, random)
+    values = np.frombuffer(rows, PLY_ROW).copy()
+    kind = int(random.integers(0, 3))
+    number = STRANGE_NUMBERS[int(random.integers(0, len(STRANGE_NUMBERS)))]
+    axis = int(random.integers(0, 3))
+    if kind == 0:
+        values["p"][random.random(len(values)) < 0.3, axis] = number
+    elif kind == 1:
+        values["p"][:, axis] = number
+    else:
+        values["p"] *= np.float32(random.choice([0.0, 1e-6, 0.01, 3.0, 1e6, -1.0]))
+    return head + found + values.tobytes()
 
 
 def _room_in(path: Path) -> object:
@@ -71,10 +90,10 @@ def read_cloud(data: bytes) -> object:
 @cache
 def frame_samples() -> tuple[bytes, ...]:
     """One frame of a phone: its camera, its depth, and how sure that is."""
-    camera = Camera(Intrinsics(96, 72, 50.0, 50.0, 48.0, 36.0), level_pose(np.array([0.6, 0.4, 1.5]), 0.4, -0.2))
+    camera = Camera(Intrinsics(96, 72, 30.0, 30.0, 48.0, 36.0), level_pose(np.array([1.6, -1.2, 1.5]), 2.4, 0.0))
     depth = MeshCaster([(m, np.eye(4)) for m in room_meshes()]).buffers(camera).depth_m
     T = Y_UP @ camera.T_world_camera @ FROM_OPENCV
-    row = {"cameraPoseARFrame": T.ravel().tolist(), "intrinsics": [200.0, 0, 192.0, 0, 200.0, 144.0, 0, 0, 1]}
+    row = {"cameraPoseARFrame": T.ravel().tolist(), "intrinsics": [120.0, 0, 192.0, 0, 120.0, 144.0, 0, 0, 1]}
     pictures = (np.round(depth * 1000).astype(np.uint16), np.full(depth.shape, 2, np.uint8))
     buffers = [io.BytesIO() for _ in pictures]
     for picture, buffer in zip(pictures, buffers, strict=True):

@@ -59,12 +59,17 @@ def test_the_room_opens_as_a_scene_whose_things_stand_with_their_backs_to_walls(
 
 
 def test_what_is_no_room_is_one_line() -> None:
+    flat = np.column_stack([room_points()[:, :2], np.full(len(room_points()), 12.0)])
+    with pytest.raises(InputError, match="nothing rises"):
+        measured_cloud(PointCloud(flat, None))
     rng = np.random.default_rng(0)
     flat = np.column_stack([rng.uniform(0, 4, (5000, 2)), rng.normal(0, 0.002, 5000)])
     with pytest.raises(InputError, match="no room in the points"):
         measured_cloud(PointCloud(flat, UP))
     with pytest.raises(InputError, match="more than 60 m"):
         measured_cloud(PointCloud(1000 * flat, UP))
+    with pytest.raises(InputError, match="more than 60 m"):  # a histogram of them would fill all memory
+        measured_cloud(PointCloud(1e30 * flat, None))
     for points in (np.zeros((5000, 3)), np.column_stack([np.linspace(0, 5, 5000), np.zeros((5000, 2))])):
         with pytest.raises(InputError, match="no room in the points"):
             measured_cloud(PointCloud(points, UP))

@@ -74,6 +74,7 @@ def test_json_comes_back_as_it_was_written(value) -> None:
         ("NaN", "NaN is no number"),
         ("[-Infinity]", "is no number"),
         ("1e999", "too large"),
+        (f"[{10**400}]", "too large"),
         (b"\xff\xfe", "no text"),
         (r'"\ud800"', "no text"),
         ("[" * (MAX_JSON_DEPTH + 1) + "]" * (MAX_JSON_DEPTH + 1), "levels deep"),

@@ -48,7 +48,7 @@ def test_another_shape_is_refused(value) -> None:
         frozen_array(value, (-1, 3))
 
 
-@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf, 10**400])
 def test_numbers_must_be_finite(bad) -> None:
     with pytest.raises(ValueError, match="finite"):
         frozen_array([0.0, bad, 1.0], (3,))

@@ -15,6 +15,7 @@ import trimesh
 from jaxtyping import Float, Int
 
 from diorama_core.errors import InputError
+from diorama_core.io.bounded import shortened
 from diorama_core.library import taxonomy
 from diorama_core.library.ingest.known_shapes import KnownShapes, relief_features
 from diorama_core.library.ingest.models import Convention
