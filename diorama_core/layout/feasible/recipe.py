@@ -17,7 +17,7 @@ from diorama_core.layout.feasible.relocate import relocate
 from diorama_core.layout.feasible.resize import fitted_sizes
 from diorama_core.layout.feasible.separate import Program, Separation, base, build_program, relaxed, separate
 from diorama_core.layout.feasible.structure import Structure, exact_structure
-from diorama_core.layout.feasible.visible_points import VisiblePoints, visible_points
+from diorama_core.layout.feasible.visible_points import ObservedView, VisiblePoints
 from diorama_core.layout.problem.problem import Problem, build_problem
 from diorama_core.layout.report import measure
 from diorama_core.layout.weights import AS_IT_IS, Weights
@@ -82,7 +82,8 @@ class FeasibleRecipe:
         problem = build_problem(scene, self.library, only=self.only, adherence_m=self.adherence_m)
         before = measure(problem, problem.R, problem.p, problem.scale)
         watched = scene.camera is not None and self._across > 1.0
-        visible = visible_points(scene, self.library) if watched else {}
+        seen_before = ObservedView.of(scene, self.library) if watched else None
+        visible = {} if seen_before is None else seen_before.points
         observations = self._observations(problem, scene.camera, visible)
         wanted = problem
         if observations is not None and not self.sizes_reasoned:  # reasoned distances overlap for other reasons
@@ -99,7 +100,7 @@ class FeasibleRecipe:
             if seen is not None:
                 structure = fitted_sizes(program, self._outline_cost(wanted))
                 program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
-            found = _apart(program, self.rounds, self._watcher(scene, program, progress, preview))
+            found = _apart(program, self.rounds, self._watcher(scene, program, progress, preview), seen_before)
             # Smaller objects that overlap as much as before have become smaller in vain.
             if best is None or len(found.stuck) < len(best[2].stuck):
                 best = (wanted, program, found)
@@ -191,16 +192,35 @@ def _certainty(problem: Problem) -> Float[np.ndarray, " n"]:
     return np.maximum(known, MIN_CERTAINTY)
 
 
-def _apart(program: Program, rounds: int, check: Callable[[np.ndarray, float], None]) -> Separation:
-    """The cheaper of two ways to take overlaps away: all at once, and one after another."""
+def _apart(
+    program: Program,
+    rounds: int,
+    check: Callable[[np.ndarray, float], None],
+    view: ObservedView | None,
+) -> Separation:
+    """The better of two ways to take overlaps away: all at once, and one after another.
+
+    Which agrees better with the picture, where there is one; else which costs less. Objects that change their order
+    along the line of sight may cost little, but they hide one another.
+    """
     together = separate(program, rounds=rounds, check=check)
     if not program.tried:
         return together
     single = relocate(program, base(program))
     found = [relaxed(program, f) for f in (together, single)]
-    best = min(found, key=lambda f: (len(f.stuck), float(program.cost(f.y))))
+    best = min(found, key=lambda f: (len(f.stuck), *_disagreement(program, f, view)))
     check(best.y, best.depth_m)
     return best
+
+
+def _disagreement(program: Program, found: Separation, view: ObservedView | None) -> tuple[float, float]:
+    """What of the picture is lost, and what the moves cost."""
+    cost = float(program.cost(found.y))
+    if view is None:
+        return 0.0, cost
+    structure = program.structure
+    poses = program.problem.poses(structure.R, structure.p + program.moves(found.y), structure.scale)
+    return 1.0 - view.agreement(poses), cost
 
 
 def _smaller(problem: Problem, structure: Structure, found: Separation) -> Problem:

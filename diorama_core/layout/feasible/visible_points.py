@@ -6,16 +6,22 @@ nothing was seen. The points of its surface that are seen, evenly spread over th
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
+import trimesh
 from jaxtyping import Float
 from scipy.optimize import linear_sum_assignment
 
 from diorama_core.layout.problem.problem import Problem
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.scene.types import Camera, Scene, box_corners
+from diorama_core.scene.types import Camera, Pose, Scene, box_corners
+
+if TYPE_CHECKING:
+    from diorama_core.render.raycast import Buffers
 
 LONG_SIDE_PX = 400
 """The layout is looked at in this size: a cup at the far wall still has a dozen pixels."""
@@ -43,27 +49,60 @@ class TrackedPoints:
     """Whether they are on the surface that was seen, rather than corners of the box."""
 
 
-def visible_points(scene: Scene, library: ShapeLibrary) -> VisiblePoints:
-    """Points that the scene's camera sees of each object; empty for what is hidden or outside the picture."""
+@dataclass(frozen=True, eq=False)
+class ObservedView:
+    """The observed layout as its camera sees it."""
+
+    camera: Camera
+    """In the size in which the layout is looked at."""
+    ids: tuple[str, ...]
+    meshes: tuple[trimesh.Trimesh, ...]
+    poses: tuple[Pose, ...]
+    view: Buffers
+    """Its instances are indices of `ids`."""
+
+    @classmethod
+    def of(cls, scene: Scene, library: ShapeLibrary) -> ObservedView | None:
+        """What the scene's camera sees; None without a camera or anything to see."""
+        items = [o for o in scene.objects if not o.hidden]
+        if not items or scene.camera is None:
+            return None
+        k = scene.camera.intrinsics
+        shrink = min(1.0, LONG_SIDE_PX / max(k.width, k.height))
+        size = max(round(k.width * shrink), 1), max(round(k.height * shrink), 1)
+        camera = Camera(k.scaled(*size), scene.camera.T_world_camera)
+        meshes, poses = tuple(library.mesh(o.shape_id) for o in items), tuple(o.pose for o in items)
+        return cls(camera, tuple(o.id for o in items), meshes, poses, _seen(camera, meshes, poses))
+
+    @cached_property
+    def points(self) -> VisiblePoints:
+        """Points that the camera sees of each object; empty for what is hidden or outside the picture."""
+        found = {}
+        for number, (name, pose) in enumerate(zip(self.ids, self.poses, strict=True)):
+            rows, columns = np.nonzero(self.view.instance == number)
+            step = max(len(rows) // MOST_POINTS, 1)
+            rows, columns = rows[::step], columns[::step]
+            rays = self.camera.rays(np.column_stack([columns + 0.5, rows + 0.5]))
+            world = self.camera.position + self.view.depth_m[rows, columns, None].astype(np.float64) * rays
+            found[name] = ((world - pose.position) @ pose.R_world_object) / pose.scale
+        return found
+
+    def agreement(self, poses: Mapping[str, Pose]) -> float:
+        """How far objects in other poses still cover what they covered, hiding included: mean over those seen."""
+        now = tuple(poses.get(name, pose) for name, pose in zip(self.ids, self.poses, strict=True))
+        after, before = _seen(self.camera, self.meshes, now).instance, self.view.instance
+        shares = []
+        for number in range(len(self.ids)):
+            was, is_now = before == number, after == number
+            if was.sum() >= FEWEST_POINTS:
+                shares.append(float((was & is_now).sum() / (was | is_now).sum()))
+        return float(np.mean(shares)) if shares else 1.0
+
+
+def _seen(camera: Camera, meshes: Sequence[trimesh.Trimesh], poses: Sequence[Pose]) -> Buffers:
     from diorama_core.render.raycast import MeshCaster  # Open3D; the editor opens without it
 
-    items = [o for o in scene.objects if not o.hidden]
-    if not items or scene.camera is None:
-        return {}
-    k = scene.camera.intrinsics
-    shrink = min(1.0, LONG_SIDE_PX / max(k.width, k.height))
-    size = max(round(k.width * shrink), 1), max(round(k.height * shrink), 1)
-    camera = Camera(k.scaled(*size), scene.camera.T_world_camera)
-    view = MeshCaster([(library.mesh(o.shape_id), o.pose.matrix) for o in items]).buffers(camera)
-    found = {}
-    for number, item in enumerate(items):
-        rows, columns = np.nonzero(view.instance == number)
-        step = max(len(rows) // MOST_POINTS, 1)
-        rows, columns = rows[::step], columns[::step]
-        rays = camera.rays(np.column_stack([columns + 0.5, rows + 0.5]))
-        world = camera.position + view.depth_m[rows, columns, None].astype(np.float64) * rays
-        found[item.id] = ((world - item.pose.position) @ item.pose.R_world_object) / item.pose.scale
-    return found
+    return MeshCaster([(m, pose.matrix) for m, pose in zip(meshes, poses, strict=True)]).buffers(camera)
 
 
 def tracked_points(
